@@ -1,0 +1,92 @@
+#pragma once
+
+/// @file
+/// Who evaluates independent pieces of work: this thread, or several. The results do not depend on it.
+
+#include <concepts>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/function_ref.hpp"
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+/// Work on the half-open range [begin, end).
+using RangeFunction = FunctionRef<void(Index begin, Index end)>;
+
+/// Splits 0..n into disjoint ranges that cover it and calls `work` on each, on any thread and in any order;
+/// returns when all are done and rethrows the first exception.
+template <class E>
+concept Executor = requires(E& executor, Index n, RangeFunction work) { executor.for_ranges(n, work); };
+
+/// Everything on the calling thread.
+struct SequentialExecutor {
+  void for_ranges(Index n, RangeFunction work) const {
+    if (n > 0) work(0, n);
+  }
+};
+
+/// One contiguous range per thread; the calling thread takes the first.
+class ThreadExecutor {
+ public:
+  /// @param threads at least 1
+  explicit ThreadExecutor(int threads) : threads_(threads) {
+    require(threads >= 1, "ThreadExecutor: threads is ", threads, ", must be at least 1");
+  }
+
+  int threads() const { return threads_; }
+
+  void for_ranges(Index n, RangeFunction work) const {
+    const Index parts = std::min<Index>(threads_, n);
+    if (parts <= 1) return SequentialExecutor{}.for_ranges(n, work);
+    std::exception_ptr failure;
+    std::mutex guard;
+    const auto run = [&](Index part) {
+      try {
+        work(n * part / parts, n * (part + 1) / parts);
+      } catch (...) {
+        const std::scoped_lock lock(guard);
+        if (!failure) failure = std::current_exception();
+      }
+    };
+    {
+      std::vector<std::jthread> workers;
+      workers.reserve(static_cast<std::size_t>(parts - 1));
+      for (Index part = 1; part < parts; ++part) workers.emplace_back(run, part);
+      run(0);
+    }
+    if (failure) std::rethrow_exception(failure);
+  }
+
+ private:
+  int threads_;
+};
+
+/// Refers to any `Executor` that outlives it; sequential by default.
+class ExecutorRef {
+ public:
+  ExecutorRef() = default;
+
+  template <Executor E>
+    requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>)
+  ExecutorRef(E& executor)  // NOLINT(google-explicit-constructor)
+      : object_(const_cast<void*>(static_cast<const void*>(&executor))),
+        call_([](void* object, Index n, RangeFunction work) { static_cast<E*>(object)->for_ranges(n, work); }) {}
+
+  void for_ranges(Index n, RangeFunction work) const {
+    call_ != nullptr ? call_(object_, n, work) : SequentialExecutor{}.for_ranges(n, work);
+  }
+
+ private:
+  void* object_ = nullptr;
+  void (*call_)(void*, Index, RangeFunction) = nullptr;
+};
+
+static_assert(Executor<SequentialExecutor> && Executor<ThreadExecutor> && Executor<const ExecutorRef>);
+static_assert(!Executor<int>);
+
+}  // namespace vernier

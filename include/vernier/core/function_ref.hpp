@@ -1,0 +1,37 @@
+#pragma once
+
+/// @file
+/// A non-owning reference to a callable, so that options stay plain concrete types.
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+namespace vernier {
+
+template <class Signature>
+class FunctionRef;
+
+/// Two pointers to a callable that outlives it. Empty by default; calling an empty one is undefined.
+template <class R, class... Args>
+class FunctionRef<R(Args...)> {
+ public:
+  FunctionRef() = default;
+
+  template <class F>
+    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Args...>)
+  FunctionRef(F&& f)  // NOLINT(google-explicit-constructor): a call argument converts silently
+      : object_(const_cast<void*>(static_cast<const void*>(std::addressof(f)))),
+        call_([](void* object, Args... args) -> R {
+          return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
+        }) {}
+
+  R operator()(Args... args) const { return call_(object_, std::forward<Args>(args)...); }
+  explicit operator bool() const { return call_ != nullptr; }
+
+ private:
+  void* object_ = nullptr;
+  R (*call_)(void*, Args...) = nullptr;
+};
+
+}  // namespace vernier

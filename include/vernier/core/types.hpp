@@ -1,0 +1,44 @@
+#pragma once
+
+/// @file
+/// Matrix aliases shared by every folder. Units are metres and radians; samples are rows.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+/// Calibration and error compensation of serial robot arms.
+namespace vernier {
+
+using Eigen::Index;
+
+using Vector3 = Eigen::Vector3d;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix3 = Eigen::Matrix3d;
+using MatrixX = Eigen::MatrixXd;
+using VectorX = Eigen::VectorXd;
+
+/// Rigid motion; `base_T_tool` maps tool coordinates to base coordinates.
+template <class Scalar>
+using IsometryOf = Eigen::Transform<Scalar, 3, Eigen::Isometry>;
+using Isometry3 = IsometryOf<double>;
+
+/// Joint values of one configuration: rad (revolute) or m (prismatic).
+template <int N>
+using JointVector = Eigen::Matrix<double, N, 1>;
+
+/// Joint values of n configurations, n x N.
+template <int N>
+using JointRows = Eigen::Matrix<double, Eigen::Dynamic, N>;
+
+/// n points in metres, n x 3.
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/// Geometric Jacobian, 6 x N: linear rows first, in the base frame, at the tool point.
+template <int N>
+using Jacobian = Eigen::Matrix<double, 6, N>;
+
+/// Jacobian with respect to P model parameters, 6 x P, same rows as `Jacobian`.
+template <int P>
+using ParameterJacobian = Eigen::Matrix<double, 6, P>;
+
+}  // namespace vernier

@@ -3,6 +3,7 @@
 /// @file
 /// Who evaluates independent pieces of work: this thread, or several. The results do not depend on it.
 
+#include <algorithm>
 #include <concepts>
 #include <exception>
 #include <mutex>

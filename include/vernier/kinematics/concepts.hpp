@@ -1,0 +1,92 @@
+#pragma once
+
+/// @file
+/// What the whole house builds on: a thing that says where its tool is. Nominal chains, identified chains, chains with
+/// frames, simulated arms and models with a learned correction are all kinematic models.
+
+#include <concepts>
+#include <string>
+#include <vector>
+
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+/// A pose and its geometric Jacobian, computed in one pass.
+template <int N>
+struct PoseAndJacobian {
+  Isometry3 pose;        ///< base_T_tool
+  Jacobian<N> jacobian;  ///< 6 x N, linear rows first, base frame, at the tool point
+};
+
+/// Forward kinematics of N joints, with derivatives. None of the calls allocates or throws.
+///
+/// - `M::dof`: number of joints, a compile-time constant
+/// - `pose(q)`: base_T_tool; `position(q)`: its translation [m]
+/// - `jacobian(q)`: 6 x N as in `Jacobian`; the exact derivative of `pose`
+/// - `pose_and_jacobian(q)`: both; the primitive that solvers call
+///
+/// `testing::kinematic_model_violations` checks what the types cannot say.
+template <class M>
+concept KinematicModel = requires(const M& model, const JointVector<M::dof>& q) {
+  requires M::dof >= 1;
+  { model.pose(q) } noexcept -> std::same_as<Isometry3>;
+  { model.position(q) } noexcept -> std::same_as<Vector3>;
+  { model.jacobian(q) } noexcept -> std::same_as<Jacobian<M::dof>>;
+  { model.pose_and_jacobian(q) } noexcept -> std::same_as<PoseAndJacobian<M::dof>>;
+};
+
+/// What a parameter measures; decides its unit in reports and its physical size in priors.
+enum class ParameterKind { length, angle };
+
+/// A kinematic model described by P real parameters.
+///
+/// - `M::num_parameters`: P; `parameters()`: their values [m, rad]
+/// - `with_parameters(p)`: the same model with other values
+/// - `parameter_names()`, `parameter_kinds()`: P entries, e.g. `d3`, length
+/// - `parameter_jacobian(q)`: 6 x P, derivative of the pose, rows as in `Jacobian`
+/// - `pose(q, p)`: the pose as one function of joints and parameters, in any scalar (dual numbers included)
+template <class M>
+concept ParametricModel =
+    KinematicModel<M> && requires(const M& model, const JointVector<M::dof>& q, const Eigen::Matrix<double, M::num_parameters, 1>& p) {
+      { model.parameters() } -> std::same_as<Eigen::Matrix<double, M::num_parameters, 1>>;
+      { model.with_parameters(p) } -> std::same_as<M>;
+      { M::parameter_names() } -> std::same_as<std::vector<std::string>>;
+      { M::parameter_kinds() } -> std::same_as<std::vector<ParameterKind>>;
+      { model.parameter_jacobian(q) } noexcept -> std::same_as<ParameterJacobian<M::num_parameters>>;
+      { model.template pose<double>(q, p) } -> std::same_as<Isometry3>;
+    };
+
+/// Tool positions of n configurations, n x 3 [m].
+template <KinematicModel M>
+PointRows positions(const M& model, const JointRows<M::dof>& joints) {
+  PointRows out(joints.rows(), 3);
+  for (Index i = 0; i < joints.rows(); ++i) out.row(i) = model.position(joints.row(i).transpose()).transpose();
+  return out;
+}
+
+/// Poses of n configurations.
+template <KinematicModel M>
+std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
+  std::vector<Isometry3> out;
+  out.reserve(static_cast<std::size_t>(joints.rows()));
+  for (Index i = 0; i < joints.rows(); ++i) out.push_back(model.pose(joints.row(i).transpose()));
+  return out;
+}
+
+/// The arm that a model corrects towards: its `reference()` where it has one (an identified model knows the nominal
+/// chain in the identified frames), else the model itself (a nominal chain).
+template <KinematicModel M>
+decltype(auto) reference_of(const M& model) {
+  if constexpr (requires { { model.reference() } -> KinematicModel; }) {
+    return model.reference();
+  } else {
+    return (model);
+  }
+}
+
+/// Type of `reference_of(model)`, by value.
+template <KinematicModel M>
+using ReferenceOf = std::remove_cvref_t<decltype(reference_of(std::declval<const M&>()))>;
+
+}  // namespace vernier

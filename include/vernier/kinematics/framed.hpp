@@ -1,0 +1,167 @@
+#pragma once
+
+/// @file
+/// A model standing somewhere, with something in its hand: base and tool frames around any kinematic model.
+
+#include <string>
+#include <vector>
+
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/concepts.hpp"
+
+namespace vernier {
+
+/// A frame as six parameters beside its matrix: x, y, z [m], rotation vector rx, ry, rz [rad].
+class FrameParameters {
+ public:
+  FrameParameters() : FrameParameters(Isometry3::Identity()) {}
+  FrameParameters(const Isometry3& frame) : frame_(frame) {  // NOLINT(google-explicit-constructor)
+    values_ << frame.translation(), log_so3(frame.linear());
+  }
+  explicit FrameParameters(const Vector6& values) : values_(values), frame_(isometry<double>(values)) {}
+
+  const Vector6& values() const { return values_; }
+  const Isometry3& isometry() const { return frame_; }
+
+  /// The frame of six values, in any scalar.
+  template <class S>
+  static IsometryOf<S> isometry(const Eigen::Matrix<S, 6, 1>& values) {
+    IsometryOf<S> frame = IsometryOf<S>::Identity();
+    frame.translation() = values.template head<3>();
+    frame.linear() = exp_so3(values.template tail<3>());
+    return frame;
+  }
+
+ private:
+  Vector6 values_;
+  Isometry3 frame_;
+};
+
+/// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
+template <KinematicModel Model>
+class Framed {
+ public:
+  static constexpr int dof = Model::dof;
+
+  explicit Framed(const Model& model, const FrameParameters& base = {}, const FrameParameters& tool = {})
+      : model_(model), base_(base), tool_(tool) {}
+
+  const Model& model() const { return model_; }
+  const Isometry3& base() const { return base_.isometry(); }
+  const Isometry3& tool() const { return tool_.isometry(); }
+
+  /// The same frames around another model.
+  template <KinematicModel Other>
+  Framed<Other> around(const Other& other) const {
+    return Framed<Other>(other, base_, tool_);
+  }
+
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return base() * model_.pose(q) * tool(); }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return base() * (model_.pose(q) * tool().translation()); }
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
+    return {base() * inner.pose * tool(), at_tool(inner.jacobian, inner.pose)};
+  }
+
+ private:
+  /// Moves Jacobian columns from the model's end to the tool point and turns them into the outer base.
+  template <int P>
+  Eigen::Matrix<double, 6, P> at_tool(const Eigen::Matrix<double, 6, P>& inner, const Isometry3& flange) const noexcept {
+    const Vector3 lever = flange.linear() * tool().translation();
+    Eigen::Matrix<double, 6, P> out;
+    for (int k = 0; k < P; ++k) {
+      const Vector3 omega = inner.col(k).template tail<3>();
+      out.col(k).template head<3>() = base().linear() * (inner.col(k).template head<3>() + omega.cross(lever));
+      out.col(k).template tail<3>() = base().linear() * omega;
+    }
+    return out;
+  }
+
+  static constexpr int model_parameters() {
+    if constexpr (requires { Model::num_parameters; }) {
+      return Model::num_parameters;
+    } else {
+      return 0;
+    }
+  }
+
+ public:
+  static constexpr int num_parameters = 12 + model_parameters();
+  using Parameters = Eigen::Matrix<double, num_parameters, 1>;
+
+  Parameters parameters() const
+    requires ParametricModel<Model>
+  {
+    Parameters p;
+    p << base_.values(), model_.parameters(), tool_.values();
+    return p;
+  }
+
+  /// A frame whose six values do not change keeps its matrix bit for bit.
+  Framed with_parameters(const Parameters& p) const
+    requires ParametricModel<Model>
+  {
+    const auto frame = [](const FrameParameters& old, const Vector6& values) {
+      return values == old.values() ? old : FrameParameters(values);
+    };
+    return Framed(model_.with_parameters(p.template segment<Model::num_parameters>(6)), frame(base_, p.template head<6>()),
+                  frame(tool_, p.template tail<6>()));
+  }
+
+  static std::vector<std::string> parameter_names()
+    requires ParametricModel<Model>
+  {
+    std::vector<std::string> names;
+    for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(std::string("base_") + axis);
+    for (auto& name : Model::parameter_names()) names.push_back(std::move(name));
+    for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(std::string("tool_") + axis);
+    return names;
+  }
+
+  static std::vector<ParameterKind> parameter_kinds()
+    requires ParametricModel<Model>
+  {
+    std::vector<ParameterKind> frame(6, ParameterKind::length), kinds;
+    std::fill(frame.begin() + 3, frame.end(), ParameterKind::angle);
+    kinds = frame;
+    for (const ParameterKind kind : Model::parameter_kinds()) kinds.push_back(kind);
+    kinds.insert(kinds.end(), frame.begin(), frame.end());
+    return kinds;
+  }
+
+  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept
+    requires ParametricModel<Model>
+  {
+    const Isometry3 flange = model_.pose(q);
+    const Matrix3 rotation = base().linear() * flange.linear();
+    const Vector3 arm = base().linear() * (flange * tool().translation());  // base origin to tool point
+    const Matrix3 base_rate = left_jacobian_so3(base_.values().template tail<3>());
+    ParameterJacobian<num_parameters> out = ParameterJacobian<num_parameters>::Zero();
+    out.template block<3, 3>(0, 0).setIdentity();
+    out.template block<3, 3>(0, 3) = -skew(arm) * base_rate;
+    out.template block<3, 3>(3, 3) = base_rate;
+    out.template middleCols<Model::num_parameters>(6) = at_tool(model_.parameter_jacobian(q), flange);
+    constexpr int tool_column = 6 + Model::num_parameters;
+    out.template block<3, 3>(0, tool_column) = rotation;
+    out.template block<3, 3>(3, tool_column + 3) = rotation * left_jacobian_so3(tool_.values().template tail<3>());
+    return out;
+  }
+
+  /// The pose as a function of joints and parameters, in any scalar.
+  template <class S>
+  IsometryOf<S> pose(const Eigen::Matrix<S, dof, 1>& q, const Eigen::Matrix<S, num_parameters, 1>& p) const
+    requires ParametricModel<Model>
+  {
+    const Eigen::Matrix<S, Model::num_parameters, 1> inner = p.template segment<Model::num_parameters>(6);
+    return FrameParameters::isometry<S>(p.template head<6>()) * model_.template pose<S>(q, inner) *
+           FrameParameters::isometry<S>(p.template tail<6>());
+  }
+
+ private:
+  Model model_;
+  FrameParameters base_, tool_;
+};
+
+}  // namespace vernier

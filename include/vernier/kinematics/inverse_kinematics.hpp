@@ -1,0 +1,154 @@
+#pragma once
+
+/// @file
+/// Inverse kinematics of any model: damped least squares from a seed, within joint limits, best iterate kept.
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/joint_limits.hpp"
+
+namespace vernier {
+
+/// How a search for joint values ended.
+enum class IkStatus {
+  converged,    ///< both tolerances met
+  stalled,      ///< the iterations ran out, or no step made progress
+  unreachable,  ///< no small motion within the limits brings the tool nearer: the target lies out of reach from this seed
+};
+
+/// Options of `inverse_kinematics`.
+template <int N>
+struct IkOptions {
+  JointLimits<N> limits{};           ///< never left; unbounded by default
+  double position_tolerance = 1e-9;  ///< [m]
+  double rotation_tolerance = 1e-9;  ///< [rad]
+  double rotation_length = 0.3;      ///< 1 rad of rotation error weighs as many metres [m]
+  int max_iterations = 200;          ///< evaluations of the model
+  int moving_joints = N;             ///< only the first so many joints move, 1..N
+};
+
+/// The best joints found.
+template <int N>
+struct IkResult {
+  JointVector<N> joints;      ///< within the limits, whatever the status
+  IkStatus status;            ///< see `IkStatus`
+  double position_error = 0;  ///< what is left [m]
+  double rotation_error = 0;  ///< what is left [rad]; 0 where only a position was asked for
+  int iterations = 0;         ///< evaluations of the model
+};
+
+namespace detail {
+
+/// Levenberg-Marquardt on the joints. `Rows` is 6 for a full pose, 3 for a position. Damping grows with the remaining
+/// error, so steps stay small near singularities and convergence is quadratic at the solution.
+/// @cite Levenberg 1944; Marquardt 1963; Nakamura and Hanafusa 1986; Sugihara 2011
+template <int Rows, KinematicModel M>
+IkResult<M::dof> damped_inverse_kinematics(const M& model, const Isometry3& target, const JointVector<M::dof>& seed,
+                                           const IkOptions<M::dof>& options) noexcept {
+  constexpr int N = M::dof;
+  using Error = Eigen::Matrix<double, Rows, 1>;
+  using Square = Eigen::Matrix<double, N, N>;
+  const int moving = std::clamp(options.moving_joints, 1, N);
+  Error weight = Error::Ones();
+  if constexpr (Rows == 6) weight.template tail<3>().setConstant(options.rotation_length);
+
+  struct Iterate {
+    JointVector<N> q;
+    Eigen::Matrix<double, Rows, N> jacobian;
+    Error error;
+    double cost;
+  };
+  const auto evaluate = [&](const JointVector<N>& q) {
+    const PoseAndJacobian<N> at = model.pose_and_jacobian(q);
+    Iterate it;
+    it.q = q;
+    if constexpr (Rows == 6) {
+      it.error = pose_difference(target, at.pose);
+    } else {
+      it.error = target.translation() - at.pose.translation();
+    }
+    it.jacobian = weight.asDiagonal() * at.jacobian.template topRows<Rows>();
+    it.cost = it.error.cwiseProduct(weight).squaredNorm();
+    return it;
+  };
+  const auto finish = [](const Iterate& it, IkStatus status, int iterations) {
+    IkResult<N> result{it.q, status, it.error.template head<3>().norm(), 0, iterations};
+    if constexpr (Rows == 6) result.rotation_error = it.error.template tail<3>().norm();
+    return result;
+  };
+  const auto converged = [&](const Iterate& it) {
+    if constexpr (Rows == 6)
+      if (!(it.error.template tail<3>().norm() <= options.rotation_tolerance)) return false;
+    return it.error.template head<3>().norm() <= options.position_tolerance;
+  };
+
+  JointVector<N> start = seed;
+  start.head(moving) = options.limits.clamp(seed).head(moving);
+  Iterate best = evaluate(start);
+  double damping = 1e-3;  // in units of the cost
+  int iterations = 1;
+  if (!std::isfinite(best.cost)) return finish(best, IkStatus::stalled, iterations);
+  while (!converged(best)) {
+    JointVector<N> gradient = best.jacobian.transpose() * best.error.cwiseProduct(weight);
+    Square normal = best.jacobian.transpose() * best.jacobian;
+    const double scale = std::max(normal.trace(), 1e-12);
+    for (int i = 0; i < N; ++i) {
+      const bool held = i >= moving || (best.q(i) <= options.limits.lower(i) && gradient(i) < 0) ||
+                        (best.q(i) >= options.limits.upper(i) && gradient(i) > 0);
+      if (!held) continue;
+      gradient(i) = 0;
+      normal.row(i).setZero();
+      normal.col(i).setZero();
+      normal(i, i) = 1;
+    }
+    if (gradient.norm() <= 1e-3 * std::sqrt(scale * best.cost)) return finish(best, IkStatus::unreachable, iterations);
+    for (;;) {
+      if (iterations >= options.max_iterations || damping > 1e12) return finish(best, IkStatus::stalled, iterations);
+      Square damped = normal;
+      damped.diagonal().array() += damping * best.cost + 1e-14 * scale;
+      const JointVector<N> q = options.limits.clamp(best.q + damped.ldlt().solve(gradient));
+      JointVector<N> trial = best.q;
+      trial.head(moving) = q.head(moving);
+      const Iterate next = evaluate(trial);
+      ++iterations;
+      if (next.cost < best.cost) {  // false for NaN too
+        best = next;
+        damping = std::max(damping / 8, 1e-9);
+        break;
+      }
+      damping = std::max(damping * 8, 1e-9);
+    }
+  }
+  return finish(best, IkStatus::converged, iterations);
+}
+
+}  // namespace detail
+
+/// Joints that bring the tool to a full pose, on the branch of the seed and near to it. Does not allocate.
+/// @param model   any kinematic model
+/// @param target  base_T_tool
+/// @param seed    where to start [rad, m]; taken into the limits first
+/// @param options tolerances, limits, iterations
+/// @return        the best joints found and how it ended
+/// @complexity    about five evaluations of pose and Jacobian from a near seed
+template <KinematicModel M>
+[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Isometry3& target, const JointVector<M::dof>& seed,
+                                                  const IkOptions<M::dof>& options = {}) noexcept {
+  return detail::damped_inverse_kinematics<6>(model, target, seed, options);
+}
+
+/// Joints that bring the tool to a position [m], whatever its orientation; otherwise as above.
+template <KinematicModel M>
+[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Vector3& target, const JointVector<M::dof>& seed,
+                                                  const IkOptions<M::dof>& options = {}) noexcept {
+  Isometry3 pose = Isometry3::Identity();
+  pose.translation() = target;
+  return detail::damped_inverse_kinematics<3>(model, pose, seed, options);
+}
+
+}  // namespace vernier

@@ -1,0 +1,129 @@
+#pragma once
+
+/// @file
+/// A catalogue of nominal arms. Tables are the makers' or the literature's nominal values.
+
+#include <numbers>
+#include <string_view>
+
+#include "vernier/core/literals.hpp"
+#include "vernier/kinematics/dh_chain.hpp"
+#include "vernier/kinematics/joint_limits.hpp"
+
+namespace vernier {
+
+/// A nominal arm: its chain, its joint limits and its name in the catalogue.
+template <int N, class Convention = StandardDh>
+struct Robot {
+  DhChain<N, Convention> chain;
+  JointLimits<N> limits;
+  std::string_view name;
+};
+
+namespace detail {
+
+/// Limits from degrees.
+template <int N>
+JointLimits<N> limits_deg(const double (&lower)[N], const double (&upper)[N]) {
+  constexpr double degree = std::numbers::pi / 180;
+  return {Eigen::Map<const JointVector<N>>(lower) * degree, Eigen::Map<const JointVector<N>>(upper) * degree};
+}
+
+}  // namespace detail
+
+/// The arms of the catalogue.
+namespace robots {
+
+using namespace vernier::literals;
+
+/// ABB IRB 120-3/0.6: the small six-axis arm of the paper's experiment.
+inline Robot<6> abb_irb120() {
+  constexpr DhChain<6> chain{{{
+      {.a = 0_mm, .alpha = -90_deg, .d = 290_mm, .theta = 0_deg},
+      {.a = 270_mm, .alpha = 0_deg, .d = 0_mm, .theta = -90_deg},
+      {.a = 70_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
+      {.a = 0_mm, .alpha = 90_deg, .d = 302_mm, .theta = 0_deg},
+      {.a = 0_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
+      {.a = 0_mm, .alpha = 0_deg, .d = 72_mm, .theta = 180_deg},
+  }}};
+  return {chain, detail::limits_deg<6>({-165, -110, -110, -160, -120, -400}, {165, 110, 70, 160, 120, 400}), "abb_irb120"};
+}
+
+/// Universal Robots UR10 (CB series).
+inline Robot<6> ur10() {
+  constexpr DhChain<6> chain{{{
+      {.a = 0_mm, .alpha = 90_deg, .d = 127.3_mm},
+      {.a = -612_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = -572.3_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 163.941_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 115.7_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 92.2_mm},
+  }}};
+  return {chain, detail::limits_deg<6>({-360, -360, -360, -360, -360, -360}, {360, 360, 360, 360, 360, 360}), "ur10"};
+}
+
+/// Universal Robots UR5 (CB series).
+inline Robot<6> ur5() {
+  constexpr DhChain<6> chain{{{
+      {.a = 0_mm, .alpha = 90_deg, .d = 89.159_mm},
+      {.a = -425_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = -392.25_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 109.15_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 94.65_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 82.3_mm},
+  }}};
+  return {chain, detail::limits_deg<6>({-360, -360, -360, -360, -360, -360}, {360, 360, 360, 360, 360, 360}), "ur5"};
+}
+
+/// Barrett WAM, seven joints, cable-driven.
+inline Robot<7> barrett_wam() {
+  constexpr DhChain<7> chain{{{
+      {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
+      {.a = 45_mm, .alpha = -90_deg, .d = 550_mm},
+      {.a = -45_mm, .alpha = 90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 300_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 60_mm},
+  }}};
+  return {chain, {JointVector<7>{-2.6, -2.0, -2.8, -0.9, -4.76, -1.6, -3.0}, JointVector<7>{2.6, 2.0, 2.8, 3.1, 1.24, 1.6, 3.0}},
+          "barrett_wam"};
+}
+
+namespace detail {
+
+inline JointLimits<6> puma560_limits() {
+  return vernier::detail::limits_deg<6>({-160, -45, -225, -110, -100, -266}, {160, 225, 45, 170, 100, 266});
+}
+
+}  // namespace detail
+
+/// Unimation PUMA 560, standard convention.
+/// @cite Corke 2011
+inline Robot<6> puma560() {
+  constexpr DhChain<6> chain{{{
+      {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
+      {.a = 431.8_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = 20.3_mm, .alpha = -90_deg, .d = 150.05_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 431.8_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 0_mm},
+  }}};
+  return {chain, detail::puma560_limits(), "puma560"};
+}
+
+/// The same PUMA 560 in the modified convention: every pose equals that of `puma560()`.
+inline Robot<6, ModifiedDh> puma560_modified() {
+  constexpr DhChain<6, ModifiedDh> chain{{{
+      {.a = 0_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
+      {.a = 431.8_mm, .alpha = 0_deg, .d = 150.05_mm},
+      {.a = 20.3_mm, .alpha = -90_deg, .d = 431.8_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
+  }}};
+  return {chain, detail::puma560_limits(), "puma560_modified"};
+}
+
+}  // namespace robots
+}  // namespace vernier

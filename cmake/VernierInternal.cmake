@@ -1,0 +1,30 @@
+# What Vernier's own tests, programs and benchmarks are built with; never installed, never seen by users.
+
+add_library(vernier_internal INTERFACE)
+target_compile_features(vernier_internal INTERFACE cxx_std_20)
+target_compile_options(vernier_internal INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion -Wold-style-cast
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi -Wcast-qual
+  # g++ 12 raises these after inlining, inside Eigen and std::string, where "system header" no longer counts.
+  "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>"
+  $<$<BOOL:${VERNIER_WERROR}>:-Werror>)
+
+# vernier_includes(<out> <file> <regex>): whether the file has an #include line whose target starts so. Editing the file
+# configures again, so what a program links to follows from what it includes.
+function(vernier_includes out file regex)
+  file(STRINGS "${file}" lines REGEX "^#include [<\"]${regex}")
+  if(lines)
+    set(${out} TRUE PARENT_SCOPE)
+  else()
+    set(${out} FALSE PARENT_SCOPE)
+  endif()
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+endfunction()
+
+# KDL, the peer that kinematics are compared with, as vernier_kdl; its package names a library and no target.
+find_package(orocos_kdl QUIET)
+if(orocos_kdl_FOUND)
+  add_library(vernier_kdl INTERFACE)
+  target_include_directories(vernier_kdl SYSTEM INTERFACE ${orocos_kdl_INCLUDE_DIRS})
+  target_link_libraries(vernier_kdl INTERFACE ${orocos_kdl_LIBRARIES} Eigen3::Eigen)
+endif()

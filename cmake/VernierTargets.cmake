@@ -1,0 +1,36 @@
+# vernier::vernier (Eigen and threads), vernier::io (and nlohmann-json), vernier::ceres (and Ceres).
+# INTERFACE targets without a flag: they ask for C++20 and nothing else.
+
+file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp")
+set(vernier_io_headers ${vernier_headers})
+list(FILTER vernier_io_headers INCLUDE REGEX "/include/vernier/io(/.*)?\\.hpp$")
+set(vernier_ceres_headers ${vernier_headers})
+list(FILTER vernier_ceres_headers INCLUDE REGEX "/include/vernier/ceres(/.*)?\\.hpp$")
+list(REMOVE_ITEM vernier_headers ${vernier_io_headers} ${vernier_ceres_headers})
+
+# vernier_add_interface(<component> HEADERS <file>... LINK <target>...) makes vernier::<component>.
+function(vernier_add_interface component)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LINK")
+  if(component STREQUAL "vernier")
+    set(target vernier)
+  else()
+    set(target vernier_${component})
+  endif()
+  add_library(${target} INTERFACE)
+  add_library(vernier::${component} ALIAS ${target})
+  target_compile_features(${target} INTERFACE cxx_std_20)
+  target_link_libraries(${target} INTERFACE ${arg_LINK})
+  target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${arg_HEADERS})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${component})
+  # With CMAKE_VERIFY_INTERFACE_HEADER_SETS every header is compiled alone, where its libraries are at hand.
+  foreach(library IN LISTS arg_LINK)
+    if(NOT TARGET ${library})
+      set_target_properties(${target} PROPERTIES VERIFY_INTERFACE_HEADER_SETS OFF)
+      message(STATUS "Vernier: ${library} not found, so vernier::${component} cannot be used in this build")
+    endif()
+  endforeach()
+endfunction()
+
+vernier_add_interface(vernier HEADERS ${vernier_headers} LINK Eigen3::Eigen Threads::Threads)
+vernier_add_interface(io HEADERS ${vernier_io_headers} LINK vernier::vernier nlohmann_json::nlohmann_json)
+vernier_add_interface(ceres HEADERS ${vernier_ceres_headers} LINK vernier::vernier Ceres::ceres)

@@ -1,0 +1,36 @@
+// What a user's program sees of Vernier: the headers, the namespace, the version, and the libraries of what it asked
+// for.
+
+#include <vernier/vernier.hpp>
+#ifdef CONSUMER_IO
+#include <vernier/io.hpp>
+#endif
+#ifdef CONSUMER_CERES
+#include <vernier/ceres.hpp>
+#endif
+
+#include <cmath>
+#include <cstdio>
+
+namespace vn = vernier;
+using namespace vernier::literals;
+
+int main() {
+  constexpr vn::DhChain<2> arm{{{
+      {.a = 300_mm, .alpha = 0_deg, .d = 0_mm, .theta = 0_deg},
+      {.a = 200_mm, .alpha = 0_deg, .d = 0_mm, .theta = 0_deg},
+  }}};
+  vn::JointVector<2> q;
+  q.setZero();
+  const double reach = arm.position(q).norm();
+  bool right = std::abs(reach - 0.5) < 1e-12;
+#ifdef CONSUMER_IO
+  right = right && nlohmann::json{{"reach_m", reach}}.size() == 1;
+#endif
+#ifdef CONSUMER_CERES
+  right = right && ceres::Problem{}.NumParameters() == 0;
+#endif
+  std::printf("vernier %d.%d.%d: a reach of %.1f mm\n", VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR,
+              VERNIER_VERSION_PATCH, reach * 1e3);
+  return right ? 0 : 1;
+}

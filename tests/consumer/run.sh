@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, and with io and Ceres.
+# usage: tests/consumer/run.sh [BUILD FOLDER]
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+mkdir -p "${1:-$root/build/consumer}"
+build=$(cd "${1:-$root/build/consumer}" && pwd)
+rm -rf "${build:?}"/*
+
+fail() {
+  printf 'consumer: %s\n' "$*" >&2
+  exit 1
+}
+
+# quietly LOG COMMAND...: shows the output of what failed, and of nothing else
+quietly() {
+  local log=$1
+  shift
+  "$@" >"$log" 2>&1 || {
+    cat "$log" >&2
+    fail "failed: $*"
+  }
+}
+
+# consume PROJECT COMPONENTS [CMAKE ARG...]
+consume() {
+  local project=$1 components=$2
+  local folder="$build/$project-${components//;/-}"
+  quietly "$build/configure.log" cmake -S "$here/$project" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
+    "-DCONSUMER_COMPONENTS=$components" "-DCMAKE_PREFIX_PATH=$build/prefix" "${@:3}"
+  quietly "$build/build.log" cmake --build "$folder"
+  [[ ! -e $folder/vernier/examples && ! -e $folder/vernier/tests ]] || fail "$project builds our tests or programs"
+  printf '%-14s %-10s ' "$project" "${components:-bare}"
+  "$folder/consumer"
+}
+
+# refuse TEXT CMAKE ARG...: configuring must fail, and say TEXT
+refuse() {
+  local text=$1
+  shift
+  if cmake -S "$here/installed" -B "$build/refused" -G Ninja "-DCMAKE_PREFIX_PATH=$build/prefix" "$@" \
+    >"$build/refused.log" 2>&1; then
+    fail "was accepted: $*"
+  fi
+  tr -s ' \n' ' ' <"$build/refused.log" | grep -qF -- "$text" || {
+    cat "$build/refused.log" >&2
+    fail "was refused without saying '$text': $*"
+  }
+  rm -rf "$build/refused"
+  printf '%-14s %-10s %s\n' installed refused "$text"
+}
+
+# Where a program does not ask for a library, that library is not looked for.
+no_ceres=-DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON
+no_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
+
+# Installed by a build that knows neither: the package is the same.
+quietly "$build/install.log" cmake -S "$root" -B "$build/package" -G Ninja "-DCMAKE_INSTALL_PREFIX=$build/prefix" \
+  -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF $no_ceres $no_json
+quietly "$build/install.log" cmake --install "$build/package"
+
+for project in in_tree fetch_content installed; do
+  consume $project "" $no_ceres $no_json
+  consume $project "io;ceres"
+done
+consume installed io $no_ceres
+
+refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
+refuse "Ceres" -DCONSUMER_COMPONENTS=ceres $no_ceres

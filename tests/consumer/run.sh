@@ -67,4 +67,4 @@ done
 consume installed io $no_ceres
 
 refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
-refuse "Ceres" -DCONSUMER_COMPONENTS=ceres $no_ceres
+refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres

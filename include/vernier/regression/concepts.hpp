@@ -1,0 +1,60 @@
+#pragma once
+
+/// @file
+/// Recipes that learn a map from samples, and the fitted maps they give.
+
+#include <concepts>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/fit_options.hpp"
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+/// A fitted map from `P::inputs` to `P::outputs` real numbers, both compile-time constants.
+///
+/// - `predict(x)`: one sample, a column; does not allocate or throw
+/// - `predict(X)`: n x inputs to n x outputs; row i equals `predict` of row i
+/// - `derivative(x)`: outputs x inputs, the exact derivative at x; does not allocate or throw
+template <class P>
+concept Predictor = requires(const P& predictor, const Eigen::Matrix<double, P::inputs, 1>& x,
+                             const Eigen::Matrix<double, Eigen::Dynamic, P::inputs>& rows) {
+  { predictor.predict(x) } noexcept -> std::same_as<Eigen::Matrix<double, P::outputs, 1>>;
+  { predictor.predict(rows) } -> std::same_as<Eigen::Matrix<double, Eigen::Dynamic, P::outputs>>;
+  { predictor.derivative(x) } noexcept -> std::same_as<Eigen::Matrix<double, P::outputs, P::inputs>>;
+};
+
+/// What `R::fit` gives for samples of some inputs and outputs.
+template <class R, int Inputs, int Outputs>
+using PredictorOf = decltype(std::declval<const R&>().fit(std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Inputs>&>(),
+                                                          std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Outputs>&>(),
+                                                          std::declval<const FitOptions&>()));
+
+/// A recipe: `fit(X, Y, options)` is const and gives a `Predictor` with no unfinished state. X is n x inputs, Y n x outputs,
+/// one sample a row; the numbers of columns are compile-time constants of any size. Same seed, same bits.
+template <class R>
+concept Regressor = std::copyable<R> && Predictor<PredictorOf<R, 6, 3>> && Predictor<PredictorOf<R, 1, 1>> &&
+                    (PredictorOf<R, 6, 3>::inputs == 6) && (PredictorOf<R, 6, 3>::outputs == 3);
+
+namespace detail {
+
+/// A column vector of a predictor's inputs, known at compile time.
+template <class Derived, int Inputs>
+concept SampleOf = (Derived::ColsAtCompileTime == 1 && Derived::RowsAtCompileTime == Inputs);
+
+/// Samples as rows.
+template <class Derived, int Inputs>
+concept SampleRowsOf = (Derived::ColsAtCompileTime == Inputs && !SampleOf<Derived, Inputs>);
+
+/// The checks every `fit` makes of its samples.
+template <class X, class Y>
+void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) {
+  static_assert(X::ColsAtCompileTime != Eigen::Dynamic && Y::ColsAtCompileTime != Eigen::Dynamic,
+                "the numbers of inputs and outputs are compile-time constants: pass matrices with fixed numbers of columns");
+  require(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(), " rows of targets");
+  require(inputs.rows() >= 1, caller, ": no samples");
+  require(inputs.allFinite() && targets.allFinite(), caller, ": the samples have a value that is not finite");
+}
+
+}  // namespace detail
+}  // namespace vernier

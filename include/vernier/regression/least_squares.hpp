@@ -1,0 +1,167 @@
+#pragma once
+
+/// @file
+/// Linear least squares for output weights: minimum norm, ridge, and closed-form leave-one-out.
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// Thin singular value decomposition `H = U diag(s) V'`; a tall H goes through its QR factors.
+struct ThinSvd {
+  MatrixX u;  ///< n x k, k = min(n, h)
+  VectorX s;  ///< k, descending
+  MatrixX v;  ///< h x k
+
+  explicit ThinSvd(const MatrixX& h) {
+    if (h.rows() > 2 * h.cols()) {
+      const Eigen::HouseholderQR<MatrixX> qr(h);
+      const MatrixX r = qr.matrixQR().topRows(h.cols()).template triangularView<Eigen::Upper>();
+      decompose(r);
+      MatrixX thin = MatrixX::Zero(h.rows(), h.cols());
+      thin.topRows(h.cols()) = u;
+      u = qr.householderQ() * thin;
+    } else {
+      decompose(h);
+    }
+  }
+
+ private:
+  void decompose(const MatrixX& h) {
+    const Eigen::BDCSVD<MatrixX> svd(h, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    u = svd.matrixU();
+    s = svd.singularValues();
+    v = svd.matrixV();
+  }
+};
+
+}  // namespace detail
+
+/// Minimum-norm solution of `min |H beta - T|`: singular values below `rcond` times the largest count as zero.
+/// @param h n x nodes, @param t n x outputs
+/// @return nodes x outputs
+inline MatrixX minimum_norm_solution(const MatrixX& h, const MatrixX& t, double rcond) {
+  const detail::ThinSvd svd(h);
+  const double cut = rcond * (svd.s.size() > 0 ? svd.s(0) : 0.0);
+  VectorX inverse = VectorX::Zero(svd.s.size());
+  for (Index j = 0; j < svd.s.size(); ++j)
+    if (svd.s(j) > cut) inverse(j) = 1 / svd.s(j);
+  return svd.v * (inverse.asDiagonal() * (svd.u.transpose() * t));
+}
+
+/// Value and solution of a regularised least-squares problem.
+struct RidgeSolution {
+  MatrixX beta;      ///< nodes x outputs
+  double objective;  ///< `|H beta - T|^2 + lambda |beta|^2`
+};
+
+/// `min |H beta - T|^2 + lambda |beta|^2` with lambda = `relative_lambda` tr(H'H) / h, by normal equations. The ridge bounds
+/// the condition of the Gram matrix by h / relative_lambda; should the factorisation fail all the same, QR of the
+/// stacked system takes over. The objective is computed from the residual, so an error of beta enters it squared.
+inline RidgeSolution relative_ridge(const MatrixX& h, const MatrixX& t, double relative_lambda) {
+  const Index nodes = h.cols();
+  MatrixX gram = MatrixX::Zero(nodes, nodes);
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(h.transpose());
+  const double lambda = relative_lambda * gram.trace() / static_cast<double>(nodes);
+  gram.diagonal().array() += lambda;
+  RidgeSolution out;
+  if (!(lambda > 0) || !std::isfinite(lambda)) {  // H is zero, or not finite
+    out.beta = MatrixX::Zero(nodes, t.cols());
+    out.objective = std::isfinite(lambda) ? t.squaredNorm() : std::numeric_limits<double>::infinity();
+    return out;
+  }
+  const Eigen::LLT<MatrixX> factor(gram);
+  if (factor.info() == Eigen::Success) {
+    out.beta = factor.solve(h.transpose() * t);
+  } else {
+    MatrixX stacked(h.rows() + nodes, nodes), right = MatrixX::Zero(h.rows() + nodes, t.cols());
+    stacked << h, std::sqrt(lambda) * MatrixX::Identity(nodes, nodes);
+    right.topRows(t.rows()) = t;
+    out.beta = Eigen::HouseholderQR<MatrixX>(stacked).solve(right);
+  }
+  out.objective = (h * out.beta - t).squaredNorm() + lambda * out.beta.squaredNorm();
+  return out;
+}
+
+/// Ridge regression with an unpenalised mean, for every lambda from one decomposition.
+/// @cite Allen 1974 (PRESS); Huang 2012
+class RidgePath {
+ public:
+  /// @param h n x nodes, @param t n x outputs; both are centred here
+  RidgePath(const MatrixX& h, const MatrixX& t)
+      : mean_h_(h.colwise().mean()), mean_t_(t.colwise().mean()), centred_t_(t.rowwise() - mean_t_), svd_(h.rowwise() - mean_h_) {
+    projected_ = svd_.u.transpose() * centred_t_;
+    if (rank() == 0) svd_.s.setZero();
+  }
+
+  Index rank() const {
+    const double cut = svd_.s.size() > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;
+    return (svd_.s.array() > std::max(cut, 1e-300)).count();
+  }
+
+  /// Squares of the largest singular value: the natural unit of lambda.
+  double scale() const { return svd_.s.size() > 0 ? svd_.s(0) * svd_.s(0) : 0; }
+
+  /// nodes x outputs at `lambda` > 0; infinity gives zero.
+  MatrixX beta(double lambda) const {
+    if (!std::isfinite(lambda)) return MatrixX::Zero(svd_.v.rows(), centred_t_.cols());
+    return svd_.v * (svd_.s.array() / (svd_.s.array().square() + lambda)).matrix().asDiagonal() * projected_;
+  }
+
+  /// What is added to H beta: `mean(T) - mean(H) beta`.
+  VectorX offset(const MatrixX& beta) const { return (mean_t_ - mean_h_ * beta).transpose(); }
+
+  /// Residuals of leaving each sample out, n x outputs, at `lambda` > 0; infinity is the mean alone. With as many nodes as
+  /// samples `1 - leverage` is summed from lambda / (s^2 + lambda), never from a difference that cancels.
+  MatrixX leave_one_out_residuals(double lambda) const {
+    const Index n = centred_t_.rows();
+    if (!std::isfinite(lambda)) return centred_t_ * (static_cast<double>(n) / static_cast<double>(n - 1));
+    const Index r = rank();
+    const auto u = svd_.u.leftCols(r);
+    const Eigen::ArrayXd s2 = svd_.s.head(r).array().square();
+    const VectorX kept = (lambda / (s2 + lambda)).matrix();
+    VectorX outside = VectorX::Zero(n);  // 1 - 1/n - sum u^2: nothing of it where U spans all centred samples
+    if (r < n - 1) outside = (1 - 1.0 / static_cast<double>(n) - u.rowwise().squaredNorm().array()).max(0.0);
+    const VectorX one_minus_leverage = outside + u.cwiseAbs2() * kept;
+    MatrixX residual = centred_t_ - u * ((1 - kept.array()).matrix().asDiagonal() * projected_.topRows(r));
+    for (Index i = 0; i < n; ++i) residual.row(i) /= std::max(one_minus_leverage(i), 1e-300);
+    return residual;
+  }
+
+ private:
+  Eigen::RowVectorXd mean_h_, mean_t_;
+  MatrixX centred_t_;
+  detail::ThinSvd svd_;
+  MatrixX projected_;
+};
+
+/// The lambda of least leave-one-out error over a grid relative to the problem's scale; infinity, the mean alone, is a candidate.
+struct LeaveOneOutChoice {
+  double lambda;              ///< absolute; infinity: the mean alone
+  double mean_squared_error;  ///< leave-one-out, per sample, summed over outputs
+
+  static LeaveOneOutChoice of(const RidgePath& path, Index samples) {
+    LeaveOneOutChoice best{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    if (samples < 2) return best;
+    const auto consider = [&](double lambda) {
+      const double error = path.leave_one_out_residuals(lambda).squaredNorm() / static_cast<double>(samples);
+      if (error < best.mean_squared_error) best = {lambda, error};
+    };
+    consider(std::numeric_limits<double>::infinity());
+    if (path.rank() > 0)
+      for (int exponent = 0; exponent >= -24; --exponent) consider(path.scale() * std::pow(10.0, exponent / 2.0));
+    return best;
+  }
+};
+
+}  // namespace vernier

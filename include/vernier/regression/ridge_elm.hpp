@@ -1,0 +1,93 @@
+#pragma once
+
+/// @file
+/// Extreme learning machine with a ridge on the output weights, chosen by closed-form leave-one-out.
+
+#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/least_squares.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// Fitness of hidden weights by leave-one-out error at the best ridge, the mean alone among the candidates.
+class RidgeElmLeaveOneOutError {
+ public:
+  RidgeElmLeaveOneOutError(const HiddenLayer& layer, MatrixX features, MatrixX targets)
+      : layer_(layer), features_(std::move(features)), targets_(std::move(targets)) {}
+
+  void operator()(const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) const {
+    MatrixX h;
+    for (Index k = 0; k < population.cols(); ++k) {
+      layer_.outputs(features_, population.col(k), h);
+      fitness(k) = h.allFinite() ? LeaveOneOutChoice::of(RidgePath(h, targets_), targets_.rows()).mean_squared_error
+                                 : std::numeric_limits<double>::infinity();
+    }
+  }
+
+ private:
+  HiddenLayer layer_;
+  MatrixX features_, targets_;
+};
+
+}  // namespace detail
+
+/// Ridge ELM: the mean of the targets is not penalised, lambda has the least leave-one-out error, and where nothing can be
+/// learned the mean alone wins. Targets keep their units, so outputs weigh as they are.
+/// @cite Huang 2012; Allen 1974
+struct RidgeElm {
+  int hidden_nodes = 65;  ///< at least 1; may exceed the number of samples
+  Activation activation = Activation::sigmoid;
+  InputMap input_map = InputMap::sines_and_cosines;
+  Scaling input_scaling = Scaling::min_max;  ///< of raw inputs
+  double weight_limit = 1;                   ///< hidden weights and biases lie in [-limit, limit]
+
+  HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }
+
+  /// Length of the vector of hidden weights that a search moves.
+  Index dimension(int inputs) const { return layer().dimension(inputs); }
+  /// Where a search looks.
+  Box box(int inputs) const { return layer().box(inputs); }
+
+  /// Leave-one-out mean squared error of hidden weights, in squared units of the targets.
+  template <class X, class Y>
+  detail::RidgeElmLeaveOneOutError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
+    validate(inputs, targets);
+    const MatrixX mapped = layer().map(inputs);
+    return {layer(), layer().scaling(mapped).apply(mapped), targets};
+  }
+
+  /// Fit with given hidden weights.
+  /// @param inputs n x inputs, @param targets n x outputs, @param theta `dimension(inputs)` weights, node by node
+  template <class X, class Y>
+  ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit_at(const Eigen::MatrixBase<X>& inputs,
+                                                                  const Eigen::MatrixBase<Y>& targets, const VectorX& theta) const {
+    validate(inputs, targets);
+    require(theta.size() == dimension(X::ColsAtCompileTime), "RidgeElm: ", theta.size(), " hidden weights, expected ",
+            dimension(X::ColsAtCompileTime));
+    const MatrixX mapped = layer().map(inputs);
+    const ColumnScaling in = layer().scaling(mapped);
+    MatrixX h;
+    layer().outputs(in.apply(mapped), theta, h);
+    const RidgePath path(h, targets);
+    const MatrixX beta = path.beta(LeaveOneOutChoice::of(path, h.rows()).lambda);
+    return {layer(), in, theta, beta, path.offset(beta)};
+  }
+
+  /// Fit with hidden weights drawn from the seed.
+  template <class X, class Y>
+  ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                                                               const FitOptions& options = {}) const {
+    layer().validate("RidgeElm");
+    return fit_at(inputs, targets, layer().draw(X::ColsAtCompileTime, options.seed));
+  }
+
+ private:
+  template <class X, class Y>
+  void validate(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
+    layer().validate("RidgeElm");
+    detail::require_samples("RidgeElm", inputs, targets);
+  }
+};
+
+}  // namespace vernier

@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file
+/// Joins the two worlds: a regressor whose inner weights a metaheuristic finds. PSO-ELM is `Tuned{Elm{}, Pso{}}`.
+
+#include "vernier/regression/concepts.hpp"
+#include "vernier/search/minimize.hpp"
+
+namespace vernier {
+
+/// A recipe whose inner parameters can be searched for.
+///
+/// - `dimension(inputs)`, `box(inputs)`: of the vector a search moves
+/// - `objective(X, Y)`: an `Objective` of such vectors
+/// - `fit_at(X, Y, theta)`: the predictor at one of them
+template <class R>
+concept TunableRegressor = std::copyable<R> && requires(const R& regressor, const Eigen::Matrix<double, Eigen::Dynamic, 6>& x,
+                                                        const Eigen::Matrix<double, Eigen::Dynamic, 3>& y, const VectorX& theta) {
+  { regressor.dimension(6) } -> std::convertible_to<Index>;
+  { regressor.box(6) } -> std::same_as<Box>;
+  { regressor.objective(x, y) } -> Objective;
+  { regressor.fit_at(x, y, theta) } -> Predictor;
+};
+
+/// A regressor that is fitted at the best inner parameters a search finds.
+/// `const Tuned pso_elm{Elm{.hidden_nodes = 65}, Pso{.particles = 50, .iterations = 300}};`
+/// @cite Feng, Dong, Jin
+template <TunableRegressor R, Metaheuristic A>
+struct Tuned {
+  R regressor;
+  A algorithm;
+  Stop stop{};  ///< beside the algorithm's own schedule
+
+  /// The search, then the fit at what it found. The observer of the options sees every generation.
+  template <class X, class Y>
+  auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets, const FitOptions& options = {}) const {
+    const SearchResult found = minimize(algorithm, regressor.objective(inputs, targets), regressor.box(X::ColsAtCompileTime), stop,
+                                        options.seed, options.executor, options.observer);
+    return regressor.fit_at(inputs, targets, found.best);
+  }
+};
+
+template <class R, class A>
+Tuned(R, A) -> Tuned<R, A>;
+template <class R, class A>
+Tuned(R, A, Stop) -> Tuned<R, A>;
+
+}  // namespace vernier

@@ -23,7 +23,8 @@ inline void write_file(const std::filesystem::path& path, std::string_view conte
     const int reason = errno;
     std::error_code ignored;
     std::filesystem::remove(beside, ignored);
-    throw std::runtime_error(path.string() + ": " + what + (reason != 0 ? std::string(": ") + std::strerror(reason) : std::string()));
+    throw std::runtime_error(path.string() + ": " + what +
+                             (reason != 0 ? std::string(": ") + std::strerror(reason) : std::string()));
   };
   errno = 0;
   {
@@ -45,7 +46,8 @@ inline void write_file(const std::filesystem::path& path, std::string_view conte
 /// @throws std::invalid_argument naming the file and the reason
 inline std::string read_file(const std::filesystem::path& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw std::invalid_argument(path.string() + ": is a folder, not a file");
+  if (std::filesystem::is_directory(path, error))
+    throw std::invalid_argument(path.string() + ": is a folder, not a file");
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::invalid_argument(path.string() + ": " + (errno != 0 ? std::strerror(errno) : "cannot be opened"));

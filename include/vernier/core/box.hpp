@@ -27,10 +27,11 @@ struct Box {
 
   /// @throws std::invalid_argument unless both bounds are finite, of one size, and lower < upper everywhere
   void validate() const {
-    require(lower.size() == upper.size() && lower.size() >= 1, "Box: ", lower.size(), " lower and ", upper.size(), " upper bounds");
+    require(lower.size() == upper.size() && lower.size() >= 1, "Box: ", lower.size(), " lower and ", upper.size(),
+            " upper bounds");
     for (Index i = 0; i < lower.size(); ++i)
-      require(lower(i) < upper(i) && upper(i) - lower(i) < 1e300, "Box: dimension ", i, " has bounds [", lower(i), ", ", upper(i),
-              "], must be finite and lower below upper");
+      require(lower(i) < upper(i) && upper(i) - lower(i) < 1e300, "Box: dimension ", i, " has bounds [", lower(i), ", ",
+              upper(i), "], must be finite and lower below upper");
   }
 };
 

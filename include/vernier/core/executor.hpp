@@ -22,7 +22,9 @@ using RangeFunction = FunctionRef<void(Index begin, Index end)>;
 /// Splits 0..n into disjoint ranges that cover it and calls `work` on each, on any thread and in any order;
 /// returns when all are done and rethrows the first exception.
 template <class E>
-concept Executor = requires(E& executor, Index n, RangeFunction work) { executor.for_ranges(n, work); };
+concept Executor = requires(E& executor, Index n, RangeFunction work) {
+  executor.for_ranges(n, work);
+};
 
 /// Everything on the calling thread.
 struct SequentialExecutor {

@@ -25,7 +25,8 @@ class ObserverRef {
   template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, ObserverRef> && std::is_invocable_v<F&, const Progress&>)
   ObserverRef(F&& f)  // NOLINT(google-explicit-constructor)
-      : object_(const_cast<void*>(static_cast<const void*>(&f))), call_([](void* object, const Progress& progress) -> bool {
+      : object_(const_cast<void*>(static_cast<const void*>(&f))),
+        call_([](void* object, const Progress& progress) -> bool {
           auto& callable = *static_cast<std::remove_reference_t<F>*>(object);
           if constexpr (std::is_same_v<std::invoke_result_t<F&, const Progress&>, bool>) {
             return callable(progress);

@@ -60,7 +60,8 @@ class Rng {
       if (const std::uint64_t r = (*this)(); r >= threshold) return r % n;
   }
 
-  /// Standard normal, by Marsaglia's polar method. The second value of a pair is dropped, so the state is the engine's alone.
+  /// Standard normal, by Marsaglia's polar method. The second value of a pair is dropped, so the state is the engine's
+  /// alone.
   double normal() {
     for (;;) {
       const double u = uniform(-1, 1);

@@ -53,7 +53,8 @@ class CsvTable {
       ++number;
       if (line.ends_with('\r')) line.remove_suffix(1);
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-      if (line.find('\0') != std::string_view::npos) throw DataError(message(file_, ", line ", number, ": binary data, not text"));
+      if (line.find('\0') != std::string_view::npos)
+        throw DataError(message(file_, ", line ", number, ": binary data, not text"));
       if (header_.empty()) {
         header_ = cells(line);
       } else {
@@ -74,7 +75,9 @@ class CsvTable {
     std::optional<CsvColumn> found;
     for (const auto& [unit, factor] : length ? lengths : angles)
       for (std::size_t i = 0; i < header_.size(); ++i) {
-        if (header_[i].size() != stem.size() + unit.size() || !header_[i].starts_with(stem) || !header_[i].ends_with(unit)) continue;
+        if (header_[i].size() != stem.size() + unit.size() || !header_[i].starts_with(stem) ||
+            !header_[i].ends_with(unit))
+          continue;
         if (found)
           throw DataError(message(file_, ", line 1: columns ", found->name, " and ", header_[i], " both give ", stem));
         found = CsvColumn{std::string(header_[i]), i, factor};
@@ -99,7 +102,8 @@ class CsvTable {
       const auto& [number, line] = lines_[row];
       const auto fields = cells(line);
       if (fields.size() != header_.size())
-        throw DataError(message(file_, ", line ", number, ": ", fields.size(), " values, the header has ", header_.size()));
+        throw DataError(
+            message(file_, ", line ", number, ": ", fields.size(), " values, the header has ", header_.size()));
       for (std::size_t k = 0; k < columns.size(); ++k)
         out(static_cast<Index>(row), static_cast<Index>(k)) =
             value(fields[columns[k].index], number, columns[k].name) * columns[k].factor;
@@ -134,7 +138,8 @@ class CsvTable {
     double out = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
     if (error == std::errc::result_out_of_range) throw DataError(where() + "'" + printable(cell) + "' is out of range");
-    if (error != std::errc{} || end != digits.data() + digits.size()) throw DataError(where() + "'" + printable(cell) + "' is not a number");
+    if (error != std::errc{} || end != digits.data() + digits.size())
+      throw DataError(where() + "'" + printable(cell) + "' is not a number");
     if (!std::isfinite(out)) throw DataError(where() + "'" + printable(cell) + "' is not finite");
     if (std::abs(out) > 1e9) throw DataError(where() + "'" + printable(cell) + "' is beyond any joint or length (1e9)");
     return out;
@@ -157,7 +162,9 @@ std::vector<CsvColumn> joint_columns(const CsvTable& table) {
     const std::string stem = message("q", i);
     const auto length = table.find(stem, true);
     const auto angle = table.find(stem, false);
-    if (length && angle) throw DataError(message(table.file(), ", line 1: columns ", length->name, " and ", angle->name, " both give ", stem));
+    if (length && angle)
+      throw DataError(
+          message(table.file(), ", line 1: columns ", length->name, " and ", angle->name, " both give ", stem));
     columns.push_back(length ? *length : table.demand(stem, false));
   }
   const std::string surplus = message("q", N + 1);
@@ -168,8 +175,8 @@ std::vector<CsvColumn> joint_columns(const CsvTable& table) {
 
 }  // namespace detail
 
-/// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg; _mm or _m for prismatic joints), x_mm, y_mm, z_mm (or _m),
-/// optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg). Any column order; other columns are ignored;
+/// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg; _mm or _m for prismatic joints), x_mm, y_mm, z_mm
+/// (or _m), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg). Any column order; other columns are ignored;
 /// blank lines, CRLF and a byte-order mark are accepted.
 /// @throws DataError naming file, line and column
 template <int N>
@@ -182,7 +189,8 @@ Dataset<N> read_dataset(const std::filesystem::path& path) {
     for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.demand(axis, false));
   const MatrixX values = table.numbers(columns);
   if (values.rows() == 0) throw DataError(message(table.file(), ": a header, but no rows of data"));
-  return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N), oriented ? PointRows(values.rightCols<3>()) : PointRows(0, 3));
+  return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
+                    oriented ? PointRows(values.rightCols<3>()) : PointRows(0, 3));
 }
 
 /// Joint rows from a CSV file: columns as in `read_dataset`, the q columns alone.
@@ -205,7 +213,8 @@ void write_dataset(const std::filesystem::path& path, const Dataset<N>& data) {
   out += data.has_orientations() ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
   for (Index i = 0; i < data.size(); ++i) {
     for (int j = 0; j < N; ++j) out += message(data.joints()(i, j), ',');
-    for (int j = 0; j < 3; ++j) out += message(data.positions()(i, j) * 1e3, j < 2 || data.has_orientations() ? "," : "\n");
+    for (int j = 0; j < 3; ++j)
+      out += message(data.positions()(i, j) * 1e3, j < 2 || data.has_orientations() ? "," : "\n");
     if (data.has_orientations())
       for (int j = 0; j < 3; ++j) out += message(data.orientations()(i, j), j < 2 ? ',' : '\n');
   }

@@ -24,12 +24,13 @@ class Dataset {
   /// @throws std::invalid_argument when the numbers of rows differ or a value is not finite, naming the row
   Dataset(JointRows<N> joints, PointRows positions, PointRows orientations = PointRows(0, 3))
       : joints_(std::move(joints)), positions_(std::move(positions)), orientations_(std::move(orientations)) {
-    require(joints_.rows() == positions_.rows(), "Dataset: ", joints_.rows(), " rows of joints, but ", positions_.rows(),
-            " rows of positions");
+    require(joints_.rows() == positions_.rows(), "Dataset: ", joints_.rows(), " rows of joints, but ",
+            positions_.rows(), " rows of positions");
     require(orientations_.rows() == 0 || orientations_.rows() == joints_.rows(), "Dataset: ", joints_.rows(),
             " rows of joints, but ", orientations_.rows(), " rows of orientations");
     for (Index i = 0; i < size(); ++i)
-      require(joints_.row(i).allFinite() && positions_.row(i).allFinite() && (!has_orientations() || orientations_.row(i).allFinite()),
+      require(joints_.row(i).allFinite() && positions_.row(i).allFinite() &&
+                  (!has_orientations() || orientations_.row(i).allFinite()),
               "Dataset: row ", i, " has a value that is not finite");
   }
 
@@ -38,7 +39,9 @@ class Dataset {
 
   const JointRows<N>& joints() const { return joints_; }
   const PointRows& positions() const { return positions_; }
-  const PointRows& orientations() const { return orientations_; }  ///< rotation vectors [rad], 0 x 3 where there are none
+  const PointRows& orientations() const {
+    return orientations_;
+  }  ///< rotation vectors [rad], 0 x 3 where there are none
 
   JointVector<N> joints(Index i) const { return joints_.row(i).transpose(); }
   Vector3 position(Index i) const { return positions_.row(i).transpose(); }

@@ -56,7 +56,8 @@ Split<N> split_rows(const Dataset<N>& data, std::vector<Index> order, Index test
 
 }  // namespace detail
 
-/// A seeded random share of the rows held out. Random splits flatter: neighbours of the test rows are in the training set.
+/// A seeded random share of the rows held out. Random splits flatter: neighbours of the test rows are in the training
+/// set.
 /// @throws std::invalid_argument for fewer than 2 rows or a fraction outside (0, 1)
 template <int N>
 Split<N> split(const Dataset<N>& data, const SplitOptions& options = {}) {
@@ -84,8 +85,9 @@ Split<N> split_region(const Dataset<N>& data, const RegionOptions& options = {})
   const double sign = static_cast<int>(options.face) % 2 == 0 ? 1 : -1;
   std::vector<Index> order(static_cast<std::size_t>(data.size()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return sign * data.positions()(a, axis) < sign * data.positions()(b, axis); });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return sign * data.positions()(a, axis) < sign * data.positions()(b, axis);
+  });
   return detail::split_rows(data, std::move(order), tests);
 }
 

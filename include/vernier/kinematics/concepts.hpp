@@ -30,10 +30,14 @@ struct PoseAndJacobian {
 template <class M>
 concept KinematicModel = requires(const M& model, const JointVector<M::dof>& q) {
   requires M::dof >= 1;
-  { model.pose(q) } noexcept -> std::same_as<Isometry3>;
-  { model.position(q) } noexcept -> std::same_as<Vector3>;
-  { model.jacobian(q) } noexcept -> std::same_as<Jacobian<M::dof>>;
-  { model.pose_and_jacobian(q) } noexcept -> std::same_as<PoseAndJacobian<M::dof>>;
+  { model.pose(q) }
+  noexcept->std::same_as<Isometry3>;
+  { model.position(q) }
+  noexcept->std::same_as<Vector3>;
+  { model.jacobian(q) }
+  noexcept->std::same_as<Jacobian<M::dof>>;
+  { model.pose_and_jacobian(q) }
+  noexcept->std::same_as<PoseAndJacobian<M::dof>>;
 };
 
 /// What a parameter measures; decides its unit in reports and its physical size in priors.
@@ -47,15 +51,16 @@ enum class ParameterKind { length, angle };
 /// - `parameter_jacobian(q)`: 6 x P, derivative of the pose, rows as in `Jacobian`
 /// - `pose(q, p)`: the pose as one function of joints and parameters, in any scalar (dual numbers included)
 template <class M>
-concept ParametricModel =
-    KinematicModel<M> && requires(const M& model, const JointVector<M::dof>& q, const Eigen::Matrix<double, M::num_parameters, 1>& p) {
-      { model.parameters() } -> std::same_as<Eigen::Matrix<double, M::num_parameters, 1>>;
-      { model.with_parameters(p) } -> std::same_as<M>;
-      { M::parameter_names() } -> std::same_as<std::vector<std::string>>;
-      { M::parameter_kinds() } -> std::same_as<std::vector<ParameterKind>>;
-      { model.parameter_jacobian(q) } noexcept -> std::same_as<ParameterJacobian<M::num_parameters>>;
-      { model.template pose<double>(q, p) } -> std::same_as<Isometry3>;
-    };
+concept ParametricModel = KinematicModel<M> &&
+    requires(const M& model, const JointVector<M::dof>& q, const Eigen::Matrix<double, M::num_parameters, 1>& p) {
+  { model.parameters() } -> std::same_as<Eigen::Matrix<double, M::num_parameters, 1>>;
+  { model.with_parameters(p) } -> std::same_as<M>;
+  { M::parameter_names() } -> std::same_as<std::vector<std::string>>;
+  { M::parameter_kinds() } -> std::same_as<std::vector<ParameterKind>>;
+  { model.parameter_jacobian(q) }
+  noexcept->std::same_as<ParameterJacobian<M::num_parameters>>;
+  { model.template pose<double>(q, p) } -> std::same_as<Isometry3>;
+};
 
 /// Tool positions of n configurations, n x 3 [m].
 template <KinematicModel M>
@@ -78,7 +83,7 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
 /// chain in the identified frames), else the model itself (a nominal chain).
 template <KinematicModel M>
 decltype(auto) reference_of(const M& model) {
-  if constexpr (requires { { model.reference() } -> KinematicModel; }) {
+  if constexpr (requires { model.reference(); }) {
     return model.reference();
   } else {
     return (model);

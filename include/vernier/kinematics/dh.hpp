@@ -12,7 +12,8 @@ namespace vernier {
 /// What a joint value adds to: the angle theta or the offset d of its row.
 enum class JointType { revolute, prismatic };
 
-/// One link: lengths in m, angles in rad. `beta` is Hayati's rotation about y for (nearly) parallel axes, zero otherwise.
+/// One link: lengths in m, angles in rad. `beta` is Hayati's rotation about y for (nearly) parallel axes, zero
+/// otherwise.
 /// @cite Denavit and Hartenberg 1955; Hayati and Mirmirani 1985
 struct DhRow {
   double a = 0;      ///< link length [m]
@@ -42,15 +43,15 @@ struct DhTable {
 
 /// `T = Rz(theta) Tz(d) Tx(a) Rx(alpha) Ry(beta)`: the classical convention.
 struct StandardDh {
-  static constexpr std::array<DhParameter, 5> order{DhParameter::theta, DhParameter::d, DhParameter::a, DhParameter::alpha,
-                                                    DhParameter::beta};
+  static constexpr std::array<DhParameter, 5> order{DhParameter::theta, DhParameter::d, DhParameter::a,
+                                                    DhParameter::alpha, DhParameter::beta};
 };
 
 /// `T = Rx(alpha) Tx(a) Ry(beta) Rz(theta) Tz(d)`: Craig's convention.
 /// @cite Craig 2005
 struct ModifiedDh {
-  static constexpr std::array<DhParameter, 5> order{DhParameter::alpha, DhParameter::a, DhParameter::beta, DhParameter::theta,
-                                                    DhParameter::d};
+  static constexpr std::array<DhParameter, 5> order{DhParameter::alpha, DhParameter::a, DhParameter::beta,
+                                                    DhParameter::theta, DhParameter::d};
 };
 
 }  // namespace vernier

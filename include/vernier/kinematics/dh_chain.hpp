@@ -99,7 +99,8 @@ class DhChain {
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     std::array<detail::ElementaryMotion, N> joints;
     const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
-      if (parameter == joint_parameter(i)) joints[static_cast<std::size_t>(i)] = {axis, point, parameter == DhParameter::theta};
+      if (parameter == joint_parameter(i))
+        joints[static_cast<std::size_t>(i)] = {axis, point, parameter == DhParameter::theta};
     });
     PoseAndJacobian<N> out{end.isometry(), {}};
     for (int i = 0; i < N; ++i) out.jacobian.col(i) = joints[static_cast<std::size_t>(i)].column(end.p);
@@ -148,7 +149,8 @@ class DhChain {
 
   Parameters parameters() const {
     Parameters p;
-    for (int i = 0; i < N; ++i) p.template segment<5>(5 * i) << row(i).a, row(i).alpha, row(i).d, row(i).theta, row(i).beta;
+    for (int i = 0; i < N; ++i)
+      p.template segment<5>(5 * i) << row(i).a, row(i).alpha, row(i).d, row(i).theta, row(i).beta;
     return p;
   }
 
@@ -192,7 +194,8 @@ class DhChain {
     return row(i).joint == JointType::revolute ? DhParameter::theta : DhParameter::d;
   }
 
-  /// Carries a frame from base to tool; `record(row, parameter, axis, point)` sees each elementary motion before it is made.
+  /// Carries a frame from base to tool; `record(row, parameter, axis, point)` sees each elementary motion before it is
+  /// made.
   template <class Record>
   detail::MovingFrame<double> walk(const JointVector<N>& q, Record&& record) const noexcept {
     detail::MovingFrame<double> frame;

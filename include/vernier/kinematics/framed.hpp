@@ -57,7 +57,9 @@ class Framed {
   }
 
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return base() * model_.pose(q) * tool(); }
-  Vector3 position(const JointVector<dof>& q) const noexcept { return base() * (model_.pose(q) * tool().translation()); }
+  Vector3 position(const JointVector<dof>& q) const noexcept {
+    return base() * (model_.pose(q) * tool().translation());
+  }
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
@@ -68,7 +70,8 @@ class Framed {
  private:
   /// Moves Jacobian columns from the model's end to the tool point and turns them into the outer base.
   template <int P>
-  Eigen::Matrix<double, 6, P> at_tool(const Eigen::Matrix<double, 6, P>& inner, const Isometry3& flange) const noexcept {
+  Eigen::Matrix<double, 6, P> at_tool(const Eigen::Matrix<double, 6, P>& inner,
+                                      const Isometry3& flange) const noexcept {
     const Vector3 lever = flange.linear() * tool().translation();
     Eigen::Matrix<double, 6, P> out;
     for (int k = 0; k < P; ++k) {
@@ -91,28 +94,22 @@ class Framed {
   static constexpr int num_parameters = 12 + model_parameters();
   using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
-  Parameters parameters() const
-    requires ParametricModel<Model>
-  {
+  Parameters parameters() const requires ParametricModel<Model> {
     Parameters p;
     p << base_.values(), model_.parameters(), tool_.values();
     return p;
   }
 
   /// A frame whose six values do not change keeps its matrix bit for bit.
-  Framed with_parameters(const Parameters& p) const
-    requires ParametricModel<Model>
-  {
+  Framed with_parameters(const Parameters& p) const requires ParametricModel<Model> {
     const auto frame = [](const FrameParameters& old, const Vector6& values) {
       return values == old.values() ? old : FrameParameters(values);
     };
-    return Framed(model_.with_parameters(p.template segment<Model::num_parameters>(6)), frame(base_, p.template head<6>()),
-                  frame(tool_, p.template tail<6>()));
+    return Framed(model_.with_parameters(p.template segment<Model::num_parameters>(6)),
+                  frame(base_, p.template head<6>()), frame(tool_, p.template tail<6>()));
   }
 
-  static std::vector<std::string> parameter_names()
-    requires ParametricModel<Model>
-  {
+  static std::vector<std::string> parameter_names() requires ParametricModel<Model> {
     std::vector<std::string> names;
     for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(std::string("base_") + axis);
     for (auto& name : Model::parameter_names()) names.push_back(std::move(name));
@@ -120,9 +117,7 @@ class Framed {
     return names;
   }
 
-  static std::vector<ParameterKind> parameter_kinds()
-    requires ParametricModel<Model>
-  {
+  static std::vector<ParameterKind> parameter_kinds() requires ParametricModel<Model> {
     std::vector<ParameterKind> frame(6, ParameterKind::length), kinds;
     std::fill(frame.begin() + 3, frame.end(), ParameterKind::angle);
     kinds = frame;
@@ -131,9 +126,8 @@ class Framed {
     return kinds;
   }
 
-  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept
-    requires ParametricModel<Model>
-  {
+  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept requires
+      ParametricModel<Model> {
     const Isometry3 flange = model_.pose(q);
     const Matrix3 rotation = base().linear() * flange.linear();
     const Vector3 arm = base().linear() * (flange * tool().translation());  // base origin to tool point
@@ -151,9 +145,8 @@ class Framed {
 
   /// The pose as a function of joints and parameters, in any scalar.
   template <class S>
-  IsometryOf<S> pose(const Eigen::Matrix<S, dof, 1>& q, const Eigen::Matrix<S, num_parameters, 1>& p) const
-    requires ParametricModel<Model>
-  {
+  IsometryOf<S> pose(const Eigen::Matrix<S, dof, 1>& q,
+                     const Eigen::Matrix<S, num_parameters, 1>& p) const requires ParametricModel<Model> {
     const Eigen::Matrix<S, Model::num_parameters, 1> inner = p.template segment<Model::num_parameters>(6);
     return FrameParameters::isometry<S>(p.template head<6>()) * model_.template pose<S>(q, inner) *
            FrameParameters::isometry<S>(p.template tail<6>());

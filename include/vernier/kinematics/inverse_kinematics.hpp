@@ -18,7 +18,8 @@ namespace vernier {
 enum class IkStatus {
   converged,    ///< both tolerances met
   stalled,      ///< the iterations ran out, or no step made progress
-  unreachable,  ///< no small motion within the limits brings the tool nearer: the target lies out of reach from this seed
+  unreachable,  ///< no small motion within the limits brings the tool nearer: the target lies out of reach from this
+                ///< seed
 };
 
 /// Options of `inverse_kinematics`.
@@ -137,14 +138,16 @@ IkResult<M::dof> damped_inverse_kinematics(const M& model, const Isometry3& targ
 /// @return        the best joints found and how it ended
 /// @complexity    about five evaluations of pose and Jacobian from a near seed
 template <KinematicModel M>
-[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Isometry3& target, const JointVector<M::dof>& seed,
+[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Isometry3& target,
+                                                  const JointVector<M::dof>& seed,
                                                   const IkOptions<M::dof>& options = {}) noexcept {
   return detail::damped_inverse_kinematics<6>(model, target, seed, options);
 }
 
 /// Joints that bring the tool to a position [m], whatever its orientation; otherwise as above.
 template <KinematicModel M>
-[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Vector3& target, const JointVector<M::dof>& seed,
+[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Vector3& target,
+                                                  const JointVector<M::dof>& seed,
                                                   const IkOptions<M::dof>& options = {}) noexcept {
   Isometry3 pose = Isometry3::Identity();
   pose.translation() = target;

@@ -46,7 +46,8 @@ inline Robot<6> abb_irb120() {
       {.a = 0_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
       {.a = 0_mm, .alpha = 0_deg, .d = 72_mm, .theta = 180_deg},
   }}};
-  return {chain, detail::limits_deg<6>({-165, -110, -110, -160, -120, -400}, {165, 110, 70, 160, 120, 400}), "abb_irb120"};
+  return {chain, detail::limits_deg<6>({-165, -110, -110, -160, -120, -400}, {165, 110, 70, 160, 120, 400}),
+          "abb_irb120"};
 }
 
 /// Universal Robots UR10 (CB series).
@@ -86,8 +87,10 @@ inline Robot<7> barrett_wam() {
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 0_mm, .alpha = 0_deg, .d = 60_mm},
   }}};
-  return {chain, {JointVector<7>{-2.6, -2.0, -2.8, -0.9, -4.76, -1.6, -3.0}, JointVector<7>{2.6, 2.0, 2.8, 3.1, 1.24, 1.6, 3.0}},
-          "barrett_wam"};
+  return {
+      chain,
+      {JointVector<7>{-2.6, -2.0, -2.8, -0.9, -4.76, -1.6, -3.0}, JointVector<7>{2.6, 2.0, 2.8, 3.1, 1.24, 1.6, 3.0}},
+      "barrett_wam"};
 }
 
 namespace detail {

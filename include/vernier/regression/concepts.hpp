@@ -19,22 +19,25 @@ namespace vernier {
 template <class P>
 concept Predictor = requires(const P& predictor, const Eigen::Matrix<double, P::inputs, 1>& x,
                              const Eigen::Matrix<double, Eigen::Dynamic, P::inputs>& rows) {
-  { predictor.predict(x) } noexcept -> std::same_as<Eigen::Matrix<double, P::outputs, 1>>;
+  { predictor.predict(x) }
+  noexcept->std::same_as<Eigen::Matrix<double, P::outputs, 1>>;
   { predictor.predict(rows) } -> std::same_as<Eigen::Matrix<double, Eigen::Dynamic, P::outputs>>;
-  { predictor.derivative(x) } noexcept -> std::same_as<Eigen::Matrix<double, P::outputs, P::inputs>>;
+  { predictor.derivative(x) }
+  noexcept->std::same_as<Eigen::Matrix<double, P::outputs, P::inputs>>;
 };
 
 /// What `R::fit` gives for samples of some inputs and outputs.
 template <class R, int Inputs, int Outputs>
-using PredictorOf = decltype(std::declval<const R&>().fit(std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Inputs>&>(),
-                                                          std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Outputs>&>(),
-                                                          std::declval<const FitOptions&>()));
+using PredictorOf = decltype(std::declval<const R&>().fit(
+    std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Inputs>&>(),
+    std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Outputs>&>(), std::declval<const FitOptions&>()));
 
-/// A recipe: `fit(X, Y, options)` is const and gives a `Predictor` with no unfinished state. X is n x inputs, Y n x outputs,
-/// one sample a row; the numbers of columns are compile-time constants of any size. Same seed, same bits.
+/// A recipe: `fit(X, Y, options)` is const and gives a `Predictor` with no unfinished state. X is n x inputs, Y n x
+/// outputs, one sample a row; the numbers of columns are compile-time constants of any size. Same seed, same bits.
 template <class R>
 concept Regressor = std::copyable<R> && Predictor<PredictorOf<R, 6, 3>> && Predictor<PredictorOf<R, 1, 1>> &&
-                    (PredictorOf<R, 6, 3>::inputs == 6) && (PredictorOf<R, 6, 3>::outputs == 3);
+                    (PredictorOf<R, 6, 3>::inputs == 6) &&
+                    (PredictorOf<R, 6, 3>::outputs == 3);
 
 namespace detail {
 
@@ -49,9 +52,11 @@ concept SampleRowsOf = (Derived::ColsAtCompileTime == Inputs && !SampleOf<Derive
 /// The checks every `fit` makes of its samples.
 template <class X, class Y>
 void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) {
-  static_assert(X::ColsAtCompileTime != Eigen::Dynamic && Y::ColsAtCompileTime != Eigen::Dynamic,
-                "the numbers of inputs and outputs are compile-time constants: pass matrices with fixed numbers of columns");
-  require(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(), " rows of targets");
+  static_assert(
+      X::ColsAtCompileTime != Eigen::Dynamic && Y::ColsAtCompileTime != Eigen::Dynamic,
+      "the numbers of inputs and outputs are compile-time constants: pass matrices with fixed numbers of columns");
+  require(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(),
+          " rows of targets");
   require(inputs.rows() >= 1, caller, ": no samples");
   require(inputs.allFinite() && targets.allFinite(), caller, ": the samples have a value that is not finite");
 }

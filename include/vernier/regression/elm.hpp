@@ -14,7 +14,10 @@ namespace detail {
 class ElmTrainingError {
  public:
   ElmTrainingError(const HiddenLayer& layer, MatrixX features, MatrixX targets, double relative_lambda)
-      : layer_(layer), features_(std::move(features)), targets_(std::move(targets)), relative_lambda_(relative_lambda) {}
+      : layer_(layer),
+        features_(std::move(features)),
+        targets_(std::move(targets)),
+        relative_lambda_(relative_lambda) {}
 
   /// @param population dimension x particles, @param fitness one value a particle
   void operator()(const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) const {
@@ -41,9 +44,9 @@ struct Elm {
   InputMap input_map = InputMap::raw;
   Scaling input_scaling = Scaling::min_max;
   Scaling target_scaling = Scaling::min_max;
-  double weight_limit = 1;         ///< hidden weights and biases lie in [-limit, limit]
-  double rcond = 1e-12;            ///< singular values of H below this times the largest count as zero
-  double fitness_lambda = 1e-10;   ///< ridge of the fitness alone, relative to tr(H'H) / nodes; the fit has none
+  double weight_limit = 1;        ///< hidden weights and biases lie in [-limit, limit]
+  double rcond = 1e-12;           ///< singular values of H below this times the largest count as zero
+  double fitness_lambda = 1e-10;  ///< ridge of the fitness alone, relative to tr(H'H) / nodes; the fit has none
 
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }
 
@@ -57,16 +60,21 @@ struct Elm {
   template <class X, class Y>
   detail::ElmTrainingError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
     validate(inputs, targets);
-    require(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda, ", must lie in (0, 1)");
+    require(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda,
+            ", must lie in (0, 1)");
     const MatrixX mapped = layer().map(inputs);
-    return {layer(), layer().scaling(mapped).apply(mapped), ColumnScaling::fit(targets, target_scaling).apply(targets), fitness_lambda};
+    return {layer(), layer().scaling(mapped).apply(mapped), ColumnScaling::fit(targets, target_scaling).apply(targets),
+            fitness_lambda};
   }
 
   /// Fit with given hidden weights: minimum-norm output weights.
-  /// @param inputs n x inputs, @param targets n x outputs, @param theta `dimension(inputs)` weights, node by node
+  /// @param inputs  n x inputs
+  /// @param targets n x outputs
+  /// @param theta   `dimension(inputs)` weights, node by node
   template <class X, class Y>
   ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit_at(const Eigen::MatrixBase<X>& inputs,
-                                                                  const Eigen::MatrixBase<Y>& targets, const VectorX& theta) const {
+                                                                  const Eigen::MatrixBase<Y>& targets,
+                                                                  const VectorX& theta) const {
     validate(inputs, targets);
     require(theta.size() == dimension(X::ColsAtCompileTime), "Elm: ", theta.size(), " hidden weights, expected ",
             dimension(X::ColsAtCompileTime));
@@ -80,7 +88,8 @@ struct Elm {
 
   /// Fit with hidden weights drawn from the seed.
   template <class X, class Y>
-  ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+  ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit(const Eigen::MatrixBase<X>& inputs,
+                                                               const Eigen::MatrixBase<Y>& targets,
                                                                const FitOptions& options = {}) const {
     layer().validate("Elm");
     return fit_at(inputs, targets, layer().draw(X::ColsAtCompileTime, options.seed));

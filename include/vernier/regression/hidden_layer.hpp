@@ -30,11 +30,11 @@ enum class InputMap {
 /// The hidden layer as a recipe; shared by the members of the ELM family.
 /// @cite Huang 2006
 struct HiddenLayer {
-  int nodes = 65;                              ///< number of hidden nodes, at least 1
+  int nodes = 65;  ///< number of hidden nodes, at least 1
   Activation activation = Activation::sigmoid;
   InputMap input_map = InputMap::raw;
-  Scaling input_scaling = Scaling::min_max;    ///< of raw inputs; sines and cosines stay as they are
-  double weight_limit = 1;                     ///< weights and biases lie in [-limit, limit]
+  Scaling input_scaling = Scaling::min_max;  ///< of raw inputs; sines and cosines stay as they are
+  double weight_limit = 1;                   ///< weights and biases lie in [-limit, limit]
 
   int features(int inputs) const { return input_map == InputMap::raw ? inputs : 2 * inputs; }
   /// Weights and bias of every node, node by node.
@@ -43,7 +43,8 @@ struct HiddenLayer {
 
   void validate(const char* caller) const {
     require(nodes >= 1, caller, ": hidden_nodes is ", nodes, ", must be at least 1");
-    require(weight_limit > 0 && weight_limit < 1e6, caller, ": weight_limit is ", weight_limit, ", must be positive and below 1e6");
+    require(weight_limit > 0 && weight_limit < 1e6, caller, ": weight_limit is ", weight_limit,
+            ", must be positive and below 1e6");
   }
 
   /// Weights drawn uniformly from the box.
@@ -128,15 +129,15 @@ class ElmPredictor {
     const Index f = layer.features(Inputs);
     require(theta.size() == layer.dimension(Inputs) && beta.rows() == layer.nodes && scaling_.offset.size() == f &&
                 scaling_.factor.size() == f,
-            "ElmPredictor: ", layer.nodes, " nodes of ", f, " features need ", layer.dimension(Inputs), " weights and ", layer.nodes,
-            " rows of output weights, got ", theta.size(), " and ", beta.rows());
+            "ElmPredictor: ", layer.nodes, " nodes of ", f, " features need ", layer.dimension(Inputs), " weights and ",
+            layer.nodes, " rows of output weights, got ", theta.size(), " and ", beta.rows());
     weights_ = Eigen::Map<const MatrixX>(theta.data(), f + 1, layer.nodes);
   }
 
   /// One sample.
   template <class Derived>
-    requires detail::SampleOf<Derived, Inputs>
-  Output predict(const Eigen::MatrixBase<Derived>& x) const noexcept {
+    requires detail::SampleOf<Derived, Inputs> Output predict(const Eigen::MatrixBase<Derived>& x)
+  const noexcept {
     const Features features = features_of(Input(x));
     Output y = offset_;
     for (Index k = 0; k < weights_.cols(); ++k) y += beta_.col(k) * node(k, features).first;
@@ -145,8 +146,9 @@ class ElmPredictor {
 
   /// Samples as rows, n x inputs to n x outputs.
   template <class Derived>
-    requires detail::SampleRowsOf<Derived, Inputs>
-  Eigen::Matrix<double, Eigen::Dynamic, Outputs> predict(const Eigen::MatrixBase<Derived>& x) const {
+    requires detail::SampleRowsOf<Derived, Inputs> Eigen::Matrix<double, Eigen::Dynamic, Outputs> predict(
+        const Eigen::MatrixBase<Derived>& x)
+  const {
     Eigen::Matrix<double, Eigen::Dynamic, Outputs> y(x.rows(), Outputs);
     for (Index i = 0; i < x.rows(); ++i) y.row(i) = predict(Input(x.row(i).transpose())).transpose();
     return y;
@@ -154,8 +156,9 @@ class ElmPredictor {
 
   /// d predict / d x at one sample.
   template <class Derived>
-    requires detail::SampleOf<Derived, Inputs>
-  Eigen::Matrix<double, Outputs, Inputs> derivative(const Eigen::MatrixBase<Derived>& x) const noexcept {
+    requires detail::SampleOf<Derived, Inputs> Eigen::Matrix<double, Outputs, Inputs> derivative(
+        const Eigen::MatrixBase<Derived>& x)
+  const noexcept {
     const Features features = features_of(Input(x));
     const Index f = features.size();
     Eigen::Matrix<double, Outputs, Eigen::Dynamic, 0, Outputs, 2 * Inputs> by_feature(Outputs, f);
@@ -184,7 +187,7 @@ class ElmPredictor {
 
   const HiddenLayer& layer() const { return layer_; }
   const ColumnScaling& scaling() const { return scaling_; }
-  VectorX theta() const { return weights_.reshaped(); }                                        ///< weights and biases, node by node
+  VectorX theta() const { return weights_.reshaped(); }  ///< weights and biases, node by node
   Eigen::Matrix<double, Eigen::Dynamic, Outputs> beta() const { return beta_.transpose(); }  ///< nodes x outputs
   const Output& offset() const { return offset_; }
 
@@ -217,7 +220,7 @@ class ElmPredictor {
 
   HiddenLayer layer_;
   ColumnScaling scaling_;
-  MatrixX weights_;                                       // (features + 1) x nodes, biases in the last row
+  MatrixX weights_;                                      // (features + 1) x nodes, biases in the last row
   Eigen::Matrix<double, Outputs, Eigen::Dynamic> beta_;  // outputs x nodes: one node contiguous
   Output offset_;
 };

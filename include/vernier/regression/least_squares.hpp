@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "vernier/core/types.hpp"
 
@@ -48,8 +47,10 @@ struct ThinSvd {
 }  // namespace detail
 
 /// Minimum-norm solution of `min |H beta - T|`: singular values below `rcond` times the largest count as zero.
-/// @param h n x nodes, @param t n x outputs
-/// @return nodes x outputs
+/// @param h     n x nodes
+/// @param t     n x outputs
+/// @param rcond relative cut, in [0, 1)
+/// @return      nodes x outputs
 inline MatrixX minimum_norm_solution(const MatrixX& h, const MatrixX& t, double rcond) {
   const detail::ThinSvd svd(h);
   const double cut = rcond * (svd.s.size() > 0 ? svd.s(0) : 0.0);
@@ -65,9 +66,9 @@ struct RidgeSolution {
   double objective;  ///< `|H beta - T|^2 + lambda |beta|^2`
 };
 
-/// `min |H beta - T|^2 + lambda |beta|^2` with lambda = `relative_lambda` tr(H'H) / h, by normal equations. The ridge bounds
-/// the condition of the Gram matrix by h / relative_lambda; should the factorisation fail all the same, QR of the
-/// stacked system takes over. The objective is computed from the residual, so an error of beta enters it squared.
+/// `min |H beta - T|^2 + lambda |beta|^2` with lambda = `relative_lambda` tr(H'H) / h, by normal equations. The ridge
+/// bounds the condition of the Gram matrix by h / relative_lambda; should the factorisation fail all the same, QR of
+/// the stacked system takes over. The objective is computed from the residual, so an error of beta enters it squared.
 inline RidgeSolution relative_ridge(const MatrixX& h, const MatrixX& t, double relative_lambda) {
   const Index nodes = h.cols();
   MatrixX gram = MatrixX::Zero(nodes, nodes);
@@ -97,15 +98,20 @@ inline RidgeSolution relative_ridge(const MatrixX& h, const MatrixX& t, double r
 /// @cite Allen 1974 (PRESS); Huang 2012
 class RidgePath {
  public:
-  /// @param h n x nodes, @param t n x outputs; both are centred here
+  /// @param h n x nodes, centred here
+  /// @param t n x outputs, centred here
   RidgePath(const MatrixX& h, const MatrixX& t)
-      : mean_h_(h.colwise().mean()), mean_t_(t.colwise().mean()), centred_t_(t.rowwise() - mean_t_), svd_(h.rowwise() - mean_h_) {
+      : mean_h_(h.colwise().mean()),
+        mean_t_(t.colwise().mean()),
+        centred_t_(t.rowwise() - mean_t_),
+        svd_(h.rowwise() - mean_h_) {
     projected_ = svd_.u.transpose() * centred_t_;
     if (rank() == 0) svd_.s.setZero();
   }
 
   Index rank() const {
-    const double cut = svd_.s.size() > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;
+    const double cut =
+        svd_.s.size() > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;
     return (svd_.s.array() > std::max(cut, 1e-300)).count();
   }
 
@@ -121,8 +127,8 @@ class RidgePath {
   /// What is added to H beta: `mean(T) - mean(H) beta`.
   VectorX offset(const MatrixX& beta) const { return (mean_t_ - mean_h_ * beta).transpose(); }
 
-  /// Residuals of leaving each sample out, n x outputs, at `lambda` > 0; infinity is the mean alone. With as many nodes as
-  /// samples `1 - leverage` is summed from lambda / (s^2 + lambda), never from a difference that cancels.
+  /// Residuals of leaving each sample out, n x outputs, at `lambda` > 0; infinity is the mean alone. With as many nodes
+  /// as samples `1 - leverage` is summed from lambda / (s^2 + lambda), never from a difference that cancels.
   MatrixX leave_one_out_residuals(double lambda) const {
     const Index n = centred_t_.rows();
     if (!std::isfinite(lambda)) return centred_t_ * (static_cast<double>(n) / static_cast<double>(n - 1));
@@ -145,23 +151,26 @@ class RidgePath {
   MatrixX projected_;
 };
 
-/// The lambda of least leave-one-out error over a grid relative to the problem's scale; infinity, the mean alone, is a candidate.
+/// A ridge and the error it leaves.
 struct LeaveOneOutChoice {
   double lambda;              ///< absolute; infinity: the mean alone
   double mean_squared_error;  ///< leave-one-out, per sample, summed over outputs
-
-  static LeaveOneOutChoice of(const RidgePath& path, Index samples) {
-    LeaveOneOutChoice best{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    if (samples < 2) return best;
-    const auto consider = [&](double lambda) {
-      const double error = path.leave_one_out_residuals(lambda).squaredNorm() / static_cast<double>(samples);
-      if (error < best.mean_squared_error) best = {lambda, error};
-    };
-    consider(std::numeric_limits<double>::infinity());
-    if (path.rank() > 0)
-      for (int exponent = 0; exponent >= -24; --exponent) consider(path.scale() * std::pow(10.0, exponent / 2.0));
-    return best;
-  }
 };
+
+/// The lambda of least leave-one-out error over a grid of half decades relative to the problem's scale; infinity, the
+/// mean alone, is a candidate.
+inline LeaveOneOutChoice choose_lambda(const RidgePath& path, Index samples) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  LeaveOneOutChoice best{infinity, infinity};
+  if (samples < 2) return best;
+  const auto consider = [&](double candidate) {
+    const double error = path.leave_one_out_residuals(candidate).squaredNorm() / static_cast<double>(samples);
+    if (error < best.mean_squared_error) best = {candidate, error};
+  };
+  consider(infinity);
+  if (path.rank() > 0)
+    for (int exponent = 0; exponent >= -24; --exponent) consider(path.scale() * std::pow(10.0, exponent / 2.0));
+  return best;
+}
 
 }  // namespace vernier

@@ -20,7 +20,7 @@ class RidgeElmLeaveOneOutError {
     MatrixX h;
     for (Index k = 0; k < population.cols(); ++k) {
       layer_.outputs(features_, population.col(k), h);
-      fitness(k) = h.allFinite() ? LeaveOneOutChoice::of(RidgePath(h, targets_), targets_.rows()).mean_squared_error
+      fitness(k) = h.allFinite() ? choose_lambda(RidgePath(h, targets_), targets_.rows()).mean_squared_error
                                  : std::numeric_limits<double>::infinity();
     }
   }
@@ -32,8 +32,8 @@ class RidgeElmLeaveOneOutError {
 
 }  // namespace detail
 
-/// Ridge ELM: the mean of the targets is not penalised, lambda has the least leave-one-out error, and where nothing can be
-/// learned the mean alone wins. Targets keep their units, so outputs weigh as they are.
+/// Ridge ELM: the mean of the targets is not penalised, lambda has the least leave-one-out error, and where nothing can
+/// be learned the mean alone wins. Targets keep their units, so outputs weigh as they are.
 /// @cite Huang 2012; Allen 1974
 struct RidgeElm {
   int hidden_nodes = 65;  ///< at least 1; may exceed the number of samples
@@ -51,17 +51,21 @@ struct RidgeElm {
 
   /// Leave-one-out mean squared error of hidden weights, in squared units of the targets.
   template <class X, class Y>
-  detail::RidgeElmLeaveOneOutError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
+  detail::RidgeElmLeaveOneOutError objective(const Eigen::MatrixBase<X>& inputs,
+                                             const Eigen::MatrixBase<Y>& targets) const {
     validate(inputs, targets);
     const MatrixX mapped = layer().map(inputs);
     return {layer(), layer().scaling(mapped).apply(mapped), targets};
   }
 
   /// Fit with given hidden weights.
-  /// @param inputs n x inputs, @param targets n x outputs, @param theta `dimension(inputs)` weights, node by node
+  /// @param inputs  n x inputs
+  /// @param targets n x outputs
+  /// @param theta   `dimension(inputs)` weights, node by node
   template <class X, class Y>
   ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit_at(const Eigen::MatrixBase<X>& inputs,
-                                                                  const Eigen::MatrixBase<Y>& targets, const VectorX& theta) const {
+                                                                  const Eigen::MatrixBase<Y>& targets,
+                                                                  const VectorX& theta) const {
     validate(inputs, targets);
     require(theta.size() == dimension(X::ColsAtCompileTime), "RidgeElm: ", theta.size(), " hidden weights, expected ",
             dimension(X::ColsAtCompileTime));
@@ -70,13 +74,14 @@ struct RidgeElm {
     MatrixX h;
     layer().outputs(in.apply(mapped), theta, h);
     const RidgePath path(h, targets);
-    const MatrixX beta = path.beta(LeaveOneOutChoice::of(path, h.rows()).lambda);
+    const MatrixX beta = path.beta(choose_lambda(path, h.rows()).lambda);
     return {layer(), in, theta, beta, path.offset(beta)};
   }
 
   /// Fit with hidden weights drawn from the seed.
   template <class X, class Y>
-  ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+  ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit(const Eigen::MatrixBase<X>& inputs,
+                                                               const Eigen::MatrixBase<Y>& targets,
                                                                const FitOptions& options = {}) const {
     layer().validate("RidgeElm");
     return fit_at(inputs, targets, layer().draw(X::ColsAtCompileTime, options.seed));

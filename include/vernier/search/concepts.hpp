@@ -13,7 +13,8 @@
 
 namespace vernier {
 
-/// Evaluates a population, dimension x particles, into one value a particle. Values that are not finite arrive as +infinity.
+/// Evaluates a population, dimension x particles, into one value a particle. Values that are not finite arrive as
+/// +infinity.
 using Evaluate = FunctionRef<void(const MatrixX& population, VectorX& fitness)>;
 
 /// What every search state shows: the best point seen, its value, and how many generations were stepped.
@@ -24,7 +25,8 @@ concept SearchState = std::copyable<S> && requires(const S& state) {
   { state.generation } -> std::convertible_to<Index>;
 };
 
-/// A population-based search. The state is a value outside the algorithm; one generation is the primitive; `minimize` has the loop.
+/// A population-based search. The state is a value outside the algorithm; one generation is the primitive; `minimize`
+/// has the loop.
 ///
 /// - `start(box, seed, evaluate)`: the first population, evaluated
 /// - `step(state, box, evaluate)`: one generation, in place; depends on the state alone, so N steps equal a run of N
@@ -33,16 +35,17 @@ concept SearchState = std::copyable<S> && requires(const S& state) {
 /// All randomness comes from the seed through the state. `evaluate` is called with whole populations.
 template <class A>
 concept Metaheuristic = std::copyable<A> && SearchState<typename A::State> &&
-                        requires(const A& algorithm, typename A::State& state, const Box& box, std::uint64_t seed, Evaluate evaluate) {
-                          { algorithm.start(box, seed, evaluate) } -> std::same_as<typename A::State>;
-                          { algorithm.step(state, box, evaluate) } -> std::same_as<void>;
-                          { algorithm.done(std::as_const(state)) } -> std::same_as<bool>;
-                        };
+    requires(const A& algorithm, typename A::State& state, const Box& box, std::uint64_t seed, Evaluate evaluate) {
+  { algorithm.start(box, seed, evaluate) } -> std::same_as<typename A::State>;
+  { algorithm.step(state, box, evaluate) } -> std::same_as<void>;
+  { algorithm.done(std::as_const(state)) } -> std::same_as<bool>;
+};
 
 /// An objective of whole populations: `f(population, fitness)`, dimension x particles into one value a particle.
 /// Columns are independent: it may be called from several threads at once with parts of a population.
 template <class F>
-concept BatchObjective = requires(const F& f, const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) {
+concept BatchObjective = requires(const F& f, const Eigen::Ref<const MatrixX>& population,
+                                  Eigen::Ref<VectorX> fitness) {
   f(population, fitness);
 };
 

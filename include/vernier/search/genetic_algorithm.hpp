@@ -13,12 +13,15 @@
 
 namespace vernier {
 
-/// Genetic algorithm with the paper's constants. The paper states neither encoding nor selection; ours are the classical ones:
+/// Genetic algorithm with the paper's constants. The paper states neither encoding nor selection; ours are the
+/// classical ones:
 ///
-/// - encoding: each variable is `bits` bits of plain binary over its interval, so nothing outside the box can be expressed;
+/// - encoding: each variable is `bits` bits of plain binary over its interval, so nothing outside the box can be
+/// expressed;
 /// - selection: tournaments of `tournament` individuals;
 /// - crossover: with `crossover_probability` a pair exchanges all bits behind one cut, anywhere in the chromosome;
-/// - mutation: each *bit* flips with `mutation_probability`: at 0.01 and 10 bits, about a tenth of the variables of a child change;
+/// - mutation: each *bit* flips with `mutation_probability`: at 0.01 and 10 bits, about a tenth of the variables of a
+/// child change;
 /// - elitism: the `elites` best survive unchanged (and are not evaluated again).
 /// @cite Holland 1975; Goldberg 1989
 struct GeneticAlgorithm {
@@ -65,7 +68,9 @@ struct GeneticAlgorithm {
       if (k + 1 == children) break;
       next.col(k + 1) = s.codes.col(select(s));
       if (s.rng.uniform() < crossover_probability)
-        cross(next, k, static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(next.rows()) * static_cast<std::uint64_t>(bits))));
+        cross(next, k,
+              static_cast<Index>(
+                  s.rng.below(static_cast<std::uint64_t>(next.rows()) * static_cast<std::uint64_t>(bits))));
     }
     mutate(next, s.rng);
 
@@ -103,7 +108,8 @@ struct GeneticAlgorithm {
     return out.cwiseMax(box.lower.replicate(1, out.cols())).cwiseMin(box.upper.replicate(1, out.cols()));
   }
 
-  /// Exchanges the bits behind position `cut` between columns k and k + 1; a chromosome counts bits from the highest of variable 0.
+  /// Exchanges the bits behind position `cut` between columns k and k + 1; a chromosome counts bits from the highest of
+  /// variable 0.
   void cross(Codes& codes, Index k, Index cut) const {
     const Index variable = cut / bits;
     const auto low = static_cast<std::uint16_t>((1u << (bits - static_cast<int>(cut % bits))) - 1);
@@ -144,7 +150,8 @@ struct GeneticAlgorithm {
     require(generations >= 0, "GeneticAlgorithm: generations is ", generations, ", must not be negative");
     require(bits >= 1 && bits <= 16, "GeneticAlgorithm: bits is ", bits, ", must lie in 1..16");
     require(tournament >= 1, "GeneticAlgorithm: tournament is ", tournament, ", must be at least 1");
-    require(elites >= 0 && elites < individuals, "GeneticAlgorithm: elites is ", elites, ", must lie in 0..individuals-1");
+    require(elites >= 0 && elites < individuals, "GeneticAlgorithm: elites is ", elites,
+            ", must lie in 0..individuals-1");
     require(crossover_probability >= 0 && crossover_probability <= 1, "GeneticAlgorithm: crossover_probability is ",
             crossover_probability, ", must lie in [0, 1]");
     require(mutation_probability >= 0 && mutation_probability <= 1, "GeneticAlgorithm: mutation_probability is ",

@@ -21,11 +21,11 @@ struct Stop {
 
 /// Why a search ended.
 enum class SearchStatus {
-  schedule_ended,      ///< the algorithm's own number of generations
-  budget_spent,        ///< `max_evaluations` or `max_generations`
-  target_reached,      ///< `target`
-  stalled,             ///< `patience`
-  observer_stopped,    ///< an observer asked for it
+  schedule_ended,    ///< the algorithm's own number of generations
+  budget_spent,      ///< `max_evaluations` or `max_generations`
+  target_reached,    ///< `target`
+  stalled,           ///< `patience`
+  observer_stopped,  ///< an observer asked for it
 };
 
 /// What a search found.
@@ -39,7 +39,8 @@ struct SearchResult {
 
 /// Searches a box for the least value of an objective.
 /// @param algorithm any `Metaheuristic`
-/// @param objective scalar `double f(x)` or batch `f(population, fitness)`; a value that is not finite counts as the worst
+/// @param objective scalar `double f(x)` or batch `f(population, fitness)`; a value that is not finite counts as the
+/// worst
 /// @param box       bounds; what an algorithm does with them it says itself
 /// @param stop      budget and stopping; by default the algorithm's schedule alone
 /// @param seed      same seed, same bits, whatever the executor
@@ -47,8 +48,8 @@ struct SearchResult {
 /// @param observer  sees every generation, the first population as generation 0
 /// @throws std::invalid_argument on an unusable box or option
 template <Metaheuristic A, Objective F>
-SearchResult minimize(const A& algorithm, const F& objective, const Box& box, const Stop& stop = {}, std::uint64_t seed = 0,
-                      ExecutorRef executor = {}, ObserverRef observer = {}) {
+SearchResult minimize(const A& algorithm, const F& objective, const Box& box, const Stop& stop = {},
+                      std::uint64_t seed = 0, ExecutorRef executor = {}, ObserverRef observer = {}) {
   box.validate();
   require(stop.max_evaluations >= 1, "minimize: max_evaluations is ", stop.max_evaluations, ", must be at least 1");
   require(stop.patience >= 1, "minimize: patience is ", stop.patience, ", must be at least 1");
@@ -78,7 +79,8 @@ SearchResult minimize(const A& algorithm, const F& objective, const Box& box, co
     const auto result = [&](SearchStatus status) {
       return SearchResult{state.best, state.best_fitness, evaluations, state.generation, status};
     };
-    if (!observer(Progress{state.generation, evaluations, state.best_fitness})) return result(SearchStatus::observer_stopped);
+    if (!observer(Progress{state.generation, evaluations, state.best_fitness}))
+      return result(SearchStatus::observer_stopped);
     if (state.best_fitness <= stop.target) return result(SearchStatus::target_reached);
     if (algorithm.done(state)) return result(SearchStatus::schedule_ended);
     if (state.generation >= stop.max_generations || stop.max_evaluations - evaluations < last_size)

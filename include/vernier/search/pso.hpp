@@ -11,21 +11,22 @@ namespace vernier {
 /// What particle positions may do.
 enum class PositionRule {
   unbounded,  ///< only velocities are limited: particles start in the box and may leave it (as the paper states it)
-  clamped,    ///< a coordinate that would leave the box stops at the bound, its velocity zero: nothing outside is evaluated
+  clamped,    ///< a coordinate that would leave the box stops at the bound, its velocity zero: nothing outside is
+              ///< evaluated
 };
 
 /// Particle swarm optimization as the paper states it:
-/// `v <- w v + c1 r1 (p - x) + c2 r2 (g - x)`, r1 and r2 drawn per dimension, v limited, w falling linearly over the iterations.
-/// All particles move, then all are evaluated (synchronous).
+/// `v <- w v + c1 r1 (p - x) + c2 r2 (g - x)`, r1 and r2 drawn per dimension, v limited, w falling linearly over the
+/// iterations. All particles move, then all are evaluated (synchronous).
 /// @cite Kennedy and Eberhart 1995; Shi and Eberhart 1998; Feng, Dong, Jin
 struct Pso {
-  int particles = 50;         ///< at least 1
-  Index iterations = 300;     ///< generations after the first population
-  double inertia_start = 0.9; ///< w at the first iteration
-  double inertia_end = 0.4;   ///< w at the last iteration
-  double cognitive = 2;       ///< c1, pull towards a particle's own best
-  double social = 2;          ///< c2, pull towards the swarm's best
-  double velocity_limit = 1;  ///< relative to half the width of the box: 1 is [-1, 1] for weights in [-1, 1]
+  int particles = 50;          ///< at least 1
+  Index iterations = 300;      ///< generations after the first population
+  double inertia_start = 0.9;  ///< w at the first iteration
+  double inertia_end = 0.4;    ///< w at the last iteration
+  double cognitive = 2;        ///< c1, pull towards a particle's own best
+  double social = 2;           ///< c2, pull towards the swarm's best
+  double velocity_limit = 1;   ///< relative to half the width of the box: 1 is [-1, 1] for weights in [-1, 1]
   PositionRule positions = PositionRule::unbounded;
 
   /// A swarm between two iterations.
@@ -96,7 +97,8 @@ struct Pso {
 
   /// w(k), k = 1 .. iterations.
   double inertia(Index k) const {
-    return inertia_start - (inertia_start - inertia_end) * static_cast<double>(k) / static_cast<double>(iterations > 0 ? iterations : 1);
+    return inertia_start - (inertia_start - inertia_end) * static_cast<double>(k) /
+                               static_cast<double>(iterations > 0 ? iterations : 1);
   }
 
  private:
@@ -104,8 +106,9 @@ struct Pso {
     require(particles >= 1, "Pso: particles is ", particles, ", must be at least 1");
     require(iterations >= 0, "Pso: iterations is ", iterations, ", must not be negative");
     require(velocity_limit > 0, "Pso: velocity_limit is ", velocity_limit, ", must be positive");
-    require(inertia_start >= 0 && inertia_end >= 0 && cognitive >= 0 && social >= 0, "Pso: inertia_start ", inertia_start,
-            ", inertia_end ", inertia_end, ", cognitive ", cognitive, " and social ", social, " must not be negative");
+    require(inertia_start >= 0 && inertia_end >= 0 && cognitive >= 0 && social >= 0, "Pso: inertia_start ",
+            inertia_start, ", inertia_end ", inertia_end, ", cognitive ", cognitive, " and social ", social,
+            " must not be negative");
   }
 };
 

@@ -14,8 +14,9 @@ namespace vernier {
 /// - `objective(X, Y)`: an `Objective` of such vectors
 /// - `fit_at(X, Y, theta)`: the predictor at one of them
 template <class R>
-concept TunableRegressor = std::copyable<R> && requires(const R& regressor, const Eigen::Matrix<double, Eigen::Dynamic, 6>& x,
-                                                        const Eigen::Matrix<double, Eigen::Dynamic, 3>& y, const VectorX& theta) {
+concept TunableRegressor = std::copyable<R> &&
+    requires(const R& regressor, const Eigen::Matrix<double, Eigen::Dynamic, 6>& x,
+             const Eigen::Matrix<double, Eigen::Dynamic, 3>& y, const VectorX& theta) {
   { regressor.dimension(6) } -> std::convertible_to<Index>;
   { regressor.box(6) } -> std::same_as<Box>;
   { regressor.objective(x, y) } -> Objective;
@@ -33,9 +34,11 @@ struct Tuned {
 
   /// The search, then the fit at what it found. The observer of the options sees every generation.
   template <class X, class Y>
-  auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets, const FitOptions& options = {}) const {
-    const SearchResult found = minimize(algorithm, regressor.objective(inputs, targets), regressor.box(X::ColsAtCompileTime), stop,
-                                        options.seed, options.executor, options.observer);
+  auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+           const FitOptions& options = {}) const {
+    const SearchResult found =
+        minimize(algorithm, regressor.objective(inputs, targets), regressor.box(X::ColsAtCompileTime), stop,
+                 options.seed, options.executor, options.observer);
     return regressor.fit_at(inputs, targets, found.best);
   }
 };

@@ -1,0 +1,6 @@
+#pragma once
+
+/// @file
+/// The solver side of Vernier: needs Ceres beside Eigen.
+
+#include "vernier/ceres/identify.hpp"

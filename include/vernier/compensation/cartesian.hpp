@@ -1,0 +1,88 @@
+#pragma once
+
+/// @file
+/// Cartesian compensation: learn the position error over the joints, on top of any model.
+
+#include "vernier/compensation/compensated.hpp"
+#include "vernier/compensation/joint_range_gate.hpp"
+#include "vernier/data/dataset.hpp"
+#include "vernier/regression/concepts.hpp"
+
+namespace vernier {
+
+/// A model with a learned position error taken off: `position(q) = model.position(q) - gate(q) f(q)`. Orientations are
+/// the model's.
+template <KinematicModel Model, Predictor Learned>
+class CartesianCorrected {
+  static_assert(Learned::inputs == Model::dof && Learned::outputs == 3);
+
+ public:
+  static constexpr int dof = Model::dof;
+
+  CartesianCorrected(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
+      : model_(model), learned_(learned), gate_(gate) {}
+
+  const Model& model() const { return model_; }
+  const Learned& learned() const { return learned_; }
+  const JointRangeGate<dof>& joint_range_gate() const { return gate_; }
+  double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
+
+  Vector3 position(const JointVector<dof>& q) const noexcept {
+    return model_.position(q) - gate_(q) * learned_.predict(q);
+  }
+  Isometry3 pose(const JointVector<dof>& q) const noexcept {
+    Isometry3 pose = model_.pose(q);
+    pose.translation() -= gate_(q) * learned_.predict(q);
+    return pose;
+  }
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    PoseAndJacobian<dof> out = model_.pose_and_jacobian(q);
+    const double gate = gate_(q);
+    if (gate == 0) return out;
+    const Vector3 error = learned_.predict(q);
+    out.pose.translation() -= gate * error;
+    out.jacobian.template topRows<3>() -= gate * learned_.derivative(q) + error * gate_.derivative(q);
+    return out;
+  }
+
+ private:
+  Model model_;
+  Learned learned_;
+  JointRangeGate<dof> gate_;
+};
+
+/// Learns `dX = X_model - X_measured` over the joints, with any regressor, on any model.
+/// The paper's own correction is `CartesianCompensation{regressor, {.target = CorrectionTarget::position,
+/// .moving_joints = 3}}`.
+/// @cite Feng, Dong, Jin
+template <Regressor R>
+struct CartesianCompensation {
+  R regressor;
+  CorrectionOptions correction{};
+
+  /// @param model   what to improve: nominal, identified, or already compensated
+  /// @param data    n >= 1 samples in the frames of the model
+  /// @param options seed, executor, observer of the regressor
+  /// @throws std::invalid_argument when model and data are more than 50 mm apart on average: they are in different
+  /// frames
+  template <KinematicModel Model>
+  Compensated<CartesianCorrected<Model, PredictorOf<R, Model::dof, 3>>, ReferenceOf<Model>> fit(
+      const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
+    require(data.size() >= 1, "CartesianCompensation: no samples");
+    const PointRows error = positions(model, data.joints()) - data.positions();
+    const double mean = error.rowwise().norm().mean();
+    require(mean < 0.05, "CartesianCompensation: model and data are ", mean * 1e3,
+            " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
+    return {{model, regressor.fit(data.joints(), error, options), JointRangeGate<Model::dof>::covering(data.joints())},
+            reference_of(model),
+            correction};
+  }
+};
+
+template <class R>
+CartesianCompensation(R) -> CartesianCompensation<R>;
+template <class R>
+CartesianCompensation(R, CorrectionOptions) -> CartesianCompensation<R>;
+
+}  // namespace vernier

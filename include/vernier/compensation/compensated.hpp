@@ -1,0 +1,85 @@
+#pragma once
+
+/// @file
+/// Command correction on any model: inverse kinematics on the best model there is, started from the nominal joints.
+
+#include "vernier/compensation/concepts.hpp"
+#include "vernier/kinematics/concepts.hpp"
+
+namespace vernier {
+
+/// The arm as it is (`Best`) beside the arm as it should be (`Reference`). A kinematic model itself: that of the arm as
+/// it is.
+/// @tparam Best      the best model of the real arm; a learned one tells its `gate(q)`
+/// @tparam Reference the nominal arm, in the same base and tool frames
+template <KinematicModel Best, KinematicModel Reference>
+class Compensated {
+  static_assert(Best::dof == Reference::dof);
+
+ public:
+  static constexpr int dof = Best::dof;
+
+  Compensated(const Best& best, const Reference& reference, const CorrectionOptions& options = {})
+      : best_(best), reference_(reference), options_(options) {
+    options.template validate<dof>();
+  }
+
+  const Best& best() const { return best_; }
+  const Reference& reference() const { return reference_; }
+  const CorrectionOptions& options() const { return options_; }
+
+  /// The same with commands kept within joint limits.
+  Compensated within(const JointLimits<dof>& limits) const {
+    Compensated out = *this;
+    out.limits_ = limits;
+    return out;
+  }
+
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return best_.pose(q); }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return best_.position(q); }
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return best_.jacobian(q); }
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    return best_.pose_and_jacobian(q);
+  }
+
+  /// The pose the arm takes when commanded q.
+  Isometry3 predict(const JointVector<dof>& q) const noexcept { return pose(q); }
+
+  /// The command that brings the arm where the reference is at q. Stays on the branch of q; the best iterate is kept.
+  [[nodiscard]] Correction<dof> correct(const JointVector<dof>& q) const noexcept {
+    return correct(reference_.pose(q), q);
+  }
+
+  /// The command that brings the arm to a pose.
+  /// @param target base_T_tool in the frames of the model
+  /// @param seed   joints near the answer; they choose the branch
+  [[nodiscard]] Correction<dof> correct(const Isometry3& target, const JointVector<dof>& seed) const noexcept {
+    IkOptions<dof> options;
+    options.limits = limits_;
+    options.position_tolerance = options_.position_tolerance;
+    options.rotation_tolerance = options_.rotation_tolerance;
+    options.max_iterations = options_.max_iterations;
+    options.moving_joints = options_.moving_joints == 0 ? dof : options_.moving_joints;
+    const bool full =
+        options_.target == CorrectionTarget::pose || (options_.target == CorrectionTarget::automatic && dof >= 6);
+    const IkResult<dof> found = full ? inverse_kinematics(best_, target, seed, options)
+                                     : inverse_kinematics(best_, Vector3(target.translation()), seed, options);
+    Correction<dof> out{found.joints, found.status, found.position_error, 1};
+    if constexpr (requires { best_.gate(found.joints); }) out.gate = best_.gate(found.joints);
+    return out;
+  }
+
+ private:
+  Best best_;
+  Reference reference_;
+  CorrectionOptions options_;
+  JointLimits<dof> limits_{};
+};
+
+/// Corrects commands on a model that knows its reference, e.g. an identified one.
+template <KinematicModel Model>
+Compensated<Model, ReferenceOf<Model>> compensate(const Model& model, const CorrectionOptions& options = {}) {
+  return {model, reference_of(model), options};
+}
+
+}  // namespace vernier

@@ -1,0 +1,168 @@
+#pragma once
+
+/// @file
+/// Joint-space compensation: learn the joint error over the joints, on top of any model.
+
+#include "vernier/compensation/compensated.hpp"
+#include "vernier/compensation/joint_range_gate.hpp"
+#include "vernier/data/dataset.hpp"
+#include "vernier/regression/concepts.hpp"
+
+namespace vernier {
+
+/// A model whose joints are displaced by a learned amount: `pose(q) = model.pose(q + gate(q) f(q))`.
+template <KinematicModel Model, Predictor Learned>
+class JointCorrected {
+  static_assert(Learned::inputs == Model::dof && Learned::outputs == Model::dof);
+
+ public:
+  static constexpr int dof = Model::dof;
+
+  JointCorrected(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
+      : model_(model), learned_(learned), gate_(gate) {}
+
+  const Model& model() const { return model_; }
+  const Learned& learned() const { return learned_; }
+  double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
+
+  /// The joints at which the model stands where the arm does.
+  JointVector<dof> effective(const JointVector<dof>& q) const noexcept { return q + gate_(q) * learned_.predict(q); }
+
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return model_.pose(effective(q)); }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return model_.position(effective(q)); }
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    PoseAndJacobian<dof> out = model_.pose_and_jacobian(effective(q));
+    Eigen::Matrix<double, dof, dof> rate =
+        gate_(q) * learned_.derivative(q) + learned_.predict(q) * gate_.derivative(q);
+    rate.diagonal().array() += 1;
+    out.jacobian = (out.jacobian * rate).eval();
+    return out;
+  }
+
+ private:
+  Model model_;
+  Learned learned_;
+  JointRangeGate<dof> gate_;
+};
+
+/// The paper's joint-space command: `theta - f(theta)`, f learned from labels indexed by the *target* joints.
+template <KinematicModel Model, Predictor Learned>
+class DirectJointCompensator {
+ public:
+  static constexpr int dof = Model::dof;
+
+  DirectJointCompensator(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
+      : corrected_(model, learned, gate) {}
+
+  const Learned& learned() const { return corrected_.learned(); }
+
+  /// The pose the arm takes when commanded q, to first order in the joint error.
+  Isometry3 predict(const JointVector<dof>& q) const noexcept { return corrected_.pose(q); }
+  [[nodiscard]] Correction<dof> correct(const JointVector<dof>& q) const noexcept {
+    const double gate = corrected_.gate(q);
+    const JointVector<dof> command = q - gate * corrected_.learned().predict(q);
+    return {command, IkStatus::converged, (predict(command).translation() - corrected_.model().position(q)).norm(),
+            gate};
+  }
+
+ private:
+  JointCorrected<Model, Learned> corrected_;
+};
+
+/// Joint rows and the joint errors that belong to them; poses whose inverse kinematics failed are left out.
+template <int N>
+struct JointErrorLabels {
+  JointRows<N> joints;  ///< n x N
+  JointRows<N> errors;  ///< n x N [rad, m]
+  Index failed = 0;     ///< poses left out: no joints near by reach them
+};
+
+namespace detail {
+
+/// Joint differences between `from` and the joints at which `solver` reaches each target from there.
+template <KinematicModel Solver, class Target>
+JointErrorLabels<Solver::dof> joint_errors(const Solver& solver, const JointRows<Solver::dof>& from, Target&& target,
+                                           double sign) {
+  JointErrorLabels<Solver::dof> out;
+  out.joints.resize(from.rows(), Solver::dof);
+  out.errors.resize(from.rows(), Solver::dof);
+  Index kept = 0;
+  for (Index i = 0; i < from.rows(); ++i) {
+    const JointVector<Solver::dof> q = from.row(i).transpose();
+    const auto found = inverse_kinematics(solver, Isometry3(target(i)), q);
+    if (found.status != IkStatus::converged) continue;
+    out.joints.row(kept) = from.row(i);
+    out.errors.row(kept++) = sign * (found.joints - q).transpose();
+  }
+  out.failed = from.rows() - kept;
+  out.joints.conservativeResize(kept, Solver::dof);
+  out.errors.conservativeResize(kept, Solver::dof);
+  return out;
+}
+
+}  // namespace detail
+
+/// The paper's labels: `theta_R` solves `actual(theta_R) = nominal(theta_N)`, label `theta_N - theta_R` at `theta_N`.
+/// Needs the actual arm as a model, so a simulation. Near singularities inverse kinematics jumps and labels explode.
+/// @param joints n x N target joints theta_N
+template <KinematicModel Nominal, KinematicModel Actual>
+JointErrorLabels<Nominal::dof> joint_error_labels(const Nominal& nominal, const Actual& actual,
+                                                  const JointRows<Nominal::dof>& joints) {
+  return detail::joint_errors(
+      actual, joints, [&](Index i) { return nominal.pose(joints.row(i).transpose()); }, -1);
+}
+
+/// Labels from measured full poses: `theta_N` solves `model(theta_N) = measured`, label `theta_N - q` at the commanded
+/// q.
+/// @throws std::invalid_argument where the data have positions only
+template <KinematicModel Model>
+JointErrorLabels<Model::dof> joint_error_labels(const Model& model, const Dataset<Model::dof>& data) {
+  require(data.has_orientations(),
+          "joint_error_labels: joint-space compensation needs measured orientations, the data have positions only");
+  return detail::joint_errors(
+      model, data.joints(), [&](Index i) { return data.pose(i); }, +1);
+}
+
+/// Learns joint errors over the joints, with any regressor, on any model.
+/// @cite Feng, Dong, Jin
+template <Regressor R>
+struct JointCompensation {
+  R regressor;
+  CorrectionOptions correction{};
+
+  /// From measured full poses: the result is a kinematic model, corrected like any other.
+  /// @throws std::invalid_argument for positions alone, where nothing could be labelled, or for data in other frames
+  /// (50 mm)
+  template <KinematicModel Model>
+  Compensated<JointCorrected<Model, PredictorOf<R, Model::dof, Model::dof>>, ReferenceOf<Model>> fit(
+      const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
+    require(data.size() >= 1, "JointCompensation: no samples");
+    const double mean = (positions(model, data.joints()) - data.positions()).rowwise().norm().mean();
+    require(mean < 0.05, "JointCompensation: model and data are ", mean * 1e3,
+            " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
+    const auto labels = joint_error_labels(model, data);
+    require(labels.joints.rows() >= 1, "JointCompensation: inverse kinematics failed for all ", data.size(), " poses");
+    return {{model, regressor.fit(labels.joints, labels.errors, options),
+             JointRangeGate<Model::dof>::covering(labels.joints)},
+            reference_of(model),
+            correction};
+  }
+
+  /// From the paper's labels, indexed by the target joints: the command is `theta - f(theta)`.
+  template <KinematicModel Model>
+  DirectJointCompensator<Model, PredictorOf<R, Model::dof, Model::dof>> fit(const Model& model,
+                                                                            const JointErrorLabels<Model::dof>& labels,
+                                                                            const FitOptions& options = {}) const {
+    require(labels.joints.rows() >= 1, "JointCompensation: no labels");
+    return {model, regressor.fit(labels.joints, labels.errors, options),
+            JointRangeGate<Model::dof>::covering(labels.joints)};
+  }
+};
+
+template <class R>
+JointCompensation(R) -> JointCompensation<R>;
+template <class R>
+JointCompensation(R, CorrectionOptions) -> JointCompensation<R>;
+
+}  // namespace vernier

@@ -1,0 +1,78 @@
+#pragma once
+
+/// @file
+/// Closed-form starting values for base and tool frames.
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <vector>
+
+#include "vernier/data/dataset.hpp"
+#include "vernier/kinematics/framed.hpp"
+
+namespace vernier {
+
+/// The rigid motion that best takes `from` to `to` in the least-squares sense, rows are points; a rotation, never a
+/// reflection.
+/// @cite Kabsch 1976; Umeyama 1991
+inline Isometry3 register_points(const PointRows& from, const PointRows& to) {
+  require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
+          " points");
+  const Eigen::RowVector3d from_mean = from.colwise().mean(), to_mean = to.colwise().mean();
+  const Matrix3 covariance = (to.rowwise() - to_mean).transpose() * (from.rowwise() - from_mean);
+  const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3 signs = Vector3::Ones();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
+  Isometry3 out = Isometry3::Identity();
+  out.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  out.translation() = to_mean.transpose() - out.linear() * from_mean.transpose();
+  return out;
+}
+
+/// The rotation nearest to a matrix (in the Frobenius norm), e.g. the mean of a sum of rotations.
+inline Matrix3 nearest_rotation(const Matrix3& m) {
+  const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3 signs = Vector3::Ones();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+/// Base and tool frames that roughly explain the data, links nominal: the base by registering positions with the tool
+/// point known so far, the tool point by linear least squares, in turns; the tool's rotation as the mean of what the
+/// orientations ask for. A start for `identify`, which refines it.
+/// @param model the nominal arm, @param data n >= 1 samples
+/// @param tool  first guess of the tool frame
+/// @param fit_base,fit_tool which frames may move; the others stay as guessed (base: identity)
+template <KinematicModel Model>
+Framed<Model> starting_frames(const Model& model, const Dataset<Model::dof>& data, const Isometry3& base_guess,
+                              const Isometry3& tool_guess, bool fit_base, bool fit_tool) {
+  const Index n = data.size();
+  require(n >= 1, "starting_frames: no samples");
+  const std::vector<Isometry3> flanges = poses(model, data.joints());
+  Isometry3 base = base_guess, tool = tool_guess;
+  const auto flange = [&](Index i) -> const Isometry3& { return flanges[static_cast<std::size_t>(i)]; };
+  for (int round = 0; round < 50; ++round) {
+    const Isometry3 before = base;
+    if (fit_base) {
+      PointRows points(n, 3);
+      for (Index i = 0; i < n; ++i) points.row(i) = (flange(i) * tool.translation()).transpose();
+      base = register_points(points, data.positions());
+    }
+    if (!fit_tool) break;
+    // base and flange rotate without stretching, so the least-squares tool point is a mean
+    Vector3 sum = Vector3::Zero();
+    for (Index i = 0; i < n; ++i)
+      sum += flange(i).linear().transpose() *
+             (base.linear().transpose() * (data.position(i) - base * flange(i).translation()));
+    tool.translation() = sum / static_cast<double>(n);
+    if (!fit_base || base.isApprox(before, 1e-12)) break;
+  }
+  if (fit_tool && data.has_orientations()) {
+    Matrix3 sum = Matrix3::Zero();
+    for (Index i = 0; i < n; ++i) sum += (base.linear() * flange(i).linear()).transpose() * data.orientation(i);
+    tool.linear() = nearest_rotation(sum);
+  }
+  return Framed<Model>(model, base, tool);
+}
+
+}  // namespace vernier

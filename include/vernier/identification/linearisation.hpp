@@ -1,0 +1,52 @@
+#pragma once
+
+/// @file
+/// Weighted residuals of a model against data, and their Jacobian: the one place where a measurement meets a model.
+
+#include <cmath>
+#include <vector>
+
+#include "vernier/core/so3.hpp"
+#include "vernier/data/dataset.hpp"
+#include "vernier/identification/options.hpp"
+#include "vernier/kinematics/concepts.hpp"
+
+namespace vernier::detail {
+
+/// Rows: three position residuals a sample, then (behind all of them) three orientation residuals a sample; each
+/// divided by its sensor's sigma. Columns: the free parameters in steps of their sizes.
+struct Linearisation {
+  VectorX residuals;
+  MatrixX jacobian;  // empty when not asked for
+
+  /// model minus measured: p - p_measured, and Log(R R_measured').
+  template <ParametricModel Model>
+  void evaluate(const Model& model, const Dataset<Model::dof>& data, bool oriented, double position_sigma,
+                double orientation_sigma, const std::vector<Index>& free, const VectorX& sizes, bool with_jacobian) {
+    const Index n = data.size(), rows = (oriented ? 6 : 3) * n, columns = static_cast<Index>(free.size());
+    residuals.resize(rows);
+    if (with_jacobian) jacobian.resize(rows, columns);
+    for (Index i = 0; i < n; ++i) {
+      const JointVector<Model::dof> q = data.joints(i);
+      const Isometry3 pose = model.pose(q);
+      residuals.segment<3>(3 * i) = (pose.translation() - data.position(i)) / position_sigma;
+      Vector3 turned = Vector3::Zero();
+      if (oriented) {
+        turned = log_so3(pose.linear() * data.orientation(i).transpose());
+        residuals.segment<3>(3 * (n + i)) = turned / orientation_sigma;
+      }
+      if (!with_jacobian) continue;
+      const auto all = model.parameter_jacobian(q);
+      for (Index k = 0; k < columns; ++k)
+        jacobian.block<3, 1>(3 * i, k) =
+            all.col(free[static_cast<std::size_t>(k)]).template head<3>() * (sizes(k) / position_sigma);
+      if (!oriented) continue;
+      const Matrix3 rate = left_jacobian_inverse_so3(turned) / orientation_sigma;
+      for (Index k = 0; k < columns; ++k)
+        jacobian.block<3, 1>(3 * (n + i), k) =
+            rate * (all.col(free[static_cast<std::size_t>(k)]).template tail<3>() * sizes(k));
+    }
+  }
+};
+
+}  // namespace vernier::detail

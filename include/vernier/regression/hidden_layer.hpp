@@ -161,7 +161,8 @@ class ElmPredictor {
   const noexcept {
     const Features features = features_of(Input(x));
     const Index f = features.size();
-    Eigen::Matrix<double, Outputs, Eigen::Dynamic, 0, Outputs, 2 * Inputs> by_feature(Outputs, f);
+    constexpr int layout = Outputs == 1 ? Eigen::RowMajor : Eigen::ColMajor;  // Eigen wants row vectors stored by row
+    Eigen::Matrix<double, Outputs, Eigen::Dynamic, layout, Outputs, 2 * Inputs> by_feature(Outputs, f);
     by_feature.setZero();
     for (Index k = 0; k < weights_.cols(); ++k) {
       const double slope = node(k, features).second;

@@ -105,7 +105,8 @@ struct Pso {
   void validate() const {
     require(particles >= 1, "Pso: particles is ", particles, ", must be at least 1");
     require(iterations >= 0, "Pso: iterations is ", iterations, ", must not be negative");
-    require(velocity_limit > 0, "Pso: velocity_limit is ", velocity_limit, ", must be positive");
+    require(velocity_limit > 0 && velocity_limit < 1e6, "Pso: velocity_limit is ", velocity_limit,
+            ", must be positive and below 1e6");
     require(inertia_start >= 0 && inertia_end >= 0 && cognitive >= 0 && social >= 0, "Pso: inertia_start ",
             inertia_start, ", inertia_end ", inertia_end, ", cognitive ", cognitive, " and social ", social,
             " must not be negative");

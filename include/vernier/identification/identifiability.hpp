@@ -1,22 +1,23 @@
 #pragma once
 
 /// @file
-/// Which parameters the data determine, and how well: selection of independent columns, covariance, condition.
+/// Which parameters the data determine, and how well: independent columns, covariance, leave-one-pose-out.
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <vector>
 
-#include "vernier/core/types.hpp"
+#include "vernier/identification/linearisation.hpp"
 
 namespace vernier::detail {
 
 /// Columns of a Jacobian that say something new, given an order of preference; what the others depend on.
 struct IndependentColumns {
+  /// A column that says nothing new.
   struct Dependent {
     Index column;
     std::vector<Index> absorbed_by;  ///< empty: the column is zero, nothing measured depends on it
@@ -24,9 +25,9 @@ struct IndependentColumns {
   std::vector<Index> kept;  ///< in order of preference
   std::vector<Dependent> dependent;
 
-  /// @param jacobian  rows x columns, columns scaled to expected sizes
+  /// @param jacobian  rows x columns, columns scaled to expected sizes, in order of preference
   /// @param tolerance a column is dependent when less than this share of it is new
-  IndependentColumns(const MatrixX& jacobian, double tolerance = 1e-7) {
+  explicit IndependentColumns(const MatrixX& jacobian, double tolerance = 1e-7) {
     const double largest = jacobian.cols() > 0 ? std::sqrt(jacobian.colwise().squaredNorm().maxCoeff()) : 0;
     MatrixX basis(jacobian.rows(), std::min(jacobian.rows(), jacobian.cols()));
     MatrixX triangle = MatrixX::Zero(basis.cols(), basis.cols());  // kept columns = basis * triangle
@@ -61,31 +62,60 @@ struct IndependentColumns {
   }
 };
 
-/// Covariance and condition of a weighted linear least-squares problem with some prior rows.
+/// How well a weighted least-squares problem with some prior rows determines its unknowns, in steps of their sizes.
 struct Precision {
-  MatrixX covariance;  ///< of the columns' steps; empty where the rank is deficient
-  Index rank = 0;
-  double condition = 0;  ///< largest over smallest singular value; infinity where the rank is deficient
+  MatrixX inverse;       ///< (J'J + prior)^-1; empty where it is singular
+  MatrixX covariance;    ///< of the unknowns; empty where singular
+  Index rank = 0;        ///< of J, without priors
+  double condition = 0;  ///< of J, without priors: largest over smallest singular value
 
-  /// @param jacobian whitened rows, @param row_variance variance of each whitened row as estimated from residuals
-  /// @param prior    inverse squared prior deviations per column, zero for none
+  /// @param jacobian     whitened rows
+  /// @param row_variance variance of each whitened row as estimated from residuals
+  /// @param prior        inverse squared prior deviations per column, zero for none
   Precision(const MatrixX& jacobian, const VectorX& row_variance, const VectorX& prior) {
     const Index columns = jacobian.cols();
-    MatrixX stacked(jacobian.rows() + columns, columns);
-    stacked << jacobian, MatrixX(prior.cwiseSqrt().asDiagonal());
-    const MatrixX r = Eigen::HouseholderQR<MatrixX>(stacked).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
-    const Eigen::JacobiSVD<MatrixX> svd(r, Eigen::ComputeFullV);
+    if (columns == 0) {
+      condition = 1;
+      return;
+    }
+    MatrixX stacked = MatrixX::Zero(std::max(jacobian.rows(), columns), columns);
+    stacked.topRows(jacobian.rows()) = jacobian;
+    MatrixX triangle =
+        Eigen::HouseholderQR<MatrixX>(stacked).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+    const VectorX data = Eigen::JacobiSVD<MatrixX>(triangle).singularValues();
+    rank = (data.array() > 1e-12 * data(0)).count();
+    condition = rank < columns ? std::numeric_limits<double>::infinity() : data(0) / data(columns - 1);
+    stacked.resize(2 * columns, columns);
+    stacked << triangle, MatrixX(prior.cwiseSqrt().asDiagonal());
+    const Eigen::JacobiSVD<MatrixX> svd(stacked, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const VectorX& s = svd.singularValues();
-    rank = columns == 0 ? 0 : (s.array() > 1e-12 * s(0)).count();
-    condition = columns == 0 ? 1 : rank < columns ? std::numeric_limits<double>::infinity() : s(0) / s(columns - 1);
-    if (rank < columns) return;
+    if (!(s(columns - 1) > 1e-12 * s(0))) return;
+    inverse = svd.matrixV() * s.array().square().inverse().matrix().asDiagonal() * svd.matrixV().transpose();
     // sandwich: A^-1 (J' D J + prior) A^-1 with A = J'J + prior
-    const MatrixX inverse =
-        svd.matrixV() * s.array().square().inverse().matrix().asDiagonal() * svd.matrixV().transpose();
     MatrixX middle = jacobian.transpose() * row_variance.asDiagonal() * jacobian;
     middle.diagonal() += prior;
     covariance = inverse * middle * inverse;
   }
 };
+
+/// Root mean square, over poses, of the position residual (whitened) of each pose when it is left out, in closed form:
+/// `e_b = (I - H_bb)^-1 r_b` with all rows of the pose in block b.
+/// @cite Allen 1974
+inline double leave_one_pose_out(const Linearisation& at, Index poses, const MatrixX& inverse) {
+  if (inverse.size() == 0) return std::numeric_limits<double>::infinity();
+  const Index size = at.residuals.size() / poses;  // 3, or 6 with orientations
+  MatrixX rows(size, at.jacobian.cols());
+  VectorX residual(size);
+  double sum = 0;
+  for (Index i = 0; i < poses; ++i) {
+    for (Index part = 0; part < size / 3; ++part) {
+      rows.middleRows(3 * part, 3) = at.jacobian.middleRows(3 * (part * poses + i), 3);
+      residual.segment(3 * part, 3) = at.residuals.segment(3 * (part * poses + i), 3);
+    }
+    const MatrixX left = MatrixX::Identity(size, size) - rows * inverse * rows.transpose();
+    sum += left.partialPivLu().solve(residual).head<3>().squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(poses));
+}
 
 }  // namespace vernier::detail

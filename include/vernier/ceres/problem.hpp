@@ -1,0 +1,203 @@
+#pragma once
+
+/// @file
+/// An identification as a Ceres problem.
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vernier/identification/linearisation.hpp"
+
+namespace vernier::detail {
+
+/// Robust scale of the components of whitened residuals: 1.4826 times the median absolute value.
+inline double robust_scale(const Eigen::Ref<const VectorX>& residuals) {
+  std::vector<double> sizes(static_cast<std::size_t>(residuals.size()));
+  for (Index i = 0; i < residuals.size(); ++i) sizes[static_cast<std::size_t>(i)] = std::abs(residuals(i));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return sizes.empty() ? 0 : 1.4826 * *middle;
+}
+
+/// A parametric arm, data, and the parameters that may move: one Ceres parameter block whose unit is the expected size
+/// of each parameter. Poses are linearised together before each evaluation; cost functions hand out rows of that.
+template <ParametricModel Arm>
+class IdentificationProblem {
+ public:
+  static constexpr int dof = Arm::dof;
+  using Parameters = typename Arm::Parameters;
+
+  /// @param start  where to begin, and what priors pull towards
+  /// @param sizes  expected size of each of its parameters
+  IdentificationProblem(const Arm& start, const Dataset<dof>& data, const IdentifyOptions& options, VectorX sizes)
+      : anchor_(start),
+        values_(start.parameters()),
+        data_(data),
+        options_(options),
+        oriented_(options.use_orientations && data.has_orientations()),
+        all_sizes_(std::move(sizes)) {}
+
+  bool oriented() const { return oriented_; }
+  Index rows() const { return (oriented_ ? 6 : 3) * data_.size(); }
+  const std::vector<Index>& free() const { return free_; }  ///< parameters that move
+  const VectorX& sizes() const { return sizes_; }           ///< of the free ones
+  const VectorX& prior() const { return prior_; }           ///< inverse squared deviations, in steps of the sizes
+  Arm arm() const { return anchor_.with_parameters(values_); }
+  const Parameters& values() const { return values_; }
+  void set_values(const Parameters& values) { values_ = values; }
+
+  /// The present values become what priors pull towards.
+  void anchor_here() { anchor_ = arm(); }
+
+  /// Names what may move; the present values stay, priors go.
+  void set_free(std::vector<Index> free) {
+    free_ = std::move(free);
+    sizes_.resize(static_cast<Index>(free_.size()));
+    for (std::size_t k = 0; k < free_.size(); ++k) sizes_(static_cast<Index>(k)) = all_sizes_(free_[k]);
+    prior_ = VectorX::Zero(sizes_.size());
+  }
+  void set_prior(const VectorX& weights) { prior_ = weights; }
+
+  Linearisation linearise() const { return linearise(values_, true); }
+
+  /// Least squares from the present values; a robust loss settles its scale in further rounds.
+  /// @return whether the solver converged
+  bool solve() {
+    if (free_.empty()) return true;
+    bool converged = run(0, 0);
+    for (int round = 0; options_.loss != Loss::squared && round < 4; ++round) {
+      const Linearisation at = linearise(values_, false);
+      const Index n = 3 * data_.size();
+      converged =
+          run(2.8 * robust_scale(at.residuals.head(n)), oriented_ ? 2.8 * robust_scale(at.residuals.tail(n)) : 0);
+    }
+    return converged;
+  }
+
+  int iterations() const { return iterations_; }           ///< of all solves
+  const std::string& message() const { return message_; }  ///< of the last solve
+
+ private:
+  /// The linearisation shared by all cost functions of an evaluation.
+  struct Preparation : ceres::EvaluationCallback {
+    Preparation(const IdentificationProblem& owner, const VectorX& point) : problem(owner), steps(point) {}
+    void PrepareForEvaluation(bool with_jacobian, bool new_point) override {
+      if (!new_point && (has_jacobian || !with_jacobian)) return;
+      at = problem.linearise(problem.values_at(steps), with_jacobian);
+      has_jacobian = with_jacobian;
+    }
+    const IdentificationProblem& problem;
+    const VectorX& steps;
+    Linearisation at;
+    bool has_jacobian = false;
+  };
+
+  /// Three rows of the shared linearisation.
+  class Rows : public ceres::CostFunction {
+   public:
+    Rows(const Preparation& preparation, Index row) : preparation_(preparation), row_(row) {
+      set_num_residuals(3);
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(preparation.steps.size()));
+    }
+    bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+      using RowMajor = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+      Eigen::Map<Vector3> out(residuals);
+      out = preparation_.at.residuals.template segment<3>(row_);
+      if (jacobians != nullptr && jacobians[0] != nullptr)
+        Eigen::Map<RowMajor>(jacobians[0], 3, preparation_.steps.size()) =
+            preparation_.at.jacobian.template middleRows<3>(row_);
+      return out.allFinite();
+    }
+
+   private:
+    const Preparation& preparation_;
+    Index row_;
+  };
+
+  /// Steps weighed by their priors.
+  class PriorRows : public ceres::CostFunction {
+   public:
+    explicit PriorRows(const VectorX& weights) : root_(weights.cwiseSqrt()) {
+      set_num_residuals(static_cast<int>(root_.size()));
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(root_.size()));
+    }
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+      const Index n = root_.size();
+      Eigen::Map<VectorX>(residuals, n) = root_.cwiseProduct(Eigen::Map<const VectorX>(parameters[0], n));
+      if (jacobians != nullptr && jacobians[0] != nullptr) Eigen::Map<MatrixX>(jacobians[0], n, n) = root_.asDiagonal();
+      return true;
+    }
+
+   private:
+    VectorX root_;
+  };
+
+  Parameters values_at(const VectorX& steps) const {
+    Parameters p = values_;
+    const Parameters anchor = anchor_.parameters();
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      p(free_[k]) = anchor(free_[k]) + sizes_(static_cast<Index>(k)) * steps(static_cast<Index>(k));
+    return p;
+  }
+
+  Linearisation linearise(const Parameters& values, bool with_jacobian) const {
+    Linearisation out;
+    out.evaluate(anchor_.with_parameters(values), data_, oriented_, options_.position_sigma, options_.orientation_sigma,
+                 free_, sizes_, with_jacobian);
+    return out;
+  }
+
+  /// One solve; a scale above zero is the residual size at which a robust loss starts to bend.
+  bool run(double position_scale, double orientation_scale) {
+    VectorX steps(sizes_.size());
+    const Parameters anchor = anchor_.parameters();
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      steps(static_cast<Index>(k)) = (values_(free_[k]) - anchor(free_[k])) / sizes_(static_cast<Index>(k));
+    Preparation preparation(*this, steps);
+    ceres::Problem::Options problem_options;
+    problem_options.evaluation_callback = &preparation;
+    ceres::Problem problem(problem_options);
+    problem.AddParameterBlock(steps.data(), static_cast<int>(steps.size()));
+    for (Index row = 0; row < rows(); row += 3)
+      problem.AddResidualBlock(new Rows(preparation, row),
+                               loss(row < 3 * data_.size() ? position_scale : orientation_scale), steps.data());
+    if (prior_.maxCoeff() > 0) problem.AddResidualBlock(new PriorRows(prior_), nullptr, steps.data());
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.max_num_iterations = options_.max_iterations;
+    solver.function_tolerance = 1e-14;  // Ceres' default of 1e-6 stops short of the sensor's noise
+    solver.gradient_tolerance = 1e-16;
+    solver.parameter_tolerance = 1e-13;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    values_ = values_at(steps);
+    iterations_ += static_cast<int>(summary.iterations.size());
+    message_ = summary.message;
+    return summary.termination_type == ceres::CONVERGENCE;
+  }
+
+  ceres::LossFunction* loss(double scale) const {
+    if (options_.loss == Loss::squared || !(scale > 0)) return nullptr;
+    if (options_.loss == Loss::huber) return new ceres::HuberLoss(scale);
+    return new ceres::CauchyLoss(scale);
+  }
+
+  Arm anchor_;
+  Parameters values_;
+  const Dataset<dof>& data_;
+  const IdentifyOptions& options_;
+  bool oriented_;
+  VectorX all_sizes_;
+  std::vector<Index> free_;
+  VectorX sizes_, prior_;
+  int iterations_ = 0;
+  std::string message_ = "nothing to move";
+};
+
+}  // namespace vernier::detail

@@ -1,0 +1,252 @@
+#include "figures.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "vernier/core/check.hpp"
+
+namespace support {
+
+namespace {
+
+constexpr std::array<const char*, palette_size> palette{"#000000", "#E69F00", "#56B4E9", "#009E73",
+                                                        "#D55E00", "#0072B2", "#CC79A7"};
+
+const char* colour(const Series& series, std::size_t position) {
+  return palette[(series.colour < 0 ? position : static_cast<std::size_t>(series.colour)) % palette.size()];
+}
+
+/// A gnuplot string.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
+  return out + "'";
+}
+
+std::string range(const char* axis, const std::optional<std::pair<double, double>>& limits) {
+  return limits ? fmt::format("set {}range [{}:{}]\n", axis, limits->first, limits->second) : std::string();
+}
+
+/// What all figures share: a white page, a quiet grid behind the data, the legend below and never over them.
+std::string preamble(const std::string& title, const std::string& y_label, const FigureOptions& options) {
+  std::string out = fmt::format(
+      "set terminal svg noenhanced size {},{} dynamic background rgb 'white' font 'sans-serif,15' linewidth 1.4\n"
+      "set encoding utf8\n"
+      "set title {} font 'sans-serif,18' offset 0,-0.3\n"
+      "set ylabel {} offset -0.5,0\n"
+      "set border 3 linecolor rgb '#444444'\n"
+      "set tics nomirror out scale 0.6,0.3 textcolor rgb '#222222'\n"
+      "set grid back xtics ytics linetype 1 linewidth 0.5 linecolor rgb '#dddddd'\n"
+      "set key below center horizontal maxcols 3 Left reverse samplen 2.2 spacing 1.25 textcolor rgb '#222222'\n"
+      "set rmargin 3\n",
+      options.width, options.height, quoted(title), quoted(y_label));
+  if (options.log_y) out += "set logscale y\nset format y '%g'\n";
+  out += range("y", options.y_range);
+  return out;
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+/// Runs gnuplot with its standard streams on files: no shell, no quoting of paths, nothing half-written.
+bool draw(const std::filesystem::path& path, const std::string& script) {
+  static bool missing = false;
+  if (missing) return false;
+  const auto fail = [&](const std::string& why) -> void {
+    throw std::runtime_error(path.string() + ": the figure cannot be drawn: " + why);
+  };
+  const File input(std::tmpfile()), errors(std::tmpfile());
+  if (!input || !errors) fail(std::strerror(errno));
+  if (std::fwrite(script.data(), 1, script.size(), input.get()) != script.size() || std::fflush(input.get()) != 0)
+    fail(std::strerror(errno));
+  std::rewind(input.get());
+
+  std::filesystem::path beside = path;
+  beside += ".partial";
+  const int output = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (output < 0) fail(std::strerror(errno));
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, fileno(input.get()), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(errors.get()), STDERR_FILENO);
+  std::string program = "gnuplot", no_start_files = "-d", from_stdin = "-";
+  char* const arguments[] = {program.data(), no_start_files.data(), from_stdin.data(), nullptr};
+  pid_t child = 0;
+  const int spawned = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(output);
+  int status = 0;
+  if (spawned == 0)
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  std::error_code error;
+  if (spawned == ENOENT || (spawned == 0 && WIFEXITED(status) && WEXITSTATUS(status) == 127)) {
+    std::filesystem::remove(beside, error);
+    missing = true;
+    fmt::print(stderr, "gnuplot is not installed: going on without figures\n");
+    return false;
+  }
+  if (spawned != 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    std::filesystem::remove(beside, error);
+    std::string words;
+    std::rewind(errors.get());
+    for (int c = std::fgetc(errors.get()); c != EOF && words.size() < 400; c = std::fgetc(errors.get()))
+      words += c == '\n' ? ' ' : static_cast<char>(c);
+    fail(spawned != 0 ? std::strerror(spawned) : "gnuplot says: " + words);
+  }
+  std::filesystem::rename(beside, path, error);
+  if (error) {
+    const std::string why = error.message();
+    std::filesystem::remove(beside, error);
+    fail(why);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool plot_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+              const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options) {
+  std::string script = preamble(title, y_label, options);
+  fmt::format_to(std::back_inserter(script), "set xlabel {}\n{}{}", quoted(x_label),
+                 options.log_x ? "set logscale x\nset format x '%g'\n" : "", range("x", options.x_range));
+  std::string plots;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const Series& s = series[k];
+    vernier::require(s.x.size() == s.y.size(), "plot_svg: series '", s.name, "' has ", s.x.size(), " x and ",
+                     s.y.size(), " y");
+    fmt::format_to(std::back_inserter(script), "$data{} << EOD\n", k);
+    bool any = false;
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      const bool drawn = std::isfinite(s.x[i]) && std::isfinite(s.y[i]) && (!options.log_x || s.x[i] > 0) &&
+                         (!options.log_y || s.y[i] > 0);
+      if (drawn) fmt::format_to(std::back_inserter(script), "{} {}\n", s.x[i], s.y[i]);
+      if (!drawn) script += "\n";
+      any = any || drawn;
+    }
+    script += "EOD\n";
+    if (!any) continue;
+    const char* c = colour(s, k);
+    const auto look = [&]() -> std::string {
+      switch (s.style) {
+        case Style::lines: return fmt::format("with lines linewidth 1.8 linecolor rgb '{}'", c);
+        case Style::dashed: return fmt::format("with lines dashtype 2 linewidth 1.6 linecolor rgb '{}'", c);
+        case Style::points: return fmt::format("with points pointtype 7 pointsize 0.32 linecolor rgb '{}'", c);
+        case Style::steps: return fmt::format("with steps linewidth 1.8 linecolor rgb '{}'", c);
+        case Style::filled_steps:
+          return fmt::format("with fillsteps fillstyle transparent solid 0.25 noborder linecolor rgb '{}'", c);
+      }
+      return {};
+    };
+    fmt::format_to(std::back_inserter(plots), "{}$data{} using 1:2 {} {}", plots.empty() ? "" : ", ", k, look(),
+                   s.style == Style::points || s.name.empty() ? "notitle" : "title " + quoted(s.name));
+    // a dot that is right among hundreds is too small for a legend
+    if (s.style == Style::points && !s.name.empty())
+      fmt::format_to(std::back_inserter(plots),
+                     ", NaN with points pointtype 7 pointsize 0.9 linecolor rgb '{}' title {}", c, quoted(s.name));
+  }
+  vernier::require(!plots.empty(), "plot_svg: nothing to draw in ", path.string());
+  return draw(path, script + "plot " + plots + "\n");
+}
+
+bool bars_svg(const std::filesystem::path& path, const std::string& title, const std::string& y_label,
+              const std::vector<std::string>& labels, const std::vector<Series>& series, const FigureOptions& options) {
+  vernier::require(!labels.empty() && !series.empty(), "bars_svg: nothing to draw in ", path.string());
+  std::string script = preamble(title, y_label, options);
+  script +=
+      "set style data histograms\nset style histogram clustered gap 1\n"
+      "set style fill solid 1 noborder\nset boxwidth 0.9\nset xtics scale 0\nunset grid\n"
+      "set grid back ytics linetype 1 linewidth 0.5 linecolor rgb '#dddddd'\n";
+  if (!options.log_y && !options.y_range) script += "set yrange [0:*]\n";
+  script += "$data << EOD\n";
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    std::string label = labels[i];
+    std::replace_if(
+        label.begin(), label.end(), [](char c) { return c == '"' || c == '\n' || c == '\\'; }, ' ');
+    fmt::format_to(std::back_inserter(script), "\"{}\"", label);
+    for (const Series& s : series) {
+      vernier::require(s.y.size() == labels.size(), "bars_svg: series '", s.name, "' has ", s.y.size(), " heights for ",
+                       labels.size(), " labels");
+      script += std::isfinite(s.y[i]) ? fmt::format(" {}", s.y[i]) : " ?";
+    }
+    script += "\n";
+  }
+  script += "EOD\nplot ";
+  for (std::size_t k = 0; k < series.size(); ++k)
+    fmt::format_to(std::back_inserter(script), "{}$data using {}{} linecolor rgb '{}' {}", k == 0 ? "" : ", ", k + 2,
+                   k == 0 ? ":xtic(1)" : "", colour(series[k], k),
+                   series[k].name.empty() ? "notitle" : "title " + quoted(series[k].name));
+  return draw(path, script + "\n");
+}
+
+std::vector<Series> histogram(const std::vector<Sample>& samples, int bins, bool log, std::optional<double> smallest) {
+  vernier::require(bins >= 1, "histogram: ", bins, " bins, must be at least 1");
+  const auto counted = [&](double value) { return std::isfinite(value) && (!log || value > 0); };
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+  for (const Sample& sample : samples)
+    for (const double value : sample.values)
+      if (counted(value)) {
+        lower = std::min(lower, value);
+        upper = std::max(upper, value);
+      }
+  if (smallest) lower = *smallest;
+  vernier::require(std::isfinite(lower) && std::isfinite(upper) && (!log || lower > 0), "histogram: nothing to count");
+  if (!(upper > lower)) upper = log ? lower * 1.1 : lower + 1;
+  const auto scale = [&](double value) { return log ? std::log(value) : value; };
+  const double width = (scale(upper) - scale(lower)) / bins;
+  const auto edge = [&](int k) {
+    const double at = scale(lower) + k * width;
+    return log ? std::exp(at) : at;
+  };
+  std::vector<Series> out;
+  for (const Sample& sample : samples) {
+    std::vector<double> counts(static_cast<std::size_t>(bins), 0);
+    for (const double value : sample.values)
+      if (counted(value)) {
+        const double at = std::clamp((scale(std::max(value, lower)) - scale(lower)) / width, 0.0, bins - 1.0);
+        ++counts[static_cast<std::size_t>(at)];
+      }
+    Series series{sample.name, {}, {}, Style::steps, sample.colour};
+    // gnuplot's steps go from a point horizontally to the next x, then vertically
+    const double n = std::max<double>(1, static_cast<double>(sample.values.size()));
+    for (int k = 0; k < bins; ++k) {
+      series.x.push_back(edge(k));
+      series.y.push_back(100 * counts[static_cast<std::size_t>(k)] / n);
+    }
+    series.x.push_back(edge(bins));
+    series.y.push_back(0);
+    out.push_back(std::move(series));
+  }
+  return out;
+}
+
+std::vector<Series> cumulative(const std::vector<Sample>& samples) {
+  std::vector<Series> out;
+  for (const Sample& sample : samples) {
+    Series series{sample.name, sample.values, {}, Style::lines, sample.colour};
+    std::erase_if(series.x, [](double value) { return !std::isfinite(value); });
+    std::sort(series.x.begin(), series.x.end());
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      series.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(series.x.size()));
+    out.push_back(std::move(series));
+  }
+  return out;
+}
+
+}  // namespace support

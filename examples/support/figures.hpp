@@ -1,0 +1,71 @@
+#pragma once
+
+/// @file
+/// Figures as SVG files, drawn by gnuplot.
+///
+/// Each function returns whether the figure is there. Where gnuplot is missing it says so, once, on standard error, and
+/// the program goes on without figures.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace support {
+
+/// How a series is drawn.
+enum class Style { lines, dashed, points, steps, filled_steps };
+
+/// One curve or cloud of points.
+struct Series {
+  std::string name;  ///< in the legend; empty: not there
+  std::vector<double> x;
+  std::vector<double> y;  ///< as many as x; values that are not finite leave a gap
+  Style style = Style::lines;
+  int colour = -1;  ///< index into the palette; below 0: the position of the series
+};
+
+/// What is not data.
+struct FigureOptions {
+  bool log_x = false;
+  bool log_y = false;
+  std::optional<std::pair<double, double>> x_range{};
+  std::optional<std::pair<double, double>> y_range{};
+  int width = 900;   ///< [px]
+  int height = 540;  ///< [px]
+};
+
+/// The palette has this many colours: those of Okabe and Ito, told apart by colour-blind readers too. 0 is black.
+inline constexpr int palette_size = 7;
+
+/// Draws series over x. Labels name the unit: "position error [mm]".
+/// @throws std::invalid_argument when a series has not as many x as y
+/// @throws std::runtime_error when the file cannot be written
+bool plot_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+              const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options = {});
+
+/// Draws groups of bars: one group a label, one colour a series, whose y are the heights, one a label.
+/// @throws as `plot_svg`
+bool bars_svg(const std::filesystem::path& path, const std::string& title, const std::string& y_label,
+              const std::vector<std::string>& labels, const std::vector<Series>& series,
+              const FigureOptions& options = {});
+
+/// Values of one kind, to be counted.
+struct Sample {
+  std::string name;
+  std::vector<double> values;
+  int colour = -1;  ///< as in `Series`
+};
+
+/// Histograms over bins that all samples share, as outlines; y is the share of a sample in a bin [%].
+/// @param bins      number of bins, at least 1
+/// @param log       bins of equal ratio instead of equal width; values at or below 0 are not counted
+/// @param smallest  lower end of the first bin where given; smaller values count in the first bin
+std::vector<Series> histogram(const std::vector<Sample>& samples, int bins, bool log = false,
+                              std::optional<double> smallest = {});
+
+/// Cumulative distributions: y is the share of values at or below x [%].
+std::vector<Series> cumulative(const std::vector<Sample>& samples);
+
+}  // namespace support

@@ -1,0 +1,45 @@
+#pragma once
+
+/// @file
+/// A progress bar for people: on standard error, and only where that is a terminal.
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "vernier/core/fit_options.hpp"
+
+namespace support {
+
+/// One line that shows how far something has come and how long it will take; silent where nobody looks at it. Takes
+/// itself away at the end. Serves as an observer: `ProgressBar bar("joint PSO-ELM", 300); options.observer = bar;`
+class ProgressBar {
+ public:
+  /// @param label what is going on
+  /// @param total steps (generations) it will take; 0 where nobody knows
+  ProgressBar(std::string label, vernier::Index total);
+  /// The same on another stream, shown or not as told.
+  ProgressBar(std::string label, vernier::Index total, std::FILE* stream, bool shown);
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  ~ProgressBar() { finish(); }
+
+  /// Steps done. Draws ten times a second at most.
+  /// @param note a word or number of what was reached
+  void update(vernier::Index done, std::string_view note = {});
+  /// As an observer: generations done, and the best fitness.
+  void operator()(const vernier::Progress& progress);
+  /// Takes the line away.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  vernier::Index total_;
+  std::FILE* stream_;
+  bool shown_, drawn_ = false;
+  Clock::time_point start_ = Clock::now(), last_{};
+};
+
+}  // namespace support

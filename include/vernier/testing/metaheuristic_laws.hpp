@@ -1,0 +1,243 @@
+#pragma once
+
+/// @file
+/// What every `Metaheuristic` must do, as a list of violations.
+
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "vernier/search/minimize.hpp"
+#include "vernier/testing/same_bits.hpp"
+
+namespace vernier::testing {
+
+namespace detail {
+
+/// Everything a search evaluated.
+struct SearchRecord {
+  std::vector<MatrixX> populations;
+  std::vector<VectorX> values;
+
+  bool operator==(const SearchRecord& other) const {
+    if (populations.size() != other.populations.size()) return false;
+    for (std::size_t i = 0; i < populations.size(); ++i)
+      if (!same_bits(populations[i], other.populations[i]) || !same_bits(values[i], other.values[i])) return false;
+    return true;
+  }
+};
+
+/// Checks one algorithm on objectives of its own.
+template <Metaheuristic A>
+class MetaheuristicCheck {
+ public:
+  MetaheuristicCheck(const A& algorithm, bool keeps_box) : algorithm_(algorithm), keeps_box_(keeps_box) {
+    box_.lower = (VectorX(4) << -1, 0.5, 10, -1e-3).finished();
+    box_.upper = (VectorX(4) << 2, 0.75, 30, 1e-3).finished();
+  }
+
+  std::vector<std::string> run() {
+    try {
+      repeatability();
+      best_point();
+      through_minimize();
+      unusable_values();
+    } catch (const std::exception& error) {
+      violations_.push_back(message("metaheuristic: threw on a good problem: ", error.what()));
+    }
+    return std::move(violations_);
+  }
+
+ private:
+  using State = typename A::State;
+  static constexpr Index generations = 12;
+
+  void expect(bool holds, const char* law) {
+    if (!holds) violations_.push_back(message("metaheuristic: ", law));
+  }
+
+  /// A bowl in coordinates of the box whose bottom lies in a corner region: two coordinates just outside.
+  double bowl(const Eigen::Ref<const VectorX>& x) const {
+    const VectorX bottom = (VectorX(4) << 0.3, 1.1, -0.1, 0.6).finished();
+    return ((x - box_.lower).cwiseQuotient(box_.upper - box_.lower) - bottom).squaredNorm() + 0.25;
+  }
+
+  /// Evaluates the bowl and writes down what was asked.
+  auto recorder(SearchRecord& record) const {
+    return [this, &record](const MatrixX& population, VectorX& fitness) {
+      fitness.resize(population.cols());
+      for (Index k = 0; k < population.cols(); ++k) fitness(k) = bowl(population.col(k));
+      record.populations.push_back(population);
+      record.values.push_back(fitness);
+    };
+  }
+
+  /// A search of `generations` steps, or what the algorithm's schedule allows.
+  State search(std::uint64_t seed, SearchRecord& record) const {
+    const auto evaluate = recorder(record);
+    State state = algorithm_.start(box_, seed, evaluate);
+    while (state.generation < generations && !algorithm_.done(state)) {
+      const Index before = state.generation;
+      algorithm_.step(state, box_, evaluate);
+      if (state.generation != before + 1) throw std::runtime_error("step does not count its generation");
+    }
+    return state;
+  }
+
+  void repeatability() {
+    SearchRecord first, again, other, left, right;
+    const State alone = search(1, first);
+    const State repeated = search(1, again);
+    expect(first == again && same_bits(alone.best, repeated.best), "the same seed searched elsewhere");
+    search(2, other);
+    expect(!(first == other), "another seed made the same search");
+
+    // Two searches of one algorithm, a step each in turn.
+    const auto record_left = recorder(left), record_right = recorder(right);
+    State a = algorithm_.start(box_, 1, record_left), b = algorithm_.start(box_, 2, record_right);
+    expect(a.generation == 0, "the first population is not generation 0");
+    while (a.generation < generations && !algorithm_.done(a)) {
+      algorithm_.step(a, box_, record_left);
+      algorithm_.step(b, box_, record_right);
+    }
+    expect(left == first && right == other, "searches in turn disturb each other: the algorithm hides state");
+
+    // A copied state goes on as the original, also in a copy of the algorithm.
+    SearchRecord of_original, of_copy;
+    const A same_algorithm = algorithm_;
+    State original = algorithm_.start(box_, 3, recorder(of_original));
+    if (algorithm_.done(original)) return;
+    algorithm_.step(original, box_, recorder(of_original));
+    State copy = original;
+    of_original = {};
+    for (int i = 0; i < 3 && !algorithm_.done(original); ++i) algorithm_.step(original, box_, recorder(of_original));
+    for (int i = 0; i < 3 && !same_algorithm.done(copy); ++i) same_algorithm.step(copy, box_, recorder(of_copy));
+    expect(of_original == of_copy && same_bits(original.best, copy.best),
+           "a copied state went on differently from the original");
+  }
+
+  /// Whether the state's best is a point evaluated so far, with its value, and none evaluated was better.
+  bool best_was_evaluated(const State& state, const SearchRecord& record) const {
+    bool found = false;
+    for (std::size_t i = 0; i < record.populations.size(); ++i)
+      for (Index k = 0; k < record.values[i].size(); ++k) {
+        if (record.values[i](k) < state.best_fitness) return false;
+        found =
+            found || (record.values[i](k) == state.best_fitness && same_bits(record.populations[i].col(k), state.best));
+      }
+    return found;
+  }
+
+  void best_point() {
+    SearchRecord record;
+    const auto evaluate = recorder(record);
+    State state = algorithm_.start(box_, 4, evaluate);
+    bool monotone = true, evaluated = best_was_evaluated(state, record);
+    while (state.generation < generations && !algorithm_.done(state)) {
+      const double before = state.best_fitness;
+      algorithm_.step(state, box_, evaluate);
+      monotone = monotone && state.best_fitness <= before;
+      evaluated = evaluated && best_was_evaluated(state, record);
+    }
+    expect(monotone, "the best value became worse");
+    expect(evaluated, "best is not the best point evaluated, with its value");
+
+    bool dimensions = true, inside = true;
+    for (const MatrixX& population : record.populations) {
+      dimensions = dimensions && population.rows() == box_.dimension();
+      for (Index k = 0; dimensions && k < population.cols(); ++k) inside = inside && box_.contains(population.col(k));
+    }
+    expect(dimensions, "a population has the wrong dimension");
+    if (keeps_box_) expect(inside, "a point outside the box was evaluated");
+  }
+
+  void through_minimize() {
+    SearchRecord record;
+    const State stepped = search(5, record);
+    Index asked = 0;
+    for (const VectorX& values : record.values) asked += values.size();
+    std::atomic<Index> calls = 0;
+    const auto objective = [&](const VectorX& x) {
+      ++calls;
+      return bowl(x);
+    };
+    const auto batch = [this](const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) {
+      for (Index k = 0; k < population.cols(); ++k) fitness(k) = bowl(population.col(k));
+    };
+    const auto equal = [&](const SearchResult& result) {
+      return same_bits(result.best, stepped.best) && result.best_fitness == stepped.best_fitness &&
+             result.generations == stepped.generation && result.evaluations == asked;
+    };
+    const Stop stop{.max_generations = generations};
+    const SearchResult result = minimize(algorithm_, objective, box_, stop, 5);
+    expect(equal(result), "N steps differ from a run of N through minimize");
+    expect(result.evaluations == calls, "minimize counts other evaluations than were made");
+    for (const int threads : {1, 2}) {
+      const ThreadExecutor executor(threads);
+      expect(equal(minimize(algorithm_, objective, box_, stop, 5, executor)) &&
+                 equal(minimize(algorithm_, batch, box_, stop, 5, executor)),
+             threads == 1 ? "another result with an executor of 1 thread" : "another result with 2 threads");
+    }
+    if (record.populations.size() < 3) return;
+    const Index first = record.values.front().size(), budget = first + record.values[1].size();
+    calls = 0;
+    const SearchResult limited = minimize(algorithm_, objective, box_, Stop{.max_evaluations = budget}, 5);
+    expect(limited.evaluations <= budget && calls == limited.evaluations, "the budget of evaluations was passed");
+  }
+
+  /// Values that are not finite arrive as +infinity, which is never the best.
+  void unusable_values() {
+    const auto objective = [this](const VectorX& x) {
+      const double at = (x(0) - box_.lower(0)) / (box_.upper(0) - box_.lower(0));
+      if (at < 0.3) return std::numeric_limits<double>::quiet_NaN();
+      if (at < 0.4) return -std::numeric_limits<double>::infinity();
+      if (at < 0.5) return std::numeric_limits<double>::infinity();
+      return bowl(x);
+    };
+    // A single small population may lie in the unusable half; of eight searches one sees the other half.
+    for (std::uint64_t seed = 10; seed < 18; ++seed) {
+      const SearchResult result = minimize(algorithm_, objective, box_, {.max_generations = generations}, seed);
+      const bool nothing_found = result.best_fitness == std::numeric_limits<double>::infinity();
+      found_finite_ = found_finite_ || !nothing_found;
+      if (nothing_found || (std::isfinite(result.best_fitness) && objective(result.best) == result.best_fitness))
+        continue;
+      expect(false, "a value that is not finite became the best");
+      break;
+    }
+    expect(found_finite_, "with values that are not finite in half of the box nothing was found in the other");
+    const auto never = [](const VectorX&) { return std::numeric_limits<double>::quiet_NaN(); };
+    const SearchResult none = minimize(algorithm_, never, box_, {.max_generations = generations}, 1);
+    expect(none.best_fitness == std::numeric_limits<double>::infinity() && none.best.size() == box_.dimension() &&
+               none.best.allFinite(),
+           "where no value is finite the best is not a point with the value infinity");
+  }
+
+  const A& algorithm_;
+  bool keeps_box_;
+  bool found_finite_ = false;
+  Box box_;
+  std::vector<std::string> violations_;
+};
+
+}  // namespace detail
+
+/// Runs an algorithm through the laws of `Metaheuristic`, on a bowl whose bottom lies outside the box:
+///
+/// - the same seed gives the same bits, another seed another search, also when two searches are stepped in turn;
+/// - a copied state goes on as the original; N steps equal a run of N through `minimize`;
+/// - the best value never becomes worse, and best is the best of what was evaluated;
+/// - nothing outside the box is evaluated, where the algorithm says so;
+/// - 1 and 2 threads give the same bits, and evaluations are counted as they are made;
+/// - a value that is not finite is never the best.
+/// @param algorithm its schedule should allow a few generations
+/// @param keeps_box whether nothing outside the box may be evaluated
+/// @return one sentence a violation; empty when all laws hold
+template <Metaheuristic A>
+std::vector<std::string> metaheuristic_violations(const A& algorithm, bool keeps_box) {
+  return detail::MetaheuristicCheck<A>(algorithm, keeps_box).run();
+}
+
+}  // namespace vernier::testing

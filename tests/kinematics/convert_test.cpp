@@ -1,0 +1,50 @@
+// The standard chain of a modified one.
+#include "vernier/kinematics/convert.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vernier/core/rng.hpp"
+
+namespace vernier {
+namespace {
+
+/// Largest difference of any pose entry between random modified chains (prismatic joints and beta included) and their
+/// standard forms.
+template <int N>
+double largest_difference() {
+  Rng rng(static_cast<std::uint64_t>(N));
+  double largest = 0;
+  for (int chain = 0; chain < 20; ++chain) {
+    std::array<DhRow, N> rows{};
+    for (DhRow& row : rows)
+      row = {rng.uniform(-0.5, 0.5), rng.uniform(-3, 3),
+             rng.uniform(-0.5, 0.5), rng.uniform(-3, 3),
+             rng.uniform(-1, 1),     rng.below(4) == 0 ? JointType::prismatic : JointType::revolute};
+    const auto modified = DhChain<N, ModifiedDh>::from_rows(rows);
+    const Framed<DhChain<N>> standard = to_standard(modified);
+    for (int k = 0; k < 10; ++k) {
+      JointVector<N> q;
+      for (auto& value : q) value = rng.uniform(-1, 1);
+      largest = std::max(largest, (standard.pose(q).matrix() - modified.pose(q).matrix()).cwiseAbs().maxCoeff());
+    }
+  }
+  return largest;
+}
+
+TEST(ToStandard, PosesAreEqual) {
+  EXPECT_LT(largest_difference<1>(), 1e-14);
+  EXPECT_LT(largest_difference<2>(), 1e-14);
+  EXPECT_LT(largest_difference<6>(), 1e-14);
+  EXPECT_LT(largest_difference<9>(), 1e-14);
+}
+
+TEST(ToStandard, TheLastRowIsFree) {
+  constexpr DhChain<2, ModifiedDh> chain{{{{.a = 0.1, .alpha = 0.2}, {.a = 0.3, .alpha = 0.4, .beta = 0.5}}}};
+  const auto standard = to_standard(chain);
+  EXPECT_EQ(standard.model().row(0), (DhRow{.a = 0.3, .alpha = 0.4, .beta = 0.5}));
+  EXPECT_EQ(standard.model().row(1), DhRow{});
+  EXPECT_EQ(standard.base().translation(), Vector3(0.1, 0, 0));
+}
+
+}  // namespace
+}  // namespace vernier

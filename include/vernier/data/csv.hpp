@@ -57,6 +57,7 @@ class CsvTable {
         throw DataError(message(file_, ", line ", number, ": binary data, not text"));
       if (header_.empty()) {
         header_ = cells(line);
+        header_line_ = number;
       } else {
         lines_.push_back({number, line});
       }
@@ -65,6 +66,7 @@ class CsvTable {
   }
 
   const std::string& file() const { return file_; }
+  std::size_t header_line() const { return header_line_; }
   std::size_t size() const { return lines_.size(); }
 
   /// The column `stem` + `_unit` for the first unit that is there; empty where none is.
@@ -79,7 +81,8 @@ class CsvTable {
             !header_[i].ends_with(unit))
           continue;
         if (found)
-          throw DataError(message(file_, ", line 1: columns ", found->name, " and ", header_[i], " both give ", stem));
+          throw DataError(message(file_, ", line ", header_line_, ": columns ", found->name, " and ", header_[i],
+                                  " both give ", stem));
         found = CsvColumn{std::string(header_[i]), i, factor};
       }
     return found;
@@ -151,6 +154,7 @@ class CsvTable {
   };
   std::string file_, content_;
   std::vector<std::string_view> header_;
+  std::size_t header_line_ = 0;  // counted from 1
   std::vector<Line> lines_;
 };
 
@@ -163,13 +167,15 @@ std::vector<CsvColumn> joint_columns(const CsvTable& table) {
     const auto length = table.find(stem, true);
     const auto angle = table.find(stem, false);
     if (length && angle)
-      throw DataError(
-          message(table.file(), ", line 1: columns ", length->name, " and ", angle->name, " both give ", stem));
+      throw DataError(message(table.file(), ", line ", table.header_line(), ": columns ", length->name, " and ",
+                              angle->name, " both give ", stem));
     columns.push_back(length ? *length : table.demand(stem, false));
   }
   const std::string surplus = message("q", N + 1);
-  if (const auto next = table.find(surplus, false))
-    throw DataError(message(table.file(), ", line 1: column ", next->name, ", but the robot has ", N, " joints"));
+  for (const bool length : {false, true})
+    if (const auto next = table.find(surplus, length))
+      throw DataError(message(table.file(), ", line ", table.header_line(), ": column ", next->name,
+                              ", but the robot has ", N, " joints"));
   return columns;
 }
 

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vernier/data/dataset.hpp>
+
+namespace {
+
+using vernier::Dataset;
+using vernier::Index;
+using vernier::JointRows;
+using vernier::PointRows;
+
+template <class F>
+std::string complaint(F&& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+Dataset<2> five_rows(bool oriented) {
+  JointRows<2> q(5, 2);
+  PointRows p(5, 3), r(oriented ? 5 : 0, 3);
+  for (Index i = 0; i < 5; ++i) {
+    const double k = static_cast<double>(i);
+    q.row(i) << k, -k;
+    p.row(i) << 10 * k, 10 * k + 1, 10 * k + 2;
+    if (oriented) r.row(i) << 0.1 * k, 0.2, -0.3;
+  }
+  return {q, p, r};
+}
+
+TEST(Dataset, EmptyByDefault) {
+  const Dataset<6> data;
+  EXPECT_EQ(data.size(), 0);
+  EXPECT_FALSE(data.has_orientations());
+}
+
+TEST(Dataset, GivesRowsAsColumns) {
+  const auto data = five_rows(true);
+  EXPECT_EQ(data.size(), 5);
+  EXPECT_EQ(data.joints(3), vernier::JointVector<2>(3, -3));
+  EXPECT_EQ(data.position(2), vernier::Vector3(20, 21, 22));
+}
+
+TEST(Dataset, PoseIsPositionAndOrientation) {
+  const auto data = five_rows(true);
+  const auto pose = data.pose(4);
+  EXPECT_EQ(pose.translation(), data.position(4));
+  EXPECT_LT((vernier::log_so3(pose.linear()) - vernier::Vector3(0.4, 0.2, -0.3)).norm(), 1e-14);
+  EXPECT_EQ(pose.matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+}
+
+TEST(Dataset, RowsInTheOrderAskedFor) {
+  for (const bool oriented : {false, true}) {
+    const auto data = five_rows(oriented);
+    const std::array<Index, 4> wanted{4, 0, 2, 2};
+    const auto some = data.rows(wanted);
+    ASSERT_EQ(some.size(), 4);
+    EXPECT_EQ(some.has_orientations(), oriented);
+    for (Index i = 0; i < 4; ++i) {
+      const Index from = wanted[static_cast<std::size_t>(i)];
+      EXPECT_EQ(some.joints(i), data.joints(from));
+      EXPECT_EQ(some.position(i), data.position(from));
+      if (oriented) {
+        EXPECT_EQ(some.orientations().row(i), data.orientations().row(from));
+      }
+    }
+    EXPECT_EQ(data.rows({}).size(), 0);
+    EXPECT_NE(complaint([&] { (void)data.rows(std::array<Index, 1>{5}); }).find("row 5 of 5"), std::string::npos);
+    EXPECT_NE(complaint([&] { (void)data.rows(std::array<Index, 1>{-1}); }).find("row -1 of 5"), std::string::npos);
+  }
+}
+
+TEST(Dataset, RefusesRowsThatDoNotMatch) {
+  const auto said = complaint([] { (void)Dataset<2>(JointRows<2>::Zero(4, 2), PointRows::Zero(5, 3)); });
+  EXPECT_NE(said.find("4 rows of joints, but 5 rows of positions"), std::string::npos) << said;
+  const auto turned =
+      complaint([] { (void)Dataset<2>(JointRows<2>::Zero(4, 2), PointRows::Zero(4, 3), PointRows::Zero(3, 3)); });
+  EXPECT_NE(turned.find("4 rows of joints, but 3 rows of orientations"), std::string::npos) << turned;
+}
+
+TEST(Dataset, RefusesWhatIsNotFiniteAndNamesTheRow) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, inf, -inf})
+    for (const int part : {0, 1, 2}) {
+      JointRows<2> q = JointRows<2>::Zero(4, 2);
+      PointRows p = PointRows::Zero(4, 3), r = PointRows::Zero(4, 3);
+      (part == 0 ? q(2, 1) : part == 1 ? p(2, 1) : r(2, 1)) = bad;
+      const auto said = complaint([&] { (void)Dataset<2>(q, p, r); });
+      EXPECT_NE(said.find("row 2"), std::string::npos) << said;
+    }
+}
+
+}  // namespace

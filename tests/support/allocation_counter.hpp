@@ -3,6 +3,7 @@
 // Counts what the calling thread allocates, whether through operator new, malloc or Eigen. Defines the allocation
 // functions of the whole program: include it in one source file of a test.
 
+#include <Eigen/Core>  // first: clang declares posix_memalign in its intrinsics, without noexcept
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>

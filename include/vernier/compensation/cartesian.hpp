@@ -17,25 +17,35 @@ class CartesianCorrected {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == 3);
 
  public:
+  /// Number of joints.
   static constexpr int dof = Model::dof;
 
+  /// Joins the parts.
   CartesianCorrected(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
       : model_(model), learned_(learned), gate_(gate) {}
 
+  /// The model it stands on.
   const Model& model() const { return model_; }
+  /// The fitted predictor.
   const Learned& learned() const { return learned_; }
+  /// The gate around the measured joint ranges.
   const JointRangeGate<dof>& joint_range_gate() const { return gate_; }
+  /// Share of the learned correction that is used at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
 
+  /// Tool position [m], base frame.
   Vector3 position(const JointVector<dof>& q) const noexcept {
     return model_.position(q) - gate_(q) * learned_.predict(q);
   }
+  /// base_T_tool.
   Isometry3 pose(const JointVector<dof>& q) const noexcept {
     Isometry3 pose = model_.pose(q);
     pose.translation() -= gate_(q) * learned_.predict(q);
     return pose;
   }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
     PoseAndJacobian<dof> out = model_.pose_and_jacobian(q);
     const double gate = gate_(q);
@@ -58,7 +68,9 @@ class CartesianCorrected {
 /// @cite Feng, Dong, Jin
 template <Regressor R>
 struct CartesianCompensation {
+  /// What learns.
   R regressor;
+  /// How commands are corrected with what was learned.
   CorrectionOptions correction{};
 
   /// @param model   what to improve: nominal, identified, or already compensated
@@ -80,8 +92,10 @@ struct CartesianCompensation {
   }
 };
 
+/// Deduction guide, for compilers that have none for aggregates.
 template <class R>
 CartesianCompensation(R) -> CartesianCompensation<R>;
+/// Deduction guide, for compilers that have none for aggregates.
 template <class R>
 CartesianCompensation(R, CorrectionOptions) -> CartesianCompensation<R>;
 

@@ -17,15 +17,20 @@ class Compensated {
   static_assert(Best::dof == Reference::dof);
 
  public:
+  /// Number of joints.
   static constexpr int dof = Best::dof;
 
+  /// Joins the parts; throws `std::invalid_argument` on an unusable option.
   Compensated(const Best& best, const Reference& reference, const CorrectionOptions& options = {})
       : best_(best), reference_(reference), options_(options) {
     options.template validate<dof>();
   }
 
+  /// The best model of the arm.
   const Best& best() const { return best_; }
+  /// The arm as it should be, in the same frames.
   const Reference& reference() const { return reference_; }
+  /// How commands are corrected.
   const CorrectionOptions& options() const { return options_; }
 
   /// The same with commands kept within joint limits.
@@ -35,9 +40,13 @@ class Compensated {
     return out;
   }
 
+  /// base_T_tool.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return best_.pose(q); }
+  /// Tool position [m], base frame.
   Vector3 position(const JointVector<dof>& q) const noexcept { return best_.position(q); }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return best_.jacobian(q); }
+  /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
     return best_.pose_and_jacobian(q);
   }

@@ -41,6 +41,7 @@ enum class CorrectionTarget {
 
 /// How commands are corrected.
 struct CorrectionOptions {
+  /// What a correction aims at.
   CorrectionTarget target = CorrectionTarget::automatic;
   int moving_joints = 0;             ///< only the first so many joints are corrected; 0: all (the paper moves 3)
   double position_tolerance = 1e-6;  ///< the paper's epsilon [m]

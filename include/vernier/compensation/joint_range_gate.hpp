@@ -12,8 +12,9 @@ namespace vernier {
 /// A factor in [0, 1], product over joints: 1 within [lower, upper], falling smoothly (cubic) to 0 at `margin` outside.
 template <int N>
 struct JointRangeGate {
-  JointVector<N> lower = JointVector<N>::Zero(), upper = JointVector<N>::Zero();  ///< measured ranges [rad, m]
-  JointVector<N> margin = JointVector<N>::Constant(1);                            ///< width of the fall, > 0
+  JointVector<N> lower = JointVector<N>::Zero();        ///< least measured joint values [rad, m]
+  JointVector<N> upper = JointVector<N>::Zero();        ///< greatest measured joint values [rad, m]
+  JointVector<N> margin = JointVector<N>::Constant(1);  ///< width of the fall, > 0
 
   /// The ranges of measured joints; the margin is a tenth of the range, at least 0.02.
   static JointRangeGate covering(const JointRows<N>& joints) {

@@ -16,21 +16,30 @@ class JointCorrected {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == Model::dof);
 
  public:
+  /// Number of joints.
   static constexpr int dof = Model::dof;
 
+  /// Joins the parts.
   JointCorrected(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
       : model_(model), learned_(learned), gate_(gate) {}
 
+  /// The model it stands on.
   const Model& model() const { return model_; }
+  /// The fitted predictor.
   const Learned& learned() const { return learned_; }
+  /// Share of the learned correction that is used at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
 
   /// The joints at which the model stands where the arm does.
   JointVector<dof> effective(const JointVector<dof>& q) const noexcept { return q + gate_(q) * learned_.predict(q); }
 
+  /// base_T_tool.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return model_.pose(effective(q)); }
+  /// Tool position [m], base frame.
   Vector3 position(const JointVector<dof>& q) const noexcept { return model_.position(effective(q)); }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
     PoseAndJacobian<dof> out = model_.pose_and_jacobian(effective(q));
     Eigen::Matrix<double, dof, dof> rate =
@@ -50,15 +59,19 @@ class JointCorrected {
 template <KinematicModel Model, Predictor Learned>
 class DirectJointCompensator {
  public:
+  /// Number of joints.
   static constexpr int dof = Model::dof;
 
+  /// Joins the parts.
   DirectJointCompensator(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
       : corrected_(model, learned, gate) {}
 
+  /// The fitted predictor.
   const Learned& learned() const { return corrected_.learned(); }
 
   /// The pose the arm takes when commanded q, to first order in the joint error.
   Isometry3 predict(const JointVector<dof>& q) const noexcept { return corrected_.pose(q); }
+  /// The command `q - f(q)`.
   [[nodiscard]] Correction<dof> correct(const JointVector<dof>& q) const noexcept {
     const double gate = corrected_.gate(q);
     const JointVector<dof> command = q - gate * corrected_.learned().predict(q);
@@ -105,7 +118,9 @@ JointErrorLabels<Solver::dof> joint_errors(const Solver& solver, const JointRows
 
 /// The paper's labels: `theta_R` solves `actual(theta_R) = nominal(theta_N)`, label `theta_N - theta_R` at `theta_N`.
 /// Needs the actual arm as a model, so a simulation. Near singularities inverse kinematics jumps and labels explode.
-/// @param joints n x N target joints theta_N
+/// @param nominal the arm as designed
+/// @param actual  the arm as it is
+/// @param joints  n x N target joints theta_N
 template <KinematicModel Nominal, KinematicModel Actual>
 JointErrorLabels<Nominal::dof> joint_error_labels(const Nominal& nominal, const Actual& actual,
                                                   const JointRows<Nominal::dof>& joints) {
@@ -128,7 +143,9 @@ JointErrorLabels<Model::dof> joint_error_labels(const Model& model, const Datase
 /// @cite Feng, Dong, Jin
 template <Regressor R>
 struct JointCompensation {
+  /// What learns.
   R regressor;
+  /// How commands are corrected with what was learned.
   CorrectionOptions correction{};
 
   /// From measured full poses: the result is a kinematic model, corrected like any other.
@@ -160,8 +177,10 @@ struct JointCompensation {
   }
 };
 
+/// Deduction guide, for compilers that have none for aggregates.
 template <class R>
 JointCompensation(R) -> JointCompensation<R>;
+/// Deduction guide, for compilers that have none for aggregates.
 template <class R>
 JointCompensation(R, CorrectionOptions) -> JointCompensation<R>;
 

@@ -10,7 +10,8 @@ namespace vernier {
 
 /// Bounds of a search, one interval per dimension.
 struct Box {
-  VectorX lower, upper;
+  VectorX lower;  ///< one a dimension
+  VectorX upper;  ///< one a dimension, above the lower one
 
   /// The cube [lower, upper]^dimension.
   /// @throws std::invalid_argument unless dimension >= 1 and lower < upper
@@ -20,7 +21,9 @@ struct Box {
     return {VectorX::Constant(dimension, lower), VectorX::Constant(dimension, upper)};
   }
 
+  /// Number of dimensions.
   Index dimension() const { return lower.size(); }
+  /// Whether x lies within, bounds included.
   bool contains(const Eigen::Ref<const VectorX>& x) const {
     return x.size() == dimension() && (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
   }

@@ -28,6 +28,7 @@ concept Executor = requires(E& executor, Index n, RangeFunction work) {
 
 /// Everything on the calling thread.
 struct SequentialExecutor {
+  /// See `Executor`.
   void for_ranges(Index n, RangeFunction work) const {
     if (n > 0) work(0, n);
   }
@@ -41,8 +42,10 @@ class ThreadExecutor {
     require(threads >= 1, "ThreadExecutor: threads is ", threads, ", must be at least 1");
   }
 
+  /// Number of threads, the calling one included.
   int threads() const { return threads_; }
 
+  /// See `Executor`.
   void for_ranges(Index n, RangeFunction work) const {
     const Index parts = std::min<Index>(threads_, n);
     if (parts <= 1) return SequentialExecutor{}.for_ranges(n, work);
@@ -74,12 +77,14 @@ class ExecutorRef {
  public:
   ExecutorRef() = default;
 
+  /// Refers to `executor`, which must outlive this.
   template <Executor E>
     requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>)
   ExecutorRef(E& executor)  // NOLINT(google-explicit-constructor)
       : object_(const_cast<void*>(static_cast<const void*>(&executor))),
         call_([](void* object, Index n, RangeFunction work) { static_cast<E*>(object)->for_ranges(n, work); }) {}
 
+  /// See `Executor`.
   void for_ranges(Index n, RangeFunction work) const {
     call_ != nullptr ? call_(object_, n, work) : SequentialExecutor{}.for_ranges(n, work);
   }

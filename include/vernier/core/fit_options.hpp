@@ -22,6 +22,7 @@ class ObserverRef {
  public:
   ObserverRef() = default;
 
+  /// Refers to `f`, which must outlive this.
   template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, ObserverRef> && std::is_invocable_v<F&, const Progress&>)
   ObserverRef(F&& f)  // NOLINT(google-explicit-constructor)

@@ -18,6 +18,7 @@ class FunctionRef<R(Args...)> {
  public:
   FunctionRef() = default;
 
+  /// Refers to `f`, which must outlive this.
   template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Args...>)
   FunctionRef(F&& f)  // NOLINT(google-explicit-constructor): a call argument converts silently
@@ -26,7 +27,9 @@ class FunctionRef<R(Args...)> {
           return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
         }) {}
 
+  /// Calls what it refers to.
   R operator()(Args... args) const { return call_(object_, std::forward<Args>(args)...); }
+  /// Whether it refers to anything.
   explicit operator bool() const { return call_ != nullptr; }
 
  private:

@@ -19,8 +19,10 @@ namespace vernier {
 /// @cite Blackman and Vigna 2021
 class Rng {
  public:
+  /// What one call yields.
   using result_type = std::uint64_t;
 
+  /// A stream determined by its seed.
   explicit constexpr Rng(std::uint64_t seed = 0) {
     for (auto& word : state_) {  // SplitMix64, as its authors recommend for seeding
       seed += 0x9e3779b97f4a7c15u;
@@ -31,7 +33,9 @@ class Rng {
     }
   }
 
+  /// Least value of a call.
   static constexpr result_type min() { return 0; }
+  /// Greatest value of a call.
   static constexpr result_type max() { return ~result_type{0}; }
 
   /// The next 64 bits.
@@ -82,6 +86,7 @@ class Rng {
     return order;
   }
 
+  /// Equal in every bit of state.
   bool operator==(const Rng&) const = default;
 
  private:

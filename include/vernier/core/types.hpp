@@ -11,15 +11,21 @@ namespace vernier {
 
 using Eigen::Index;
 
+/// A point or direction in space.
 using Vector3 = Eigen::Vector3d;
+/// A twist, linear part first, or six frame parameters.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// 3 x 3.
 using Matrix3 = Eigen::Matrix3d;
+/// Any size, column-major.
 using MatrixX = Eigen::MatrixXd;
+/// Any length.
 using VectorX = Eigen::VectorXd;
 
 /// Rigid motion; `base_T_tool` maps tool coordinates to base coordinates.
 template <class Scalar>
 using IsometryOf = Eigen::Transform<Scalar, 3, Eigen::Isometry>;
+/// Rigid motion in double precision.
 using Isometry3 = IsometryOf<double>;
 
 /// Joint values of one configuration: rad (revolute) or m (prismatic).

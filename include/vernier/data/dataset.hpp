@@ -34,16 +34,22 @@ class Dataset {
               "Dataset: row ", i, " has a value that is not finite");
   }
 
+  /// Number of samples.
   Index size() const { return joints_.rows(); }
+  /// Whether orientations were measured.
   bool has_orientations() const { return orientations_.rows() > 0; }
 
+  /// Joint values [rad, m].
   const JointRows<N>& joints() const { return joints_; }
+  /// Measured positions [m].
   const PointRows& positions() const { return positions_; }
   const PointRows& orientations() const {
     return orientations_;
   }  ///< rotation vectors [rad], 0 x 3 where there are none
 
+  /// Joint values [rad, m].
   JointVector<N> joints(Index i) const { return joints_.row(i).transpose(); }
+  /// Measured position of sample i [m].
   Vector3 position(Index i) const { return positions_.row(i).transpose(); }
   /// Measured orientation; only where `has_orientations()`.
   Matrix3 orientation(Index i) const { return exp_so3(orientations_.row(i).transpose()); }

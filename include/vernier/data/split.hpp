@@ -17,7 +17,8 @@ namespace vernier {
 /// Rows to learn from and rows to judge by; disjoint, together everything.
 template <int N>
 struct Split {
-  Dataset<N> train, test;
+  Dataset<N> train;  ///< rows to learn from
+  Dataset<N> test;   ///< rows to judge by
 };
 
 /// Options of `split`.

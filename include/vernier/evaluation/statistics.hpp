@@ -15,7 +15,13 @@ namespace vernier {
 
 /// Statistics of errors, in their unit.
 struct ErrorStatistics {
-  double mean = 0, rms = 0, max = 0, min = 0, median = 0, p95 = 0;
+  double mean = 0;    ///< arithmetic mean
+  double rms = 0;     ///< root mean square
+  double max = 0;     ///< greatest
+  double min = 0;     ///< least
+  double median = 0;  ///< middle
+  double p95 = 0;     ///< 95th percentile
+  /// Number of errors.
   Index n = 0;
 
   /// Of non-negative errors. Quantiles interpolate linearly between order statistics.
@@ -88,7 +94,10 @@ struct PositioningErrors {
 };
 
 /// Sends the actual arm to commands and compares with the reference at the target joints.
-/// @param commands n x N, @param targets n x N joints at which the reference stands where the arm should go
+/// @param actual    the arm that moves
+/// @param reference where it should go
+/// @param commands  n x N joints sent to the arm
+/// @param targets   n x N joints at which the reference stands where the arm should go
 template <KinematicModel Actual, KinematicModel Reference>
 PositioningErrors positioning_errors(const Actual& actual, const Reference& reference,
                                      const JointRows<Actual::dof>& commands, const JointRows<Actual::dof>& targets) {

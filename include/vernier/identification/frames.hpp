@@ -12,23 +12,6 @@
 
 namespace vernier {
 
-/// The rigid motion that best takes `from` to `to` in the least-squares sense, rows are points; a rotation, never a
-/// reflection.
-/// @cite Kabsch 1976; Umeyama 1991
-inline Isometry3 register_points(const PointRows& from, const PointRows& to) {
-  require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
-          " points");
-  const Eigen::RowVector3d from_mean = from.colwise().mean(), to_mean = to.colwise().mean();
-  const Matrix3 covariance = (to.rowwise() - to_mean).transpose() * (from.rowwise() - from_mean);
-  const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3 signs = Vector3::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  out.translation() = to_mean.transpose() - out.linear() * from_mean.transpose();
-  return out;
-}
-
 /// The rotation nearest to a matrix (in the Frobenius norm), e.g. the mean of a sum of rotations.
 inline Matrix3 nearest_rotation(const Matrix3& m) {
   const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -37,12 +20,30 @@ inline Matrix3 nearest_rotation(const Matrix3& m) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
+/// The rigid motion that best takes `from` to `to` in the least-squares sense, rows are points; never a reflection.
+/// @param from n >= 1 points
+/// @param to   where each of them should go
+/// @throws std::invalid_argument when the numbers of points differ
+/// @cite Kabsch 1976; Umeyama 1991
+inline Isometry3 register_points(const PointRows& from, const PointRows& to) {
+  require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
+          " points");
+  const Eigen::RowVector3d from_mean = from.colwise().mean(), to_mean = to.colwise().mean();
+  Isometry3 out = Isometry3::Identity();
+  out.linear() = nearest_rotation((to.rowwise() - to_mean).transpose() * (from.rowwise() - from_mean));
+  out.translation() = to_mean.transpose() - out.linear() * from_mean.transpose();
+  return out;
+}
+
 /// Base and tool frames that roughly explain the data, links nominal: the base by registering positions with the tool
 /// point known so far, the tool point by linear least squares, in turns; the tool's rotation as the mean of what the
 /// orientations ask for. A start for `identify`, which refines it.
-/// @param model the nominal arm, @param data n >= 1 samples
-/// @param tool  first guess of the tool frame
-/// @param fit_base,fit_tool which frames may move; the others stay as guessed (base: identity)
+/// @param model      the nominal arm
+/// @param data       n >= 1 samples
+/// @param base_guess the base where it is known
+/// @param tool_guess first guess of the tool, or the tool where it is known
+/// @param fit_base   whether the base may move
+/// @param fit_tool   whether the tool may move
 template <KinematicModel Model>
 Framed<Model> starting_frames(const Model& model, const Dataset<Model::dof>& data, const Isometry3& base_guess,
                               const Isometry3& tool_guess, bool fit_base, bool fit_tool) {

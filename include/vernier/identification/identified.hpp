@@ -29,11 +29,13 @@ enum class ParameterState {
 
 /// One parameter of the arm, its frames included.
 struct ParameterEstimate {
+  /// Its name.
   std::string name;
   ParameterKind kind;  ///< length [m] or angle [rad]
   double nominal;      ///< value at the start
   double identified;   ///< value now
   double std;          ///< standard deviation; 0 for a parameter that did not move
+  /// What became of it.
   ParameterState state;
   std::string remark;  ///< why it was not identified, in words; else empty
 };
@@ -42,6 +44,7 @@ struct ParameterEstimate {
 template <KinematicModel Model>
 struct Identified {
   Calibrated<Model> model;  ///< usable as any kinematic model
+  /// How it ended.
   IdentifyStatus status;
   std::string message;                        ///< why it ended, in words
   double rms_before = 0;                      ///< position error with frames registered and links nominal [m]
@@ -54,6 +57,7 @@ struct Identified {
   double condition = 0;  ///< of the Jacobian in steps of expected sizes; above 100 poses are poorly chosen
   int iterations = 0;    ///< of the solver, all rounds
 
+  /// Whether the model may be trusted.
   bool converged() const { return status == IdentifyStatus::converged; }
 
   /// Names of the parameters in a state.

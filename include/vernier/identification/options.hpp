@@ -34,6 +34,7 @@ struct IdentifyOptions {
   bool use_orientations = true;       ///< measured orientations count too, where there are any
   double position_sigma = 0.05e-3;    ///< of the sensor, per component [m]; only the ratio of the sigmas matters
   double orientation_sigma = 0.2e-3;  ///< of the sensor, per component [rad]
+  /// How residuals are weighed.
   Loss loss = Loss::squared;
   bool priors = true;                     ///< weakly determined chain parameters get a prior of the sizes below
   double length_size = 1e-3;              ///< expected size of a length error [m]
@@ -43,7 +44,9 @@ struct IdentifyOptions {
   std::optional<Isometry3> tool_start{};  ///< likewise for the tool
   int max_iterations = 200;               ///< of the solver
 
+  /// Whether the base is to be identified.
   bool base_free() const { return frames == Frames::base || frames == Frames::base_and_tool; }
+  /// Whether the tool is to be identified.
   bool tool_free() const { return frames == Frames::tool || frames == Frames::base_and_tool; }
 
   /// @throws std::invalid_argument naming the value

@@ -21,8 +21,10 @@ struct DhRow {
   double d = 0;      ///< link offset [m]
   double theta = 0;  ///< joint angle at zero [rad]
   double beta = 0;   ///< Hayati's twist about y [rad]
+  /// What its joint value adds to.
   JointType joint = JointType::revolute;
 
+  /// Equal in every value.
   bool operator==(const DhRow&) const = default;
 };
 
@@ -32,17 +34,20 @@ enum class DhParameter { a, alpha, d, theta, beta };
 /// N rows; initialising it with any other number does not compile.
 template <int N>
 struct DhTable {
+  /// Exactly N rows.
   template <int M>
     requires(M == N)
   constexpr DhTable(const DhRow (&table)[M]) {  // NOLINT(google-explicit-constructor): so that `{{ {..}, {..} }}` reads
     for (int i = 0; i < N; ++i) rows[static_cast<std::size_t>(i)] = table[i];
   }
 
+  /// All rows.
   std::array<DhRow, N> rows{};
 };
 
 /// `T = Rz(theta) Tz(d) Tx(a) Rx(alpha) Ry(beta)`: the classical convention.
 struct StandardDh {
+  /// The elementary motions of a row, from base to tool.
   static constexpr std::array<DhParameter, 5> order{DhParameter::theta, DhParameter::d, DhParameter::a,
                                                     DhParameter::alpha, DhParameter::beta};
 };
@@ -50,6 +55,7 @@ struct StandardDh {
 /// `T = Rx(alpha) Tx(a) Ry(beta) Rz(theta) Tz(d)`: Craig's convention.
 /// @cite Craig 2005
 struct ModifiedDh {
+  /// The elementary motions of a row, from base to tool.
   static constexpr std::array<DhParameter, 5> order{DhParameter::alpha, DhParameter::a, DhParameter::beta,
                                                     DhParameter::theta, DhParameter::d};
 };

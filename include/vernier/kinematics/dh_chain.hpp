@@ -70,11 +70,16 @@ class DhChain {
   static_assert(N >= 1);
 
  public:
+  /// Number of joints.
   static constexpr int dof = N;
+  /// Number of parameters.
   static constexpr int num_parameters = 5 * N;
+  /// All parameters [m, rad].
   using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
+  /// A chain of exactly N rows.
   constexpr DhChain(const DhTable<N>& table) : rows_(table.rows) { prepare(); }  // NOLINT(google-explicit-constructor)
+  /// A chain of exactly N rows.
   template <int M>
     requires(M == N)
   constexpr DhChain(const DhRow (&table)[M]) : DhChain(DhTable<N>(table)) {}  // NOLINT(google-explicit-constructor)
@@ -89,13 +94,19 @@ class DhChain {
 
   /// Row i, counted from 0.
   constexpr const DhRow& row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
+  /// All rows.
   constexpr const std::array<DhRow, N>& rows() const { return rows_; }
+  /// Equal in every row.
   bool operator==(const DhChain& other) const { return rows_ == other.rows_; }
 
+  /// base_T_tool.
   Isometry3 pose(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).isometry(); }
+  /// Tool position [m], base frame.
   Vector3 position(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).p; }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
+  /// Both in one pass.
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     std::array<detail::ElementaryMotion, N> joints;
     const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
@@ -147,6 +158,7 @@ class DhChain {
     return frame.isometry();
   }
 
+  /// Their values [m, rad].
   Parameters parameters() const {
     Parameters p;
     for (int i = 0; i < N; ++i)
@@ -154,6 +166,7 @@ class DhChain {
     return p;
   }
 
+  /// The same arm with other values.
   DhChain with_parameters(const Parameters& p) const {
     DhChain other = *this;
     for (int i = 0; i < N; ++i) {
@@ -164,6 +177,7 @@ class DhChain {
     return other;
   }
 
+  /// Their names, in the order of `parameters`.
   static std::vector<std::string> parameter_names() {
     std::vector<std::string> names;
     for (int i = 1; i <= N; ++i)
@@ -171,6 +185,7 @@ class DhChain {
     return names;
   }
 
+  /// What each of them measures.
   static std::vector<ParameterKind> parameter_kinds() {
     std::vector<ParameterKind> kinds;
     for (int i = 0; i < N; ++i)

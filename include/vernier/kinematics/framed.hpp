@@ -15,12 +15,16 @@ namespace vernier {
 class FrameParameters {
  public:
   FrameParameters() : FrameParameters(Isometry3::Identity()) {}
+  /// From a matrix or from its six values.
   FrameParameters(const Isometry3& frame) : frame_(frame) {  // NOLINT(google-explicit-constructor)
     values_ << frame.translation(), log_so3(frame.linear());
   }
+  /// From a matrix or from its six values.
   explicit FrameParameters(const Vector6& values) : values_(values), frame_(isometry<double>(values)) {}
 
+  /// x, y, z [m], rx, ry, rz [rad].
   const Vector6& values() const { return values_; }
+  /// As a matrix.
   const Isometry3& isometry() const { return frame_; }
 
   /// The frame of six values, in any scalar.
@@ -41,13 +45,18 @@ class FrameParameters {
 template <KinematicModel Model>
 class Framed {
  public:
+  /// Number of joints.
   static constexpr int dof = Model::dof;
 
+  /// A model between a base and a tool frame; both default to identity.
   explicit Framed(const Model& model, const FrameParameters& base = {}, const FrameParameters& tool = {})
       : model_(model), base_(base), tool_(tool) {}
 
+  /// The model it stands on.
   const Model& model() const { return model_; }
+  /// Base frame, base_T_model.
   const Isometry3& base() const { return base_.isometry(); }
+  /// Tool frame, flange_T_tool.
   const Isometry3& tool() const { return tool_.isometry(); }
 
   /// The same frames around another model.
@@ -56,12 +65,16 @@ class Framed {
     return Framed<Other>(other, base_, tool_);
   }
 
+  /// base_T_tool.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return base() * model_.pose(q) * tool(); }
+  /// Tool position [m], base frame.
   Vector3 position(const JointVector<dof>& q) const noexcept {
     return base() * (model_.pose(q) * tool().translation());
   }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
+  /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
     const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
     return {base() * inner.pose * tool(), at_tool(inner.jacobian, inner.pose)};
@@ -91,9 +104,12 @@ class Framed {
   }
 
  public:
+  /// Number of parameters.
   static constexpr int num_parameters = 12 + model_parameters();
+  /// All parameters [m, rad].
   using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
+  /// Their values [m, rad].
   Parameters parameters() const requires ParametricModel<Model> {
     Parameters p;
     p << base_.values(), model_.parameters(), tool_.values();
@@ -109,6 +125,7 @@ class Framed {
                   frame(base_, p.template head<6>()), frame(tool_, p.template tail<6>()));
   }
 
+  /// Their names, in the order of `parameters`.
   static std::vector<std::string> parameter_names() requires ParametricModel<Model> {
     std::vector<std::string> names;
     for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(std::string("base_") + axis);
@@ -117,6 +134,7 @@ class Framed {
     return names;
   }
 
+  /// What each of them measures.
   static std::vector<ParameterKind> parameter_kinds() requires ParametricModel<Model> {
     std::vector<ParameterKind> frame(6, ParameterKind::length), kinds;
     std::fill(frame.begin() + 3, frame.end(), ParameterKind::angle);
@@ -126,6 +144,7 @@ class Framed {
     return kinds;
   }
 
+  /// Derivative of the pose with respect to the parameters, 6 x P.
   ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept requires
       ParametricModel<Model> {
     const Isometry3 flange = model_.pose(q);

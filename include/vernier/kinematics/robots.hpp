@@ -15,8 +15,11 @@ namespace vernier {
 /// A nominal arm: its chain, its joint limits and its name in the catalogue.
 template <int N, class Convention = StandardDh>
 struct Robot {
+  /// The nominal chain.
   DhChain<N, Convention> chain;
+  /// Joint limits.
   JointLimits<N> limits;
+  /// Name in the catalogue.
   std::string_view name;
 };
 

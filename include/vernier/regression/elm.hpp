@@ -19,7 +19,8 @@ class ElmTrainingError {
         targets_(std::move(targets)),
         relative_lambda_(relative_lambda) {}
 
-  /// @param population dimension x particles, @param fitness one value a particle
+  /// @param population dimension x particles
+  /// @param fitness    one value a particle
   void operator()(const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) const {
     MatrixX h;
     for (Index k = 0; k < population.cols(); ++k) {
@@ -40,14 +41,19 @@ class ElmTrainingError {
 /// @cite Huang 2006; Feng, Dong, Jin (as a robot's error model)
 struct Elm {
   int hidden_nodes = 65;  ///< at least 1
+  /// Function of the hidden nodes.
   Activation activation = Activation::sigmoid;
+  /// What the layer sees of each input.
   InputMap input_map = InputMap::raw;
+  /// Of raw inputs, fitted on the samples.
   Scaling input_scaling = Scaling::min_max;
+  /// Of the targets, fitted on the samples.
   Scaling target_scaling = Scaling::min_max;
   double weight_limit = 1;        ///< hidden weights and biases lie in [-limit, limit]
   double rcond = 1e-12;           ///< singular values of H below this times the largest count as zero
   double fitness_lambda = 1e-10;  ///< ridge of the fitness alone, relative to tr(H'H) / nodes; the fit has none
 
+  /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }
 
   /// Length of the vector of hidden weights that a search moves.

@@ -31,16 +31,21 @@ enum class InputMap {
 /// @cite Huang 2006
 struct HiddenLayer {
   int nodes = 65;  ///< number of hidden nodes, at least 1
+  /// Function of the hidden nodes.
   Activation activation = Activation::sigmoid;
+  /// What the layer sees of each input.
   InputMap input_map = InputMap::raw;
   Scaling input_scaling = Scaling::min_max;  ///< of raw inputs; sines and cosines stay as they are
   double weight_limit = 1;                   ///< weights and biases lie in [-limit, limit]
 
+  /// Number of features of so many inputs.
   int features(int inputs) const { return input_map == InputMap::raw ? inputs : 2 * inputs; }
   /// Weights and bias of every node, node by node.
   Index dimension(int inputs) const { return static_cast<Index>(nodes) * (features(inputs) + 1); }
+  /// Where weights and biases lie.
   Box box(int inputs) const { return Box::cube(dimension(inputs), -weight_limit, weight_limit); }
 
+  /// Throws `std::invalid_argument` naming an unusable value.
   void validate(const char* caller) const {
     require(nodes >= 1, caller, ": hidden_nodes is ", nodes, ", must be at least 1");
     require(weight_limit > 0 && weight_limit < 1e6, caller, ": weight_limit is ", weight_limit,
@@ -63,6 +68,7 @@ struct HiddenLayer {
     return out;
   }
 
+  /// Scaling of the mapped features.
   ColumnScaling scaling(const Eigen::Ref<const MatrixX>& mapped) const {
     return ColumnScaling::fit(mapped, input_map == InputMap::raw ? input_scaling : Scaling::none);
   }
@@ -112,9 +118,13 @@ struct HiddenLayer {
 template <int Inputs, int Outputs>
 class ElmPredictor {
  public:
+  /// Number of inputs.
   static constexpr int inputs = Inputs;
+  /// Number of outputs.
   static constexpr int outputs = Outputs;
+  /// One sample.
   using Input = Eigen::Matrix<double, Inputs, 1>;
+  /// One prediction.
   using Output = Eigen::Matrix<double, Outputs, 1>;
 
   /// @param layer   how the hidden layer is built
@@ -186,10 +196,13 @@ class ElmPredictor {
     return out;
   }
 
+  /// The hidden layer.
   const HiddenLayer& layer() const { return layer_; }
+  /// Scaling of the mapped features.
   const ColumnScaling& scaling() const { return scaling_; }
   VectorX theta() const { return weights_.reshaped(); }  ///< weights and biases, node by node
   Eigen::Matrix<double, Eigen::Dynamic, Outputs> beta() const { return beta_.transpose(); }  ///< nodes x outputs
+  /// Added to every prediction.
   const Output& offset() const { return offset_; }
 
  private:

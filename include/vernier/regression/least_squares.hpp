@@ -109,6 +109,7 @@ class RidgePath {
     if (rank() == 0) svd_.s.setZero();
   }
 
+  /// Numerical rank of the centred hidden layer.
   Index rank() const {
     const double cut =
         svd_.s.size() > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;

@@ -37,11 +37,14 @@ class RidgeElmLeaveOneOutError {
 /// @cite Huang 2012; Allen 1974
 struct RidgeElm {
   int hidden_nodes = 65;  ///< at least 1; may exceed the number of samples
+  /// Function of the hidden nodes.
   Activation activation = Activation::sigmoid;
+  /// What the layer sees of each input.
   InputMap input_map = InputMap::sines_and_cosines;
   Scaling input_scaling = Scaling::min_max;  ///< of raw inputs
   double weight_limit = 1;                   ///< hidden weights and biases lie in [-limit, limit]
 
+  /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }
 
   /// Length of the vector of hidden weights that a search moves.

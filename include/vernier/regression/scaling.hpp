@@ -19,8 +19,10 @@ enum class Scaling {
 
 /// `scaled = (x - offset) * factor`, column by column. A constant column is shifted to zero and not stretched.
 struct ColumnScaling {
-  VectorX offset, factor;
+  VectorX offset;  ///< subtracted first
+  VectorX factor;  ///< multiplies what is left
 
+  /// Offsets and factors of columns of samples.
   static ColumnScaling fit(const Eigen::Ref<const MatrixX>& columns, Scaling kind) {
     const Index n = columns.rows(), d = columns.cols();
     ColumnScaling s{VectorX::Zero(d), VectorX::Ones(d)};
@@ -39,6 +41,7 @@ struct ColumnScaling {
     return s;
   }
 
+  /// Scaled columns.
   MatrixX apply(const Eigen::Ref<const MatrixX>& columns) const {
     return (columns.rowwise() - offset.transpose()) * factor.asDiagonal();
   }

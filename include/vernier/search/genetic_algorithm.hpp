@@ -33,15 +33,20 @@ struct GeneticAlgorithm {
   int tournament = 2;                  ///< 1 selects at random
   int elites = 1;                      ///< below `individuals`
 
+  /// Binary codes, one variable a number.
   using Codes = Eigen::Matrix<std::uint16_t, Eigen::Dynamic, Eigen::Dynamic>;
 
   /// A population between two generations.
   struct State {
     Codes codes;      ///< dimension x individuals
     VectorX fitness;  ///< one value an individual
+    /// Best point of all.
     VectorX best;
+    /// Its value.
     double best_fitness = 0;
+    /// Generations stepped.
     Index generation = 0;
+    /// Source of all randomness.
     Rng rng;
   };
 
@@ -60,6 +65,7 @@ struct GeneticAlgorithm {
     return s;
   }
 
+  /// One generation.
   void step(State& s, const Box& box, Evaluate evaluate) const {
     const Index n = s.codes.cols(), children = n - elites;
     Codes next(s.codes.rows(), children);
@@ -98,6 +104,7 @@ struct GeneticAlgorithm {
     ++s.generation;
   }
 
+  /// Whether all generations of the schedule were stepped.
   bool done(const State& s) const { return s.generation >= generations; }
 
   /// Values of codes: 0 is the lower bound, all ones the upper.

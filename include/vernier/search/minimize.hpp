@@ -34,6 +34,7 @@ struct SearchResult {
   double best_fitness;  ///< its value; infinity if none was finite
   Index evaluations;    ///< objective values computed
   Index generations;    ///< steps after the first population
+  /// How it ended.
   SearchStatus status;
 };
 

@@ -27,6 +27,7 @@ struct Pso {
   double cognitive = 2;        ///< c1, pull towards a particle's own best
   double social = 2;           ///< c2, pull towards the swarm's best
   double velocity_limit = 1;   ///< relative to half the width of the box: 1 is [-1, 1] for weights in [-1, 1]
+  /// What positions may do.
   PositionRule positions = PositionRule::unbounded;
 
   /// A swarm between two iterations.
@@ -37,8 +38,11 @@ struct Pso {
     MatrixX best_positions;  ///< best of each particle
     VectorX best_values;     ///< their fitness
     VectorX best;            ///< best of all
+    /// Its value.
     double best_fitness = 0;
+    /// Generations stepped.
     Index generation = 0;
+    /// Source of all randomness.
     Rng rng;
   };
 
@@ -64,6 +68,7 @@ struct Pso {
     return s;
   }
 
+  /// One generation.
   void step(State& s, const Box& box, Evaluate evaluate) const {
     const double w = inertia(s.generation + 1);
     const VectorX limit = velocity_limit * (box.upper - box.lower) / 2;
@@ -93,6 +98,7 @@ struct Pso {
     ++s.generation;
   }
 
+  /// Whether all generations of the schedule were stepped.
   bool done(const State& s) const { return s.generation >= iterations; }
 
   /// w(k), k = 1 .. iterations.

@@ -28,7 +28,9 @@ concept TunableRegressor = std::copyable<R> &&
 /// @cite Feng, Dong, Jin
 template <TunableRegressor R, Metaheuristic A>
 struct Tuned {
+  /// What is fitted.
   R regressor;
+  /// What searches.
   A algorithm;
   Stop stop{};  ///< beside the algorithm's own schedule
 
@@ -43,8 +45,10 @@ struct Tuned {
   }
 };
 
+/// Deduction guide, for compilers that have none for aggregates.
 template <class R, class A>
 Tuned(R, A) -> Tuned<R, A>;
+/// Deduction guide, for compilers that have none for aggregates.
 template <class R, class A>
 Tuned(R, A, Stop) -> Tuned<R, A>;
 

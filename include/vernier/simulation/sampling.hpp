@@ -14,6 +14,9 @@
 namespace vernier {
 
 /// n joint combinations, uniform within limits.
+/// @param limits finite, lower below upper
+/// @param n      how many
+/// @param seed   same seed, same combinations
 /// @param accept which combinations to keep, e.g. those clear of a singularity; the others are drawn again
 /// @throws std::invalid_argument for unbounded limits, or where fewer than one in a thousand is accepted
 template <int N, class Accept>
@@ -41,6 +44,7 @@ JointRows<N> sample_joints(const JointLimits<N>& limits, Index n, std::uint64_t 
 /// Joint ranges and a minimum distance of the wrist centre (the origin of the last-but-one frame) from the first axis.
 template <int N>
 struct OperatingRegion {
+  /// Joint ranges.
   JointLimits<N> limits;
   double wrist_clearance = 0;  ///< [m]
 

@@ -1,0 +1,133 @@
+// Error statistics against cases worked by hand, and the errors they are made of.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vernier/compensation/compensated.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
+
+namespace {
+
+using namespace vernier;
+using namespace vernier::literals;
+
+TEST(ErrorStatistics, WorkedByHand) {
+  VectorX errors(5);
+  errors << 3, 1, 10, 2, 4;  // sorted: 1 2 3 4 10
+  const auto e = ErrorStatistics::of(errors);
+  EXPECT_EQ(e.n, 5);
+  EXPECT_DOUBLE_EQ(e.mean, 4);
+  EXPECT_DOUBLE_EQ(e.rms, std::sqrt(26.0));  // (9 + 1 + 100 + 4 + 16) / 5
+  EXPECT_DOUBLE_EQ(e.max, 10);
+  EXPECT_DOUBLE_EQ(e.min, 1);
+  EXPECT_DOUBLE_EQ(e.median, 3);
+  EXPECT_DOUBLE_EQ(e.p95, 4 + 0.8 * 6);  // at 0.95 * 4 = 3.8
+}
+
+TEST(ErrorStatistics, QuantilesInterpolate) {
+  VectorX errors(4);
+  errors << 8, 2, 4, 6;
+  const auto e = ErrorStatistics::of(errors);
+  EXPECT_DOUBLE_EQ(e.median, 5);
+  EXPECT_DOUBLE_EQ(e.p95, 6 + 0.85 * 2);
+  // 0 .. 100 has its quantiles at their own names
+  EXPECT_NEAR(ErrorStatistics::of(VectorX::LinSpaced(101, 100, 0)).p95, 95, 1e-12);
+}
+
+TEST(ErrorStatistics, OneErrorIsAllOfThem) {
+  const auto e = ErrorStatistics::of(VectorX::Constant(1, 0.25));
+  for (const double value : {e.mean, e.rms, e.max, e.min, e.median, e.p95}) EXPECT_EQ(value, 0.25);
+  EXPECT_EQ(e.n, 1);
+}
+
+TEST(ErrorStatistics, NoErrorsThrow) {
+  EXPECT_THROW((void)ErrorStatistics::of(VectorX(0)), std::invalid_argument);
+  EXPECT_THROW((void)prediction_error(robots::ur5().chain, Dataset<6>{}), std::invalid_argument);
+}
+
+constexpr DhChain<2> planar{{{{.a = 300_mm}, {.a = 200_mm}}}};
+
+/// Where the planar arm is at (0, 0) and at (90, 0) deg, seen with known errors.
+Dataset<2> two_poses() {
+  JointRows<2> q(2, 2);
+  q << 0, 0, 90_deg, 0;
+  PointRows p(2, 3), r(2, 3);
+  p << 0.503, 0, 0.004,  // off by (3, 0, 4) mm
+      0, 0.500, -0.001;  // off by (0, 0, -1) mm
+  r << 0.002, 0, 0,      // turned by 2 mrad about x
+      0, 0, 90_deg - 0.005;
+  return {q, p, r};
+}
+
+TEST(PredictionError, OfAModel) {
+  const auto data = two_poses();
+  const VectorX errors = position_errors(planar, data);
+  EXPECT_NEAR(errors(0), 0.005, 1e-15);
+  EXPECT_NEAR(errors(1), 0.001, 1e-15);
+  const auto e = prediction_error(planar, data);
+  EXPECT_NEAR(e.mean, 0.003, 1e-15);
+  EXPECT_EQ(e.n, 2);
+}
+
+/// Not a model: says where the arm goes and which command to send, nothing else.
+struct Shifted {
+  static constexpr int dof = 2;
+  Isometry3 predict(const JointVector<2>& q) const noexcept {
+    Isometry3 pose = planar.pose(q);
+    pose.translation().z() += 0.004;
+    return pose;
+  }
+  Correction<2> correct(const JointVector<2>& q) const noexcept { return {2 * q, IkStatus::converged, 0, 1}; }
+};
+static_assert(Compensator<Shifted> && !KinematicModel<Shifted> && PosePredictor<Shifted>);
+
+TEST(PredictionError, OfACompensator) {
+  const VectorX errors = position_errors(Shifted{}, two_poses());
+  EXPECT_NEAR(errors(0), 0.003, 1e-15);
+  EXPECT_NEAR(errors(1), 0.005, 1e-15);
+}
+
+TEST(RotationErrors, AreAngles) {
+  const VectorX errors = rotation_errors(planar, two_poses());
+  EXPECT_NEAR(errors(0), 0.002, 1e-15);
+  EXPECT_NEAR(errors(1), 0.005, 1e-15);
+  EXPECT_NEAR(rotation_errors(Shifted{}, two_poses())(0), 0.002, 1e-15);
+}
+
+TEST(RotationErrors, NeedOrientations) {
+  const Dataset<2> positions_only(two_poses().joints(), two_poses().positions());
+  EXPECT_THROW((void)rotation_errors(planar, positions_only), std::invalid_argument);
+}
+
+TEST(PositioningErrors, CommandTheActualArm) {
+  auto p = planar.parameters();
+  p(0) += 0.003;  // the first link is 3 mm longer
+  p(8) += 0.010;  // the second zero is 10 mrad off
+  const auto actual = planar.with_parameters(p);
+  JointRows<2> targets(2, 2), commands(2, 2);
+  targets << 0.3, 0.7, 0.3, 0.7;
+  commands << 0.3, 0.7,  // as the nominal arm would be commanded
+      0.3, 0.69;         // the zero corrected
+  const auto errors = positioning_errors(actual, planar, commands, targets);
+  EXPECT_NEAR(errors.rotation(0), 0.010, 1e-14);
+  EXPECT_NEAR(errors.rotation(1), 0, 1e-14);
+  EXPECT_NEAR(errors.position(1), 0.003, 1e-14);
+  // 3 mm along the first link, and the second link's swing
+  EXPECT_NEAR(errors.position(0),
+              std::hypot(0.003 * std::cos(0.3) + 0.2 * (std::cos(1.01) - std::cos(1.0)),
+                         0.003 * std::sin(0.3) + 0.2 * (std::sin(1.01) - std::sin(1.0))),
+              1e-14);
+  EXPECT_THROW((void)positioning_errors(actual, planar, JointRows<2>(1, 2), targets), std::invalid_argument);
+}
+
+TEST(CorrectedCommands, RowByRow) {
+  JointRows<2> targets(2, 2);
+  targets << 0.1, 0.2, 0.3, 0.4;
+  EXPECT_EQ(corrected_commands(Shifted{}, targets), 2 * targets);
+}
+
+}  // namespace

@@ -1,0 +1,127 @@
+// Joint combinations: within their limits, evenly spread, clear of what was to be avoided.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/simulation/sampling.hpp>
+
+namespace {
+
+using namespace vernier;
+
+TEST(SampleJoints, UniformWithinLimits) {
+  JointLimits<3> limits;
+  limits.lower << -1, 0, 5;
+  limits.upper << 2, 0, 5.5;  // the second joint is held
+  const Index n = 3000;
+  const auto q = sample_joints(limits, n, 1);
+  ASSERT_EQ(q.rows(), n);
+  for (Index i = 0; i < n; ++i) ASSERT_TRUE(limits.contains(q.row(i).transpose()));
+  EXPECT_EQ(q.col(1), Eigen::VectorXd::Zero(n));
+  for (const int j : {0, 2}) {
+    const double width = limits.upper(j) - limits.lower(j), middle = (limits.upper(j) + limits.lower(j)) / 2;
+    // mean and variance of a uniform distribution, to five deviations of the estimate
+    EXPECT_NEAR(q.col(j).mean(), middle, 5 * width / std::sqrt(12.0 * n));
+    EXPECT_NEAR((q.col(j).array() - middle).square().mean(), width * width / 12,
+                5 * width * width / std::sqrt(180.0 * n));
+    EXPECT_LT(q.col(j).minCoeff(), limits.lower(j) + width / 100);
+    EXPECT_GT(q.col(j).maxCoeff(), limits.upper(j) - width / 100);
+  }
+}
+
+TEST(SampleJoints, SeedsDecideAlone) {
+  const auto limits = robots::abb_irb120().limits;
+  EXPECT_TRUE(sample_joints(limits, 20, 5) == sample_joints(limits, 20, 5));
+  EXPECT_FALSE(sample_joints(limits, 20, 5) == sample_joints(limits, 20, 6));
+  EXPECT_EQ(sample_joints(limits, 0, 5).rows(), 0);
+}
+
+TEST(SampleJoints, KeepsWhatIsAcceptedOnly) {
+  JointLimits<2> limits;
+  limits.lower << -1, -1;
+  limits.upper << 1, 1;
+  const auto q = sample_joints(limits, 500, 2, [](const JointVector<2>& x) { return x.norm() < 0.5; });
+  EXPECT_EQ(q.rows(), 500);
+  EXPECT_LT(q.rowwise().norm().maxCoeff(), 0.5);
+}
+
+template <class F>
+void expect_complaint(F&& f, const char* part) {
+  try {
+    f();
+    FAIL() << "no complaint with '" << part << "'";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+  }
+}
+
+TEST(SampleJoints, ImpossibleWishesThrow) {
+  JointLimits<2> limits;
+  limits.lower << -1, -1;
+  limits.upper << 1, 1;
+  expect_complaint([&] { (void)sample_joints(limits, 10, 1, [](const JointVector<2>&) { return false; }); },
+                   "fewer than one combination in a thousand");
+  expect_complaint([&] { (void)sample_joints(limits, -1, 1); }, "-1 combinations");
+  expect_complaint([&] { (void)sample_joints(JointLimits<2>{}, 10, 1); }, "finite");
+  JointLimits<2> upside_down = limits;
+  upside_down.lower(1) = 1.5;
+  expect_complaint([&] { (void)sample_joints(upside_down, 10, 1); }, "lower below upper");
+  JointLimits<2> half_open = limits;
+  half_open.upper(0) = std::numeric_limits<double>::infinity();
+  expect_complaint([&] { (void)sample_joints(half_open, 10, 1); }, "finite");
+}
+
+/// Origin of frame 5 by another way than the region's: the chain without its last link and joint.
+Vector3 wrist_centre(const DhChain<6>& chain, const JointVector<6>& q) {
+  auto p = chain.parameters();
+  p.tail<5>().setZero();
+  JointVector<6> held = q;
+  held(5) = 0;
+  return chain.with_parameters(p).position(held);
+}
+
+TEST(OperatingRegion, KeepsTheWristClearOfTheFirstAxis) {
+  const auto robot = robots::abb_irb120();
+  const auto region = abb_irb120_operating_region();
+  const auto q = region.sample(robot.chain, 2000, 3);
+  double nearest = 1;
+  for (Index i = 0; i < q.rows(); ++i) {
+    const JointVector<6> joints = q.row(i).transpose();
+    ASSERT_TRUE(region.limits.contains(joints));
+    ASSERT_TRUE(robot.limits.contains(joints));
+    nearest = std::min(nearest, wrist_centre(robot.chain, joints).head<2>().norm());
+  }
+  EXPECT_GE(nearest, 0.12 - 1e-12);
+  EXPECT_LT(nearest, 0.15);  // the clearance is what limits it
+  // without the clearance some combinations come nearer
+  OperatingRegion<6> free = region;
+  free.wrist_clearance = 0;
+  const auto anywhere = free.sample(robot.chain, 2000, 3);
+  for (Index i = 0; i < anywhere.rows(); ++i)
+    nearest = std::min(nearest, wrist_centre(robot.chain, anywhere.row(i).transpose()).head<2>().norm());
+  EXPECT_LT(nearest, 0.1);
+}
+
+TEST(OperatingRegion, HasNoSingularity) {
+  const auto robot = robots::abb_irb120();
+  const auto q = abb_irb120_operating_region().sample(robot.chain, 1000, 4);
+  double worst = 1;
+  for (Index i = 0; i < q.rows(); ++i) {
+    Jacobian<6> j = robot.chain.jacobian(q.row(i).transpose());
+    j.bottomRows<3>() *= 0.3;  // m a rad
+    const Eigen::JacobiSVD<Jacobian<6>> svd(j);
+    worst = std::min(worst, svd.singularValues()(5) / svd.singularValues()(0));
+  }
+  EXPECT_GT(worst, 0.01);
+}
+
+TEST(OperatingRegion, AClearanceOutOfReachThrows) {
+  auto region = abb_irb120_operating_region();
+  region.wrist_clearance = 5;
+  expect_complaint([&] { (void)region.sample(robots::abb_irb120().chain, 3, 1); }, "one combination in a thousand");
+}
+
+}  // namespace

@@ -1,0 +1,148 @@
+// The virtual actual robot: errors of the sizes asked for, noise with the statistics it claims, seeds that decide
+// alone.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
+
+namespace {
+
+using namespace vernier;
+
+const DhChain<6> nominal = robots::abb_irb120().chain;
+
+TEST(GeometricErrors, LieInTheirRangesWithBothSigns) {
+  const GeometricErrors sizes{.length_min = 0.5e-3, .length_max = 1e-3, .angle_min = 1e-3, .angle_max = 3e-3};
+  int positive_lengths = 0, positive_angles = 0, n = 0;
+  double smallest_length = 1, largest_length = 0, smallest_angle = 1, largest_angle = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const auto actual = with_geometric_errors(nominal, sizes, seed);
+    for (int i = 0; i < 6; ++i) {
+      for (const double off : {actual.row(i).a - nominal.row(i).a, actual.row(i).d - nominal.row(i).d}) {
+        smallest_length = std::min(smallest_length, std::abs(off));
+        largest_length = std::max(largest_length, std::abs(off));
+        positive_lengths += off > 0;
+      }
+      for (const double off :
+           {actual.row(i).alpha - nominal.row(i).alpha, actual.row(i).theta - nominal.row(i).theta}) {
+        smallest_angle = std::min(smallest_angle, std::abs(off));
+        largest_angle = std::max(largest_angle, std::abs(off));
+        positive_angles += off > 0;
+      }
+      n += 2;
+      EXPECT_EQ(actual.row(i).beta, nominal.row(i).beta);
+      EXPECT_EQ(actual.row(i).joint, nominal.row(i).joint);
+    }
+  }
+  const double rounding = 1e-15;  // of adding an error to a parameter
+  EXPECT_GE(smallest_length, sizes.length_min - rounding);
+  EXPECT_LE(largest_length, sizes.length_max + rounding);
+  EXPECT_GE(smallest_angle, sizes.angle_min - rounding);
+  EXPECT_LE(largest_angle, sizes.angle_max + rounding);
+  // 1200 draws each fill the ranges to a hundredth, and signs are even within five deviations (17.3)
+  EXPECT_LT(smallest_length, 0.505e-3);
+  EXPECT_GT(largest_length, 0.995e-3);
+  EXPECT_LT(smallest_angle, 1.02e-3);
+  EXPECT_GT(largest_angle, 2.98e-3);
+  EXPECT_NEAR(positive_lengths, n / 2, 87);
+  EXPECT_NEAR(positive_angles, n / 2, 87);
+}
+
+TEST(GeometricErrors, BetaIsUntouchedWhereItIsNotZero) {
+  auto p = nominal.parameters();
+  p(5 * 1 + 4) = 0.01;
+  const auto hayati = nominal.with_parameters(p);
+  const auto actual = with_geometric_errors(hayati, {}, 3);
+  EXPECT_EQ(actual.row(1).beta, 0.01);
+  EXPECT_NE(actual.row(1).alpha, hayati.row(1).alpha);
+}
+
+TEST(GeometricErrors, SeedsDecideAlone) {
+  EXPECT_TRUE(with_geometric_errors(nominal, {}, 1) == with_geometric_errors(nominal, {}, 1));
+  EXPECT_FALSE(with_geometric_errors(nominal, {}, 1) == with_geometric_errors(nominal, {}, 2));
+}
+
+TEST(GeometricErrors, ZeroSizesChangeNothing) {
+  EXPECT_TRUE(with_geometric_errors(nominal, {0, 0, 0, 0}, 1) == nominal);
+}
+
+TEST(GeometricErrors, UpsideDownRangesAreNamed) {
+  for (const GeometricErrors& bad :
+       {GeometricErrors{.length_min = 2e-3, .length_max = 1e-3}, GeometricErrors{.length_min = -1e-3},
+        GeometricErrors{.angle_min = 4e-3, .angle_max = 3e-3}, GeometricErrors{.angle_max = std::nan("")}}) {
+    EXPECT_THROW((void)with_geometric_errors(nominal, bad, 1), std::invalid_argument);
+  }
+  try {
+    (void)with_geometric_errors(nominal, {.length_min = 0.25, .length_max = 0.125}, 1);
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("0.25, 0.125"), std::string::npos) << e.what();
+  }
+}
+
+JointRows<6> some_joints(Index n) {
+  Rng rng(9);
+  JointRows<6> q(n, 6);
+  for (auto& value : q.reshaped()) value = rng.uniform(-2, 2);
+  return q;
+}
+
+TEST(Measure, WithoutNoiseIsTheModel) {
+  const auto q = some_joints(50);
+  const auto data = measure(nominal, q);
+  ASSERT_EQ(data.size(), 50);
+  ASSERT_TRUE(data.has_orientations());
+  EXPECT_TRUE(data.joints() == q);
+  for (Index i = 0; i < 50; ++i) {
+    const Isometry3 pose = nominal.pose(data.joints(i));
+    EXPECT_EQ(data.position(i), Vector3(pose.translation()));
+    EXPECT_LT((data.orientation(i) - pose.linear()).norm(), 1e-14);
+  }
+}
+
+TEST(Measure, PositionsAlone) {
+  const auto data = measure(nominal, some_joints(5), {.with_orientations = false});
+  EXPECT_FALSE(data.has_orientations());
+  EXPECT_EQ(data.size(), 5);
+}
+
+TEST(Measure, NoiseHasTheStatisticsItClaims) {
+  const Index n = 4000;
+  const double sigma = 0.03e-3, angular = 0.1e-3;
+  const auto q = some_joints(n);
+  const auto data = measure(nominal, q, {.position = sigma, .orientation = angular}, 17);
+  PointRows off(n, 3), turned(n, 3);
+  for (Index i = 0; i < n; ++i) {
+    const Isometry3 pose = nominal.pose(data.joints(i));
+    off.row(i) = (data.position(i) - pose.translation()).transpose() / sigma;
+    turned.row(i) = log_so3(data.orientation(i) * pose.linear().transpose()).transpose() / angular;
+  }
+  // five deviations of each estimate from n unit normals
+  const double mean_bound = 5 / std::sqrt(static_cast<double>(n)), variance_bound = mean_bound * std::sqrt(2.0);
+  for (const PointRows* noise : {&off, &turned}) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(noise->col(k).mean(), 0, mean_bound);
+      EXPECT_NEAR(noise->col(k).squaredNorm() / static_cast<double>(n), 1, variance_bound);
+      EXPECT_NEAR(noise->col(k).dot(noise->col((k + 1) % 3)) / static_cast<double>(n), 0, mean_bound);
+    }
+    EXPECT_GT(noise->cwiseAbs().maxCoeff(), 3);  // tails: 12,000 draws hardly stay below 3 sigma
+    EXPECT_LT(noise->cwiseAbs().maxCoeff(), 6);
+  }
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(off.col(k).dot(turned.col(k)) / static_cast<double>(n), 0, mean_bound);
+}
+
+TEST(Measure, SeedsDecideAlone) {
+  const auto q = some_joints(10);
+  const MeasurementNoise noise{.position = 1e-3};
+  EXPECT_TRUE(measure(nominal, q, noise, 1).positions() == measure(nominal, q, noise, 1).positions());
+  EXPECT_FALSE(measure(nominal, q, noise, 1).positions() == measure(nominal, q, noise, 2).positions());
+  // whether orientations are recorded does not change the positions of the first pose
+  EXPECT_EQ(measure(nominal, q, noise, 1).position(0),
+            measure(nominal, q, {.position = 1e-3, .with_orientations = false}, 1).position(0));
+}
+
+}  // namespace

@@ -9,6 +9,7 @@
 
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/identification/calibrated.hpp"
+#include "vernier/kinematics/dh_chain.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 #include "vernier/regression/hidden_layer.hpp"
 

@@ -139,7 +139,8 @@ nlohmann::ordered_json to_json(const CalibratedRobot<N>& robot) {
   const auto parameters = robot.actual().parameters();
   const Provenance& from = robot.provenance();
   Json out{{"schema_version", detail::model_schema_version},
-           {"written_by", std::string("vernier ") + std::string(version)},
+           {"written_by",
+            message("vernier ", VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH)},
            {"name", robot.name()},
            {"provenance",
             {{"data_file", from.data_file}, {"rows", from.rows}, {"date", from.date}, {"joints", from.joints}}},

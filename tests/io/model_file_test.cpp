@@ -1,0 +1,122 @@
+// Saved and loaded calibrations: the same bits, and an arm that corrects the same.
+#include "vernier/io/model_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "temporary_folder.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/regression/ridge_elm.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier {
+namespace {
+
+static_assert(KinematicModel<CalibratedRobot<6>> && Compensator<CalibratedRobot<6>>);
+static_assert(KinematicModel<CalibratedRobot<3>> && Compensator<CalibratedRobot<9>>);
+
+Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
+  return FrameParameters(Vector6{x, y, z, rx, ry, rz}).isometry();
+}
+
+CalibratedRobot<6> example(bool learned) {
+  const auto robot = robots::abb_irb120();
+  const auto actual = with_geometric_errors(robot.chain, {}, 3);
+  const Framed<DhChain<6>> standing(actual, frame(1.2, -0.4, 0.05, 0.1, -0.7, 2.0), frame(0, 0.01, 0.109, 0, 0.02, 0));
+  CalibratedRobot<6> out("an arm", robot.chain, standing, robot.limits, {"poses.csv", 120, "2024-05-01", "commanded"});
+  if (!learned) return out;
+  const JointRows<6> joints = sample_joints(robot.limits, 80, 5);
+  PointRows error(80, 3);
+  for (Index i = 0; i < 80; ++i)
+    error.row(i) << 1e-4 * std::sin(joints(i, 0)), 1e-4 * std::cos(joints(i, 1)), 5e-5 * std::sin(joints(i, 2));
+  return out.with_learned(RidgeElm{.hidden_nodes = 12}.fit(joints, error, {.seed = 2}),
+                          JointRangeGate<6>::covering(joints));
+}
+
+class ModelFile : public testing::Test {
+ protected:
+  testing_support::TemporaryFolder folder_{"model_file"};
+};
+
+TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
+  for (const bool learned : {false, true}) {
+    const auto saved = example(learned);
+    const auto path = folder_ / "m.json";
+    save_calibrated_robot(path, saved);
+    EXPECT_EQ(calibrated_robot_dof(path), 6);
+    const auto loaded = load_calibrated_robot<6>(path);
+    EXPECT_EQ(loaded.name(), saved.name());
+    EXPECT_EQ(loaded.provenance(), saved.provenance());
+    EXPECT_TRUE(loaded.nominal() == saved.nominal());
+    EXPECT_TRUE(loaded.actual().parameters() == saved.actual().parameters());
+    EXPECT_TRUE(loaded.limits().lower == saved.limits().lower && loaded.limits().upper == saved.limits().upper);
+    EXPECT_EQ(loaded.learned() != nullptr, learned);
+    const JointRows<6> samples = sample_joints(saved.limits(), 50, 9);
+    for (Index i = 0; i < samples.rows(); ++i) {
+      const JointVector<6> joints = samples.row(i).transpose();
+      EXPECT_TRUE(loaded.pose(joints).matrix() == saved.pose(joints).matrix());
+      EXPECT_TRUE(loaded.jacobian(joints) == saved.jacobian(joints));
+      const auto a = loaded.correct(joints), b = saved.correct(joints);
+      EXPECT_TRUE(a.command == b.command && a.predicted_error == b.predicted_error && a.gate == b.gate);
+    }
+    // and once more through the file: the text is a fixed point
+    save_calibrated_robot(folder_ / "again.json", loaded);
+    EXPECT_EQ(read_file(path), read_file(folder_ / "again.json"));
+  }
+}
+
+TEST_F(ModelFile, PrismaticJointsAndOpenLimitsSurvive) {
+  const DhChain<3> scara{{{
+      {.a = 0.3},
+      {.a = 0.25, .beta = 0.001},
+      {.alpha = 3.141592653589793, .joint = JointType::prismatic},
+  }}};
+  JointLimits<3> limits;
+  limits.lower(2) = -0.1;
+  limits.upper(2) = 0.15;
+  const CalibratedRobot<3> saved("scara", scara, Framed<DhChain<3>>(scara), limits, {});
+  save_calibrated_robot(folder_ / "m.json", saved);
+  const auto loaded = load_calibrated_robot<3>(folder_ / "m.json");
+  EXPECT_TRUE(loaded.nominal() == scara);
+  EXPECT_EQ(loaded.limits().lower(0), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(loaded.limits().upper(2), 0.15);
+  EXPECT_EQ(loaded.provenance(), Provenance{});
+}
+
+TEST_F(ModelFile, CorrectsTowardsTheNominalArmInTheIdentifiedFrames) {
+  const auto robot = example(true);
+  const OperatingRegion<6> region = abb_irb120_operating_region();
+  const JointRows<6> samples = region.sample(robot.nominal(), 40, 11);
+  for (Index i = 0; i < samples.rows(); ++i) {
+    const JointVector<6> q = samples.row(i).transpose();
+    const auto correction = robot.correct(q);
+    ASSERT_EQ(correction.status, IkStatus::converged);
+    const Vector6 left = pose_difference(robot.reference().pose(q), robot.pose(correction.command));
+    EXPECT_LT(left.head<3>().norm(), 1e-6);
+    EXPECT_LT(left.tail<3>().norm(), 1e-6);
+    EXPECT_GT((correction.command - q).norm(), 1e-4);  // it did something
+  }
+}
+
+TEST_F(ModelFile, AnArmThatIsNotFiniteIsNotSaved) {
+  const auto robot = robots::abb_irb120();
+  auto p = robot.chain.parameters();
+  p(7) = std::numeric_limits<double>::quiet_NaN();
+  const CalibratedRobot<6> broken("nan", robot.chain, Framed<DhChain<6>>(robot.chain.with_parameters(p)), robot.limits,
+                                  {});
+  EXPECT_THROW(save_calibrated_robot(folder_ / "m.json", broken), std::invalid_argument);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(ModelFile, TheWrongNumberOfJointsIsRefused) {
+  save_calibrated_robot(folder_ / "m.json", example(false));
+  try {
+    (void)load_calibrated_robot<7>(folder_ / "m.json");
+    FAIL();
+  } catch (const DataError& e) {
+    EXPECT_NE(std::string(e.what()).find("m.json: joints: has 6 entries, must have 7"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,104 @@
+// Robots read from JSON files.
+#include "vernier/io/robot_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "temporary_folder.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier {
+namespace {
+
+class RobotFile : public testing::Test {
+ protected:
+  RobotDescription load(const std::string& text) const {
+    write_file(path_, text);
+    return load_robot(path_);
+  }
+  std::string complaint(const std::string& text) const {
+    try {
+      load(text);
+    } catch (const DataError& e) {
+      return e.what();
+    }
+    return "none";
+  }
+  testing_support::TemporaryFolder folder_{"robot_file"};
+  std::filesystem::path path_ = folder_ / "robot.json";
+};
+
+const std::string irb120 = R"({"name": "my irb120", "convention": "standard", "joints": [
+  {"type": "revolute", "a_mm": 0,   "alpha_deg": -90, "d_mm": 290, "theta_deg": 0,   "lower_deg": -165, "upper_deg": 165},
+  {"type": "revolute", "a_mm": 270, "alpha_deg": 0,   "d_mm": 0,   "theta_deg": -90, "lower_deg": -110, "upper_deg": 110},
+  {"a_mm": 70,  "alpha_deg": -90, "d_mm": 0,   "theta_deg": 0,   "lower_deg": -110, "upper_deg": 70},
+  {"a_mm": 0,   "alpha_deg": 90,  "d_mm": 302, "theta_deg": 0,   "lower_deg": -160, "upper_deg": 160},
+  {"a_mm": 0,   "alpha_deg": -90, "d_m": 0,    "theta_rad": 0,   "lower_deg": -120, "upper_deg": 120},
+  {"a_mm": 0,   "alpha_deg": 0,   "d_mm": 72,  "theta_deg": 180}]})";
+
+TEST_F(RobotFile, ATableInAFileEqualsTheCatalogue) {
+  const RobotDescription robot = load(irb120);
+  ASSERT_EQ(robot.dof(), 6);
+  const NominalArm<6> arm = robot.arm<6>();
+  EXPECT_EQ(arm.name, "my irb120");
+  EXPECT_TRUE(arm.chain == robots::abb_irb120().chain);  // bit for bit: units are converted as the literals do
+  EXPECT_NEAR(arm.limits.upper(2), 70 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_EQ(arm.limits.upper(5), std::numeric_limits<double>::infinity());
+  EXPECT_THROW(robot.arm<7>(), std::invalid_argument);
+}
+
+TEST_F(RobotFile, TheModifiedConventionGivesTheSamePoses) {
+  const RobotDescription robot = load(R"({"name": "p", "convention": "modified", "joints": [
+    {"a_mm": 10, "alpha_deg": 20, "d_mm": 5, "theta_deg": 3, "beta_deg": 1},
+    {"a_mm": 0, "alpha_deg": 90, "d_mm": 0, "theta_deg": 0},
+    {"type": "prismatic", "a_mm": 431.8, "alpha_deg": 0, "d_mm": 150.05, "theta_deg": 0, "beta_deg": -2, "lower_mm": -100, "upper_mm": 300},
+    {"a_mm": 20.3, "alpha_deg": -90, "d_mm": 431.8, "theta_deg": 0}]})");
+  EXPECT_TRUE(robot.modified);
+  const NominalArm<4> arm = robot.arm<4>();
+  std::array<DhRow, 4> rows{};
+  std::copy(robot.rows.begin(), robot.rows.end(), rows.begin());
+  const auto modified = DhChain<4, ModifiedDh>::from_rows(rows);
+  EXPECT_EQ(arm.limits.lower(2), -0.1);
+  const Framed<DhChain<4>> standard(arm.chain, arm.base);
+  Rng rng(1);
+  for (int k = 0; k < 50; ++k) {
+    JointVector<4> q;
+    for (auto& value : q) value = rng.uniform(-3, 3);
+    EXPECT_LT((standard.pose(q).matrix() - modified.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14 * 10);
+  }
+}
+
+TEST_F(RobotFile, TheCatalogueSurvivesTheDescription) {
+  const auto arm = RobotDescription::of(robots::puma560_modified()).arm<6>();
+  const auto standard = robots::puma560();
+  const JointRows<6> samples = sample_joints(standard.limits, 50, 4);
+  for (Index i = 0; i < samples.rows(); ++i) {
+    const JointVector<6> q = samples.row(i).transpose();
+    EXPECT_LT((arm.base * arm.chain.pose(q).matrix() - standard.chain.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14);
+  }
+  EXPECT_TRUE(RobotDescription::of(robots::barrett_wam()).arm<7>().chain == robots::barrett_wam().chain);
+}
+
+TEST_F(RobotFile, ComplaintsNameFileAndKey) {
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = irb120;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::string file = path_.string();
+  EXPECT_EQ(complaint(with("\"d_mm\": 290", "\"d_mm\": \"290\"")),
+            file + ": joints[0].d_mm: must be a number, is a text");
+  EXPECT_EQ(complaint(with("\"d_mm\": 290, ", "")), file + ": joints[0]: key 'd_mm' is missing");
+  EXPECT_EQ(complaint(with("\"d_mm\": 290", "\"d_mm\": 290, \"d_m\": 0.29")),
+            file + ": joints[0]: keys 'd_mm' and 'd_m' both give d");
+  EXPECT_EQ(complaint(with("standard", "classic")), file + ": convention: 'classic' is neither standard nor modified");
+  EXPECT_EQ(complaint(with("\"upper_deg\": 165", "\"uper_deg\": 165")),
+            file + ": joints[0]: key 'uper_deg' is unknown");
+  EXPECT_EQ(complaint(with("\"upper_deg\": 165", "\"upper_mm\": 165")),
+            file + ": joints[0]: key 'upper_deg' is missing");
+  EXPECT_EQ(complaint(with("270", "270,,")), file + ", line 3, column 36: not valid JSON");
+  EXPECT_EQ(complaint("{\"name\": \"x\",\n\"joints\": ["),
+            file + ", line 2, column 12: the file ends here, but its JSON does not");
+  EXPECT_EQ(complaint("{\"name\": \"x\", \"name\": \"y\"}"), file + ": key 'name' is given twice");
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,101 @@
+// Who is a kinematic model and who is not, and the helpers that any model gets.
+
+#include "vernier/kinematics/concepts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "random_chains.hpp"
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vn = vernier;
+
+namespace {
+
+static_assert(vn::ParametricModel<vn::DhChain<1>>);
+static_assert(vn::ParametricModel<vn::DhChain<6>>);
+static_assert(vn::ParametricModel<vn::DhChain<9, vn::ModifiedDh>>);
+static_assert(vn::ParametricModel<vn::Framed<vn::DhChain<7>>>);
+static_assert(vn::ParametricModel<vn::Framed<vn::Framed<vn::DhChain<2>>>>);
+static_assert(!vn::KinematicModel<int>);
+static_assert(!vn::KinematicModel<vn::DhTable<6>>);
+static_assert(!vn::ParametricModel<vn::Robot<6>>);
+
+/// The least that a model must have.
+struct Turntable {
+  static constexpr int dof = 1;
+  vn::Isometry3 pose(const vn::JointVector<1>& q) const noexcept {
+    return vn::Isometry3(Eigen::AngleAxisd(q(0), vn::Vector3::UnitZ()));
+  }
+  vn::Vector3 position(const vn::JointVector<1>&) const noexcept { return vn::Vector3::Zero(); }
+  vn::Jacobian<1> jacobian(const vn::JointVector<1>&) const noexcept { return vn::Vector6::Unit(5); }
+  vn::PoseAndJacobian<1> pose_and_jacobian(const vn::JointVector<1>& q) const noexcept {
+    return {pose(q), jacobian(q)};
+  }
+};
+static_assert(vn::KinematicModel<Turntable>);
+static_assert(!vn::ParametricModel<Turntable>);
+static_assert(vn::KinematicModel<vn::Framed<Turntable>>);
+static_assert(!vn::ParametricModel<vn::Framed<Turntable>>, "frames alone do not make a model parametric");
+
+struct NoJoints : Turntable {
+  static constexpr int dof = 0;
+};
+static_assert(!vn::KinematicModel<NoJoints>);
+
+struct MayThrow : Turntable {
+  vn::Isometry3 pose(const vn::JointVector<1>& q) const { return Turntable::pose(q); }
+};
+static_assert(!vn::KinematicModel<MayThrow>, "a controller calls pose: it must be noexcept");
+
+struct NotConst : Turntable {
+  vn::Vector3 position(const vn::JointVector<1>&) noexcept { return vn::Vector3::Zero(); }
+};
+static_assert(!vn::KinematicModel<NotConst>);
+
+struct ColumnsOfAnotherArm : Turntable {
+  vn::Jacobian<2> jacobian(const vn::JointVector<1>&) const noexcept { return vn::Jacobian<2>::Zero(); }
+};
+static_assert(!vn::KinematicModel<ColumnsOfAnotherArm>);
+
+struct OnlyPose {
+  static constexpr int dof = 1;
+  vn::Isometry3 pose(const vn::JointVector<1>&) const noexcept { return vn::Isometry3::Identity(); }
+};
+static_assert(!vn::KinematicModel<OnlyPose>);
+
+struct HidesParameterNames : vn::DhChain<2> {
+  static int parameter_names() { return 0; }
+};
+static_assert(vn::KinematicModel<HidesParameterNames>);
+static_assert(!vn::ParametricModel<HidesParameterNames>);
+
+TEST(KinematicModel, PosesAndPositionsOfRowsAreThoseOfEachRow) {
+  const auto arm = vn::robots::barrett_wam().chain;
+  vn::Rng rng(1);
+  const vn::JointRows<7> joints = vernier_test::random_joint_rows<7>(rng, 13);
+  const vn::PointRows points = vn::positions(arm, joints);
+  const std::vector<vn::Isometry3> all = vn::poses(arm, joints);
+  ASSERT_EQ(points.rows(), 13);
+  ASSERT_EQ(all.size(), 13u);
+  for (vn::Index i = 0; i < 13; ++i) {
+    const vn::JointVector<7> q = joints.row(i).transpose();
+    EXPECT_EQ(points.row(i).transpose(), arm.position(q));
+    EXPECT_EQ(all[static_cast<std::size_t>(i)].matrix(), arm.pose(q).matrix());
+  }
+  EXPECT_EQ(vn::positions(arm, vn::JointRows<7>(0, 7)).rows(), 0);
+}
+
+struct KnowsItsReference : Turntable {
+  vn::DhChain<1> reference() const { return vn::DhChain<1>::from_rows({vn::DhRow{.a = 2}}); }
+};
+
+TEST(KinematicModel, ReferenceIsItsOwnOrTheModelItself) {
+  static_assert(std::is_same_v<vn::ReferenceOf<Turntable>, Turntable>);
+  static_assert(std::is_same_v<vn::ReferenceOf<KnowsItsReference>, vn::DhChain<1>>);
+  const Turntable table;
+  EXPECT_EQ(&vn::reference_of(table), &table);
+  EXPECT_EQ(vn::reference_of(KnowsItsReference{}).row(0).a, 2);
+}
+
+}  // namespace

@@ -1,0 +1,222 @@
+// DH chains: tables at compile time, a case worked by hand, the laws, and the five parameters of a row.
+
+#include "vernier/kinematics/dh_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <type_traits>
+
+#include "laws.hpp"
+#include "random_chains.hpp"
+#include "vernier/core/literals.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/testing/kinematic_laws.hpp"
+
+namespace vn = vernier;
+using namespace vernier::literals;
+using vernier_test::no_violations;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// A table is a constant expression, with the chain's braces or the table's.
+constexpr vn::DhChain<2> planar{{{
+    {.a = 300_mm},
+    {.a = 200_mm},
+}}};
+constexpr vn::DhChain<2> planar_in_two_braces{{
+    {.a = 300_mm},
+    {.a = 200_mm},
+}};
+constexpr vn::DhChain<1> one_joint{{{{.a = 300_mm}}}};
+constexpr vn::DhChain<2, vn::ModifiedDh> modified{{{
+    {.alpha = 90_deg, .joint = vn::JointType::prismatic},
+    {.a = 200_mm},
+}}};
+static_assert(planar.row(0).a == 0.3 && planar.row(1).a == 0.2 && planar.row(1).joint == vn::JointType::revolute);
+static_assert(planar_in_two_braces.row(0).a == 0.3 && planar_in_two_braces.row(1).a == 0.2);
+static_assert(one_joint.row(0).a == 0.3);
+static_assert(modified.row(0).joint == vn::JointType::prismatic && modified.row(1).a == 0.2);
+static_assert(planar.dof == 2 && planar.num_parameters == 10);
+
+// A missing or surplus row does not compile, however many braces there are.
+template <class Chain>
+concept OneRow = requires {
+  Chain{{{.a = 1}}};
+};
+template <class Chain>
+concept OneRowInAnotherBrace = requires {
+  Chain{{{{.a = 1}}}};
+};
+template <class Chain>
+concept TwoRows = requires {
+  Chain{{{.a = 1}, {.d = 2}}};
+};
+template <class Chain>
+concept TwoRowsInAnotherBrace = requires {
+  Chain{{{{.a = 1}, {.d = 2}}}};
+};
+template <class Chain>
+concept ThreeRows = requires {
+  Chain{{{.a = 1}, {.d = 2}, {.theta = 3}}};
+};
+template <class Chain>
+concept ThreeRowsInAnotherBrace = requires {
+  Chain{{{{.a = 1}, {.d = 2}, {.theta = 3}}}};
+};
+static_assert(!TwoRows<vn::DhChain<1>> && !TwoRowsInAnotherBrace<vn::DhChain<1>>);
+static_assert(!OneRow<vn::DhChain<2>> && !OneRowInAnotherBrace<vn::DhChain<2>>);
+static_assert(TwoRows<vn::DhChain<2>> && TwoRowsInAnotherBrace<vn::DhChain<2>>);
+static_assert(!ThreeRows<vn::DhChain<2>> && !ThreeRowsInAnotherBrace<vn::DhChain<2>>);
+static_assert(!TwoRows<vn::DhChain<3>> && !TwoRowsInAnotherBrace<vn::DhChain<3>>);
+static_assert(ThreeRows<vn::DhChain<3>> && ThreeRowsInAnotherBrace<vn::DhChain<3>>);
+static_assert(!ThreeRows<vn::DhChain<6, vn::ModifiedDh>> && !ThreeRowsInAnotherBrace<vn::DhChain<6, vn::ModifiedDh>>);
+static_assert(std::is_constructible_v<vn::DhChain<2>, const vn::DhRow (&)[2]>);
+static_assert(!std::is_constructible_v<vn::DhChain<2>, const vn::DhRow (&)[1]>);
+static_assert(!std::is_constructible_v<vn::DhChain<2>, const vn::DhRow (&)[3]>);
+static_assert(!std::is_default_constructible_v<vn::DhChain<2>>);
+
+TEST(DhChain, PlanarArmWorkedByHand) {
+  // q = (30, 60) deg: the second link points along y. x = 0.3 cos 30, y = 0.3 sin 30 + 0.2.
+  const vn::JointVector<2> q(30_deg, 60_deg);
+  const double x = 0.3 * std::sqrt(3.0) / 2, y = 0.15 + 0.2;
+  const auto [pose, jacobian] = planar.pose_and_jacobian(q);
+  EXPECT_NEAR(pose.translation().x(), x, 1e-15);
+  EXPECT_NEAR(pose.translation().y(), y, 1e-15);
+  EXPECT_EQ(pose.translation().z(), 0);
+  vn::Matrix3 quarter;
+  quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_LE((pose.linear() - quarter).cwiseAbs().maxCoeff(), 1e-15);
+  vn::Jacobian<2> by_hand;
+  by_hand << -y, -0.2,  // z x (tool - joint)
+      x, 0,             //
+      0, 0,             //
+      0, 0,             //
+      0, 0,             //
+      1, 1;
+  EXPECT_LE((jacobian - by_hand).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(DhChain, PrismaticJointWorkedByHand) {
+  // Modified: Rx(90 deg) turns the sliding axis to -y; then 0.2 along the new x, and a turn about -y.
+  const vn::JointVector<2> q(0.7, 90_deg);
+  const auto [pose, jacobian] = modified.pose_and_jacobian(q);
+  EXPECT_LE((pose.translation() - vn::Vector3(0.2, -0.7, 0)).norm(), 1e-15);
+  vn::Matrix3 rotation;  // columns: images of the axes
+  rotation.col(0) = vn::Vector3(0, 0, 1);
+  rotation.col(1) = vn::Vector3(-1, 0, 0);
+  rotation.col(2) = vn::Vector3(0, -1, 0);
+  EXPECT_LE((pose.linear() - rotation).cwiseAbs().maxCoeff(), 1e-15);
+  vn::Jacobian<2> by_hand;
+  by_hand << 0, 0, -1, 0, 0, 0, 0, 0, 0, -1, 0, 0;
+  EXPECT_LE((jacobian - by_hand).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+/// A row as the product of its five elementary motions, in the order its convention states.
+vn::Isometry3 link(const vn::DhRow& row, double q, vn::StandardDh) {
+  const bool revolute = row.joint == vn::JointType::revolute;
+  using Eigen::AngleAxisd, Eigen::Translation3d, vn::Vector3;
+  return vn::Isometry3(AngleAxisd(row.theta + (revolute ? q : 0), Vector3::UnitZ())) *
+         Translation3d(0, 0, row.d + (revolute ? 0 : q)) * Translation3d(row.a, 0, 0) *
+         AngleAxisd(row.alpha, Vector3::UnitX()) * AngleAxisd(row.beta, Vector3::UnitY());
+}
+vn::Isometry3 link(const vn::DhRow& row, double q, vn::ModifiedDh) {
+  const bool revolute = row.joint == vn::JointType::revolute;
+  using Eigen::AngleAxisd, Eigen::Translation3d, vn::Vector3;
+  return vn::Isometry3(AngleAxisd(row.alpha, Vector3::UnitX())) * Translation3d(row.a, 0, 0) *
+         AngleAxisd(row.beta, Vector3::UnitY()) * AngleAxisd(row.theta + (revolute ? q : 0), Vector3::UnitZ()) *
+         Translation3d(0, 0, row.d + (revolute ? 0 : q));
+}
+
+template <class Convention>
+class DhConvention : public ::testing::Test {};
+using Conventions = ::testing::Types<vn::StandardDh, vn::ModifiedDh>;
+TYPED_TEST_SUITE(DhConvention, Conventions);
+
+TYPED_TEST(DhConvention, PoseIsTheProductOfItsElementaryMotions) {
+  vn::Rng rng(11);
+  for (int arm = 0; arm < 100; ++arm) {
+    const auto chain = vernier_test::random_chain<5, TypeParam>(rng);
+    const vn::JointVector<5> q = vernier_test::random_joints<5>(rng);
+    vn::Isometry3 product = vn::Isometry3::Identity();
+    for (int i = 0; i < 5; ++i) product = product * link(chain.row(i), q(i), TypeParam{});
+    EXPECT_LE((chain.pose(q).matrix() - product.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+TYPED_TEST(DhConvention, RandomChainsObeyTheLaws) {
+  vn::Rng rng(12);
+  const auto check = [&]<int N>(std::integral_constant<int, N>) {
+    for (int arm = 0; arm < 10; ++arm) {
+      const auto chain = vernier_test::random_chain<N, TypeParam>(rng);
+      const vn::JointRows<N> samples = vernier_test::random_joint_rows<N>(rng, 10);
+      ASSERT_TRUE(no_violations(vn::testing::kinematic_model_violations(chain, samples)));
+      ASSERT_TRUE(no_violations(vn::testing::parametric_model_violations(chain, samples)));
+    }
+  };
+  check(std::integral_constant<int, 1>{});
+  check(std::integral_constant<int, 2>{});
+  check(std::integral_constant<int, 6>{});
+  check(std::integral_constant<int, 9>{});
+}
+
+/// Chains where something vanishes: parallel axes, aligned axes, twists of half a turn, all of it zero.
+template <class Convention>
+std::vector<vn::DhChain<4, Convention>> degenerate_chains() {
+  using Chain = vn::DhChain<4, Convention>;
+  constexpr auto prismatic = vn::JointType::prismatic;
+  return {
+      Chain{{{{}, {}, {}, {}}}},
+      Chain{{{{.a = 0.3}, {.a = 0.2}, {.a = 0.1}, {.a = 0.4}}}},
+      Chain{{{{.d = 0.3}, {.d = 0.2}, {.d = 0.1}, {.d = 0.4}}}},
+      Chain{{{{.alpha = pi}, {.alpha = -pi}, {.alpha = pi, .theta = pi}, {.a = 0.1, .theta = -pi}}}},
+      Chain{{{{.a = 0.1, .alpha = pi - 1e-9}, {.alpha = 1e-9}, {.alpha = 1e-300}, {.a = 0.2, .beta = pi}}}},
+      Chain{{{{.alpha = pi / 2, .joint = prismatic}, {.joint = prismatic}, {.a = 1, .joint = prismatic}, {}}}},
+  };
+}
+
+TYPED_TEST(DhConvention, DegenerateChainsObeyTheLaws) {
+  vn::Rng rng(13);
+  vn::JointRows<4> samples = vernier_test::random_joint_rows<4>(rng, 6);
+  samples.row(0).setZero();
+  samples.row(1).setConstant(pi);
+  samples.row(2) << pi - 1e-9, 0, 0, 0;
+  for (const auto& chain : degenerate_chains<TypeParam>()) {
+    EXPECT_TRUE(no_violations(vn::testing::kinematic_model_violations(chain, samples)));
+    EXPECT_TRUE(no_violations(vn::testing::parametric_model_violations(chain, samples)));
+  }
+}
+
+TEST(DhChain, EqualityAndRows) {
+  vn::Rng rng(14);
+  const auto chain = vernier_test::random_chain<4>(rng);
+  EXPECT_EQ(vn::DhChain<4>::from_rows(chain.rows()), chain);
+  EXPECT_EQ(chain.with_parameters(chain.parameters()), chain);
+  auto rows = chain.rows();
+  rows[2].beta += 1e-15;
+  EXPECT_FALSE(vn::DhChain<4>::from_rows(rows) == chain);
+  EXPECT_EQ(planar, planar_in_two_braces);
+}
+
+TEST(DhChain, ParametersAreCountedRowByRow) {
+  const auto names = vn::DhChain<2>::parameter_names();
+  EXPECT_EQ(names, (std::vector<std::string>{"a1", "alpha1", "d1", "theta1", "beta1", "a2", "alpha2", "d2", "theta2",
+                                             "beta2"}));
+  const auto kinds = vn::DhChain<2>::parameter_kinds();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const bool length = names[k][0] == 'd' || (names[k][0] == 'a' && names[k][1] != 'l');
+    EXPECT_EQ(kinds[k] == vn::ParameterKind::length, length) << names[k];
+  }
+  const auto chain = vn::DhChain<1>::from_rows({vn::DhRow{.a = 1, .alpha = 2, .d = 3, .theta = 4, .beta = 5}});
+  EXPECT_EQ(chain.parameters().transpose(), (Eigen::Matrix<double, 1, 5>(1, 2, 3, 4, 5)));
+}
+
+TEST(DhChain, WithParametersKeepsTheJointTypes) {
+  const auto moved = modified.with_parameters(modified.parameters() * 2);
+  EXPECT_EQ(moved.row(0).joint, vn::JointType::prismatic);
+  EXPECT_EQ(moved.row(1).joint, vn::JointType::revolute);
+  EXPECT_EQ(moved.row(1).a, 0.4);
+}
+
+}  // namespace

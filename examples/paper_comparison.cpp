@@ -395,10 +395,11 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
                            "position error [mm]", curves, {.log_y = true}),
          errors_file);
     const auto distribution_file = folder / fmt::format("distribution_{}.svg", sets[set].name);
-    keep(support::plot_svg(distribution_file, fmt::format("Distribution of the error, {}", sets[set].title),
-                           fmt::format("position error [mm]{}", below), "share of the poses [%]",
-                           support::histogram(samples, 40, true), {.log_x = true}),
-         distribution_file);
+    keep(
+        support::plot_svg(distribution_file, fmt::format("Distribution of the error, {}", sets[set].title),
+                          fmt::format("position error [mm]{}", below), "share of the poses with this error or less [%]",
+                          support::cumulative(samples), {.log_x = true}),
+        distribution_file);
   }
   std::vector<support::Series> convergence;
   for (std::size_t m = 1; m + 1 < methods.size(); ++m)
@@ -406,7 +407,7 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
         {methods[m].title, run.convergence[m].evaluations, run.convergence[m].best, support::Style::lines, colour(m)});
   const auto convergence_file = folder / "convergence.svg";
   keep(support::plot_svg(convergence_file, "Convergence of the searches", "evaluations of the fitness",
-                         "best training error [mean square of scaled targets]", convergence, {.log_y = true}),
+                         "training error [mean square, scaled targets]", convergence, {.log_y = true}),
        convergence_file);
   return files;
 }

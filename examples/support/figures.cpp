@@ -52,12 +52,35 @@ std::string preamble(const std::string& title, const std::string& y_label, const
       "set border 3 linecolor rgb '#444444'\n"
       "set tics nomirror out scale 0.6,0.3 textcolor rgb '#222222'\n"
       "set grid back xtics ytics linetype 1 linewidth 0.5 linecolor rgb '#dddddd'\n"
-      "set key below center horizontal maxcols 3 Left reverse samplen 2.2 spacing 1.25 textcolor rgb '#222222'\n"
+      "set key below center horizontal maxcols 3 Left reverse samplen 2.2 spacing 1.25 height 0.6 textcolor rgb "
+      "'#222222'\n"
       "set rmargin 3\n",
       options.width, options.height, quoted(title), quoted(y_label));
-  if (options.log_y) out += "set logscale y\nset format y '%g'\n";
-  out += range("y", options.y_range);
   return out;
+}
+
+/// A logarithmic axis that fits the data; where it spans few decades, with ticks at 1, 2 and 5.
+template <class Select>
+std::string log_axis(const char* axis, const std::vector<Series>& series,
+                     const std::optional<std::pair<double, double>>& limits, Select&& select) {
+  double lower = std::numeric_limits<double>::infinity(), upper = 0;
+  for (const Series& s : series)
+    for (const double value : select(s))
+      if (std::isfinite(value) && value > 0) {
+        lower = std::min(lower, value);
+        upper = std::max(upper, value);
+      }
+  std::string out = fmt::format("set logscale {0}\nset format {0} '%g'\n", axis);
+  if (!(upper > 0)) return out;
+  const std::pair<double, double> ends = limits.value_or(std::pair{lower / 1.15, upper * 1.15});
+  out += range(axis, ends);
+  if (ends.second / ends.first > 1000) return out;
+  std::string ticks;
+  for (double decade = std::pow(10, std::floor(std::log10(ends.first))); decade <= ends.second; decade *= 10)
+    for (const double tick : {decade, 2 * decade, 5 * decade})
+      if (tick >= ends.first && tick <= ends.second)
+        ticks += fmt::format("{}'{:g}' {:g}", ticks.empty() ? "" : ", ", tick, tick);
+  return ticks.empty() ? out : out + fmt::format("set {}tics ({})\n", axis, ticks);
 }
 
 struct CloseFile {
@@ -125,8 +148,11 @@ bool draw(const std::filesystem::path& path, const std::string& script) {
 bool plot_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
               const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options) {
   std::string script = preamble(title, y_label, options);
-  fmt::format_to(std::back_inserter(script), "set xlabel {} offset 0,0.4\n{}{}", quoted(x_label),
-                 options.log_x ? "set logscale x\nset format x '%g'\n" : "", range("x", options.x_range));
+  script += fmt::format("set xlabel {} offset 0,0.4\n", quoted(x_label));
+  script += options.log_x ? log_axis("x", series, options.x_range, [](const Series& s) { return s.x; })
+                          : range("x", options.x_range);
+  script += options.log_y ? log_axis("y", series, options.y_range, [](const Series& s) { return s.y; })
+                          : range("y", options.y_range);
   std::string plots;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Series& s = series[k];
@@ -174,7 +200,9 @@ bool bars_svg(const std::filesystem::path& path, const std::string& title, const
       "set style data histograms\nset style histogram clustered gap 1\n"
       "set style fill solid 1 noborder\nset boxwidth 0.9\nset xtics scale 0\nunset grid\n"
       "set grid back ytics linetype 1 linewidth 0.5 linecolor rgb '#dddddd'\n";
-  if (!options.log_y && !options.y_range) script += "set yrange [0:*]\n";
+  script += options.log_y     ? log_axis("y", series, options.y_range, [](const Series& s) { return s.y; })
+            : options.y_range ? range("y", options.y_range)
+                              : "set yrange [0:*]\n";
   script += "$data << EOD\n";
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::string label = labels[i];

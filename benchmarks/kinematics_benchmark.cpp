@@ -1,0 +1,227 @@
+// Forward kinematics, Jacobians and inverse kinematics of a six-joint arm, against KDL.
+
+#include <array>
+#include <cmath>
+#include <kdl/chain.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainiksolverpos_lma.hpp>
+#include <kdl/chainiksolverpos_nr.hpp>
+#include <kdl/chainiksolvervel_pinv.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
+#include <memory>
+#include <vector>
+
+#include "program.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/inverse_kinematics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vn = vernier;
+using namespace vernier::literals;
+
+namespace {
+
+constexpr const char* about =
+    R"(kinematics_benchmark: a six-joint arm (ABB IRB 120), against KDL on the same chain and the same joints
+
+  pose                 one pose: ChainFkSolverPos_recursive
+  pose and jacobian    both: ChainFkSolverPos_recursive and ChainJntToJacSolver
+  jacobian             the Jacobian alone: ChainJntToJacSolver
+  parameter jacobian   6 x 30, derivative of the pose with respect to the DH parameters: central differences
+  10,000 positions     tool positions of 10,000 joint combinations
+  inverse kinematics   full pose to 1e-6 m and 1e-6 rad from a seed up to 0.05 rad off in each joint, no joint limits:
+                       ChainIkSolverPos_LMA, ChainIkSolverPos_NR
+
+"vernier, constexpr table" is the same chain with its table known to the compiler; "vernier" reads it at run time, as an
+identified arm does. KDL is the library as installed, called through its solvers with everything allocated beforehand.
+Before anything is timed, poses, Jacobians and solutions are compared; a difference stops the program.)";
+
+constexpr vn::DhChain<6> constexpr_arm{{{
+    {.a = 0_mm, .alpha = -90_deg, .d = 290_mm, .theta = 0_deg},
+    {.a = 270_mm, .alpha = 0_deg, .d = 0_mm, .theta = -90_deg},
+    {.a = 70_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
+    {.a = 0_mm, .alpha = 90_deg, .d = 302_mm, .theta = 0_deg},
+    {.a = 0_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
+    {.a = 0_mm, .alpha = 0_deg, .d = 72_mm, .theta = 180_deg},
+}}};
+
+using Chain = vn::DhChain<6>;
+using Joints = vn::JointVector<6>;
+
+KDL::Chain kdl_chain(const Chain& arm) {
+  KDL::Chain chain;
+  for (const vn::DhRow& row : arm.rows())
+    chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotZ), KDL::Frame::DH(row.a, row.alpha, row.d, row.theta)));
+  return chain;
+}
+
+KDL::JntArray kdl_joints(const Joints& q) {
+  KDL::JntArray out(6);
+  out.data = q;
+  return out;
+}
+
+double difference(const vn::Isometry3& ours, const KDL::Frame& theirs) {
+  double worst = 0;
+  for (int i = 0; i < 3; ++i) {
+    worst = std::max(worst, std::abs(ours.translation()(i) - theirs.p(i)));
+    for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(ours.linear()(i, j) - theirs.M(i, j)));
+  }
+  return worst;
+}
+
+/// KDL's solvers for one chain; each keeps its own workspace.
+struct Kdl {
+  explicit Kdl(const KDL::Chain& arm)
+      : chain(arm),
+        forward(chain),
+        derivative(chain),
+        lma(chain, vn::Vector6::Ones(), tolerance),
+        velocity(chain),
+        newton_forward(chain),
+        newton(chain, newton_forward, velocity, 100, tolerance) {}
+
+  static constexpr double tolerance = 1e-6;
+  KDL::Chain chain;
+  KDL::ChainFkSolverPos_recursive forward;
+  KDL::ChainJntToJacSolver derivative;
+  KDL::ChainIkSolverPos_LMA lma;
+  KDL::ChainIkSolverVel_pinv velocity;
+  KDL::ChainFkSolverPos_recursive newton_forward;
+  KDL::ChainIkSolverPos_NR newton;
+};
+
+vn::ParameterJacobian<30> central_differences(const Chain& arm, const Joints& q) {
+  constexpr double step = 1e-6;
+  const Chain::Parameters parameters = arm.parameters();
+  vn::ParameterJacobian<30> out;
+  for (int k = 0; k < 30; ++k) {
+    Chain::Parameters above = parameters, below = parameters;
+    above(k) += step;
+    below(k) -= step;
+    const vn::Isometry3 a = arm.pose<double>(q, above), b = arm.pose<double>(q, below);
+    out.col(k).head<3>() = (a.translation() - b.translation()) / (2 * step);
+    out.col(k).tail<3>() = vn::log_so3(a.linear() * b.linear().transpose()) / (2 * step);
+  }
+  return out;
+}
+
+int work(bench::Program& program, int argc, char** argv) {
+  const Chain arm = vn::robots::abb_irb120().chain;
+  if (!(arm == constexpr_arm)) throw std::runtime_error("the catalogue's arm is not the one in this program");
+  const auto kdl = std::make_shared<Kdl>(kdl_chain(arm));
+
+  // Joints of the region where the arm has no singularity, so that every solver has a fair target.
+  constexpr std::size_t n = 1024;
+  const vn::JointRows<6> many = vn::abb_irb120_operating_region().sample(arm, 10000, 1);
+  vn::Rng rng(2);
+  std::vector<Joints> joints(n), seeds(n);
+  std::vector<vn::Isometry3> targets(n);
+  std::vector<KDL::JntArray> kdl_q(n), kdl_seeds(n), kdl_many;
+  std::vector<KDL::Frame> kdl_targets(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    joints[i] = many.row(static_cast<vn::Index>(i)).transpose();
+    seeds[i] = joints[i];
+    for (auto& value : seeds[i]) value += rng.uniform(-0.05, 0.05);
+    targets[i] = arm.pose(joints[i]);
+    kdl_q[i] = kdl_joints(joints[i]);
+    kdl_seeds[i] = kdl_joints(seeds[i]);
+    kdl->forward.JntToCart(kdl_q[i], kdl_targets[i]);
+  }
+  for (vn::Index i = 0; i < many.rows(); ++i) kdl_many.push_back(kdl_joints(many.row(i).transpose()));
+
+  vn::IkOptions<6> ik;
+  ik.position_tolerance = ik.rotation_tolerance = Kdl::tolerance;
+
+  // All compute the same?
+  double pose = 0, jacobian = 0, parameters = 0;
+  std::array<std::size_t, 3> solved{};
+  for (std::size_t i = 0; i < n; ++i) {
+    KDL::Jacobian theirs(6);
+    kdl->derivative.JntToJac(kdl_q[i], theirs);
+    pose = std::max(pose, difference(targets[i], kdl_targets[i]));
+    jacobian = std::max(jacobian, (arm.jacobian(joints[i]) - theirs.data).cwiseAbs().maxCoeff());
+    parameters = std::max(
+        parameters, (arm.parameter_jacobian(joints[i]) - central_differences(arm, joints[i])).cwiseAbs().maxCoeff());
+    KDL::JntArray by_lma(6), by_newton(6);
+    kdl->lma.CartToJnt(kdl_seeds[i], kdl_targets[i], by_lma);
+    kdl->newton.CartToJnt(kdl_seeds[i], kdl_targets[i], by_newton);
+    const Joints answers[] = {vn::inverse_kinematics(arm, targets[i], seeds[i], ik).joints, by_lma.data,
+                              by_newton.data};
+    for (std::size_t who = 0; who < 3; ++who)
+      if (difference(arm.pose(answers[who]), kdl_targets[i]) < 5 * Kdl::tolerance) ++solved[who];
+  }
+  bench::require_agreement("poses", pose, 1e-12);
+  bench::require_agreement("Jacobians", jacobian, 1e-12);
+  bench::require_agreement("parameter Jacobians", parameters, 1e-8);
+
+  constexpr std::size_t mask = n - 1;
+  program.measure("pose", "vernier", [=](std::size_t i) { return arm.pose(joints[i & mask]); });
+  program.measure("pose", "KDL", [=](std::size_t i) {
+    KDL::Frame out;
+    kdl->forward.JntToCart(kdl_q[i & mask], out);
+    return out;
+  });
+  program.measure("pose", "vernier, constexpr table",
+                  [=](std::size_t i) { return constexpr_arm.pose(joints[i & mask]); });
+
+  program.measure("pose and jacobian", "vernier",
+                  [=](std::size_t i) { return arm.pose_and_jacobian(joints[i & mask]); });
+  program.measure("pose and jacobian", "KDL", [=, j = KDL::Jacobian(6)](std::size_t i) mutable {
+    KDL::Frame out;
+    kdl->forward.JntToCart(kdl_q[i & mask], out);
+    kdl->derivative.JntToJac(kdl_q[i & mask], j);
+    benchmark::DoNotOptimize(j.data.data());
+    return out;
+  });
+  program.measure("pose and jacobian", "vernier, constexpr table",
+                  [=](std::size_t i) { return constexpr_arm.pose_and_jacobian(joints[i & mask]); });
+
+  program.measure("jacobian", "vernier", [=](std::size_t i) { return arm.jacobian(joints[i & mask]); });
+  program.measure("jacobian", "KDL", [=, j = KDL::Jacobian(6)](std::size_t i) mutable {
+    const int status = kdl->derivative.JntToJac(kdl_q[i & mask], j);
+    benchmark::DoNotOptimize(j.data.data());
+    return status;
+  });
+
+  program.measure("parameter jacobian", "vernier",
+                  [=](std::size_t i) { return arm.parameter_jacobian(joints[i & mask]); });
+  program.measure("parameter jacobian", "central differences",
+                  [=](std::size_t i) { return central_differences(arm, joints[i & mask]); });
+
+  program.measure("10,000 positions", "vernier", [=](std::size_t) { return vn::positions(arm, many); });
+  program.measure("10,000 positions", "KDL", [=](std::size_t) {
+    vn::PointRows out(many.rows(), 3);
+    KDL::Frame frame;
+    for (std::size_t i = 0; i < kdl_many.size(); ++i) {
+      kdl->forward.JntToCart(kdl_many[i], frame);
+      for (int k = 0; k < 3; ++k) out(static_cast<vn::Index>(i), k) = frame.p(k);
+    }
+    return out;
+  });
+
+  program.measure("inverse kinematics", "vernier",
+                  [=](std::size_t i) { return vn::inverse_kinematics(arm, targets[i & mask], seeds[i & mask], ik); });
+  program.measure("inverse kinematics", "KDL LMA", [=, out = KDL::JntArray(6)](std::size_t i) mutable {
+    const int status = kdl->lma.CartToJnt(kdl_seeds[i & mask], kdl_targets[i & mask], out);
+    benchmark::DoNotOptimize(out.data.data());
+    return status;
+  });
+  program.measure("inverse kinematics", "KDL NR", [=, out = KDL::JntArray(6)](std::size_t i) mutable {
+    const int status = kdl->newton.CartToJnt(kdl_seeds[i & mask], kdl_targets[i & mask], out);
+    benchmark::DoNotOptimize(out.data.data());
+    return status;
+  });
+
+  if (const int status = program.run(argc, argv); status != 0) return status;
+  std::printf("\ninverse kinematics solved, of %zu: vernier %zu, KDL LMA %zu, KDL NR %zu\n", n, solved[0], solved[1],
+              solved[2]);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return bench::run_program(about, argc, argv, [&](bench::Program& program) { return work(program, argc, argv); });
+}

@@ -129,7 +129,7 @@ class RidgePath {
   VectorX offset(const MatrixX& beta) const { return (mean_t_ - mean_h_ * beta).transpose(); }
 
   /// Residuals of leaving each sample out, n x outputs, at `lambda` > 0; infinity is the mean alone. With as many nodes
-  /// as samples `1 - leverage` is summed from lambda / (s^2 + lambda), never from a difference that cancels.
+  /// as samples the residual and `1 - leverage` are sums over lambda / (s^2 + lambda), never differences that cancel.
   MatrixX leave_one_out_residuals(double lambda) const {
     const Index n = centred_t_.rows();
     if (!std::isfinite(lambda)) return centred_t_ * (static_cast<double>(n) / static_cast<double>(n - 1));
@@ -137,10 +137,12 @@ class RidgePath {
     const auto u = svd_.u.leftCols(r);
     const Eigen::ArrayXd s2 = svd_.s.head(r).array().square();
     const VectorX kept = (lambda / (s2 + lambda)).matrix();
-    VectorX outside = VectorX::Zero(n);  // 1 - 1/n - sum u^2: nothing of it where U spans all centred samples
-    if (r < n - 1) outside = (1 - 1.0 / static_cast<double>(n) - u.rowwise().squaredNorm().array()).max(0.0);
-    const VectorX one_minus_leverage = outside + u.cwiseAbs2() * kept;
-    MatrixX residual = centred_t_ - u * ((1 - kept.array()).matrix().asDiagonal() * projected_.topRows(r));
+    VectorX one_minus_leverage = u.cwiseAbs2() * kept;
+    MatrixX residual = u * (kept.asDiagonal() * projected_.topRows(r));
+    if (r < n - 1) {  // what U does not span; where it spans all centred samples, nothing but rounding
+      one_minus_leverage.array() += (1 - 1.0 / static_cast<double>(n) - u.rowwise().squaredNorm().array()).max(0.0);
+      residual += centred_t_ - u * projected_.topRows(r);
+    }
     for (Index i = 0; i < n; ++i) residual.row(i) /= std::max(one_minus_leverage(i), 1e-300);
     return residual;
   }

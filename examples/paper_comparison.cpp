@@ -457,6 +457,8 @@ int body(support::Program& program) {
   settings.fresh = fresh.value_or(200);
   settings.budget = budget.value_or(settings.quick ? 0.25 : 1);
   settings.noise = noise_mm / 1e3;
+  if (!std::isfinite(settings.budget) || !std::isfinite(settings.noise))  // a NaN is in no range and passes them all
+    throw support::UsageError("--scale-budget and --noise-mm must be numbers");
   const std::filesystem::path folder = program.output_folder();
   const vn::Robot<6> robot = vn::robots::abb_irb120();
   const std::uint64_t seed = program.common().seed;

@@ -61,7 +61,7 @@ SearchResult minimize(const A& algorithm, const F& objective, const Box& box, co
       if constexpr (BatchObjective<F>) {
         objective(population.middleCols(begin, end - begin), fitness.segment(begin, end - begin));
       } else {
-        VectorX x;
+        VectorX x(population.rows());
         for (Index k = begin; k < end; ++k) {
           x = population.col(k);
           fitness(k) = objective(x);

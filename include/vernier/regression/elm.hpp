@@ -5,6 +5,7 @@
 
 #include "vernier/regression/hidden_layer.hpp"
 #include "vernier/regression/least_squares.hpp"
+#include "vernier/regression/normal_equations.hpp"
 
 namespace vernier {
 
@@ -22,10 +23,21 @@ class ElmTrainingError {
   /// @param population dimension x particles
   /// @param fitness    one value a particle
   void operator()(const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) const {
+    const double samples = static_cast<double>(targets_.rows());
+    NormalEquations equations(layer_, features_, targets_);
     MatrixX h;
     for (Index k = 0; k < population.cols(); ++k) {
-      layer_.outputs(features_, population.col(k), h);
-      fitness(k) = relative_ridge(h, targets_, relative_lambda_).objective / static_cast<double>(targets_.rows());
+      double objective = -1;
+      if (NormalEquations::supports(layer_.activation)) {
+        equations.form(population.col(k));
+        objective =
+            relative_ridge_objective(equations.gram(), equations.right(), equations.target_square(), relative_lambda_);
+      }
+      if (!(objective >= 0)) {  // too nearly perfect or too badly conditioned to be told from the products
+        layer_.outputs(features_, population.col(k), h);
+        objective = relative_ridge(h, targets_, relative_lambda_).objective;
+      }
+      fitness(k) = objective / samples;
     }
   }
 

@@ -94,6 +94,28 @@ inline RidgeSolution relative_ridge(const MatrixX& h, const MatrixX& t, double r
   return out;
 }
 
+/// The objective of `relative_ridge` from the products alone: no second pass over the samples, but digits are lost
+/// where the fit is nearly perfect or beta is huge. Returns -1 where fewer than seven digits would be left.
+/// @param gram            H'H, its lower triangle
+/// @param right           T'H, outputs x nodes
+/// @param target_square   |T|^2
+/// @param relative_lambda as in `relative_ridge`
+inline double relative_ridge_objective(const Eigen::Ref<const MatrixX>& gram, const Eigen::Ref<const MatrixX>& right,
+                                       double target_square, double relative_lambda) {
+  const double trace = gram.trace(), lambda = relative_lambda * trace / static_cast<double>(gram.rows());
+  if (!(lambda > 0) || !std::isfinite(lambda)) return -1;
+  MatrixX regularised = gram;
+  regularised.diagonal().array() += lambda;
+  const Eigen::LLT<Eigen::Ref<MatrixX>> factor(regularised);  // in place
+  if (factor.info() != Eigen::Success) return -1;
+  const MatrixX beta = factor.solve(right.transpose());
+  const double size = beta.squaredNorm();
+  // quadratic in beta, so that an error of beta enters squared
+  const double objective = target_square - 2 * right.transpose().cwiseProduct(beta).sum() +
+                           beta.cwiseProduct(gram.selfadjointView<Eigen::Lower>() * beta).sum() + lambda * size;
+  return objective > 1e-7 * target_square && objective > 1e-8 * trace * size ? objective : -1;
+}
+
 /// Ridge regression with an unpenalised mean, for every lambda from one decomposition.
 /// @cite Allen 1974 (PRESS); Huang 2012
 class RidgePath {

@@ -1,0 +1,164 @@
+#pragma once
+
+/// @file
+/// Normal equations of a sigmoid hidden layer in one pass over the samples: the inner loop of every ELM search.
+///
+/// A tile of samples goes through hidden layer, activation and symmetric product while it stays in the first-level
+/// cache. Targets are further columns of the tile, so H'T and T'T fall out of the same product. Per sample of h nodes
+/// the product costs h^2 / 2 multiply-adds on h loaded numbers, so a block of accumulators kept in registers makes it
+/// arithmetic-bound.
+
+#include <algorithm>
+#include <vector>
+
+#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/simd.hpp"
+
+namespace vernier::detail {
+
+/// What the kernel reads and writes; raw blocks, so that it is compiled once for each instruction set.
+struct NormalEquationsBlock {
+  const double* features;  // samples x inputs, column-major
+  const double* targets;   // samples x outputs, column-major
+  const double* weights;   // (inputs + 1) rows of `stride`, biases last
+  double* tile;            // tile_samples rows of `stride`
+  double* products;        // stride x stride, zero on entry; blocks on and right of the diagonal are added to
+  Index samples, inputs, outputs, nodes, stride, tile_samples;
+  bool tanh;
+};
+
+/// Adds rows i .. i+Rows of the product, columns j .. j+Vectors*W.
+template <int W, int Rows, int Vectors>
+VERNIER_INLINE void product_block(const NormalEquationsBlock& b, Index samples, Index i, Index j) {
+  typename Simd<W>::Double sum[Rows][Vectors], right[Vectors];
+  double* product = b.products + i * b.stride + j;
+  VERNIER_UNROLL
+  for (int r = 0; r < Rows; ++r) {
+    VERNIER_UNROLL
+    for (int v = 0; v < Vectors; ++v) load<W>(sum[r][v], product + r * b.stride + v * W);
+  }
+  for (Index s = 0; s < samples; ++s) {
+    const double* row = b.tile + s * b.stride;
+    VERNIER_UNROLL
+    for (int v = 0; v < Vectors; ++v) load<W>(right[v], row + j + v * W);
+    VERNIER_UNROLL
+    for (int r = 0; r < Rows; ++r) {
+      VERNIER_UNROLL
+      for (int v = 0; v < Vectors; ++v) sum[r][v] += row[i + r] * right[v];
+    }
+  }
+  VERNIER_UNROLL
+  for (int r = 0; r < Rows; ++r) {
+    VERNIER_UNROLL
+    for (int v = 0; v < Vectors; ++v) store<W>(product + r * b.stride + v * W, sum[r][v]);
+  }
+}
+
+/// Hidden layer, activation and product, tile by tile.
+template <int W, int Rows, int Vectors>
+VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
+  for (Index begin = 0; begin < b.samples; begin += b.tile_samples) {
+    const Index samples = std::min(b.tile_samples, b.samples - begin);
+    for (Index s = 0; s < samples; ++s) {
+      double* row = b.tile + s * b.stride;
+      for (Index j = 0; j < b.nodes; j += W) {
+        typename Simd<W>::Double z, w;
+        load<W>(z, b.weights + b.inputs * b.stride + j);
+        for (Index f = 0; f < b.inputs; ++f) {
+          load<W>(w, b.weights + f * b.stride + j);
+          z += b.features[f * b.samples + begin + s] * w;
+        }
+        if (b.tanh) z += z;
+        sigmoid<W>(z);
+        if (b.tanh) z = 2.0 * z - 1.0;
+        store<W>(row + j, z);
+      }
+      for (Index k = 0; k < b.outputs; ++k) row[b.nodes + k] = b.targets[k * b.samples + begin + s];
+      for (Index k = b.nodes + b.outputs; k < b.stride; ++k) row[k] = 0;
+    }
+    for (Index i = 0; i < b.stride; i += Rows) {
+      Index j = i / W * W;
+      for (; j + Vectors * W <= b.stride; j += Vectors * W) product_block<W, Rows, Vectors>(b, samples, i, j);
+      for (; j < b.stride; j += W) product_block<W, Rows, 1>(b, samples, i, j);
+    }
+  }
+}
+
+// Accumulators fill the registers: 8 x 3 of 32, 4 x 3 of 16.
+inline void normal_equations_baseline(const NormalEquationsBlock& b) { normal_equations_kernel<2, 4, 2>(b); }
+#if defined(__x86_64__)
+__attribute__((target("avx2,fma"))) inline void normal_equations_avx2(const NormalEquationsBlock& b) {
+  normal_equations_kernel<4, 4, 3>(b);
+}
+__attribute__((target("avx512f,avx512dq,fma"))) inline void normal_equations_avx512(const NormalEquationsBlock& b) {
+  normal_equations_kernel<8, 8, 3>(b);
+}
+#endif
+
+/// H'H, H'T and T'T of hidden weights, for layers of sigmoid or tanh nodes. Allocates once, in the constructor.
+class NormalEquations {
+ public:
+  static bool supports(Activation activation) {
+    return activation == Activation::sigmoid || activation == Activation::tanh;
+  }
+
+  /// @param layer    its nodes are sigmoid or tanh
+  /// @param features samples x inputs, scaled; must outlive this
+  /// @param targets  samples x outputs; must outlive this
+  /// @param set      instructions to use; must be there
+  NormalEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
+                  InstructionSet set = widest_instruction_set())
+      : layer_(layer), features_(features), targets_(targets), set_(set) {
+    stride_ = (layer.nodes + targets.cols() + 7) / 8 * 8;
+    tile_samples_ = std::max<Index>(8, 3072 / stride_);  // 24 KiB
+    weights_.resize(static_cast<std::size_t>((features.cols() + 1) * stride_));
+    tile_.resize(static_cast<std::size_t>(tile_samples_ * stride_));
+    products_.resize(static_cast<std::size_t>(stride_ * stride_));
+  }
+
+  /// Forms the products at weights `theta`, node by node.
+  void form(const Eigen::Ref<const VectorX>& theta) {
+    const Index f = features_.cols();
+    for (Index k = 0; k < layer_.nodes; ++k)
+      for (Index j = 0; j <= f; ++j) weights_[static_cast<std::size_t>(j * stride_ + k)] = theta(k * (f + 1) + j);
+    std::fill(products_.begin(), products_.end(), 0.0);
+    const NormalEquationsBlock block{features_.data(),
+                                     targets_.data(),
+                                     weights_.data(),
+                                     tile_.data(),
+                                     products_.data(),
+                                     features_.rows(),
+                                     f,
+                                     targets_.cols(),
+                                     layer_.nodes,
+                                     stride_,
+                                     tile_samples_,
+                                     layer_.activation == Activation::tanh};
+    switch (set_) {
+#if defined(__x86_64__)
+      case InstructionSet::avx512: return normal_equations_avx512(block);
+      case InstructionSet::avx2: return normal_equations_avx2(block);
+#endif
+      default: return normal_equations_baseline(block);
+    }
+  }
+
+  /// H'H, nodes x nodes; its lower triangle.
+  auto gram() const { return view().topLeftCorner(layer_.nodes, layer_.nodes); }
+  /// T'H, outputs x nodes.
+  auto right() const { return view().block(layer_.nodes, 0, targets_.cols(), layer_.nodes); }
+  /// |T|^2.
+  double target_square() const { return view().diagonal().segment(layer_.nodes, targets_.cols()).sum(); }
+
+ private:
+  Eigen::Map<const MatrixX> view() const { return {products_.data(), stride_, stride_}; }  // transposed: lower triangle
+
+  HiddenLayer layer_;
+  const MatrixX& features_;
+  const MatrixX& targets_;
+  InstructionSet set_;
+  Index stride_ = 0, tile_samples_ = 0;
+  std::vector<double> weights_, tile_, products_;
+};
+
+}  // namespace vernier::detail

@@ -1,0 +1,236 @@
+// Every model through the laws of its concept, and the laws against planted faults.
+
+#include "vernier/testing/regressor_laws.hpp"
+
+#include <gtest/gtest.h>
+
+#include "laws.hpp"
+#include "vernier/regression/elm.hpp"
+#include "vernier/regression/ridge_elm.hpp"
+#include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/pso.hpp"
+#include "vernier/search/tuned.hpp"
+
+namespace vernier {
+namespace {
+
+using testing::regressor_violations;
+using testing::RegressorLaws;
+using vernier_test::mentions;
+using vernier_test::no_violations;
+
+constexpr Activation activations[] = {Activation::sigmoid, Activation::tanh, Activation::sine,
+                                      Activation::radial_basis};
+constexpr InputMap input_maps[] = {InputMap::raw, InputMap::sines_and_cosines};
+
+TEST(RegressorLaws, ElmWithEachActivationAndInputMap) {
+  for (const Activation activation : activations)
+    for (const InputMap input_map : input_maps)
+      EXPECT_TRUE(no_violations(
+          regressor_violations(Elm{.hidden_nodes = 9, .activation = activation, .input_map = input_map})));
+}
+
+TEST(RegressorLaws, ElmWithEachScalingAndMoreNodesThanSamples) {
+  for (const Scaling scaling : {Scaling::none, Scaling::min_max, Scaling::standard})
+    EXPECT_TRUE(no_violations(
+        regressor_violations(Elm{.hidden_nodes = 9, .input_scaling = scaling, .target_scaling = scaling})));
+  EXPECT_TRUE(no_violations(regressor_violations(Elm{.hidden_nodes = 80, .rcond = 1e-8})));
+}
+
+TEST(RegressorLaws, RidgeElmWithEachActivationAndInputMap) {
+  for (const Activation activation : activations)
+    for (const InputMap input_map : input_maps)
+      EXPECT_TRUE(no_violations(
+          regressor_violations(RidgeElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map})));
+  EXPECT_TRUE(no_violations(regressor_violations(RidgeElm{.hidden_nodes = 80})));
+}
+
+TEST(RegressorLaws, TunedElm) {
+  const Pso pso{.particles = 6, .iterations = 4};
+  const GeneticAlgorithm ga{.individuals = 6, .generations = 4};
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, pso})));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, ga})));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{RidgeElm{.hidden_nodes = 5}, pso})));
+}
+
+/// A user's own: y = A x + b by least squares, no randomness; and the base of the faults below.
+template <int Inputs, int Outputs>
+struct LinearMap {
+  static constexpr int inputs = Inputs;
+  static constexpr int outputs = Outputs;
+  Eigen::Matrix<double, Outputs, Inputs> a;
+  Eigen::Matrix<double, Outputs, 1> b;
+  bool calls_count = false, wrong_rows = false;
+  double slope_error = 0;
+  mutable int calls = 0;
+
+  Eigen::Matrix<double, Outputs, 1> predict(const Eigen::Matrix<double, Inputs, 1>& x) const noexcept {
+    Eigen::Matrix<double, Outputs, 1> y = a * x + b;
+    if (calls_count) y(0) += 1e-9 * ++calls;
+    return y;
+  }
+  Eigen::Matrix<double, Eigen::Dynamic, Outputs> predict(
+      const Eigen::Matrix<double, Eigen::Dynamic, Inputs>& rows) const {
+    Eigen::Matrix<double, Eigen::Dynamic, Outputs> y(rows.rows(), Outputs);
+    for (Index i = 0; i < rows.rows(); ++i) {
+      y.row(i) = (a * rows.row(i).transpose() + b).transpose();
+      if (wrong_rows && i == 3) y.row(i) *= 1 + 1e-9;
+    }
+    return y;
+  }
+  Eigen::Matrix<double, Outputs, Inputs> derivative(const Eigen::Matrix<double, Inputs, 1>&) const noexcept {
+    return a * (1 + slope_error);
+  }
+};
+
+enum class Fault {
+  none,
+  call_order,
+  rows_differ,
+  derivative,
+  changes_inputs,
+  changes_targets,
+  ignores_rows,
+  throws_something_else,
+  remembers_fits,
+  asks_executor,
+};
+
+struct Linear {
+  Fault fault = Fault::none;
+  bool uses_seed = false;
+  mutable int fits = 0;
+
+  template <int Inputs, int Outputs>
+  LinearMap<Inputs, Outputs> fit(const Eigen::Matrix<double, Eigen::Dynamic, Inputs>& x,
+                                 const Eigen::Matrix<double, Eigen::Dynamic, Outputs>& y,
+                                 const FitOptions& options = {}) const {
+    if (fault == Fault::throws_something_else && x.rows() != y.rows()) throw std::runtime_error("rows");
+    if (fault != Fault::ignores_rows) detail::require_samples("Linear", x, y);
+    const Index n = std::min(x.rows(), y.rows());
+    MatrixX h(n, Inputs + 1);
+    h << x.topRows(n), VectorX::Ones(n);
+    const MatrixX solution = Eigen::HouseholderQR<MatrixX>(h).solve(MatrixX(y.topRows(n)));
+    LinearMap<Inputs, Outputs> map{solution.topRows(Inputs).transpose(), solution.row(Inputs).transpose()};
+    if (uses_seed) map.b.array() += 1e-6 * Rng(options.seed).uniform();
+    map.calls_count = fault == Fault::call_order;
+    map.wrong_rows = fault == Fault::rows_differ;
+    map.slope_error = fault == Fault::derivative ? 1e-5 : 0;
+    if (fault == Fault::changes_inputs) const_cast<double&>(x(0, 0)) += 1e-9;
+    if (fault == Fault::changes_targets) const_cast<double&>(y(0, 0)) += 1e-9;
+    if (fault == Fault::remembers_fits) map.b(0) += 1e-9 * fits++;
+    if (fault == Fault::asks_executor) {
+      double parts = 0;
+      options.executor.for_ranges(2, [&](Index begin, Index) {
+        if (begin > 0) parts = 1;
+      });
+      map.b(0) += 1e-9 * parts;
+    }
+    return map;
+  }
+};
+
+/// Keeps a pointer to its samples: right for as long as they live unchanged.
+template <int Inputs, int Outputs>
+struct NearestMap {
+  static constexpr int inputs = Inputs;
+  static constexpr int outputs = Outputs;
+  const Eigen::Matrix<double, Eigen::Dynamic, Outputs>* y;
+
+  Eigen::Matrix<double, Outputs, 1> predict(const Eigen::Matrix<double, Inputs, 1>&) const noexcept {
+    return y->row(0).transpose();
+  }
+  Eigen::Matrix<double, Eigen::Dynamic, Outputs> predict(
+      const Eigen::Matrix<double, Eigen::Dynamic, Inputs>& rows) const {
+    return y->row(0).replicate(rows.rows(), 1);
+  }
+  Eigen::Matrix<double, Outputs, Inputs> derivative(const Eigen::Matrix<double, Inputs, 1>&) const noexcept {
+    return Eigen::Matrix<double, Outputs, Inputs>::Zero();
+  }
+};
+struct Nearest {
+  template <int Inputs, int Outputs>
+  NearestMap<Inputs, Outputs> fit(const Eigen::Matrix<double, Eigen::Dynamic, Inputs>& x,
+                                  const Eigen::Matrix<double, Eigen::Dynamic, Outputs>& y,
+                                  const FitOptions& = {}) const {
+    detail::require_samples("Nearest", x, y);
+    return {&y};
+  }
+};
+
+/// An ELM that forgets to pass the seed on.
+struct SeedlessElm {
+  template <class X, class Y>
+  auto fit(const Eigen::MatrixBase<X>& x, const Eigen::MatrixBase<Y>& y, const FitOptions& = {}) const {
+    return Elm{.hidden_nodes = 5}.fit(x, y, {.seed = 1});
+  }
+};
+
+static_assert(Regressor<Elm> && Regressor<RidgeElm> && Regressor<Linear> && Regressor<Nearest> &&
+              Regressor<SeedlessElm>);
+static_assert(Regressor<Tuned<Elm, Pso>> && Regressor<Tuned<RidgeElm, GeneticAlgorithm>>);
+static_assert(TunableRegressor<Elm> && TunableRegressor<RidgeElm>);
+static_assert(!TunableRegressor<Linear>, "nothing to search for");
+static_assert(Predictor<ElmPredictor<6, 3>> && Predictor<ElmPredictor<1, 1>> && Predictor<LinearMap<3, 2>>);
+
+/// Near misses of the concepts.
+struct ThrowingMap : LinearMap<3, 2> {
+  using LinearMap<3, 2>::predict;
+  Eigen::Vector2d predict(const Vector3& x) const { return LinearMap<3, 2>::predict(x); }  // not noexcept
+};
+struct NoDerivative {
+  static constexpr int inputs = 3;
+  static constexpr int outputs = 2;
+  Eigen::Vector2d predict(const Vector3&) const noexcept;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> predict(const Eigen::Matrix<double, Eigen::Dynamic, 3>&) const;
+};
+struct FitNotConst {
+  template <class X, class Y>
+  auto fit(const Eigen::MatrixBase<X>& x, const Eigen::MatrixBase<Y>& y, const FitOptions& options) {
+    return Elm{}.fit(x, y, options);
+  }
+};
+struct FitGivesNothing {
+  template <class X, class Y>
+  void fit(const Eigen::MatrixBase<X>&, const Eigen::MatrixBase<Y>&, const FitOptions&) const {}
+};
+static_assert(!Predictor<ThrowingMap> && !Predictor<NoDerivative> && !Predictor<int>);
+static_assert(!Regressor<FitNotConst> && !Regressor<FitGivesNothing> && !Regressor<Pso> && !Regressor<int>);
+
+TEST(RegressorLaws, UsersOwnRegressor) {
+  EXPECT_TRUE(no_violations(regressor_violations(Linear{}, {.uses_seed = false})));
+  EXPECT_TRUE(no_violations(regressor_violations(Linear{.uses_seed = true})));
+}
+
+void expect_caught(Fault fault, const char* sentence) {
+  const auto violations = regressor_violations(Linear{.fault = fault}, {.uses_seed = false});
+  EXPECT_TRUE(mentions(violations, sentence)) << sentence << no_violations(violations).message();
+}
+
+TEST(RegressorLaws, CatchPlantedFaults) {
+  expect_caught(Fault::call_order, "predictions depend on the order of the calls");
+  expect_caught(Fault::rows_differ, "predict(rows) differs from predict(sample)");
+  expect_caught(Fault::derivative, "derivative differs from central differences");
+  expect_caught(Fault::changes_inputs, "fit changed its samples");
+  expect_caught(Fault::changes_targets, "fit changed its samples");
+  expect_caught(Fault::ignores_rows, "mismatched rows did not throw");
+  expect_caught(Fault::throws_something_else, "something other than std::invalid_argument");
+  expect_caught(Fault::remembers_fits, "the same seed gave another predictor");
+  expect_caught(Fault::asks_executor, "with an executor of 2 threads");
+}
+
+TEST(RegressorLaws, CatchFaultsOfSeedAndLifetime) {
+  EXPECT_TRUE(mentions(regressor_violations(SeedlessElm{}), "another seed gave the same predictor"));
+  EXPECT_TRUE(mentions(regressor_violations(Elm{.hidden_nodes = 5}, {.uses_seed = false}), "the seed matters"));
+  EXPECT_TRUE(mentions(regressor_violations(Nearest{}, {.uses_seed = false}), "the predictor refers to the samples"));
+}
+
+// Each fault is one violation for either pair of sizes, not an avalanche.
+TEST(RegressorLaws, NameOnlyWhatIsWrong) {
+  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::derivative}, {.uses_seed = false}).size(), 2u);
+  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_rows}, {.uses_seed = false}).size(), 2u);
+  EXPECT_THROW(regressor_violations(Linear{}, {.samples = 1}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vernier

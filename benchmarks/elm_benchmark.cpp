@@ -1,0 +1,190 @@
+// What a search over an ELM's hidden weights pays: the fitness of one particle, against Eigen written out.
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "program.hpp"
+#include "vernier/compensation/cartesian.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/regression/elm.hpp"
+#include "vernier/regression/ridge_elm.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vn = vernier;
+using vn::MatrixX;
+using vn::VectorX;
+
+namespace {
+
+constexpr const char* about =
+    R"(elm_benchmark: extreme learning machines of 65 sigmoid nodes, 6 joint angles in, 3 position errors out, 5,000 samples
+
+  fitness         of one particle of PSO-ELM (Elm::objective): hidden layer, output weights, training error; against
+                  Eigen written out, each with its own hidden layer and residual:
+                    Eigen Gram + LLT    H'H + lambda I, the same lambda
+                    Eigen Householder   QR of H, no ridge
+                    Eigen BDCSVD        minimum norm
+  leave-one-out   fitness of RidgeElm (sines and cosines in) over 25 ridges and the mean alone: one BDCSVD of the
+                  centred H, leverages written out
+  predict         one sample; against a 65-node layer in dynamic Eigen matrices
+  correct         the joint command of CartesianCompensation{Elm} at one pose; no peer
+
+All compute from the same samples, scaled alike. Their fitness is compared before anything is timed.)";
+
+constexpr vn::Index samples = 5000;
+constexpr int nodes = 65;
+
+using Inputs = vn::JointRows<6>;
+using Targets = vn::PointRows;
+
+/// The hidden layer as one writes it.
+MatrixX hidden(const MatrixX& features, const VectorX& theta) {
+  const vn::Index f = features.cols();
+  const Eigen::Map<const MatrixX> weights(theta.data(), f + 1, nodes);
+  const MatrixX z = (features * weights.topRows(f)).rowwise() + weights.row(f);
+  return (1 + (-z.array()).exp()).inverse();
+}
+
+double gram_fitness(const MatrixX& features, const MatrixX& targets, const VectorX& theta) {
+  const MatrixX h = hidden(features, theta);
+  MatrixX gram = h.transpose() * h;
+  const double lambda = 1e-10 * gram.trace() / nodes;
+  gram.diagonal().array() += lambda;
+  const MatrixX beta = gram.llt().solve(h.transpose() * targets);
+  return ((h * beta - targets).squaredNorm() + lambda * beta.squaredNorm()) / samples;
+}
+
+double householder_fitness(const MatrixX& features, const MatrixX& targets, const VectorX& theta) {
+  const MatrixX h = hidden(features, theta);
+  const MatrixX beta = h.householderQr().solve(targets);
+  return (h * beta - targets).squaredNorm() / samples;
+}
+
+double svd_fitness(const MatrixX& features, const MatrixX& targets, const VectorX& theta) {
+  const MatrixX h = hidden(features, theta);
+  const MatrixX beta = h.bdcSvd(Eigen::ComputeThinU | Eigen::ComputeThinV).solve(targets);
+  return (h * beta - targets).squaredNorm() / samples;
+}
+
+/// Leave-one-out error of a ridge with a free mean, least over the ridges that Vernier tries.
+double leave_one_out(const MatrixX& features, const MatrixX& targets, const VectorX& theta) {
+  MatrixX h = hidden(features, theta);
+  h.rowwise() -= h.colwise().mean().eval();
+  const MatrixX t = targets.rowwise() - targets.colwise().mean();
+  const Eigen::BDCSVD<MatrixX> svd(h, Eigen::ComputeThinU);
+  const MatrixX projected = svd.matrixU().transpose() * t, squares = svd.matrixU().cwiseAbs2();
+  const Eigen::ArrayXd s2 = svd.singularValues().array().square();
+  double best = (t * (samples / (samples - 1.0))).squaredNorm() / samples;
+  for (int exponent = 0; exponent >= -24; --exponent) {
+    const VectorX share = s2 / (s2 + s2(0) * std::pow(10.0, exponent / 2.0));
+    const MatrixX residual = t - svd.matrixU() * (share.asDiagonal() * projected);
+    const VectorX rest = (1 - 1.0 / samples - (squares * share).array()).matrix();
+    best = std::min(best, (residual.array().colwise() / rest.array()).matrix().squaredNorm() / samples);
+  }
+  return best;
+}
+
+/// A predictor in dynamic matrices, scalings folded in as far as Vernier's.
+struct PlainPredictor {
+  VectorX offset, factor, bias, mean;
+  MatrixX weights, beta;  // nodes x inputs, outputs x nodes
+  VectorX operator()(const VectorX& x) const {
+    const VectorX z = weights * (x - offset).cwiseProduct(factor) + bias;
+    return mean + beta * (1 + (-z.array()).exp()).inverse().matrix();
+  }
+};
+
+int work(bench::Program& program, int argc, char** argv) {
+  const auto arm = vn::robots::abb_irb120().chain;
+  const auto actual = vn::with_geometric_errors(arm, {}, 1);
+  const Inputs x = vn::abb_irb120_operating_region().sample(arm, samples, 1);
+  const vn::Dataset<6> data = vn::measure(actual, x);
+  const Targets y = vn::positions(arm, x) - data.positions();
+
+  const vn::Elm elm{.hidden_nodes = nodes};
+  const vn::RidgeElm ridge{.hidden_nodes = nodes};
+  const MatrixX features = vn::ColumnScaling::fit(x, vn::Scaling::min_max).apply(x);
+  const MatrixX targets = vn::ColumnScaling::fit(y, vn::Scaling::min_max).apply(y);
+  const MatrixX sines = ridge.layer().map(x);
+
+  constexpr std::size_t particles = 16, mask = particles - 1;
+  std::vector<VectorX> theta, wide;
+  for (std::size_t k = 0; k < particles; ++k) {
+    theta.push_back(elm.layer().draw(6, k));
+    wide.push_back(ridge.layer().draw(6, k));
+  }
+  const auto ours = [objective = elm.objective(x, y)](const VectorX& at) {
+    VectorX fitness(1);
+    objective(at, fitness);
+    return fitness(0);
+  };
+  const auto our_leave_one_out = [objective = ridge.objective(x, y)](const VectorX& at) {
+    VectorX fitness(1);
+    objective(at, fitness);
+    return fitness(0);
+  };
+  const auto predictor = elm.fit_at(x, y, theta[0]);
+  PlainPredictor plain{predictor.scaling().offset,  predictor.scaling().factor, {}, predictor.offset(), {},
+                       predictor.beta().transpose()};
+  const VectorX weights = predictor.theta();
+  plain.weights = Eigen::Map<const MatrixX>(weights.data(), 7, nodes).topRows(6).transpose();
+  plain.bias = Eigen::Map<const MatrixX>(weights.data(), 7, nodes).row(6).transpose();
+  std::vector<vn::JointVector<6>> at;
+  std::vector<VectorX> plain_at;
+  for (vn::Index i = 0; i < 1024; ++i) {
+    at.push_back(x.row(i).transpose());
+    plain_at.emplace_back(x.row(i).transpose());
+  }
+
+  // All compute the same? Fitness without the ridge differs by what the ridge costs.
+  const auto relative = [](double a, double b) { return std::abs(a - b) / std::abs(b); };
+  double by_gram = 0, by_qr = 0, by_svd = 0, by_loo = 0, by_plain = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    by_gram = std::max(by_gram, relative(ours(theta[k]), gram_fitness(features, targets, theta[k])));
+    by_qr = std::max(by_qr, relative(ours(theta[k]), householder_fitness(features, targets, theta[k])));
+    by_svd = std::max(by_svd, relative(ours(theta[k]), svd_fitness(features, targets, theta[k])));
+    by_loo = std::max(by_loo, relative(our_leave_one_out(wide[k]), leave_one_out(sines, y, wide[k])));
+  }
+  for (std::size_t i = 0; i < at.size(); ++i)
+    by_plain = std::max(by_plain, (predictor.predict(at[i]) - plain(plain_at[i])).norm());
+  bench::require_agreement("fitness and Gram + LLT", by_gram, 1e-6);
+  bench::require_agreement("fitness and Householder QR", by_qr, 1e-2);
+  bench::require_agreement("fitness and BDCSVD", by_svd, 1e-2);
+  bench::require_agreement("leave-one-out errors", by_loo, 1e-6);
+  bench::require_agreement("predictions [m]", by_plain, 1e-9);
+
+  program.measure("fitness", "vernier", [=](std::size_t i) { return ours(theta[i & mask]); });
+  program.measure("fitness", "Eigen Gram + LLT",
+                  [=](std::size_t i) { return gram_fitness(features, targets, theta[i & mask]); });
+  program.measure("fitness", "Eigen Householder",
+                  [=](std::size_t i) { return householder_fitness(features, targets, theta[i & mask]); });
+  program.measure("fitness", "Eigen BDCSVD",
+                  [=](std::size_t i) { return svd_fitness(features, targets, theta[i & mask]); });
+
+  program.measure("leave-one-out", "vernier", [=](std::size_t i) { return our_leave_one_out(wide[i & mask]); });
+  program.measure("leave-one-out", "Eigen BDCSVD",
+                  [=](std::size_t i) { return leave_one_out(sines, y, wide[i & mask]); });
+
+  program.measure("predict", "vernier", [=](std::size_t i) { return predictor.predict(at[i & 1023]); });
+  program.measure("predict", "Eigen, dynamic matrices", [=](std::size_t i) { return plain(plain_at[i & 1023]); });
+
+  const auto compensation = vn::CartesianCompensation{elm}.fit(arm, data, {.seed = 1});
+  program.measure("correct", "vernier", [=](std::size_t i) { return compensation.correct(at[i & 1023]); });
+
+  if (const int status = program.run(argc, argv); status != 0) return status;
+  std::printf("\nfitness against Gram + LLT, Householder, BDCSVD: relative difference at most %.1e, %.1e, %.1e\n",
+              by_gram, by_qr, by_svd);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return bench::run_program(about, argc, argv, [&](bench::Program& program) { return work(program, argc, argv); });
+}

@@ -1,0 +1,174 @@
+// The update worked by hand, the inertia, the limits.
+
+#include "vernier/search/pso.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+
+namespace vernier {
+namespace {
+
+/// Two coordinates of different width.
+Box box2() { return {Eigen::Vector2d(-1, 10), Eigen::Vector2d(3, 20)}; }
+
+double bowl(const VectorX& x) { return (x(0) - 1) * (x(0) - 1) + (x(1) - 12) * (x(1) - 12) / 4; }
+
+const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
+  fitness.resize(population.cols());
+  for (Index k = 0; k < population.cols(); ++k) fitness(k) = bowl(population.col(k));
+};
+
+// Positions and velocities in the order they are drawn: particle by particle, coordinate by coordinate, x then v.
+TEST(Pso, FirstSwarmByHand) {
+  const Pso pso{.particles = 2, .velocity_limit = 0.5};
+  const Pso::State s = pso.start(box2(), 77, evaluate_bowl);
+  Rng rng(77);
+  for (Index k = 0; k < 2; ++k) {
+    EXPECT_EQ(s.positions(0, k), -1 + 4 * rng.uniform());
+    EXPECT_EQ(s.velocities(0, k), -1 + 2 * rng.uniform());  // half the half width
+    EXPECT_EQ(s.positions(1, k), 10 + 10 * rng.uniform());
+    EXPECT_EQ(s.velocities(1, k), -2.5 + 5 * rng.uniform());
+  }
+  const Index leader = bowl(s.positions.col(0)) <= bowl(s.positions.col(1)) ? 0 : 1;
+  EXPECT_EQ(s.best, s.positions.col(leader));
+  EXPECT_EQ(s.best_fitness, bowl(s.positions.col(leader)));
+  EXPECT_EQ(s.generation, 0);
+}
+
+// Two particles, two coordinates, two iterations: every number from the formulas, with none of the library's code but
+// the random numbers.
+TEST(Pso, UpdatesByHand) {
+  const double c1 = 1.7, c2 = 2.3, limits[2] = {2, 5};
+  const Pso pso{
+      .particles = 2, .iterations = 4, .inertia_start = 0.9, .inertia_end = 0.4, .cognitive = c1, .social = c2};
+  Pso::State s = pso.start(box2(), 5, evaluate_bowl);
+  Rng rng(5);
+  double x[2][2], v[2][2], p[2][2], p_value[2];
+  for (int k = 0; k < 2; ++k)
+    for (int d = 0; d < 2; ++d) {
+      x[k][d] = p[k][d] = (d == 0 ? -1 + 4 * rng.uniform() : 10 + 10 * rng.uniform());
+      v[k][d] = -limits[d] + 2 * limits[d] * rng.uniform();
+    }
+  const auto value = [](const double* at) { return bowl(Eigen::Vector2d(at[0], at[1])); };
+  for (int k = 0; k < 2; ++k) p_value[k] = value(x[k]);
+  const double w[2] = {0.775, 0.65};  // 0.9 - 0.5 k / 4
+  for (int iteration = 0; iteration < 2; ++iteration) {
+    const int g = p_value[0] <= p_value[1] ? 0 : 1;
+    const double leader[2] = {p[g][0], p[g][1]};
+    for (int k = 0; k < 2; ++k)
+      for (int d = 0; d < 2; ++d) {
+        const double r1 = rng.uniform(), r2 = rng.uniform();
+        v[k][d] = w[iteration] * v[k][d] + c1 * r1 * (p[k][d] - x[k][d]) + c2 * r2 * (leader[d] - x[k][d]);
+        v[k][d] = std::min(std::max(v[k][d], -limits[d]), limits[d]);
+        x[k][d] += v[k][d];
+      }
+    for (int k = 0; k < 2; ++k)
+      if (value(x[k]) < p_value[k]) {
+        p_value[k] = value(x[k]);
+        std::copy(x[k], x[k] + 2, p[k]);
+      }
+    pso.step(s, box2(), evaluate_bowl);
+    for (int k = 0; k < 2; ++k)
+      for (int d = 0; d < 2; ++d) {
+        EXPECT_NEAR(s.velocities(d, k), v[k][d], 1e-13) << iteration << " " << k << " " << d;
+        EXPECT_NEAR(s.positions(d, k), x[k][d], 1e-13);
+        EXPECT_NEAR(s.best_positions(d, k), p[k][d], 1e-13);
+      }
+    EXPECT_NEAR(s.best_fitness, std::min(p_value[0], p_value[1]), 1e-13);
+    EXPECT_EQ(s.generation, iteration + 1);
+  }
+}
+
+// One particle sits on its own best and on the swarm's: only inertia moves it, so w shows.
+TEST(Pso, InertiaFallsLinearly) {
+  const Pso pso;
+  EXPECT_DOUBLE_EQ(pso.inertia(1), 0.9 - 0.5 / 300);
+  EXPECT_DOUBLE_EQ(pso.inertia(150), 0.65);
+  EXPECT_DOUBLE_EQ(pso.inertia(300), 0.4);
+
+  const Pso one{.particles = 1, .iterations = 10};
+  const auto falling = [](const MatrixX& population, VectorX& fitness) { fitness = -population.row(0).transpose(); };
+  Pso::State s = one.start(Box::cube(1, 0, 1), 1, falling);
+  s.velocities(0, 0) = 0.1;  // uphill: every position is the best so far
+  double expected = 0.1;
+  for (Index k = 1; k <= 10; ++k) {
+    one.step(s, Box::cube(1, 0, 1), falling);
+    expected *= 0.9 - 0.05 * static_cast<double>(k);
+    EXPECT_NEAR(s.velocities(0, 0), expected, 1e-15);
+  }
+  EXPECT_TRUE(one.done(s));
+}
+
+// Constants that would throw particles far away: the limit holds in every coordinate, and is reached.
+TEST(Pso, VelocityStaysWithinItsLimit) {
+  const Pso pso{.particles = 8, .iterations = 30, .cognitive = 20, .social = 20, .velocity_limit = 0.25};
+  Pso::State s = pso.start(box2(), 3, evaluate_bowl);
+  const Eigen::Vector2d limit(0.5, 1.25);
+  double largest = 0;
+  while (!pso.done(s)) {
+    const MatrixX before = s.positions;
+    pso.step(s, box2(), evaluate_bowl);
+    const MatrixX relative = limit.cwiseInverse().asDiagonal() * s.velocities;
+    EXPECT_LE(relative.cwiseAbs().maxCoeff(), 1);
+    EXPECT_LT((s.positions - before - s.velocities).cwiseAbs().maxCoeff(), 1e-13);
+    largest = std::max(largest, relative.cwiseAbs().maxCoeff());
+  }
+  EXPECT_EQ(s.generation, 30);
+  EXPECT_EQ(largest, 1);
+}
+
+// Every particle is driven over the upper bound of coordinate 0: it stops there, its velocity zero, and the other
+// coordinate goes on.
+TEST(Pso, ClampedParticlesStopAtTheBound) {
+  const Box box = box2();
+  for (const PositionRule rule : {PositionRule::clamped, PositionRule::unbounded}) {
+    const Pso pso{.particles = 4, .iterations = 10, .cognitive = 0, .social = 0, .positions = rule};
+    Pso::State s = pso.start(box, 2, evaluate_bowl);
+    s.positions.row(0).setConstant(2.9);
+    s.velocities.row(0).setConstant(2);
+    s.positions.row(1).setConstant(10.5);
+    s.velocities.row(1) << 1, -1, 1, -1;
+    pso.step(s, box, evaluate_bowl);
+    const double w = 0.85;
+    for (Index k = 0; k < 4; ++k) {
+      if (rule == PositionRule::clamped) {
+        EXPECT_EQ(s.positions(0, k), 3);
+        EXPECT_EQ(s.velocities(0, k), 0);
+      } else {
+        EXPECT_NEAR(s.positions(0, k), 2.9 + 2 * w, 1e-14);
+        EXPECT_NEAR(s.velocities(0, k), 2 * w, 1e-14);
+      }
+    }
+    EXPECT_NEAR(s.positions(1, 0), 10.5 + w, 1e-13);
+    EXPECT_NEAR(s.velocities(1, 0), w, 1e-13);
+    if (rule == PositionRule::clamped) {
+      EXPECT_EQ(s.positions(1, 1), 10);
+      EXPECT_EQ(s.velocities(1, 1), 0);
+    }
+  }
+}
+
+TEST(Pso, RefusesUnusableOptions) {
+  const auto start = [](const Pso& pso) { return pso.start(box2(), 1, evaluate_bowl); };
+  const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(start({.particles = 0}), std::invalid_argument);
+  EXPECT_THROW(start({.iterations = -1}), std::invalid_argument);
+  EXPECT_THROW(start({.inertia_start = nan}), std::invalid_argument);
+  EXPECT_THROW(start({.cognitive = -1}), std::invalid_argument);
+  EXPECT_THROW(start({.velocity_limit = 0}), std::invalid_argument);
+  EXPECT_THROW(start({.velocity_limit = nan}), std::invalid_argument);
+  EXPECT_THROW(start({.velocity_limit = infinity}), std::invalid_argument);
+  try {
+    start({.particles = -3});
+    FAIL() << "a negative number of particles was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("-3"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace vernier

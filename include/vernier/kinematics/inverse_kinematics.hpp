@@ -115,7 +115,9 @@ IkResult<M::dof> damped_inverse_kinematics(const M& model, const Isometry3& targ
       if (iterations >= options.max_iterations || damping > 1e12) return finish(best, IkStatus::stalled, iterations);
       Square damped = normal;
       damped.diagonal().array() += damping * best.cost + 1e-14 * scale;
-      const JointVector<N> q = options.limits.clamp(best.q + damped.ldlt().solve(gradient));
+      JointVector<N> step = damped.ldlt().solve(gradient);
+      step *= std::min(1.0, 1.5 / step.norm());  // rad (or m): no turns for nothing near a singularity
+      const JointVector<N> q = options.limits.clamp(best.q + step);
       JointVector<N> trial = best.q;
       trial.head(moving) = q.head(moving);
       const Iterate next = evaluate(trial);

@@ -1,0 +1,306 @@
+// Inverse kinematics: near seeds, limits, targets out of reach, singular starts, positions alone, joints held still.
+
+#include "vernier/kinematics/inverse_kinematics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "random_chains.hpp"
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vn = vernier;
+using vernier_test::random_joints;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// The error that the solver makes least, in metres.
+template <int N>
+double weighted_error(const vn::IkResult<N>& result) {
+  return std::hypot(result.position_error, vn::IkOptions<N>{}.rotation_length * result.rotation_error);
+}
+
+/// What the result says is left must be what is left.
+template <class Model>
+void expect_honest(const Model& model, const vn::Isometry3& target, const vn::IkResult<Model::dof>& result,
+                   const vn::IkOptions<Model::dof>& options, bool full_pose) {
+  const vn::Vector6 left = vn::pose_difference(target, model.pose(result.joints));
+  EXPECT_NEAR(left.head<3>().norm(), result.position_error, 1e-14);
+  if (full_pose) {
+    EXPECT_NEAR(left.tail<3>().norm(), result.rotation_error, 1e-14);
+  } else {
+    EXPECT_EQ(result.rotation_error, 0);
+  }
+  const bool within_tolerances =
+      result.position_error <= options.position_tolerance && result.rotation_error <= options.rotation_tolerance;
+  EXPECT_EQ(result.status == vn::IkStatus::converged, within_tolerances);
+  EXPECT_TRUE(options.limits.contains(result.joints));
+  EXPECT_LE(result.iterations, options.max_iterations);
+}
+
+/// 2000 poses within the limits, seeds within 0.05 rad of a solution in each joint.
+template <int N, class Convention>
+void expect_convergence(const vn::Robot<N, Convention>& robot, bool full_pose) {
+  SCOPED_TRACE(vn::message(robot.name, full_pose ? ", poses" : ", positions"));
+  constexpr int n = 2000;
+  vn::Rng rng(41);
+  vn::IkOptions<N> options;
+  options.limits = robot.limits;
+  int converged = 0;
+  long evaluations = 0;
+  for (int i = 0; i < n; ++i) {
+    const vn::JointVector<N> q = random_joints<N>(rng, robot.limits);
+    const vn::JointVector<N> seed = q + random_joints<N>(rng, 0.05);
+    const vn::Isometry3 target = robot.chain.pose(q);
+    const auto result = full_pose ? inverse_kinematics(robot.chain, target, seed, options)
+                                  : inverse_kinematics(robot.chain, vn::Vector3(target.translation()), seed, options);
+    expect_honest(robot.chain, target, result, options, full_pose);
+    converged += result.status == vn::IkStatus::converged;
+    evaluations += result.iterations;
+  }
+  EXPECT_GE(converged, n * 999 / 1000);
+  EXPECT_LE(evaluations, 5 * n) << "about five evaluations from a near seed";
+}
+
+template <class Check>
+void for_the_catalogue(Check&& check) {
+  check(vn::robots::abb_irb120());
+  check(vn::robots::ur10());
+  check(vn::robots::ur5());
+  check(vn::robots::barrett_wam());
+  check(vn::robots::puma560());
+  check(vn::robots::puma560_modified());
+}
+
+TEST(InverseKinematics, ConvergesFromNearSeeds) {
+  for_the_catalogue([](const auto& robot) {
+    expect_convergence(robot, true);
+    expect_convergence(robot, false);
+  });
+}
+
+TEST(InverseKinematics, ASeedOutsideTheLimitsIsTakenIntoThem) {
+  const auto robot = vn::robots::abb_irb120();
+  vn::IkOptions<6> options;
+  options.limits = robot.limits;
+  vn::Rng rng(42);
+  for (int i = 0; i < 500; ++i) {
+    const vn::Isometry3 target = robot.chain.pose(random_joints<6>(rng, robot.limits));
+    const auto result = inverse_kinematics(robot.chain, target, random_joints<6>(rng, 20.0), options);
+    expect_honest(robot.chain, target, result, options, true);
+  }
+}
+
+TEST(InverseKinematics, OutOfReachIsNeverConvergedAndGetsAsNearAsItCan) {
+  for_the_catalogue([](const auto& robot) {
+    SCOPED_TRACE(robot.name);
+    constexpr int N = std::remove_cvref_t<decltype(robot.chain)>::dof;
+    double reach = 0;
+    for (const vn::DhRow& row : robot.chain.rows()) reach += std::hypot(row.a, row.d);
+    vn::IkOptions<N> options;
+    options.limits = robot.limits;
+    vn::Rng rng(43);
+    int unreachable = 0, n = 0;
+    for (const double beyond : {1e-4, 1e-2, 1.0}) {
+      for (int i = 0; i < 100; ++i, ++n) {
+        const vn::JointVector<N> seed = random_joints<N>(rng, robot.limits);
+        const vn::Vector3 target = (reach + beyond) * vernier_test::random_direction(rng);
+        vn::Isometry3 pose = robot.chain.pose(seed);
+        pose.translation() = target;
+        const auto result = inverse_kinematics(robot.chain, target, seed, options);
+        EXPECT_NE(result.status, vn::IkStatus::converged);
+        EXPECT_GE(result.position_error, beyond - 1e-12);
+        EXPECT_LE(result.position_error, (target - robot.chain.position(seed)).norm());
+        expect_honest(robot.chain, pose, result, options, false);
+        unreachable += result.status == vn::IkStatus::unreachable;
+
+        const auto full = inverse_kinematics(robot.chain, pose, seed, options);
+        EXPECT_NE(full.status, vn::IkStatus::converged);
+        EXPECT_LE(weighted_error(full), (target - robot.chain.position(seed)).norm() + 1e-12);
+        expect_honest(robot.chain, pose, full, options, true);
+      }
+    }
+    EXPECT_GE(unreachable, n * 9 / 10) << "most say why";
+  });
+}
+
+constexpr vn::DhChain<2> planar{{{{.a = 0.3}, {.a = 0.2}}}};
+
+TEST(InverseKinematics, ReachOfAPlanarArmIsFoundToTheMicrometre) {
+  // The boundary is a circle of 0.5 m, where the arm is singular: just inside converges, just outside is unreachable.
+  vn::Rng rng(44);
+  for (const double beyond : {-1e-2, -1e-4, -1e-6, 1e-6, 1e-4, 1e-2, 1.0}) {
+    SCOPED_TRACE(beyond);
+    for (int i = 0; i < 200; ++i) {
+      const double heading = rng.uniform(-pi, pi);
+      const vn::Vector3 target = (0.5 + beyond) * vn::Vector3(std::cos(heading), std::sin(heading), 0);
+      const vn::JointVector<2> seed(heading + rng.uniform(-0.5, 0.5), rng.sign() * rng.uniform(0.05, 0.5));
+      const auto result = inverse_kinematics(planar, target, seed);
+      EXPECT_EQ(result.status, beyond < 0 ? vn::IkStatus::converged : vn::IkStatus::unreachable);
+      EXPECT_LE(result.position_error, std::max(beyond, 0.0) + 5e-6);
+    }
+  }
+}
+
+TEST(InverseKinematics, ALimitInTheWayIsUnreachable) {
+  vn::IkOptions<2> options;
+  options.limits = {{-1, 0.5}, {1, 2}};
+  const vn::Vector3 target = planar.position({0.2, 0.1});  // the elbow may not open that far
+  const auto result = inverse_kinematics(planar, target, {0.2, 1.0}, options);
+  EXPECT_EQ(result.status, vn::IkStatus::unreachable);
+  EXPECT_EQ(result.joints(1), 0.5);
+  // Joint 1 then turns the tool onto the target's ray, the nearest it can get.
+  const vn::Vector3 tool = planar.position(result.joints);
+  EXPECT_NEAR(std::atan2(tool.y(), tool.x()), std::atan2(target.y(), target.x()), 1e-3);
+}
+
+/// Targets of all sizes around a singular configuration: never further off than at the start, whenever it is stopped.
+void expect_calm(const vn::Robot<6>& robot, const vn::JointVector<6>& singular) {
+  SCOPED_TRACE(robot.name);
+  ASSERT_LE(std::abs(robot.chain.jacobian(singular).determinant()), 1e-15) << "the start should be singular";
+  vn::Rng rng(45);
+  for (int i = 0; i < 1000; ++i) {
+    const double size = std::pow(10.0, rng.uniform(-6, -1.5));  // [m]; as much rotation, weighted
+    vn::Isometry3 target = robot.chain.pose(singular);
+    target.translation() += size * vernier_test::random_direction(rng);
+    target.linear() = vn::exp_so3(size / 0.3 * vernier_test::random_direction(rng)) * target.linear();
+    for (const int evaluations : {1, 2, 3, 5, 200}) {
+      vn::IkOptions<6> options;
+      options.max_iterations = evaluations;
+      const auto result = inverse_kinematics(robot.chain, target, singular, options);
+      expect_honest(robot.chain, target, result, options, true);
+      EXPECT_LE(weighted_error(result), std::sqrt(2.0) * size * (1 + 1e-9));
+      EXPECT_LE((robot.chain.position(result.joints) - robot.chain.position(singular)).norm(),
+                (1 + std::sqrt(2.0)) * size * (1 + 1e-9));
+      EXPECT_LE((result.joints - singular).cwiseAbs().maxCoeff(), pi) << "no joint winds up";
+    }
+  }
+}
+
+vn::JointVector<6> joints(double q1, double q2, double q3, double q4, double q5, double q6) {
+  return (vn::JointVector<6>() << q1, q2, q3, q4, q5, q6).finished();
+}
+
+TEST(InverseKinematics, ASingularStartNeverThrowsThePoseAway) {
+  expect_calm(vn::robots::puma560(), joints(0.3, 0.5, -0.4, 0.2, 0, 0.1));     // wrist
+  expect_calm(vn::robots::abb_irb120(), joints(0.3, 0.5, -0.4, 0.2, 0, 0.1));  // wrist
+  expect_calm(vn::robots::ur5(), joints(0.3, -0.5, 0, 0.2, 0.7, 0.1));         // elbow
+  expect_calm(vn::robots::ur10(), joints(0, 0, 0, 0, 0, 0));                   // elbow and wrist
+}
+
+TEST(InverseKinematics, LeavesASingularWrist) {
+  // A wrist with q5 = 0 can take any small change of pose, by large motions of q4 and q6.
+  vn::Rng rng(46);
+  for (const auto& robot : {vn::robots::puma560(), vn::robots::abb_irb120()}) {
+    const vn::JointVector<6> singular = joints(0.3, 0.5, -0.4, 0.2, 0, 0.1);
+    for (int i = 0; i < 1000; ++i) {
+      const double size = std::pow(10.0, rng.uniform(-6, -2));
+      vn::Isometry3 target = robot.chain.pose(singular);
+      target.translation() += size * vernier_test::random_direction(rng);
+      target.linear() = vn::exp_so3(size / 0.3 * vernier_test::random_direction(rng)) * target.linear();
+      const auto result = inverse_kinematics(robot.chain, target, singular);
+      ASSERT_EQ(result.status, vn::IkStatus::converged) << robot.name << ", " << size << " m";
+    }
+  }
+}
+
+TEST(InverseKinematics, PositionAloneLeavesTheOrientationFree) {
+  const auto robot = vn::robots::abb_irb120();
+  vn::Rng rng(47);
+  int turned = 0;
+  for (int i = 0; i < 200; ++i) {
+    const vn::JointVector<6> q = 0.3 * random_joints<6>(rng, 1.0);
+    const vn::JointVector<6> seed = q + random_joints<6>(rng, 0.2);
+    const auto result = inverse_kinematics(robot.chain, robot.chain.position(q), seed);
+    EXPECT_EQ(result.status, vn::IkStatus::converged);
+    EXPECT_LE((robot.chain.position(result.joints) - robot.chain.position(q)).norm(), 1e-9);
+    EXPECT_EQ(result.rotation_error, 0);
+    turned += vn::pose_difference(robot.chain.pose(q), robot.chain.pose(result.joints)).tail<3>().norm() > 1e-3;
+  }
+  EXPECT_GE(turned, 190);
+}
+
+TEST(InverseKinematics, JointsThatDoNotMoveKeepTheirBits) {
+  const auto robot = vn::robots::abb_irb120();
+  vn::IkOptions<6> options;
+  options.limits = robot.limits;
+  vn::Rng rng(48);
+  int converged = 0;
+  for (int i = 0; i < 500; ++i) {
+    vn::JointVector<6> seed = random_joints<6>(rng, 1.0);
+    seed(4) = 0.3 + std::abs(seed(4));
+    seed(3) = 7.123;  // outside its limits: it does not move all the same
+    vn::JointVector<6> q = seed;
+    q.head<3>() += random_joints<3>(rng, 0.02);
+    options.moving_joints = 3;
+    const auto result = inverse_kinematics(robot.chain, robot.chain.position(q), seed, options);
+    EXPECT_EQ(result.joints.tail<3>(), seed.tail<3>());
+    converged += result.status == vn::IkStatus::converged;
+    options.moving_joints = 1;
+    const auto one = inverse_kinematics(robot.chain, robot.chain.pose(q), seed, options);
+    EXPECT_EQ(one.joints.tail<5>(), seed.tail<5>());
+    EXPECT_NE(one.joints(0), seed(0));
+  }
+  EXPECT_GE(converged, 499);
+}
+
+TEST(InverseKinematics, ARedundantArmStaysNearItsSeed) {
+  // Seven joints, six equations: of all solutions the one found is hardly further from the seed than the one drawn.
+  const auto robot = vn::robots::barrett_wam();
+  vn::Rng rng(49);
+  std::vector<double> ratios;
+  for (int i = 0; i < 1000; ++i) {
+    const vn::JointVector<7> q = random_joints<7>(rng, robot.limits);
+    const vn::JointVector<7> seed = q + random_joints<7>(rng, 0.05);
+    const auto result = inverse_kinematics(robot.chain, robot.chain.pose(q), seed);
+    if (result.status != vn::IkStatus::converged) continue;
+    ratios.push_back((result.joints - seed).norm() / (q - seed).norm());
+  }
+  ASSERT_GE(ratios.size(), 999u);
+  std::sort(ratios.begin(), ratios.end());
+  EXPECT_LE(ratios[ratios.size() / 2], 1.0);
+  EXPECT_LE(ratios[ratios.size() * 98 / 100], 1.2);
+
+  // A way there and back in small steps, always from the last joints: the elbow comes back too.
+  const vn::JointVector<7> start = (vn::JointVector<7>() << 0.2, 0.6, -0.3, 1.2, 0.1, -0.5, 0.4).finished();
+  vn::JointVector<7> q = start;
+  for (int step = 1; step <= 400; ++step) {
+    vn::Isometry3 target = robot.chain.pose(start);
+    target.translation().y() += 0.1 * std::sin(pi * step / 400);
+    const auto result = inverse_kinematics(robot.chain, target, q);
+    ASSERT_EQ(result.status, vn::IkStatus::converged);
+    q = result.joints;
+  }
+  EXPECT_LE((q - start).norm(), 1e-3);
+}
+
+TEST(InverseKinematics, WorksOnAnyModel) {
+  vn::Vector6 base, tool;
+  base << 1, 2, 3, 0.1, -0.2, 3.0;
+  tool << 0.1, 0, 0.2, 0, 1, 0;
+  const vn::Framed model(vn::robots::ur10().chain, vn::FrameParameters(base), vn::FrameParameters(tool));
+  const vn::JointVector<6> q = joints(0.3, -1, 1.2, 0.4, 0.8, -0.6);
+  const auto result = inverse_kinematics(model, model.pose(q), vn::JointVector<6>(q.array() + 0.05));
+  EXPECT_EQ(result.status, vn::IkStatus::converged);
+  EXPECT_LE((result.joints - q).norm(), 1e-7);
+}
+
+TEST(InverseKinematics, WhatIsNotANumberStallsAtTheSeed) {
+  const vn::JointVector<2> seed(0.1, 0.2);
+  const auto result = inverse_kinematics(planar, vn::Vector3(std::nan(""), 0, 0), seed);
+  EXPECT_EQ(result.status, vn::IkStatus::stalled);
+  EXPECT_EQ(result.joints, seed);
+}
+
+TEST(InverseKinematics, AlreadyThereCostsOneEvaluation) {
+  const vn::JointVector<2> q(0.4, 0.9);
+  const auto result = inverse_kinematics(planar, planar.pose(q), q);
+  EXPECT_EQ(result.status, vn::IkStatus::converged);
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_EQ(result.joints, q);
+}
+
+}  // namespace

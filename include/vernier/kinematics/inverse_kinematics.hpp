@@ -107,8 +107,8 @@ IkResult<M::dof> damped_inverse_kinematics(const M& model, const Isometry3& targ
       normal.col(i).setZero();
       normal(i, i) = 1;
     }
-    // Nothing to gain in any direction; and no motion below 10 rad (or m) would remove the error to first order, or it is
-    // only the slow way out of a singularity.
+    // Nothing to gain in any direction; and no motion below 10 rad (or m) would remove the error to first order, or it
+    // is only the slow way out of a singularity.
     if (gradient.norm() <= std::min(1e-3 * std::sqrt(scale * best.cost), 0.1 * best.cost))
       return finish(best, IkStatus::unreachable, iterations);
     for (;;) {

@@ -124,6 +124,33 @@ TEST(RelativeRidge, LayerThatIsNotFiniteIsTheWorst) {
   }
 }
 
+// The fitness a search sees, whichever way it is computed, at the weights of the tests above.
+TEST(ElmObjective, AgreesAtItsWorst) {
+  const Problem p;
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> x = p.x;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> t = p.t;
+  for (const Activation activation :
+       {Activation::sigmoid, Activation::tanh, Activation::sine, Activation::radial_basis}) {
+    const Elm elm{
+        .hidden_nodes = 30, .activation = activation, .input_scaling = Scaling::none, .target_scaling = Scaling::none};
+    MatrixX population(120, 9);
+    population << random_theta(30, 1, 2), random_theta(30, 1, 3, true), VectorX::Constant(120, -1),
+        random_theta(30, 1e-2, 4), random_theta(30, 1e-6, 5), random_theta(30, 1e3, 6),
+        random_theta(30, 1, 7).head(4).replicate(30, 1), random_theta(30, 3, 8), VectorX::Zero(120);
+    for (const bool nearly_perfect : {false, true}) {
+      if (nearly_perfect) t = layer(p, population.col(0), 30, activation).leftCols(2);
+      VectorX fitness(9);
+      elm.objective(x, t)(population, fitness);
+      for (Index k = 0; k < 9; ++k) {
+        const MatrixX h = layer(p, population.col(k), 30, activation);
+        const double expected = h.isZero(0) ? t.squaredNorm() : objective_by_svd(h, t);
+        EXPECT_NEAR(250 * fitness(k), expected, 1e-6 * expected)
+            << "activation " << static_cast<int>(activation) << ", column " << k << ", perfect " << nearly_perfect;
+      }
+    }
+  }
+}
+
 // What a search sees: the objective per sample, of scaled inputs and targets.
 TEST(ElmObjective, IsTheRidgeObjectivePerSampleInScaledUnits) {
   const Problem p;

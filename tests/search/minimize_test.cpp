@@ -1,0 +1,207 @@
+// The loop: budgets, stopping, observers, executors, misuse.
+
+#include "vernier/search/minimize.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/pso.hpp"
+
+namespace vernier {
+namespace {
+
+const Pso pso{.particles = 10, .iterations = 50};
+const Box box = Box::cube(3, -2, 2);
+double sphere(const VectorX& x) { return x.squaredNorm(); }
+
+TEST(Minimize, ScheduleAlone) {
+  std::atomic<Index> calls = 0;
+  const auto counting = [&](const VectorX& x) {
+    ++calls;
+    return sphere(x);
+  };
+  const SearchResult result = minimize(pso, counting, box);
+  EXPECT_EQ(result.status, SearchStatus::schedule_ended);
+  EXPECT_EQ(result.generations, 50);
+  EXPECT_EQ(result.evaluations, 510);
+  EXPECT_EQ(calls, 510);
+  EXPECT_EQ(result.best_fitness, sphere(result.best));
+  EXPECT_LT(result.best_fitness, 1e-3);
+}
+
+TEST(Minimize, EvaluationBudget) {
+  for (const Index budget : {10, 19, 20, 55, 505}) {
+    const SearchResult result = minimize(pso, sphere, box, {.max_evaluations = budget});
+    EXPECT_EQ(result.status, SearchStatus::budget_spent);
+    EXPECT_EQ(result.evaluations, budget / 10 * 10);
+    EXPECT_EQ(result.generations, budget / 10 - 1);
+  }
+  EXPECT_EQ(minimize(pso, sphere, box, {.max_evaluations = 510}).status, SearchStatus::schedule_ended);
+}
+
+// Elites are not evaluated again: 20 at first, then 17 a generation.
+TEST(Minimize, EvaluationBudgetOfAGeneticAlgorithm) {
+  const GeneticAlgorithm ga{.individuals = 20, .generations = 100, .elites = 3};
+  const SearchResult result = minimize(ga, sphere, box, {.max_evaluations = 100});
+  EXPECT_EQ(result.status, SearchStatus::budget_spent);
+  EXPECT_EQ(result.evaluations, 20 + 4 * 17);
+  EXPECT_EQ(result.generations, 4);
+}
+
+TEST(Minimize, GenerationBudget) {
+  for (const Index generations : {0, 1, 7}) {
+    const SearchResult result = minimize(pso, sphere, box, {.max_generations = generations});
+    EXPECT_EQ(result.status, SearchStatus::budget_spent);
+    EXPECT_EQ(result.generations, generations);
+    EXPECT_EQ(result.evaluations, 10 * (generations + 1));
+  }
+}
+
+// Stops at the first generation that reaches the target, and not before.
+TEST(Minimize, Target) {
+  const SearchResult result = minimize(pso, sphere, box, {.target = 0.05}, 3);
+  EXPECT_EQ(result.status, SearchStatus::target_reached);
+  EXPECT_LE(result.best_fitness, 0.05);
+  ASSERT_GT(result.generations, 0);
+  EXPECT_GT(minimize(pso, sphere, box, {.max_generations = result.generations - 1}, 3).best_fitness, 0.05);
+  EXPECT_EQ(minimize(pso, sphere, box, {.target = 100}).generations, 0);
+}
+
+// An objective that never improves stalls after exactly `patience` generations; one that improves with every
+// generation never does.
+TEST(Minimize, Patience) {
+  const auto flat = [](const VectorX&) { return 1.0; };
+  const SearchResult stalled = minimize(pso, flat, box, {.patience = 6});
+  EXPECT_EQ(stalled.status, SearchStatus::stalled);
+  EXPECT_EQ(stalled.generations, 6);
+  double value = 0;
+  const auto falling = [&](const VectorX&) { return value -= 1; };
+  EXPECT_EQ(minimize(pso, falling, box, {.patience = 1}).status, SearchStatus::schedule_ended);
+  // improves up to generation 4 (50 evaluations), then never again
+  value = 0;
+  const auto levels_out = [&](const VectorX&) { return value = std::max(value - 1, -50.0); };
+  const SearchResult later = minimize(pso, levels_out, box, {.patience = 3});
+  EXPECT_EQ(later.status, SearchStatus::stalled);
+  EXPECT_EQ(later.generations, 4 + 3);
+}
+
+TEST(Minimize, ObserverSeesEveryGenerationAndMayStop) {
+  std::vector<Progress> seen;
+  const auto watch = [&](const Progress& progress) { seen.push_back(progress); };
+  const SearchResult result = minimize(pso, sphere, box, {}, 1, {}, watch);
+  ASSERT_EQ(seen.size(), 51u);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    EXPECT_EQ(seen[i].generation, static_cast<Index>(i));
+    EXPECT_EQ(seen[i].evaluations, 10 * (static_cast<Index>(i) + 1));
+    if (i > 0) {
+      EXPECT_LE(seen[i].best, seen[i - 1].best);
+    }
+  }
+  EXPECT_EQ(seen.back().best, result.best_fitness);
+
+  const auto stop_at_four = [](const Progress& progress) { return progress.generation < 4; };
+  const SearchResult stopped = minimize(pso, sphere, box, {}, 1, {}, stop_at_four);
+  EXPECT_EQ(stopped.status, SearchStatus::observer_stopped);
+  EXPECT_EQ(stopped.generations, 4);
+  EXPECT_EQ(stopped.best_fitness, seen[4].best);
+}
+
+// Scalar or batch, one thread or more: the same bits, and with two threads two threads do work.
+TEST(Minimize, ExecutorsAndKindsOfObjectiveDoNotMatter) {
+  const auto batch = [](const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) {
+    for (Index k = 0; k < population.cols(); ++k) fitness(k) = sphere(population.col(k));
+  };
+  const GeneticAlgorithm ga{.individuals = 11, .generations = 30};
+  const ThreadExecutor two(2), three(3);
+  const SearchResult by_pso = minimize(pso, sphere, box, {}, 4), by_ga = minimize(ga, sphere, box, {}, 4);
+  for (const ExecutorRef executor : {ExecutorRef{}, ExecutorRef(two), ExecutorRef(three)}) {
+    for (const SearchResult& other :
+         {minimize(pso, sphere, box, {}, 4, executor), minimize(pso, batch, box, {}, 4, executor)}) {
+      EXPECT_EQ(other.best, by_pso.best);
+      EXPECT_EQ(other.best_fitness, by_pso.best_fitness);
+      EXPECT_EQ(other.evaluations, by_pso.evaluations);
+    }
+    for (const SearchResult& other :
+         {minimize(ga, sphere, box, {}, 4, executor), minimize(ga, batch, box, {}, 4, executor)}) {
+      EXPECT_EQ(other.best, by_ga.best);
+      EXPECT_EQ(other.best_fitness, by_ga.best_fitness);
+    }
+  }
+  std::atomic<int> elsewhere = 0;
+  const auto caller = std::this_thread::get_id();
+  const auto noting = [&](const VectorX& x) {
+    if (std::this_thread::get_id() != caller) ++elsewhere;
+    return sphere(x);
+  };
+  static_cast<void>(minimize(pso, noting, box, {.max_generations = 0}, 4, two));
+  EXPECT_EQ(elsewhere, 5);
+}
+
+TEST(Minimize, ValuesThatAreNotFiniteAreTheWorst) {
+  for (const double unusable : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                                -std::numeric_limits<double>::infinity()}) {
+    const auto half = [&](const VectorX& x) { return x(0) < 0 ? unusable : sphere(x) + 1; };
+    const SearchResult result = minimize(pso, half, box);
+    EXPECT_GE(result.best(0), 0);
+    EXPECT_GE(result.best_fitness, 1);
+    EXPECT_LT(result.best_fitness, 1.1);
+    const auto nowhere = [&](const VectorX&) { return unusable; };
+    const SearchResult none = minimize(pso, nowhere, box);
+    EXPECT_EQ(none.best_fitness, std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(none.best.allFinite());
+    EXPECT_EQ(none.evaluations, 510);
+  }
+}
+
+TEST(Minimize, ExceptionsOfTheObjectiveArrive) {
+  const auto throwing = [](const VectorX& x) -> double {
+    if (x(0) > 0) throw std::runtime_error("objective");
+    return 0;
+  };
+  const ThreadExecutor two(2);
+  EXPECT_THROW(minimize(pso, throwing, box), std::runtime_error);
+  EXPECT_THROW(minimize(pso, throwing, box, {}, 0, two), std::runtime_error);
+}
+
+/// What a call says when it refuses.
+template <class Call>
+std::string refusal(Call&& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Minimize, RefusesBadBoxesWithTheNumbers) {
+  const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  const auto said = [](const VectorX& lower, const VectorX& upper) {
+    return refusal([&] { static_cast<void>(minimize(pso, sphere, Box{lower, upper})); });
+  };
+  using Eigen::Vector2d;
+  EXPECT_EQ(said(Vector2d(0, 3), Vector2d(1, 2.5)),
+            "Box: dimension 1 has bounds [3, 2.5], must be finite and lower below upper");
+  EXPECT_NE(said(Vector2d(0, 7), Vector2d(1, 7)).find("dimension 1 has bounds [7, 7]"), std::string::npos);
+  EXPECT_NE(said(Vector2d(nan, 0), Vector2d(1, 1)).find("dimension 0"), std::string::npos);
+  EXPECT_NE(said(Vector2d(0, 0), Vector2d(1, infinity)).find("dimension 1"), std::string::npos);
+  EXPECT_NE(said(Vector2d(-infinity, 0), Vector2d(1, 1)).find("dimension 0"), std::string::npos);
+  EXPECT_EQ(said(Vector2d(0, 0), VectorX::Ones(3)), "Box: 2 lower and 3 upper bounds");
+  EXPECT_EQ(said(VectorX(), VectorX()), "Box: 0 lower and 0 upper bounds");
+  EXPECT_NE(refusal([] { Box::cube(0, -1, 1); }).find("dimension is 0"), std::string::npos);
+  EXPECT_NE(refusal([] { Box::cube(2, 1, -1); }).find("lower bound 1 is not below upper bound -1"), std::string::npos);
+}
+
+TEST(Minimize, RefusesUnusableStops) {
+  EXPECT_NE(refusal([] { static_cast<void>(minimize(pso, sphere, box, {.max_evaluations = 0})); }).find("is 0"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { static_cast<void>(minimize(pso, sphere, box, {.patience = -2})); }).find("-2"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "vernier/core/executor.hpp"
+#include "vernier/core/function_ref.hpp"
 
 namespace vernier {
 
@@ -26,9 +27,8 @@ class ObserverRef {
   template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, ObserverRef> && std::is_invocable_v<F&, const Progress&>)
   ObserverRef(F&& f)  // NOLINT(google-explicit-constructor)
-      : object_(const_cast<void*>(static_cast<const void*>(&f))),
-        call_([](void* object, const Progress& progress) -> bool {
-          auto& callable = *static_cast<std::remove_reference_t<F>*>(object);
+      : object_(detail::erase(f)), call_([](void* object, const Progress& progress) -> bool {
+          auto& callable = detail::restore<std::remove_reference_t<F>>(object);
           if constexpr (std::is_same_v<std::invoke_result_t<F&, const Progress&>, bool>) {
             return callable(progress);
           } else {

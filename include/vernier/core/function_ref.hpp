@@ -9,6 +9,30 @@
 
 namespace vernier {
 
+namespace detail {
+
+/// Address of an object or a function, its type forgotten.
+template <class F>
+void* erase(F& f) {
+  if constexpr (std::is_function_v<F>) {
+    return reinterpret_cast<void*>(&f);
+  } else {
+    return const_cast<void*>(static_cast<const void*>(std::addressof(f)));
+  }
+}
+
+/// What `erase` was given.
+template <class F>
+F& restore(void* object) {
+  if constexpr (std::is_function_v<F>) {
+    return *reinterpret_cast<F*>(object);
+  } else {
+    return *static_cast<F*>(object);
+  }
+}
+
+}  // namespace detail
+
 template <class Signature>
 class FunctionRef;
 
@@ -22,9 +46,8 @@ class FunctionRef<R(Args...)> {
   template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<R, F&, Args...>)
   FunctionRef(F&& f)  // NOLINT(google-explicit-constructor): a call argument converts silently
-      : object_(const_cast<void*>(static_cast<const void*>(std::addressof(f)))),
-        call_([](void* object, Args... args) -> R {
-          return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
+      : object_(detail::erase(f)), call_([](void* object, Args... args) -> R {
+          return detail::restore<std::remove_reference_t<F>>(object)(std::forward<Args>(args)...);
         }) {}
 
   /// Calls what it refers to.

@@ -1,0 +1,76 @@
+// Messages carry the numbers, exactly.
+
+#include "vernier/core/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "vernier/core/box.hpp"
+
+namespace vn = vernier;
+
+namespace {
+
+TEST(Message, JoinsNumbersInTheirShortestExactForm) {
+  EXPECT_EQ(vn::message("a ", 1, " b ", -2L, " c ", 3u), "a 1 b -2 c 3");
+  EXPECT_EQ(vn::message(0.1, ' ', 1e-9, ' ', 0.30000000000000004, ' ', -2.0), "0.1 1e-09 0.30000000000000004 -2");
+  EXPECT_EQ(vn::message(std::numeric_limits<double>::infinity(), " ", std::nan("")), "inf nan");
+  EXPECT_EQ(vn::message(true, '/', false), "true/false");
+  EXPECT_EQ(vn::message(std::string("text"), std::string_view(" and "), "more", 'x'), "text and morex");
+  EXPECT_EQ(vn::message(std::numeric_limits<std::int64_t>::min()), "-9223372036854775808");
+  EXPECT_EQ(vn::message(0.1F), "0.1");
+  EXPECT_EQ(vn::message(), "");
+  EXPECT_EQ(std::stod(vn::message(1.0 / 3)), 1.0 / 3);
+}
+
+TEST(Require, ThrowsTheMessageWhenTheConditionFails) {
+  EXPECT_NO_THROW(vn::require(true, "never seen"));
+  try {
+    vn::require(false, "Elm: hidden_nodes is ", 0, ", must be at least ", 1);
+    FAIL() << "did not throw";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "Elm: hidden_nodes is 0, must be at least 1");
+  }
+}
+
+/// What a call throws says.
+template <class F>
+std::string thrown(F&& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(Box, ChecksItsBoundsAndNamesThem) {
+  const vn::Box box = vn::Box::cube(3, -1, 2);
+  EXPECT_EQ(box.dimension(), 3);
+  EXPECT_NO_THROW(box.validate());
+  EXPECT_TRUE(box.contains(Eigen::Vector3d(-1, 2, 0)));
+  EXPECT_FALSE(box.contains(Eigen::Vector3d(-1, 2.0000001, 0)));
+  EXPECT_FALSE(box.contains(Eigen::Vector3d(0, 0, std::nan(""))));
+  EXPECT_FALSE(box.contains(Eigen::Vector2d(0, 0)));
+
+  EXPECT_EQ(thrown([] { (void)vn::Box::cube(0, -1, 1); }), "Box::cube: dimension is 0, must be at least 1");
+  EXPECT_EQ(thrown([] { (void)vn::Box::cube(2, 1, 1); }), "Box::cube: lower bound 1 is not below upper bound 1");
+  vn::Box bad = box;
+  bad.lower(1) = 5;
+  EXPECT_EQ(thrown([&] { bad.validate(); }),
+            "Box: dimension 1 has bounds [5, 2], must be finite and lower below upper");
+  bad = box;
+  bad.upper(2) = std::numeric_limits<double>::infinity();
+  EXPECT_NE(thrown([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
+  bad.upper(2) = std::nan("");
+  EXPECT_NE(thrown([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
+  bad.upper.resize(2);
+  EXPECT_EQ(thrown([&] { bad.validate(); }), "Box: 3 lower and 2 upper bounds");
+  EXPECT_EQ(thrown([] { vn::Box{}.validate(); }), "Box: 0 lower and 0 upper bounds");
+}
+
+}  // namespace

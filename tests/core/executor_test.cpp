@@ -1,0 +1,135 @@
+// Executors cover a range exactly once, on any thread, and hand exceptions on.
+
+#include "vernier/core/executor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace vn = vernier;
+
+namespace {
+
+/// Runs backwards, one number at a time: a user's own.
+struct Backwards {
+  void for_ranges(vn::Index n, vn::RangeFunction work) {
+    for (vn::Index i = n; i > 0; --i) work(i - 1, i);
+    ++calls;
+  }
+  int calls = 0;
+};
+struct NoRanges {
+  void for_each(vn::Index n, vn::RangeFunction work);
+};
+struct TakesNoWork {
+  void for_ranges(vn::Index n);
+};
+static_assert(vn::Executor<vn::SequentialExecutor> && vn::Executor<vn::ThreadExecutor> &&
+              vn::Executor<vn::ExecutorRef>);
+static_assert(vn::Executor<Backwards> && !vn::Executor<const Backwards>, "its state changes");
+static_assert(!vn::Executor<NoRanges> && !vn::Executor<TakesNoWork> && !vn::Executor<int>);
+
+/// How often each number of 0..n was seen, and in how many ranges, of which none is empty.
+template <class E>
+std::vector<int> visits(E& executor, vn::Index n, int& ranges) {
+  const std::unique_ptr<std::atomic<int>[]> seen(new std::atomic<int>[static_cast<std::size_t>(n) + 1]());
+  std::atomic<int> calls{0}, empty{0};
+  executor.for_ranges(n, [&](vn::Index begin, vn::Index end) {
+    ++calls;
+    if (begin >= end || begin < 0 || end > n) {
+      ++empty;
+      return;
+    }
+    for (vn::Index i = begin; i < end; ++i) ++seen[static_cast<std::size_t>(i)];
+  });
+  EXPECT_EQ(empty, 0);
+  ranges = calls;
+  std::vector<int> out;
+  for (vn::Index i = 0; i < n; ++i) out.push_back(seen[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+template <class E>
+void expect_coverage(E& executor) {
+  for (const vn::Index n : {0, 1, 2, 3, 7, 8, 9, 100, 1001}) {
+    int ranges = 0;
+    EXPECT_EQ(visits(executor, n, ranges), std::vector<int>(static_cast<std::size_t>(n), 1)) << n;
+    EXPECT_LE(ranges, n);
+  }
+}
+
+TEST(Executors, CoverTheRangeExactlyOnce) {
+  vn::SequentialExecutor sequential;
+  expect_coverage(sequential);
+  for (const int threads : {1, 2, 3, 8, 17}) {
+    const vn::ThreadExecutor executor(threads);
+    EXPECT_EQ(executor.threads(), threads);
+    expect_coverage(executor);
+    const vn::ExecutorRef reference(executor);
+    expect_coverage(reference);
+  }
+  const vn::ExecutorRef none;
+  expect_coverage(none);
+  Backwards own;
+  expect_coverage(own);
+  vn::ExecutorRef reference(own);
+  expect_coverage(reference);
+  EXPECT_EQ(own.calls, 18);
+}
+
+TEST(ThreadExecutor, UsesOneThreadAPartAndTheCallersForTheFirst) {
+  for (const auto& [n, threads, parts] : {std::array{100, 4, 4}, std::array{3, 8, 3}, std::array{5, 1, 1}}) {
+    std::mutex guard;
+    std::set<std::thread::id> ids;
+    std::thread::id first;
+    vn::ThreadExecutor(threads).for_ranges(n, [&](vn::Index begin, vn::Index) {
+      const std::scoped_lock lock(guard);
+      ids.insert(std::this_thread::get_id());
+      if (begin == 0) first = std::this_thread::get_id();
+    });
+    EXPECT_EQ(ids.size(), static_cast<std::size_t>(parts));
+    EXPECT_EQ(first, std::this_thread::get_id());
+  }
+}
+
+TEST(ThreadExecutor, RethrowsAfterTheOthersAreDone) {
+  for (const vn::Index culprit : {0, 3, 7}) {  // the caller's part, a middle one, the last
+    std::atomic<int> done{0};
+    try {
+      vn::ThreadExecutor(8).for_ranges(8, [&](vn::Index begin, vn::Index) {
+        if (begin == culprit) throw std::runtime_error("part " + std::to_string(begin));
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        ++done;
+      });
+      FAIL() << "did not throw";
+    } catch (const std::runtime_error& e) {
+      EXPECT_EQ(e.what(), "part " + std::to_string(culprit));
+      EXPECT_EQ(done, 7);
+    }
+  }
+  // All of them throw: one gets through, nothing terminates.
+  EXPECT_THROW(vn::ThreadExecutor(4).for_ranges(4, [](vn::Index, vn::Index) { throw std::logic_error("each"); }),
+               std::logic_error);
+  EXPECT_THROW(vn::SequentialExecutor{}.for_ranges(1, [](vn::Index, vn::Index) { throw std::logic_error("one"); }),
+               std::logic_error);
+}
+
+TEST(ThreadExecutor, NeedsAThread) {
+  EXPECT_NO_THROW(vn::ThreadExecutor(1));
+  try {
+    const vn::ThreadExecutor executor(0);
+    FAIL() << "did not throw";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "ThreadExecutor: threads is 0, must be at least 1");
+  }
+}
+
+}  // namespace

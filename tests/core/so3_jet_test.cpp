@@ -1,0 +1,81 @@
+// Rotations of dual numbers: the derivative is right where the angle is zero, tiny, and half a turn.
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "random_chains.hpp"
+#include "vernier/core/so3.hpp"
+
+namespace vn = vernier;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using Jet = ceres::Jet<double, 3>;
+using JetVector = Eigen::Matrix<Jet, 3, 1>;
+using JetMatrix = Eigen::Matrix<Jet, 3, 3>;
+
+JetVector seeded(const vn::Vector3& r) { return {Jet(r.x(), 0), Jet(r.y(), 1), Jet(r.z(), 2)}; }
+
+vn::Matrix3 rates(const JetMatrix& m, int k) {
+  vn::Matrix3 out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) out(i, j) = m(i, j).v(k);
+  return out;
+}
+
+TEST(ExpSo3OfDualNumbers, IsExactAtZero) {
+  const JetMatrix rotation = vn::exp_so3(seeded(vn::Vector3::Zero()));
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(rates(rotation, k), vn::skew(vn::Vector3::Unit(k)));
+}
+
+TEST(ExpSo3OfDualNumbers, IsTheLeftJacobianEverywhere) {
+  vn::Rng rng(1);
+  for (const double angle : {0.0, 1e-300, 1e-160, 1e-12, 0.99e-4, 1.01e-4, 1e-2, 1.0, 3.0, pi - 1e-9, pi, 5.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const vn::Vector3 r = angle * vernier_test::random_direction(rng);
+      const JetMatrix rotation = vn::exp_so3(seeded(r));
+      for (int k = 0; k < 3; ++k) {
+        const vn::Matrix3 expected = vn::skew(vn::left_jacobian_so3(r).col(k)) * vn::exp_so3(r);
+        ASSERT_LE((rates(rotation, k) - expected).cwiseAbs().maxCoeff(), 2e-12) << angle;
+      }
+    }
+  }
+}
+
+/// d log(exp(e) R) / de at e = 0, by dual numbers.
+vn::Matrix3 log_rates(const vn::Matrix3& rotation) {
+  const JetMatrix moved = vn::exp_so3(seeded(vn::Vector3::Zero())) * rotation.cast<Jet>();
+  const JetVector r = vn::log_so3(moved);
+  vn::Matrix3 out;
+  for (int i = 0; i < 3; ++i) out.row(i) = r(i).v.transpose();
+  return out;
+}
+
+TEST(LogSo3OfDualNumbers, IsExactAtIdentity) { EXPECT_EQ(log_rates(vn::Matrix3::Identity()), vn::Matrix3::Identity()); }
+
+TEST(LogSo3OfDualNumbers, IsTheInverseLeftJacobianEverywhere) {
+  vn::Rng rng(2);
+  for (const double angle : {0.0, 1e-300, 1e-12, 0.99e-4, 1.99e-4, 2.01e-4, 1e-2, 1.0, pi / 2, 2.0, 2.2, 3.0, pi - 1e-6,
+                             pi - 1e-9, pi - 1e-13}) {
+    for (int i = 0; i < 20; ++i) {
+      const vn::Vector3 r = angle * vernier_test::random_direction(rng);
+      const vn::Matrix3 expected = vn::left_jacobian_inverse_so3(r);
+      ASSERT_LE((log_rates(vn::exp_so3(r)) - expected).cwiseAbs().maxCoeff(), 2e-12) << angle;
+    }
+  }
+}
+
+TEST(LogSo3OfDualNumbers, IsFiniteAtHalfATurn) {
+  for (int k = 0; k < 3; ++k) {
+    vn::Matrix3 half = -vn::Matrix3::Identity();
+    half(k, k) = 1;
+    const vn::Vector3 r = vn::log_so3(half);
+    EXPECT_NEAR(r.norm(), pi, 1e-15);
+    EXPECT_LE((log_rates(half) - vn::left_jacobian_inverse_so3(r)).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+}  // namespace

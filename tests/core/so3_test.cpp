@@ -1,0 +1,163 @@
+// Rotations: exponential, logarithm and their derivatives, at identity, near half a turn and between.
+
+#include "vernier/core/so3.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <vector>
+
+#include "random_chains.hpp"
+#include "vernier/core/check.hpp"
+
+namespace vn = vernier;
+using vernier_test::random_direction;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Angles where something switches, and between.
+std::vector<double> angles() {
+  return {0,       1e-300, 1e-160,    1e-20,   1e-12,     1e-8,      1e-6,       0.99e-4,    1e-4,
+          1.01e-4, 1e-3,   0.99e-2,   1.01e-2, 0.1,       1.0,       pi / 2,     2 * pi / 3, 2.0943952,
+          2.5,     3.0,    pi - 1e-4, 3.14159, pi - 1e-6, pi - 1e-8, pi - 1e-12, pi - 1e-15};
+}
+
+TEST(Skew, IsTheCrossProduct) {
+  const vn::Vector3 a(1, 2, 3), b(-4, 5, 0.5);
+  EXPECT_EQ(vn::skew(a) * b, a.cross(b));
+  EXPECT_EQ(vn::skew(a).transpose(), -vn::skew(a));
+}
+
+/// Rodrigues' formula in extended precision.
+vn::Matrix3 rodrigues(const vn::Vector3& r) {
+  using Real = long double;
+  const Eigen::Matrix<Real, 3, 1> v = r.cast<Real>();
+  const Real angle = v.norm();
+  if (angle < 1e-100L) return vn::Matrix3::Identity() + vn::skew(r);
+  const Eigen::Matrix<Real, 3, 3> k = vn::skew((v / angle).eval());
+  const Real half = std::sin(angle / 2);
+  const Eigen::Matrix<Real, 3, 3> m =
+      Eigen::Matrix<Real, 3, 3>::Identity() + std::sin(angle) * k + 2 * half * half * k * k;
+  return m.cast<double>();
+}
+
+TEST(ExpSo3, IsRodriguesFormulaAtEveryAngle) {
+  vn::Rng rng(1);
+  for (const double angle : angles()) {
+    for (int i = 0; i < 50; ++i) {
+      const vn::Vector3 r = angle * random_direction(rng);
+      const vn::Matrix3 rotation = vn::exp_so3(r);
+      ASSERT_LE((rotation - rodrigues(r)).cwiseAbs().maxCoeff(), 1e-15) << angle;
+      ASSERT_LE((rotation * rotation.transpose() - vn::Matrix3::Identity()).cwiseAbs().maxCoeff(), 2e-15) << angle;
+      // To all digits of the angle, however small: the odd part is sin(t)/t r.
+      const vn::Vector3 odd(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0),
+                            rotation(1, 0) - rotation(0, 1));
+      if (angle > 0 && angle < 1e-4) {
+        ASSERT_LE((odd / 2 - r * (1 - angle * angle / 6)).norm(), 4e-16 * std::max(angle, angle * angle)) << angle;
+      }
+    }
+  }
+  EXPECT_EQ(vn::exp_so3(vn::Vector3::Zero()), vn::Matrix3::Identity());
+}
+
+TEST(ExpSo3, QuarterTurnsByHand) {
+  vn::Matrix3 about_z;
+  about_z << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_LE((vn::exp_so3(vn::Vector3(0, 0, pi / 2)) - about_z).norm(), 1e-15);
+  const vn::Matrix3 half = vn::exp_so3(vn::Vector3(pi, 0, 0));
+  EXPECT_LE((half - vn::Matrix3(vn::Vector3(1, -1, -1).asDiagonal())).norm(), 1e-15);
+}
+
+TEST(LogSo3, UndoesExpAtEveryAngle) {
+  vn::Rng rng(2);
+  for (const double angle : angles()) {
+    for (int i = 0; i < 200; ++i) {
+      const vn::Vector3 r = angle * random_direction(rng);
+      const vn::Vector3 back = vn::log_so3(vn::exp_so3(r));
+      if (angle > pi - 1e-14) {  // at half a turn either sign is right
+        ASSERT_LE(std::min((back - r).norm(), (back + r).norm()), 4e-15) << angle;
+      } else {
+        ASSERT_LE((back - r).norm(), angle < 1 ? 1e-15 * angle : 4e-15) << angle;  // all digits, however small
+      }
+      ASSERT_LE(back.norm(), pi * (1 + 1e-15));
+    }
+  }
+  EXPECT_EQ(vn::log_so3(vn::Matrix3::Identity()), vn::Vector3::Zero());
+}
+
+TEST(LogSo3, HalfTurnsAboutEveryAxis) {
+  // R = 2 a a' - I exactly; its logarithm is pi a, up to sign.
+  vn::Rng rng(3);
+  std::vector<vn::Vector3> axes{vn::Vector3::UnitX(), vn::Vector3::UnitY(), vn::Vector3::UnitZ()};
+  for (int i = 0; i < 200; ++i) axes.push_back(random_direction(rng));
+  for (const vn::Vector3& a : axes) {
+    const vn::Matrix3 rotation = 2 * a * a.transpose() - vn::Matrix3::Identity();
+    const vn::Vector3 r = vn::log_so3(rotation);
+    EXPECT_LE(std::min((r - pi * a).norm(), (r + pi * a).norm()), 4e-15);
+  }
+}
+
+/// Central difference of `log(exp(r + d) exp(r)')` over d: the left Jacobian by its definition.
+vn::Matrix3 left_jacobian_by_differences(const vn::Vector3& r) {
+  constexpr double h = 1e-5;
+  vn::Matrix3 out;
+  for (int k = 0; k < 3; ++k) {
+    const vn::Vector3 d = h * vn::Vector3::Unit(k);
+    out.col(k) = vn::log_so3(vn::exp_so3(vn::Vector3(r + d)) * vn::exp_so3(vn::Vector3(r - d)).transpose()) / (2 * h);
+  }
+  return out;
+}
+
+TEST(LeftJacobianSo3, IsTheDerivativeOfExpAndItsInverseTheInverse) {
+  vn::Rng rng(4);
+  for (const double angle : angles()) {
+    for (int i = 0; i < 20; ++i) {
+      const vn::Vector3 r = angle * random_direction(rng);
+      const vn::Matrix3 jacobian = vn::left_jacobian_so3(r);
+      ASSERT_LE((jacobian - left_jacobian_by_differences(r)).cwiseAbs().maxCoeff(), 1e-9) << angle;
+      ASSERT_LE((jacobian * vn::left_jacobian_inverse_so3(r) - vn::Matrix3::Identity()).cwiseAbs().maxCoeff(), 4e-15)
+          << angle;
+      // A rate along r is an angular velocity along r; and Jl(-r) = Jl(r)'.
+      ASSERT_LE((jacobian * r - r).norm(), 1e-15 * std::max(angle, 1e-300) * 4) << angle;
+      ASSERT_LE((vn::left_jacobian_so3(-r) - jacobian.transpose()).cwiseAbs().maxCoeff(), 1e-15) << angle;
+    }
+  }
+  EXPECT_EQ(vn::left_jacobian_so3(vn::Vector3::Zero()), vn::Matrix3::Identity());
+  EXPECT_EQ(vn::left_jacobian_inverse_so3(vn::Vector3::Zero()), vn::Matrix3::Identity());
+}
+
+TEST(LeftJacobianSo3, SeriesAndFormulaMeet) {
+  const vn::Vector3 axis = vn::Vector3(2, -1, 2) / 3;
+  const auto jump = [&](auto&& f) {
+    return (f((1e-2 * (1 + 1e-12)) * axis) - f((1e-2 * (1 - 1e-12)) * axis)).cwiseAbs().maxCoeff();
+  };
+  EXPECT_LE(jump([](const vn::Vector3& r) { return vn::left_jacobian_so3(r); }), 1e-13);
+  EXPECT_LE(jump([](const vn::Vector3& r) { return vn::left_jacobian_inverse_so3(r); }), 1e-13);
+}
+
+TEST(LeftJacobianSo3, InverseIsFiniteBelowAFullTurn) {
+  const vn::Vector3 axis = vn::Vector3(2, -1, 2) / 3;
+  for (const double angle : {pi, 4.0, 5.0, 6.0}) {
+    const vn::Matrix3 product = vn::left_jacobian_so3(angle * axis) * vn::left_jacobian_inverse_so3(angle * axis);
+    EXPECT_LE((product - vn::Matrix3::Identity()).cwiseAbs().maxCoeff(), 1e-13) << angle;
+  }
+}
+
+TEST(PoseDifference, TakesOneFrameToTheOther) {
+  vn::Rng rng(5);
+  for (int i = 0; i < 100; ++i) {
+    vn::Isometry3 from = vn::Isometry3::Identity(), to = from;
+    from.linear() = vn::exp_so3(rng.uniform(0, 3) * random_direction(rng));
+    from.translation() = random_direction(rng);
+    const vn::Vector3 turn = rng.uniform(0, 3) * random_direction(rng), shift = random_direction(rng);
+    to.linear() = vn::exp_so3(turn) * from.linear();
+    to.translation() = from.translation() + shift;
+    const vn::Vector6 e = vn::pose_difference(to, from);
+    EXPECT_LE((e.head<3>() - shift).norm(), 1e-15);
+    EXPECT_LE((e.tail<3>() - turn).norm(), 1e-14);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,243 @@
+// Cartesian compensation on simulated arms: how much better, and what stays exact.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <string>
+#include <vernier/compensation/cartesian.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/identification/calibrated.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/regression/elm.hpp>
+#include <vernier/regression/ridge_elm.hpp>
+#include <vernier/search/pso.hpp>
+#include <vernier/search/tuned.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
+#include <vernier/testing/compensator_laws.hpp>
+#include <vernier/testing/kinematic_laws.hpp>
+
+#include "allocation_counter.hpp"
+#include "laws.hpp"
+
+namespace {
+
+using namespace vernier;
+using vernier_test::no_violations;
+
+const Robot<6> robot = robots::abb_irb120();
+const DhChain<6> nominal = robot.chain;
+const Elm small_elm{.hidden_nodes = 120, .input_map = InputMap::sines_and_cosines};
+const double infinity = std::numeric_limits<double>::infinity();
+
+DhChain<6> actual_arm(std::uint64_t seed = 1) { return with_geometric_errors(nominal, {}, seed); }
+JointRows<6> operating_targets(Index n, std::uint64_t seed) {
+  return abb_irb120_operating_region().sample(nominal, n, seed);
+}
+Dataset<6> training(const DhChain<6>& actual, Index n = 600) {
+  return measure(actual, operating_targets(n, 10), {.position = 0.02e-3, .with_orientations = false}, 1);
+}
+
+// The recipe is deduced from what it is made of, with clang 14 too.
+static_assert(std::same_as<decltype(CartesianCompensation{Elm{}}), CartesianCompensation<Elm>>);
+static_assert(
+    std::same_as<decltype(CartesianCompensation{RidgeElm{}, CorrectionOptions{}}), CartesianCompensation<RidgeElm>>);
+static_assert(
+    std::same_as<decltype(CartesianCompensation{Tuned{Elm{}, Pso{}}}), CartesianCompensation<Tuned<Elm, Pso>>>);
+using Fitted = decltype(CartesianCompensation{Elm{}}.fit(nominal, Dataset<6>{}));
+static_assert(Compensator<Fitted> && KinematicModel<Fitted>);
+
+TEST(CartesianCompensation, ImprovesFreshPoses) {
+  const auto fresh = operating_targets(300, 99);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto actual = actual_arm(seed);
+    const auto fitted = CartesianCompensation{small_elm}.fit(nominal, training(actual), {.seed = seed});
+    const auto test = measure(actual, fresh);
+    EXPECT_LT(prediction_error(fitted, test).mean, 0.3 * prediction_error(nominal, test).mean);
+    const auto before = positioning_errors(actual, nominal, fresh, fresh);
+    const auto after = positioning_errors(actual, nominal, corrected_commands(fitted, fresh), fresh);
+    EXPECT_LT(after.position.mean(), 0.3 * before.position.mean());
+    EXPECT_LT(after.position.maxCoeff(), 0.75 * before.position.maxCoeff());
+    // orientations are the model's: neither learned nor spoiled
+    EXPECT_NEAR(after.rotation.mean(), before.rotation.mean(), 0.02 * before.rotation.mean());
+  }
+}
+
+TEST(CartesianCompensation, ThePapersModeMovesThreeJoints) {
+  const auto actual = actual_arm();
+  const auto fresh = operating_targets(200, 99);
+  const auto fitted = CartesianCompensation{small_elm, {.target = CorrectionTarget::position, .moving_joints = 3}}.fit(
+      nominal, training(actual), {.seed = 1});
+  const auto commands = corrected_commands(fitted, fresh);
+  EXPECT_TRUE(commands.rightCols<3>() == fresh.rightCols<3>());  // bit for bit
+  const auto before = positioning_errors(actual, nominal, fresh, fresh);
+  const auto after = positioning_errors(actual, nominal, commands, fresh);
+  EXPECT_LT(after.position.mean(), 0.3 * before.position.mean());
+  EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(fitted, fresh, {.rotation_tolerance = infinity})));
+}
+
+TEST(CartesianCompensation, SameSeedSameBits) {
+  const auto data = training(actual_arm(), 100);
+  const auto q = operating_targets(1, 5).row(0).transpose().eval();
+  const CartesianCompensation recipe{Elm{.hidden_nodes = 20}};
+  const auto command = [&](std::uint64_t seed) {
+    return JointVector<6>(recipe.fit(nominal, data, {.seed = seed}).correct(q).command);
+  };
+  EXPECT_EQ(command(3), command(3));
+  EXPECT_NE(command(3), command(4));
+}
+
+TEST(CartesianCompensation, ObeysTheLawsOfModelsAndCompensators) {
+  const auto data = training(actual_arm());
+  const auto check = [&](const auto& fitted) {
+    const auto inside = operating_targets(50, 7);
+    EXPECT_TRUE(no_violations(vernier::testing::kinematic_model_violations(fitted, inside)));
+    EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(fitted, inside)));
+    // where the gate falls, and beyond
+    JointLimits<6> wider = abb_irb120_operating_region().limits;
+    const JointVector<6> range = wider.upper - wider.lower;
+    wider.lower -= 0.12 * range;
+    wider.upper += 0.12 * range;
+    const auto around = sample_joints(wider, 300, 8);
+    int falling = 0, closed = 0;
+    for (Index i = 0; i < around.rows(); ++i) {
+      const double gate = fitted.best().gate(around.row(i).transpose());
+      falling += gate > 0 && gate < 1;
+      closed += gate == 0;
+    }
+    EXPECT_GT(falling, 100);
+    EXPECT_GT(closed, 20);
+    EXPECT_TRUE(no_violations(vernier::testing::kinematic_model_violations(fitted, around)));
+    EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(fitted, around)));
+  };
+  check(CartesianCompensation{small_elm}.fit(nominal, data, {.seed = 1}));
+  check(CartesianCompensation{RidgeElm{.hidden_nodes = 40}}.fit(nominal, data, {.seed = 1}));
+}
+
+TEST(CartesianCompensation, FarOutsideTheMeasuredRangesNothingIsLearned) {
+  const auto fitted = CartesianCompensation{Elm{.hidden_nodes = 20}}.fit(nominal, training(actual_arm(), 100));
+  JointVector<6> q = operating_targets(1, 5).row(0).transpose();
+  q(0) = 2.5;  // measured: within 1.57
+  EXPECT_EQ(fitted.best().gate(q), 0);
+  EXPECT_EQ(fitted.pose(q).matrix(), nominal.pose(q).matrix());
+  EXPECT_EQ(fitted.jacobian(q), nominal.jacobian(q));
+  const auto correction = fitted.correct(q);
+  EXPECT_EQ(correction.gate, 0);
+  EXPECT_EQ(correction.command, q);
+}
+
+TEST(CartesianCompensation, AHybridKeepsTheOriginalReference) {
+  const auto actual = actual_arm();
+  // what an identification might have found: two thirds of every error
+  const auto p = nominal.parameters(), r = actual.parameters();
+  const auto known = nominal.with_parameters(p + (r - p) * (2.0 / 3));
+  const Compensated geometry(known, nominal);
+  const auto hybrid = CartesianCompensation{small_elm}.fit(geometry, training(actual), {.seed = 1});
+  static_assert(std::same_as<std::remove_cvref_t<decltype(hybrid.reference())>, DhChain<6>>);
+  EXPECT_TRUE(hybrid.reference() == nominal);
+  const auto again = CartesianCompensation{small_elm}.fit(hybrid, training(actual), {.seed = 2});
+  EXPECT_TRUE(again.reference() == nominal);
+
+  const auto fresh = operating_targets(200, 99);
+  const auto mean = [&](const auto& compensator) {
+    return positioning_errors(actual, nominal, corrected_commands(compensator, fresh), fresh).position.mean();
+  };
+  EXPECT_LT(mean(hybrid), 0.35 * mean(geometry));
+  EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(hybrid, fresh)));
+
+  // and in identified frames: the nominal arm there
+  Isometry3 base = Isometry3::Identity();
+  base.translation() << 0.5, -0.25, 0.125;
+  const Calibrated<DhChain<6>> calibrated(Framed<DhChain<6>>(known, base), nominal);
+  const auto data = measure(Framed<DhChain<6>>(actual, base), operating_targets(300, 4));
+  const auto framed = CartesianCompensation{small_elm}.fit(calibrated, data);
+  const JointVector<6> q = fresh.row(0).transpose();
+  EXPECT_EQ(framed.reference().pose(q).matrix(), (base * nominal.pose(q)).matrix());
+}
+
+TEST(CartesianCompensation, NoPoseIsThrownAwayWithFullJointLimits) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto actual = actual_arm(seed);
+    const auto data = measure(actual, sample_joints(robot.limits, 1000, 20), {.position = 0.02e-3});
+    auto targets = sample_joints(robot.limits, 1000, 21);
+    for (Index i = 0; i < 100; ++i) targets(i, 4) = i % 2 == 0 ? 0 : 1e-6;  // the wrist singularity
+    const auto before = positioning_errors(actual, nominal, targets, targets);
+    for (const CorrectionOptions& options :
+         {CorrectionOptions{}, CorrectionOptions{.target = CorrectionTarget::position, .moving_joints = 3}}) {
+      const auto fitted =
+          CartesianCompensation{small_elm, options}.fit(nominal, data, {.seed = seed}).within(robot.limits);
+      const auto commands = corrected_commands(fitted, targets);
+      for (Index i = 0; i < targets.rows(); ++i) {
+        const JointVector<6> q = targets.row(i).transpose(), command = commands.row(i).transpose();
+        ASSERT_TRUE(robot.limits.contains(command));
+        const Vector6 left = pose_difference(nominal.pose(q), fitted.predict(q));
+        const Vector6 now = pose_difference(nominal.pose(q), fitted.predict(command));
+        // in the model's own prediction position and orientation (0.3 m a radian) together never get worse; the model
+        // says that orientations are right where they are
+        EXPECT_LE(now.head<3>().norm(), left.head<3>().norm() * (1 + 1e-12));
+      }
+      const auto after = positioning_errors(actual, nominal, commands, targets);
+      EXPECT_LT(after.position.maxCoeff(), before.position.maxCoeff() + 10e-3);
+      EXPECT_LT(after.position.mean(), before.position.mean());
+    }
+  }
+}
+
+TEST(CartesianCompensation, DoesNotAllocateOrThrow) {
+  const auto fitted = CartesianCompensation{small_elm}.fit(nominal, training(actual_arm()), {.seed = 1});
+  const JointVector<6> inside = operating_targets(1, 5).row(0).transpose();
+  JointVector<6> edge = inside;
+  edge(0) = abb_irb120_operating_region().limits.upper(0) + 0.1;  // the gate falls
+  static_assert(
+      noexcept(fitted.correct(inside))&& noexcept(fitted.pose(inside))&& noexcept(fitted.pose_and_jacobian(inside)));
+  for (const JointVector<6>& q : {inside, edge})
+    EXPECT_EQ(vernier_test::allocations([&] {
+                vernier_test::keep(fitted.correct(q));
+                vernier_test::keep(fitted.predict(q));
+                vernier_test::keep(fitted.position(q));
+                vernier_test::keep(fitted.pose_and_jacobian(q));
+              }),
+              0);
+}
+
+template <class F>
+std::string complaint(F&& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(CartesianCompensation, DataInAnotherFrameAreRefused) {
+  const auto data = training(actual_arm(), 50);
+  const auto shifted = [&](double by) {
+    PointRows p = data.positions();
+    p.col(0).array() += by;
+    return Dataset<6>(data.joints(), p);
+  };
+  const CartesianCompensation recipe{Elm{.hidden_nodes = 5}};
+  const auto said = complaint([&] { (void)recipe.fit(nominal, shifted(0.06)); });
+  EXPECT_NE(said.find("register"), std::string::npos) << said;
+  EXPECT_NE(said.find("61.1"), std::string::npos) << said;  // mm apart
+  EXPECT_EQ(complaint([&] { (void)recipe.fit(nominal, shifted(0.04)); }), "");
+}
+
+TEST(CartesianCompensation, MisuseIsNamed) {
+  EXPECT_NE(complaint([] { (void)CartesianCompensation{Elm{}}.fit(nominal, Dataset<6>{}); }).find("no samples"),
+            std::string::npos);
+  const auto data = training(actual_arm(), 10);
+  EXPECT_NE(complaint([&] {
+              (void)CartesianCompensation{Elm{.hidden_nodes = 0}}.fit(nominal, data);
+            }).find("hidden_nodes is 0"),
+            std::string::npos);
+  EXPECT_NE(complaint([&] {
+              (void)CartesianCompensation{Elm{.hidden_nodes = 5}, {.moving_joints = 9}}.fit(nominal, data);
+            }).find("moving_joints is 9"),
+            std::string::npos);
+}
+
+}  // namespace

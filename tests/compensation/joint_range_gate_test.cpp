@@ -1,0 +1,107 @@
+// The gate: 1 inside the measured ranges, 0 beyond the margin, smooth between.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vernier/compensation/joint_range_gate.hpp>
+#include <vernier/core/rng.hpp>
+
+namespace {
+
+using vernier::JointRangeGate;
+using vernier::JointRows;
+using vernier::JointVector;
+
+/// Joint 1 in [-1, 1], margin 0.5; joint 2 in [2, 4], margin 0.25.
+JointRangeGate<2> example() {
+  JointRangeGate<2> gate;
+  gate.lower << -1, 2;
+  gate.upper << 1, 4;
+  gate.margin << 0.5, 0.25;
+  return gate;
+}
+
+TEST(JointRangeGate, OneInsideUpToTheEdge) {
+  const auto gate = example();
+  for (const double q1 : {-1.0, -0.3, 0.0, 1.0})
+    for (const double q2 : {2.0, 3.0, 4.0}) {
+      EXPECT_EQ(gate({q1, q2}), 1);
+      EXPECT_EQ(gate.derivative({q1, q2}).norm(), 0);
+    }
+}
+
+TEST(JointRangeGate, ZeroFromTheMarginOn) {
+  const auto gate = example();
+  for (const JointVector<2>& q : {JointVector<2>(1.5, 3), {-1.5, 3}, {0, 1.75}, {0, 4.25}, {100, 3}, {0, -1e6}}) {
+    EXPECT_EQ(gate(q), 0);
+    EXPECT_EQ(gate.derivative(q).norm(), 0);
+  }
+}
+
+TEST(JointRangeGate, FallsAsACubicAndMultiplies) {
+  const auto gate = example();
+  EXPECT_DOUBLE_EQ(gate({1.25, 3}), 0.5);                 // half way
+  EXPECT_DOUBLE_EQ(gate({-1.125, 3}), 1 - 0.15625);       // a quarter: 1 - (3/16 - 2/64)
+  EXPECT_DOUBLE_EQ(gate({1.25, 4.0625}), 0.5 * 0.84375);  // both joints
+}
+
+TEST(JointRangeGate, NeverRisesOnTheWayOut) {
+  const auto gate = example();
+  double before = 1;
+  for (int i = 0; i <= 1000; ++i) {
+    const double now = gate({1 + 0.6 * i / 1000, 3});
+    EXPECT_LE(now, before);
+    EXPECT_GE(now, 0);
+    EXPECT_LT(before - now, 2e-3);  // slope at most 1.5 / margin = 3 a rad, steps of 0.6 mrad
+    before = now;
+  }
+  EXPECT_EQ(before, 0);
+}
+
+TEST(JointRangeGate, DerivativeIsTheCentralDifference) {
+  const auto gate = example();
+  vernier::Rng rng(1);
+  int falling = 0;
+  for (int i = 0; i < 300; ++i) {
+    const JointVector<2> q(rng.uniform(-1.7, 1.7), rng.uniform(1.7, 4.3));
+    const auto derivative = gate.derivative(q);
+    const double h = 1e-6;
+    for (int j = 0; j < 2; ++j) {
+      const JointVector<2> step = h * JointVector<2>::Unit(j);
+      // within h of an edge of the fall the second derivative jumps: 12 h / margin^2 at most
+      EXPECT_NEAR(derivative(j), (gate(q + step) - gate(q - step)) / (2 * h), 2e-4);
+      falling += derivative(j) != 0;
+    }
+  }
+  EXPECT_GT(falling, 50);
+}
+
+TEST(JointRangeGate, ContinuousWithItsSlopeAtBothEnds) {
+  const auto gate = example();
+  const double e = 1e-9;
+  EXPECT_NEAR(gate({1 + e, 3}), 1, 1e-12);
+  EXPECT_NEAR(gate({1.5 - e, 3}), 0, 1e-12);
+  EXPECT_NEAR(gate.derivative({1 + e, 3})(0), 0, 1e-6);
+  EXPECT_NEAR(gate.derivative({1.5 - e, 3})(0), 0, 1e-6);
+}
+
+TEST(JointRangeGate, CoversWhatWasMeasured) {
+  JointRows<3> q(3, 3);
+  q << 0, 5, 1,  //
+      1, 5, -1,  //
+      0.5, 5, 0;
+  const auto gate = JointRangeGate<3>::covering(q);
+  EXPECT_EQ(gate.lower, JointVector<3>(0, 5, -1));
+  EXPECT_EQ(gate.upper, JointVector<3>(1, 5, 1));
+  EXPECT_TRUE(gate.margin.isApprox(JointVector<3>(0.1, 0.02, 0.2), 1e-15));  // a joint held still keeps a margin
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(gate(q.row(i).transpose()), 1);
+}
+
+TEST(JointRangeGate, InfinitelyFarIsZero) {
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(example()({inf, 3}), 0);
+  EXPECT_EQ(example()({0, -inf}), 0);
+}
+
+}  // namespace

@@ -35,13 +35,15 @@ Program::Program(const char* name, const char* description, int argc, const char
   app_.option_defaults()->always_capture_default();
 }
 
-void Program::parse(const std::string& default_out) {
+void Program::parse(const std::string& default_out, const char* out_description, const char* out_type) {
   common_.out = default_out;
   app_.add_option("--json", common_.json, "write the results to this file")
       ->type_name("FILE")
       ->always_capture_default(false);
-  app_.add_option("--out", common_.out, "folder for the figures")->type_name("FOLDER");
-  app_.add_option("--seed", common_.seed, "of everything random")->type_name("S");
+  app_.add_option("--out", common_.out, out_description)->type_name(out_type);
+  app_.add_option("--seed", common_.seed, "of everything random")
+      ->type_name("S")
+      ->check(CLI::NonNegativeNumber.description(""));  // else -1 would wrap around
   app_.add_option("--threads", common_.threads, "threads that compute; the results do not depend on it")
       ->type_name("T")
       ->check(CLI::Range(1, 1024).description(""));

@@ -48,9 +48,11 @@ class Program {
   /// Adds the common options, reads the command line, and makes sure that the JSON file can be written before any
   /// work is done.
   /// @param default_out folder for figures where the user names none
+  /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there
   /// @throws CLI::ParseError, which `run_program` turns into help or exit code 2
   /// @throws std::runtime_error where the JSON file cannot be written
-  void parse(const std::string& default_out);
+  void parse(const std::string& default_out, const char* out_description = "folder for the figures",
+             const char* out_type = "FOLDER");
 
   /// The folder for figures, made where it is missing.
   /// @throws std::runtime_error naming the folder and the reason

@@ -28,7 +28,9 @@ TEST(Literals, DegreesOfAFullTurnAreWithinOneUlp) {
   for (unsigned long long k = 0; k <= 720; ++k) {
     const long double exact = static_cast<long double>(k) * 3.14159265358979323846264338327950288L / 180.0L;
     const double value = operator""_deg(k);
-    EXPECT_LE(std::abs(static_cast<double>(value - exact)), 1.2e-16 * static_cast<double>(exact)) << k;
+    EXPECT_LE(std::abs(static_cast<double>(static_cast<long double>(value) - exact)),
+              1.2e-16 * static_cast<double>(exact))
+        << k;
     EXPECT_EQ(operator""_deg(static_cast<long double>(k)), value) << k;
   }
 }

@@ -13,8 +13,9 @@
 namespace vernier {
 
 /// The rotation nearest to a matrix (in the Frobenius norm), e.g. the mean of a sum of rotations.
-inline Matrix3 nearest_rotation(const Matrix3& m) {
-  const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+template <class Derived>
+Matrix3 nearest_rotation(const Eigen::MatrixBase<Derived>& m) {
+  const Eigen::JacobiSVD<Matrix3, Eigen::NoQRPreconditioner> svd(Matrix3(m), Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vector3 signs = Vector3::Ones();
   if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
@@ -25,7 +26,8 @@ inline Matrix3 nearest_rotation(const Matrix3& m) {
 /// @param to   where each of them should go
 /// @throws std::invalid_argument when the numbers of points differ
 /// @cite Kabsch 1976; Umeyama 1991
-inline Isometry3 register_points(const PointRows& from, const PointRows& to) {
+template <class From, class To>
+Isometry3 register_points(const Eigen::MatrixBase<From>& from, const Eigen::MatrixBase<To>& to) {
   require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
           " points");
   const Eigen::RowVector3d from_mean = from.colwise().mean(), to_mean = to.colwise().mean();

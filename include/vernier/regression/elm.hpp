@@ -22,7 +22,8 @@ class ElmTrainingError {
 
   /// @param population dimension x particles
   /// @param fitness    one value a particle
-  void operator()(const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) const {
+  template <class Population, class Fitness>
+  void operator()(const Eigen::MatrixBase<Population>& population, Fitness&& fitness) const {
     const double samples = static_cast<double>(targets_.rows());
     NormalEquations equations(layer_, features_, targets_);
     MatrixX h;

@@ -61,7 +61,8 @@ struct HiddenLayer {
   }
 
   /// Features of samples before scaling, n x features.
-  MatrixX map(const Eigen::Ref<const MatrixX>& inputs) const {
+  template <class Inputs>
+  MatrixX map(const Eigen::MatrixBase<Inputs>& inputs) const {
     if (input_map == InputMap::raw) return inputs;
     MatrixX out(inputs.rows(), 2 * inputs.cols());
     out << inputs.array().sin().matrix(), inputs.array().cos().matrix();
@@ -74,7 +75,9 @@ struct HiddenLayer {
   }
 
   /// H, n x nodes, of scaled features n x features at weights `theta`. `out` is resized only when its shape differs.
-  void outputs(const Eigen::Ref<const MatrixX>& features, const Eigen::Ref<const VectorX>& theta, MatrixX& out) const {
+  template <class Features>
+  void outputs(const Eigen::MatrixBase<Features>& features, const Eigen::Ref<const VectorX>& theta,
+               MatrixX& out) const {
     const Index f = features.cols();
     const Eigen::Map<const MatrixX> weights(theta.data(), f + 1, nodes);
     out.resize(features.rows(), nodes);

@@ -16,31 +16,27 @@ namespace vernier {
 
 namespace detail {
 
-/// Thin singular value decomposition `H = U diag(s) V'`; a tall H goes through its QR factors.
+/// Thin singular value decomposition `H = U diag(s) V'`: QR of the longer side, then one-sided work on the square rest.
+/// (Jacobi: the most accurate one, and Eigen's divide and conquer would cost every user half a minute to compile.)
 struct ThinSvd {
   MatrixX u;  ///< n x k, k = min(n, h)
   VectorX s;  ///< k, descending
   MatrixX v;  ///< h x k
 
-  explicit ThinSvd(const MatrixX& h) {
-    if (h.rows() > 2 * h.cols()) {
-      const Eigen::HouseholderQR<MatrixX> qr(h);
-      const MatrixX r = qr.matrixQR().topRows(h.cols()).template triangularView<Eigen::Upper>();
-      decompose(r);
-      MatrixX thin = MatrixX::Zero(h.rows(), h.cols());
-      thin.topRows(h.cols()) = u;
-      u = qr.householderQ() * thin;
-    } else {
-      decompose(h);
-    }
-  }
-
- private:
-  void decompose(const MatrixX& h) {
-    const Eigen::BDCSVD<MatrixX> svd(h, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    u = svd.matrixU();
+  template <class Derived>  // a template, as all below, so that only its users pay for compiling the decompositions
+  explicit ThinSvd(const Eigen::MatrixBase<Derived>& expression) {
+    const MatrixX h = expression;
+    const bool tall = h.rows() >= h.cols();
+    const Index k = std::min(h.rows(), h.cols());
+    const Eigen::HouseholderQR<MatrixX> qr(tall ? h : MatrixX(h.transpose()));
+    const MatrixX square = qr.matrixQR().topRows(k).template triangularView<Eigen::Upper>();
+    const Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner> svd(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
     s = svd.singularValues();
-    v = svd.matrixV();
+    MatrixX longer = MatrixX::Zero(std::max(h.rows(), h.cols()), k);
+    longer.topRows(k) = svd.matrixU();
+    longer.applyOnTheLeft(qr.householderQ());
+    u = tall ? longer : svd.matrixV();
+    v = tall ? svd.matrixV() : longer;
   }
 };
 
@@ -51,7 +47,8 @@ struct ThinSvd {
 /// @param t     n x outputs
 /// @param rcond relative cut, in [0, 1)
 /// @return      nodes x outputs
-inline MatrixX minimum_norm_solution(const MatrixX& h, const MatrixX& t, double rcond) {
+template <class H, class T>
+MatrixX minimum_norm_solution(const Eigen::MatrixBase<H>& h, const Eigen::MatrixBase<T>& t, double rcond) {
   const detail::ThinSvd svd(h);
   const double cut = rcond * (svd.s.size() > 0 ? svd.s(0) : 0.0);
   VectorX inverse = VectorX::Zero(svd.s.size());
@@ -69,7 +66,8 @@ struct RidgeSolution {
 /// `min |H beta - T|^2 + lambda |beta|^2` with lambda = `relative_lambda` tr(H'H) / h, by normal equations. The ridge
 /// bounds the condition of the Gram matrix by h / relative_lambda; should the factorisation fail all the same, QR of
 /// the stacked system takes over. The objective is computed from the residual, so an error of beta enters it squared.
-inline RidgeSolution relative_ridge(const MatrixX& h, const MatrixX& t, double relative_lambda) {
+template <class H, class T>
+RidgeSolution relative_ridge(const Eigen::MatrixBase<H>& h, const Eigen::MatrixBase<T>& t, double relative_lambda) {
   const Index nodes = h.cols();
   MatrixX gram = MatrixX::Zero(nodes, nodes);
   gram.selfadjointView<Eigen::Lower>().rankUpdate(h.transpose());
@@ -100,8 +98,9 @@ inline RidgeSolution relative_ridge(const MatrixX& h, const MatrixX& t, double r
 /// @param right           T'H, outputs x nodes
 /// @param target_square   |T|^2
 /// @param relative_lambda as in `relative_ridge`
-inline double relative_ridge_objective(const Eigen::Ref<const MatrixX>& gram, const Eigen::Ref<const MatrixX>& right,
-                                       double target_square, double relative_lambda) {
+template <class Gram, class Right>
+double relative_ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right,
+                                double target_square, double relative_lambda) {
   const double trace = gram.trace(), lambda = relative_lambda * trace / static_cast<double>(gram.rows());
   if (!(lambda > 0) || !std::isfinite(lambda)) return -1;
   MatrixX regularised = gram;
@@ -112,17 +111,20 @@ inline double relative_ridge_objective(const Eigen::Ref<const MatrixX>& gram, co
   const double size = beta.squaredNorm();
   // quadratic in beta, so that an error of beta enters squared
   const double objective = target_square - 2 * right.transpose().cwiseProduct(beta).sum() +
-                           beta.cwiseProduct(gram.selfadjointView<Eigen::Lower>() * beta).sum() + lambda * size;
+                           beta.cwiseProduct(gram.template selfadjointView<Eigen::Lower>() * beta).sum() +
+                           lambda * size;
   return objective > 1e-7 * target_square && objective > 1e-8 * trace * size ? objective : -1;
 }
 
 /// Ridge regression with an unpenalised mean, for every lambda from one decomposition.
 /// @cite Allen 1974 (PRESS); Huang 2012
-class RidgePath {
+template <class Scalar>
+class RidgePathOf {
  public:
   /// @param h n x nodes, centred here
   /// @param t n x outputs, centred here
-  RidgePath(const MatrixX& h, const MatrixX& t)
+  template <class H, class T>
+  RidgePathOf(const Eigen::MatrixBase<H>& h, const Eigen::MatrixBase<T>& t)
       : mean_h_(h.colwise().mean()),
         mean_t_(t.colwise().mean()),
         centred_t_(t.rowwise() - mean_t_),
@@ -176,6 +178,9 @@ class RidgePath {
   MatrixX projected_;
 };
 
+/// The path in double precision. (A template, so that only its users pay for compiling it.)
+using RidgePath = RidgePathOf<double>;
+
 /// A ridge and the error it leaves.
 struct LeaveOneOutChoice {
   double lambda;              ///< absolute; infinity: the mean alone
@@ -184,7 +189,8 @@ struct LeaveOneOutChoice {
 
 /// The lambda of least leave-one-out error over a grid of half decades relative to the problem's scale; infinity, the
 /// mean alone, is a candidate.
-inline LeaveOneOutChoice choose_lambda(const RidgePath& path, Index samples) {
+template <class Scalar>
+LeaveOneOutChoice choose_lambda(const RidgePathOf<Scalar>& path, Index samples) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   LeaveOneOutChoice best{infinity, infinity};
   if (samples < 2) return best;

@@ -16,7 +16,8 @@ class RidgeElmLeaveOneOutError {
   RidgeElmLeaveOneOutError(const HiddenLayer& layer, MatrixX features, MatrixX targets)
       : layer_(layer), features_(std::move(features)), targets_(std::move(targets)) {}
 
-  void operator()(const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) const {
+  template <class Population, class Fitness>
+  void operator()(const Eigen::MatrixBase<Population>& population, Fitness&& fitness) const {
     MatrixX h;
     for (Index k = 0; k < population.cols(); ++k) {
       layer_.outputs(features_, population.col(k), h);

@@ -28,10 +28,10 @@ TEST(Pso, FirstSwarmByHand) {
   const Pso::State s = pso.start(box2(), 77, evaluate_bowl);
   Rng rng(77);
   for (Index k = 0; k < 2; ++k) {
-    EXPECT_EQ(s.positions(0, k), -1 + 4 * rng.uniform());
-    EXPECT_EQ(s.velocities(0, k), -1 + 2 * rng.uniform());  // half the half width
-    EXPECT_EQ(s.positions(1, k), 10 + 10 * rng.uniform());
-    EXPECT_EQ(s.velocities(1, k), -2.5 + 5 * rng.uniform());
+    EXPECT_NEAR(s.positions(0, k), -1 + 4 * rng.uniform(), 1e-14);
+    EXPECT_NEAR(s.velocities(0, k), -1 + 2 * rng.uniform(), 1e-14);  // half the half width
+    EXPECT_NEAR(s.positions(1, k), 10 + 10 * rng.uniform(), 1e-14);
+    EXPECT_NEAR(s.velocities(1, k), -2.5 + 5 * rng.uniform(), 1e-14);
   }
   const Index leader = bowl(s.positions.col(0)) <= bowl(s.positions.col(1)) ? 0 : 1;
   EXPECT_EQ(s.best, s.positions.col(leader));
@@ -136,8 +136,8 @@ TEST(Pso, ClampedParticlesStopAtTheBound) {
     const double w = 0.85;
     for (Index k = 0; k < 4; ++k) {
       if (rule == PositionRule::clamped) {
-        EXPECT_EQ(s.positions(0, k), 3);
-        EXPECT_EQ(s.velocities(0, k), 0);
+        EXPECT_NEAR(s.positions(0, k), 3, 1e-14);
+        EXPECT_NEAR(s.velocities(0, k), 0, 1e-14);
       } else {
         EXPECT_NEAR(s.positions(0, k), 2.9 + 2 * w, 1e-14);
         EXPECT_NEAR(s.velocities(0, k), 2 * w, 1e-14);

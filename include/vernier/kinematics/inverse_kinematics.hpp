@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vernier/core/function_ref.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
@@ -45,47 +46,43 @@ struct IkResult {
 
 namespace detail {
 
-/// Levenberg-Marquardt on the joints. `Rows` is 6 for a full pose, 3 for a position. Damping grows with the remaining
-/// error, so steps stay small near singularities and convergence is quadratic at the solution.
+/// Levenberg-Marquardt on the joints; without `oriented` the position alone counts. Damping grows with the remaining
+/// error, so steps stay small near singularities and convergence is quadratic at the solution. The model is reached
+/// through a reference, so that this is compiled once for each N and not for each model.
 /// @cite Levenberg 1944; Marquardt 1963; Nakamura and Hanafusa 1986; Sugihara 2011
-template <int Rows, KinematicModel M>
-IkResult<M::dof> damped_inverse_kinematics(const M& model, const Isometry3& target, const JointVector<M::dof>& seed,
-                                           const IkOptions<M::dof>& options) noexcept {
-  constexpr int N = M::dof;
-  using Error = Eigen::Matrix<double, Rows, 1>;
+template <int N>
+IkResult<N> damped_inverse_kinematics(FunctionRef<PoseAndJacobian<N>(const JointVector<N>&)> model,
+                                      const Isometry3& target, bool oriented, const JointVector<N>& seed,
+                                      const IkOptions<N>& options) noexcept {
   using Square = Eigen::Matrix<double, N, N>;
   const int moving = std::clamp(options.moving_joints, 1, N);
-  Error weight = Error::Ones();
-  if constexpr (Rows == 6) weight.template tail<3>().setConstant(options.rotation_length);
+  Vector6 weight = Vector6::Ones();
+  weight.tail<3>().setConstant(oriented ? options.rotation_length : 0);
 
   struct Iterate {
     JointVector<N> q;
-    Eigen::Matrix<double, Rows, N> jacobian;
-    Error error;
+    Jacobian<N> jacobian;  // weighted
+    Vector6 error;
     double cost;
   };
   const auto evaluate = [&](const JointVector<N>& q) {
-    const PoseAndJacobian<N> at = model.pose_and_jacobian(q);
+    const PoseAndJacobian<N> at = model(q);
     Iterate it;
     it.q = q;
-    if constexpr (Rows == 6) {
-      it.error = pose_difference(target, at.pose);
-    } else {
-      it.error = target.translation() - at.pose.translation();
-    }
-    it.jacobian = weight.asDiagonal() * at.jacobian.template topRows<Rows>();
+    it.error.template head<3>() = target.translation() - at.pose.translation();
+    it.error.template tail<3>().setZero();
+    if (oriented) it.error.template tail<3>() = log_so3(target.linear() * at.pose.linear().transpose());
+    it.jacobian = weight.asDiagonal() * at.jacobian;
     it.cost = it.error.cwiseProduct(weight).squaredNorm();
     return it;
   };
   const auto finish = [](const Iterate& it, IkStatus status, int iterations) {
-    IkResult<N> result{it.q, status, it.error.template head<3>().norm(), 0, iterations};
-    if constexpr (Rows == 6) result.rotation_error = it.error.template tail<3>().norm();
-    return result;
+    return IkResult<N>{it.q, status, it.error.template head<3>().norm(), it.error.template tail<3>().norm(),
+                       iterations};
   };
   const auto converged = [&](const Iterate& it) {
-    if constexpr (Rows == 6)
-      if (!(it.error.template tail<3>().norm() <= options.rotation_tolerance)) return false;
-    return it.error.template head<3>().norm() <= options.position_tolerance;
+    return it.error.template head<3>().norm() <= options.position_tolerance &&
+           it.error.template tail<3>().norm() <= options.rotation_tolerance;
   };
 
   JointVector<N> start = seed;
@@ -146,7 +143,8 @@ template <KinematicModel M>
 [[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Isometry3& target,
                                                   const JointVector<M::dof>& seed,
                                                   const IkOptions<M::dof>& options = {}) noexcept {
-  return detail::damped_inverse_kinematics<6>(model, target, seed, options);
+  const auto evaluate = [&](const JointVector<M::dof>& q) { return model.pose_and_jacobian(q); };
+  return detail::damped_inverse_kinematics<M::dof>(evaluate, target, true, seed, options);
 }
 
 /// Joints that bring the tool to a position [m], whatever its orientation; otherwise as above.
@@ -156,7 +154,8 @@ template <KinematicModel M>
                                                   const IkOptions<M::dof>& options = {}) noexcept {
   Isometry3 pose = Isometry3::Identity();
   pose.translation() = target;
-  return detail::damped_inverse_kinematics<3>(model, pose, seed, options);
+  const auto evaluate = [&](const JointVector<M::dof>& q) { return model.pose_and_jacobian(q); };
+  return detail::damped_inverse_kinematics<M::dof>(evaluate, pose, false, seed, options);
 }
 
 }  // namespace vernier

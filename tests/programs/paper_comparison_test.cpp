@@ -19,12 +19,12 @@ using vernier::testing_support::TemporaryFolder;
 
 const std::vector<std::string> names{"uncompensated",    "joint_ga_elm",      "joint_pso_elm",
                                      "cartesian_ga_elm", "cartesian_pso_elm", "identification"};
-const std::string small = " --train 300 --test 60 --fresh 40 --scale-budget 0.02 --seed 3 ";
+const std::string few = " --train 300 --test 60 --scale-budget 0.02 --seed 3 ", small = few + "--fresh 40 ";
 
 CommandResult run(const TemporaryFolder& folder, const std::string& arguments, const std::string& environment = "") {
   const std::string program = std::string(VERNIER_EXAMPLES_DIR) + "/paper_comparison";
   return vernier::testing_support::run_command(
-      environment + " '" + program + "' --out '" + (folder / "figures").string() + "' " + arguments, folder.path());
+      "cd '" + folder.path().string() + "'; " + environment + " '" + program + "' " + arguments, folder.path());
 }
 
 struct Outcome {
@@ -32,10 +32,10 @@ struct Outcome {
   Json json;
 };
 
-Outcome run_to_json(const std::string& arguments) {
+Outcome run_to_json(const std::string& arguments, const std::string& size = small) {
   const TemporaryFolder folder("paper_comparison");
   const auto file = folder / "result.json";
-  CommandResult command = run(folder, small + arguments + " --json '" + file.string() + "'");
+  CommandResult command = run(folder, size + arguments + " --json '" + file.string() + "'");
   EXPECT_EQ(command.exit_code, 0) << command.errors;
   return {command, command.exit_code == 0 ? Json::parse(vernier::read_file(file)) : Json()};
 }
@@ -125,8 +125,8 @@ TEST(PaperComparison, TablesNameEveryMethodAndThePaperBeside) {
 
 TEST(PaperComparison, EachOptionActsOnWhatItNames) {
   const Json base = plain().json.at("runs").at("each")[0].at("sets").at("test").at("methods");
-  const auto changed = [&](const std::string& arguments) {
-    const Outcome outcome = run_to_json("--threads 2 " + arguments);
+  const auto changed = [&](const std::string& arguments, const std::string& size = small) {
+    const Outcome outcome = run_to_json("--threads 2 " + arguments, size);
     std::vector<std::string> out;
     for (const auto& name : names)
       if (method(outcome, "test", name) != base.at(name)) out.push_back(name);
@@ -136,7 +136,7 @@ TEST(PaperComparison, EachOptionActsOnWhatItNames) {
   EXPECT_EQ(changed("--positions clamped"), (std::vector<std::string>{"joint_pso_elm", "cartesian_pso_elm"}));
   EXPECT_EQ(changed("--noise-mm 0.1"),
             (std::vector<std::string>{"cartesian_ga_elm", "cartesian_pso_elm", "identification"}));
-  EXPECT_EQ(changed("--fresh 41"), std::vector<std::string>{});
+  EXPECT_EQ(changed("--fresh 41", few), std::vector<std::string>{});
   EXPECT_EQ(changed("--region full"), names);
 }
 
@@ -145,12 +145,12 @@ TEST(PaperComparison, FiguresAreWholeAndTheProgramGoesOnWithoutGnuplot) {
   const CommandResult without = run(folder, small, "PATH=/nonexistent");
   EXPECT_EQ(without.exit_code, 0);
   EXPECT_EQ(without.errors, "gnuplot is not installed: going on without figures\n");
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "figures"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "paper_comparison_out"));
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
   const CommandResult with = run(folder, small);
   EXPECT_EQ(with.exit_code, 0) << with.errors;
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder / "figures")) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "paper_comparison_out")) {
     const std::string svg = vernier::read_file(entry.path());
     EXPECT_EQ(entry.path().extension(), ".svg");
     EXPECT_NE(svg.find("<svg"), std::string::npos) << entry.path();

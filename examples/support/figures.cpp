@@ -59,7 +59,7 @@ std::string preamble(const std::string& title, const std::string& y_label, const
   return out;
 }
 
-/// A logarithmic axis that fits the data; where it spans few decades, with ticks at 1, 2 and 5.
+/// A logarithmic axis that fits the data; where it spans few decades, with more ticks than one a decade.
 template <class Select>
 std::string log_axis(const char* axis, const std::vector<Series>& series,
                      const std::optional<std::pair<double, double>>& limits, Select&& select) {
@@ -75,10 +75,12 @@ std::string log_axis(const char* axis, const std::vector<Series>& series,
   const std::pair<double, double> ends = limits.value_or(std::pair{lower / 1.15, upper * 1.15});
   out += range(axis, ends);
   if (ends.second / ends.first > 1000) return out;
+  const std::vector<int> marks =
+      ends.second / ends.first > 8 ? std::vector<int>{1, 2, 5} : std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8, 9};
   std::string ticks;
   for (double decade = std::pow(10, std::floor(std::log10(ends.first))); decade <= ends.second; decade *= 10)
-    for (const double tick : {decade, 2 * decade, 5 * decade})
-      if (tick >= ends.first && tick <= ends.second)
+    for (const int mark : marks)
+      if (const double tick = mark * decade; tick >= ends.first && tick <= ends.second)
         ticks += fmt::format("{}'{:g}' {:g}", ticks.empty() ? "" : ", ", tick, tick);
   return ticks.empty() ? out : out + fmt::format("set {}tics ({})\n", axis, ticks);
 }

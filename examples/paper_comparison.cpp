@@ -116,8 +116,7 @@ enum Stream : std::uint64_t {
 class Experiment {
  public:
   Experiment(const vn::Robot<6>& robot, const Settings& settings, std::uint64_t seed, int threads, std::string prefix)
-      : robot_(robot),
-        settings_(settings),
+      : settings_(settings),
         nominal_(robot.chain),
         actual_(vn::with_geometric_errors(robot.chain, {}, seed)),
         executor_(threads),
@@ -209,7 +208,6 @@ class Experiment {
     for (std::size_t set = 0; set < sets.size(); ++set) run_.errors[set][method] = errors(compensator, targets_[set]);
   }
 
-  const vn::Robot<6>& robot_;
   const Settings& settings_;
   Chain nominal_, actual_;
   vn::ThreadExecutor executor_;

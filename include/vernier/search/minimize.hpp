@@ -13,7 +13,8 @@ namespace vernier {
 
 /// When a search ends before its algorithm's own schedule.
 struct Stop {
-  Index max_evaluations = std::numeric_limits<Index>::max();  ///< a generation that might pass it is not started
+  /// A generation that might pass it, were it as large as the last, is not started; the first population always is.
+  Index max_evaluations = std::numeric_limits<Index>::max();
   Index max_generations = std::numeric_limits<Index>::max();  ///< generations after the first population
   double target = -std::numeric_limits<double>::infinity();   ///< enough is enough
   Index patience = std::numeric_limits<Index>::max();         ///< generations without any improvement

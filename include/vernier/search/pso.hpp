@@ -22,7 +22,7 @@ enum class PositionRule {
 struct Pso {
   int particles = 50;          ///< at least 1
   Index iterations = 300;      ///< generations after the first population
-  double inertia_start = 0.9;  ///< w at the first iteration
+  double inertia_start = 0.9;  ///< w before the first iteration, `inertia(0)`
   double inertia_end = 0.4;    ///< w at the last iteration
   double cognitive = 2;        ///< c1, pull towards a particle's own best
   double social = 2;           ///< c2, pull towards the swarm's best

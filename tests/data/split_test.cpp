@@ -117,6 +117,12 @@ TEST(Split, RegionHoldsOutTheRowsNearestToItsFace) {
   }
 }
 
+TEST(Split, RegionTakesTheFirstOfEqualRows) {
+  const Dataset<1> grid(numbered(20).joints(), PointRows::Constant(20, 3, 0.5));
+  const auto split = vernier::split_region(grid, {.test_fraction = 0.2, .face = Face::z_high});
+  EXPECT_EQ(rows_of(split.test), (std::vector<Index>{0, 1, 2, 3}));
+}
+
 TEST(Split, TimeHoldsOutTheLastRows) {
   EXPECT_EQ(rows_of(vernier::split_time(numbered(10), 0.3).test), (std::vector<Index>{7, 8, 9}));
   EXPECT_EQ(rows_of(vernier::split_time(numbered(10)).train), (std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7}));

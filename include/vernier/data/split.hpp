@@ -86,8 +86,9 @@ Split<N> split_region(const Dataset<N>& data, const RegionOptions& options = {})
   const double sign = static_cast<int>(options.face) % 2 == 0 ? 1 : -1;
   std::vector<Index> order(static_cast<std::size_t>(data.size()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return sign * data.positions()(a, axis) < sign * data.positions()(b, axis);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const double at_a = sign * data.positions()(a, axis), at_b = sign * data.positions()(b, axis);
+    return at_a != at_b ? at_a < at_b : a < b;
   });
   return detail::split_rows(data, std::move(order), tests);
 }

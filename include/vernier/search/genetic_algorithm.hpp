@@ -85,7 +85,8 @@ struct GeneticAlgorithm {
     evaluate(points, fitness);
     std::vector<Index> order(static_cast<std::size_t>(n));
     for (Index k = 0; k < n; ++k) order[static_cast<std::size_t>(k)] = k;
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return s.fitness(a) < s.fitness(b); });
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return s.fitness(a) != s.fitness(b) ? s.fitness(a) < s.fitness(b) : a < b; });
     Codes survivors(s.codes.rows(), n);
     VectorX values(n);
     for (Index k = 0; k < elites; ++k) {

@@ -5,7 +5,6 @@
 
 #include "temporary_folder.hpp"
 #include "vernier/kinematics/robots.hpp"
-#include "vernier/regression/ridge_elm.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
@@ -26,10 +25,13 @@ CalibratedRobot<6> example(bool learned) {
   CalibratedRobot<6> out("an arm", robot.chain, standing, robot.limits, {"poses.csv", 120, "2024-05-01", "commanded"});
   if (!learned) return out;
   const JointRows<6> joints = sample_joints(robot.limits, 80, 5);
-  PointRows error(80, 3);
-  for (Index i = 0; i < 80; ++i)
-    error.row(i) << 1e-4 * std::sin(joints(i, 0)), 1e-4 * std::cos(joints(i, 1)), 5e-5 * std::sin(joints(i, 2));
-  return out.with_learned(RidgeElm{.hidden_nodes = 12}.fit(joints, error, {.seed = 2}),
+  const HiddenLayer layer{.nodes = 12, .input_map = InputMap::sines_and_cosines};
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<12, 3>();
+  return out.with_learned({layer,
+                           {VectorX::Constant(12, 0.01), VectorX::Constant(12, 0.9)},
+                           layer.draw(6, 2),
+                           beta,
+                           Vector3(1e-5, 0, -2e-5)},
                           JointRangeGate<6>::covering(joints));
 }
 

@@ -20,6 +20,7 @@ inline constexpr int model_schema_version = 1;
 inline constexpr std::array<std::string_view, 6> frame_keys{"x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"};
 inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "tanh", "sine", "radial_basis"};
 inline constexpr std::array<std::string_view, 2> input_map_names{"raw", "sines_and_cosines"};
+inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
 inline constexpr std::array<std::string_view, 3> scaling_names{"none", "min_max", "standard"};
 
 /// The position of a name in a list, for the enums that are stored by name.
@@ -199,8 +200,11 @@ CalibratedRobot<N> load_calibrated_robot(const std::filesystem::path& path) {
   }
   const JsonNode from = root.at("provenance");
   const auto any_text = [](const JsonNode& node) { return node.is_empty_text() ? std::string() : node.text(); };
-  const Provenance provenance{any_text(from.at("data_file")), static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
-                              any_text(from.at("date")), from.at("joints").text()};
+  const Provenance provenance{
+      any_text(from.at("data_file")), static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
+      any_text(from.at("date")),
+      std::string(
+          detail::joint_readings[static_cast<std::size_t>(detail::named(from.at("joints"), detail::joint_readings))])};
   const CalibratedRobot<N> robot(
       root.at("name").text(), DhChain<N>::from_rows(nominal),
       Framed<DhChain<N>>(DhChain<N>::from_rows(identified), detail::frame_from_json(root.at("base")),

@@ -31,14 +31,13 @@ std::string today() {
 bool oriented(const CalibrationReport& report) { return report.stages.front().rotation.size() > 0; }
 
 void print_table(const CalibrationReport& report) {
-  fmt::print("\nErrors of the {} held-out poses [mm]{}\n\n", report.test_rows,
-             oriented(report) ? ", orientation [mrad]" : "");
+  fmt::print("\nErrors of the {} held-out poses [mm]\n\n", report.test_rows);
   fmt::print("{:<22}{:>9}{:>9}{:>9}{:>9}{:>9}{}\n", "stage", "mean", "rms", "max", "min", "p95",
-             oriented(report) ? "     mean  [mrad]" : "");
+             oriented(report) ? "  mean [mrad]" : "");
   for (const StageErrors& stage : report.stages) {
     const auto e = ErrorStatistics::of(stage.position * 1e3);
     fmt::print("{:<22}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}", stage.title, e.mean, e.rms, e.max, e.min, e.p95);
-    if (stage.rotation.size() > 0) fmt::print("{:>9.4f}", stage.rotation.mean() * 1e3);
+    if (stage.rotation.size() > 0) fmt::print("{:>13.4f}", stage.rotation.mean() * 1e3);
     fmt::print("\n");
   }
 }

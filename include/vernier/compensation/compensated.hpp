@@ -71,8 +71,8 @@ class Compensated {
     options.moving_joints = options_.moving_joints == 0 ? dof : options_.moving_joints;
     const bool full =
         options_.target == CorrectionTarget::pose || (options_.target == CorrectionTarget::automatic && dof >= 6);
-    const IkResult<dof> found = full ? inverse_kinematics(best_, target, seed, options)
-                                     : inverse_kinematics(best_, Vector3(target.translation()), seed, options);
+    const auto evaluate = [this](const JointVector<dof>& q) { return best_.pose_and_jacobian(q); };
+    const IkResult<dof> found = detail::damped_inverse_kinematics<dof>(evaluate, target, full, seed, options);
     Correction<dof> out{found.joints, found.status, found.position_error, 1};
     if constexpr (requires { best_.gate(found.joints); }) out.gate = best_.gate(found.joints);
     return out;

@@ -99,15 +99,17 @@ class DhChain {
   /// Equal in every row.
   bool operator==(const DhChain& other) const { return rows_ == other.rows_; }
 
+  // The walks are not inlined: a call costs nothing beside them, and every user's compile time would grow.
+
   /// base_T_tool.
-  Isometry3 pose(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).isometry(); }
+  [[gnu::noinline]] Isometry3 pose(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).isometry(); }
   /// Tool position [m], base frame.
-  Vector3 position(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).p; }
+  [[gnu::noinline]] Vector3 position(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).p; }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
   /// Both in one pass.
-  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
+  [[gnu::noinline]] PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     std::array<detail::ElementaryMotion, N> joints;
     const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
       if (parameter == joint_parameter(i))
@@ -119,7 +121,7 @@ class DhChain {
   }
 
   /// 6 x 5N, analytic.
-  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<N>& q) const noexcept {
+  [[gnu::noinline]] ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<N>& q) const noexcept {
     std::array<detail::ElementaryMotion, num_parameters> motions;
     const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
       const bool rotation = parameter != DhParameter::a && parameter != DhParameter::d;

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <cstring>
 
+/// Inlined even where the compiler would rather not.
 #define VERNIER_INLINE inline __attribute__((always_inline))
+/// Before a loop of a constant few steps: unrolls it whole, so that what it indexes stays in registers.
 #define VERNIER_UNROLL _Pragma("GCC unroll 16")
 
 namespace vernier {

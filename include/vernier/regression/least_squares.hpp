@@ -204,4 +204,16 @@ LeaveOneOutChoice choose_lambda(const RidgePathOf<Scalar>& path, Index samples) 
   return best;
 }
 
+/// How many standard errors the leave-one-out error at `lambda` lies below that of the mean alone: the mean over
+/// samples of the difference of squared errors, divided by its standard error. Zero for the mean itself.
+template <class Scalar>
+double evidence_against_mean(const RidgePathOf<Scalar>& path, double lambda, Index samples) {
+  if (!std::isfinite(lambda) || samples < 3) return 0;
+  const VectorX gain = path.leave_one_out_residuals(std::numeric_limits<double>::infinity()).rowwise().squaredNorm() -
+                       path.leave_one_out_residuals(lambda).rowwise().squaredNorm();
+  const double mean = gain.mean(), n = static_cast<double>(samples);
+  const double standard_error = std::sqrt((gain.array() - mean).square().sum() / (n * (n - 1)));
+  return standard_error > 0 ? mean / standard_error : mean > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
 }  // namespace vernier

@@ -43,7 +43,9 @@ struct RidgeElm {
   /// What the layer sees of each input.
   InputMap input_map = InputMap::sines_and_cosines;
   Scaling input_scaling = Scaling::min_max;  ///< of raw inputs
-  double weight_limit = 1;                   ///< hidden weights and biases lie in [-limit, limit]
+  double evidence = 3;      ///< standard errors by which leave-one-out must beat the mean alone, or the mean is kept: a
+                            ///< search over many layers finds one that seems a little better by chance
+  double weight_limit = 1;  ///< hidden weights and biases lie in [-limit, limit]
 
   /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }
@@ -78,7 +80,9 @@ struct RidgeElm {
     MatrixX h;
     layer().outputs(in.apply(mapped), theta, h);
     const RidgePath path(h, targets);
-    const MatrixX beta = path.beta(choose_lambda(path, h.rows()).lambda);
+    double lambda = choose_lambda(path, h.rows()).lambda;
+    if (evidence_against_mean(path, lambda, h.rows()) < evidence) lambda = std::numeric_limits<double>::infinity();
+    const MatrixX beta = path.beta(lambda);
     return {layer(), in, theta, beta, path.offset(beta)};
   }
 

@@ -3,6 +3,8 @@
 /// @file
 /// Joins the two worlds: a regressor whose inner weights a metaheuristic finds. PSO-ELM is `Tuned{Elm{}, Pso{}}`.
 
+#include <utility>
+
 #include "vernier/regression/concepts.hpp"
 #include "vernier/search/minimize.hpp"
 
@@ -37,7 +39,8 @@ struct Tuned {
   /// The search, then the fit at what it found. The observer of the options sees every generation.
   template <class X, class Y>
   auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
-           const FitOptions& options = {}) const {
+           const FitOptions& options = {}) const
+      -> decltype(std::declval<const R&>().fit_at(inputs, targets, VectorX())) {  // known without compiling the body
     const SearchResult found =
         minimize(algorithm, regressor.objective(inputs, targets), regressor.box(X::ColsAtCompileTime), stop,
                  options.seed, options.executor, options.observer);

@@ -1,16 +1,85 @@
 // A calibrated model and a file of targets in, corrected joint commands out.
 
-#include "correction.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "cli.hpp"
+#include "dispatch.hpp"
+#include "joint_units.hpp"
 #include "json_file.hpp"
+#include "vernier/io/model_file.hpp"
 
 namespace {
+
+namespace vn = vernier;
+
+/// What became of the targets.
+struct CorrectionReport {
+  std::string robot;                ///< name in the model
+  std::vector<double> errors{};     ///< distance from each target that the model predicts for its command [m]
+  std::vector<vn::Index> missed{};  ///< targets that are not met, counted from 0
+  vn::Index extrapolated = 0;       ///< targets outside the measured joint ranges, where the learned part fades out
+};
+
+const char* words(vn::IkStatus status) {
+  switch (status) {
+    case vn::IkStatus::converged: return "converged";
+    case vn::IkStatus::unreachable: return "unreachable";
+    default: return "stalled";
+  }
+}
+
+/// Corrects every target and writes the commands, whole or not at all: columns q1_rad .. (q1_m for a prismatic joint),
+/// status, predicted_error_mm, gate.
+/// @param poses the targets are poses x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements, their
+/// joints only seeds that choose the branch; else the targets are where the nominal arm stands at the joints
+/// @throws vn::DataError on a malformed file
+/// @throws std::runtime_error where the commands cannot be written
+template <int N>
+CorrectionReport correct_arm(const std::filesystem::path& model, const std::filesystem::path& targets, bool poses,
+                             const std::filesystem::path& out) {
+  using vn::Index;
+  const vn::CalibratedRobot<N> robot = vn::load_calibrated_robot<N>(model);
+  vn::Dataset<N> data;
+  if (poses) {
+    data = vn::read_dataset<N>(targets);
+    if (N >= 6 && !data.has_orientations())
+      throw vn::DataError(targets.string() + ": no columns rx_rad, ry_rad, rz_rad; a pose of an arm of " +
+                          std::to_string(N) + " joints has an orientation");
+  } else {
+    vn::JointRows<N> joints = vn::read_joints<N>(targets);
+    const Index n = joints.rows();
+    data = vn::Dataset<N>(std::move(joints), vn::PointRows::Zero(n, 3));
+  }
+  support::require_joint_units(targets, robot.nominal());
+
+  CorrectionReport report{robot.name()};
+  std::string text;
+  for (int j = 0; j < N; ++j)
+    text += vn::message("q", j + 1, robot.nominal().row(j).joint == vn::JointType::revolute ? "_rad," : "_m,");
+  text += "status,predicted_error_mm,gate\n";
+  for (Index i = 0; i < data.size(); ++i) {
+    const vn::JointVector<N> q = data.joints(i);
+    vn::Isometry3 target = robot.reference().pose(q);
+    if (poses) {
+      target.translation() = data.position(i);
+      if (data.has_orientations()) target.linear() = data.orientation(i);
+    }
+    const vn::Correction<N> correction = robot.correct(target, q);
+    for (int j = 0; j < N; ++j) text += vn::message(correction.command(j), ',');
+    text += vn::message(words(correction.status), ',', correction.predicted_error * 1e3, ',', correction.gate, '\n');
+    report.errors.push_back(correction.predicted_error);
+    if (correction.status != vn::IkStatus::converged) report.missed.push_back(i);
+    if (correction.gate < 1) ++report.extrapolated;
+  }
+  vn::write_file(out, text);
+  return report;
+}
 
 int run(support::Program& program) {
   std::string model, targets;
@@ -28,7 +97,8 @@ int run(support::Program& program) {
   if (out.empty()) throw support::UsageError("--out is required");
   support::require_writable(out);
 
-  const support::CorrectionReport report = support::correct_targets(model, targets, poses, out);
+  const CorrectionReport report = support::dispatch_dof(
+      vn::calibrated_robot_dof(model), [&](auto n) { return correct_arm<n()>(model, targets, poses, out); });
   const auto n = report.errors.size(), missed = report.missed.size();
   const double largest = *std::max_element(report.errors.begin(), report.errors.end()) * 1e3;
   const double mean = std::accumulate(report.errors.begin(), report.errors.end(), 0.0) / static_cast<double>(n) * 1e3;
@@ -39,7 +109,7 @@ int run(support::Program& program) {
                report.extrapolated);
   fmt::print("Commands: {}\n", out);
   if (!program.common().json.empty()) {
-    std::vector<vernier::Index> rows;
+    std::vector<vn::Index> rows;
     for (const auto i : report.missed) rows.push_back(i + 1);
     support::write_json(program.common().json, {{"robot", report.robot},
                                                 {"targets", n},

@@ -66,7 +66,7 @@ void require_plausible(const vernier::NominalArm<N>& arm, const vernier::Dataset
   const vernier::PointRows nominal = vernier::positions(arm.chain, train.joints());
   const double expected = spread(nominal), measured = spread(train.positions());
   const double limit = std::min(0.05, 0.1 * std::max(expected, measured));
-  if (frames_rms <= limit) return;
+  if (frames_rms <= std::max(limit, 1e-3)) return;  // an arm that stood still is another matter
   std::string hint = "wrong robot, units or columns?";
   const double ratio = measured / expected;
   double largest = 0;
@@ -148,7 +148,8 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
     report.remarks.push_back("The PSO-ELM found nothing to learn in what the geometry leaves.");
   const vn::VectorX left = vn::position_errors(identified.model, train);
   const vn::ErrorStatistics leftover = vn::ErrorStatistics::of(left);
-  if (const auto far = (left.array() > 8 * leftover.median).count(); far > 0 && leftover.median > 1e-6 && settings.loss == vn::Loss::squared)
+  if (const auto far = (left.array() > 8 * leftover.median).count();
+      far > 0 && leftover.median > 1e-6 && settings.loss == vn::Loss::squared)
     report.remarks.push_back(vn::message(far, " of the training rows miss by more than eight times the median of ",
                                          brief(leftover.median * 1e3),
                                          " mm: outliers? --loss huber makes them count less."));

@@ -22,6 +22,7 @@ struct Provenance {
   std::string date{};                ///< as the caller gives it
   std::string joints = "commanded";  ///< which joint values the data hold: commanded, or encoder
 
+  /// Equal in every entry.
   bool operator==(const Provenance&) const = default;
 };
 
@@ -31,10 +32,15 @@ struct Provenance {
 template <int N>
 class CalibratedRobot {
  public:
+  /// Number of joints.
   static constexpr int dof = N;
+  /// The kind of chain.
   using Chain = DhChain<N>;
+  /// The identified arm beside the nominal one.
   using Geometry = Calibrated<Chain>;
+  /// The learned position error.
   using Learned = ElmPredictor<N, 3>;
+  /// The identified arm with what was learned.
   using Corrected = CartesianCorrected<Geometry, Learned>;
 
   /// @param name       of the arm
@@ -48,7 +54,7 @@ class CalibratedRobot {
       : name_(std::move(name)),
         limits_(limits),
         provenance_(std::move(provenance)),
-        geometry_(compensate(Geometry(by_values(identified), nominal)).within(limits)) {
+        geometry_(by_values(identified), nominal) {
     for (int i = 0; i < N; ++i)
       require(nominal.row(i).joint == identified.model().row(i).joint, "CalibratedRobot: joint ", i + 1,
               " is of another type in the identified chain than in the nominal one");
@@ -57,48 +63,68 @@ class CalibratedRobot {
   /// The same with a learned position error.
   CalibratedRobot with_learned(const Learned& learned, const JointRangeGate<N>& gate) const {
     CalibratedRobot out = *this;
-    out.learned_.emplace(
-        CompensatedBy<Corrected>(Corrected(geometry(), learned, gate), geometry().reference()).within(limits_));
+    out.corrected_.emplace(geometry_, learned, gate);
     return out;
   }
 
+  /// Its name.
   const std::string& name() const { return name_; }
-  const Chain& nominal() const { return geometry().reference().model(); }
-  const Chain& identified() const { return geometry().actual().model(); }
-  const Framed<Chain>& actual() const { return geometry().actual(); }        ///< identified chain and frames
-  const Framed<Chain>& reference() const { return geometry().reference(); }  ///< nominal chain, identified frames
+  /// The chain as designed.
+  const Chain& nominal() const { return geometry_.reference().model(); }
+  /// The chain as identified.
+  const Chain& identified() const { return geometry_.actual().model(); }
+  const Framed<Chain>& actual() const { return geometry_.actual(); }        ///< identified chain and frames
+  const Framed<Chain>& reference() const { return geometry_.reference(); }  ///< nominal chain, identified frames
+  /// Joint limits.
   const JointLimits<N>& limits() const { return limits_; }
+  /// Where the calibration comes from.
   const Provenance& provenance() const { return provenance_; }
   /// The learned stage; null where there is none.
-  const Corrected* learned() const { return learned_ ? &learned_->best() : nullptr; }
+  const Corrected* learned() const { return corrected_ ? &*corrected_ : nullptr; }
 
   /// The pose of the arm as it is.
-  Isometry3 pose(const JointVector<N>& q) const noexcept { return learned_ ? learned_->pose(q) : geometry_.pose(q); }
+  Isometry3 pose(const JointVector<N>& q) const noexcept {
+    return corrected_ ? corrected_->pose(q) : geometry_.pose(q);
+  }
+  /// Tool position [m], base frame.
   Vector3 position(const JointVector<N>& q) const noexcept {
-    return learned_ ? learned_->position(q) : geometry_.position(q);
+    return corrected_ ? corrected_->position(q) : geometry_.position(q);
   }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
-    return learned_ ? learned_->pose_and_jacobian(q) : geometry_.pose_and_jacobian(q);
+    return corrected_ ? corrected_->pose_and_jacobian(q) : geometry_.pose_and_jacobian(q);
   }
+  /// Share of the learned part that holds at q; 1 where there is none.
+  double gate(const JointVector<N>& q) const noexcept { return corrected_ ? corrected_->gate(q) : 1; }
 
   /// The pose the arm takes when commanded q.
   Isometry3 predict(const JointVector<N>& q) const noexcept { return pose(q); }
   /// The command that brings the arm where the nominal one would be at q.
-  [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept {
-    return learned_ ? learned_->correct(q) : geometry_.correct(q);
-  }
+  [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return compensated().correct(q); }
   /// The command that brings the arm to a pose in the frame of the measurements; joints near the answer choose the
   /// branch.
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed) const noexcept {
-    return learned_ ? learned_->correct(target, seed) : geometry_.correct(target, seed);
+    return compensated().correct(target, seed);
   }
 
  private:
-  template <class Best>
-  using CompensatedBy = Compensated<Best, Framed<Chain>>;
+  /// This arm by reference: one inverse kinematics serves it with and without a learned part.
+  struct AsItIs {
+    static constexpr int dof = N;
+    const CalibratedRobot* robot;
 
-  const Geometry& geometry() const { return geometry_.best(); }
+    Isometry3 pose(const JointVector<N>& q) const noexcept { return robot->pose(q); }
+    Vector3 position(const JointVector<N>& q) const noexcept { return robot->position(q); }
+    Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return robot->jacobian(q); }
+    PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept { return robot->pose_and_jacobian(q); }
+    double gate(const JointVector<N>& q) const noexcept { return robot->gate(q); }
+  };
+
+  Compensated<AsItIs, Framed<Chain>> compensated() const {
+    return Compensated<AsItIs, Framed<Chain>>({this}, reference()).within(limits_);
+  }
 
   static Framed<Chain> by_values(const Framed<Chain>& framed) {
     const auto p = framed.parameters();
@@ -109,8 +135,8 @@ class CalibratedRobot {
   std::string name_;
   JointLimits<N> limits_;
   Provenance provenance_;
-  CompensatedBy<Geometry> geometry_;
-  std::optional<CompensatedBy<Corrected>> learned_{};
+  Geometry geometry_;
+  std::optional<Corrected> corrected_{};
 };
 
 }  // namespace vernier

@@ -80,6 +80,7 @@ class JsonNode {
     throw DataError(file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what);
   }
 
+  /// Whether there is an entry of that name.
   bool has(const std::string& key) const { return object().contains(key); }
 
   /// A member that must be there.
@@ -132,6 +133,7 @@ class JsonNode {
     return out;
   }
 
+  /// Whether it is a text of no characters.
   bool is_empty_text() const { return value_->is_string() && value_->get_ref<const std::string&>().empty(); }
 
   /// Numbers of a list, exactly `count`.

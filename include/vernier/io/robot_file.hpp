@@ -18,14 +18,19 @@ namespace vernier {
 /// A nominal arm in the standard convention, standing in a base frame (identity unless it came in the modified one).
 template <int N>
 struct NominalArm {
+  /// Its name.
   std::string name;
+  /// In the standard convention.
   DhChain<N> chain;
+  /// Where the chain stands: identity, or the first row of a modified chain.
   Isometry3 base = Isometry3::Identity();
+  /// Joint limits.
   JointLimits<N> limits{};
 };
 
 /// A nominal arm whose number of joints is only known at run time.
 struct RobotDescription {
+  /// Its name.
   std::string name;
   bool modified = false;                            ///< rows are in Craig's convention
   std::vector<DhRow> rows{};                        ///< one a joint [m, rad]
@@ -42,6 +47,7 @@ struct RobotDescription {
     return out;
   }
 
+  /// Number of joints.
   int dof() const { return static_cast<int>(rows.size()); }
 
   /// The arm with N fixed; a modified chain is converted exactly.

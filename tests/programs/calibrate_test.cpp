@@ -1,0 +1,277 @@
+// Runs calibrate, and correct behind it, on simulated measurements and, where they are, on measured ones.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "run_command.hpp"
+#include "temporary_folder.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/io/model_file.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing_support::CommandResult;
+using testing_support::TemporaryFolder;
+
+CommandResult run(const TemporaryFolder& folder, const std::string& program, const std::string& arguments) {
+  return testing_support::run_command(
+      "cd '" + folder.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + program + "' " + arguments,
+      folder.path());
+}
+
+Isometry3 frame(const Vector6& values) { return FrameParameters(values).isometry(); }
+
+/// An IRB 120 with errors of 0.5 to 1 mm and 1 to 3 mrad, in the frame of a tracker, with a tool.
+Framed<DhChain<6>> actual_arm() {
+  return Framed<DhChain<6>>(with_geometric_errors(robots::abb_irb120().chain, {}, 7),
+                            frame({2.1, -1.3, 0.4, 0.02, -0.03, 2.2}), frame({0.01, 0.02, 0.12, 0.3, 0, 0}));
+}
+
+Dataset<6> measured(Index n, std::uint64_t seed, bool oriented = true) {
+  const auto arm = actual_arm();
+  const JointRows<6> joints = abb_irb120_operating_region().sample(robots::abb_irb120().chain, n, seed);
+  return measure(arm, joints, {.position = 0.03e-3, .orientation = 0.05e-3, .with_orientations = oriented}, seed);
+}
+
+/// One calibration that several tests look at.
+struct Calibration {
+  TemporaryFolder folder{"calibrate"};
+  CommandResult command;
+  Json json;
+
+  Calibration() {
+    write_dataset(folder / "poses.csv", measured(150, 1));
+    command =
+        run(folder, "calibrate",
+            "--robot abb_irb120 --data poses.csv --test-every 5 --save model.json --json report.json --out figures "
+            "--threads 1 --date 2024-05-01");
+    if (command.exit_code == 0) json = Json::parse(read_file(folder / "report.json"));
+  }
+};
+
+const Calibration& calibration() {
+  static const Calibration made;
+  return made;
+}
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> out;
+  for (const auto& [key, ignored] : object.items()) out.push_back(key);
+  return out;
+}
+
+TEST(Calibrate, JsonHasTheStatedMembers) {
+  const Calibration& c = calibration();
+  ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
+  EXPECT_EQ(c.command.errors, "");
+  EXPECT_EQ(keys(c.json),
+            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "parameters", "identifiability"}));
+  EXPECT_EQ(c.json.at("robot"), "abb_irb120");
+  EXPECT_EQ(c.json.at("train_rows"), 120);
+  EXPECT_EQ(c.json.at("test_rows"), 30);
+  EXPECT_EQ(keys(c.json.at("stages")), (std::vector<std::string>{"frames", "geometry", "geometry_pso_elm"}));
+  for (const auto& [name, stage] : c.json.at("stages").items()) {
+    EXPECT_EQ(keys(stage), (std::vector<std::string>{"mean_mm", "rms_mm", "max_mm", "min_mm", "p95_mm"})) << name;
+    EXPECT_LE(stage.at("min_mm"), stage.at("mean_mm"));
+    EXPECT_LE(stage.at("mean_mm"), stage.at("rms_mm"));
+    EXPECT_LE(stage.at("p95_mm"), stage.at("max_mm"));
+  }
+  ASSERT_EQ(c.json.at("parameters").size(), 42u);
+  std::set<std::string> names;
+  for (const auto& p : c.json.at("parameters")) {
+    EXPECT_EQ(keys(p), (std::vector<std::string>{"name", "unit", "nominal", "identified", "std"}));
+    names.insert(p.at("name").get<std::string>());
+  }
+  EXPECT_EQ(names.size(), 42u);
+  const Json& a2 = c.json.at("parameters").at(6 + 5);
+  EXPECT_EQ(a2.at("name"), "a2");
+  EXPECT_EQ(a2.at("unit"), "mm");
+  EXPECT_NEAR(a2.at("nominal"), 270, 1e-9);
+  EXPECT_NEAR(a2.at("identified"), actual_arm().model().row(1).a * 1e3, 0.1);
+  const Json& known = c.json.at("identifiability");
+  EXPECT_EQ(keys(known), (std::vector<std::string>{"rank", "free", "condition", "weak"}));
+  EXPECT_EQ(known.at("rank"), known.at("free"));
+  EXPECT_EQ(known.at("free"), 30);  // all that a full pose determines of six revolute joints with their frames
+  EXPECT_GT(known.at("condition"), 1);
+}
+
+TEST(Calibrate, HeldOutErrorsFallToTheNoise) {
+  const Json& stages = calibration().json.at("stages");
+  EXPECT_GT(stages.at("frames").at("mean_mm"), 0.5);
+  const double geometry = stages.at("geometry").at("mean_mm");
+  EXPECT_LT(geometry, 0.07);  // the noise of a held-out measurement alone has a mean of 0.048
+  EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
+}
+
+TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
+  const Calibration& c = calibration();
+  for (const char* words : {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry",
+                            "geometry + PSO-ELM", "[mrad]", "Converged: ", "Figures: figures", "model.json"})
+    EXPECT_NE(c.command.output.find(words), std::string::npos) << words << " is not in\n" << c.command.output;
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;  // the figures need it, the rest does not
+  for (const char* name : {"stages.svg", "distribution.svg", "poses.svg"}) {
+    EXPECT_GT(std::filesystem::file_size(c.folder.path() / "figures" / name), 1000u) << name;
+  }
+}
+
+TEST(Calibrate, TheSavedModelPredictsFreshPoses) {
+  const auto model = load_calibrated_robot<6>(calibration().folder / "model.json");
+  EXPECT_EQ(model.provenance(), (Provenance{"poses.csv", 120, "2024-05-01", "commanded"}));
+  EXPECT_TRUE(model.nominal() == robots::abb_irb120().chain);
+  const auto fresh = measure(actual_arm(), measured(200, 99).joints());
+  EXPECT_LT(prediction_error(model, fresh).mean, 0.04e-3);
+  EXPECT_LT(rotation_errors(model, fresh).mean(), 0.1e-3);
+}
+
+TEST(Calibrate, CorrectBringsTheActualArmWithinTheNoise) {
+  const Calibration& c = calibration();
+  const JointRows<6> targets = abb_irb120_operating_region().sample(robots::abb_irb120().chain, 60, 31);
+  write_dataset(c.folder / "targets.csv", Dataset<6>(targets, PointRows::Zero(60, 3)));
+  const CommandResult corrected =
+      run(c.folder, "correct", "--model model.json --targets targets.csv --out commands.csv --json correct.json");
+  ASSERT_EQ(corrected.exit_code, 0) << corrected.errors;
+  const JointRows<6> commands = read_joints<6>(c.folder / "commands.csv");
+  const auto model = load_calibrated_robot<6>(c.folder / "model.json");
+  const auto before = positioning_errors(actual_arm(), model.reference(), targets, targets);
+  const auto after = positioning_errors(actual_arm(), model.reference(), commands, targets);
+  EXPECT_GT(before.position.mean(), 0.5e-3);
+  EXPECT_LT(after.position.mean(), 0.04e-3);
+  EXPECT_LT(after.position.maxCoeff(), 0.15e-3);
+  EXPECT_LT(after.rotation.mean(), 0.1e-3);
+  const Json report = Json::parse(read_file(c.folder / "correct.json"));
+  EXPECT_EQ(report.at("targets"), 60);
+  EXPECT_EQ(report.at("corrected"), 60);
+}
+
+TEST(Calibrate, SameBitsForAnyNumberOfThreads) {
+  const Calibration& c = calibration();
+  const CommandResult again = run(c.folder, "calibrate",
+                                  "--robot abb_irb120 --data poses.csv --save model2.json --json report2.json --out f2 "
+                                  "--threads 3 --date 2024-05-01");  // every fifth row is the default
+  ASSERT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(read_file(c.folder / "report.json"), read_file(c.folder / "report2.json"));
+  EXPECT_EQ(read_file(c.folder / "model.json"), read_file(c.folder / "model2.json"));
+}
+
+TEST(Calibrate, TestFileFixedParametersAndRobustLoss) {
+  const TemporaryFolder folder("calibrate");
+  Dataset<6> train = measured(100, 3, false);
+  PointRows positions = train.positions();
+  for (const Index bad : {5, 40, 77}) positions.row(bad) += Eigen::RowVector3d(0.02, -0.01, 0.03);
+  write_dataset(folder / "train.csv", Dataset<6>(train.joints(), positions));
+  write_dataset(folder / "test.csv", measured(40, 4, false));
+  const std::string arguments = "--robot abb_irb120 --data train.csv --test test.csv --json r.json --threads 1 ";
+  const CommandResult plain = run(folder, "calibrate", arguments);
+  ASSERT_EQ(plain.exit_code, 0) << plain.errors;
+  EXPECT_NE(plain.output.find("--loss huber"), std::string::npos) << plain.output;
+  const double squared = Json::parse(read_file(folder / "r.json")).at("stages").at("geometry").at("mean_mm");
+
+  const CommandResult robust = run(folder, "calibrate", arguments + "--loss cauchy --fix d4 theta3");
+  ASSERT_EQ(robust.exit_code, 0) << robust.errors;
+  const Json report = Json::parse(read_file(folder / "r.json"));
+  EXPECT_EQ(report.at("train_rows"), 100);
+  EXPECT_EQ(report.at("test_rows"), 40);
+  for (const auto& p : report.at("parameters"))
+    if (p.at("name") == "d4" || p.at("name") == "theta3") {
+      EXPECT_EQ(p.at("nominal"), p.at("identified"));
+      EXPECT_EQ(p.at("std"), 0);
+    }
+  EXPECT_EQ(robust.output.find("[mrad]"), std::string::npos);  // positions alone
+
+  const CommandResult all = run(folder, "calibrate", arguments + "--loss cauchy");
+  ASSERT_EQ(all.exit_code, 0) << all.errors;
+  const double cauchy = Json::parse(read_file(folder / "r.json")).at("stages").at("geometry").at("mean_mm");
+  EXPECT_LT(cauchy, 0.09);
+  EXPECT_GT(squared, 2 * cauchy);
+}
+
+TEST(Calibrate, ARobotFromAFileWithAPrismaticJointInTheModifiedConvention) {
+  const TemporaryFolder folder("calibrate");
+  write_file(folder / "scara.json", R"({"name": "a scara", "convention": "modified", "joints": [
+    {"a_mm": 0, "alpha_deg": 0, "d_mm": 400, "theta_deg": 0, "lower_deg": -150, "upper_deg": 150},
+    {"a_mm": 325, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "lower_deg": -140, "upper_deg": 140},
+    {"type": "prismatic", "a_mm": 275, "alpha_deg": 180, "d_mm": 0, "theta_deg": 0, "lower_mm": 0, "upper_mm": 200},
+    {"a_mm": 0, "alpha_deg": 0, "d_mm": 50, "theta_deg": 0, "lower_deg": -180, "upper_deg": 180}]})");
+  const DhChain<4, ModifiedDh> nominal{{{
+      {.d = 0.4},
+      {.a = 0.325},
+      {.a = 0.275, .alpha = 3.141592653589793, .joint = JointType::prismatic},
+      {.d = 0.05},
+  }}};
+  const Framed<DhChain<4, ModifiedDh>> actual(with_geometric_errors(nominal, {}, 2), frame({0.5, 0.2, 1, 0, 0.1, 0}),
+                                              frame({0.03, 0.01, 0.02, 0, 0, 0}));
+  JointLimits<4> limits;
+  limits.lower << -2.6, -2.4, 0, -3.1;
+  limits.upper << 2.6, 2.4, 0.2, 3.1;
+  const auto data = measure(actual, sample_joints(limits, 200, 5), {.position = 0.02e-3, .orientation = 0.1e-3}, 6);
+  write_dataset(folder / "poses.csv", data);
+  std::string text = read_file(folder / "poses.csv");
+  write_file(folder / "wrong.csv", text);
+  text.replace(text.find("q3_rad"), 6, "q3_m");
+  write_file(folder / "poses.csv", text);
+
+  const CommandResult wrong = run(folder, "calibrate", "--robot scara.json --data wrong.csv");
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_EQ(wrong.errors,
+            "calibrate: wrong.csv, line 1: column q3_rad, but joint 3 is prismatic: a length is needed\n");
+
+  const CommandResult done =
+      run(folder, "calibrate", "--robot scara.json --data poses.csv --test-fraction 0.25 --json r.json --save m.json");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  const Json report = Json::parse(read_file(folder / "r.json"));
+  EXPECT_EQ(report.at("robot"), "a scara");
+  EXPECT_EQ(report.at("test_rows"), 50);
+  EXPECT_GT(report.at("stages").at("frames").at("mean_mm"), 0.3);
+  EXPECT_LT(report.at("stages").at("geometry").at("mean_mm"), 0.05);
+  const auto model = load_calibrated_robot<4>(folder / "m.json");
+  EXPECT_EQ(model.nominal().row(2).joint, JointType::prismatic);
+  EXPECT_EQ(model.limits().upper(2), 0.2);
+}
+
+/// What `--test-every 5` gives on a measured robot.
+Json measured_robot(const std::string& robot, const std::string& file) {
+  const char* data = std::getenv("VERNIER_DATA_DIR");
+  if (data == nullptr || *data == '\0') return {};
+  const TemporaryFolder folder("calibrate");
+  const CommandResult done =
+      run(folder, "calibrate",
+          "--robot " + robot + " --data '" + std::string(data) + "/" + file + "' --test-every 5 --json r.json");
+  EXPECT_EQ(done.exit_code, 0) << done.errors;
+  return Json::parse(read_file(folder / "r.json")).at("stages");
+}
+
+TEST(CalibrateMeasured, Ur10) {
+  const Json stages = measured_robot("ur10", "ur10_random_poses.csv");
+  if (stages.is_null()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
+  EXPECT_NEAR(stages.at("frames").at("mean_mm"), 0.90, 0.03);
+  const double geometry = stages.at("geometry").at("mean_mm");
+  EXPECT_LE(geometry, 0.44);
+  EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
+}
+
+TEST(CalibrateMeasured, Ur5) {
+  const Json stages = measured_robot("ur5", "ur5_grid.csv");
+  if (stages.is_null()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
+  const double geometry = stages.at("geometry").at("mean_mm");
+  EXPECT_LE(geometry, 0.105);
+  EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
+}
+
+TEST(CalibrateMeasured, BarrettWam) {
+  const Json stages = measured_robot("barrett_wam", "wam_grid.csv");
+  if (stages.is_null()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
+  const double geometry = stages.at("geometry").at("mean_mm");
+  EXPECT_LE(geometry, 2.2);
+  EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,101 @@
+// Runs correct on a model made here, so that the answers are known exactly.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "run_command.hpp"
+#include "temporary_folder.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/io/model_file.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier {
+namespace {
+
+using testing_support::CommandResult;
+
+class Correct : public testing::Test {
+ protected:
+  Correct() {
+    save_calibrated_robot(folder_ / "model.json", robot_);
+    targets_ = abb_irb120_operating_region().sample(robot_.nominal(), 30, 12);
+  }
+
+  CommandResult correct(const std::string& arguments) {
+    return testing_support::run_command(
+        "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/correct' --model model.json " + arguments,
+        folder_.path());
+  }
+
+  std::vector<std::string> lines(const std::string& name) {
+    std::istringstream text(read_file(folder_ / name));
+    std::vector<std::string> out;
+    for (std::string line; std::getline(text, line);) out.push_back(line);
+    return out;
+  }
+
+  testing_support::TemporaryFolder folder_{"correct"};
+  Robot<6> catalogue_ = robots::abb_irb120();
+  Framed<DhChain<6>> actual_{with_geometric_errors(catalogue_.chain, {}, 21),
+                             FrameParameters(Vector6{1, 2, 0.5, 0, 0, 1}),
+                             FrameParameters(Vector6{0, 0, 0.1, 0, 0, 0})};
+  CalibratedRobot<6> robot_{"simulated", catalogue_.chain, actual_, catalogue_.limits, {}};
+  JointRows<6> targets_;
+};
+
+TEST_F(Correct, TheActualArmGoesWhereTheNominalOneWould) {
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  const CommandResult done = correct("--targets targets.csv --out commands.csv");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_NE(done.output.find("30 of 30 targets corrected"), std::string::npos) << done.output;
+  EXPECT_EQ(lines("commands.csv").at(0), "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,status,predicted_error_mm,gate");
+  const auto commands = read_joints<6>(folder_ / "commands.csv");
+  const auto after = positioning_errors(actual_, robot_.reference(), commands, targets_);
+  EXPECT_LT(after.position.maxCoeff(), 1e-6);
+  EXPECT_LT(after.rotation.maxCoeff(), 1e-6);
+  EXPECT_GT(positioning_errors(actual_, robot_.reference(), targets_, targets_).position.minCoeff(), 1e-4);
+}
+
+TEST_F(Correct, PosesAsTargetsGiveTheSameCommands) {
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  write_dataset(folder_ / "poses.csv", measure(robot_.reference(), targets_));
+  ASSERT_EQ(correct("--targets targets.csv --out a.csv").exit_code, 0);
+  ASSERT_EQ(correct("--targets poses.csv --poses --out b.csv").exit_code, 0);
+  EXPECT_LT((read_joints<6>(folder_ / "a.csv") - read_joints<6>(folder_ / "b.csv")).cwiseAbs().maxCoeff(), 1e-9);
+  write_dataset(folder_ / "points.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  const CommandResult points = correct("--targets points.csv --poses --out c.csv");
+  EXPECT_EQ(points.exit_code, 1);
+  EXPECT_NE(points.errors.find("points.csv: no columns rx_rad"), std::string::npos) << points.errors;
+}
+
+TEST_F(Correct, ATargetOutOfReachIsARowThatSaysSo) {
+  targets_.row(3)(1) = 170 * std::numbers::pi / 180;  // joint 2 ends at 110 degrees
+  targets_.row(17)(2) = 2.5;                          // joint 3 at 70
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  const CommandResult done = correct("--targets targets.csv --out commands.csv --json r.json");
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_TRUE(done.one_line_of_errors()) << done.errors;
+  EXPECT_NE(done.errors.find("2 of 30 targets cannot be met, their rows in commands.csv say so: row 4, 18"),
+            std::string::npos)
+      << done.errors;
+  const auto rows = lines("commands.csv");
+  ASSERT_EQ(rows.size(), 31u);  // the output is whole all the same
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    EXPECT_EQ(rows[i].find(",converged,") == std::string::npos, i == 4 || i == 18) << rows[i];
+  const auto commands = read_joints<6>(folder_ / "commands.csv");
+  for (Index i = 0; i < commands.rows(); ++i)
+    EXPECT_TRUE(catalogue_.limits.contains(commands.row(i).transpose())) << "row " << i + 1;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  EXPECT_EQ(report.at("targets"), 30);
+  EXPECT_EQ(report.at("corrected"), 28);
+  EXPECT_EQ(report.at("missed_rows"), (std::vector<int>{4, 18}));
+  EXPECT_GT(report.at("predicted_error").at("max_mm"), 1);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -104,7 +104,7 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   const vn::NominalArm<N> arm = robot.arm<N>();
   CalibrationReport report;
   const vn::Split<N> split = hold_out(arm.chain, settings, report.split);
-  const auto& [train, test] = split;
+  const vn::Dataset<N>&train = split.train, &test = split.test;
   report.train_rows = train.size();
   report.test_rows = test.size();
 

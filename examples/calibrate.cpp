@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <ctime>
 #include <map>
 
@@ -117,7 +117,7 @@ int run(support::Program& program) {
   auto* fraction_option = app.add_option("--test-fraction", fraction, "hold out this share of the rows, at random")
                               ->type_name("F")
                               ->check(CLI::Range(0.001, 0.999).description(""))
-                              ->always_capture_default(false);
+                              ->default_str("");
   test_option->excludes(every_option)->excludes(fraction_option);
   every_option->excludes(fraction_option);
   app.add_option("--save", save, "write the calibrated model to this file, for correct")
@@ -127,11 +127,10 @@ int run(support::Program& program) {
       ->type_name("LOSS")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}).description(""));
   app.add_option("--fix", settings.fixed, "parameters that stay nominal, by name (d1, theta6, tool_z, ...)")
-      ->type_name("NAME...");
+      ->type_name("NAME...")
+      ->default_str("");
   app.add_flag("--positions-only", settings.positions_only, "ignore measured orientations");
-  app.add_option("--date", settings.date, "date of the measurements, kept in the model (default: today)")
-      ->type_name("DATE")
-      ->always_capture_default(false);
+  app.add_option("--date", settings.date, "date kept in the model")->type_name("DATE");
   program.parse("calibrate_out");
 
   const vernier::RobotDescription robot = support::choose_robot(robot_name);
@@ -145,6 +144,9 @@ int run(support::Program& program) {
   if (*fraction_option) settings.test_fraction = fraction;
   settings.seed = program.common().seed;
   settings.threads = program.common().threads;
+  if (settings.date.size() > 40 ||
+      std::any_of(settings.date.begin(), settings.date.end(), [](char c) { return c < ' '; }))
+    throw support::UsageError("--date takes up to 40 plain characters");
   if (!save.empty()) support::require_writable(save);
   support::ProgressBar progress("PSO-ELM on what the geometry leaves", support::swarm_generations);
   settings.observer = progress;

@@ -133,9 +133,10 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   const vn::ThreadExecutor executor(settings.threads);
   const LearnedError<N> learned = learn_residual<N>(
       identified.model, train, {.seed = settings.seed, .executor = executor, .observer = settings.observer});
-  const auto hybrid = vn::CalibratedRobot<N>(arm.name, arm.chain, identified.model.actual(), arm.limits,
-                                             {settings.data.filename().string(), train.size(), settings.date})
-                          .with_learned(learned.predictor, learned.gate);
+  const bool learned_something = !learned.predictor.beta().isZero(0);
+  vn::CalibratedRobot<N> hybrid(arm.name, arm.chain, identified.model.actual(), arm.limits,
+                                {settings.data.filename().string(), train.size(), settings.date});
+  if (learned_something) hybrid = hybrid.with_learned(learned.predictor, learned.gate);
   judge("geometry_pso_elm", "geometry + PSO-ELM", hybrid);
 
   report.summary = identified.summary();
@@ -144,8 +145,7 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   report.free = static_cast<vn::Index>(identified.free.size());
   report.condition = identified.condition;
   report.weak = identified.names(vn::ParameterState::weak);
-  if (learned.predictor.beta().isZero(0))
-    report.remarks.push_back("The PSO-ELM found nothing to learn in what the geometry leaves.");
+  if (!learned_something) report.remarks.push_back("The PSO-ELM found nothing to learn in what the geometry leaves.");
   const vn::VectorX left = vn::position_errors(identified.model, train);
   const vn::ErrorStatistics leftover = vn::ErrorStatistics::of(left);
   if (const auto far = (left.array() > 8 * leftover.median).count();

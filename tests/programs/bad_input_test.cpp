@@ -116,6 +116,7 @@ TEST(BadInput, MeasuredPoses) {
                         "half an orientation");
   for (std::size_t n = 1; n < csv_header.size(); n += 5)
     reader.expect_refused(csv_header.substr(0, n), "half a header");
+  RecordProperty("cases", reader.cases);
   EXPECT_GE(reader.cases, 120);
 }
 
@@ -217,6 +218,7 @@ TEST(BadInput, RobotFiles) {
     damaged["joints"] = std::vector<Json>(static_cast<std::size_t>(n), row);
     reader.expect_refused(damaged.dump(), message(n, " joints"));
   }
+  RecordProperty("cases", reader.cases);
   EXPECT_GE(reader.cases, 200);
 }
 
@@ -258,6 +260,7 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/learned/gate_lower/2", 100), "a gate upside down");
   reader.expect_refused(with("/learned/input_map", "raw"), "weights of another layer");
   reader.expect_refused(with("/joints/3/lower_rad", 100), "limits upside down");
+  RecordProperty("cases", reader.cases);
   EXPECT_GE(reader.cases, 400);
 }
 
@@ -379,6 +382,7 @@ TEST_F(BadInputToPrograms, WrongUsage) {
   expect_refused(calibrate + "--data poses.csv --test-every 1", 2, "--test-every");
   expect_refused(calibrate + "--data poses.csv --test-every 5 --test-fraction 0.2", 2, "excludes");
   expect_refused(calibrate + "--data poses.csv --loss best", 2, "--loss");
+  expect_refused(calibrate + "--data poses.csv --date '2024\n05'", 2, "--date takes up to 40 plain characters");
   expect_refused(calibrate + "--data poses.csv --no-such-option", 2, "--no-such-option");
   expect_refused(calibrate + "--data poses.csv --fix d9", 1, "no parameter is called 'd9'");
   expect_refused("calibrate --robot abb_irb120 --data poses.csv --save missing/m.json", 1,

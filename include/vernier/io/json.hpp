@@ -123,11 +123,11 @@ class JsonNode {
     return out;
   }
 
-  /// A text of 1 to 200 printable characters.
+  /// A text of 1 to 1000 printable characters.
   std::string text() const {
     if (!value_->is_string()) fail(std::string("must be a text, is ") + kind());
     auto out = value_->get<std::string>();
-    if (out.empty() || out.size() > 200) fail(message("must have 1 to 200 characters, has ", out.size()));
+    if (out.empty() || out.size() > 1000) fail(message("must have 1 to 1000 characters, has ", out.size()));
     if (std::any_of(out.begin(), out.end(), [](unsigned char c) { return c < 32 || c == 127; }))
       fail("has a character that cannot be printed");
     return out;

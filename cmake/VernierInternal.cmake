@@ -6,7 +6,7 @@ target_compile_options(vernier_internal INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion -Wold-style-cast
   -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi -Wcast-qual
   # g++ 12 raises these after inlining, inside Eigen and std::string, where "system header" no longer counts.
-  "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>"
+  "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-use-after-free;-Wno-free-nonheap-object;-Wno-dangling-pointer>"
   $<$<BOOL:${VERNIER_WERROR}>:-Werror>)
 
 # vernier_includes(<out> <file> <regex>): whether the file has an #include line whose target starts so. Editing the file

@@ -3,16 +3,18 @@
 /// @file
 /// The work behind `calibrate`: measured poses in, a calibrated arm and its held-out errors out.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/fit_options.hpp"
-#include "vernier/identification/identified.hpp"
-#include "vernier/identification/options.hpp"
+#include "vernier/identification/fit_error_model.hpp"
+#include "vernier/identification/reregister.hpp"
 #include "vernier/io/robot_file.hpp"
 
 namespace support {
@@ -23,20 +25,34 @@ class CalibrationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// How rows are held out of a file.
+enum class HoldOut {
+  every,     ///< every k-th row
+  random,    ///< a seeded share
+  region_x,  ///< the share of rows farthest along x: the far end for odd seeds, the near end for even ones
+  region_z,  ///< likewise along z
+  time,      ///< the last share of the rows
+};
+
 /// What to calibrate from, and how.
 struct CalibrationSettings {
-  std::filesystem::path data;             ///< measured poses
-  std::filesystem::path test{};           ///< measured poses held out; empty: rows of `data` are
-  std::optional<double> test_fraction{};  ///< share of rows held out at random
-  vernier::Index test_every = 5;          ///< row i is held out when i % test_every == 0, where nothing else is asked
-  vernier::Loss loss = vernier::Loss::squared;  ///< of the identification
-  std::vector<std::string> fixed{};             ///< parameters that stay nominal
-  bool positions_only = false;                  ///< measured orientations are ignored
-  std::uint64_t seed = 1;                       ///< of the random split and of the swarm
-  int threads = 1;                              ///< of the swarm
-  std::filesystem::path save{};                 ///< where the calibrated arm goes; empty: nowhere
-  std::string date{};                           ///< written into it
-  vernier::ObserverRef observer{};              ///< sees the swarm
+  std::vector<std::filesystem::path> data;    ///< measured poses, one file a station
+  std::vector<std::filesystem::path> test{};  ///< measured poses held out, as many; empty: rows of `data` are
+  HoldOut hold_out = HoldOut::every;          ///< which rows of `data`
+  vernier::Index test_every = 5;              ///< row i is held out when i % test_every == 0
+  double test_fraction = 0.2;                 ///< share of rows held out otherwise
+  vernier::Index train_rows = 0;              ///< learn from the first so many of a seeded shuffle; 0: from all
+  vernier::Loss loss = vernier::Loss::huber;  ///< how residuals are weighed
+  std::vector<std::string> fixed{};           ///< parameters that stay nominal
+  bool positions_only = false;                ///< measured orientations are ignored
+  bool own_tools = false;                     ///< every station has its own tool
+  bool gears = false;                         ///< gear ratios and coupling of neighbouring joints count too
+  int harmonics = 60;                         ///< of the joint-wise terms
+  std::uint64_t seed = 1;                     ///< of splits and of the swarm
+  int threads = 1;                            ///< of the swarm
+  std::filesystem::path save{};               ///< where the calibrated arm goes; empty: nowhere
+  std::string date{};                         ///< written into it
+  vernier::ObserverRef observer{};            ///< sees the swarms
 };
 
 /// Errors of the held-out poses after a stage.
@@ -47,23 +63,63 @@ struct StageErrors {
   vernier::VectorX rotation;  ///< [rad]; empty where orientations do not count
 };
 
+/// One joint, for figures.
+struct JointPicture {
+  std::vector<double> angle{}, before{}, after{};  ///< held-out poses: joint [rad], errors of two stages [m]
+  std::vector<double> at{}, value{}, std{};        ///< what its transmission adds, over the measured range [rad]
+  std::vector<std::pair<double, double>> measured_ranges{};  ///< [rad]
+};
+
 /// All that a calibration has to tell.
 struct CalibrationReport {
   vernier::Index train_rows = 0, test_rows = 0;
   std::string split;                                     ///< how the test rows were chosen, in words
-  std::vector<StageErrors> stages{};                     ///< frames, geometry, geometry_pso_elm
+  std::vector<StageErrors> stages{};                     ///< in the order in which they were taken
   std::vector<vernier::ParameterEstimate> parameters{};  ///< base, chain, tool
   std::string summary;                                   ///< of the identification, in plain words
   std::vector<std::string> remarks{};                    ///< what else the user should know, a line each
+  std::vector<std::string> verdict{};                    ///< what to do with it, a line each
   vernier::Index rank = 0, free = 0;
   double condition = 0;
-  std::vector<std::string> weak{};
+  std::vector<std::string> weak{}, correlated{};
+  vernier::Observability observability{};
+  std::vector<vernier::BlockChoice> blocks{};  ///< what leave-one-pose-out said of the joint errors
+  std::vector<JointPicture> joints{};
+  vernier::Index gated = 0;      ///< test rows outside the measured joint ranges
+  double within_ellipsoids = 0;  ///< share of test rows within their predicted 95 % ellipsoid
+  double fit_seconds = 0;        ///< from poses to error model, the search for priors included
 };
 
-/// Frames, then geometry, then a PSO-ELM on what is left; judged on held-out poses.
+/// Frames, geometry, gravity compliance, joint-wise terms, and a PSO-ELM on what is left; judged on held-out poses.
 /// @throws CalibrationFailure when the data do not support a calibration; nothing is saved then
 /// @throws vernier::DataError on a malformed file
 /// @throws std::invalid_argument on a parameter in `fixed` that does not exist
 CalibrationReport calibrate(const vernier::RobotDescription& robot, const CalibrationSettings& settings);
+
+/// What may move when a fitted arm is registered again.
+struct ReregistrationSettings {
+  std::filesystem::path model;           ///< as `calibrate` saved it
+  std::filesystem::path data;            ///< a handful of measured poses
+  std::filesystem::path test{};          ///< measured poses to judge by; empty: the same
+  vernier::ReregisterOptions options{};  ///< what may move
+  bool positions_only = false;           ///< measured orientations are ignored
+  std::filesystem::path save{};          ///< where the arm goes; empty: nowhere
+  std::string date{};                    ///< written into it
+};
+
+/// What became of it.
+struct ReregistrationReport {
+  std::string robot;
+  vernier::Index train_rows = 0, test_rows = 0;
+  bool held_out = false;                               ///< whether it was judged by other poses than it was fitted to
+  std::vector<StageErrors> stages{};                   ///< as_fitted, reregistered
+  std::array<double, 6> base_change{}, tool_change{};  ///< translations [m] and rotation vectors [rad]
+  std::vector<double> offsets{};                       ///< [rad, m]
+};
+
+/// Finds frames (and joint zeros) of a fitted arm again, keeps the rest.
+/// @throws CalibrationFailure where the poses do not determine what may move, or do not fit the arm
+/// @throws vernier::DataError on a malformed file
+ReregistrationReport reregister(const ReregistrationSettings& settings);
 
 }  // namespace support

@@ -1,14 +1,12 @@
 #pragma once
 
 /// @file
-/// The two expensive steps of a calibration, compiled once for all numbers of joints, each in a file of its own.
+/// The expensive steps of a calibration, compiled once for all numbers of joints, each in a file of its own.
 
-#include "vernier/compensation/joint_range_gate.hpp"
+#include <span>
+
 #include "vernier/core/fit_options.hpp"
-#include "vernier/data/dataset.hpp"
-#include "vernier/identification/identified.hpp"
-#include "vernier/identification/options.hpp"
-#include "vernier/kinematics/dh_chain.hpp"
+#include "vernier/identification/fit_error_model.hpp"
 #include "vernier/regression/hidden_layer.hpp"
 
 namespace support {
@@ -19,20 +17,26 @@ vernier::Identified<vernier::DhChain<N>> identify_arm(const vernier::DhChain<N>&
                                                       const vernier::Dataset<N>& data,
                                                       const vernier::IdentifyOptions& options);
 
+/// `vernier::fit_error_model`, N = 3 to 9.
+template <int N>
+vernier::FittedErrorModel<vernier::DhChain<N>> fit_errors(const vernier::Identified<vernier::DhChain<N>>& start,
+                                                          std::span<const vernier::Dataset<N>> stations,
+                                                          const vernier::ErrorModelOptions& options);
+
 /// A learned position error, and where it holds.
 template <int N>
 struct LearnedError {
   vernier::ElmPredictor<N, 3> predictor;
-  vernier::JointRangeGate<N> gate;
+  vernier::JointCoverage<N> gate;
 };
 
 /// Generations of the swarm in `learn_residual`.
 inline constexpr vernier::Index swarm_generations = 20;
 
-/// A PSO-ELM of what an identified arm leaves, by leave-one-out error; the mean alone is among the candidates, so where
-/// nothing is left to learn nothing is learned. N = 3 to 9.
+/// A PSO-ELM of what a model leaves, by leave-one-out error; the mean alone is among the candidates, so where nothing
+/// is left to learn nothing is learned. N = 3 to 9.
 template <int N>
-LearnedError<N> learn_residual(const vernier::Calibrated<vernier::DhChain<N>>& model, const vernier::Dataset<N>& data,
+LearnedError<N> learn_residual(const vernier::ErrorModel<vernier::DhChain<N>>& model, const vernier::Dataset<N>& data,
                                const vernier::FitOptions& options);
 
 }  // namespace support

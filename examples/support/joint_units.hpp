@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Joint columns must be angles for revolute joints and lengths for prismatic ones.
+/// Reading measured poses of an arm: joint columns must be angles for revolute joints and lengths for prismatic ones.
 
 #include <filesystem>
 
@@ -22,6 +22,16 @@ void require_joint_units(const std::filesystem::path& path, const vernier::DhCha
                                                 prismatic ? " is prismatic: a length" : " is revolute: an angle",
                                                 " is needed"));
   }
+}
+
+/// Measured poses, their columns checked against the arm.
+/// @throws vernier::DataError on a malformed file
+template <int N>
+vernier::Dataset<N> read_poses(const std::filesystem::path& path, const vernier::DhChain<N>& chain,
+                               bool positions_only) {
+  vernier::Dataset<N> data = vernier::read_dataset<N>(path);
+  require_joint_units(path, chain);
+  return positions_only ? vernier::Dataset<N>(data.joints(), data.positions()) : data;
 }
 
 }  // namespace support

@@ -16,14 +16,14 @@ const vernier::Tuned pso_elm{
 }  // namespace
 
 template <int N>
-LearnedError<N> learn_residual(const vernier::Calibrated<vernier::DhChain<N>>& model, const vernier::Dataset<N>& data,
+LearnedError<N> learn_residual(const vernier::ErrorModel<vernier::DhChain<N>>& model, const vernier::Dataset<N>& data,
                                const vernier::FitOptions& options) {
   const auto hybrid = vernier::CartesianCompensation{pso_elm}.fit(model, data, options);
-  return {hybrid.best().learned(), hybrid.best().joint_range_gate()};
+  return {hybrid.best().learned(), hybrid.best().coverage()};
 }
 
 #define VERNIER_INSTANTIATE(N)                                                                \
-  template LearnedError<N> learn_residual<N>(const vernier::Calibrated<vernier::DhChain<N>>&, \
+  template LearnedError<N> learn_residual<N>(const vernier::ErrorModel<vernier::DhChain<N>>&, \
                                              const vernier::Dataset<N>&, const vernier::FitOptions&);
 VERNIER_INSTANTIATE(3)
 VERNIER_INSTANTIATE(4)

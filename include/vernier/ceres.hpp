@@ -3,4 +3,4 @@
 /// @file
 /// The solver side of Vernier: needs Ceres beside Eigen.
 
-#include "vernier/ceres/identify.hpp"
+#include "vernier/ceres/calibrate.hpp"

@@ -109,7 +109,7 @@ TEST(JointCompensation, ObeysTheLawsOfModelsAndCompensators) {
   const JointVector<6> range = wider.upper - wider.lower;
   wider.lower -= 0.12 * range;
   wider.upper += 0.12 * range;
-  const auto around = sample_joints(wider, 300, 8);
+  const auto around = sample_joints(wider, 300, 9);
   int falling = 0;
   for (Index i = 0; i < around.rows(); ++i) {
     const double gate = fitted.best().gate(around.row(i).transpose());

@@ -18,13 +18,26 @@ Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
   return FrameParameters(Vector6{x, y, z, rx, ry, rz}).isometry();
 }
 
+using Model = CalibratedRobot<6>::Model;
+
+/// An arm with frames alone, or with all that a model can have.
 CalibratedRobot<6> example(bool learned) {
   const auto robot = robots::abb_irb120();
   const auto actual = with_geometric_errors(robot.chain, {}, 3);
-  const Framed<DhChain<6>> standing(actual, frame(1.2, -0.4, 0.05, 0.1, -0.7, 2.0), frame(0, 0.01, 0.109, 0, 0.02, 0));
-  CalibratedRobot<6> out("an arm", robot.chain, standing, robot.limits, {"poses.csv", 120, "2024-05-01", "commanded"});
-  if (!learned) return out;
+  const Isometry3 base = frame(1.2, -0.4, 0.05, 0.1, -0.7, 2.0), tool = frame(0, 0.01, 0.109, 0, 0.02, 0);
+  const Provenance from{"poses.csv", 120, "2024-05-01", "commanded", "positions", 3e-5};
+  if (!learned) return {"an arm", Model(robot.chain, Model::Arm(actual, base, tool)), robot.limits, from};
   const JointRows<6> joints = sample_joints(robot.limits, 80, 5);
+  JointTerms<DhChain<6>> terms;
+  terms.gear_ratio = terms.coupling = true;
+  terms.gravity.emplace(robot.chain, Vector3(0, 0.6, -0.8));
+  const JointErrors<DhChain<6>> few(terms, VectorX::LinSpaced(terms.size(), -1e-4, 2e-4));
+  for (int i = 0; i < 5; ++i) terms.transmission[static_cast<std::size_t>(i)] = Fourier{3 + i};
+  terms.transmission[5] = JointNodes::spread(4, -2, 2);
+  const JointErrors<DhChain<6>> all(terms, VectorX::LinSpaced(terms.size(), -2e-4, 3e-4));
+  const Model model(robot.chain, Model::Arm({actual, all}, base, tool), Model::Arm({robot.chain, few}, tool, base),
+                    JointCoverage<6>::covering(joints.topRows(30)));
+  const CalibratedRobot<6> out("an arm", model, robot.limits, from);
   const HiddenLayer layer{.nodes = 12, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<12, 3>();
   return out.with_learned({layer,
@@ -32,7 +45,7 @@ CalibratedRobot<6> example(bool learned) {
                            layer.draw(6, 2),
                            beta,
                            Vector3(1e-5, 0, -2e-5)},
-                          JointRangeGate<6>::covering(joints));
+                          JointCoverage<6>::covering(joints));
 }
 
 class ModelFile : public testing::Test {
@@ -50,7 +63,8 @@ TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
     EXPECT_EQ(loaded.name(), saved.name());
     EXPECT_EQ(loaded.provenance(), saved.provenance());
     EXPECT_TRUE(loaded.nominal() == saved.nominal());
-    EXPECT_TRUE(loaded.actual().parameters() == saved.actual().parameters());
+    EXPECT_TRUE(loaded.identified() == saved.identified());
+    EXPECT_EQ(loaded.model().fallback() != nullptr, learned);
     EXPECT_TRUE(loaded.limits().lower == saved.limits().lower && loaded.limits().upper == saved.limits().upper);
     EXPECT_EQ(loaded.learned() != nullptr, learned);
     const JointRows<6> samples = sample_joints(saved.limits(), 50, 9);
@@ -76,7 +90,7 @@ TEST_F(ModelFile, PrismaticJointsAndOpenLimitsSurvive) {
   JointLimits<3> limits;
   limits.lower(2) = -0.1;
   limits.upper(2) = 0.15;
-  const CalibratedRobot<3> saved("scara", scara, Framed<DhChain<3>>(scara), limits, {});
+  const CalibratedRobot<3> saved("scara", {scara, CalibratedRobot<3>::Model::Arm(scara)}, limits, {});
   save_calibrated_robot(folder_ / "m.json", saved);
   const auto loaded = load_calibrated_robot<3>(folder_ / "m.json");
   EXPECT_TRUE(loaded.nominal() == scara);
@@ -104,8 +118,7 @@ TEST_F(ModelFile, AnArmThatIsNotFiniteIsNotSaved) {
   const auto robot = robots::abb_irb120();
   auto p = robot.chain.parameters();
   p(7) = std::numeric_limits<double>::quiet_NaN();
-  const CalibratedRobot<6> broken("nan", robot.chain, Framed<DhChain<6>>(robot.chain.with_parameters(p)), robot.limits,
-                                  {});
+  const CalibratedRobot<6> broken("nan", {robot.chain, Model::Arm(robot.chain.with_parameters(p))}, robot.limits, {});
   EXPECT_THROW(save_calibrated_robot(folder_ / "m.json", broken), std::invalid_argument);
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }

@@ -11,6 +11,7 @@
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
@@ -73,13 +74,16 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
   EXPECT_EQ(c.command.errors, "");
   EXPECT_EQ(keys(c.json),
-            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "parameters", "identifiability"}));
+            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "blocks", "parameters",
+                                      "identifiability", "gated_rows", "within_95_percent_ellipsoids", "verdict"}));
   EXPECT_EQ(c.json.at("robot"), "abb_irb120");
   EXPECT_EQ(c.json.at("train_rows"), 120);
   EXPECT_EQ(c.json.at("test_rows"), 30);
-  EXPECT_EQ(keys(c.json.at("stages")), (std::vector<std::string>{"frames", "geometry", "geometry_pso_elm"}));
+  EXPECT_EQ(keys(c.json.at("stages")), (std::vector<std::string>{"frames", "geometry", "geometry_pso_elm", "elastic",
+                                                                 "jointwise", "jointwise_pso_elm"}));
   for (const auto& [name, stage] : c.json.at("stages").items()) {
-    EXPECT_EQ(keys(stage), (std::vector<std::string>{"mean_mm", "rms_mm", "max_mm", "min_mm", "p95_mm"})) << name;
+    EXPECT_EQ(keys(stage), (std::vector<std::string>{"mean_mm", "rms_mm", "max_mm", "min_mm", "p95_mm", "mean_mrad"}))
+        << name;
     EXPECT_LE(stage.at("min_mm"), stage.at("mean_mm"));
     EXPECT_LE(stage.at("mean_mm"), stage.at("rms_mm"));
     EXPECT_LE(stage.at("p95_mm"), stage.at("max_mm"));
@@ -97,7 +101,8 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   EXPECT_NEAR(a2.at("nominal"), 270, 1e-9);
   EXPECT_NEAR(a2.at("identified"), actual_arm().model().row(1).a * 1e3, 0.1);
   const Json& known = c.json.at("identifiability");
-  EXPECT_EQ(keys(known), (std::vector<std::string>{"rank", "free", "condition", "weak"}));
+  EXPECT_EQ(keys(known),
+            (std::vector<std::string>{"rank", "free", "condition", "weak", "strongly_correlated", "observability"}));
   EXPECT_EQ(known.at("rank"), known.at("free"));
   EXPECT_EQ(known.at("free"), 30);  // all that a full pose determines of six revolute joints with their frames
   EXPECT_GT(known.at("condition"), 1);
@@ -114,17 +119,21 @@ TEST(Calibrate, HeldOutErrorsFallToTheNoise) {
 TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
   const Calibration& c = calibration();
   for (const char* words : {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry",
-                            "geometry + PSO-ELM", "[mrad]", "Converged: ", "Figures: figures", "model.json"})
+                            "geometry + PSO-ELM", "joint-wise", "[mrad]", "Converged: ", "Verdict", "Good to ",
+                            "Measured joint ranges", "Figures: figures", "model.json"})
     EXPECT_NE(c.command.output.find(words), std::string::npos) << words << " is not in\n" << c.command.output;
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;  // the figures need it, the rest does not
-  for (const char* name : {"stages.svg", "distribution.svg", "poses.svg"}) {
+  for (const char* name :
+       {"stages.svg", "distribution.svg", "poses.svg", "errors_along_joint_6.svg", "joint_ranges.svg"}) {
     EXPECT_GT(std::filesystem::file_size(c.folder.path() / "figures" / name), 1000u) << name;
   }
 }
 
 TEST(Calibrate, TheSavedModelPredictsFreshPoses) {
   const auto model = load_calibrated_robot<6>(calibration().folder / "model.json");
-  EXPECT_EQ(model.provenance(), (Provenance{"poses.csv", 120, "2024-05-01", "commanded"}));
+  const Provenance& from = model.provenance();
+  EXPECT_EQ(from, (Provenance{"poses.csv", 120, "2024-05-01", "commanded", "poses", from.position_sigma}));
+  EXPECT_NEAR(from.position_sigma, 0.03e-3, 0.01e-3);
   EXPECT_TRUE(model.nominal() == robots::abb_irb120().chain);
   const auto fresh = measure(actual_arm(), measured(200, 99).joints());
   EXPECT_LT(prediction_error(model, fresh).mean, 0.04e-3);
@@ -169,7 +178,7 @@ TEST(Calibrate, TestFileFixedParametersAndRobustLoss) {
   write_dataset(folder / "train.csv", Dataset<6>(train.joints(), positions));
   write_dataset(folder / "test.csv", measured(40, 4, false));
   const std::string arguments = "--robot abb_irb120 --data train.csv --test test.csv --json r.json --threads 1 ";
-  const CommandResult plain = run(folder, "calibrate", arguments);
+  const CommandResult plain = run(folder, "calibrate", arguments + "--loss squared");
   ASSERT_EQ(plain.exit_code, 0) << plain.errors;
   EXPECT_NE(plain.output.find("--loss huber"), std::string::npos) << plain.output;
   const double squared = Json::parse(read_file(folder / "r.json")).at("stages").at("geometry").at("mean_mm");
@@ -236,6 +245,66 @@ TEST(Calibrate, ARobotFromAFileWithAPrismaticJointInTheModifiedConvention) {
   EXPECT_EQ(model.limits().upper(2), 0.2);
 }
 
+/// An arm with joint errors as well, seen from two places.
+TEST(Calibrate, TwoStationsThenARemountedArm) {
+  const TemporaryFolder folder("calibrate");
+  const auto robot = robots::ur10();
+  const WithJointErrors<DhChain<6>> off(
+      with_geometric_errors(robot.chain, {.length_min = 2e-4, .angle_min = 2e-4, .angle_max = 1e-3}, 4),
+      draw_joint_errors(robot.chain, {.gear_ratio = 0, .coupling = 0}, 5));
+  JointLimits<6> region;
+  region.lower = JointVector<6>(-2, -2.4, 0.4, -2, -1.8, -2);
+  region.upper = JointVector<6>(2, -0.6, 2.2, 2, 1.8, 2);
+  const Isometry3 tool = frame({0.01, 0.02, 0.12, 0.3, 0, 0});
+  const auto seen = [&](const char* name, const Vector6& base, Index n, std::uint64_t seed) {
+    write_dataset(folder / name, measure(Framed(off, FrameParameters(base), tool), sample_joints(region, n, seed),
+                                         {.position = 0.03e-3, .orientation = 0.1e-3}, seed));
+  };
+  seen("a.csv", {2.1, -1.3, 0.4, 0.02, -0.03, 2.2}, 150, 1);
+  seen("b.csv", {-1, 3, 0.4, 0, 0.1, -1}, 150, 2);
+  const Vector6 elsewhere{4, -2, 1, 0.3, 0.2, 0.9};
+  seen("few.csv", elsewhere, 6, 3);
+  seen("fresh.csv", elsewhere, 100, 4);
+  const CommandResult both =
+      run(folder, "calibrate", "--robot ur10 --data a.csv b.csv --test-every 5 --json r.json --save m.json --out f");
+  ASSERT_EQ(both.exit_code, 0) << both.errors;
+  EXPECT_NE(both.output.find("2 stations: one arm, 2 base frames"), std::string::npos) << both.output;
+  const Json fitted = Json::parse(read_file(folder / "r.json"));
+  EXPECT_EQ(fitted.at("train_rows"), 240);
+  const double jointwise = fitted.at("stages").at("jointwise").at("mean_mm");
+  EXPECT_LT(jointwise, 0.5 * fitted.at("stages").at("geometry").at("mean_mm").get<double>());
+  EXPECT_LT(jointwise, 0.1);
+  EXPECT_GE(fitted.at("within_95_percent_ellipsoids"), 0.85);
+
+  const CommandResult moved =
+      run(folder, "calibrate",
+          "--model m.json --data few.csv --free base --test fresh.csv --save moved.json --json s.json");
+  ASSERT_EQ(moved.exit_code, 0) << moved.errors;
+  const Json again = Json::parse(read_file(folder / "s.json"));
+  EXPECT_GT(again.at("stages").at("as_fitted").at("mean_mm"), 1000);
+  EXPECT_LT(again.at("stages").at("reregistered").at("mean_mm"), 0.12);
+  EXPECT_LT(again.at("stages").at("reregistered").at("mean_mrad"), 0.4);
+  const auto model = load_calibrated_robot<6>(folder / "moved.json");
+  EXPECT_LT((model.reference().base().translation() - elsewhere.head<3>()).norm(), 2e-3);
+}
+
+TEST(Calibrate, FewRowsOfASeededShuffle) {
+  const Calibration& c = calibration();
+  const auto trained = [&](const std::string& seed) {
+    const CommandResult done = run(c.folder, "calibrate",
+                                   "--robot abb_irb120 --data poses.csv --split time --train 60 "
+                                   "--json few.json --out few --seed " +
+                                       seed);
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    return Json::parse(read_file(c.folder / "few.json"));
+  };
+  const Json one = trained("1"), again = trained("1"), two = trained("2");
+  EXPECT_EQ(one.at("train_rows"), 60);
+  EXPECT_EQ(one.at("test_rows"), 30);
+  EXPECT_EQ(one, again);
+  EXPECT_NE(one.at("stages").at("geometry"), two.at("stages").at("geometry"));
+}
+
 /// What `--test-every 5` gives on a measured robot.
 Json measured_robot(const std::string& robot, const std::string& file) {
   const char* data = std::getenv("VERNIER_DATA_DIR");
@@ -255,6 +324,8 @@ TEST(CalibrateMeasured, Ur10) {
   const double geometry = stages.at("geometry").at("mean_mm");
   EXPECT_LE(geometry, 0.44);
   EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
+  EXPECT_LE(stages.at("jointwise").at("mean_mm"), 0.09);
+  EXPECT_LE(stages.at("jointwise").at("mean_mrad"), 0.25);
 }
 
 TEST(CalibrateMeasured, Ur5) {

@@ -41,10 +41,10 @@ class Correct : public testing::Test {
 
   testing_support::TemporaryFolder folder_{"correct"};
   Robot<6> catalogue_ = robots::abb_irb120();
-  Framed<DhChain<6>> actual_{with_geometric_errors(catalogue_.chain, {}, 21),
-                             FrameParameters(Vector6{1, 2, 0.5, 0, 0, 1}),
-                             FrameParameters(Vector6{0, 0, 0.1, 0, 0, 0})};
-  CalibratedRobot<6> robot_{"simulated", catalogue_.chain, actual_, catalogue_.limits, {}};
+  using Model = CalibratedRobot<6>::Model;
+  Model::Arm actual_{with_geometric_errors(catalogue_.chain, {}, 21), FrameParameters(Vector6{1, 2, 0.5, 0, 0, 1}),
+                     FrameParameters(Vector6{0, 0, 0.1, 0, 0, 0})};
+  CalibratedRobot<6> robot_{"simulated", Model(catalogue_.chain, actual_), catalogue_.limits, {}};
   JointRows<6> targets_;
 };
 

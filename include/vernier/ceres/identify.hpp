@@ -73,7 +73,10 @@ class Identification {
                           .covariance = {},
                           .rank = precision.rank,
                           .condition = precision.condition,
-                          .iterations = problem_.iterations()};
+                          .iterations = problem_.iterations(),
+                          .observability = precision.singular_values.size() > 0
+                                               ? Observability::of(precision.singular_values, data_.size())
+                                               : Observability{}};
     report(out, precision, weak);
     if (!columns.dependent.empty()) explain(out, registered, columns);
     const auto moved = static_cast<Index>(out.free.size());
@@ -134,7 +137,7 @@ class Identification {
   }
 
   /// Gives chain parameters whose deviation exceeds their expected size a prior, and solves again. How loose the prior
-  /// is (1, 3, 10 or 30 sizes) is decided by leave-one-pose-out: the tightest within 1 % of the best.
+  /// is (1, 3 or 10 sizes) is decided by leave-one-pose-out: the tightest within 1 % of the best.
   std::vector<bool> restrain_weak(bool& solved) {
     const auto moved = static_cast<Index>(problem_.free().size());
     std::vector<bool> weak(static_cast<std::size_t>(moved), false);
@@ -152,26 +155,27 @@ class Identification {
     if (weight.maxCoeff() <= 0) return weak;
 
     struct Candidate {
-      double error;
+      double error, scale;
       VectorX prior;
       typename Arm::Parameters values;
       bool solved;
     };
     std::vector<Candidate> candidates;
     const auto start = problem_.values();
-    for (const double scale : {1.0, 3.0, 10.0, 30.0}) {
+    for (const double scale : {1.0, 3.0, 10.0}) {
       problem_.set_values(start);
       problem_.set_prior(weight / (scale * scale));
       const bool converged = problem_.solve();
       const Linearisation there = problem_.linearise();
       const Precision precision(there.jacobian, row_variance(there), problem_.prior());
-      candidates.push_back(
-          {leave_one_pose_out(there, data_.size(), precision.inverse), problem_.prior(), problem_.values(), converged});
+      candidates.push_back({leave_one_pose_out(there, data_.size(), precision.inverse), scale, problem_.prior(),
+                            problem_.values(), converged});
     }
     double best = candidates.front().error;
     for (const auto& c : candidates) best = std::min(best, c.error);
     const auto chosen = std::find_if(candidates.begin(), candidates.end(),
                                      [&](const Candidate& c) { return !(c.error > 1.01 * best); });
+    looseness_ = chosen->scale;
     problem_.set_prior(chosen->prior);
     problem_.set_values(chosen->values);
     solved = chosen->solved;
@@ -198,12 +202,14 @@ class Identification {
                                 problem_.values()(k),
                                 0,
                                 ParameterState::fixed,
-                                {}});
+                                {},
+                                plan_.sizes(k)});
     if (precision.covariance.size() > 0)
       out.covariance = problem_.sizes().asDiagonal() * precision.covariance * problem_.sizes().asDiagonal();
     for (std::size_t k = 0; k < out.free.size(); ++k) {
       ParameterEstimate& p = out.parameters[static_cast<std::size_t>(out.free[k])];
       p.state = weak[k] ? ParameterState::weak : ParameterState::identified;
+      if (weak[k]) p.prior = looseness_ * p.size;
       if (out.covariance.size() > 0) p.std = std::sqrt(out.covariance(static_cast<Index>(k), static_cast<Index>(k)));
     }
   }
@@ -248,6 +254,7 @@ class Identification {
   Plan plan_;
   Arm start_;
   IdentificationProblem<Arm> problem_;
+  double looseness_ = 1;  // of the priors of weak parameters, in expected sizes
 };
 
 }  // namespace detail

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/check.hpp"
 #include "vernier/identification/linearisation.hpp"
 
 namespace vernier::detail {
@@ -178,8 +179,9 @@ class IdentificationProblem {
     ceres::Solve(solver, &problem, &summary);
     values_ = values_at(steps);
     iterations_ += static_cast<int>(summary.iterations.size());
-    message_ = summary.message;
-    return summary.termination_type == ceres::CONVERGENCE;
+    const bool converged = summary.termination_type == ceres::CONVERGENCE;
+    message_ = converged ? vernier::message("the steps died away after ", iterations_, " iterations") : summary.message;
+    return converged;
   }
 
   ceres::LossFunction* loss(double scale) const {

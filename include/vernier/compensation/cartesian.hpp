@@ -4,8 +4,8 @@
 /// Cartesian compensation: learn the position error over the joints, on top of any model.
 
 #include "vernier/compensation/compensated.hpp"
-#include "vernier/compensation/joint_range_gate.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/joint_coverage.hpp"
 #include "vernier/regression/concepts.hpp"
 
 namespace vernier {
@@ -21,7 +21,7 @@ class CartesianCorrected {
   static constexpr int dof = Model::dof;
 
   /// Joins the parts.
-  CartesianCorrected(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
+  CartesianCorrected(const Model& model, const Learned& learned, const JointCoverage<dof>& gate)
       : model_(model), learned_(learned), gate_(gate) {}
 
   /// The model it stands on.
@@ -29,7 +29,7 @@ class CartesianCorrected {
   /// The fitted predictor.
   const Learned& learned() const { return learned_; }
   /// The gate around the measured joint ranges.
-  const JointRangeGate<dof>& joint_range_gate() const { return gate_; }
+  const JointCoverage<dof>& coverage() const { return gate_; }
   /// Share of the learned correction that is used at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
 
@@ -59,7 +59,7 @@ class CartesianCorrected {
  private:
   Model model_;
   Learned learned_;
-  JointRangeGate<dof> gate_;
+  JointCoverage<dof> gate_;
 };
 
 /// Learns `dX = X_model - X_measured` over the joints, with any regressor, on any model.
@@ -86,7 +86,7 @@ struct CartesianCompensation {
     const double mean = error.rowwise().norm().mean();
     require(mean < 0.05, "CartesianCompensation: model and data are ", mean * 1e3,
             " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
-    return {{model, regressor.fit(data.joints(), error, options), JointRangeGate<Model::dof>::covering(data.joints())},
+    return {{model, regressor.fit(data.joints(), error, options), JointCoverage<Model::dof>::covering(data.joints())},
             reference_of(model),
             correction};
   }

@@ -4,8 +4,8 @@
 /// Joint-space compensation: learn the joint error over the joints, on top of any model.
 
 #include "vernier/compensation/compensated.hpp"
-#include "vernier/compensation/joint_range_gate.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/joint_coverage.hpp"
 #include "vernier/regression/concepts.hpp"
 
 namespace vernier {
@@ -20,7 +20,7 @@ class JointCorrected {
   static constexpr int dof = Model::dof;
 
   /// Joins the parts.
-  JointCorrected(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
+  JointCorrected(const Model& model, const Learned& learned, const JointCoverage<dof>& gate)
       : model_(model), learned_(learned), gate_(gate) {}
 
   /// The model it stands on.
@@ -52,7 +52,7 @@ class JointCorrected {
  private:
   Model model_;
   Learned learned_;
-  JointRangeGate<dof> gate_;
+  JointCoverage<dof> gate_;
 };
 
 /// The paper's joint-space command: `theta - f(theta)`, f learned from labels indexed by the *target* joints.
@@ -63,7 +63,7 @@ class DirectJointCompensator {
   static constexpr int dof = Model::dof;
 
   /// Joins the parts.
-  DirectJointCompensator(const Model& model, const Learned& learned, const JointRangeGate<dof>& gate)
+  DirectJointCompensator(const Model& model, const Learned& learned, const JointCoverage<dof>& gate)
       : corrected_(model, learned, gate) {}
 
   /// The fitted predictor.
@@ -161,7 +161,7 @@ struct JointCompensation {
     const auto labels = joint_error_labels(model, data);
     require(labels.joints.rows() >= 1, "JointCompensation: inverse kinematics failed for all ", data.size(), " poses");
     return {{model, regressor.fit(labels.joints, labels.errors, options),
-             JointRangeGate<Model::dof>::covering(labels.joints)},
+             JointCoverage<Model::dof>::covering(labels.joints)},
             reference_of(model),
             correction};
   }
@@ -173,7 +173,7 @@ struct JointCompensation {
                                                                             const FitOptions& options = {}) const {
     require(labels.joints.rows() >= 1, "JointCompensation: no labels");
     return {model, regressor.fit(labels.joints, labels.errors, options),
-            JointRangeGate<Model::dof>::covering(labels.joints)};
+            JointCoverage<Model::dof>::covering(labels.joints)};
   }
 };
 

@@ -64,10 +64,11 @@ struct IndependentColumns {
 
 /// How well a weighted least-squares problem with some prior rows determines its unknowns, in steps of their sizes.
 struct Precision {
-  MatrixX inverse;       ///< (J'J + prior)^-1; empty where it is singular
-  MatrixX covariance;    ///< of the unknowns; empty where singular
-  Index rank = 0;        ///< of J, without priors
-  double condition = 0;  ///< of J, without priors: largest over smallest singular value
+  MatrixX inverse;          ///< (J'J + prior)^-1; empty where it is singular
+  MatrixX covariance;       ///< of the unknowns; empty where singular
+  Index rank = 0;           ///< of J, without priors
+  double condition = 0;     ///< of J, without priors: largest over smallest singular value
+  VectorX singular_values;  ///< of J, without priors
 
   /// @param jacobian     whitened rows
   /// @param row_variance variance of each whitened row as estimated from residuals
@@ -83,6 +84,7 @@ struct Precision {
     MatrixX triangle =
         Eigen::HouseholderQR<MatrixX>(stacked).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
     const VectorX data = Eigen::JacobiSVD<MatrixX>(triangle).singularValues();
+    singular_values = data;
     rank = (data.array() > 1e-12 * data(0)).count();
     condition = rank < columns ? std::numeric_limits<double>::infinity() : data(0) / data(columns - 1);
     stacked.resize(2 * columns, columns);

@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "vernier/identification/calibrated.hpp"
+#include "vernier/identification/observability.hpp"
 
 namespace vernier {
 
@@ -38,6 +40,9 @@ struct ParameterEstimate {
   /// What became of it.
   ParameterState state;
   std::string remark;  ///< why it was not identified, in words; else empty
+  double size = 0;     ///< expected size of its error
+  /// Standard deviation of the prior that holds it near nominal; infinite where there is none.
+  double prior = std::numeric_limits<double>::infinity();
 };
 
 /// An identified arm.
@@ -54,8 +59,9 @@ struct Identified {
   std::vector<Index> free;                    ///< which of them were moved, in the order of `covariance`
   MatrixX covariance;                         ///< of the moved parameters [m, rad]; empty where the rank is deficient
   Index rank = 0;                             ///< of the moved parameters
-  double condition = 0;  ///< of the Jacobian in steps of expected sizes; above 100 poses are poorly chosen
-  int iterations = 0;    ///< of the solver, all rounds
+  double condition = 0;           ///< of the Jacobian in steps of expected sizes; above 100 poses are poorly chosen
+  int iterations = 0;             ///< of the solver, all rounds
+  Observability observability{};  ///< of the moved parameters
 
   /// Whether the model may be trusted.
   bool converged() const { return status == IdentifyStatus::converged; }
@@ -65,6 +71,20 @@ struct Identified {
     std::vector<std::string> out;
     for (const auto& p : parameters)
       if (p.state == state) out.push_back(p.name);
+    return out;
+  }
+
+  /// Pairs of moved parameters that the poses hardly tell apart, by name, strongest first: "d4 and tool_z (+0.98)".
+  std::vector<std::string> strongly_correlated(double limit = 0.95) const {
+    std::vector<std::string> out;
+    for (const Correlation& c : strong_correlations(covariance, limit)) {
+      char value[16];
+      std::snprintf(value, sizeof value, "%+.2f", c.value);
+      const auto name = [&](Index k) {
+        return parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].name;
+      };
+      out.push_back(name(c.first) + " and " + name(c.second) + " (" + value + ")");
+    }
     return out;
   }
 
@@ -92,6 +112,11 @@ struct Identified {
            (std::isfinite(condition) ? number(condition, 0) : std::string("infinite")) + ".\n";
     if (const auto weak = names(ParameterState::weak); !weak.empty())
       out += "Weakly determined, held near nominal by a prior: " + joined(weak) + ".\n";
+    if (const auto pairs = strongly_correlated(); !pairs.empty()) {
+      out += "Hardly told apart: ";
+      for (std::size_t k = 0; k < pairs.size() && k < 4; ++k) out += (k > 0 ? ", " : "") + pairs[k];
+      out += pairs.size() > 4 ? ", and " + std::to_string(pairs.size() - 4) + " pairs more.\n" : ".\n";
+    }
     for (const auto& p : parameters)
       if (p.state == ParameterState::not_identifiable) out += "Not identifiable: " + p.name + ", " + p.remark + ".\n";
     return out;

@@ -32,8 +32,8 @@ struct IdentifyOptions {
   bool hayati = true;  ///< where consecutive axes are parallel, free beta and hold d (Hayati and Mirmirani 1985)
   std::vector<std::string> fixed{};   ///< parameters, by name, that keep their values bit for bit
   bool use_orientations = true;       ///< measured orientations count too, where there are any
-  double position_sigma = 0.05e-3;    ///< of the sensor, per component [m]; only the ratio of the sigmas matters
-  double orientation_sigma = 0.2e-3;  ///< of the sensor, per component [rad]
+  double position_sigma = 0.03e-3;    ///< of the sensor, per component [m]; only the ratio of the sigmas matters
+  double orientation_sigma = 0.1e-3;  ///< of the sensor, per component [rad]
   /// How residuals are weighed.
   Loss loss = Loss::squared;
   bool priors = true;                     ///< weakly determined chain parameters get a prior of the sizes below

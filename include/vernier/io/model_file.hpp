@@ -9,18 +9,18 @@
 
 #include "vernier/core/version.hpp"
 #include "vernier/io/calibrated_robot.hpp"
-#include "vernier/io/json.hpp"
+#include "vernier/io/error_model_json.hpp"
 
 namespace vernier {
 
 namespace detail {
 
-/// The version of model files written, and the only one read so far.
-inline constexpr int model_schema_version = 1;
-inline constexpr std::array<std::string_view, 6> frame_keys{"x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"};
+/// The version of model files written, and the only one read.
+inline constexpr int model_schema_version = 2;
 inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "tanh", "sine", "radial_basis"};
 inline constexpr std::array<std::string_view, 2> input_map_names{"raw", "sines_and_cosines"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
+inline constexpr std::array<std::string_view, 2> measured_names{"poses", "positions"};
 inline constexpr std::array<std::string_view, 3> scaling_names{"none", "min_max", "standard"};
 
 /// The position of a name in a list, for the enums that are stored by name.
@@ -32,40 +32,8 @@ int named(const JsonNode& node, const std::array<std::string_view, K>& names) {
   node.fail("'" + quotable(name) + "' is unknown");
 }
 
-template <class Derived>
-nlohmann::ordered_json list_of(const Eigen::MatrixBase<Derived>& values) {
-  require(values.allFinite(), "save_calibrated_robot: a value is not finite");
-  nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (Index i = 0; i < values.size(); ++i) out.push_back(values(i));
-  return out;
-}
-
-inline nlohmann::ordered_json row_to_json(const DhRow& row) {
-  for (const double value : {row.a, row.alpha, row.d, row.theta, row.beta})
-    require(std::isfinite(value), "save_calibrated_robot: a parameter of the chain is not finite");
-  return {{"a_m", row.a}, {"alpha_rad", row.alpha}, {"d_m", row.d}, {"theta_rad", row.theta}, {"beta_rad", row.beta}};
-}
-
-inline DhRow row_from_json(const JsonNode& node, JointType type) {
-  return {node.at("a_m").number(),       node.at("alpha_rad").number(), node.at("d_m").number(),
-          node.at("theta_rad").number(), node.at("beta_rad").number(),  type};
-}
-
-inline nlohmann::ordered_json frame_to_json(const Vector6& values) {
-  require(values.allFinite(), "save_calibrated_robot: a frame is not finite");
-  nlohmann::ordered_json out;
-  for (std::size_t k = 0; k < 6; ++k) out[std::string(frame_keys[k])] = values(static_cast<Index>(k));
-  return out;
-}
-
-inline FrameParameters frame_from_json(const JsonNode& node) {
-  Vector6 values;
-  for (std::size_t k = 0; k < 6; ++k) values(static_cast<Index>(k)) = node.at(std::string(frame_keys[k])).number();
-  return FrameParameters(values);
-}
-
 template <int N>
-nlohmann::ordered_json learned_to_json(const ElmPredictor<N, 3>& elm, const JointRangeGate<N>& gate) {
+nlohmann::ordered_json learned_to_json(const ElmPredictor<N, 3>& elm, const JointCoverage<N>& gate) {
   const HiddenLayer& layer = elm.layer();
   return {{"kind", "elm"},
           {"hidden_nodes", layer.nodes},
@@ -78,9 +46,7 @@ nlohmann::ordered_json learned_to_json(const ElmPredictor<N, 3>& elm, const Join
           {"hidden_weights", list_of(elm.theta())},
           {"output_weights_m", list_of(MatrixX(elm.beta()).reshaped())},
           {"output_offset_m", list_of(elm.offset())},
-          {"gate_lower", list_of(gate.lower)},
-          {"gate_upper", list_of(gate.upper)},
-          {"gate_margin", list_of(gate.margin)}};
+          {"coverage", coverage_to_json<N>(gate)}};
 }
 
 template <int N>
@@ -99,13 +65,8 @@ CalibratedRobot<N> with_learned_from_json(const CalibratedRobot<N>& robot, const
   const VectorX theta = node.at("hidden_weights").numbers(static_cast<std::size_t>(layer.dimension(N)));
   const VectorX beta = node.at("output_weights_m").numbers(3 * static_cast<std::size_t>(layer.nodes));
   const Vector3 offset = node.at("output_offset_m").numbers(3);
-  JointRangeGate<N> gate;
-  gate.lower = node.at("gate_lower").numbers(N);
-  gate.upper = node.at("gate_upper").numbers(N);
-  gate.margin = node.at("gate_margin").numbers(N);
-  if (!(gate.lower.array() <= gate.upper.array()).all()) node.at("gate_lower").fail("must not pass gate_upper");
-  if (!(gate.margin.array() > 0).all()) node.at("gate_margin").fail("must be positive");
-  return robot.with_learned({layer, scaling, theta, beta.reshaped(layer.nodes, 3), offset}, gate);
+  return robot.with_learned({layer, scaling, theta, beta.reshaped(layer.nodes, 3), offset},
+                            coverage_from_json<N>(node.at("coverage")));
 }
 
 /// Checks what every model file says first.
@@ -128,28 +89,34 @@ nlohmann::ordered_json to_json(const CalibratedRobot<N>& robot) {
   Json joints = Json::array();
   for (int i = 0; i < N; ++i) {
     const bool revolute = robot.nominal().row(i).joint == JointType::revolute;
-    Json joint{{"type", revolute ? "revolute" : "prismatic"},
-               {"nominal", detail::row_to_json(robot.nominal().row(i))},
-               {"identified", detail::row_to_json(robot.identified().row(i))}};
+    Json joint{{"type", revolute ? "revolute" : "prismatic"}, {"nominal", detail::row_to_json(robot.nominal().row(i))}};
     if (const double lower = robot.limits().lower(i); std::isfinite(lower))
       joint[revolute ? "lower_rad" : "lower_m"] = lower;
     if (const double upper = robot.limits().upper(i); std::isfinite(upper))
       joint[revolute ? "upper_rad" : "upper_m"] = upper;
     joints.push_back(std::move(joint));
   }
-  const auto parameters = robot.actual().parameters();
+  require(std::isfinite(robot.provenance().position_sigma), "save_calibrated_robot: position_sigma is not finite");
   const Provenance& from = robot.provenance();
   Json out{{"schema_version", detail::model_schema_version},
            {"written_by",
             message("vernier ", VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH)},
            {"name", robot.name()},
            {"provenance",
-            {{"data_file", from.data_file}, {"rows", from.rows}, {"date", from.date}, {"joints", from.joints}}},
+            {{"data_file", from.data_file},
+             {"rows", from.rows},
+             {"date", from.date},
+             {"joints", from.joints},
+             {"measured", from.measured},
+             {"position_sigma_m", from.position_sigma}}},
            {"joints", std::move(joints)},
-           {"base", detail::frame_to_json(parameters.template head<6>())},
-           {"tool", detail::frame_to_json(parameters.template tail<6>())}};
+           {"arm", detail::arm_to_json(robot.model().arm())}};
+  if (const auto* fallback = robot.model().fallback()) {
+    out["outside_arm"] = detail::arm_to_json(*fallback);
+    out["coverage"] = detail::coverage_to_json<N>(*robot.model().coverage());
+  }
   if (const auto* corrected = robot.learned())
-    out["learned"] = detail::learned_to_json<N>(corrected->learned(), corrected->joint_range_gate());
+    out["learned"] = detail::learned_to_json<N>(corrected->learned(), corrected->coverage());
   return out;
 }
 
@@ -184,7 +151,7 @@ CalibratedRobot<N> load_calibrated_robot(const std::filesystem::path& path) {
   const JsonNode root = detail::model_root(document, path);
   const JsonNode joints = root.at("joints");
   joints.require_size(N);
-  std::array<DhRow, N> nominal{}, identified{};
+  std::array<DhRow, N> nominal{};
   JointLimits<N> limits;
   for (int i = 0; i < N; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -192,7 +159,6 @@ CalibratedRobot<N> load_calibrated_robot(const std::filesystem::path& path) {
     constexpr std::array<std::string_view, 2> types{"revolute", "prismatic"};
     const auto type = static_cast<JointType>(detail::named(joint.at("type"), types));
     nominal[k] = detail::row_from_json(joint.at("nominal"), type);
-    identified[k] = detail::row_from_json(joint.at("identified"), type);
     const bool revolute = type == JointType::revolute;
     if (joint.has_quantity("lower")) limits.lower(i) = joint.at(revolute ? "lower_rad" : "lower_m").number();
     if (joint.has_quantity("upper")) limits.upper(i) = joint.at(revolute ? "upper_rad" : "upper_m").number();
@@ -200,16 +166,24 @@ CalibratedRobot<N> load_calibrated_robot(const std::filesystem::path& path) {
   }
   const JsonNode from = root.at("provenance");
   const auto any_text = [](const JsonNode& node) { return node.is_empty_text() ? std::string() : node.text(); };
-  const Provenance provenance{
-      any_text(from.at("data_file")), static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
-      any_text(from.at("date")),
-      std::string(
-          detail::joint_readings[static_cast<std::size_t>(detail::named(from.at("joints"), detail::joint_readings))])};
-  const CalibratedRobot<N> robot(
-      root.at("name").text(), DhChain<N>::from_rows(nominal),
-      Framed<DhChain<N>>(DhChain<N>::from_rows(identified), detail::frame_from_json(root.at("base")),
-                         detail::frame_from_json(root.at("tool"))),
-      limits, provenance);
+  const auto one_of = [&](const char* key, const auto& names) {
+    return std::string(names[static_cast<std::size_t>(detail::named(from.at(key), names))]);
+  };
+  const Provenance provenance{any_text(from.at("data_file")),
+                              static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
+                              any_text(from.at("date")),
+                              one_of("joints", detail::joint_readings),
+                              one_of("measured", detail::measured_names),
+                              from.at("position_sigma_m").number()};
+  const auto chain = DhChain<N>::from_rows(nominal);
+  using Model = typename CalibratedRobot<N>::Model;
+  auto arm = detail::arm_from_json(chain, root.at("arm"));
+  if (root.has("coverage") && !root.has("outside_arm")) root.fail("key 'outside_arm' is missing");
+  const Model model = root.has("outside_arm")
+                          ? Model(chain, std::move(arm), detail::arm_from_json(chain, root.at("outside_arm")),
+                                  detail::coverage_from_json<N>(root.at("coverage")))
+                          : Model(chain, std::move(arm));
+  const CalibratedRobot<N> robot(root.at("name").text(), model, limits, provenance);
   return root.has("learned") ? detail::with_learned_from_json(robot, root.at("learned")) : robot;
 }
 

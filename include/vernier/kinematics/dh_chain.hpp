@@ -120,6 +120,26 @@ class DhChain {
     return out;
   }
 
+  /// Where the links are at a configuration, base frame.
+  struct Links {
+    std::array<Vector3, N> axis;    ///< direction of each joint
+    std::array<Vector3, N> point;   ///< a point on each joint's axis
+    std::array<Vector3, N> origin;  ///< origin of the frame behind each row
+  };
+
+  /// Joint axes and origins of the link frames.
+  [[gnu::noinline]] Links links(const JointVector<N>& q) const noexcept {
+    Links out;
+    const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
+      if (parameter == Convention::order.front() && i > 0) out.origin[static_cast<std::size_t>(i - 1)] = point;
+      if (parameter != joint_parameter(i)) return;
+      out.axis[static_cast<std::size_t>(i)] = axis;
+      out.point[static_cast<std::size_t>(i)] = point;
+    });
+    out.origin[N - 1] = end.p;
+    return out;
+  }
+
   /// 6 x 5N, analytic.
   [[gnu::noinline]] ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<N>& q) const noexcept {
     std::array<detail::ElementaryMotion, num_parameters> motions;

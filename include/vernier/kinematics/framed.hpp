@@ -59,6 +59,11 @@ class Framed {
   /// Tool frame, flange_T_tool.
   const Isometry3& tool() const { return tool_.isometry(); }
 
+  /// Base frame by its six values.
+  const Vector6& base_values() const { return base_.values(); }
+  /// Tool frame by its six values.
+  const Vector6& tool_values() const { return tool_.values(); }
+
   /// The same frames around another model.
   template <KinematicModel Other>
   Framed<Other> around(const Other& other) const {
@@ -75,7 +80,7 @@ class Framed {
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
   /// Both in one pass.
-  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+  [[gnu::noinline]] PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
     const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
     return {base() * inner.pose * tool(), at_tool(inner.jacobian, inner.pose)};
   }
@@ -145,8 +150,8 @@ class Framed {
   }
 
   /// Derivative of the pose with respect to the parameters, 6 x P.
-  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept requires
-      ParametricModel<Model> {
+  [[gnu::noinline]] ParameterJacobian<num_parameters> parameter_jacobian(
+      const JointVector<dof>& q) const noexcept requires ParametricModel<Model> {
     const Isometry3 flange = model_.pose(q);
     const Matrix3 rotation = base().linear() * flange.linear();
     const Vector3 arm = base().linear() * (flange * tool().translation());  // base origin to tool point

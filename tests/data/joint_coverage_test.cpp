@@ -4,25 +4,24 @@
 
 #include <cmath>
 #include <limits>
-#include <vernier/compensation/joint_range_gate.hpp>
 #include <vernier/core/rng.hpp>
+#include <vernier/data/joint_coverage.hpp>
 
 namespace {
 
-using vernier::JointRangeGate;
+using vernier::JointCoverage;
 using vernier::JointRows;
 using vernier::JointVector;
 
 /// Joint 1 in [-1, 1], margin 0.5; joint 2 in [2, 4], margin 0.25.
-JointRangeGate<2> example() {
-  JointRangeGate<2> gate;
-  gate.lower << -1, 2;
-  gate.upper << 1, 4;
+JointCoverage<2> example() {
+  JointCoverage<2> gate;
+  gate.ranges = {{{{-1, 1}}, {{2, 4}}}};
   gate.margin << 0.5, 0.25;
   return gate;
 }
 
-TEST(JointRangeGate, OneInsideUpToTheEdge) {
+TEST(JointCoverage, OneInsideUpToTheEdge) {
   const auto gate = example();
   for (const double q1 : {-1.0, -0.3, 0.0, 1.0})
     for (const double q2 : {2.0, 3.0, 4.0}) {
@@ -31,7 +30,7 @@ TEST(JointRangeGate, OneInsideUpToTheEdge) {
     }
 }
 
-TEST(JointRangeGate, ZeroFromTheMarginOn) {
+TEST(JointCoverage, ZeroFromTheMarginOn) {
   const auto gate = example();
   for (const JointVector<2>& q : {JointVector<2>(1.5, 3), {-1.5, 3}, {0, 1.75}, {0, 4.25}, {100, 3}, {0, -1e6}}) {
     EXPECT_EQ(gate(q), 0);
@@ -39,14 +38,14 @@ TEST(JointRangeGate, ZeroFromTheMarginOn) {
   }
 }
 
-TEST(JointRangeGate, FallsAsACubicAndMultiplies) {
+TEST(JointCoverage, FallsAsACubicAndMultiplies) {
   const auto gate = example();
   EXPECT_DOUBLE_EQ(gate({1.25, 3}), 0.5);                 // half way
   EXPECT_DOUBLE_EQ(gate({-1.125, 3}), 1 - 0.15625);       // a quarter: 1 - (3/16 - 2/64)
   EXPECT_DOUBLE_EQ(gate({1.25, 4.0625}), 0.5 * 0.84375);  // both joints
 }
 
-TEST(JointRangeGate, NeverRisesOnTheWayOut) {
+TEST(JointCoverage, NeverRisesOnTheWayOut) {
   const auto gate = example();
   double before = 1;
   for (int i = 0; i <= 1000; ++i) {
@@ -59,7 +58,7 @@ TEST(JointRangeGate, NeverRisesOnTheWayOut) {
   EXPECT_EQ(before, 0);
 }
 
-TEST(JointRangeGate, DerivativeIsTheCentralDifference) {
+TEST(JointCoverage, DerivativeIsTheCentralDifference) {
   const auto gate = example();
   vernier::Rng rng(1);
   int falling = 0;
@@ -77,7 +76,7 @@ TEST(JointRangeGate, DerivativeIsTheCentralDifference) {
   EXPECT_GT(falling, 50);
 }
 
-TEST(JointRangeGate, ContinuousWithItsSlopeAtBothEnds) {
+TEST(JointCoverage, ContinuousWithItsSlopeAtBothEnds) {
   const auto gate = example();
   const double e = 1e-9;
   EXPECT_NEAR(gate({1 + e, 3}), 1, 1e-12);
@@ -86,19 +85,55 @@ TEST(JointRangeGate, ContinuousWithItsSlopeAtBothEnds) {
   EXPECT_NEAR(gate.derivative({1.5 - e, 3})(0), 0, 1e-6);
 }
 
-TEST(JointRangeGate, CoversWhatWasMeasured) {
+TEST(JointCoverage, CoversWhatWasMeasured) {
   JointRows<3> q(3, 3);
   q << 0, 5, 1,  //
       1, 5, -1,  //
       0.5, 5, 0;
-  const auto gate = JointRangeGate<3>::covering(q);
-  EXPECT_EQ(gate.lower, JointVector<3>(0, 5, -1));
-  EXPECT_EQ(gate.upper, JointVector<3>(1, 5, 1));
+  const auto gate = JointCoverage<3>::covering(q);
+  using Ranges = std::vector<JointCoverage<3>::Range>;
+  // half a range apart: not known between; widened by half a margin, for three values say little of extremes
+  EXPECT_EQ(gate.ranges[0], (Ranges{{-0.05, 0.05}, {0.45, 0.55}, {0.95, 1.05}}));
+  EXPECT_EQ(gate.ranges[1], (Ranges{{5, 5}}));
+  EXPECT_EQ(gate.ranges[2], (Ranges{{-1.1, -0.9}, {-0.1, 0.1}, {0.9, 1.1}}));
   EXPECT_TRUE(gate.margin.isApprox(JointVector<3>(0.1, 0.02, 0.2), 1e-15));  // a joint held still keeps a margin
   for (int i = 0; i < 3; ++i) EXPECT_EQ(gate(q.row(i).transpose()), 1);
 }
 
-TEST(JointRangeGate, InfinitelyFarIsZero) {
+TEST(JointCoverage, ValuesWithinTwoMarginsAreOneRange) {
+  JointRows<1> q(5, 1);
+  q << 0, 0.15, 0.34, 0.8, 1;  // margin 0.1, widened by 0.05
+  const auto gate = JointCoverage<1>::covering(q);
+  ASSERT_EQ(gate.ranges[0].size(), 2u);
+  EXPECT_DOUBLE_EQ(gate.ranges[0][0].lower, -0.05);
+  EXPECT_DOUBLE_EQ(gate.ranges[0][0].upper, 0.39);
+  EXPECT_DOUBLE_EQ(gate.ranges[0][1].lower, 0.75);
+  EXPECT_DOUBLE_EQ(gate.ranges[0][1].upper, 1.05);
+  const auto at = [&](double x) { return gate(JointVector<1>(x)); };
+  EXPECT_EQ(at(0.25), 1);
+  EXPECT_NEAR(at(0.44), 0.5, 1e-12);
+  EXPECT_EQ(at(0.57), 0);
+  EXPECT_NEAR(at(0.70), 0.5, 1e-12);
+  EXPECT_LT(gate.derivative(JointVector<1>(0.44))(0), 0);
+  EXPECT_GT(gate.derivative(JointVector<1>(0.70))(0), 0);
+}
+
+TEST(JointCoverage, RangesAreTwoMarginsApartAlsoWhenWidened) {
+  vernier::Rng rng(3);
+  for (int trial = 0; trial < 200; ++trial) {
+    JointRows<1> q(3 + trial % 9, 1);
+    for (double& value : q.reshaped()) value = rng.uniform(-2, 3);
+    const auto gate = JointCoverage<1>::covering(q);
+    const auto& ranges = gate.ranges[0];
+    for (std::size_t k = 1; k < ranges.size(); ++k)
+      EXPECT_GT(ranges[k].lower - ranges[k - 1].upper, 2 * gate.margin(0));
+    for (const double value : q.reshaped()) EXPECT_EQ(gate(JointVector<1>(value)), 1);
+  }
+}
+
+TEST(JointCoverage, AJointWithoutRangesIsNotLookedAt) { EXPECT_EQ(JointCoverage<2>{}({1e6, -1e6}), 1); }
+
+TEST(JointCoverage, InfinitelyFarIsZero) {
   const double inf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(example()({inf, 3}), 0);
   EXPECT_EQ(example()({0, -inf}), 0);

@@ -1,0 +1,66 @@
+#pragma once
+
+/// @file
+/// From measured poses to everything known of a real arm: identification, then an error model on top of it.
+
+#include <span>
+#include <vector>
+
+#include "vernier/ceres/identify.hpp"
+#include "vernier/identification/fit_error_model.hpp"
+#include "vernier/identification/stations.hpp"
+
+namespace vernier {
+
+/// Options of `calibrate`.
+struct CalibrateOptions {
+  /// Of the geometric identification. Its sigmas, loss and use of orientations are those of `errors`.
+  IdentifyOptions geometry{.frames = Frames::base_and_tool};
+  /// Of the joint errors.
+  ErrorModelOptions errors{};
+};
+
+/// An identified arm, and the error model fitted on top of it.
+template <class Chain>
+struct Calibration {
+  Identified<Chain> geometry;      ///< frames and geometry alone, stations brought into the frame of the first
+  FittedErrorModel<Chain> errors;  ///< everything together
+
+  /// The best model there is, of the first station.
+  const ErrorModel<Chain>& model() const { return errors.model(); }
+};
+
+/// Calibrates an arm from poses measured from one place or several: identifies geometry and frames (Ceres), then fits
+/// geometry, frames and joint errors together. Blocks that the data do not support are left out.
+/// @param nominal  the arm as designed
+/// @param stations measured poses, one set a place of the sensor
+/// @param options  of both steps
+/// @throws std::invalid_argument on an unusable option or no poses, never for poor data: see the statuses
+template <int N, class Convention>
+Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nominal,
+                                              std::span<const Dataset<N>> stations, CalibrateOptions options = {}) {
+  require(!stations.empty(), "calibrate: no stations");
+  options.geometry.position_sigma = options.errors.position_sigma;
+  options.geometry.orientation_sigma = options.errors.orientation_sigma;
+  options.geometry.loss = options.errors.loss;
+  options.geometry.use_orientations = options.errors.use_orientations;
+  std::vector<Isometry3> bases;
+  if (stations.size() > 1) {
+    IdentifyOptions frames = options.geometry;
+    frames.geometry = false;
+    for (const auto& data : stations) bases.push_back(identify(nominal, data, frames).model.actual().base());
+  }
+  Identified<DhChain<N, Convention>> geometry =
+      identify(nominal, in_one_frame(stations, bases, options.errors.use_orientations), options.geometry);
+  FittedErrorModel<DhChain<N, Convention>> errors = fit_error_model(geometry, stations, options.errors);
+  return {std::move(geometry), std::move(errors)};
+}
+
+/// The same from one station.
+template <int N, class Convention>
+Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nominal, const Dataset<N>& data,
+                                              const CalibrateOptions& options = {}) {
+  return calibrate(nominal, std::span<const Dataset<N>>(&data, 1), options);
+}
+
+}  // namespace vernier

@@ -1,0 +1,157 @@
+#pragma once
+
+/// @file
+/// Geometry, frames and joint errors of an arm as one least-squares problem over measured poses.
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "vernier/core/so3.hpp"
+#include "vernier/data/dataset.hpp"
+#include "vernier/identification/error_model_design.hpp"
+#include "vernier/identification/options.hpp"
+#include "vernier/identification/pose_system.hpp"
+
+namespace vernier::detail {
+
+/// What was measured from one place, and how well.
+template <int N>
+struct Station {
+  const Dataset<N>* data;
+  bool oriented;             ///< whether orientations count
+  double position_sigma;     ///< [m]
+  double orientation_sigma;  ///< [rad]
+  double joint_sigma = 0;    ///< of the joint readings [rad, m]; 0: exact
+};
+
+/// A design, and the poses it has to explain.
+template <class Chain>
+class ErrorModelProblem {
+ public:
+  static constexpr int N = Chain::dof;
+
+  ErrorModelProblem(ErrorModelDesign<Chain> start, std::vector<Station<N>> stations, Loss loss)
+      : design(std::move(start)), stations_(std::move(stations)), loss_(loss) {
+    for (std::size_t s = 0; s < stations_.size(); ++s)
+      for (Index i = 0; i < stations_[s].data->size(); ++i) poses_.push_back({static_cast<int>(s), i, {1, 1}});
+  }
+
+  ErrorModelDesign<Chain> design;
+
+  Index poses() const { return static_cast<Index>(poses_.size()); }
+  const Station<N>& station_of(Index pose) const { return stations_[static_cast<std::size_t>(at(pose).station)]; }
+  JointVector<N> joints(Index pose) const { return station_of(pose).data->joints(at(pose).row); }
+  /// Measured values: three a position, six a pose.
+  Index measured_values() const {
+    Index sum = 0;
+    for (const auto& station : stations_) sum += (station.oriented ? 6 : 3) * station.data->size();
+    return sum;
+  }
+
+  /// Calls `f` with the poses as rows of numbers, where the problem stands.
+  template <class F>
+  decltype(auto) with_system(F&& f) const {
+    const auto rows = [this](Index pose, PoseRows& out) { rows_of(pose, out); };
+    return f(PoseSystem{poses(), design.dense(), design.functions_of(), rows});
+  }
+
+  /// Residual and effects of a pose, divided by its sensor's sigmas, weighed as the robust loss has it. Noisy joint
+  /// readings are unknowns of their own with a prior; each pose's are eliminated here in closed form, which is what a
+  /// sparse solver does with the arrow-shaped system.
+  [[gnu::noinline]] void rows_of(Index pose, PoseRows& out) const {
+    const Pose& p = at(pose);
+    const Station<N>& station = station_of(pose);
+    const Isometry3 modelled = design.effect(p.station, station.data->joints(p.row), out);
+    Matrix3 rate = Matrix3::Zero();
+    out.residual.setZero();
+    out.residual.template head<3>() = modelled.translation() - station.data->position(p.row);
+    if (station.oriented) {
+      const Vector3 turned = log_so3(modelled.linear() * station.data->orientation(p.row).transpose());
+      out.residual.template tail<3>() = turned;
+      rate = left_jacobian_inverse_so3(turned);
+    }
+    const double position = std::sqrt(p.weight[0]) / station.position_sigma;
+    const double orientation = station.oriented ? std::sqrt(p.weight[1]) / station.orientation_sigma : 0;
+    out.unit = 1 / position;
+    out.residual.template head<3>() *= position;
+    out.residual.template tail<3>() *= orientation;
+    whiten(out.dense, position, orientation * rate);
+    whiten(out.joint, position, orientation * rate);
+    out.root.setIdentity();
+    if (station.joint_sigma <= 0) return;
+    const Rows6 noise = station.joint_sigma * out.joint;
+    const Eigen::LLT<Matrix6> root(Matrix6(Matrix6::Identity() + noise * noise.transpose()));
+    out.root = root.matrixL();
+    root.matrixL().solveInPlace(out.residual);
+    root.matrixL().solveInPlace(out.dense);
+    root.matrixL().solveInPlace(out.joint);
+  }
+
+  /// Gauss-Newton from where the problem stands; a robust loss settles its weights on the way.
+  /// @return whether the steps died away
+  bool solve(int max_iterations = 20) {
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+      if (loss_ != Loss::squared) weigh();
+      const VectorX steps = design.steps(), precisions = design.precisions();
+      const PoseNormalEquations normal = with_system([](const PoseSystem& s) { return PoseNormalEquations(s); });
+      const FactorisedSystem system(normal, precisions, steps);
+      if (!system.usable()) return false;
+      design.move(system.step);
+      // done when steps die away, or bring no more than digits of the cost
+      const double gain = -system.step.dot(normal.gradient + precisions.cwiseProduct(steps));
+      if (system.step.cwiseAbs().maxCoeff() < 1e-6 || gain < (loss_ == Loss::squared ? 1e-9 : 1e-5) * normal.cost)
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Pose {
+    int station;
+    Index row;
+    std::array<double, 2> weight;  ///< in [0, 1]: of position, of orientation
+  };
+  const Pose& at(Index pose) const { return poses_[static_cast<std::size_t>(pose)]; }
+
+  static void whiten(Rows6& rows, double position, const Matrix3& orientation) {
+    rows.topRows<3>() *= position;
+    rows.bottomRows<3>() = (orientation * rows.bottomRows<3>()).eval();
+  }
+
+  /// Weights from residuals where the problem stands; their scale is the median of the residual norms.
+  void weigh() {
+    PoseRows rows;
+    for (Pose& pose : poses_) pose.weight = {1, 1};
+    MatrixX norms(poses(), 2);
+    for (Index b = 0; b < poses(); ++b) {
+      rows_of(b, rows);
+      norms.row(b) << rows.residual.head<3>().norm(), rows.residual.tail<3>().norm();
+    }
+    for (int part = 0; part < 2; ++part) {
+      std::vector<double> sorted;
+      for (Index b = 0; b < poses(); ++b)
+        if (part == 0 || station_of(b).oriented) sorted.push_back(norms(b, part));
+      if (sorted.empty()) continue;
+      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+      std::nth_element(sorted.begin(), middle, sorted.end());
+      // the median norm of a standard normal 3-vector is 1.538
+      const double bend = 2.8 / 1.538 * *middle;
+      if (!(bend > 0)) continue;
+      for (Index b = 0; b < poses(); ++b) {
+        const double ratio = norms(b, part) / bend;
+        poses_[static_cast<std::size_t>(b)].weight[static_cast<std::size_t>(part)] =
+            loss_ == Loss::huber ? std::min(1.0, 1 / ratio) : 1 / (1 + ratio * ratio);
+      }
+    }
+  }
+
+  std::vector<Station<N>> stations_;
+  std::vector<Pose> poses_;
+  Loss loss_;
+};
+
+}  // namespace vernier::detail

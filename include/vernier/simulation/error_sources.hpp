@@ -1,0 +1,171 @@
+#pragma once
+
+/// @file
+/// What else is wrong with an actual arm and its measurement: joint errors drawn from a seed, backlash, outliers.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "vernier/error_terms/joint_errors.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier {
+
+/// Sizes of joint errors. Each coefficient is normal with the standard deviation given here; 0 leaves its source out.
+/// The defaults add up to a few tenths of a milliradian, as those of a small industrial arm do.
+struct JointErrorSizes {
+  double gear_ratio = 1e-4;  ///< [rad/rad]
+  double coupling = 1e-4;    ///< of joint i - 1 into joint i [rad/rad]
+  double compliance =
+      0.2e-3;                ///< of the products of `GravityCompliance` [rad/m], each made positive: a spring gives way
+  double harmonic = 0.2e-3;  ///< of cos q and sin q [rad]; revolute joints alone have harmonics
+  int harmonics = 3;         ///< how many; harmonic k has the size `harmonic / k^decay`
+  double decay = 1;          ///< how fast higher harmonics die out
+  double ripple = 0;         ///< of one more harmonic, that of the meshing teeth [rad]
+  int ripple_harmonic = 100;         ///< periods a turn of the joint; above `harmonics`
+  Vector3 down = -Vector3::UnitZ();  ///< direction of gravity in the base frame of the chain; a unit vector
+};
+
+/// Joint errors of random size. Sources and joints are drawn independently, and so are harmonics in ascending order:
+/// switching one off, or adding harmonics, leaves all others as they were. The arm is then
+/// `Framed(WithJointErrors<Chain>(chain, errors), base, tool)`.
+/// @param chain torques of gravity are taken from it
+/// @param sizes how large the errors are
+/// @param seed  same seed, same errors
+/// @throws std::invalid_argument on a size that is negative or not finite, or harmonics outside 0 .. 500
+template <class Chain>
+JointErrors<Chain> draw_joint_errors(const Chain& chain, const JointErrorSizes& sizes = {}, std::uint64_t seed = 0) {
+  constexpr int N = Chain::dof;
+  for (const auto& [value, name] :
+       std::initializer_list<std::pair<double, const char*>>{{sizes.gear_ratio, "gear_ratio"},
+                                                             {sizes.coupling, "coupling"},
+                                                             {sizes.compliance, "compliance"},
+                                                             {sizes.harmonic, "harmonic"},
+                                                             {sizes.decay, "decay"},
+                                                             {sizes.ripple, "ripple"}})
+    require(value >= 0 && std::isfinite(value), "JointErrorSizes: ", name, " is ", value,
+            ", must be 0 or more and finite");
+  require(sizes.harmonics >= 0 && sizes.harmonics <= 500, "JointErrorSizes: harmonics is ", sizes.harmonics,
+          ", must lie in 0..500");
+  require(sizes.ripple == 0 || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
+          "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (",
+          sizes.harmonics, ") and in 1..500");
+
+  JointTerms<Chain> terms;
+  terms.gear_ratio = sizes.gear_ratio > 0;
+  terms.coupling = sizes.coupling > 0;
+  if (sizes.compliance > 0) terms.gravity.emplace(chain, sizes.down);
+  const int low = sizes.harmonic > 0 ? sizes.harmonics : 0;
+  for (int i = 0; i < N; ++i)
+    if (chain.row(i).joint == JointType::revolute)
+      terms.transmission[static_cast<std::size_t>(i)] = Fourier{sizes.ripple > 0 ? sizes.ripple_harmonic : low};
+
+  VectorX coefficients = VectorX::Zero(terms.size());
+  Index at = 0;
+  const auto draw = [&](Rng& rng, Index n, double size) {
+    for (const Index end = at + n; at < end; ++at) coefficients(at) = size * rng.normal();
+  };
+  std::uint64_t stream = 0;  // every source and joint has its own
+  Rng gear(child_seed(seed, stream++)), coupling(child_seed(seed, stream++)), compliance(child_seed(seed, stream++));
+  if (terms.gear_ratio) draw(gear, N, sizes.gear_ratio);
+  if (terms.coupling) draw(coupling, N - 1, sizes.coupling);
+  if (terms.gravity) {
+    const Index begin = at;
+    draw(compliance, GravityCompliance<Chain>::size, sizes.compliance);
+    coefficients.segment(begin, at - begin) = coefficients.segment(begin, at - begin).cwiseAbs().eval();
+  }
+  for (int i = 0; i < N; ++i) {
+    Rng low_stream(child_seed(seed, stream++)), ripple_stream(child_seed(seed, stream++));
+    const Index end = terms.transmission_begin(i + 1);
+    if (at == end) continue;
+    for (int k = 1; k <= low; ++k) draw(low_stream, 2, sizes.harmonic / std::pow(k, sizes.decay));
+    if (sizes.ripple > 0) {
+      at = end - 2;
+      draw(ripple_stream, 2, sizes.ripple);
+    }
+  }
+  return {std::move(terms), std::move(coefficients)};
+}
+
+/// From which side each joint comes when the rows are visited in order, n x N: +1 rising, -1 falling. A joint that
+/// stands still keeps its last direction; one that has not moved yet has none, 0.
+/// @param joints visited configurations
+/// @param start  where the arm stands before the first
+template <int N>
+JointRows<N> approach_directions(const JointRows<N>& joints,
+                                 const std::type_identity_t<JointVector<N>>& start = JointVector<N>::Zero()) {
+  JointRows<N> out(joints.rows(), N);
+  for (int j = 0; j < N; ++j) {
+    double before = start(j), direction = 0;
+    for (Index i = 0; i < joints.rows(); ++i) {
+      if (joints(i, j) != before) direction = joints(i, j) > before ? 1 : -1;
+      before = joints(i, j);
+      out(i, j) = direction;
+    }
+  }
+  return out;
+}
+
+/// What a sensor sees of an arm whose gears have play: an arm moved upwards lags by half the gap, so it stands at
+/// `q_i - direction_i backlash_i`. The data hold the commanded q. Without play it is `measure` bit for bit.
+/// @param actual   any model; its own joint errors come on top
+/// @param joints   commanded, n x N
+/// @param backlash half a gap a joint, 0 or more [rad, m]
+/// @param approach n x N of +1, -1, or 0 for the middle of the gap: `approach_directions(joints)`, or one's own
+/// @param noise    of the sensor
+/// @param seed     of the noise
+/// @throws std::invalid_argument on a gap that is negative or not finite, or directions other than those
+template <KinematicModel Actual>
+Dataset<Actual::dof> measure_with_backlash(const Actual& actual, const JointRows<Actual::dof>& joints,
+                                           const JointVector<Actual::dof>& backlash,
+                                           const JointRows<Actual::dof>& approach, const MeasurementNoise& noise = {},
+                                           std::uint64_t seed = 0) {
+  for (int j = 0; j < Actual::dof; ++j)
+    require(backlash(j) >= 0 && std::isfinite(backlash(j)), "measure_with_backlash: the backlash of joint ", j + 1,
+            " is ", backlash(j), ", must be 0 or more and finite");
+  require(approach.rows() == joints.rows(), "measure_with_backlash: ", approach.rows(), " rows of directions for ",
+          joints.rows(), " rows of joints");
+  for (Index i = 0; i < approach.rows(); ++i)
+    for (int j = 0; j < Actual::dof; ++j)
+      require(approach(i, j) == 0 || std::abs(approach(i, j)) == 1, "measure_with_backlash: row ", i, ", joint ", j + 1,
+              " is approached from ", approach(i, j), ", must be -1, 0 or 1");
+  const JointRows<Actual::dof> effective = joints - approach * backlash.asDiagonal();
+  const Dataset<Actual::dof> seen = measure(actual, effective, noise, seed);
+  return {joints, seen.positions(), seen.orientations()};
+}
+
+/// Measured poses of which some are wrong, and which.
+template <int N>
+struct WithOutliers {
+  Dataset<N> data;          ///< all samples, in their order
+  std::vector<Index> rows;  ///< those that were moved, ascending
+};
+
+/// Moves a random share of the positions, each in a random direction. Joints and orientations stay as they are.
+/// @param data  measured poses
+/// @param share of all n samples, in [0, 1]; the nearest whole number of them is moved
+/// @param size  how far [m]
+/// @param seed  same seed, same outliers
+/// @throws std::invalid_argument on a share outside [0, 1] or a size that is negative or not finite
+template <int N>
+WithOutliers<N> with_outliers(const Dataset<N>& data, double share, double size, std::uint64_t seed) {
+  require(share >= 0 && share <= 1, "with_outliers: the share is ", share, ", must lie in [0, 1]");
+  require(size >= 0 && std::isfinite(size), "with_outliers: the size is ", size, " m, must be 0 or more and finite");
+  Rng rng(seed);
+  std::vector<Index> rows = rng.permutation(data.size());
+  rows.resize(static_cast<std::size_t>(std::lround(share * static_cast<double>(data.size()))));
+  std::sort(rows.begin(), rows.end());
+  PointRows positions = data.positions();
+  for (const Index row : rows) {
+    const Vector3 direction{rng.normal(), rng.normal(), rng.normal()};  // braces: left to right
+    positions.row(row) += size * direction.normalized().transpose();
+  }
+  return {{data.joints(), positions, data.orientations()}, std::move(rows)};
+}
+
+}  // namespace vernier

@@ -1,0 +1,452 @@
+// What joints add to their commanded values: functions of an angle, gravity on compliant joints, and their sum, each
+// against another way to the same numbers; the chain with them as a kinematic model.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+#include <vernier/error_terms/joint_errors.hpp>
+#include <vernier/kinematics/framed.hpp>
+#include <vernier/testing/kinematic_laws.hpp>
+
+#include "allocation_counter.hpp"
+#include "laws.hpp"
+#include "random_chains.hpp"
+
+namespace vn = vernier;
+using vernier_test::allocations;
+using vernier_test::keep;
+using vn::Index;
+using vn::VectorX;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Values and slopes of all functions of a basis.
+struct Functions {
+  VectorX value, slope;
+};
+
+Functions functions(const vn::AngleBasis& basis, double q) {
+  const Index n = vn::size_of(basis);
+  Functions out{VectorX::Constant(n, std::nan("")), VectorX::Constant(n, std::nan(""))};
+  Index calls = 0;
+  const auto record = [&](Index k, double value, double slope) {
+    EXPECT_EQ(k, calls++);
+    out.value(k) = value;
+    out.slope(k) = slope;
+  };
+  std::visit([&](const auto& b) { b.visit(q, record); }, basis);
+  EXPECT_EQ(calls, n);
+  return out;
+}
+
+/// Normal numbers.
+VectorX normals(vn::Rng& rng, Index n) {
+  VectorX out(n);
+  for (double& x : out) x = rng.normal();
+  return out;
+}
+
+/// Slopes are the central differences of values; `curvature` bounds the third derivative.
+void expect_slopes_of_values(const vn::AngleBasis& basis, double q, double curvature) {
+  const double h = 1e-6, rounding = 1e-14 / h;
+  const VectorX difference = (functions(basis, q + h).value - functions(basis, q - h).value) / (2 * h);
+  EXPECT_LE((functions(basis, q).slope - difference).cwiseAbs().maxCoeff(), rounding + h * h * curvature) << q;
+}
+
+TEST(Fourier, IsCosineAndSine) {
+  vn::Rng rng(1);
+  std::vector<double> angles = {0.0, pi / 2, -pi / 2, pi, -pi, 1e-9};
+  for (int i = 0; i < 500; ++i) angles.push_back(rng.uniform(-2 * pi, 2 * pi));
+  for (const double q : angles) {
+    const Functions f = functions(vn::Fourier{60}, q);
+    for (int k = 1; k <= 60; ++k) {
+      const long double angle = static_cast<long double>(q) * k;  // k q itself is rounded by 1e-14 in double
+      const double c = static_cast<double>(std::cos(angle)), s = static_cast<double>(std::sin(angle));
+      EXPECT_NEAR(f.value(2 * k - 2), c, 1e-14) << k << " " << q;
+      EXPECT_NEAR(f.value(2 * k - 1), s, 1e-14) << k << " " << q;
+      EXPECT_NEAR(f.slope(2 * k - 2), -k * s, 1e-14 * k);
+      EXPECT_NEAR(f.slope(2 * k - 1), k * c, 1e-14 * k);
+    }
+    expect_slopes_of_values(vn::Fourier{60}, q, 60.0 * 60 * 60 / 6);
+  }
+}
+
+TEST(Fourier, HigherHarmonicsAreExpectedSmaller) {
+  const vn::Fourier basis{3};
+  EXPECT_EQ(basis.size(), 6);
+  for (Index k = 0; k < 6; ++k) EXPECT_EQ(basis.relative_size(k), 1.0 / static_cast<double>(1 + k / 2));
+  EXPECT_EQ(functions(vn::Fourier{0}, 1.0).value.size(), 0);
+}
+
+TEST(JointNodes, AreHyperbolicTangents) {
+  vn::Rng rng(2);
+  const vn::JointNodes nodes{normals(rng, 20), 3 * normals(rng, 20)};
+  for (int i = 0; i < 200; ++i) {
+    const double q = rng.uniform(-pi, pi);
+    const Functions f = functions(nodes, q);
+    for (Index k = 0; k < 20; ++k) {
+      const double x = nodes.slope(k) * (q - nodes.centre(k));
+      EXPECT_NEAR(f.value(k), std::tanh(x), 1e-15);
+      EXPECT_NEAR(f.slope(k), nodes.slope(k) / std::pow(std::cosh(x), 2), 1e-14);
+    }
+    expect_slopes_of_values(nodes, q, std::pow(nodes.slope.cwiseAbs().maxCoeff(), 3) / 3);
+  }
+}
+
+TEST(JointNodes, SpreadEvenly) {
+  const auto nodes = vn::JointNodes::spread(5, -1, 3);
+  EXPECT_LE((nodes.centre - (VectorX(5) << -1, 0, 1, 2, 3).finished()).norm(), 1e-15);
+  EXPECT_EQ(nodes.slope, VectorX::Constant(5, 1.25));
+  EXPECT_EQ(nodes.relative_size(0), 1 / std::sqrt(5.0));
+  EXPECT_EQ(vn::JointNodes::spread(1, -1, 3).size(), 1);
+  EXPECT_THROW((void)vn::JointNodes::spread(0, -1, 3), std::invalid_argument);
+  EXPECT_THROW((void)vn::JointNodes::spread(5, 3, 3), std::invalid_argument);
+  EXPECT_THROW((void)vn::JointNodes::spread(5, 0, std::nan("")), std::invalid_argument);
+}
+
+TEST(AngleBasis, CombinesItsFunctions) {
+  vn::Rng rng(3);
+  for (const vn::AngleBasis& basis :
+       {vn::AngleBasis(vn::Fourier{60}), vn::AngleBasis(vn::JointNodes::spread(30, -2, 2)),
+        vn::AngleBasis(vn::Fourier{0}), vn::AngleBasis(vn::JointNodes{})}) {
+    const VectorX beta = normals(rng, vn::size_of(basis));
+    for (int i = 0; i < 50; ++i) {
+      const double q = rng.uniform(-pi, pi);
+      const Functions f = functions(basis, q);
+      const vn::AngleFunction sum = vn::combine(basis, beta.data(), q);
+      EXPECT_NEAR(sum.value, beta.dot(f.value), 1e-13);
+      EXPECT_NEAR(sum.slope, beta.dot(f.slope), 1e-11);
+    }
+  }
+}
+
+template <class Chain>
+Eigen::Matrix<double, Chain::dof, Eigen::Dynamic> basis_of(const vn::GravityCompliance<Chain>& gravity,
+                                                           const vn::JointVector<Chain::dof>& q) {
+  Eigen::Matrix<double, Chain::dof, Eigen::Dynamic> out(Chain::dof, vn::GravityCompliance<Chain>::size);
+  out.setConstant(std::nan(""));
+  gravity.basis(q, out);
+  return out;
+}
+
+TEST(GravityCompliance, PlanarArmByHand) {
+  // Two joints about z, gravity along -y: a weight of 1 N turns by minus its horizontal distance from the axis.
+  const double l1 = 0.3, l2 = 0.2;
+  const vn::DhChain<2> arm({{.a = l1}, {.a = l2}});
+  const vn::GravityCompliance gravity(arm, -vn::Vector3::UnitY());
+  vn::Rng rng(4);
+  for (int i = 0; i < 50; ++i) {
+    const vn::JointVector<2> q = vernier_test::random_joints<2>(rng);
+    const double x1 = l1 * std::cos(q(0)), x2 = l2 * std::cos(q(0) + q(1));
+    Eigen::Matrix<double, 2, 3> by_hand;
+    by_hand << -x1, -(x1 + x2), 0,  //
+        0, 0, -x2;
+    EXPECT_LE((basis_of(gravity, q) - by_hand).cwiseAbs().maxCoeff(), 1e-15);
+  }
+}
+
+TEST(GravityCompliance, AVerticalAxisCarriesNothing) {
+  const vn::DhChain<2> scara({{.a = 0.3}, {.a = 0.2}});
+  EXPECT_EQ(basis_of(vn::GravityCompliance(scara), vn::JointVector<2>(0.4, 1)).norm(), 0);
+}
+
+TEST(GravityCompliance, ALiftCarriesItsWeights) {
+  const vn::DhChain<2> arm({{.d = 0.1, .joint = vn::JointType::prismatic}, {.a = 0.2}});
+  Eigen::Matrix<double, 2, 3> by_hand;
+  by_hand << -1, -1, 0, 0, 0, 0;
+  EXPECT_EQ(basis_of(vn::GravityCompliance(arm), vn::JointVector<2>(0.4, 1)), by_hand);
+}
+
+/// Height of the end of link j (from 0) against gravity: the same arm with nothing behind it.
+template <class Chain>
+double height(const Chain& arm, int j, const vn::JointVector<Chain::dof>& q, const vn::Vector3& down) {
+  auto rows = arm.rows();
+  for (int k = j + 1; k < Chain::dof; ++k) rows[static_cast<std::size_t>(k)] = {};
+  return -down.dot(Chain::from_rows(rows).position(q));
+}
+
+template <int N, class Convention>
+void expect_torques_of_potential_energy() {
+  vn::Rng rng(100 + N);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto arm = vernier_test::random_chain<N, Convention>(rng, {.prismatic = 0.4});
+    const vn::Vector3 down = vernier_test::random_direction(rng);
+    const vn::GravityCompliance gravity(arm, down);
+    const vn::JointVector<N> q = vernier_test::random_joints<N>(rng);
+    const auto torques = basis_of(gravity, q);
+    const double h = 1e-5;
+    for (int i = 0; i < N; ++i) {
+      const vn::JointVector<N> step = h * vn::JointVector<N>::Unit(i);
+      for (int j = 0; j < N; ++j) {
+        const double by_energy = -(height(arm, j, q + step, down) - height(arm, j, q - step, down)) / (2 * h);
+        EXPECT_NEAR(j < i ? 0 : torques(i, gravity.index(i, j)), by_energy, 1e-9) << N << ": " << i << ", " << j;
+      }
+      for (int other = 0; other < N; ++other)
+        for (int j = other; j < N && other != i; ++j) EXPECT_EQ(torques(i, gravity.index(other, j)), 0);
+    }
+  }
+}
+
+template <int N, class Convention>
+void expect_sums_of_products() {
+  vn::Rng rng(200 + N);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto arm = vernier_test::random_chain<N, Convention>(rng, {.prismatic = 0.4});
+    const vn::GravityCompliance gravity(arm, vernier_test::random_direction(rng));
+    const VectorX products = normals(rng, gravity.size);
+    const vn::JointVector<N> q = vernier_test::random_joints<N>(rng), before = vernier_test::random_joints<N>(rng);
+    const auto added = [&](const vn::JointVector<N>& at) {
+      std::pair<vn::JointVector<N>, Eigen::Matrix<double, N, N>> out{before, Eigen::Matrix<double, N, N>::Constant(7)};
+      gravity.add(at, products.data(), out.first, out.second);
+      return out;
+    };
+    const auto [joints, derivative] = added(q);
+    EXPECT_LE((joints - before - basis_of(gravity, q) * products).cwiseAbs().maxCoeff(), 1e-13);
+    const double h = 1e-5;
+    for (int k = 0; k < N; ++k) {
+      const vn::JointVector<N> step = h * vn::JointVector<N>::Unit(k);
+      const vn::JointVector<N> difference = (added(q + step).first - added(q - step).first) / (2 * h);
+      EXPECT_LE((derivative.col(k).array() - 7 - difference.array()).abs().maxCoeff(), 1e-8) << N << ", joint " << k;
+    }
+  }
+}
+
+/// Calls `check<N, Convention>()` for N = 1 .. 7 in both conventions.
+template <class Check>
+void for_all_sizes(Check&& check) {
+  [&]<int... K>(std::integer_sequence<int, K...>) {
+    (check.template operator()<K + 1, vn::StandardDh>(), ...);
+    (check.template operator()<K + 1, vn::ModifiedDh>(), ...);
+  }
+  (std::make_integer_sequence<int, 7>{});
+}
+
+TEST(GravityCompliance, TorquesAreSlopesOfPotentialEnergy) {
+  for_all_sizes([]<int N, class Convention>() { expect_torques_of_potential_energy<N, Convention>(); });
+}
+
+TEST(GravityCompliance, AddsItsProductsWithTheirDerivative) {
+  for_all_sizes([]<int N, class Convention>() { expect_sums_of_products<N, Convention>(); });
+}
+
+TEST(GravityCompliance, CountsItsProductsRowByRow) {
+  using Gravity = vn::GravityCompliance<vn::DhChain<6>>;
+  Index expected = 0;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) EXPECT_EQ(Gravity::index(i, j), expected++);
+  EXPECT_EQ(Gravity::size, expected);
+}
+
+TEST(GravityCompliance, DownIsADirection) {
+  const vn::DhChain<1> arm({{.a = 1}});
+  for (const vn::Vector3& bad : {vn::Vector3(0, 0, -9.81), vn::Vector3(0, 0, 0), vn::Vector3(std::nan(""), 0, 1)})
+    EXPECT_THROW((void)vn::GravityCompliance(arm, bad), std::invalid_argument);
+}
+
+/// All terms at once: harmonics, nodes, and joints without functions.
+template <class Chain>
+vn::JointTerms<Chain> all_terms(const Chain& chain) {
+  vn::JointTerms<Chain> terms;
+  terms.gear_ratio = terms.coupling = true;
+  terms.gravity.emplace(chain, vn::Vector3(0.6, 0, -0.8));
+  terms.transmission[0] = vn::Fourier{12};
+  if constexpr (Chain::dof > 2) terms.transmission[2] = vn::JointNodes::spread(9, -2, 2);
+  if constexpr (Chain::dof > 3) terms.transmission[3] = vn::Fourier{3};
+  return terms;
+}
+
+/// Coefficients of 1 mrad.
+template <class Chain>
+vn::JointErrors<Chain> random_errors(vn::Rng& rng, vn::JointTerms<Chain> terms) {
+  const Index n = terms.size();
+  return {std::move(terms), 1e-3 * normals(rng, n)};
+}
+
+template <int N>
+void expect_effective_is_phi_beta() {
+  vn::Rng rng(300 + N);
+  const auto arm = vernier_test::random_chain<N>(rng);
+  for (int present = 0; present < 16; ++present) {  // each block with and without each other
+    vn::JointTerms<vn::DhChain<N>> terms = all_terms(arm);
+    terms.gear_ratio = (present & 1) != 0;
+    terms.coupling = (present & 2) != 0;
+    if ((present & 4) == 0) terms.gravity.reset();
+    if ((present & 8) == 0) terms.transmission.fill(vn::Fourier{0});
+    const auto errors = random_errors(rng, terms);
+    EXPECT_EQ(errors.empty(), terms.size() == 0);
+    for (int i = 0; i < 5; ++i) {
+      const vn::JointVector<N> q = vernier_test::random_joints<N>(rng);
+      typename vn::JointTerms<vn::DhChain<N>>::Basis few(N, terms.few());
+      few.setConstant(std::nan(""));
+      terms.few_basis(q, few);
+      vn::MatrixX phi = vn::MatrixX::Zero(N, terms.size());
+      phi.leftCols(terms.few()) = few;
+      for (int j = 0; j < N; ++j) {
+        const VectorX h = functions(terms.transmission[static_cast<std::size_t>(j)], q(j)).value;
+        phi.row(j).segment(terms.transmission_begin(j), h.size()) = h.transpose();
+        EXPECT_NEAR(errors.transmission(j, q(j)),
+                    h.dot(errors.coefficients().segment(terms.transmission_begin(j), h.size())), 1e-15);
+      }
+      const auto effective = errors.effective(q);
+      EXPECT_LE((effective.joints - q - phi * errors.coefficients()).cwiseAbs().maxCoeff(), 1e-15);
+      for (int k = 0; k < N; ++k) {
+        const vn::JointVector<N> step = 1e-5 * vn::JointVector<N>::Unit(k);
+        EXPECT_LE((effective.derivative.col(k) -
+                   (errors.effective(q + step).joints - errors.effective(q - step).joints) / 2e-5)
+                      .cwiseAbs()
+                      .maxCoeff(),
+                  1e-9);
+      }
+    }
+  }
+}
+
+TEST(JointErrors, EffectiveJointsArePhiBeta) {
+  expect_effective_is_phi_beta<1>();
+  expect_effective_is_phi_beta<2>();
+  expect_effective_is_phi_beta<3>();
+  expect_effective_is_phi_beta<6>();
+}
+
+TEST(JointErrors, NoneChangeNothing) {
+  const vn::JointErrors<vn::DhChain<6>> none;
+  EXPECT_TRUE(none.empty());
+  vn::Rng rng(5);
+  const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+  EXPECT_EQ(none.effective(q).joints, q);
+  EXPECT_EQ(none.effective(q).derivative, (Eigen::Matrix<double, 6, 6>::Identity()));
+  EXPECT_EQ(none.transmission(3, 1.0), 0);
+  const auto arm = vernier_test::random_chain<6>(rng);
+  EXPECT_EQ(vn::WithJointErrors<vn::DhChain<6>>(arm).pose(q).matrix(), arm.pose(q).matrix());
+}
+
+TEST(JointErrors, NamesAreInOrderAndUnique) {
+  vn::Rng rng(6);
+  const auto arm = vernier_test::random_chain<3>(rng);
+  vn::JointTerms<vn::DhChain<3>> terms;
+  terms.gear_ratio = terms.coupling = true;
+  terms.gravity.emplace(arm);
+  terms.transmission[0] = vn::Fourier{2};
+  terms.transmission[2] = vn::JointNodes::spread(2, -1, 1);
+  EXPECT_EQ(terms.names(), (std::vector<std::string>{"gear1", "gear2", "gear3", "coupling2", "coupling3", "sag1_1",
+                                                     "sag1_2", "sag1_3", "sag2_2", "sag2_3", "sag3_3", "cos1_1",
+                                                     "sin1_1", "cos1_2", "sin1_2", "node3_1", "node3_2"}));
+  const auto many = [&](auto chain) {
+    auto all = all_terms(chain);
+    all.transmission.fill(vn::Fourier{60});
+    const auto names = all.names();
+    EXPECT_EQ(static_cast<Index>(names.size()), all.size());
+    EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  };
+  many(arm);
+  many(vernier_test::random_chain<1>(rng));
+  many(vernier_test::random_chain<12>(rng));  // joint 1, harmonic 12 is not joint 11, harmonic 2
+}
+
+TEST(JointErrors, WrongCoefficientsAreNamed) {
+  using Errors = vn::JointErrors<vn::DhChain<6>>;
+  vn::JointTerms<vn::DhChain<6>> terms;
+  terms.gear_ratio = true;
+  for (const Index n : {0, 5, 7}) EXPECT_THROW((void)Errors(terms, VectorX::Zero(n)), std::invalid_argument) << n;
+  try {
+    (void)Errors(terms, VectorX::Zero(7));
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_EQ(std::string(e.what()), "JointErrors: 7 coefficients for 6 terms");
+  }
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    VectorX beta = VectorX::Zero(6);
+    beta(4) = bad;
+    EXPECT_THROW((void)Errors(terms, beta), std::invalid_argument);
+  }
+  EXPECT_NO_THROW((void)Errors(terms, VectorX::Zero(6)));
+}
+
+TEST(JointErrors, MalformedBasesAreNamed) {
+  using Errors = vn::JointErrors<vn::DhChain<2>>;
+  const auto says = [](const vn::AngleBasis& first, const vn::AngleBasis& second, Index coefficients) -> std::string {
+    vn::JointTerms<vn::DhChain<2>> terms;
+    terms.transmission = {first, second};
+    try {
+      (void)Errors(terms, VectorX::Ones(coefficients));
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return {};
+  };
+  const VectorX one = VectorX::Ones(1), three = VectorX::Ones(3);
+  EXPECT_EQ(says(vn::Fourier{1}, vn::JointNodes{three, three}, 5), "");
+  EXPECT_EQ(says(vn::Fourier{1}, vn::Fourier{-1}, 0), "JointErrors: joint 2 has -1 harmonics");  // 2 - 2 functions
+  EXPECT_EQ(says(vn::JointNodes{three, one}, vn::Fourier{0}, 3),
+            "JointErrors: joint 1 has 3 centres of nodes, but 1 slopes");
+  for (const auto& nodes : {vn::JointNodes{one, std::nan("") * one}, vn::JointNodes{one / 0.0, one}})
+    EXPECT_EQ(says(vn::Fourier{0}, nodes, 1), "JointErrors: a node of joint 2 is not finite");
+}
+
+vn::Isometry3 frame(const vn::Vector3& position, const vn::Vector3& rotation) {
+  return vn::FrameParameters((vn::Vector6() << position, rotation).finished()).isometry();
+}
+
+template <int N, class Convention>
+void expect_laws() {
+  vn::Rng rng(400 + N);
+  const auto arm = vernier_test::random_chain<N, Convention>(rng);
+  using Chain = vn::DhChain<N, Convention>;
+  const vn::WithJointErrors<Chain> actual(arm, random_errors(rng, all_terms(arm)));
+  const vn::Framed framed(actual, frame({1, 2, 3}, {0.4, -1.2, 2.0}), frame({0.1, -0.05, 0.2}, {0, 0.7, -0.1}));
+  static_assert(vn::KinematicModel<vn::WithJointErrors<Chain>>);
+  static_assert(vn::KinematicModel<vn::Framed<vn::WithJointErrors<Chain>>>);
+  static_assert(!vn::ParametricModel<vn::WithJointErrors<Chain>>);
+  const vn::JointRows<N> samples = vernier_test::random_joint_rows<N>(rng, 20);
+  EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(actual, samples)));
+  EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(framed, samples)));
+}
+
+TEST(WithJointErrors, ObeysTheLaws) {
+  expect_laws<1, vn::StandardDh>();
+  expect_laws<3, vn::ModifiedDh>();
+  expect_laws<6, vn::StandardDh>();
+  expect_laws<7, vn::ModifiedDh>();
+}
+
+TEST(WithJointErrors, IsTheChainAtTheEffectiveJoints) {
+  vn::Rng rng(7);
+  const auto arm = vernier_test::random_chain<6>(rng);
+  const auto errors = random_errors(rng, all_terms(arm));
+  const vn::WithJointErrors<vn::DhChain<6>> actual(arm, errors);
+  EXPECT_EQ(actual.chain(), arm);
+  EXPECT_EQ(actual.joint_errors().coefficients(), errors.coefficients());
+  const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+  EXPECT_EQ(actual.pose(q).matrix(), arm.pose(errors.effective(q).joints).matrix());
+  EXPECT_GT((actual.position(q) - arm.position(q)).norm(), 1e-5);
+}
+
+TEST(NoAllocation, JointErrors) {
+  vn::Rng rng(8);
+  const auto arm = vernier_test::random_chain<6>(rng);
+  const auto terms = all_terms(arm);
+  const auto errors = random_errors(rng, terms);
+  const vn::Framed model(vn::WithJointErrors<vn::DhChain<6>>(arm, errors), frame({1, 2, 3}, {0.1, 0.2, 0.3}));
+  const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+  vn::JointTerms<vn::DhChain<6>>::Basis few(6, terms.few());
+  EXPECT_EQ(allocations([&] { keep(model.pose(q)); }), 0);
+  EXPECT_EQ(allocations([&] { keep(model.position(q)); }), 0);
+  EXPECT_EQ(allocations([&] { keep(model.jacobian(q)); }), 0);
+  EXPECT_EQ(allocations([&] { keep(model.pose_and_jacobian(q)); }), 0);
+  EXPECT_EQ(allocations([&] { keep(errors.effective(q)); }), 0);
+  EXPECT_EQ(allocations([&] { keep(errors.transmission(2, q(2))); }), 0);
+  EXPECT_EQ(allocations([&] { terms.few_basis(q, few); }), 0);
+}
+
+}  // namespace

@@ -1,0 +1,257 @@
+// A fitted error model: its arm where the joints were measured, its fallback elsewhere, one smooth model in between.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <cmath>
+#include <type_traits>
+#include <vernier/compensation/compensated.hpp>
+#include <vernier/identification/error_model.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/testing/kinematic_laws.hpp>
+
+#include "allocation_counter.hpp"
+#include "laws.hpp"
+#include "random_chains.hpp"
+
+namespace vn = vernier;
+using vernier_test::allocations;
+using vernier_test::keep;
+using vn::Index;
+using vn::VectorX;
+
+namespace {
+
+static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<6>>>);
+static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<1, vn::ModifiedDh>>>);
+static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<7, vn::ModifiedDh>>>);
+static_assert(!vn::ParametricModel<vn::ErrorModel<vn::DhChain<6>>>);
+static_assert(std::is_same_v<vn::ReferenceOf<vn::ErrorModel<vn::DhChain<6>>>, vn::Framed<vn::DhChain<6>>>);
+
+/// Two ranges a joint: [-1.5, -0.5] and [0.5, 1.5], margin 0.3.
+template <int N>
+vn::JointCoverage<N> coverage() {
+  vn::JointCoverage<N> out;
+  out.ranges.fill({{-1.5, -0.5}, {0.5, 1.5}});
+  out.margin.setConstant(0.3);
+  return out;
+}
+
+/// A joint value at a distance from the measured ranges; which of the four ends is up to chance.
+double beyond(vn::Rng& rng, double distance) { return rng.sign() * (1 + rng.sign() * (0.5 + distance)); }
+
+enum class Zone { inside, falling, outside };
+
+/// Joints of a zone, clear of its borders by more than a step of the laws' differences.
+template <int N>
+vn::JointVector<N> joints_in(Zone zone, vn::Rng& rng) {
+  vn::JointVector<N> q;
+  for (int i = 0; i < N; ++i) q(i) = beyond(rng, rng.uniform(-0.49, -0.01));
+  const auto several = [&](double least, double most) {  // one joint at least
+    const auto sure = static_cast<int>(rng.below(N));
+    for (int i = 0; i < N; ++i)
+      if (i == sure || rng.uniform() < 0.3) q(i) = beyond(rng, rng.uniform(least, most));
+  };
+  if (zone == Zone::falling) several(0.01, 0.29);
+  if (zone == Zone::outside) {
+    several(0.01, 0.29);
+    q(static_cast<int>(rng.below(N))) = beyond(rng, rng.uniform(0.31, 0.45));
+  }
+  return q;
+}
+
+template <int N>
+vn::JointRows<N> rows_in(Zone zone, Index n, vn::Rng& rng) {
+  vn::JointRows<N> out(n, N);
+  for (Index i = 0; i < n; ++i) out.row(i) = joints_in<N>(zone, rng).transpose();
+  return out;
+}
+
+vn::FrameParameters random_frame(vn::Rng& rng) {
+  vn::Vector6 values;
+  for (double& x : values) x = rng.uniform(-1, 1);
+  return vn::FrameParameters(values);
+}
+
+/// Parameters that differ by a normal error.
+template <class Chain>
+Chain nearby(const Chain& chain, double error, vn::Rng& rng) {
+  auto p = chain.parameters();
+  for (double& x : p) x += error * rng.normal();
+  return chain.with_parameters(p);
+}
+
+/// Arm and fallback that differ in every parameter, joint term and frame.
+/// @param error of chain and joints [m, rad]
+template <class Chain>
+vn::ErrorModel<Chain> random_model(const Chain& nominal, double error, vn::Rng& rng) {
+  const auto joint_errors = [&](const vn::JointTerms<Chain>& terms) {
+    VectorX beta(terms.size());
+    for (double& x : beta) x = error * rng.normal();
+    return vn::JointErrors<Chain>(terms, beta);
+  };
+  vn::JointTerms<Chain> few;
+  few.gear_ratio = few.coupling = true;
+  few.gravity.emplace(nominal);
+  vn::JointTerms<Chain> all = few;
+  all.transmission.fill(vn::Fourier{3});
+  all.transmission[0] = vn::JointNodes::spread(6, -1.5, 1.5);
+  using Arm = typename vn::ErrorModel<Chain>::Arm;
+  const vn::FrameParameters base = random_frame(rng), tool = random_frame(rng);
+  const auto moved = [&](const vn::FrameParameters& frame) {
+    vn::Vector6 values = frame.values();
+    for (double& x : values) x += error * rng.normal();
+    return vn::FrameParameters(values);
+  };
+  const Arm arm(vn::WithJointErrors<Chain>(nearby(nominal, error, rng), joint_errors(all)), base, tool);
+  const Arm fallback(vn::WithJointErrors<Chain>(nearby(nominal, error, rng), joint_errors(few)), moved(base),
+                     moved(tool));
+  return {nominal, arm, fallback, coverage<Chain::dof>()};
+}
+
+const vn::DhChain<6> nominal = vn::robots::abb_irb120().chain;
+
+TEST(ErrorModel, IsItsArmWhereMeasured) {
+  vn::Rng rng(1);
+  const auto model = random_model(nominal, 0.05, rng);
+  for (int i = 0; i < 50; ++i) {
+    const auto q = joints_in<6>(Zone::inside, rng);
+    EXPECT_EQ(model.gate(q), 1);
+    EXPECT_EQ(model.pose(q).matrix(), model.arm().pose(q).matrix());
+    EXPECT_EQ(model.position(q), model.arm().position(q));
+    EXPECT_EQ(model.jacobian(q), model.arm().jacobian(q));
+    EXPECT_GT((model.position(q) - model.fallback()->position(q)).norm(), 1e-3);
+  }
+}
+
+TEST(ErrorModel, IsItsFallbackElsewhere) {
+  vn::Rng rng(2);
+  const auto model = random_model(nominal, 0.05, rng);
+  for (int i = 0; i < 50; ++i) {
+    const auto q = joints_in<6>(Zone::outside, rng);
+    EXPECT_EQ(model.gate(q), 0);
+    EXPECT_EQ(model.pose(q).matrix(), model.fallback()->pose(q).matrix());
+    EXPECT_EQ(model.position(q), model.fallback()->position(q));
+    EXPECT_EQ(model.jacobian(q), model.fallback()->jacobian(q));
+  }
+}
+
+TEST(ErrorModel, GoesStraightFromOneToTheOtherBetween) {
+  vn::Rng rng(3);
+  const auto model = random_model(nominal, 0.05, rng);
+  for (int i = 0; i < 50; ++i) {
+    const auto q = joints_in<6>(Zone::falling, rng);
+    const double gate = model.gate(q);
+    EXPECT_EQ(gate, (*model.coverage())(q));
+    ASSERT_GT(gate, 0);
+    ASSERT_LT(gate, 1);
+    const vn::Isometry3 pose = model.pose(q), near = model.arm().pose(q), far = model.fallback()->pose(q);
+    EXPECT_LE((pose.translation() - gate * near.translation() - (1 - gate) * far.translation()).norm(), 1e-14);
+    // about the axis that turns one into the other, by the gate's share of the angle
+    const vn::Vector3 whole = vn::log_so3(near.linear() * far.linear().transpose());
+    const vn::Vector3 part = vn::log_so3(pose.linear() * far.linear().transpose());
+    EXPECT_LE((part - gate * whole).norm(), 1e-14);
+  }
+}
+
+template <int N, class Convention>
+void expect_laws(std::uint64_t seed) {
+  vn::Rng rng(seed);
+  const auto chain = vernier_test::random_chain<N, Convention>(rng);
+  const auto model = random_model(chain, 0.05, rng);
+  for (const Zone zone : {Zone::inside, Zone::falling, Zone::outside}) {
+    const auto samples = rows_in<N>(zone, 40, rng);
+    for (Index i = 0; i < samples.rows(); ++i) {
+      const double gate = model.gate(samples.row(i).transpose());
+      ASSERT_EQ(gate == 1 ? Zone::inside : gate == 0 ? Zone::outside : Zone::falling, zone) << N << ": " << gate;
+    }
+    EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(model, samples)))
+        << N << " joints, zone " << static_cast<int>(zone);
+  }
+}
+
+TEST(ErrorModel, ObeysTheLawsInEveryZone) {
+  expect_laws<1, vn::StandardDh>(11);
+  expect_laws<3, vn::ModifiedDh>(12);
+  expect_laws<6, vn::StandardDh>(13);
+  expect_laws<7, vn::ModifiedDh>(14);
+}
+
+TEST(ErrorModel, IsSmoothAtTheBorders) {
+  vn::Rng rng(4);
+  const auto model = random_model(nominal, 0.05, rng);
+  for (const double border : {0.0, 0.3})
+    for (int i = 0; i < 20; ++i) {
+      vn::JointVector<6> before = joints_in<6>(Zone::inside, rng), after = before;
+      const int joint = static_cast<int>(rng.below(6));
+      before(joint) = 1.5 + border - 1e-9;
+      after(joint) = 1.5 + border + 1e-9;
+      const auto a = model.pose_and_jacobian(before), b = model.pose_and_jacobian(after);
+      EXPECT_LE((a.pose.matrix() - b.pose.matrix()).norm(), 1e-7);
+      EXPECT_LE((a.jacobian - b.jacobian).norm(), 1e-6);  // the gate's slope rises by 6 / margin^2 a rad
+    }
+}
+
+TEST(ErrorModel, WithoutCoverageHoldsEverywhere) {
+  vn::Rng rng(5);
+  const auto arm = random_model(nominal, 0.05, rng).arm();
+  const vn::ErrorModel<vn::DhChain<6>> model(nominal, arm);
+  EXPECT_EQ(model.fallback(), nullptr);
+  EXPECT_EQ(model.coverage(), nullptr);
+  const auto samples = vernier_test::random_joint_rows<6>(rng, 20);
+  for (Index i = 0; i < samples.rows(); ++i) {
+    const vn::JointVector<6> q = samples.row(i).transpose();
+    EXPECT_EQ(model.gate(q), 1);
+    EXPECT_EQ(model.pose(q).matrix(), arm.pose(q).matrix());
+  }
+  EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(model, samples)));
+}
+
+TEST(ErrorModel, KnowsTheNominalArmInItsFrames) {
+  vn::Rng rng(6);
+  const auto model = random_model(nominal, 0.05, rng);
+  const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+  EXPECT_EQ(model.reference().model(), nominal);
+  EXPECT_EQ(model.reference().base().matrix(), model.arm().base().matrix());
+  EXPECT_EQ(model.reference().tool().matrix(), model.arm().tool().matrix());
+  EXPECT_EQ(&vn::reference_of(model), &model.reference());
+  const vn::Isometry3 by_hand = model.arm().base() * nominal.pose(q) * model.arm().tool();
+  EXPECT_LE((model.reference().pose(q).matrix() - by_hand.matrix()).norm(), 1e-14);
+}
+
+TEST(ErrorModel, CorrectsToItsReference) {
+  vn::Rng rng(7);
+  const auto model = random_model(nominal, 1e-3, rng);
+  const auto compensated = vn::compensate(model, {.position_tolerance = 1e-9, .rotation_tolerance = 1e-9});
+  for (const Zone zone : {Zone::inside, Zone::falling, Zone::outside})
+    for (int i = 0; i < 30; ++i) {
+      vn::JointVector<6> q;
+      do {  // clear of singularities, where a real arm need not reach where the nominal one does
+        q = joints_in<6>(zone, rng);
+      } while (model.reference().jacobian(q).jacobiSvd().singularValues()(5) < 0.05);
+      const auto correction = compensated.correct(q);
+      ASSERT_EQ(correction.status, vn::IkStatus::converged);
+      EXPECT_EQ(correction.gate, model.gate(correction.command));
+      const vn::Isometry3 wanted = model.reference().pose(q), reached = model.pose(correction.command);
+      EXPECT_LE((reached.translation() - wanted.translation()).norm(), 1e-8);
+      EXPECT_LE(vn::log_so3(reached.linear() * wanted.linear().transpose()).norm(), 1e-8);
+      EXPECT_GT((model.position(q) - wanted.translation()).norm(), 1e-4);  // there was something to correct
+    }
+}
+
+TEST(NoAllocation, ErrorModel) {
+  vn::Rng rng(8);
+  const auto model = random_model(nominal, 1e-3, rng);
+  const auto compensated = vn::compensate(model);
+  for (const Zone zone : {Zone::inside, Zone::falling, Zone::outside}) {
+    const auto q = joints_in<6>(zone, rng);
+    EXPECT_EQ(allocations([&] { keep(model.gate(q)); }), 0);
+    EXPECT_EQ(allocations([&] { keep(model.pose(q)); }), 0);
+    EXPECT_EQ(allocations([&] { keep(model.position(q)); }), 0);
+    EXPECT_EQ(allocations([&] { keep(model.jacobian(q)); }), 0);
+    EXPECT_EQ(allocations([&] { keep(model.pose_and_jacobian(q)); }), 0);
+    EXPECT_EQ(allocations([&] { keep(compensated.correct(q)); }), 0);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,444 @@
+// A fitted arm that was moved, re-mounted or drifts.
+
+#include "vernier/identification/reregister.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <limits>
+#include <string>
+
+#include "vernier/identification/online_update.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier {
+namespace {
+
+using Chain = DhChain<6>;
+using Model = ErrorModel<Chain>;
+using Joints = JointVector<6>;
+
+const Robot<6> robot = robots::abb_irb120();
+
+Isometry3 frame(const Vector6& values) { return FrameParameters(values).isometry(); }
+Vector6 values(const Isometry3& frame) { return FrameParameters(frame).values(); }
+
+const Isometry3 still = Isometry3::Identity();
+const Isometry3 elsewhere = frame(Vector6{2, -3, 1.5, 1.2, -1.2, 1.06});  // turned by 2 rad
+const Isometry3 other_tool = frame(Vector6{0.03, -0.02, 0.05, 0.3, -0.2, 0.25});
+
+Joints random_zeros(Rng& rng, double size) {
+  Joints out;
+  for (double& x : out) x = size * rng.normal();
+  return out;
+}
+
+JointRows<6> samples(Index n, std::uint64_t seed) { return sample_joints(robot.limits, n, seed); }
+
+/// Joint errors and geometry of an arm, another one where joints 1 and 2 leave [-1.5, 1.5].
+Model fitted() {
+  const FrameParameters base(Vector6{0.4, -0.2, 0.1, 0.1, -0.3, 0.8}), tool(Vector6{0.05, 0.01, 0.12, 0.2, 0.4, -0.6});
+  const WithJointErrors<Chain> arm(with_geometric_errors(robot.chain, {}, 1), draw_joint_errors(robot.chain, {}, 2));
+  const WithJointErrors<Chain> fallback(with_geometric_errors(robot.chain, {}, 1),
+                                        draw_joint_errors(robot.chain, {.harmonics = 0}, 2));
+  JointCoverage<6> coverage;
+  coverage.ranges[0] = coverage.ranges[1] = {{-1.5, 1.5}};
+  coverage.margin.setConstant(0.5);
+  return {robot.chain, Model::Arm(arm, base, tool), Model::Arm(fallback, base, tool), coverage};
+}
+
+/// No joint errors, holds everywhere.
+Model rigid() {
+  return {robot.chain, Model::Arm(WithJointErrors<Chain>(with_geometric_errors(robot.chain, {}, 1)), still,
+                                  frame(Vector6{0.05, 0.01, 0.12, 0.2, 0.4, -0.6}))};
+}
+
+/// Largest difference of poses over the joint space [m, rad].
+double difference(const Model& a, const Model& b) {
+  double out = 0;
+  const JointRows<6> joints = samples(50, 99);
+  for (Index i = 0; i < joints.rows(); ++i) {
+    const Joints q = joints.row(i).transpose();
+    out = std::max(out, pose_difference(a.pose(q), b.pose(q)).cwiseAbs().maxCoeff());
+  }
+  return out;
+}
+
+/// A model with other base, zeros and tool, all given as small values: 6, 6 and 6.
+Model changed(const Model& model, const VectorX& by) {
+  return model.moved(frame(by.head<6>()), by.segment<6>(6), frame(by.tail<6>()));
+}
+
+/// Zeros of a model's joints.
+Joints zeros(const Model& model) {
+  Joints out;
+  for (int i = 0; i < 6; ++i) out(i) = model.arm().model().chain().row(i).theta;
+  return out;
+}
+
+/// What takes one model to the other: base twist, zeros, tool twist.
+VectorX change(const Model& from, const Model& to) {
+  VectorX out(18);
+  out << values(to.arm().base() * from.arm().base().inverse()), zeros(to) - zeros(from),
+      values(from.arm().tool().inverse() * to.arm().tool());
+  return out;
+}
+
+/// Rows of all changes at a pose, from models that differ.
+MatrixX effect_of_changes(const Model& model, const Joints& q) {
+  MatrixX out(6, 18);
+  constexpr double step = 1e-5;
+  for (Index k = 0; k < 18; ++k)
+    out.col(k) = pose_difference(changed(model, step * VectorX::Unit(18, k)).pose(q),
+                                 changed(model, -step * VectorX::Unit(18, k)).pose(q)) /
+                 (2 * step);
+  return out;
+}
+
+template <class F>
+std::string thrown(F&& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+void expect_found(const Reregistered<Chain>& found, const Model& truth) {
+  EXPECT_TRUE(found.determined);
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT(found.rms_after, 1e-9);
+  EXPECT_LT(difference(found.model, truth), 1e-9);
+}
+
+TEST(Reregister, FindsABaseFromThreePoses) {
+  const Model model = fitted(), truth = model.moved(elsewhere, Joints::Zero(), still);
+  const auto found = reregister(model, measure(truth, samples(3, 3)));
+  expect_found(found, truth);
+  EXPECT_GT(found.rms_before, 1);
+  EXPECT_EQ(found.change_std.size(), 6);
+  // one pose says it all, too
+  expect_found(reregister(model, measure(truth, samples(1, 3))), truth);
+}
+
+TEST(Reregister, FindsABaseFromSixPositions) {
+  const Model model = fitted(), truth = model.moved(elsewhere, Joints::Zero(), still);
+  expect_found(reregister(model, measure(truth, samples(6, 4), {.with_orientations = false})), truth);
+  // orientations that are not to be used may be anything
+  const auto wrong = measure(truth, samples(6, 4), {.orientation = 1}, 5);
+  expect_found(reregister(model, wrong, {.use_orientations = false}), truth);
+  EXPECT_GT(reregister(model, wrong).rms_after, 1e-3);
+}
+
+TEST(Reregister, FindsATool) {
+  const Model model = fitted(), truth = model.moved(still, Joints::Zero(), other_tool);
+  const auto found = reregister(model, measure(truth, samples(4, 6)), {.base = false, .tool = true});
+  expect_found(found, truth);
+  EXPECT_EQ(found.change_std.size(), 6);
+  const Model turned = model.moved(still, Joints::Zero(), elsewhere);  // another tool altogether
+  expect_found(reregister(model, measure(turned, samples(4, 6)), {.base = false, .tool = true}), turned);
+}
+
+TEST(Reregister, FindsBaseAndTool) {
+  const Model model = fitted(), truth = model.moved(elsewhere, Joints::Zero(), other_tool);
+  const auto found = reregister(model, measure(truth, samples(6, 7)), {.tool = true});
+  expect_found(found, truth);
+  EXPECT_EQ(found.change_std.size(), 12);
+}
+
+TEST(Reregister, FindsZerosInNoise) {
+  const Model model = fitted();
+  Rng rng(8);
+  const Joints injected = random_zeros(rng, 0.5e-3);
+  const Model truth = model.moved(still, injected, still);
+  const MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.1e-3};
+  const auto found = reregister(model, measure(truth, samples(40, 9), noise, 10), {.base = false, .offsets = true});
+  EXPECT_TRUE(found.determined);
+  EXPECT_TRUE(found.converged);
+  ASSERT_EQ(found.change_std.size(), 6);
+  const Joints zero_change = zeros(found.model) - zeros(model);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_LT(std::abs(zero_change(i) - injected(i)), 3 * found.change_std(i)) << i;
+    EXPECT_LT(found.change_std(i), 0.05e-3) << i;  // the data speak, not the prior
+  }
+  EXPECT_NEAR(found.rms_after, std::sqrt(3) * 0.03e-3, 0.01e-3);
+  EXPECT_GT(found.rms_before, 5 * found.rms_after);
+}
+
+TEST(Reregister, FewPosesLeaveZerosToTheirPrior) {
+  const Model model = fitted();
+  const auto data = measure(model.moved(still, Joints::Constant(0.1e-3), still), samples(1, 11));
+  const auto found = reregister(model, data, {.base = false, .offsets = true, .use_orientations = false});
+  EXPECT_TRUE(found.determined);  // three values for six zeros
+  EXPECT_GT(found.change_std.maxCoeff(), 0.5e-3);
+  EXPECT_LE(found.change_std.maxCoeff(), 1e-3 * (1 + 1e-9));
+}
+
+TEST(Reregister, PriorsPullZerosAsMuchAsPosesDo) {
+  const Model model = rigid();
+  const ReregisterOptions options{.base = false, .offsets = true, .offset_size = 0.1e-3};
+  const auto data = measure(model.moved(still, Joints::Constant(0.5e-3), still), samples(2, 26),
+                            {.position = 0.1e-3, .with_orientations = false}, 27);
+  const auto found = reregister(model, data, options);
+  ASSERT_TRUE(found.converged);
+  const Joints pull = (zeros(found.model) - zeros(model)) / (options.offset_size * options.offset_size);
+  Joints push = Joints::Zero();
+  for (Index i = 0; i < 2; ++i)
+    push += effect_of_changes(found.model, data.joints(i)).block<3, 6>(0, 6).transpose() *
+            (data.position(i) - found.model.position(data.joints(i))) /
+            (options.position_sigma * options.position_sigma);
+  EXPECT_GT(pull.norm(), 1e3);
+  EXPECT_LT((push - pull).norm(), 1e-6 * pull.norm());
+}
+
+TEST(Reregister, SaysWhatPosesDoNotDetermine) {
+  const Model model = fitted();
+  const auto positions_at = [&](const JointRows<6>& joints) {
+    return measure(model, joints, {.with_orientations = false});
+  };
+  EXPECT_FALSE(reregister(model, positions_at(samples(1, 12))).determined);
+  EXPECT_FALSE(reregister(model, positions_at(samples(2, 12))).determined);  // two points lie on a line
+  EXPECT_TRUE(reregister(model, positions_at(samples(3, 12))).determined);
+
+  JointRows<6> line = samples(5, 13);
+  for (Index i = 0; i < 5; ++i) {
+    Joints q = line.row(0).transpose();
+    const Vector3 wanted = model.position(q) + 0.01 * static_cast<double>(i) * Vector3(0.5, -0.3, 0.2);
+    for (int step = 0; step < 20; ++step) {
+      const Eigen::Matrix<double, 3, 6> j = model.jacobian(q).topRows<3>();
+      q += j.transpose() * (j * j.transpose()).ldlt().solve(wanted - model.position(q));
+    }
+    line.row(i) = q.transpose();
+  }
+  const auto collinear = reregister(model, positions_at(line));
+  EXPECT_FALSE(collinear.determined);
+  EXPECT_FALSE(collinear.converged);
+  EXPECT_TRUE(reregister(model, measure(model, line)).determined);
+
+  // positions do not see how a tool is turned; one pose cannot tell base from tool
+  EXPECT_FALSE(reregister(model, positions_at(samples(20, 14)), {.base = false, .tool = true}).determined);
+  EXPECT_FALSE(reregister(model, measure(model, samples(1, 15)), {.tool = true}).determined);
+}
+
+TEST(Reregister, KeepsTheBitsOfWhatMayNotMove) {
+  const Model model = fitted();
+  const Model truth = model.moved(elsewhere, Joints::Constant(1e-3), other_tool);
+  const auto data = measure(truth, samples(20, 16));
+  const auto expect_kept = [&](const Model::Arm& before, const Model::Arm& after, const ReregisterOptions& o) {
+    EXPECT_EQ(after.model().joint_errors().coefficients(), before.model().joint_errors().coefficients());
+    EXPECT_EQ(after.base().matrix() == before.base().matrix(), !o.base);
+    EXPECT_EQ(after.tool().matrix() == before.tool().matrix(), !o.tool);
+    const auto p = before.model().chain().parameters(), moved = after.model().chain().parameters();
+    for (int k = 0; k < 30; ++k) EXPECT_EQ(moved(k) == p(k), !o.offsets || k % 5 != 3) << k;
+  };
+  for (int mask = 1; mask < 8; ++mask) {
+    const ReregisterOptions options{.base = (mask & 1) != 0, .tool = (mask & 2) != 0, .offsets = (mask & 4) != 0};
+    const Model found = reregister(model, data, options).model;
+    expect_kept(model.arm(), found.arm(), options);
+    expect_kept(*model.fallback(), *found.fallback(), options);
+    EXPECT_EQ(found.nominal(), model.nominal());
+    EXPECT_EQ(found.coverage()->ranges, model.coverage()->ranges);
+    EXPECT_EQ(found.coverage()->margin, model.coverage()->margin);
+    // the nominal arm stands where the actual one does
+    EXPECT_EQ(found.reference().base().matrix(), found.arm().base().matrix());
+    EXPECT_EQ(found.reference().tool().matrix(), found.arm().tool().matrix());
+  }
+}
+
+TEST(Reregister, DeviationsAreThoseOfTheScatter) {
+  const Model model = fitted();
+  const ReregisterOptions options{.tool = true, .offsets = true};
+  const MeasurementNoise noise{.position = options.position_sigma, .orientation = options.orientation_sigma};
+  VectorX squares = VectorX::Zero(18), std;
+  constexpr int seeds = 60;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    // zeros come from their prior: it resolves joint 1 against the base and joint 6 against the tool
+    Rng rng(100 + seed);
+    const Model truth = model.moved(elsewhere, random_zeros(rng, options.offset_size), other_tool);
+    const auto found = reregister(model, measure(truth, samples(20, 17), noise, seed), options);
+    ASSERT_TRUE(found.determined && found.converged);
+    squares += change(truth, found.model).cwiseAbs2();
+    std = found.change_std;
+  }
+  const VectorX scatter = (squares / seeds).cwiseSqrt();
+  for (Index k = 0; k < 18; ++k) {
+    EXPECT_LT(scatter(k), 1.3 * std(k)) << k;
+    EXPECT_GT(scatter(k), std(k) / 1.3) << k;
+  }
+}
+
+TEST(Reregister, MisuseThrows) {
+  const Model model = rigid();
+  const auto data = measure(model, samples(3, 18));
+  const auto with = [&](const ReregisterOptions& o) { return thrown([&] { reregister(model, data, o); }); };
+  EXPECT_TRUE(mentions(thrown([&] { reregister(model, Dataset<6>()); }), "no samples"));
+  EXPECT_TRUE(mentions(with({.base = false}), "nothing may move"));
+  EXPECT_TRUE(mentions(with({.position_sigma = -0.25}), "position_sigma -0.25"));
+  EXPECT_TRUE(mentions(with({.orientation_sigma = 0}), "orientation_sigma 0"));
+  EXPECT_TRUE(mentions(with({.offset_size = -2}), "offset_size -2"));
+  EXPECT_TRUE(mentions(with({.position_sigma = std::numeric_limits<double>::quiet_NaN()}), "position_sigma nan"));
+}
+
+TEST(Adjustment, EffectsAreCentralDifferences) {
+  const detail::Adjustment<6> all{true, true, true};
+  const JointRows<6> joints = samples(20, 19);
+  const Model exact = rigid(), model = fitted();
+  for (Index i = 0; i < 20; ++i) {
+    const Joints q = joints.row(i).transpose();
+    EXPECT_LT((all.effect(exact.pose_and_jacobian(q)) - effect_of_changes(exact, q)).norm(), 1e-8);
+    const MatrixX apart = all.effect(model.pose_and_jacobian(q)) - effect_of_changes(model, q);
+    EXPECT_LT(apart.leftCols(6).norm(), 1e-8);
+    EXPECT_LT(apart.rightCols(6).norm(), 1e-6);  // between arm and fallback, but for their difference
+    // a zero comes after the joint errors, a joint before: their slopes lie between
+    EXPECT_LT(apart.middleCols(6, 6).norm(), 3e-3);
+  }
+}
+
+TEST(OnlineUpdate, FollowsADriftingBase) {
+  // Forgetting f weighs a pose that is k old by f^k: their mean age is f / (1 - f) = 19 poses, so a base that drifts by
+  // 1 um a pose is believed to stand 19 um behind. Poses differ in what they tell, so ages differ by direction: by
+  // less than a third.
+  constexpr double drift = 1e-6, forgetting = 0.95, lag = drift * forgetting / (1 - forgetting);
+  const Model model = fitted();
+  OnlineUpdate<Chain> poses(model, {}, forgetting), positions(model, {}, forgetting);
+  const JointRows<6> joints = samples(400, 20);
+  double mean = 0, worst_pose = 0, worst_position = 0;
+  for (Index i = 0; i < 400; ++i) {
+    const Joints q = joints.row(i).transpose();
+    Isometry3 base = still;
+    base.translation() = drift * static_cast<double>(i) * Vector3(2, -1, 2) / 3;
+    const Isometry3 seen = base * model.pose(q);
+    poses.update(q, seen);
+    positions.update(q, Vector3(seen.translation()));
+    if (i < 200) continue;
+    const double behind = (poses.model().position(q) - seen.translation()).norm();
+    mean += behind / 200;
+    worst_pose = std::max(worst_pose, behind);
+    worst_position = std::max(worst_position, (positions.model().position(q) - seen.translation()).norm());
+  }
+  EXPECT_NEAR(mean, lag, 0.1 * lag);
+  EXPECT_LT(worst_pose, 1.3 * lag);
+  EXPECT_LT(worst_position, 1.3 * lag);
+}
+
+TEST(OnlineUpdate, WithoutForgettingIsLeastSquares) {
+  // changes so small that the arm is linear in them, sensors as good
+  constexpr double size = 2e-8;
+  const ReregisterOptions options{.tool = true,
+                                  .offsets = true,
+                                  .position_sigma = 0.1 * size,
+                                  .orientation_sigma = 0.3 * size,
+                                  .offset_size = size};
+  const Model model = rigid();
+  Rng rng(21);
+  VectorX injected(18);
+  for (double& x : injected) x = size * rng.normal();
+  const Model truth = changed(model, injected);
+  const MeasurementNoise noise{.position = options.position_sigma, .orientation = options.orientation_sigma};
+  const auto data = measure(truth, samples(30, 22), noise, 23);
+
+  VectorX precisions(18);
+  precisions << Vector3::Constant(4 * size), Vector3::Constant(2 * size), Joints::Constant(size),
+      Vector3::Constant(4 * size), Vector3::Constant(2 * size);
+  precisions = precisions.cwiseAbs2().cwiseInverse().eval();
+  MatrixX information = precisions.asDiagonal();
+  VectorX gradient = VectorX::Zero(18);
+  OnlineUpdate<Chain> online(model, options, 1, {4 * size, 2 * size});
+  Vector6 weights;
+  weights << Vector3::Constant(1 / options.position_sigma), Vector3::Constant(1 / options.orientation_sigma);
+  for (Index i = 0; i < data.size(); ++i) {
+    const bool oriented = i % 3 != 0;  // both kinds of update
+    const Index rows = oriented ? 6 : 3;
+    const MatrixX effect = (weights.asDiagonal() * effect_of_changes(model, data.joints(i))).topRows(rows);
+    const Vector6 residual = weights.cwiseProduct(pose_difference(data.pose(i), model.pose(data.joints(i))));
+    information += effect.transpose() * effect;
+    gradient += effect.transpose() * residual.head(rows);
+    if (oriented)
+      online.update(data.joints(i), data.pose(i));
+    else
+      online.update(data.joints(i), data.position(i));
+  }
+  const Eigen::LDLT<MatrixX> solver(information);
+  const VectorX batch = solver.solve(gradient);
+  EXPECT_LT((change(model, online.model()) - batch).norm(), 1e-6 * batch.norm());
+  EXPECT_GT((batch - injected).norm(), 1e-3 * batch.norm());  // noise is in it
+  const MatrixX covariance = solver.solve(MatrixX::Identity(18, 18));
+  EXPECT_LT((online.covariance() - covariance).norm(), 1e-6 * covariance.norm());
+}
+
+TEST(OnlineUpdate, ForgetsNoMoreThanItKnewAtTheStart) {
+  const Model model = fitted();
+  const Joints q = samples(1, 24).row(0).transpose();
+  OnlineUpdate<Chain> online(model, {.tool = true, .offsets = true}, 0.98);
+  const VectorX start = online.covariance().diagonal();
+  const Vector3 position = model.position(q);
+  Rng rng(25);
+  for (int i = 0; i < 2000; ++i) {
+    Vector3 noise;
+    for (double& x : noise) x = 0.03e-3 * rng.normal();
+    online.update(q, Vector3(position + noise));
+    const MatrixX& p = online.covariance();
+    ASSERT_TRUE((p.diagonal().array() <= start.array() * (1 + 1e-12)).all()) << i;
+    ASSERT_EQ(p, p.transpose());
+    if (i % 100 != 99) continue;
+    ASSERT_GT(Eigen::SelfAdjointEigenSolver<MatrixX>(p, false).eigenvalues()(0), 0) << i;
+  }
+  // what a single position does not tell is as little known as before
+  EXPECT_GT((online.covariance().diagonal().array() / start.array()).maxCoeff(), 0.5);
+}
+
+TEST(OnlineUpdate, DoesNotWanderWhereNothingIsExcited) {
+  const Model model = rigid();
+  OnlineUpdate<Chain> online(model, {.base = true, .tool = true, .offsets = true}, 0.98);
+  const JointRows<6> q = samples(50, 3);
+  Rng rng(4);
+  for (int i = 0; i < 2000; ++i) {  // an arm that stands still, seen with noise
+    const Vector3 noise = 0.03e-3 * Vector3(rng.normal(), rng.normal(), rng.normal());
+    online.update(q.row(0).transpose(), Vector3(model.position(q.row(0).transpose()) + noise));
+  }
+  double worst = 0;
+  for (Index i = 0; i < q.rows(); ++i)
+    worst =
+        std::max(worst, (online.model().position(q.row(i).transpose()) - model.position(q.row(i).transpose())).norm());
+  EXPECT_LT(worst, 0.3e-3);
+  EXPECT_THROW(online.update(q.row(0).transpose(), Vector3(0, std::numeric_limits<double>::quiet_NaN(), 0)),
+               std::invalid_argument);
+}
+
+TEST(Reregister, FindsAToolTurnedByAnyAngle) {
+  const Model model = fitted();
+  for (const double angle : {1.0, 2.0, 2.5, 3.0, 3.14})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      Rng rng(seed);
+      Vector3 axis(rng.normal(), rng.normal(), rng.normal());
+      Vector6 tool;
+      tool << 0.05, -0.02, 0.01, angle * axis.normalized();
+      const Model there = model.moved(frame({2, -1, 0.5, 0.4, -1, 0.8}), Joints::Zero(), frame(tool));
+      const auto found = reregister(model, measure(there, samples(12, seed)), {.tool = true});
+      EXPECT_TRUE(found.determined && found.converged) << angle << ", " << seed;
+      EXPECT_LT(found.rms_after, 1e-9) << angle << ", " << seed;
+    }
+}
+
+TEST(OnlineUpdate, MisuseThrows) {
+  const Model model = rigid();
+  const auto with = [&](const ReregisterOptions& o, double forgetting, std::array<double, 2> sizes) {
+    return thrown([&] { OnlineUpdate<Chain>(model, o, forgetting, sizes); });
+  };
+  EXPECT_TRUE(mentions(with({}, 0, {1, 1}), "forgetting is 0,"));
+  EXPECT_TRUE(mentions(with({}, 1.5, {1, 1}), "forgetting is 1.5"));
+  EXPECT_TRUE(mentions(with({}, std::numeric_limits<double>::quiet_NaN(), {1, 1}), "forgetting is nan"));
+  EXPECT_TRUE(mentions(with({}, 1, {0, 1}), "sizes"));
+  EXPECT_TRUE(mentions(with({}, 1, {1, -1}), "sizes"));
+  EXPECT_TRUE(mentions(with({.base = false}, 1, {1, 1}), "nothing may move"));
+  EXPECT_TRUE(mentions(with({.position_sigma = -0.25}, 1, {1, 1}), "position_sigma -0.25"));
+  EXPECT_EQ(with({}, 1, {1, 1}), "");
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,92 @@
+#include "vernier/identification/stations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier {
+namespace {
+
+using Data = Dataset<6>;
+
+Isometry3 frame(const Vector6& values) { return FrameParameters(values).isometry(); }
+
+const Robot<6> robot = robots::abb_irb120();
+const std::vector<Isometry3> bases{frame(Vector6{0.5, -2, 0.3, 0.1, -0.4, 2.5}),
+                                   frame(Vector6{-3, 1, 0.7, 1.2, 0.3, -0.9}),
+                                   frame(Vector6{0.1, 0.2, -4, -0.2, 2.0, 0.6})};
+
+/// The same arm as seen from one place.
+Data seen_from(std::size_t station, Index n, std::uint64_t seed, bool oriented = true) {
+  const Framed<DhChain<6>> arm(robot.chain, bases[station], frame(Vector6{0.01, 0.02, 0.1, 0.3, -0.2, 0.5}));
+  return measure(arm, sample_joints(robot.limits, n, seed), {.with_orientations = oriented});
+}
+
+template <class F>
+std::string thrown(F&& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(InOneFrame, IsWhatTheFirstStationWouldHaveSeen) {
+  const std::vector<Data> stations{seen_from(0, 20, 1), seen_from(1, 30, 2), seen_from(2, 10, 3)};
+  const Data all = in_one_frame<6>(stations, bases);
+  ASSERT_EQ(all.size(), 60);
+  ASSERT_TRUE(all.has_orientations());
+  Index at = 0;
+  for (const auto& [n, seed] : {std::pair<Index, std::uint64_t>{20, 1}, {30, 2}, {10, 3}}) {
+    const Data wanted = seen_from(0, n, seed);
+    EXPECT_EQ(all.joints().middleRows(at, n), wanted.joints());
+    EXPECT_LT((all.positions().middleRows(at, n) - wanted.positions()).cwiseAbs().maxCoeff(), 1e-12);
+    for (Index i = 0; i < n; ++i)  // rotation vectors may differ by a turn
+      EXPECT_LT((all.orientation(at + i) - wanted.orientation(i)).cwiseAbs().maxCoeff(), 1e-12);
+    at += n;
+  }
+}
+
+TEST(InOneFrame, ASingleStationIsGivenBack) {
+  const std::vector<Data> one{seen_from(1, 15, 4)};
+  const Data all = in_one_frame<6>(one, {});
+  EXPECT_EQ(all.joints(), one[0].joints());
+  EXPECT_EQ(all.positions(), one[0].positions());
+  EXPECT_EQ(all.orientations(), one[0].orientations());
+}
+
+TEST(InOneFrame, OrientationsNeedAllStations) {
+  const std::vector<Data> mixed{seen_from(0, 5, 1), seen_from(1, 6, 2, false)};
+  const std::vector<Isometry3> two(bases.begin(), bases.begin() + 2);
+  const Data all = in_one_frame<6>(mixed, two);
+  EXPECT_FALSE(all.has_orientations());
+  EXPECT_EQ(all.size(), 11);
+  EXPECT_LT((all.positions().bottomRows(6) - seen_from(0, 6, 2).positions()).cwiseAbs().maxCoeff(), 1e-12);
+
+  const std::vector<Data> oriented{seen_from(0, 5, 1), seen_from(1, 6, 2)};
+  EXPECT_TRUE(in_one_frame<6>(oriented, two).has_orientations());
+  EXPECT_FALSE(in_one_frame<6>(oriented, two, false).has_orientations());
+}
+
+TEST(InOneFrame, EmptyStationsAddNothing) {
+  const std::vector<Data> stations{seen_from(0, 5, 1), seen_from(1, 0, 2), seen_from(2, 4, 3)};
+  const Data all = in_one_frame<6>(stations, bases, false);
+  EXPECT_EQ(all.size(), 9);
+  EXPECT_LT((all.positions().bottomRows(4) - seen_from(0, 4, 3).positions()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(InOneFrame, MisuseThrows) {
+  EXPECT_NE(thrown([] { in_one_frame<6>({}, {}); }).find("no stations"), std::string::npos);
+  const std::vector<Data> stations{seen_from(0, 5, 1), seen_from(1, 6, 2)};
+  EXPECT_NE(thrown([&] { in_one_frame<6>(stations, bases); }).find("3 bases for 2 stations"), std::string::npos);
+  EXPECT_NE(thrown([&] { in_one_frame<6>(stations, {}); }).find("0 bases for 2 stations"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

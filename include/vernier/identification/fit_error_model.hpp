@@ -3,143 +3,19 @@
 /// @file
 /// Fits geometry, frames and joint errors together, to poses measured from one place or several.
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "vernier/identification/error_model.hpp"
+#include "vernier/identification/error_model_options.hpp"
 #include "vernier/identification/error_model_problem.hpp"
+#include "vernier/identification/fitted_error_model.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identified.hpp"
 
 namespace vernier {
-
-/// Options of `fit_error_model`: which joint errors there may be, how large they are expected, how good the sensor is.
-/// The defaults serve every robot; how far the data support a block is decided by leave-one-pose-out on those data.
-struct ErrorModelOptions {
-  bool compliance = true;             ///< joints give way under gravity
-  bool gear_ratio = false;            ///< joint errors proportional to the joint
-  bool coupling = false;              ///< joint errors proportional to the joint before
-  int harmonics = 60;                 ///< of the Fourier terms of each joint; 0: none
-  int joint_nodes = 0;                ///< hidden nodes that read one joint, in place of Fourier terms; 0: none
-  bool own_tools = false;             ///< every station has a tool of its own, not just a base
-  bool use_orientations = true;       ///< measured orientations count too, where there are any
-  Vector3 down{0, 0, -1};             ///< direction of gravity in the arm's base frame
-  double position_sigma = 0.03e-3;    ///< of the sensor, per component [m]
-  double orientation_sigma = 0.1e-3;  ///< of the sensor, per component [rad]
-  double joint_sigma = 0;             ///< of the joint readings [rad, m]; above 0: errors in variables
-  double compliance_size = 1e-3;      ///< expected product of compliance and weight [rad/m]
-  double gear_ratio_size = 1e-4;      ///< expected relative error of a gear ratio
-  double coupling_size = 1e-4;        ///< expected coupling
-  double transmission_size = 0.3e-3;  ///< expected amplitude of a first harmonic [rad]; harmonic k: a k-th of it
-  Loss loss = Loss::huber;            ///< how residuals are weighed; huber survives a few wrong poses
-  Index left_out = 200;               ///< about so many poses are left out, one at a time, to judge a block
-
-  /// @throws std::invalid_argument naming the value
-  void validate() const {
-    for (const auto& [name, value] : {std::pair{"position_sigma", position_sigma},
-                                      {"orientation_sigma", orientation_sigma},
-                                      {"compliance_size", compliance_size},
-                                      {"gear_ratio_size", gear_ratio_size},
-                                      {"coupling_size", coupling_size},
-                                      {"transmission_size", transmission_size}})
-      require(value > 0 && std::isfinite(value), "ErrorModelOptions: ", name, " is ", value, ", must be positive");
-    require(joint_sigma >= 0 && std::isfinite(joint_sigma), "ErrorModelOptions: joint_sigma is ", joint_sigma,
-            ", must not be negative");
-    require(harmonics >= 0 && harmonics <= 500, "ErrorModelOptions: harmonics is ", harmonics, ", must lie in 0..500");
-    require(joint_nodes >= 0 && joint_nodes <= 1000, "ErrorModelOptions: joint_nodes is ", joint_nodes,
-            ", must lie in 0..1000");
-    require(harmonics == 0 || joint_nodes == 0 || harmonics == 60,
-            "ErrorModelOptions: either harmonics or joint_nodes");
-    require(left_out >= 1, "ErrorModelOptions: left_out is ", left_out, ", must be at least 1");
-    require(std::abs(down.norm() - 1) < 1e-6, "ErrorModelOptions: down has length ", down.norm(), ", must be 1");
-  }
-};
-
-/// What leave-one-pose-out said of a block of joint errors.
-struct BlockChoice {
-  std::string name;      ///< `elastic` (gravity, gears, coupling) or `jointwise` (transmission)
-  double without = 0;    ///< mean position error of poses left out, without the block [m]
-  double with = 0;       ///< with it, as it was fitted [m]; what it would have been where it was not used
-  bool used = false;     ///< whether it is in the model
-  double tightness = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t)
-};
-
-/// A predicted pose, and how well it is known.
-struct PredictedPose {
-  Isometry3 pose;                          ///< base_T_tool
-  Eigen::Matrix<double, 6, 6> covariance;  ///< of one visit: position [m^2], then orientation [rad^2], base frame
-  double gate = 1;                         ///< share of the joint-wise terms in it
-};
-
-/// An error model with all that is known of it.
-template <class Chain>
-struct FittedErrorModel {
-  /// Number of joints.
-  static constexpr int N = Chain::dof;
-
-  std::vector<ErrorModel<Chain>> models{};    ///< one a station; they differ in their frames
-  std::vector<ErrorModel<Chain>> elastic{};   ///< the same before transmission terms
-  std::vector<ErrorModel<Chain>> geometry{};  ///< the same before all joint errors
-  bool converged = false;                     ///< whether every solve ended where steps died away
-  std::vector<BlockChoice> blocks{};          ///< what was decided, in order
-  double position_sigma = 0;                  ///< of a visit, per component: sensor, and what the model lacks [m]
-  double joint_sigma = 0;                     ///< of a visit, joints that do not repeat [rad]
-  double orientation_sigma = 0;               ///< of a visit, per component [rad]; 0 for positions alone
-  detail::ErrorModelDesign<Chain> design;     ///< unknowns and where they ended
-  MatrixX covariance{};                       ///< of all unknowns, in units of their sizes
-
-  /// The model of the first, or only, station.
-  const ErrorModel<Chain>& model() const { return models.front(); }
-
-  /// What a transmission adds over some angles beyond its mean, which is the joint's zero; one value an angle [rad].
-  struct JointFunction {
-    VectorX value;  ///< mean taken off
-    VectorX std;    ///< standard deviations of that
-  };
-  /// See `JointFunction`.
-  /// @param joint  from 0
-  /// @param angles n >= 1 values [rad]
-  JointFunction transmission(int joint, const std::vector<double>& angles) const {
-    require(!angles.empty(), "transmission: no angles");
-    const auto& terms = models.front().arm().model().joint_errors().terms();
-    const Index n = static_cast<Index>(angles.size());
-    const Index count = size_of(terms.transmission[static_cast<std::size_t>(joint)]);
-    if (count == 0) return {VectorX::Zero(n), VectorX::Zero(n)};
-    const Index first = terms.transmission_begin(joint) - terms.few();
-    MatrixX rows(n, count);
-    VectorX all;
-    for (Index k = 0; k < n; ++k) {
-      design.functions(JointVector<N>::Constant(angles[static_cast<std::size_t>(k)]), all);
-      rows.row(k) = all.segment(first, count).transpose();
-    }
-    rows.rowwise() -= rows.colwise().mean().eval();
-    const Index at = design.dense() + first;
-    return {rows * design.steps().segment(at, count),
-            (rows * covariance.block(at, at, count, count)).cwiseProduct(rows).rowwise().sum().cwiseMax(0).cwiseSqrt()};
-  }
-
-  /// Where the arm will be at q, with the covariance of parameters, joint-wise coefficients and repeatability.
-  /// @complexity O(unknowns^2); allocates
-  PredictedPose predicted(const JointVector<N>& q, int station = 0) const {
-    const auto& model = models[static_cast<std::size_t>(station)];
-    detail::PoseRows at;
-    const detail::Rows6 rows = design.rows(station, q, at);
-    PredictedPose out{model.pose(q), rows * covariance * rows.transpose(), model.gate(q)};
-    out.covariance += joint_sigma * joint_sigma * at.joint * at.joint.transpose();
-    if (out.gate < 1)  // errors that the terms held back would have taken off
-      out.covariance.diagonal().template head<3>().array() +=
-          std::pow((1 - out.gate) * blocks.back().without / 1.6, 2);  // a mean norm is 1.6 sigma of a component
-    out.covariance.diagonal().template head<3>().array() += position_sigma * position_sigma;
-    out.covariance.diagonal().template tail<3>().array() += orientation_sigma * orientation_sigma;
-    return out;
-  }
-};
 
 namespace detail {
 

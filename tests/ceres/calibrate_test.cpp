@@ -233,14 +233,14 @@ TEST(CalibrateMeasured, Ur10) {
 TEST(CalibrateMeasured, Ur10FromAHundredPoses) {
   if (!has_data()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
   std::vector<double> hundred, fifty;
-  for (std::uint64_t seed = 1; seed <= 9; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     hundred.push_back(measured(robot.chain, "ur10_random_poses.csv", 100, seed).jointwise);
     fifty.push_back(measured(robot.chain, "ur10_random_poses.csv", 50, seed).jointwise);
   }
   std::sort(hundred.begin(), hundred.end());
   std::sort(fifty.begin(), fifty.end());
-  EXPECT_LE(hundred[4], 0.145);  // the median of 9; that of 20 seeds is 0.138 by the program
-  EXPECT_LE(fifty[4], 0.21);
+  EXPECT_LE(hundred[2], 0.145);  // the median of 5; that of 20 seeds is 0.134 by the program
+  EXPECT_LE(fifty[2], 0.21);
 }
 
 TEST(CalibrateMeasured, Ur5) {

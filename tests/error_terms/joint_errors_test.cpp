@@ -294,7 +294,7 @@ void expect_effective_is_phi_beta() {
       phi.leftCols(terms.few()) = few;
       for (int j = 0; j < N; ++j) {
         const VectorX h = functions(terms.transmission[static_cast<std::size_t>(j)], q(j)).value;
-        phi.row(j).segment(terms.transmission_begin(j), h.size()) = h.transpose();
+        if (h.size() > 0) phi.row(j).segment(terms.transmission_begin(j), h.size()) = h.transpose();
         EXPECT_NEAR(errors.transmission(j, q(j)),
                     h.dot(errors.coefficients().segment(terms.transmission_begin(j), h.size())), 1e-15);
       }

@@ -80,12 +80,12 @@ struct PoseNormalEquations {
       const Index n = std::min(chunk, system.poses - first);
       for (Index b = 0; b < n; ++b) {
         system.rows(first + b, rows);
-        dense.middleRows(6 * b, 6) = rows.dense;
+        if (d > 0) dense.middleRows(6 * b, 6) = rows.dense;
         residuals.segment(6 * b, 6) = rows.residual;
         if (all == d) continue;
         h.row(b) = rows.functions.transpose();
         joint_product.row(b) = MatrixX(rows.joint.transpose() * rows.joint).reshaped().transpose();
-        mixed.row(b) = MatrixX(rows.dense.transpose() * rows.joint).reshaped().transpose();
+        if (d > 0) mixed.row(b) = MatrixX(rows.dense.transpose() * rows.joint).reshaped().transpose();
         joint_residual.row(b).noalias() = rows.residual.transpose() * rows.joint;
       }
       const auto dense_rows = dense.topRows(6 * n);

@@ -84,6 +84,7 @@ support::Json to_json(const vernier::RobotDescription& robot, const CalibrationR
               {"O4", report.observability.o4},
               {"O5", report.observability.o5}}}}},
           {"gated_rows", report.gated},
+          {"worst_harm_beside_geometry_mm", report.worst_harm * 1e3},
           {"within_95_percent_ellipsoids", report.within_ellipsoids},
           {"verdict", report.verdict}};
 }
@@ -208,8 +209,9 @@ int run_reregistration(support::Program& program, support::ReregistrationSetting
 
 int run(support::Program& program) {
   support::CalibrationSettings settings;
-  std::string robot_name, model, free, loss = "huber", split;
-  std::vector<std::string> data, test;
+  std::string robot_name, model, free, loss = "huber", split, priors = "default";
+  double distance_sigma_mm = 0.03;
+  std::vector<std::string> data, test, distances;
   std::string save;
   settings.date = today();
   CLI::App& app = program.app();
@@ -223,6 +225,14 @@ int run(support::Program& program) {
          "of the sensor")
       ->required()
       ->type_name("FILE...");
+  app.add_option("--distances", distances,
+                 "measured distances from a fixed point (draw-wire, ball-bar), to learn from beside the poses: "
+                 "q1_rad.., distance_mm; one file for each fixed point")
+      ->type_name("FILE...")
+      ->always_capture_default(false);
+  app.add_option("--distance-sigma", distance_sigma_mm, "standard deviation of a distance [mm]; of poses it is 0.03 mm")
+      ->type_name("MM")
+      ->check(CLI::Range(1e-6, 1e3).description(""));
   auto* test_option = app.add_option("--test", test, "measured poses to judge by, as many files as --data")
                           ->type_name("FILE...")
                           ->always_capture_default(false);
@@ -258,6 +268,15 @@ int run(support::Program& program) {
   app.add_option("--harmonics", settings.harmonics, "joint-wise Fourier terms up to this harmonic; 0 for none")
       ->type_name("K")
       ->check(CLI::Range(0, 500).description(""));
+  app.add_option("--joint-nodes", settings.joint_nodes,
+                 "joint-wise hidden nodes, so many a joint, in place of Fourier terms")
+      ->type_name("H")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->default_str("");
+  app.add_option("--priors", priors,
+                 "of the joint errors: the default rule, or tuned by pso or ga on poses left out (takes a minute)")
+      ->type_name("HOW")
+      ->check(CLI::IsMember({"default", "pso", "ga"}).description(""));
   app.add_flag("--gears", settings.gears, "look for gear ratios and coupling of neighbouring joints too");
   app.add_flag("--own-tools", settings.own_tools, "every file of --data has its own tool, not just its own base");
   app.add_flag("--positions-only", settings.positions_only, "ignore measured orientations");
@@ -296,6 +315,11 @@ int run(support::Program& program) {
   const vernier::RobotDescription robot = support::choose_robot(robot_name);
   settings.data = {data.begin(), data.end()};
   settings.test = {test.begin(), test.end()};
+  settings.distances = {distances.begin(), distances.end()};
+  settings.distance_sigma = distance_sigma_mm * 1e-3;
+  settings.priors = priors == "pso"  ? support::PriorTuning::pso
+                    : priors == "ga" ? support::PriorTuning::ga
+                                     : support::PriorTuning::none;
   settings.save = save;
   settings.loss =
       std::map<std::string, vernier::Loss>{
@@ -313,8 +337,13 @@ int run(support::Program& program) {
     settings.hold_out = HoldOut::random;
   settings.seed = program.common().seed;
   settings.threads = program.common().threads;
-  support::ProgressBar progress("PSO-ELM on what the model leaves", support::swarm_generations);
-  settings.observer = progress;
+  // one bar for all searches, one after the other
+  const bool tuned = settings.priors != support::PriorTuning::none;
+  support::ProgressBar progress("searching",
+                                2 * (support::swarm_generations + 1) + (tuned ? support::prior_generations + 1 : 0));
+  vernier::Index searched = 0;
+  const auto count = [&](const vernier::Progress&) { progress.update(++searched); };
+  settings.observer = count;
   const CalibrationReport report = support::calibrate(robot, settings);
   progress.finish();
 
@@ -322,6 +351,7 @@ int run(support::Program& program) {
              robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
   if (data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", data.size(), data.size());
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_rows, report.test_rows, report.split);
+  if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
   fmt::print("\nErrors of the {} held-out poses [mm]\n\n", report.test_rows);
   print_table(report.stages);
   fmt::print("\n{}", report.summary);

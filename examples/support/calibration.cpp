@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <span>
 
@@ -288,12 +289,13 @@ std::vector<std::string> verdict(const vernier::NominalArm<N>& arm, const Calibr
         Eigen::Map<const vernier::VectorX>(inside.data(), static_cast<Index>(inside.size())));
     out.push_back(message("Good to ", brief(e.mean), " mm mean, ", brief(e.p95), " mm (95 %), ", brief(e.max),
                           " mm at worst, inside the measured joint ranges: ", e.n, " of ", last.size(),
-                          " held-out poses."));
+                          " held-out poses. None of them is worse than with geometry alone by more than ",
+                          brief(report.worst_harm * 1e3), " mm."));
   }
   if (report.gated > 0)
     out.push_back(message(report.gated,
-                          " held-out poses lie outside those ranges; there the model falls back on geometry and "
-                          "compliance."));
+                          " held-out poses lie outside those ranges; there all that was learned over the joints fades "
+                          "out."));
   std::string ranges;
   for (int j = 0; j < N; ++j) {
     const bool revolute = arm.chain.row(j).joint == vernier::JointType::revolute;
@@ -309,14 +311,16 @@ std::vector<std::string> verdict(const vernier::NominalArm<N>& arm, const Calibr
   for (const vernier::BlockChoice& block : report.blocks) {
     const std::string errors =
         message("(poses left out: ", brief(block.without * 1e3), " mm without, ", brief(block.with * 1e3), " mm with)");
-    const bool elastic = block.name == "elastic";
-    if (block.used)
-      out.push_back(message(elastic ? "Gravity compliance helps " : "Joint-wise terms help ", errors, "."));
-    else
-      out.push_back(
-          message(elastic ? "Gravity compliance is left out: it does not help "
-                          : "Joint-wise terms are left out: this robot's errors are no functions of single joints ",
-                  errors, "."));
+    static const std::map<std::string_view, std::pair<const char*, const char*>> words{
+        {"elastic", {"Gravity compliance helps ", "Gravity compliance alone does not help "}},
+        {"jointwise",
+         {"Joint-wise terms help ",
+          "Joint-wise terms are left out: this robot's errors are no functions of single joints "}},
+        {"elastic_with_jointwise",
+         {"Beside joint-wise terms gravity compliance is in ", "Beside joint-wise terms gravity compliance is out "}},
+        {"tuned_priors", {"Tuned priors help ", "Tuned priors are left out: they do not help "}}};
+    const auto& [helps, does_not] = words.at(block.name);
+    out.push_back(message(block.used ? helps : does_not, errors, "."));
   }
   return out;
 }
@@ -335,6 +339,8 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
 
   vn::ErrorModelOptions errors;
   errors.harmonics = settings.harmonics;
+  errors.joint_nodes = settings.joint_nodes;
+  errors.distance_sigma = settings.distance_sigma;
   errors.gear_ratio = errors.coupling = settings.gears;
   errors.loss = settings.loss;
   errors.own_tools = settings.own_tools;
@@ -367,14 +373,21 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   const auto identified =
       identify_arm<N>(arm.chain, vn::in_one_frame<N>(std::span<const vn::Dataset<N>>(train), bases), options);
   require_usable(identified, "identifying the geometry");
-  const auto fitted = fit_errors<N>(identified, train, errors);
+  std::vector<vn::Distances<N>> distances;
+  for (const auto& file : settings.distances) distances.push_back(vn::read_distances<N>(file));
+  for (const auto& data : distances) report.distances += data.size();
+  const vn::ThreadExecutor executor(settings.threads);
+  const vn::FitOptions learning{.seed = settings.seed, .executor = executor, .observer = settings.observer};
+  const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
+    return search_priors(objective, box, settings.priors == PriorTuning::ga, learning);
+  };
+  const auto fitted = fit_errors<N>(identified, train, distances, errors,
+                                    settings.priors == PriorTuning::none ? vn::PriorSearch() : search);
   report.fit_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   if (!fitted.converged) report.remarks.push_back("The fit of the joint errors stopped before its steps died away.");
   judge("geometry", "geometry", [&](std::size_t s) { return fitted.geometry[s]; });
 
   // the classical learned alternative: an ELM on what the geometry leaves
-  const vn::ThreadExecutor executor(settings.threads);
-  const vn::FitOptions learning{.seed = settings.seed, .executor = executor, .observer = settings.observer};
   const auto learn = [&](const auto& models, const char* key, const char* title, const vn::VectorX& rotation) {
     LearnedError<N> learned = learn_residual<N>(models.front(), seen_from_first<N>(models, train), learning);
     const vn::CartesianCorrected hybrid(models.front(), learned.predictor, learned.gate);
@@ -400,12 +413,14 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   report.observability = identified.observability;
   report.blocks = fitted.blocks;
 
-  vn::JointRows<N> measured(report.train_rows, N);
+  vn::JointRows<N> measured(report.train_rows + report.distances, N);
   Index at = 0;
-  for (const auto& data : train) {
+  const auto append = [&](const auto& data) {
     measured.middleRows(at, data.size()) = data.joints();
     at += data.size();
-  }
+  };
+  for (const auto& data : train) append(data);
+  for (const auto& data : distances) append(data);
   const auto coverage = vn::JointCoverage<N>::covering(measured);
   const vn::VectorX gates = over_stations(test, [&](std::size_t, const vn::Dataset<N>& data) {
     vn::VectorX out(data.size());
@@ -427,7 +442,10 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   const auto stage = [&](std::string_view key) -> const StageErrors& {
     return *std::find_if(report.stages.begin(), report.stages.end(), [&](const auto& s) { return s.key == key; });
   };
-  report.joints = joint_pictures<N>(fitted, test, stage("geometry").position, stage("jointwise").position, coverage);
+  const vn::VectorX &geometry = stage("geometry").position, &jointwise = stage("jointwise").position;
+  report.joints = joint_pictures<N>(fitted, test, geometry, jointwise, coverage);
+  for (Index i = 0; i < gates.size(); ++i)
+    if (gates(i) == 1) report.worst_harm = std::max(report.worst_harm, jointwise(i) - geometry(i));
   report.verdict = verdict(arm, report, gates);
   for (auto& line : advice(arm, report, fitted, errors, oriented)) report.verdict.push_back(std::move(line));
 

@@ -34,25 +34,32 @@ enum class HoldOut {
   time,      ///< the last share of the rows
 };
 
+/// How the priors of the joint errors are settled: by default from a few, or by a search over left-out poses.
+enum class PriorTuning { none, pso, ga };
+
 /// What to calibrate from, and how.
 struct CalibrationSettings {
-  std::vector<std::filesystem::path> data;    ///< measured poses, one file a station
-  std::vector<std::filesystem::path> test{};  ///< measured poses held out, as many; empty: rows of `data` are
-  HoldOut hold_out = HoldOut::every;          ///< which rows of `data`
-  vernier::Index test_every = 5;              ///< row i is held out when i % test_every == 0
-  double test_fraction = 0.2;                 ///< share of rows held out otherwise
-  vernier::Index train_rows = 0;              ///< learn from the first so many of a seeded shuffle; 0: from all
-  vernier::Loss loss = vernier::Loss::huber;  ///< how residuals are weighed
-  std::vector<std::string> fixed{};           ///< parameters that stay nominal
-  bool positions_only = false;                ///< measured orientations are ignored
-  bool own_tools = false;                     ///< every station has its own tool
-  bool gears = false;                         ///< gear ratios and coupling of neighbouring joints count too
-  int harmonics = 60;                         ///< of the joint-wise terms
-  std::uint64_t seed = 1;                     ///< of splits and of the swarm
-  int threads = 1;                            ///< of the swarm
-  std::filesystem::path save{};               ///< where the calibrated arm goes; empty: nowhere
-  std::string date{};                         ///< written into it
-  vernier::ObserverRef observer{};            ///< sees the swarms
+  std::vector<std::filesystem::path> data;         ///< measured poses, one file a station
+  std::vector<std::filesystem::path> test{};       ///< measured poses held out, as many; empty: rows of `data` are
+  std::vector<std::filesystem::path> distances{};  ///< measured distances, one file a fixed point; all are learnt from
+  HoldOut hold_out = HoldOut::every;               ///< which rows of `data`
+  vernier::Index test_every = 5;                   ///< row i is held out when i % test_every == 0
+  double test_fraction = 0.2;                      ///< share of rows held out otherwise
+  vernier::Index train_rows = 0;                   ///< learn from the first so many of a seeded shuffle; 0: from all
+  vernier::Loss loss = vernier::Loss::huber;       ///< how residuals are weighed
+  std::vector<std::string> fixed{};                ///< parameters that stay nominal
+  bool positions_only = false;                     ///< measured orientations are ignored
+  bool own_tools = false;                          ///< every station has its own tool
+  bool gears = false;                              ///< gear ratios and coupling of neighbouring joints count too
+  int harmonics = 60;                              ///< of the joint-wise terms
+  int joint_nodes = 0;                             ///< above 0: so many hidden nodes a joint in place of harmonics
+  PriorTuning priors = PriorTuning::none;          ///< of the joint errors
+  double distance_sigma = 0.03e-3;                 ///< of a measured distance [m]
+  std::uint64_t seed = 1;                          ///< of splits and of the swarm
+  int threads = 1;                                 ///< of the swarm
+  std::filesystem::path save{};                    ///< where the calibrated arm goes; empty: nowhere
+  std::string date{};                              ///< written into it
+  vernier::ObserverRef observer{};                 ///< sees the swarms
 };
 
 /// Errors of the held-out poses after a stage.
@@ -72,7 +79,7 @@ struct JointPicture {
 
 /// All that a calibration has to tell.
 struct CalibrationReport {
-  vernier::Index train_rows = 0, test_rows = 0;
+  vernier::Index train_rows = 0, test_rows = 0, distances = 0;
   std::string split;                                     ///< how the test rows were chosen, in words
   std::vector<StageErrors> stages{};                     ///< in the order in which they were taken
   std::vector<vernier::ParameterEstimate> parameters{};  ///< base, chain, tool
@@ -86,6 +93,7 @@ struct CalibrationReport {
   std::vector<vernier::BlockChoice> blocks{};  ///< what leave-one-pose-out said of the joint errors
   std::vector<JointPicture> joints{};
   vernier::Index gated = 0;      ///< test rows outside the measured joint ranges
+  double worst_harm = 0;         ///< by how much the joint-wise model is worse than geometry, inside those ranges [m]
   double within_ellipsoids = 0;  ///< share of test rows within their predicted 95 % ellipsoid
   double fit_seconds = 0;        ///< from poses to error model, the search for priors included
 };

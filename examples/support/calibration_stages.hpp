@@ -21,7 +21,16 @@ vernier::Identified<vernier::DhChain<N>> identify_arm(const vernier::DhChain<N>&
 template <int N>
 vernier::FittedErrorModel<vernier::DhChain<N>> fit_errors(const vernier::Identified<vernier::DhChain<N>>& start,
                                                           std::span<const vernier::Dataset<N>> stations,
-                                                          const vernier::ErrorModelOptions& options);
+                                                          std::span<const vernier::Distances<N>> distances,
+                                                          const vernier::ErrorModelOptions& options,
+                                                          vernier::PriorSearch search);
+
+/// Generations of `search_priors`.
+inline constexpr vernier::Index prior_generations = 15;
+
+/// Priors by a swarm (or a genetic algorithm): 20 individuals.
+vernier::VectorX search_priors(const vernier::PriorObjective& objective, const vernier::Box& box, bool genetic,
+                               const vernier::FitOptions& options);
 
 /// A learned position error, and where it holds.
 template <int N>

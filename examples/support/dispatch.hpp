@@ -7,6 +7,9 @@
 
 #include "vernier/core/check.hpp"
 
+/// Expands `macro(N)` for every number of joints that the programs serve.
+#define VERNIER_FOR_ALL_DOF(macro) macro(3) macro(4) macro(5) macro(6) macro(7) macro(8) macro(9)
+
 namespace support {
 
 /// Calls `f` with the number of joints as a `std::integral_constant<int, N>`, N = 3 to 9. All calls must give the same
@@ -14,16 +17,13 @@ namespace support {
 /// @throws std::invalid_argument for any other number
 template <class F>
 decltype(auto) dispatch_dof(int n, F&& f) {
+#define VERNIER_CASE(N) \
+  case N: return f(std::integral_constant<int, N>{});
   switch (n) {
-    case 3: return f(std::integral_constant<int, 3>{});
-    case 4: return f(std::integral_constant<int, 4>{});
-    case 5: return f(std::integral_constant<int, 5>{});
-    case 6: return f(std::integral_constant<int, 6>{});
-    case 7: return f(std::integral_constant<int, 7>{});
-    case 8: return f(std::integral_constant<int, 8>{});
-    case 9: return f(std::integral_constant<int, 9>{});
+    VERNIER_FOR_ALL_DOF(VERNIER_CASE)
     default: break;
   }
+#undef VERNIER_CASE
   throw std::invalid_argument(vernier::message("arms of 3 to 9 joints are supported, this one has ", n));
 }
 

@@ -1,4 +1,5 @@
 #include "calibration_stages.hpp"
+#include "dispatch.hpp"
 #include "vernier/ceres/identify.hpp"
 
 namespace support {
@@ -13,13 +14,7 @@ vernier::Identified<vernier::DhChain<N>> identify_arm(const vernier::DhChain<N>&
 #define VERNIER_INSTANTIATE(N)                                       \
   template vernier::Identified<vernier::DhChain<N>> identify_arm<N>( \
       const vernier::DhChain<N>&, const vernier::Dataset<N>&, const vernier::IdentifyOptions&);
-VERNIER_INSTANTIATE(3)
-VERNIER_INSTANTIATE(4)
-VERNIER_INSTANTIATE(5)
-VERNIER_INSTANTIATE(6)
-VERNIER_INSTANTIATE(7)
-VERNIER_INSTANTIATE(8)
-VERNIER_INSTANTIATE(9)
+VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 
 }  // namespace support

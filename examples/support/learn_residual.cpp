@@ -1,4 +1,5 @@
 #include "calibration_stages.hpp"
+#include "dispatch.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 #include "vernier/search/pso.hpp"
@@ -25,13 +26,7 @@ LearnedError<N> learn_residual(const vernier::ErrorModel<vernier::DhChain<N>>& m
 #define VERNIER_INSTANTIATE(N)                                                                \
   template LearnedError<N> learn_residual<N>(const vernier::ErrorModel<vernier::DhChain<N>>&, \
                                              const vernier::Dataset<N>&, const vernier::FitOptions&);
-VERNIER_INSTANTIATE(3)
-VERNIER_INSTANTIATE(4)
-VERNIER_INSTANTIATE(5)
-VERNIER_INSTANTIATE(6)
-VERNIER_INSTANTIATE(7)
-VERNIER_INSTANTIATE(8)
-VERNIER_INSTANTIATE(9)
+VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 
 }  // namespace support

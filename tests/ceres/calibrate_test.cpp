@@ -239,7 +239,7 @@ TEST(CalibrateMeasured, Ur10FromAHundredPoses) {
   }
   std::sort(hundred.begin(), hundred.end());
   std::sort(fifty.begin(), fifty.end());
-  EXPECT_LE(hundred[2], 0.145);  // the median of 5; that of 20 seeds is 0.134 by the program
+  EXPECT_LE(hundred[2], 0.14);  // the median of 5; that of 20 seeds is 0.134 by the program
   EXPECT_LE(fifty[2], 0.21);
 }
 

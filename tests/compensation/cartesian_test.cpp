@@ -20,11 +20,13 @@
 #include <vernier/testing/kinematic_laws.hpp>
 
 #include "allocation_counter.hpp"
+#include "complaint.hpp"
 #include "laws.hpp"
 
 namespace {
 
 using namespace vernier;
+using vernier_test::complaint;
 using vernier_test::no_violations;
 
 const Robot<6> robot = robots::abb_irb120();
@@ -200,16 +202,6 @@ TEST(CartesianCompensation, DoesNotAllocateOrThrow) {
                 vernier_test::keep(fitted.pose_and_jacobian(q));
               }),
               0);
-}
-
-template <class F>
-std::string complaint(F&& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return {};
 }
 
 TEST(CartesianCompensation, DataInAnotherFrameAreRefused) {

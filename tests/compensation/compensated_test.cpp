@@ -16,6 +16,7 @@
 #include <vernier/testing/kinematic_laws.hpp>
 
 #include "allocation_counter.hpp"
+#include "complaint.hpp"
 #include "laws.hpp"
 
 namespace {
@@ -273,13 +274,8 @@ TEST(Compensated, DoesNotAllocateOrThrow) {
 }
 
 TEST(CorrectionOptions, UnusableValuesAreNamed) {
-  const auto complaint = [](const CorrectionOptions& options) -> std::string {
-    try {
-      (void)Geometry(nominal, nominal, options);
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-    return {};
+  const auto complaint = [](const CorrectionOptions& options) {
+    return vernier_test::complaint([&] { (void)Geometry(nominal, nominal, options); });
   };
   EXPECT_NE(complaint({.moving_joints = 7}).find("moving_joints is 7, must lie in 0..6"), std::string::npos);
   EXPECT_NE(complaint({.moving_joints = -1}).find("-1"), std::string::npos);

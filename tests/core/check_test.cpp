@@ -9,11 +9,14 @@
 #include <limits>
 #include <string>
 
+#include "complaint.hpp"
 #include "vernier/core/box.hpp"
 
 namespace vn = vernier;
 
 namespace {
+
+using vernier_test::complaint;
 
 TEST(Message, JoinsNumbersInTheirShortestExactForm) {
   EXPECT_EQ(vn::message("a ", 1, " b ", -2L, " c ", 3u), "a 1 b -2 c 3");
@@ -37,17 +40,6 @@ TEST(Require, ThrowsTheMessageWhenTheConditionFails) {
   }
 }
 
-/// What a call throws says.
-template <class F>
-std::string thrown(F&& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing thrown";
-}
-
 TEST(Box, ChecksItsBoundsAndNamesThem) {
   const vn::Box box = vn::Box::cube(3, -1, 2);
   EXPECT_EQ(box.dimension(), 3);
@@ -57,20 +49,20 @@ TEST(Box, ChecksItsBoundsAndNamesThem) {
   EXPECT_FALSE(box.contains(Eigen::Vector3d(0, 0, std::nan(""))));
   EXPECT_FALSE(box.contains(Eigen::Vector2d(0, 0)));
 
-  EXPECT_EQ(thrown([] { (void)vn::Box::cube(0, -1, 1); }), "Box::cube: dimension is 0, must be at least 1");
-  EXPECT_EQ(thrown([] { (void)vn::Box::cube(2, 1, 1); }), "Box::cube: lower bound 1 is not below upper bound 1");
+  EXPECT_EQ(complaint([] { (void)vn::Box::cube(0, -1, 1); }), "Box::cube: dimension is 0, must be at least 1");
+  EXPECT_EQ(complaint([] { (void)vn::Box::cube(2, 1, 1); }), "Box::cube: lower bound 1 is not below upper bound 1");
   vn::Box bad = box;
   bad.lower(1) = 5;
-  EXPECT_EQ(thrown([&] { bad.validate(); }),
+  EXPECT_EQ(complaint([&] { bad.validate(); }),
             "Box: dimension 1 has bounds [5, 2], must be finite and lower below upper");
   bad = box;
   bad.upper(2) = std::numeric_limits<double>::infinity();
-  EXPECT_NE(thrown([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
+  EXPECT_NE(complaint([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
   bad.upper(2) = std::nan("");
-  EXPECT_NE(thrown([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
+  EXPECT_NE(complaint([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
   bad.upper.resize(2);
-  EXPECT_EQ(thrown([&] { bad.validate(); }), "Box: 3 lower and 2 upper bounds");
-  EXPECT_EQ(thrown([] { vn::Box{}.validate(); }), "Box: 0 lower and 0 upper bounds");
+  EXPECT_EQ(complaint([&] { bad.validate(); }), "Box: 3 lower and 2 upper bounds");
+  EXPECT_EQ(complaint([] { vn::Box{}.validate(); }), "Box: 0 lower and 0 upper bounds");
 }
 
 }  // namespace

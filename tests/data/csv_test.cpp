@@ -19,6 +19,7 @@ using vernier::Index;
 using vernier::JointRows;
 using vernier::PointRows;
 using vernier::read_dataset;
+using vernier::read_distances;
 using vernier::read_joints;
 using vernier::Rng;
 using vernier::write_dataset;
@@ -130,6 +131,27 @@ TEST_F(Csv, TargetsNeedJointsAlone) {
   ASSERT_EQ(q.rows(), 2);
   EXPECT_DOUBLE_EQ(q(0, 0), 0.5);
   EXPECT_DOUBLE_EQ(q(1, 1), -45 * degree);
+}
+
+TEST_F(Csv, ReadsDistances) {
+  const auto data = read_distances<2>(file("distance_mm,q2_deg,q1_rad\n1500,90,0.5\n\n2.5,0,1\n"));
+  ASSERT_EQ(data.size(), 2);
+  EXPECT_DOUBLE_EQ(data.length(0), 1.5);
+  EXPECT_DOUBLE_EQ(data.length(1), 0.0025);
+  EXPECT_DOUBLE_EQ(data.joints()(0, 0), 0.5);
+  EXPECT_DOUBLE_EQ(data.joints()(0, 1), std::numbers::pi / 2);
+  const auto says = [&](std::string_view content) -> std::string {
+    try {
+      (void)read_distances<2>(file(content));
+    } catch (const DataError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_NE(says("q1_rad,q2_rad,distance_mm\n1,2,3\n\n1,2,0\n").find("line 4, column distance_mm: a distance must"),
+            std::string::npos);
+  EXPECT_NE(says("q1_rad,q2_rad,x_mm\n1,2,3\n").find("no column distance_mm"), std::string::npos);
+  EXPECT_NE(says("q1_rad,q2_rad,distance_mm\n").find("no rows"), std::string::npos);
 }
 
 TEST_F(Csv, WritesWhatItReads) {

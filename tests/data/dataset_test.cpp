@@ -5,22 +5,15 @@
 #include <string>
 #include <vernier/data/dataset.hpp>
 
+#include "complaint.hpp"
+
 namespace {
 
 using vernier::Dataset;
 using vernier::Index;
 using vernier::JointRows;
 using vernier::PointRows;
-
-template <class F>
-std::string complaint(F&& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return {};
-}
+using vernier_test::complaint;
 
 Dataset<2> five_rows(bool oriented) {
   JointRows<2> q(5, 2);

@@ -18,6 +18,7 @@
 #include <vernier/testing/kinematic_laws.hpp>
 
 #include "allocation_counter.hpp"
+#include "complaint.hpp"
 #include "laws.hpp"
 #include "random_chains.hpp"
 
@@ -375,15 +376,10 @@ TEST(JointErrors, WrongCoefficientsAreNamed) {
 
 TEST(JointErrors, MalformedBasesAreNamed) {
   using Errors = vn::JointErrors<vn::DhChain<2>>;
-  const auto says = [](const vn::AngleBasis& first, const vn::AngleBasis& second, Index coefficients) -> std::string {
+  const auto says = [](const vn::AngleBasis& first, const vn::AngleBasis& second, Index coefficients) {
     vn::JointTerms<vn::DhChain<2>> terms;
     terms.transmission = {first, second};
-    try {
-      (void)Errors(terms, VectorX::Ones(coefficients));
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-    return {};
+    return vernier_test::complaint([&] { (void)Errors(terms, VectorX::Ones(coefficients)); });
   };
   const VectorX one = VectorX::Ones(1), three = VectorX::Ones(3);
   EXPECT_EQ(says(vn::Fourier{1}, vn::JointNodes{three, three}, 5), "");

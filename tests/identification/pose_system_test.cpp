@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "vernier/identification/error_model_problem.hpp"
+#include "vernier/identification/prior_objective.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -89,7 +90,7 @@ struct RandomPoses {
   template <class F>
   decltype(auto) with_system(F&& f) const {
     const auto get = [this](Index b, PoseRows& out) { out = row(b); };
-    return f(PoseSystem{size(), dense, functions_of, get});
+    return f(PoseSystem{size(), size(), dense, functions_of, get});
   }
   PoseNormalEquations normal() const {
     return with_system([](const PoseSystem& s) { return PoseNormalEquations(s); });
@@ -285,6 +286,49 @@ std::vector<detail::LeftOutVisit> visits(double position, double joint, double m
   return out;
 }
 
+/// The joints with terms are the first and the last; two of the dense unknowns are elastic.
+TEST(PriorObjective, IsTheErrorOfPosesLeftOutWithThePriorsItNames) {
+  const RandomPoses poses(40, 21, false);
+  const PoseNormalEquations normal = poses.normal();
+  const VectorX before = VectorX::LinSpaced(15, 1, 2), steps = VectorX::Zero(15);
+  const VectorX relative = (VectorX(10) << 1, 1, 0.5, 0.5, 1, 1, 0.5, 0.5, 0.25, 0.25).finished();
+  poses.with_system([&](const PoseSystem& system) {
+    const PriorObjective objective(system, normal, before, steps, 2, relative, 3);
+    ASSERT_EQ(objective.dimension(), 4);  // elastic, two joints, exponent
+    EXPECT_NO_THROW(objective.box().validate());
+    const Eigen::Vector4d at(1, 2, -1, 1.5);
+    const VectorX precisions = objective.precisions(at);
+    EXPECT_EQ(precisions.head(3), before.head(3));  // of geometry
+    EXPECT_DOUBLE_EQ(precisions(3), 10);
+    EXPECT_DOUBLE_EQ(precisions(4), 10);
+    EXPECT_DOUBLE_EQ(precisions(5), 100);          // a first harmonic
+    EXPECT_DOUBLE_EQ(precisions(7), 100 / 0.5);    // the second: its amplitude falls by 2^-0.5 more than it did
+    EXPECT_DOUBLE_EQ(precisions(9), 0.1);          // the last joint
+    EXPECT_DOUBLE_EQ(precisions(14), 0.1 / 0.25);  // its fourth
+    const FactorisedSystem solved(normal, precisions, steps);
+    const double expected = left_out_errors(system, solved, 3).colwise().norm().mean();
+    EXPECT_DOUBLE_EQ(objective.error(precisions), expected);
+    MatrixX population(4, 2);
+    population << Eigen::Vector4d::Zero(), at;
+    VectorX fitness(2);
+    objective(population, fitness);
+    EXPECT_DOUBLE_EQ(fitness(1), expected);
+    EXPECT_NE(fitness(0), expected);
+  });
+}
+
+TEST(LeftOutErrors, OfThoseJudgedAlone) {
+  const RandomPoses poses(20, 5, false);
+  const FactorisedSystem solved(poses.normal(), VectorX::Ones(15), VectorX::Zero(15));
+  poses.with_system([&](PoseSystem system) {
+    const Eigen::Matrix3Xd all = left_out_errors(system, solved, 2);
+    system.judged = 7;
+    const Eigen::Matrix3Xd some = left_out_errors(system, solved, 2);
+    ASSERT_EQ(some.cols(), 4);
+    EXPECT_EQ(some, all.leftCols(4));
+  });
+}
+
 TEST(VisitNoise, TellsSpaceFromJoints) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     const detail::VisitNoise noise = detail::visit_noise(visits(30e-6, 40e-6, 15e-6, seed));
@@ -352,7 +396,8 @@ struct Measured {
     design.set_terms(terms, sizes, VectorX::Constant(terms.size(), 3));
     design.move(random_vector(rng, design.size(), 1e-3 / size));
     return {std::move(design),
-            {{&first, true, 0.03e-3, 0.1e-3, joint_sigma}, {&second, false, 0.05e-3, 0.1e-3, joint_sigma}},
+            {{&first, nullptr, true, 0.03e-3, 0.1e-3, joint_sigma},
+             {&second, nullptr, false, 0.05e-3, 0.1e-3, joint_sigma}},
             Loss::squared};
   }
 };

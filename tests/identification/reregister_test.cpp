@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "complaint.hpp"
 #include "vernier/identification/online_update.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
@@ -16,6 +17,7 @@
 namespace vernier {
 namespace {
 
+using vernier_test::complaint;
 using Chain = DhChain<6>;
 using Model = ErrorModel<Chain>;
 using Joints = JointVector<6>;
@@ -95,16 +97,6 @@ MatrixX effect_of_changes(const Model& model, const Joints& q) {
                                  changed(model, -step * VectorX::Unit(18, k)).pose(q)) /
                  (2 * step);
   return out;
-}
-
-template <class F>
-std::string thrown(F&& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return {};
 }
 
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -275,8 +267,8 @@ TEST(Reregister, DeviationsAreThoseOfTheScatter) {
 TEST(Reregister, MisuseThrows) {
   const Model model = rigid();
   const auto data = measure(model, samples(3, 18));
-  const auto with = [&](const ReregisterOptions& o) { return thrown([&] { reregister(model, data, o); }); };
-  EXPECT_TRUE(mentions(thrown([&] { reregister(model, Dataset<6>()); }), "no samples"));
+  const auto with = [&](const ReregisterOptions& o) { return complaint([&] { reregister(model, data, o); }); };
+  EXPECT_TRUE(mentions(complaint([&] { reregister(model, Dataset<6>()); }), "no samples"));
   EXPECT_TRUE(mentions(with({.base = false}), "nothing may move"));
   EXPECT_TRUE(mentions(with({.position_sigma = -0.25}), "position_sigma -0.25"));
   EXPECT_TRUE(mentions(with({.orientation_sigma = 0}), "orientation_sigma 0"));
@@ -428,7 +420,7 @@ TEST(Reregister, FindsAToolTurnedByAnyAngle) {
 TEST(OnlineUpdate, MisuseThrows) {
   const Model model = rigid();
   const auto with = [&](const ReregisterOptions& o, double forgetting, std::array<double, 2> sizes) {
-    return thrown([&] { OnlineUpdate<Chain>(model, o, forgetting, sizes); });
+    return complaint([&] { OnlineUpdate<Chain>(model, o, forgetting, sizes); });
   };
   EXPECT_TRUE(mentions(with({}, 0, {1, 1}), "forgetting is 0,"));
   EXPECT_TRUE(mentions(with({}, 1.5, {1, 1}), "forgetting is 1.5"));

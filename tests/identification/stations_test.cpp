@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "complaint.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -12,6 +13,7 @@
 namespace vernier {
 namespace {
 
+using vernier_test::complaint;
 using Data = Dataset<6>;
 
 Isometry3 frame(const Vector6& values) { return FrameParameters(values).isometry(); }
@@ -25,16 +27,6 @@ const std::vector<Isometry3> bases{frame(Vector6{0.5, -2, 0.3, 0.1, -0.4, 2.5}),
 Data seen_from(std::size_t station, Index n, std::uint64_t seed, bool oriented = true) {
   const Framed<DhChain<6>> arm(robot.chain, bases[station], frame(Vector6{0.01, 0.02, 0.1, 0.3, -0.2, 0.5}));
   return measure(arm, sample_joints(robot.limits, n, seed), {.with_orientations = oriented});
-}
-
-template <class F>
-std::string thrown(F&& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return {};
 }
 
 TEST(InOneFrame, IsWhatTheFirstStationWouldHaveSeen) {
@@ -82,10 +74,10 @@ TEST(InOneFrame, EmptyStationsAddNothing) {
 }
 
 TEST(InOneFrame, MisuseThrows) {
-  EXPECT_NE(thrown([] { in_one_frame<6>({}, {}); }).find("no stations"), std::string::npos);
+  EXPECT_NE(complaint([] { in_one_frame<6>({}, {}); }).find("no stations"), std::string::npos);
   const std::vector<Data> stations{seen_from(0, 5, 1), seen_from(1, 6, 2)};
-  EXPECT_NE(thrown([&] { in_one_frame<6>(stations, bases); }).find("3 bases for 2 stations"), std::string::npos);
-  EXPECT_NE(thrown([&] { in_one_frame<6>(stations, {}); }).find("0 bases for 2 stations"), std::string::npos);
+  EXPECT_NE(complaint([&] { in_one_frame<6>(stations, bases); }).find("3 bases for 2 stations"), std::string::npos);
+  EXPECT_NE(complaint([&] { in_one_frame<6>(stations, {}); }).find("0 bases for 2 stations"), std::string::npos);
 }
 
 }  // namespace

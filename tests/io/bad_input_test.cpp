@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "replaced.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/io.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -15,6 +16,7 @@ namespace vernier {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using testing_support::replaced;
 using testing_support::TemporaryFolder;
 
 /// How a reader answers a file of this content: empty when it takes it, else its complaint.
@@ -51,12 +53,6 @@ class Reader {
   std::filesystem::path path_;
   std::function<void(const std::filesystem::path&)> read_;
 };
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
 
 /// Content that is no text of any of our formats.
 std::vector<std::pair<std::string, std::string>> hopeless() {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 
+#include "replaced.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/io.hpp"
@@ -16,12 +17,8 @@ namespace vernier {
 namespace {
 
 using testing_support::CommandResult;
+using testing_support::replaced;
 using testing_support::TemporaryFolder;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 
 CalibratedRobot<6> model() {
   const auto robot = robots::abb_irb120();

@@ -32,15 +32,21 @@ struct Calibration {
 
 /// Calibrates an arm from poses measured from one place or several: identifies geometry and frames (Ceres), then fits
 /// geometry, frames and joint errors together. Blocks that the data do not support are left out.
-/// @param nominal  the arm as designed
-/// @param stations measured poses, one set a place of the sensor
-/// @param options  of both steps
-/// @throws std::invalid_argument on an unusable option or no poses, never for poor data: see the statuses
+/// @param nominal   the arm as designed
+/// @param stations  measured poses, one set a place of the sensor
+/// @param distances measured distances, one set a fixed point; they count in the second step, in both where there are
+/// no
+///                  poses. Then frames are those of the first fixed point, see `identify`
+/// @param options   of both steps
+/// @param search    of priors, see `fit_error_model`
+/// @throws std::invalid_argument on an unusable option or no measurements, never for poor data: see the statuses
 template <int N, class Convention>
 Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nominal,
-                                              std::span<const Dataset<N>> stations, CalibrateOptions options = {}) {
-  require(!stations.empty(), "calibrate: no stations");
-  options.geometry.position_sigma = options.errors.position_sigma;
+                                              std::span<const Dataset<N>> stations,
+                                              std::span<const Distances<N>> distances, CalibrateOptions options = {},
+                                              PriorSearch search = {}) {
+  require(stations.size() + distances.size() > 0, "calibrate: no stations");
+  options.geometry.position_sigma = stations.empty() ? options.errors.distance_sigma : options.errors.position_sigma;
   options.geometry.orientation_sigma = options.errors.orientation_sigma;
   options.geometry.loss = options.errors.loss;
   options.geometry.use_orientations = options.errors.use_orientations;
@@ -51,9 +57,20 @@ Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nomi
     for (const auto& data : stations) bases.push_back(identify(nominal, data, frames).model.actual().base());
   }
   Identified<DhChain<N, Convention>> geometry =
-      identify(nominal, in_one_frame(stations, bases, options.errors.use_orientations), options.geometry);
-  FittedErrorModel<DhChain<N, Convention>> errors = fit_error_model(geometry, stations, options.errors);
+      stations.empty()
+          ? identify(nominal, distances.front(), options.geometry)
+          : identify(nominal, in_one_frame(stations, bases, options.errors.use_orientations), options.geometry);
+  FittedErrorModel<DhChain<N, Convention>> errors =
+      fit_error_model(geometry, stations, distances, options.errors, search);
   return {std::move(geometry), std::move(errors)};
+}
+
+/// The same from poses alone.
+template <int N, class Convention>
+Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nominal,
+                                              std::span<const Dataset<N>> stations,
+                                              const CalibrateOptions& options = {}) {
+  return calibrate(nominal, stations, std::span<const Distances<N>>(), options);
 }
 
 /// The same from one station.

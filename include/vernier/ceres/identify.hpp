@@ -20,14 +20,14 @@ namespace vernier {
 namespace detail {
 
 /// The steps of `identify`, in the order in which they are taken.
-template <int N, class Convention>
+template <int N, class Convention, class Data>
 class Identification {
   using Chain = DhChain<N, Convention>;
   using Arm = Framed<Chain>;
   using Plan = IdentificationPlan<N, Convention>;
 
  public:
-  Identification(const Chain& nominal, const Dataset<N>& data, const IdentifyOptions& options)
+  Identification(const Chain& nominal, const Data& data, const IdentifyOptions& options)
       : nominal_(nominal),
         data_(data),
         options_(options),
@@ -122,7 +122,7 @@ class Identification {
 
   /// Variance of whitened rows, one factor a sensor, from residuals; the sensors' own where nothing is left over.
   VectorX row_variance(const Linearisation& at) const {
-    const Index rows = at.residuals.size(), n = 3 * data_.size();
+    const Index rows = at.residuals.size(), n = at.group * data_.size();
     VectorX out = VectorX::Ones(rows);
     const double degrees = static_cast<double>(rows) - static_cast<double>(problem_.free().size());
     if (degrees < 1) return out;
@@ -182,16 +182,24 @@ class Identification {
     return weak;
   }
 
+  /// Of positions, or of distances.
   double position_rms(const Arm& arm) const {
-    return std::sqrt((positions(arm, data_.joints()) - data_.positions()).rowwise().squaredNorm().mean());
+    const PointRows points = positions(arm, data_.joints());
+    if constexpr (of_distances)
+      return std::sqrt((points.rowwise().norm() - data_.lengths()).squaredNorm() / size());
+    else
+      return std::sqrt((points - data_.positions()).squaredNorm() / size());
   }
 
   double rotation_rms(const Arm& arm) const {
     double sum = 0;
-    for (Index i = 0; i < data_.size(); ++i)
-      sum += log_so3(arm.pose(data_.joints(i)).linear() * data_.orientation(i).transpose()).squaredNorm();
-    return std::sqrt(sum / static_cast<double>(data_.size()));
+    if constexpr (!of_distances)
+      for (Index i = 0; i < data_.size(); ++i)
+        sum += log_so3(arm.pose(data_.joints(i)).linear() * data_.orientation(i).transpose()).squaredNorm();
+    return std::sqrt(sum / size());
   }
+
+  double size() const { return static_cast<double>(data_.size()); }
 
   void report(Identified<Chain>& out, const Precision& precision, const std::vector<bool>& weak) const {
     const auto before = start_.parameters();
@@ -219,14 +227,22 @@ class Identification {
     Rng rng(0);
     JointRows<N> joints(100, N);
     for (auto& q : joints.reshaped()) q = rng.uniform(-3, 3);
-    PointRows turns(problem_.oriented() ? joints.rows() : 0, 3);
-    for (Index i = 0; i < turns.rows(); ++i)
-      turns.row(i) = log_so3(arm.pose(joints.row(i).transpose()).linear()).transpose();
+    const auto measured = [&] {  // without errors
+      const PointRows points = positions(arm, joints);
+      if constexpr (of_distances) {
+        return Data(joints, points.rowwise().norm());
+      } else {
+        PointRows turns(problem_.oriented() ? joints.rows() : 0, 3);
+        for (Index i = 0; i < turns.rows(); ++i)
+          turns.row(i) = log_so3(arm.pose(joints.row(i).transpose()).linear()).transpose();
+        return Data(joints, points, turns);
+      }
+    };
     VectorX sizes(static_cast<Index>(plan_.wanted.size()));
     for (Index k = 0; k < sizes.size(); ++k) sizes(k) = plan_.sizes(plan_.wanted[static_cast<std::size_t>(k)]);
     Linearisation ideal;
-    ideal.evaluate(arm, Dataset<N>(joints, positions(arm, joints), turns), problem_.oriented(), options_.position_sigma,
-                   options_.orientation_sigma, plan_.wanted, sizes, true);
+    ideal.evaluate(arm, measured(), problem_.oriented(), options_.position_sigma, options_.orientation_sigma,
+                   plan_.wanted, sizes, true);
     const Selection structure(plan_.wanted, ideal.jacobian);
 
     for (const auto& d : columns.dependent) {
@@ -248,12 +264,14 @@ class Identification {
     }
   }
 
+  static constexpr bool of_distances = std::same_as<Data, Distances<N>>;
+
   const Chain& nominal_;
-  const Dataset<N>& data_;
+  const Data& data_;
   const IdentifyOptions& options_;
   Plan plan_;
   Arm start_;
-  IdentificationProblem<Arm> problem_;
+  IdentificationProblem<Arm, Data> problem_;
   double looseness_ = 1;  // of the priors of weak parameters, in expected sizes
 };
 
@@ -276,7 +294,17 @@ template <int N, class Convention>
 Identified<DhChain<N, Convention>> identify(const DhChain<N, Convention>& nominal, const Dataset<N>& data,
                                             const IdentifyOptions& options = {}) {
   require(data.size() >= 1, "identify: no samples");
-  return detail::Identification<N, Convention>(nominal, data, options).run();
+  return detail::Identification<N, Convention, Dataset<N>>(nominal, data, options).run();
+}
+
+/// The same from distances to one fixed point. The base frame then has its origin at that point; its orientation, which
+/// distances do not tell, is that of the start. `position_sigma` is that of a distance, errors are those of distances.
+/// @param data n >= 1 samples, the tool point roughly known: see `tool_start`
+template <int N, class Convention>
+Identified<DhChain<N, Convention>> identify(const DhChain<N, Convention>& nominal, const Distances<N>& data,
+                                            const IdentifyOptions& options = {}) {
+  require(data.size() >= 1, "identify: no samples");
+  return detail::Identification<N, Convention, Distances<N>>(nominal, data, options).run();
 }
 
 }  // namespace vernier

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,26 +26,35 @@ inline double robust_scale(const Eigen::Ref<const VectorX>& residuals) {
   return sizes.empty() ? 0 : 1.4826 * *middle;
 }
 
+/// Whether orientations were measured.
+template <class Data>
+bool has_orientations(const Data& data) {
+  if constexpr (requires { data.has_orientations(); }) return data.has_orientations();
+  return false;
+}
+
 /// A parametric arm, data, and the parameters that may move: one Ceres parameter block whose unit is the expected size
 /// of each parameter. Poses are linearised together before each evaluation; cost functions hand out rows of that.
-template <ParametricModel Arm>
+/// @tparam Data `Dataset` or `Distances` of the arm's joints
+template <ParametricModel Arm, class Data>
 class IdentificationProblem {
  public:
   static constexpr int dof = Arm::dof;
+  static constexpr int group = std::same_as<Data, Distances<dof>> ? 1 : 3;  ///< rows that belong together
   using Parameters = typename Arm::Parameters;
 
   /// @param start  where to begin, and what priors pull towards
   /// @param sizes  expected size of each of its parameters
-  IdentificationProblem(const Arm& start, const Dataset<dof>& data, const IdentifyOptions& options, VectorX sizes)
+  IdentificationProblem(const Arm& start, const Data& data, const IdentifyOptions& options, VectorX sizes)
       : anchor_(start),
         values_(start.parameters()),
         data_(data),
         options_(options),
-        oriented_(options.use_orientations && data.has_orientations()),
+        oriented_(options.use_orientations && has_orientations(data)),
         all_sizes_(std::move(sizes)) {}
 
   bool oriented() const { return oriented_; }
-  Index rows() const { return (oriented_ ? 6 : 3) * data_.size(); }
+  Index rows() const { return (oriented_ ? 2 : 1) * group * data_.size(); }
   const std::vector<Index>& free() const { return free_; }  ///< parameters that move
   const VectorX& sizes() const { return sizes_; }           ///< of the free ones
   const VectorX& prior() const { return prior_; }           ///< inverse squared deviations, in steps of the sizes
@@ -73,9 +83,10 @@ class IdentificationProblem {
     bool converged = run(0, 0);
     for (int round = 0; options_.loss != Loss::squared && round < 4; ++round) {
       const Linearisation at = linearise(values_, false);
-      const Index n = 3 * data_.size();
+      const Index n = group * data_.size();
+      constexpr double bend = group == 1 ? 1.345 : 2.8;  // of a number, or of the norm of a 3-vector
       converged =
-          run(2.8 * robust_scale(at.residuals.head(n)), oriented_ ? 2.8 * robust_scale(at.residuals.tail(n)) : 0);
+          run(bend * robust_scale(at.residuals.head(n)), oriented_ ? bend * robust_scale(at.residuals.tail(n)) : 0);
     }
     return converged;
   }
@@ -98,20 +109,20 @@ class IdentificationProblem {
     bool has_jacobian = false;
   };
 
-  /// Three rows of the shared linearisation.
+  /// A group of rows of the shared linearisation.
   class Rows : public ceres::CostFunction {
    public:
     Rows(const Preparation& preparation, Index row) : preparation_(preparation), row_(row) {
-      set_num_residuals(3);
+      set_num_residuals(group);
       mutable_parameter_block_sizes()->push_back(static_cast<int>(preparation.steps.size()));
     }
     bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-      using RowMajor = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
-      Eigen::Map<Vector3> out(residuals);
-      out = preparation_.at.residuals.template segment<3>(row_);
+      using RowMajor = Eigen::Matrix<double, group, Eigen::Dynamic, Eigen::RowMajor>;
+      Eigen::Map<Eigen::Matrix<double, group, 1>> out(residuals);
+      out = preparation_.at.residuals.template segment<group>(row_);
       if (jacobians != nullptr && jacobians[0] != nullptr)
-        Eigen::Map<RowMajor>(jacobians[0], 3, preparation_.steps.size()) =
-            preparation_.at.jacobian.template middleRows<3>(row_);
+        Eigen::Map<RowMajor>(jacobians[0], group, preparation_.steps.size()) =
+            preparation_.at.jacobian.template middleRows<group>(row_);
       return out.allFinite();
     }
 
@@ -164,9 +175,9 @@ class IdentificationProblem {
     problem_options.evaluation_callback = &preparation;
     ceres::Problem problem(problem_options);
     problem.AddParameterBlock(steps.data(), static_cast<int>(steps.size()));
-    for (Index row = 0; row < rows(); row += 3)
+    for (Index row = 0; row < rows(); row += group)
       problem.AddResidualBlock(new Rows(preparation, row),
-                               loss(row < 3 * data_.size() ? position_scale : orientation_scale), steps.data());
+                               loss(row < group * data_.size() ? position_scale : orientation_scale), steps.data());
     if (prior_.maxCoeff() > 0) problem.AddResidualBlock(new PriorRows(prior_), nullptr, steps.data());
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
@@ -192,7 +203,7 @@ class IdentificationProblem {
 
   Arm anchor_;
   Parameters values_;
-  const Dataset<dof>& data_;
+  const Data& data_;
   const IdentifyOptions& options_;
   bool oriented_;
   VectorX all_sizes_;

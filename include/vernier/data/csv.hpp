@@ -16,6 +16,7 @@
 
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/distances.hpp"
 
 namespace vernier {
 
@@ -68,6 +69,8 @@ class CsvTable {
   const std::string& file() const { return file_; }
   std::size_t header_line() const { return header_line_; }
   std::size_t size() const { return lines_.size(); }
+  /// Number in the file of a row of data.
+  std::size_t line(Index row) const { return lines_[static_cast<std::size_t>(row)].number; }
 
   /// The column `stem` + `_unit` for the first unit that is there; empty where none is.
   std::optional<CsvColumn> find(std::string_view stem, bool length) const {
@@ -197,6 +200,22 @@ Dataset<N> read_dataset(const std::filesystem::path& path) {
   if (values.rows() == 0) throw DataError(message(table.file(), ": a header, but no rows of data"));
   return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
                     oriented ? PointRows(values.rightCols<3>()) : PointRows(0, 3));
+}
+
+/// Measured distances from a CSV file: columns q1 .. qN as in `read_dataset`, and distance_mm (or _m, _um).
+/// @throws DataError naming file, line and column
+template <int N>
+Distances<N> read_distances(const std::filesystem::path& path) {
+  const detail::CsvTable table(path);
+  std::vector<detail::CsvColumn> columns = detail::joint_columns<N>(table);
+  columns.push_back(table.demand("distance", true));
+  const MatrixX values = table.numbers(columns);
+  if (values.rows() == 0) throw DataError(message(table.file(), ": a header, but no rows of data"));
+  for (Index i = 0; i < values.rows(); ++i)
+    if (!(values(i, N) > 0))
+      throw DataError(message(table.file(), ", line ", table.line(i), ", column ", columns.back().name,
+                              ": a distance must be positive"));
+  return Distances<N>(values.leftCols<N>(), values.col(N));
 }
 
 /// Joint rows from a CSV file: columns as in `read_dataset`, the q columns alone.

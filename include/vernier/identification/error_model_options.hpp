@@ -17,12 +17,13 @@ struct ErrorModelOptions {
   bool gear_ratio = false;            ///< joint errors proportional to the joint
   bool coupling = false;              ///< joint errors proportional to the joint before
   int harmonics = 60;                 ///< of the Fourier terms of each joint; 0: none
-  int joint_nodes = 0;                ///< hidden nodes that read one joint, in place of Fourier terms; 0: none
+  int joint_nodes = 0;                ///< above 0: so many hidden nodes that read one joint, in place of Fourier terms
   bool own_tools = false;             ///< every station has a tool of its own, not just a base
   bool use_orientations = true;       ///< measured orientations count too, where there are any
   Vector3 down{0, 0, -1};             ///< direction of gravity in the arm's base frame
   double position_sigma = 0.03e-3;    ///< of the sensor, per component [m]
   double orientation_sigma = 0.1e-3;  ///< of the sensor, per component [rad]
+  double distance_sigma = 0.03e-3;    ///< of a measured distance [m]
   double joint_sigma = 0;             ///< of the joint readings [rad, m]; above 0: errors in variables
   double compliance_size = 1e-3;      ///< expected product of compliance and weight [rad/m]
   double gear_ratio_size = 1e-4;      ///< expected relative error of a gear ratio
@@ -35,6 +36,7 @@ struct ErrorModelOptions {
   void validate() const {
     for (const auto& [name, value] : {std::pair{"position_sigma", position_sigma},
                                       {"orientation_sigma", orientation_sigma},
+                                      {"distance_sigma", distance_sigma},
                                       {"compliance_size", compliance_size},
                                       {"gear_ratio_size", gear_ratio_size},
                                       {"coupling_size", coupling_size},
@@ -45,8 +47,6 @@ struct ErrorModelOptions {
     require(harmonics >= 0 && harmonics <= 500, "ErrorModelOptions: harmonics is ", harmonics, ", must lie in 0..500");
     require(joint_nodes >= 0 && joint_nodes <= 1000, "ErrorModelOptions: joint_nodes is ", joint_nodes,
             ", must lie in 0..1000");
-    require(harmonics == 0 || joint_nodes == 0 || harmonics == 60,
-            "ErrorModelOptions: either harmonics or joint_nodes");
     require(left_out >= 1, "ErrorModelOptions: left_out is ", left_out, ", must be at least 1");
     require(std::abs(down.norm() - 1) < 1e-6, "ErrorModelOptions: down has length ", down.norm(), ", must be 1");
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Fits geometry, frames and joint errors together, to poses measured from one place or several.
+/// Fits geometry, frames and joint errors together, to poses and distances measured from one place or several.
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,7 @@
 #include "vernier/identification/fitted_error_model.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identified.hpp"
+#include "vernier/identification/prior_objective.hpp"
 
 namespace vernier {
 
@@ -25,15 +26,19 @@ class ErrorModelFit {
  public:
   static constexpr int N = Chain::dof;
 
-  ErrorModelFit(const Identified<Chain>& start, std::span<const Dataset<N>> stations, const ErrorModelOptions& options)
+  ErrorModelFit(const Identified<Chain>& start, std::span<const Dataset<N>> stations,
+                std::span<const Distances<N>> distances, const ErrorModelOptions& options)
       : nominal_(start.model.reference().model()),
         options_(options),
-        stations_(stations),
-        problem_(ErrorModelDesign<Chain>(arms(start, stations), unknowns(start, stations.size(), options)),
-                 sensors(stations, options), options.loss),
-        stride_(std::max<Index>(1, problem_.poses() / options.left_out)) {}
+        problem_(ErrorModelDesign<Chain>(arms(start, stations, distances),
+                                         unknowns(start, stations.size(), stations.size() + distances.size(), options)),
+                 sensors(stations, distances, options), options.loss),
+        stride_(std::max<Index>(1, problem_.judged() / options.left_out)) {
+    joints_.resize(problem_.poses(), N);
+    for (Index b = 0; b < joints_.rows(); ++b) joints_.row(b) = problem_.joints(b).transpose();
+  }
 
-  FittedErrorModel<Chain> run() {
+  FittedErrorModel<Chain> run(PriorSearch search) {
     FittedErrorModel<Chain> out{.design = problem_.design};
     out.converged = problem_.solve();
     for (int s = 0; s < problem_.design.stations(); ++s) out.geometry.push_back({nominal_, problem_.design.arm(s)});
@@ -46,14 +51,17 @@ class ErrorModelFit {
     for (int s = 0; s < problem_.design.stations(); ++s) out.elastic.push_back({nominal_, problem_.design.arm(s)});
 
     JointTerms<Chain> all = few;
-    const auto coverage = JointCoverage<N>::covering(all_joints());
     for (int j = 0; j < N; ++j) all.transmission[static_cast<std::size_t>(j)] = basis(j);
     const bool jointwise = all.size() > few.size() && add(out, "jointwise", all);
-    if (jointwise && few.size() > 0) {  // sag shows better once the rest is clean
-      const BlockChoice again = choose("elastic", 0, few.size());
-      out.converged = problem_.solve() && out.converged;
-      out.blocks.back().with = again.with;
+    if (jointwise) {
+      out.fallback_error = out.blocks.back().without;
+      if (few.size() > 0) {  // sag shows better once the rest is clean
+        out.blocks.push_back(choose("elastic_with_jointwise", 0, few.size()));
+        out.converged = problem_.solve() && out.converged;
+      }
+      if (search) out.converged = tune(out, search) && out.converged;
     }
+    const auto coverage = JointCoverage<N>::covering(joints_);
     for (int s = 0; s < problem_.design.stations(); ++s) {
       if (jointwise)
         out.models.push_back(
@@ -67,28 +75,37 @@ class ErrorModelFit {
   }
 
  private:
-  /// The identified arm in every station's own base.
-  static std::vector<Framed<Chain>> arms(const Identified<Chain>& start, std::span<const Dataset<N>> stations) {
+  /// The identified arm in every station's own base; that of distances has its origin at their fixed point.
+  static std::vector<Framed<Chain>> arms(const Identified<Chain>& start, std::span<const Dataset<N>> stations,
+                                         std::span<const Distances<N>> distances) {
     const Framed<Chain>& first = start.model.actual();
+    if (stations.size() + distances.size() == 1) {
+      require((stations.empty() ? distances.front().size() : stations.front().size()) >= 1,
+              "fit_error_model: a station without measurements");
+      return {first};
+    }
+    const Framed<Chain> unregistered(first.model(), {}, first.tool());
     std::vector<Framed<Chain>> out;
     for (const Dataset<N>& data : stations) {
       require(data.size() >= 1, "fit_error_model: a station without poses");
-      if (stations.size() == 1) {
-        out.push_back(first);
-        break;
-      }
-      const Framed<Chain> unregistered(first.model(), {}, first.tool());
       out.emplace_back(first.model(), register_points(positions(unregistered, data.joints()), data.positions()),
                        first.tool());
+    }
+    for (const Distances<N>& data : distances) {
+      require(data.size() >= 1, "fit_error_model: a station without distances");
+      Isometry3 base = Isometry3::Identity();
+      base.translation() = -trilaterate(positions(unregistered, data.joints()), data.lengths());
+      out.emplace_back(first.model(), base, first.tool());
     }
     return out;
   }
 
-  static std::vector<GeometricUnknown> unknowns(const Identified<Chain>& start, std::size_t stations,
-                                                const ErrorModelOptions& options) {
+  /// @param of_poses how many stations see poses, the first of all `stations`
+  static std::vector<GeometricUnknown> unknowns(const Identified<Chain>& start, std::size_t of_poses,
+                                                std::size_t stations, const ErrorModelOptions& options) {
     std::vector<GeometricUnknown> out;
     const auto own = [&](Index k) {
-      return k < 6 || (options.own_tools && k >= 6 + Chain::num_parameters);  // a base, or a tool
+      return stations > 1 && (k < 6 || (options.own_tools && k >= 6 + Chain::num_parameters));  // a base, or a tool
     };
     for (const Index k : start.free) {
       const ParameterEstimate& p = start.parameters[static_cast<std::size_t>(k)];
@@ -96,32 +113,38 @@ class ErrorModelFit {
       // thirty expected sizes bind nothing that is determined
       const double deviation = std::isfinite(p.prior) ? p.prior / p.size : 30;
       const double precision = of_chain ? 1 / (deviation * deviation) : 0;
-      const std::size_t copies = own(k) ? stations : 1;
-      for (std::size_t s = 0; s < copies; ++s)
-        out.push_back({k, copies > 1 ? static_cast<int>(s) : -1, p.size, precision});
+      if (!own(k)) {
+        out.push_back({k, -1, p.size, precision});
+        continue;
+      }
+      const auto last = k < 6 ? of_poses : stations;
+      for (std::size_t s = 0; s < last; ++s) out.push_back({k, static_cast<int>(s), p.size, precision});
     }
+    // a fixed point has a place, but no orientation
+    for (std::size_t s = of_poses; s < stations && stations > 1; ++s)
+      for (Index k = 0; k < 3; ++k)
+        out.push_back({k, static_cast<int>(s), start.parameters[static_cast<std::size_t>(k)].size, 0});
     return out;
   }
 
-  static std::vector<Station<N>> sensors(std::span<const Dataset<N>> stations, const ErrorModelOptions& options) {
+  static std::vector<Station<N>> sensors(std::span<const Dataset<N>> stations, std::span<const Distances<N>> distances,
+                                         const ErrorModelOptions& options) {
     std::vector<Station<N>> out;
     for (const Dataset<N>& data : stations)
-      out.push_back({&data, options.use_orientations && data.has_orientations(), options.position_sigma,
-                     options.orientation_sigma, options.joint_sigma});
-    return out;
-  }
-
-  JointRows<N> all_joints() const {
-    JointRows<N> out(problem_.poses(), N);
-    for (Index b = 0; b < out.rows(); ++b) out.row(b) = problem_.joints(b).transpose();
+      out.push_back({.poses = &data,
+                     .oriented = options.use_orientations && data.has_orientations(),
+                     .position_sigma = options.position_sigma,
+                     .orientation_sigma = options.orientation_sigma,
+                     .joint_sigma = options.joint_sigma});
+    for (const Distances<N>& data : distances)
+      out.push_back({.distances = &data, .position_sigma = options.distance_sigma, .joint_sigma = options.joint_sigma});
     return out;
   }
 
   AngleBasis basis(int joint) const {
     if (nominal_.row(joint).joint != JointType::revolute) return Fourier{0};
     if (options_.joint_nodes == 0) return Fourier{options_.harmonics};
-    const auto column = all_joints().col(joint).eval();
-    const double lower = column.minCoeff(), upper = column.maxCoeff();
+    const double lower = joints_.col(joint).minCoeff(), upper = joints_.col(joint).maxCoeff();
     return upper - lower > 1e-6 ? AngleBasis(JointNodes::spread(options_.joint_nodes, lower, upper))
                                 : AngleBasis(Fourier{0});
   }
@@ -175,6 +198,30 @@ class ErrorModelFit {
     return {name, choice.without, used ? choice.with : choice.best, used, choice.tightness};
   }
 
+  /// Priors of the joint errors by a search over the left-out errors; kept where they are better than those there were.
+  bool tune(FittedErrorModel<Chain>& out, PriorSearch search) {
+    VectorX relative(problem_.design.size() - problem_.design.dense());
+    Index at = 0;
+    for (const AngleBasis& basis : problem_.design.terms().transmission)
+      std::visit(
+          [&](const auto& b) {
+            for (Index k = 0; k < b.size(); ++k) relative(at++) = b.relative_size(k);
+          },
+          basis);
+    const VectorX found = problem_.with_system([&](const PoseSystem& system) {
+      const PoseNormalEquations normal(system);
+      const VectorX before = problem_.design.precisions();
+      const PriorObjective objective(system, normal, before, problem_.design.steps(), problem_.design.terms().few(),
+                                     relative, stride_);
+      const VectorX after = objective.precisions(search(objective, objective.box()));
+      const double without = objective.error(before), with = objective.error(after);
+      out.blocks.push_back({"tuned_priors", without, with, with < without, 1});
+      return VectorX(with < without ? after : before);
+    });
+    problem_.design.set_precisions(found.tail(problem_.design.terms().size()));
+    return problem_.solve();
+  }
+
   /// Covariance of the unknowns, and what no unknown explains.
   void assess(FittedErrorModel<Chain>& out) const {
     problem_.with_system([&](const PoseSystem& system) {
@@ -191,7 +238,7 @@ class ErrorModelFit {
       // left-out errors hold the noise of a visit and the uncertainty of the unknowns
       PoseRows rows;
       Rows6 all(6, p);
-      double turned = 0, turned_values = 0;
+      double turned = 0, turned_values = 0, distances_square_sum = 0;
       std::vector<LeftOutVisit> visits;
       const Eigen::Matrix3Xd left = left_out_errors(system, solved, stride_);
       for (Index b = 0; b < system.poses; ++b) {
@@ -202,7 +249,11 @@ class ErrorModelFit {
                     station.orientation_sigma;
           turned_values += 3;
         }
-        if (b % stride_ != 0) continue;
+        if (b % stride_ != 0 || b >= system.judged) continue;
+        if (station.distances != nullptr) {
+          distances_square_sum += left.col(b / stride_).squaredNorm();
+          continue;
+        }
         rows.expand(system.functions_of, all);
         const MatrixX position = rows.unit * (rows.root * all).topRows<3>();
         const MatrixX joint = rows.unit * (rows.root * rows.joint).topRows<3>();
@@ -210,6 +261,10 @@ class ErrorModelFit {
             {left.col(b / stride_), position * out.covariance * position.transpose(), joint * joint.transpose()});
       }
       if (turned_values > 0) out.orientation_sigma = std::sqrt(turned / turned_values * values / freedom);
+      if (visits.empty()) {
+        out.position_sigma = std::sqrt(distances_square_sum / static_cast<double>(left.cols()));
+        return;
+      }
       const VisitNoise noise = visit_noise(visits);
       out.position_sigma = noise.position;
       out.joint_sigma = noise.joint;
@@ -219,33 +274,44 @@ class ErrorModelFit {
 
   Chain nominal_;
   ErrorModelOptions options_;
-  std::span<const Dataset<N>> stations_;
   ErrorModelProblem<Chain> problem_;
   Index stride_;
+  JointRows<N> joints_;  // of all samples
 };
 
 }  // namespace detail
 
 /// Geometry, frames and joint errors of an arm in one regularised least-squares problem, solved by Gauss-Newton on its
 /// normal equations. Blocks that leave-one-pose-out does not support are left out.
-/// @param start    an identified arm; its free parameters move again, its weak ones keep their priors
-/// @param stations measured poses, one set a place of the sensor: the chain is shared, every base its own
-/// @param options  which joint errors there may be, how large they are expected
-/// @throws std::invalid_argument on an unusable option or no poses
+/// @param start     an identified arm; its free parameters move again, its weak ones keep their priors
+/// @param stations  measured poses, one set a place of the sensor: the chain is shared, every base its own
+/// @param distances measured distances, one set a fixed point, which need not be known; either of the two may be empty
+/// @param options   which joint errors there may be, how large they are expected
+/// @param search    tunes the priors of the joint errors, e.g. by a metaheuristic; by default they are chosen from a
+/// few
+/// @throws std::invalid_argument on an unusable option or no measurements
 /// @complexity O(n u^2 / 6) an iteration for n poses and u unknowns, memory O(u^2)
 template <class Chain>
 FittedErrorModel<Chain> fit_error_model(const Identified<Chain>& start, std::span<const Dataset<Chain::dof>> stations,
-                                        const ErrorModelOptions& options = {}) {
+                                        std::span<const Distances<Chain::dof>> distances,
+                                        const ErrorModelOptions& options = {}, PriorSearch search = {}) {
   options.validate();
-  require(!stations.empty(), "fit_error_model: no stations");
-  return detail::ErrorModelFit<Chain>(start, stations, options).run();
+  require(stations.size() + distances.size() > 0, "fit_error_model: no stations");
+  return detail::ErrorModelFit<Chain>(start, stations, distances, options).run(search);
+}
+
+/// The same from poses alone.
+template <class Chain>
+FittedErrorModel<Chain> fit_error_model(const Identified<Chain>& start, std::span<const Dataset<Chain::dof>> stations,
+                                        const ErrorModelOptions& options = {}, PriorSearch search = {}) {
+  return fit_error_model(start, stations, std::span<const Distances<Chain::dof>>(), options, search);
 }
 
 /// The same from one station.
 template <class Chain>
 FittedErrorModel<Chain> fit_error_model(const Identified<Chain>& start, const Dataset<Chain::dof>& data,
-                                        const ErrorModelOptions& options = {}) {
-  return fit_error_model(start, std::span<const Dataset<Chain::dof>>(&data, 1), options);
+                                        const ErrorModelOptions& options = {}, PriorSearch search = {}) {
+  return fit_error_model(start, std::span<const Dataset<Chain::dof>>(&data, 1), options, search);
 }
 
 }  // namespace vernier

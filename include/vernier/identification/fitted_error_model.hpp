@@ -14,7 +14,8 @@ namespace vernier {
 
 /// What leave-one-pose-out said of a block of joint errors.
 struct BlockChoice {
-  std::string name;      ///< `elastic` (gravity, gears, coupling) or `jointwise` (transmission)
+  std::string name;      ///< `elastic` (gravity, gears, coupling), `jointwise` (transmission), or
+                         ///< `elastic_with_jointwise`: elastic ones judged again once transmissions are in
   double without = 0;    ///< mean position error of poses left out, without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; what it would have been where it was not used
   bool used = false;     ///< whether it is in the model
@@ -34,14 +35,16 @@ struct FittedErrorModel {
   /// Number of joints.
   static constexpr int N = Chain::dof;
 
-  std::vector<ErrorModel<Chain>> models{};    ///< one a station; they differ in their frames
+  std::vector<ErrorModel<Chain>> models{};    ///< one a station, those of distances last; they differ in their frames
   std::vector<ErrorModel<Chain>> elastic{};   ///< the same before transmission terms
   std::vector<ErrorModel<Chain>> geometry{};  ///< the same before all joint errors
   bool converged = false;                     ///< whether every solve ended where steps died away
   std::vector<BlockChoice> blocks{};          ///< what was decided, in order
-  double position_sigma = 0;                  ///< of a visit, per component: sensor, and what the model lacks [m]
+  double position_sigma = 0;                  ///< of a visit, per component: sensor, and what the model lacks [m]; of a
+                                              ///< distance where nothing else was measured
   double joint_sigma = 0;                     ///< of a visit, joints that do not repeat [rad]
   double orientation_sigma = 0;               ///< of a visit, per component [rad]; 0 for positions alone
+  double fallback_error = 0;                  ///< mean position error of poses left out, without transmissions [m]
   detail::ErrorModelDesign<Chain> design;     ///< unknowns and where they ended
   MatrixX covariance{};                       ///< of all unknowns, in units of their sizes
 
@@ -85,7 +88,7 @@ struct FittedErrorModel {
     out.covariance += joint_sigma * joint_sigma * at.joint * at.joint.transpose();
     if (out.gate < 1)  // errors that the terms held back would have taken off
       out.covariance.diagonal().template head<3>().array() +=
-          std::pow((1 - out.gate) * blocks.back().without / 1.6, 2);  // a mean norm is 1.6 sigma of a component
+          std::pow((1 - out.gate) * fallback_error / 1.6, 2);  // a mean norm is 1.6 sigma of a component
     out.covariance.diagonal().template head<3>().array() += position_sigma * position_sigma;
     out.covariance.diagonal().template tail<3>().array() += orientation_sigma * orientation_sigma;
     return out;

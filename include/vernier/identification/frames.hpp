@@ -4,10 +4,12 @@
 /// Closed-form starting values for base and tool frames.
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <vector>
 
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/distances.hpp"
 #include "vernier/kinematics/framed.hpp"
 
 namespace vernier {
@@ -35,6 +37,24 @@ Isometry3 register_points(const Eigen::MatrixBase<From>& from, const Eigen::Matr
   out.linear() = nearest_rotation((to.rowwise() - to_mean).transpose() * (from.rowwise() - from_mean));
   out.translation() = to_mean.transpose() - out.linear() * from_mean.transpose();
   return out;
+}
+
+/// The fixed point from which points lie at given distances, by linear least squares on squared distances. Points on a
+/// plane leave open on which side of it: then it lies on the plane.
+/// @param points    n >= 1 rows
+/// @param distances n values
+/// @throws std::invalid_argument when the numbers differ
+template <class Points, class Lengths>
+Vector3 trilaterate(const Eigen::MatrixBase<Points>& points, const Eigen::MatrixBase<Lengths>& distances) {
+  const Index n = points.rows();
+  require(n == distances.size() && n >= 1, "trilaterate: ", n, " points, ", distances.size(), " distances");
+  // |p - a|^2 = l^2 is linear in a and |a|^2; about the mean of the points
+  const Eigen::RowVector3d mean = points.colwise().mean();
+  Eigen::Matrix<double, Eigen::Dynamic, 4> rows(n, 4);
+  rows << -2 * (points.rowwise() - mean), VectorX::Ones(n);
+  const VectorX right = distances.array().square().matrix() - (points.rowwise() - mean).rowwise().squaredNorm();
+  const Eigen::Vector4d solution = rows.completeOrthogonalDecomposition().solve(right);
+  return mean.transpose() + solution.head<3>();
 }
 
 /// Base and tool frames that roughly explain the data, links nominal: the base by registering positions with the tool
@@ -76,6 +96,17 @@ Framed<Model> starting_frames(const Model& model, const Dataset<Model::dof>& dat
     tool.linear() = nearest_rotation(sum);
   }
   return Framed<Model>(model, base, tool);
+}
+
+/// The same from distances: the base as it is guessed, moved so that its origin is the fixed point; the tool as
+/// guessed.
+template <KinematicModel Model>
+Framed<Model> starting_frames(const Model& model, const Distances<Model::dof>& data, const Isometry3& base_guess,
+                              const Isometry3& tool_guess, bool fit_base, bool) {
+  const Framed<Model> turned(model, Isometry3(base_guess.linear()), tool_guess);
+  Isometry3 base = base_guess;
+  if (fit_base) base.translation() = -trilaterate(positions(turned, data.joints()), data.lengths());
+  return Framed<Model>(model, base, tool_guess);
 }
 
 }  // namespace vernier

@@ -100,22 +100,23 @@ struct Precision {
   }
 };
 
-/// Root mean square, over poses, of the position residual (whitened) of each pose when it is left out, in closed form:
-/// `e_b = (I - H_bb)^-1 r_b` with all rows of the pose in block b.
+/// Root mean square, over poses, of the position or distance residual (whitened) of each pose when it is left out, in
+/// closed form: `e_b = (I - H_bb)^-1 r_b` with all rows of the pose in block b.
 /// @cite Allen 1974
 inline double leave_one_pose_out(const Linearisation& at, Index poses, const MatrixX& inverse) {
   if (inverse.size() == 0) return std::numeric_limits<double>::infinity();
-  const Index size = at.residuals.size() / poses;  // 3, or 6 with orientations
+  const Index size = at.residuals.size() / poses;  // 1, 3, or 6 with orientations
+  const Index group = at.group;
   MatrixX rows(size, at.jacobian.cols());
   VectorX residual(size);
   double sum = 0;
   for (Index i = 0; i < poses; ++i) {
-    for (Index part = 0; part < size / 3; ++part) {
-      rows.middleRows(3 * part, 3) = at.jacobian.middleRows(3 * (part * poses + i), 3);
-      residual.segment(3 * part, 3) = at.residuals.segment(3 * (part * poses + i), 3);
+    for (Index part = 0; part < size / group; ++part) {
+      rows.middleRows(group * part, group) = at.jacobian.middleRows(group * (part * poses + i), group);
+      residual.segment(group * part, group) = at.residuals.segment(group * (part * poses + i), group);
     }
     const MatrixX left = MatrixX::Identity(size, size) - rows * inverse * rows.transpose();
-    sum += left.partialPivLu().solve(residual).head<3>().squaredNorm();
+    sum += left.partialPivLu().solve(residual).head(group).squaredNorm();
   }
   return std::sqrt(sum / static_cast<double>(poses));
 }

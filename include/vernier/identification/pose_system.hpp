@@ -49,6 +49,7 @@ struct PoseRows {
 /// Poses as rows of numbers.
 struct PoseSystem {
   Index poses;                               ///< how many
+  Index judged;                              ///< the first so many are left out to judge
   Index dense;                               ///< unknowns that are no transmission terms
   std::vector<Index> functions_of;           ///< transmission terms of each joint
   FunctionRef<void(Index, PoseRows&)> rows;  ///< fills in one pose; outlives this
@@ -132,11 +133,11 @@ struct FactorisedSystem {
 };
 
 /// Position errors of poses left out one at a time, in closed form: `e_b = (I - H_bb)^-1 r_b`, at the solution of the
-/// linearised problem with given priors; every `stride`-th pose, a column each [m].
+/// linearised problem with given priors; every `stride`-th of those judged, a column each [m].
 /// @cite Allen 1974
 template <class System>
 Eigen::Matrix3Xd left_out_errors(const System& system, const FactorisedSystem& solved, Index stride) {
-  Eigen::Matrix3Xd out(3, (system.poses + stride - 1) / stride);
+  Eigen::Matrix3Xd out(3, (system.judged + stride - 1) / stride);
   if (!solved.usable()) {
     out.setConstant(std::numeric_limits<double>::infinity());
     return out;

@@ -9,6 +9,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/distances.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 
 namespace vernier {
@@ -67,6 +68,20 @@ Dataset<Actual::dof> measure(const Actual& actual, const JointRows<Actual::dof>&
       orientations.row(i) = log_so3(exp_so3(normal3(noise.orientation)) * pose.linear()).transpose();
   }
   return {joints, positions, orientations};
+}
+
+/// What a draw-wire encoder or a ball-bar sees of an arm at n joint combinations: distances from a fixed point.
+/// @param anchor the fixed point, in the arm's base frame [m]
+/// @param sigma  standard deviation of a distance [m]
+template <KinematicModel Actual>
+Distances<Actual::dof> measure_distances(const Actual& actual, const Vector3& anchor,
+                                         const JointRows<Actual::dof>& joints, double sigma = 0,
+                                         std::uint64_t seed = 0) {
+  Rng rng(seed);
+  VectorX lengths(joints.rows());
+  for (Index i = 0; i < joints.rows(); ++i)
+    lengths(i) = (actual.position(joints.row(i).transpose()) - anchor).norm() + sigma * rng.normal();
+  return {joints, lengths};
 }
 
 }  // namespace vernier

@@ -1,0 +1,191 @@
+// Calibration from distances: draw-wires and ball-bars, alone and beside poses.
+
+#include <gtest/gtest.h>
+
+#include "complaint.hpp"
+#include "vernier/ceres/calibrate.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier {
+namespace {
+
+using vernier_test::complaint;
+using Chain = DhChain<6>;
+using Actual = Framed<WithJointErrors<Chain>>;
+
+const Robot<6> robot = robots::ur10();
+const Isometry3 tool = FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry();
+const Vector3 anchor(0.9, -1.2, 0.3);
+
+JointRows<6> joints(Index n, std::uint64_t seed) {
+  JointLimits<6> ranges;
+  ranges.lower = JointVector<6>(-2.5, -2.6, 0.3, -2.5, -2, -2.5);
+  ranges.upper = JointVector<6>(2.5, -0.6, 2.4, 2.5, 2, 2.5);
+  return sample_joints(ranges, n, seed);
+}
+
+/// Geometric errors, and joint errors of some size; in its own base frame.
+Actual actual_arm(double harmonic, double compliance) {
+  const Chain off =
+      with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
+  return Actual(
+      {off, draw_joint_errors(robot.chain,
+                              {.gear_ratio = 0, .coupling = 0, .compliance = compliance, .harmonic = harmonic}, 5)},
+      Isometry3::Identity(), tool);
+}
+
+IdentifyOptions roughly_known_tool() {
+  IdentifyOptions out{.frames = Frames::base_and_tool};
+  Isometry3 rough = tool;
+  rough.translation() += Vector3(3e-3, -2e-3, 4e-3);
+  out.tool_start = rough;
+  return out;
+}
+
+template <class Model>
+double rms_of_distances(const Model& model, const Distances<6>& data) {
+  return std::sqrt((positions(model, data.joints()).rowwise().norm() - data.lengths()).squaredNorm() /
+                   static_cast<double>(data.size()));
+}
+
+TEST(Trilaterate, FindsThePoint) {
+  Rng rng(1);
+  PointRows points(20, 3);
+  for (auto& x : points.reshaped()) x = rng.uniform(-1, 1);
+  const Vector3 from(3, -2, 0.5);
+  const VectorX distances = (points.rowwise() - from.transpose()).rowwise().norm();
+  EXPECT_LT((trilaterate(points, distances) - from).norm(), 1e-12);
+  points.col(2).setZero();  // on a plane: the point's mirror image is as good, so it is put between the two
+  const VectorX flat = (points.rowwise() - from.transpose()).rowwise().norm();
+  EXPECT_LT((trilaterate(points, flat) - Vector3(3, -2, 0)).norm(), 1e-12);
+  EXPECT_NE(complaint([&] { (void)trilaterate(points, VectorX::Ones(3)); }).find("20 points, 3 distances"),
+            std::string::npos);
+}
+
+TEST(Distances, LinearisationEqualsCentralDifferences) {
+  const Framed<Chain> arm(robot.chain, FrameParameters(Vector6{1, -2, 0.4, 0.1, 0.2, -0.5}).isometry(), tool);
+  const auto data = measure_distances(arm, Vector3::Zero(), joints(5, 1), 1e-2, 3);
+  std::vector<Index> free;
+  for (Index k = 0; k < arm.parameters().size(); ++k) free.push_back(k);
+  const VectorX sizes = VectorX::Constant(arm.parameters().size(), 1e-3);
+  const auto at = [&](const auto& model, bool with_jacobian) {
+    detail::Linearisation out;
+    out.evaluate(model, data, false, 1e-4, 1, free, sizes, with_jacobian);
+    return out;
+  };
+  const auto exact = at(arm, true);
+  for (const Index k : free) {
+    auto p = arm.parameters();
+    p(k) += 1e-6;
+    const VectorX up = at(arm.with_parameters(p), false).residuals;
+    p(k) -= 2e-6;
+    const VectorX down = at(arm.with_parameters(p), false).residuals;
+    EXPECT_LT((exact.jacobian.col(k) - (up - down) / 2e-6 * 1e-3).cwiseAbs().maxCoeff(), 1e-6) << k;
+  }
+}
+
+TEST(Distances, AloneIdentifyGeometryExactly) {
+  const Actual actual = actual_arm(0, 0);
+  IdentifyOptions options = roughly_known_tool();
+  options.priors = false;
+  const auto found = identify(robot.chain, measure_distances(actual, anchor, joints(300, 1)), options);
+  EXPECT_TRUE(found.converged()) << found.summary();
+  EXPECT_LT(rms_of_distances(found.model, measure_distances(actual, anchor, joints(100, 2))), 1e-9);
+  EXPECT_GT(found.rms_before, 1e-4);
+  EXPECT_LT(found.rms_after, 1e-9);
+  // the fixed point lies where it was put, as far as the arm's own zero of joint 1 and foot of axis 1 are known
+  const Vector3 there = found.model.actual().base().inverse() * Vector3::Zero();
+  EXPECT_LT((there - anchor).norm(), 0.02);
+  // and which way the sensor looks has no meaning
+  for (const Index k : {3, 4, 5})
+    EXPECT_EQ(found.parameters[static_cast<std::size_t>(k)].state, ParameterState::not_identifiable) << k;
+}
+
+TEST(Distances, AloneFindJointErrors) {
+  const Actual actual = actual_arm(0.3e-3, 1e-3);
+  const std::vector<Distances<6>> wire{measure_distances(actual, anchor, joints(600, 1), 0.02e-3, 2)};
+  const auto found = calibrate(robot.chain, std::span<const Dataset<6>>{}, std::span<const Distances<6>>(wire),
+                               {.geometry = roughly_known_tool(), .errors = {.harmonics = 30}});
+  const auto fresh = measure_distances(actual, anchor, joints(300, 3));
+  const double geometry = rms_of_distances(found.errors.geometry[0], fresh);
+  const double all = rms_of_distances(found.model(), fresh);
+  EXPECT_LT(all, 0.4 * geometry);
+  EXPECT_LT(all, 0.05e-3);
+  EXPECT_GT(found.errors.position_sigma, 0.01e-3);
+  EXPECT_LT(found.errors.position_sigma, 0.08e-3);
+}
+
+/// Few positions, and what two wires at other places add.
+struct Mixed {
+  Actual actual = actual_arm(0.3e-3, 1e-3);
+  std::vector<Dataset<6>> poses{measure(actual, joints(40, 1), {.position = 0.03e-3, .with_orientations = false}, 2)};
+  std::vector<Distances<6>> wires(double sigma) const {
+    return {measure_distances(actual, anchor, joints(200, 3), sigma, 4),
+            measure_distances(actual, Vector3(-1, 0.4, 1.2), joints(200, 5), sigma, 6)};
+  }
+  double error(const std::vector<Distances<6>>& distances, double sigma) const {
+    const auto found =
+        calibrate(robot.chain, std::span<const Dataset<6>>(poses), std::span<const Distances<6>>(distances),
+                  {.errors = {.harmonics = 15, .distance_sigma = sigma}});
+    EXPECT_EQ(found.errors.models.size(), 1 + distances.size());
+    return prediction_error(found.model(), measure(actual, joints(300, 7))).mean;
+  }
+};
+
+TEST(Distances, BesidePosesAddWhatTheyAreGoodFor) {
+  const Mixed mixed;
+  const double without = mixed.error({}, 1e-3);
+  EXPECT_LT(mixed.error(mixed.wires(0.03e-3), 0.03e-3), 0.8 * without);
+  EXPECT_LT(mixed.error(mixed.wires(5e-3), 5e-3), 1.1 * without);  // a bad wire, known to be one, harms little
+}
+
+TEST(Distances, OneInTwentyOffByFiveMillimetres) {
+  const Mixed mixed;
+  const auto clean = mixed.wires(0.03e-3);
+  auto dirty = clean;
+  for (auto& wire : dirty) {
+    VectorX lengths = wire.lengths();
+    for (Index i = 0; i < lengths.size(); i += 20) lengths(i) += i % 40 == 0 ? 5e-3 : -5e-3;
+    wire = Distances<6>(wire.joints(), lengths);
+  }
+  EXPECT_LT(mixed.error(dirty, 0.03e-3), 1.5 * mixed.error(clean, 0.03e-3));
+}
+
+TEST(Distances, EveryWireFindsItsFixedPoint) {
+  const Mixed mixed;
+  const auto wires = mixed.wires(0.03e-3);
+  const auto found = calibrate(robot.chain, std::span<const Dataset<6>>(mixed.poses),
+                               std::span<const Distances<6>>(wires), {.errors = {.harmonics = 15}});
+  // in the frame of the positions, which is the arm's own here
+  const auto fixed_point = [&](std::size_t s) {
+    return Vector3(found.errors.models[0].arm().base() * found.errors.models[s].arm().base().inverse() *
+                   Vector3::Zero());
+  };
+  EXPECT_LT((fixed_point(1) - anchor).norm(), 0.2e-3);
+  EXPECT_LT((fixed_point(2) - Vector3(-1, 0.4, 1.2)).norm(), 0.2e-3);
+}
+
+TEST(Distances, MisuseThrows) {
+  EXPECT_NE(complaint([] {
+              (void)Distances<2>(JointRows<2>::Zero(2, 2), VectorX::Ones(3));
+            }).find("2 rows of joints, but 3 distances"),
+            std::string::npos);
+  EXPECT_NE(complaint([] { (void)Distances<2>(JointRows<2>::Zero(2, 2), Eigen::Vector2d(1, 0)); }).find("row 1 has"),
+            std::string::npos);
+  EXPECT_NE(complaint([] {
+              (void)Distances<2>(JointRows<2>::Zero(1, 2), VectorX::Constant(1, std::nan("")));
+            }).find("row 0 has a value that is not finite"),
+            std::string::npos);
+  const Distances<2> one(JointRows<2>::Zero(1, 2), VectorX::Ones(1));
+  EXPECT_NE(complaint([&] { (void)one.rows(std::array<Index, 1>{1}); }).find("row 1 of 1"), std::string::npos);
+  EXPECT_NE(complaint([] { (void)identify(robot.chain, Distances<6>()); }).find("no samples"), std::string::npos);
+  const std::vector<Distances<6>> empty(1);
+  EXPECT_THROW((void)calibrate(robot.chain, std::span<const Dataset<6>>{}, std::span<const Distances<6>>(empty)),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vernier

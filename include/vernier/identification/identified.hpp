@@ -110,6 +110,15 @@ struct Identified {
       out += "Orientation error (rms): " + number(rotation_rms_after * 1e3, 3) + " mrad now.\n";
     out += "Parameters moved: " + std::to_string(free.size()) + ", rank " + std::to_string(rank) + ", condition " +
            (std::isfinite(condition) ? number(condition, 0) : std::string("infinite")) + ".\n";
+    std::vector<std::string> freed, held;  // beta moves only where d had to give way
+    for (const auto& p : parameters)
+      if (p.name.starts_with("beta") && p.state != ParameterState::fixed) {
+        freed.push_back(p.name);
+        held.push_back("d" + p.name.substr(4));
+      }
+    if (!freed.empty())
+      out +=
+          "Neighbouring axes nearly parallel: " + joined(freed) + " (Hayati) moved in place of " + joined(held) + ".\n";
     if (const auto weak = names(ParameterState::weak); !weak.empty())
       out += "Weakly determined, held near nominal by a prior: " + joined(weak) + ".\n";
     if (const auto pairs = strongly_correlated(); !pairs.empty()) {

@@ -3,6 +3,7 @@
 /// @file
 /// A population shared out over MPI ranks: every rank runs the same search and evaluates its part of each population.
 
+/// @cond
 // The C++ bindings, which MPI itself has dropped, are not wanted: they bring warnings and a library of their own.
 #ifndef OMPI_SKIP_MPICXX
 #define OMPI_SKIP_MPICXX 1
@@ -10,6 +11,7 @@
 #ifndef MPICH_SKIP_MPICXX
 #define MPICH_SKIP_MPICXX 1
 #endif
+/// @endcond
 #include <mpi.h>
 
 #include <bit>

@@ -10,6 +10,7 @@
 
 #include "program.hpp"
 #include "vernier/compensation/cartesian.hpp"
+#include "vernier/core/executor.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
@@ -33,6 +34,8 @@ constexpr const char* about =
                     Eigen BDCSVD        minimum norm
   leave-one-out   fitness of RidgeElm (sines and cosines in) over 25 ridges and the mean alone: one BDCSVD of the
                   centred H, leverages written out
+  generation      of 50 particles, as a search evaluates it: two threads against one, by the clock on the wall. Two cores
+                  that have nothing else to do halve it.
   predict         one sample; against a 65-node layer in dynamic Eigen matrices
   correct         the joint command of CartesianCompensation{Elm} at one pose; no peer
 
@@ -173,6 +176,21 @@ int work(bench::Program& program, int argc, char** argv) {
   program.measure("leave-one-out", "vernier", [=](std::size_t i) { return our_leave_one_out(wide[i & mask]); });
   program.measure("leave-one-out", "Eigen BDCSVD",
                   [=](std::size_t i) { return leave_one_out(sines, y, wide[i & mask]); });
+
+  MatrixX swarm(elm.dimension(6), 50);
+  for (vn::Index k = 0; k < swarm.cols(); ++k) swarm.col(k) = elm.layer().draw(6, static_cast<std::uint64_t>(k));
+  const auto generation = [=, objective = elm.objective(x, y)](const auto& executor) {
+    VectorX fitness(swarm.cols());
+    executor.for_ranges(swarm.cols(), [&](vn::Index begin, vn::Index end) {
+      objective(swarm.middleCols(begin, end - begin), fitness.segment(begin, end - begin));
+    });
+    return fitness;
+  };
+  const vn::ThreadExecutor two(2);
+  bench::require_agreement("fitness on one thread and on two",
+                           (generation(vn::SequentialExecutor{}) - generation(two)).cwiseAbs().maxCoeff(), 0);
+  program.measure_wall("generation", "vernier", [=](std::size_t) { return generation(two); });
+  program.measure_wall("generation", "one thread", [=](std::size_t) { return generation(vn::SequentialExecutor{}); });
 
   program.measure("predict", "vernier", [=](std::size_t i) { return predictor.predict(at[i & 1023]); });
   program.measure("predict", "Eigen, dynamic matrices", [=](std::size_t i) { return plain(plain_at[i & 1023]); });

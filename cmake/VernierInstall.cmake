@@ -1,11 +1,11 @@
-# The headers, and a package for find_package(vernier [COMPONENTS io ceres]).
+# The headers, and a package for find_package(vernier [COMPONENTS io ceres tbb mpi]).
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 set(vernier_package_dir "${CMAKE_INSTALL_DATADIR}/cmake/vernier")
 
-foreach(target vernier vernier_io vernier_ceres)
+foreach(target vernier vernier_io vernier_ceres vernier_tbb vernier_mpi)
   string(REPLACE "_" "-" export ${target})
   install(TARGETS ${target} EXPORT ${export} FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
   install(EXPORT ${export} NAMESPACE vernier:: FILE ${export}-targets.cmake DESTINATION "${vernier_package_dir}")

@@ -1,12 +1,12 @@
-# vernier::vernier (Eigen and threads), vernier::io (and nlohmann-json), vernier::ceres (and Ceres).
+# vernier::vernier (Eigen and threads); vernier::io, ::ceres, ::tbb and ::mpi add a library each.
 # INTERFACE targets without a flag: they ask for C++20 and nothing else.
 
 file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp")
-set(vernier_io_headers ${vernier_headers})
-list(FILTER vernier_io_headers INCLUDE REGEX "/include/vernier/io(/.*)?\\.hpp$")
-set(vernier_ceres_headers ${vernier_headers})
-list(FILTER vernier_ceres_headers INCLUDE REGEX "/include/vernier/ceres(/.*)?\\.hpp$")
-list(REMOVE_ITEM vernier_headers ${vernier_io_headers} ${vernier_ceres_headers})
+foreach(component io ceres tbb mpi)
+  set(vernier_${component}_headers ${vernier_headers})
+  list(FILTER vernier_${component}_headers INCLUDE REGEX "/include/vernier/${component}(/.*)?\\.hpp$")
+endforeach()
+list(FILTER vernier_headers EXCLUDE REGEX "/include/vernier/(io|ceres|tbb|mpi)(/.*)?\\.hpp$")
 
 # vernier_add_interface(<component> HEADERS <file>... LINK <target>...) makes vernier::<component>.
 function(vernier_add_interface component)
@@ -34,3 +34,5 @@ endfunction()
 vernier_add_interface(vernier HEADERS ${vernier_headers} LINK Eigen3::Eigen Threads::Threads)
 vernier_add_interface(io HEADERS ${vernier_io_headers} LINK vernier::vernier nlohmann_json::nlohmann_json)
 vernier_add_interface(ceres HEADERS ${vernier_ceres_headers} LINK vernier::vernier Ceres::ceres)
+vernier_add_interface(tbb HEADERS ${vernier_tbb_headers} LINK vernier::vernier TBB::tbb)
+vernier_add_interface(mpi HEADERS ${vernier_mpi_headers} LINK vernier::vernier MPI::MPI_CXX)

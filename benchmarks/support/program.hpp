@@ -16,9 +16,10 @@
 
 namespace bench {
 
-/// Median and quartiles of the repetitions of one benchmark, processor time of one call [ns].
+/// Median and quartiles of the repetitions of one benchmark, time of one call [ns].
 struct Timing {
   double lower_quartile = 0, median = 0, upper_quartile = 0;
+  bool wall = false;  ///< of the clock on the wall, not of the processor
 };
 
 /// A duration in a unit that suits it.
@@ -42,9 +43,11 @@ class Reporter : public benchmark::BenchmarkReporter {
 
   void ReportRuns(const std::vector<Run>& runs) override {
     std::vector<double> times;
+    const bool wall = runs.front().run_name.time_type == "real_time";
     for (const Run& run : runs)
       if (run.run_type == Run::RT_Iteration && run.iterations > 0)
-        times.push_back(run.cpu_accumulated_time / static_cast<double>(run.iterations) * 1e9);
+        times.push_back((wall ? run.real_accumulated_time : run.cpu_accumulated_time) /
+                        static_cast<double>(run.iterations) * 1e9);
     if (times.empty()) return;
     std::sort(times.begin(), times.end());
     const auto quantile = [&](double share) {
@@ -53,7 +56,7 @@ class Reporter : public benchmark::BenchmarkReporter {
       const std::size_t above = std::min(below + 1, times.size() - 1);
       return times[below] + (at - static_cast<double>(below)) * (times[above] - times[below]);
     };
-    const Timing timing{quantile(0.25), quantile(0.5), quantile(0.75)};
+    const Timing timing{quantile(0.25), quantile(0.5), quantile(0.75), wall};
     timings_.insert_or_assign(runs.front().run_name.function_name, timing);
   }
 
@@ -73,14 +76,13 @@ class Program {
   /// Adds a benchmark: `call(i)` with i = 0, 1, ... is timed, and what it returns is kept from being optimised away.
   template <class Call>
   void measure(const std::string& topic, const std::string& who, Call call) {
-    topics_.emplace_back(topic, who);
-    benchmark::RegisterBenchmark((topic + "/" + who).c_str(), [call](benchmark::State& state) mutable {
-      std::size_t i = 0;
-      for (auto _ : state) {
-        auto result = call(i++);
-        benchmark::DoNotOptimize(result);
-      }
-    });
+    add(topic, who, call);
+  }
+
+  /// The same by the clock on the wall, for what works on several threads.
+  template <class Call>
+  void measure_wall(const std::string& topic, const std::string& who, Call call) {
+    add(topic, who, call)->UseRealTime();
   }
 
   /// Runs everything, prints the ratios.
@@ -107,7 +109,7 @@ class Program {
       if (std::strcmp(argv[i], "--help") != 0 && std::strcmp(argv[i], "-h") != 0) continue;
       std::printf("%s\n%s", about_.c_str(), R"(
 Repetitions of all benchmarks are run in random order. The table gives the median and the quartiles of the processor
-time of one call. At the end stands, for every peer, its median divided by Vernier's (above 1: Vernier is faster); in
+time of one call, or of the time on the wall where it says so. At the end stands, for every peer, its median divided by Vernier's (above 1: Vernier is faster); in
 brackets what the quartiles make of it at worst and at best.
 
 options (of Google Benchmark)
@@ -130,15 +132,27 @@ options (of Google Benchmark)
   }
 
  private:
+  template <class Call>
+  benchmark::internal::Benchmark* add(const std::string& topic, const std::string& who, Call call) {
+    topics_.emplace_back(topic, who);
+    return benchmark::RegisterBenchmark((topic + "/" + who).c_str(), [call](benchmark::State& state) mutable {
+      std::size_t i = 0;
+      for (auto _ : state) {
+        auto result = call(i++);
+        benchmark::DoNotOptimize(result);
+      }
+    });
+  }
+
   void print_table() const {
     if (reporter_.timings().empty()) return;
     std::printf("%-50s %12s   %s\n", "processor time of one call", "median", "quartiles");
     for (const auto& [topic, who] : topics_) {
       const auto found = reporter_.timings().find(topic + "/" + who);
       if (found == reporter_.timings().end()) continue;
-      const auto& [lower, median, upper] = found->second;
-      std::printf("%-50s %12s   %s .. %s\n", found->first.c_str(), duration(median).c_str(), duration(lower).c_str(),
-                  duration(upper).c_str());
+      const auto& [lower, median, upper, wall] = found->second;
+      std::printf("%-50s %12s   %s .. %s%s\n", found->first.c_str(), duration(median).c_str(), duration(lower).c_str(),
+                  duration(upper).c_str(), wall ? "   (wall)" : "");
     }
   }
 

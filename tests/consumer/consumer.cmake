@@ -1,4 +1,4 @@
-# The user's program, with the components named in CONSUMER_COMPONENTS (io, ceres, both or none).
+# The user's program, with the components named in CONSUMER_COMPONENTS (any of io, ceres, tbb, mpi).
 
 set(CONSUMER_COMPONENTS "" CACHE STRING "Components of Vernier the program uses")
 

@@ -8,9 +8,17 @@
 #ifdef CONSUMER_CERES
 #include <vernier/ceres.hpp>
 #endif
+#ifdef CONSUMER_TBB
+#include <vernier/tbb.hpp>
+#endif
+#ifdef CONSUMER_MPI
+#include <vernier/mpi.hpp>
+#endif
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
 
 namespace vn = vernier;
 using namespace vernier::literals;
@@ -29,6 +37,18 @@ int main() {
 #endif
 #ifdef CONSUMER_CERES
   right = right && ceres::Problem{}.NumParameters() == 0;
+#endif
+#ifdef CONSUMER_TBB
+  std::atomic<long> done = 0;
+  vn::TbbExecutor(2).for_ranges(1000, [&](vn::Index begin, vn::Index end) { done += end - begin; });
+  right = right && done == 1000;
+#endif
+#ifdef CONSUMER_MPI
+  try {  // without MPI_Init, so that this runs without mpirun
+    const vn::MpiExecutor ranks;
+    right = false;
+  } catch (const std::invalid_argument&) {
+  }
 #endif
   std::printf("vernier %d.%d.%d: a reach of %.1f mm\n", VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR,
               VERNIER_VERSION_PATCH, reach * 1e3);

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, and with io and Ceres.
+# Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with
+# io, with what runs in parallel, and with everything.
 # usage: tests/consumer/run.sh [BUILD FOLDER]
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -31,7 +32,7 @@ consume() {
     "-DCONSUMER_COMPONENTS=$components" "-DCMAKE_PREFIX_PATH=$build/prefix" "${@:3}"
   quietly "$build/build.log" cmake --build "$folder"
   [[ ! -e $folder/vernier/examples && ! -e $folder/vernier/tests ]] || fail "$project builds our tests or programs"
-  printf '%-14s %-10s ' "$project" "${components:-bare}"
+  printf '%-14s %-17s ' "$project" "${components:-bare}"
   "$folder/consumer"
 }
 
@@ -48,23 +49,27 @@ refuse() {
     fail "was refused without saying '$text': $*"
   }
   rm -rf "$build/refused"
-  printf '%-14s %-10s %s\n' installed refused "$text"
+  printf '%-14s %-17s %s\n' installed refused "$text"
 }
 
 # Where a program does not ask for a library, that library is not looked for.
 no_ceres=-DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON
 no_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
+no_parallel=(-DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON)
 
-# Installed by a build that knows neither: the package is the same.
+# Installed by a build that knows none of them: the package is the same.
 quietly "$build/install.log" cmake -S "$root" -B "$build/package" -G Ninja "-DCMAKE_INSTALL_PREFIX=$build/prefix" \
-  -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF $no_ceres $no_json
+  -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF $no_ceres $no_json "${no_parallel[@]}"
 quietly "$build/install.log" cmake --install "$build/package"
 
 for project in in_tree fetch_content installed; do
-  consume $project "" $no_ceres $no_json
-  consume $project "io;ceres"
+  consume $project "" $no_ceres $no_json "${no_parallel[@]}"
+  consume $project "io;ceres;tbb;mpi"
 done
-consume installed io $no_ceres
+consume installed io $no_ceres "${no_parallel[@]}"
+consume installed "tbb;mpi" $no_ceres $no_json
 
 refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
 refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres
+refuse "find_package for module TBB called with REQUIRED" -DCONSUMER_COMPONENTS=tbb "${no_parallel[@]}"
+refuse "find_package for module MPI called with REQUIRED" -DCONSUMER_COMPONENTS=mpi "${no_parallel[@]}"

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Who evaluates independent pieces of work: this thread, or several. The results do not depend on it.
+/// Who evaluates independent pieces of work: this thread, several, or several processes. The results do not depend on
+/// it.
 
 #include <algorithm>
 #include <concepts>
@@ -24,6 +25,17 @@ using RangeFunction = FunctionRef<void(Index begin, Index end)>;
 template <class E>
 concept Executor = requires(E& executor, Index n, RangeFunction work) {
   executor.for_ranges(n, work);
+};
+
+/// An `Executor` whose workers do not all share the caller's memory and may therefore, where it is told what is
+/// written, share more out. `fill(values, work)`: `work(begin, end)` writes values(begin) to values(end - 1) and
+/// nothing else; its calls cover 0..values.size() *somewhere*, and when `fill` returns all values are *everywhere*. An
+/// exception anywhere is thrown everywhere. What `values` hold before is the same everywhere, or the workers are not at
+/// the same work, which an executor may check. `for_ranges` covers its range in every process, as for any other
+/// executor.
+template <class E>
+concept GatheringExecutor = Executor<E> && requires(E& executor, Eigen::Ref<VectorX> values, RangeFunction work) {
+  executor.fill(values, work);
 };
 
 /// Everything on the calling thread.
@@ -82,19 +94,44 @@ class ExecutorRef {
     requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>)
   ExecutorRef(E& executor)  // NOLINT(google-explicit-constructor)
       : object_(const_cast<void*>(static_cast<const void*>(&executor))),
-        call_([](void* object, Index n, RangeFunction work) { static_cast<E*>(object)->for_ranges(n, work); }) {}
+        call_([](void* object, Index n, RangeFunction work) { static_cast<E*>(object)->for_ranges(n, work); }) {
+    if constexpr (GatheringExecutor<E>)
+      fill_ = [](void* object, Eigen::Ref<VectorX> values, RangeFunction work) {
+        static_cast<E*>(object)->fill(values, work);
+      };
+  }
 
   /// See `Executor`.
   void for_ranges(Index n, RangeFunction work) const {
     call_ != nullptr ? call_(object_, n, work) : SequentialExecutor{}.for_ranges(n, work);
   }
 
+  /// Whether it refers to a `GatheringExecutor`.
+  bool gathers() const { return fill_ != nullptr; }
+
+  /// See `GatheringExecutor`; `for_ranges` where the executor is none.
+  void fill(Eigen::Ref<VectorX> values, RangeFunction work) const {
+    fill_ != nullptr ? fill_(object_, values, work) : for_ranges(values.size(), work);
+  }
+
+  /// The answer to a question that is asked once: on the calling thread, and over several processes in the first one
+  /// alone, whose answer is everybody's. What might differ between processes (a clock, a person) is decided so.
+  bool decide(FunctionRef<bool()> question) const {
+    if (fill_ == nullptr) return question();
+    VectorX answer = VectorX::Zero(1);
+    fill(answer, [&](Index, Index) { answer(0) = question() ? 1 : 0; });
+    return answer(0) != 0;
+  }
+
  private:
   void* object_ = nullptr;
   void (*call_)(void*, Index, RangeFunction) = nullptr;
+  void (*fill_)(void*, Eigen::Ref<VectorX>, RangeFunction) = nullptr;
 };
 
 static_assert(Executor<SequentialExecutor> && Executor<ThreadExecutor> && Executor<const ExecutorRef>);
+static_assert(!GatheringExecutor<SequentialExecutor> && !GatheringExecutor<ThreadExecutor> &&
+              GatheringExecutor<const ExecutorRef>);
 static_assert(!Executor<int>);
 
 }  // namespace vernier

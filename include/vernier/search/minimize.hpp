@@ -46,8 +46,10 @@ struct SearchResult {
 /// @param box       bounds; what an algorithm does with them it says itself
 /// @param stop      budget and stopping; by default the algorithm's schedule alone
 /// @param seed      same seed, same bits, whatever the executor
-/// @param executor  who evaluates a population; a batch objective gets one part a thread
-/// @param observer  sees every generation, the first population as generation 0
+/// @param executor  who evaluates a population; a batch objective gets one part a thread. A `GatheringExecutor` may
+/// share it out over processes that all run this same search: fitness is all they have to exchange.
+/// @param observer  sees every generation, the first population as generation 0; over several processes the first one's
+/// is asked, for all of them
 /// @throws std::invalid_argument on an unusable box or option
 template <Metaheuristic A, Objective F>
 SearchResult minimize(const A& algorithm, const F& objective, const Box& box, const Stop& stop = {},
@@ -58,7 +60,8 @@ SearchResult minimize(const A& algorithm, const F& objective, const Box& box, co
   Index evaluations = 0, last_size = 0;
   const auto counted = [&](const MatrixX& population, VectorX& fitness) {
     fitness.resize(population.cols());
-    executor.for_ranges(population.cols(), [&](Index begin, Index end) {
+    if (executor.gathers()) fitness = population.row(0).transpose();  // by which processes know each other's search
+    executor.fill(fitness, [&](Index begin, Index end) {
       if constexpr (BatchObjective<F>) {
         objective(population.middleCols(begin, end - begin), fitness.segment(begin, end - begin));
       } else {
@@ -81,7 +84,7 @@ SearchResult minimize(const A& algorithm, const F& objective, const Box& box, co
     const auto result = [&](SearchStatus status) {
       return SearchResult{state.best, state.best_fitness, evaluations, state.generation, status};
     };
-    if (!observer(Progress{state.generation, evaluations, state.best_fitness}))
+    if (!executor.decide([&] { return observer(Progress{state.generation, evaluations, state.best_fitness}); }))
       return result(SearchStatus::observer_stopped);
     if (state.best_fitness <= stop.target) return result(SearchStatus::target_reached);
     if (algorithm.done(state)) return result(SearchStatus::schedule_ended);

@@ -1,0 +1,6 @@
+#pragma once
+
+/// @file
+/// Populations shared out over MPI ranks: needs an MPI library beside Eigen.
+
+#include "vernier/mpi/executor.hpp"

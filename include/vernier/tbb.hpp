@@ -1,0 +1,6 @@
+#pragma once
+
+/// @file
+/// Populations on the threads of oneTBB: needs oneTBB beside Eigen.
+
+#include "vernier/tbb/executor.hpp"

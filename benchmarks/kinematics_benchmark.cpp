@@ -191,6 +191,11 @@ int work(bench::Program& program, int argc, char** argv) {
                   [=](std::size_t i) { return central_differences(arm, joints[i & mask]); });
 
   program.measure("10,000 positions", "vernier", [=](std::size_t) { return vn::positions(arm, many); });
+  program.measure("10,000 positions", "vernier, one by one", [=](std::size_t) {
+    vn::PointRows out(many.rows(), 3);
+    for (vn::Index i = 0; i < many.rows(); ++i) out.row(i) = arm.position(many.row(i).transpose()).transpose();
+    return out;
+  });
   program.measure("10,000 positions", "KDL", [=](std::size_t) {
     vn::PointRows out(many.rows(), 3);
     KDL::Frame frame;
@@ -198,6 +203,13 @@ int work(bench::Program& program, int argc, char** argv) {
       kdl->forward.JntToCart(kdl_many[i], frame);
       for (int k = 0; k < 3; ++k) out(static_cast<vn::Index>(i), k) = frame.p(k);
     }
+    return out;
+  });
+
+  program.measure("10,000 poses", "vernier", [=](std::size_t) { return vn::poses(arm, many); });
+  program.measure("10,000 poses", "vernier, one by one", [=](std::size_t) {
+    std::vector<vn::Isometry3> out(static_cast<std::size_t>(many.rows()));
+    for (vn::Index i = 0; i < many.rows(); ++i) out[static_cast<std::size_t>(i)] = arm.pose(many.row(i).transpose());
     return out;
   });
 

@@ -16,6 +16,18 @@
 /// Before a loop of a constant few steps: unrolls it whole, so that what it indexes stays in registers.
 #define VERNIER_UNROLL _Pragma("GCC unroll 16")
 
+/// A sum from which nothing is cancelled, so that -ffast-math does not undo the rounding it is there for.
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_assoc_barrier)
+#define VERNIER_AS_WRITTEN(sum) __builtin_assoc_barrier(sum)
+#elif __has_builtin(__arithmetic_fence) && defined(__x86_64__)
+#define VERNIER_AS_WRITTEN(sum) __arithmetic_fence(sum)
+#endif
+#endif
+#if !defined(VERNIER_AS_WRITTEN)
+#define VERNIER_AS_WRITTEN(sum) (sum)
+#endif
+
 namespace vernier {
 
 /// Instruction sets that the kernels are built for.
@@ -49,22 +61,26 @@ struct Simd {
   using Integer __attribute__((vector_size(W * 8))) = std::int64_t;
 };
 
-/// Calls `kernel.template operator()<W>()`, which must be always inlined, with the widest vectors that give the same
-/// bits as any other: AVX2 without FMA, else the baseline's.
+// Not inlined: a call costs nothing beside a kernel, and every user's compile time would grow.
 template <class Kernel>
 [[gnu::noinline]] void run_baseline(const Kernel& kernel) noexcept {
   kernel.template operator()<2>();
 }
 #if defined(__x86_64__)
 template <class Kernel>
-__attribute__((target("avx2"))) [[gnu::noinline]] void run_avx2(const Kernel& kernel) noexcept {
+[[gnu::noinline, gnu::target("avx2")]] void run_avx2(const Kernel& kernel) noexcept {
   kernel.template operator()<4>();
 }
 #endif
+
+/// Calls `kernel.template operator()<W>()`, an always inlined lambda, with the widest vectors that give the same bits
+/// as any other: AVX2 without FMA, else the baseline's.
 template <class Kernel>
 void run_same_bits(const Kernel& kernel, InstructionSet set = widest_instruction_set()) noexcept {
 #if defined(__x86_64__)
   if (set != InstructionSet::baseline) return run_avx2(kernel);
+#else
+  static_cast<void>(set);
 #endif
   run_baseline(kernel);
 }
@@ -81,16 +97,6 @@ VERNIER_INLINE void store(double* to, const typename Simd<W>::Double& v) {
   std::memcpy(to, &v, sizeof v);
 }
 
-/// A value the compiler knows nothing of, so that it cannot undo what rounds (as -ffast-math would).
-template <int W>
-VERNIER_INLINE void forget(typename Simd<W>::Double& v) {
-#if defined(__x86_64__)
-  __asm__("" : "+x"(v));
-#else
-  __asm__("" : "+m"(v));
-#endif
-}
-
 /// z becomes 1 / (1 + exp(-z)), to about 1e-15 relative: exp(-z) = 2^k exp(r), |r| <= ln(2) / 2, Taylor to r^13.
 template <int W>
 VERNIER_INLINE void sigmoid(typename Simd<W>::Double& z) {
@@ -103,9 +109,8 @@ VERNIER_INLINE void sigmoid(typename Simd<W>::Double& z) {
   Double x = -z;
   x = x > 708.0 ? Double{} + 708.0 : x;  // beyond: exp overflows, the sigmoid is 0 or 1 to the last bit
   x = x < -708.0 ? Double{} - 708.0 : x;
-  Double shifted = x * 1.44269504088896338700 + magic;
-  forget<W>(shifted);
-  const Double k = shifted - magic;
+  const Double shifted = VERNIER_AS_WRITTEN(x * 1.44269504088896338700 + magic);
+  const Double k = VERNIER_AS_WRITTEN(shifted - magic);
   const Double r = (x - k * 6.93147180369123816490e-01) - k * 1.90821492927058770002e-10;
   Double p = Double{} + factors[13];
   VERNIER_UNROLL
@@ -138,9 +143,8 @@ VERNIER_INLINE void sincos(const typename Simd<W>::Double (&angle)[Count], typen
   for (int i = 0; i < Count; ++i) {
     const Double x = angle[i];
     beyond |= (x > largest) | (x < -largest);
-    Double shifted = x * 6.36619772367581382433e-01 + magic;
-    forget<W>(shifted);
-    const Double k = shifted - magic;
+    const Double shifted = VERNIER_AS_WRITTEN(x * 6.36619772367581382433e-01 + magic);
+    const Double k = VERNIER_AS_WRITTEN(shifted - magic);
     const Double r =
         ((x - k * 1.57079632673412561417e+00) - k * 6.07710050630396597660e-11) - k * 2.02226624879595063154e-21;
     const Double t = r * r, t2 = t * t;  // in pairs of terms, so that less waits for less

@@ -37,6 +37,13 @@ struct MovingFrame {
     }
   }
 
+  /// As a matrix, where V is a scalar.
+  IsometryOf<V> isometry() const {
+    IsometryOf<V> t = IsometryOf<V>::Identity();  // its last row is set too
+    for (int k = 0; k < 3; ++k) t.matrix().row(k) << x[k], y[k], z[k], p[k];
+    return t;
+  }
+
   template <class C>
   VERNIER_INLINE static void turn(V (&from)[Parts], V (&towards)[Parts], const C& c, const C& s) {
     VERNIER_UNROLL
@@ -165,7 +172,7 @@ struct ChainRows {
     Double angle[vectors], sine[vectors], cosine[vectors];
     if constexpr (N < W) {
       Double angles{};
-      for (int i = 0; i < N; ++i) angles[i] = theta[i] + turning[i] * q[i];
+      for (std::size_t i = 0; i < N; ++i) angles[i] = theta[i] + turning[i] * q[i];
       angle[0] = angles;
     } else {
       VERNIER_UNROLL

@@ -197,9 +197,7 @@ class DhChain {
         }
       }
     }
-    IsometryOf<S> t = IsometryOf<S>::Identity();  // its last row is set too
-    for (int k = 0; k < 3; ++k) t.matrix().row(k) << frame.x[k], frame.y[k], frame.z[k], frame.p[k];
-    return t;
+    return frame.isometry();
   }
 
   /// Their values [m, rad].

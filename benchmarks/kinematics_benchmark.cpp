@@ -29,7 +29,8 @@ constexpr const char* about =
   pose and jacobian    both: ChainFkSolverPos_recursive and ChainJntToJacSolver
   jacobian             the Jacobian alone: ChainJntToJacSolver
   parameter jacobian   6 x 30, derivative of the pose with respect to the DH parameters: central differences
-  10,000 positions     tool positions of 10,000 joint combinations
+  10,000 positions     tool positions of 10,000 joint combinations, as a block and one by one
+  10,000 poses         the same with orientations
   inverse kinematics   full pose to 1e-6 m and 1e-6 rad from a seed up to 0.05 rad off in each joint, no joint limits:
                        ChainIkSolverPos_LMA, ChainIkSolverPos_NR
 

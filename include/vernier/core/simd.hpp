@@ -127,6 +127,7 @@ VERNIER_INLINE void sigmoid(typename Simd<W>::Double& z) {
 /// The angle less the nearest multiple of pi/2, which is subtracted in three parts of 33 bits, so that their products
 /// with a quadrant's number below 2^19 are exact; then minimax polynomials on [-pi/4, pi/4]. NaN where an angle is not
 /// finite.
+/// @cite Cody and Waite 1980
 template <int W, int Count>
 VERNIER_INLINE void sincos(const typename Simd<W>::Double (&angle)[Count], typename Simd<W>::Double (&sine)[Count],
                            typename Simd<W>::Double (&cosine)[Count]) {

@@ -97,7 +97,7 @@ class DhChain {
   }
 
   /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n joint combinations; several at a time.
-  /// For the tool's origin the same bits as `position` of each (unless the compiler was allowed to use FMA).
+  /// For the tool's origin the same bits as `position` of each (to 1e-14 where the compiler's flags allow FMA).
   PointRows positions(const JointRows<N>& joints, const Vector3& point = Vector3::Zero()) const {
     const Index n = joints.rows();
     if (n < widest) return positions(padded(joints), point).topRows(n);
@@ -115,8 +115,13 @@ class DhChain {
 
   /// base_T_tool at n joint combinations, several at a time; the same bits as `pose` of each (as above).
   std::vector<Isometry3> poses(const JointRows<N>& joints) const {
-    std::vector<Isometry3> out(static_cast<std::size_t>(std::max(joints.rows(), widest)));
-    walk_rows(joints.rows() < widest ? padded(joints) : joints, [&](Index first, const auto& frame) VERNIER_INLINED {
+    if (joints.rows() < widest) {
+      std::vector<Isometry3> out = poses(padded(joints));
+      out.resize(static_cast<std::size_t>(joints.rows()));
+      return out;
+    }
+    std::vector<Isometry3> out(static_cast<std::size_t>(joints.rows()));
+    walk_rows(joints, [&](Index first, const auto& frame) VERNIER_INLINED {
       constexpr std::size_t width = sizeof frame.p[0] / sizeof(double);
       for (std::size_t lane = 0; lane < width; ++lane) {
         double* pose = out[static_cast<std::size_t>(first) + lane].data();
@@ -129,7 +134,6 @@ class DhChain {
         }
       }
     });
-    out.resize(static_cast<std::size_t>(joints.rows()));
     return out;
   }
 

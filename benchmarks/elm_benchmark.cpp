@@ -14,7 +14,7 @@
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
-#include "vernier/regression/simd.hpp"
+#include "vernier/core/simd.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 

@@ -29,7 +29,8 @@ constexpr const char* about =
   pose and jacobian    both: ChainFkSolverPos_recursive and ChainJntToJacSolver
   jacobian             the Jacobian alone: ChainJntToJacSolver
   parameter jacobian   6 x 30, derivative of the pose with respect to the DH parameters: central differences
-  10,000 positions     tool positions of 10,000 joint combinations
+  10,000 positions     tool positions of 10,000 joint combinations, as a block and one by one
+  10,000 poses         the same with orientations
   inverse kinematics   full pose to 1e-6 m and 1e-6 rad from a seed up to 0.05 rad off in each joint, no joint limits:
                        ChainIkSolverPos_LMA, ChainIkSolverPos_NR
 
@@ -191,6 +192,11 @@ int work(bench::Program& program, int argc, char** argv) {
                   [=](std::size_t i) { return central_differences(arm, joints[i & mask]); });
 
   program.measure("10,000 positions", "vernier", [=](std::size_t) { return vn::positions(arm, many); });
+  program.measure("10,000 positions", "vernier, one by one", [=](std::size_t) {
+    vn::PointRows out(many.rows(), 3);
+    for (vn::Index i = 0; i < many.rows(); ++i) out.row(i) = arm.position(many.row(i).transpose()).transpose();
+    return out;
+  });
   program.measure("10,000 positions", "KDL", [=](std::size_t) {
     vn::PointRows out(many.rows(), 3);
     KDL::Frame frame;
@@ -198,6 +204,13 @@ int work(bench::Program& program, int argc, char** argv) {
       kdl->forward.JntToCart(kdl_many[i], frame);
       for (int k = 0; k < 3; ++k) out(static_cast<vn::Index>(i), k) = frame.p(k);
     }
+    return out;
+  });
+
+  program.measure("10,000 poses", "vernier", [=](std::size_t) { return vn::poses(arm, many); });
+  program.measure("10,000 poses", "vernier, one by one", [=](std::size_t) {
+    std::vector<vn::Isometry3> out(static_cast<std::size_t>(many.rows()));
+    for (vn::Index i = 0; i < many.rows(); ++i) out[static_cast<std::size_t>(i)] = arm.pose(many.row(i).transpose());
     return out;
   });
 

@@ -62,17 +62,19 @@ concept ParametricModel = KinematicModel<M> &&
   { model.template pose<double>(q, p) } -> std::same_as<Isometry3>;
 };
 
-/// Tool positions of n configurations, n x 3 [m].
+/// Tool positions of n configurations, n x 3 [m]. A model that has `positions(joints)` itself is asked for them.
 template <KinematicModel M>
 PointRows positions(const M& model, const JointRows<M::dof>& joints) {
+  if constexpr (requires { model.positions(joints); }) return model.positions(joints);
   PointRows out(joints.rows(), 3);
   for (Index i = 0; i < joints.rows(); ++i) out.row(i) = model.position(joints.row(i).transpose()).transpose();
   return out;
 }
 
-/// Poses of n configurations.
+/// Poses of n configurations. A model that has `poses(joints)` itself is asked for them.
 template <KinematicModel M>
 std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
+  if constexpr (requires { model.poses(joints); }) return model.poses(joints);
   std::vector<Isometry3> out;
   out.reserve(static_cast<std::size_t>(joints.rows()));
   for (Index i = 0; i < joints.rows(); ++i) out.push_back(model.pose(joints.row(i).transpose()));

@@ -29,9 +29,10 @@ Framed<DhChain<N>> to_standard(const DhChain<N, ModifiedDh>& chain) {
     row.beta = next.beta;
   }
   const DhRow& first = chain.row(0);
-  detail::MovingFrame<double> base;
+  detail::MovingFrame<double, 3> base;
+  base.set_identity();
   base.rotate_x(std::cos(first.alpha), std::sin(first.alpha));
-  base.p += first.a * base.x;
+  base.move(base.x, first.a);
   if (first.beta != 0) base.rotate_y(std::cos(first.beta), std::sin(first.beta));
   return Framed<DhChain<N>>(DhChain<N>::from_rows(rows), base.isometry());
 }

@@ -3,63 +3,19 @@
 /// @file
 /// A serial arm as a compile-time chain of Denavit-Hartenberg rows.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/kinematics/chain_walk.hpp"
 #include "vernier/kinematics/concepts.hpp"
-#include "vernier/kinematics/constexpr_trig.hpp"
 #include "vernier/kinematics/dh.hpp"
 
 namespace vernier {
-
-namespace detail {
-
-/// A frame carried along the chain: axes and origin, in base coordinates.
-template <class S>
-struct MovingFrame {
-  using Vector = Eigen::Matrix<S, 3, 1>;
-  Vector x = Vector::UnitX(), y = Vector::UnitY(), z = Vector::UnitZ(), p = Vector::Zero();
-
-  static void turn(Vector& from, Vector& towards, const S& c, const S& s) {
-    const Vector turned = c * from + s * towards;
-    towards = c * towards - s * from;
-    from = turned;
-  }
-  void rotate_x(const S& c, const S& s) { turn(y, z, c, s); }
-  void rotate_y(const S& c, const S& s) { turn(z, x, c, s); }
-  void rotate_z(const S& c, const S& s) { turn(x, y, c, s); }
-
-  IsometryOf<S> isometry() const {
-    IsometryOf<S> t = IsometryOf<S>::Identity();  // its last row is set too
-    t.matrix().template block<3, 1>(0, 0) = x;
-    t.matrix().template block<3, 1>(0, 1) = y;
-    t.matrix().template block<3, 1>(0, 2) = z;
-    t.matrix().template block<3, 1>(0, 3) = p;
-    return t;
-  }
-};
-
-/// A screw along the chain: what one elementary motion does to everything behind it.
-struct ElementaryMotion {
-  Vector3 axis, point;
-  bool rotation;
-
-  /// Column of a Jacobian at the tool point.
-  Vector6 column(const Vector3& tool) const {
-    Vector6 c;
-    if (rotation) {
-      c << axis.cross(tool - point), axis;
-    } else {
-      c << axis, Vector3::Zero();
-    }
-    return c;
-  }
-};
-
-}  // namespace detail
 
 /// A chain of N joints in a Denavit-Hartenberg convention. Base frame: that of row 1; tool frame: that of row N.
 ///
@@ -78,7 +34,7 @@ class DhChain {
   using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
   /// A chain of exactly N rows.
-  constexpr DhChain(const DhTable<N>& table) : rows_(table.rows) { prepare(); }  // NOLINT(google-explicit-constructor)
+  constexpr DhChain(const DhTable<N>& table) : rows_(table.rows) {}  // NOLINT(google-explicit-constructor)
   /// A chain of exactly N rows.
   template <int M>
     requires(M == N)
@@ -87,36 +43,97 @@ class DhChain {
   /// A chain whose rows are only known at run time.
   static constexpr DhChain from_rows(const std::array<DhRow, N>& rows) {
     DhChain chain;
-    chain.rows_ = rows;
-    chain.prepare();
+    chain.rows_ = Rows(rows);
     return chain;
   }
 
   /// Row i, counted from 0.
-  constexpr const DhRow& row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
+  constexpr const DhRow& row(int i) const { return rows_.rows[static_cast<std::size_t>(i)]; }
   /// All rows.
-  constexpr const std::array<DhRow, N>& rows() const { return rows_; }
+  constexpr const std::array<DhRow, N>& rows() const { return rows_.rows; }
   /// Equal in every row.
-  bool operator==(const DhChain& other) const { return rows_ == other.rows_; }
-
-  // The walks are not inlined: a call costs nothing beside them, and every user's compile time would grow.
+  bool operator==(const DhChain& other) const { return rows() == other.rows(); }
 
   /// base_T_tool.
-  [[gnu::noinline]] Isometry3 pose(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).isometry(); }
+  Isometry3 pose(const JointVector<N>& q) const noexcept {
+    Isometry3 out;
+    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+      detail::PoseFrame<W> frame;
+      rows_.template walk<W>(q.data(), frame, ignore_motion);
+      detail::store_pose<W>(out.data(), frame);
+    });
+    return out;
+  }
   /// Tool position [m], base frame.
-  [[gnu::noinline]] Vector3 position(const JointVector<N>& q) const noexcept { return walk(q, ignore_motion).p; }
+  Vector3 position(const JointVector<N>& q) const noexcept {
+    double out[4];
+    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+      detail::PoseFrame<W> frame;
+      rows_.template walk<W>(q.data(), frame, ignore_motion);
+      detail::store_vector<W>(out, frame.p);
+    });
+    return Vector3(out);
+  }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
   /// Both in one pass.
-  [[gnu::noinline]] PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
-    std::array<detail::ElementaryMotion, N> joints;
-    const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
-      if (parameter == joint_parameter(i))
-        joints[static_cast<std::size_t>(i)] = {axis, point, parameter == DhParameter::theta};
+  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
+    PoseAndJacobian<N> out;
+    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+      detail::ElementaryMotion joints[N];
+      detail::PoseFrame<W> frame;
+      rows_.template walk<W>(q.data(), frame,
+                             [&](int i, DhParameter parameter, const auto& axis, const auto& point) VERNIER_INLINED {
+                               if (parameter != DhParameter::theta) return;  // a sliding joint's axis is the same
+                               detail::store_vector<W>(joints[i].axis, axis);
+                               detail::store_vector<W>(joints[i].point, point);
+                             });
+      detail::store_pose<W>(out.pose.data(), frame);
+      for (int i = 0; i < N; ++i)
+        joints[i].column(row(i).joint == JointType::revolute, out.pose.data() + 12, out.jacobian.data() + 6 * i);
     });
-    PoseAndJacobian<N> out{end.isometry(), {}};
-    for (int i = 0; i < N; ++i) out.jacobian.col(i) = joints[static_cast<std::size_t>(i)].column(end.p);
+    return out;
+  }
+
+  /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n joint combinations; several at a time.
+  /// For the tool's origin the same bits as `position` of each (to 1e-14 where the compiler's flags allow FMA).
+  PointRows positions(const JointRows<N>& joints, const Vector3& point = Vector3::Zero()) const {
+    const Index n = joints.rows();
+    if (n < widest) return positions(padded(joints), point).topRows(n);
+    PointRows out(n, 3);
+    const bool at_origin = point.isZero(0);
+    walk_rows(joints, [&](Index first, const auto& frame) VERNIER_INLINED {
+      for (int k = 0; k < 3; ++k) {
+        auto p = frame.p[k];
+        if (!at_origin) p += (point[0] * frame.x[k] + point[1] * frame.y[k]) + point[2] * frame.z[k];
+        std::memcpy(out.data() + k * n + first, &p, sizeof p);
+      }
+    });
+    return out;
+  }
+
+  /// base_T_tool at n joint combinations, several at a time; the same bits as `pose` of each (as above).
+  std::vector<Isometry3> poses(const JointRows<N>& joints) const {
+    if (joints.rows() < widest) {
+      std::vector<Isometry3> out = poses(padded(joints));
+      out.resize(static_cast<std::size_t>(joints.rows()));
+      return out;
+    }
+    std::vector<Isometry3> out(static_cast<std::size_t>(joints.rows()));
+    walk_rows(joints, [&](Index first, const auto& frame) VERNIER_INLINED {
+      constexpr std::size_t width = sizeof frame.p[0] / sizeof(double);
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        double* pose = out[static_cast<std::size_t>(first) + lane].data();
+        VERNIER_UNROLL
+        for (int k = 0; k < 3; ++k) {
+          pose[k] = frame.x[k][lane];
+          pose[4 + k] = frame.y[k][lane];
+          pose[8 + k] = frame.z[k][lane];
+          pose[12 + k] = frame.p[k][lane];
+        }
+      }
+    });
     return out;
   }
 
@@ -128,27 +145,33 @@ class DhChain {
   };
 
   /// Joint axes and origins of the link frames.
-  [[gnu::noinline]] Links links(const JointVector<N>& q) const noexcept {
+  Links links(const JointVector<N>& q) const noexcept {
+    const Motions motions = elementary_motions(q);
     Links out;
-    const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
-      if (parameter == Convention::order.front() && i > 0) out.origin[static_cast<std::size_t>(i - 1)] = point;
-      if (parameter != joint_parameter(i)) return;
-      out.axis[static_cast<std::size_t>(i)] = axis;
-      out.point[static_cast<std::size_t>(i)] = point;
-    });
-    out.origin[N - 1] = end.p;
+    for (int i = 0; i < N; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const bool revolute = row(i).joint == JointType::revolute;
+      const auto& joint = motions.of(i, revolute ? DhParameter::theta : DhParameter::d);
+      out.axis[at] = Vector3(joint.axis);
+      out.point[at] = Vector3(joint.point);
+      if (i > 0) out.origin[at - 1] = Vector3(motions.of(i, Convention::order.front()).point);
+    }
+    out.origin[N - 1] = Vector3(motions.tool);
     return out;
   }
 
   /// 6 x 5N, analytic.
-  [[gnu::noinline]] ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<N>& q) const noexcept {
-    std::array<detail::ElementaryMotion, num_parameters> motions;
-    const auto end = walk(q, [&](int i, DhParameter parameter, const Vector3& axis, const Vector3& point) {
-      const bool rotation = parameter != DhParameter::a && parameter != DhParameter::d;
-      motions[static_cast<std::size_t>(5 * i + static_cast<int>(parameter))] = {axis, point, rotation};
-    });
+  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<N>& q) const noexcept {
+    const Motions motions = elementary_motions(q);
     ParameterJacobian<num_parameters> out;
-    for (int k = 0; k < num_parameters; ++k) out.col(k) = motions[static_cast<std::size_t>(k)].column(end.p);
+    for (int i = 0; i < N; ++i) {
+      VERNIER_UNROLL
+      for (int k = 0; k < 5; ++k) {
+        const auto parameter = static_cast<DhParameter>(k);
+        const bool rotation = parameter != DhParameter::a && parameter != DhParameter::d;
+        motions.of(i, parameter).column(rotation, motions.tool, out.data() + 6 * (5 * i + k));
+      }
+    }
     return out;
   }
 
@@ -157,18 +180,19 @@ class DhChain {
   IsometryOf<S> pose(const Eigen::Matrix<S, N, 1>& q, const Eigen::Matrix<S, num_parameters, 1>& p) const {
     using std::cos;
     using std::sin;
-    detail::MovingFrame<S> frame;
+    detail::MovingFrame<S, 3> frame;
+    frame.set_identity();
     for (int i = 0; i < N; ++i) {
       const bool revolute = row(i).joint == JointType::revolute;
       for (const DhParameter parameter : Convention::order) {
         S value = p(5 * i + static_cast<int>(parameter));
         switch (parameter) {
-          case DhParameter::a: frame.p += value * frame.x; break;
+          case DhParameter::a: frame.move(frame.x, value); break;
           case DhParameter::alpha: frame.rotate_x(cos(value), sin(value)); break;
           case DhParameter::beta: frame.rotate_y(cos(value), sin(value)); break;
           case DhParameter::d:
             if (!revolute) value += q(i);
-            frame.p += value * frame.z;
+            frame.move(frame.z, value);
             break;
           case DhParameter::theta:
             if (revolute) value += q(i);
@@ -190,13 +214,11 @@ class DhChain {
 
   /// The same arm with other values.
   DhChain with_parameters(const Parameters& p) const {
-    DhChain other = *this;
-    for (int i = 0; i < N; ++i) {
-      DhRow& r = other.rows_[static_cast<std::size_t>(i)];
-      r = {p(5 * i), p(5 * i + 1), p(5 * i + 2), p(5 * i + 3), p(5 * i + 4), r.joint};
-    }
-    other.prepare();
-    return other;
+    std::array<DhRow, N> rows;
+    for (int i = 0; i < N; ++i)
+      rows[static_cast<std::size_t>(i)] = {p(5 * i),     p(5 * i + 1), p(5 * i + 2),
+                                           p(5 * i + 3), p(5 * i + 4), row(i).joint};
+    return from_rows(rows);
   }
 
   /// Their names, in the order of `parameters`.
@@ -216,64 +238,59 @@ class DhChain {
   }
 
  private:
+  using Rows = detail::ChainRows<N, Convention>;
+
   constexpr DhChain() = default;
 
-  static constexpr auto ignore_motion = [](int, DhParameter, const Vector3&, const Vector3&) {};
+  static constexpr auto ignore_motion = [](int, DhParameter, const auto&, const auto&) VERNIER_INLINED {};
 
-  constexpr void prepare() {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      twist_[i] = detail::constexpr_sincos(rows_[i].alpha);
-      hayati_[i] = detail::constexpr_sincos(rows_[i].beta);
+  /// All that moves what lies behind it, as parameters are counted, and where the tool is.
+  struct Motions {
+    detail::ElementaryMotion all[num_parameters];
+    double tool[4];
+
+    const detail::ElementaryMotion& of(int i, DhParameter parameter) const {
+      return all[5 * i + static_cast<int>(parameter)];
     }
+  };
+
+  Motions elementary_motions(const JointVector<N>& q) const noexcept {
+    Motions out;
+    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+      detail::PoseFrame<W> frame;
+      rows_.template walk<W>(q.data(), frame,
+                             [&](int i, DhParameter parameter, const auto& axis, const auto& point) VERNIER_INLINED {
+                               auto& motion = out.all[5 * i + static_cast<int>(parameter)];
+                               detail::store_vector<W>(motion.axis, axis);
+                               detail::store_vector<W>(motion.point, point);
+                             });
+      detail::store_vector<W>(out.tool, frame.p);
+    });
+    return out;
   }
 
-  constexpr DhParameter joint_parameter(int i) const {
-    return row(i).joint == JointType::revolute ? DhParameter::theta : DhParameter::d;
+  static constexpr Index widest = 4;  // as many poses as any vector holds
+
+  static JointRows<N> padded(const JointRows<N>& joints) {
+    JointRows<N> out = JointRows<N>::Zero(widest, N);
+    out.topRows(joints.rows()) = joints;
+    return out;
   }
 
-  /// Carries a frame from base to tool; `record(row, parameter, axis, point)` sees each elementary motion before it is
-  /// made.
-  template <class Record>
-  detail::MovingFrame<double> walk(const JointVector<N>& q, Record&& record) const noexcept {
-    detail::MovingFrame<double> frame;
-    for (int i = 0; i < N; ++i) {
-      const DhRow& r = row(i);
-      const bool revolute = r.joint == JointType::revolute;
-      const auto& [sin_alpha, cos_alpha] = twist_[static_cast<std::size_t>(i)];
-      const auto& [sin_beta, cos_beta] = hayati_[static_cast<std::size_t>(i)];
-      for (const DhParameter parameter : Convention::order) {
-        switch (parameter) {
-          case DhParameter::a:
-            record(i, parameter, frame.x, frame.p);
-            frame.p += r.a * frame.x;
-            break;
-          case DhParameter::alpha:
-            record(i, parameter, frame.x, frame.p);
-            frame.rotate_x(cos_alpha, sin_alpha);
-            break;
-          case DhParameter::beta:
-            record(i, parameter, frame.y, frame.p);
-            if (sin_beta != 0) frame.rotate_y(cos_beta, sin_beta);
-            break;
-          case DhParameter::d:
-            record(i, parameter, frame.z, frame.p);
-            frame.p += (revolute ? r.d : r.d + q(i)) * frame.z;
-            break;
-          case DhParameter::theta: {
-            record(i, parameter, frame.z, frame.p);
-            const double angle = revolute ? r.theta + q(i) : r.theta;
-            frame.rotate_z(std::cos(angle), std::sin(angle));
-            break;
-          }
-        }
+  /// Hands out the frames of all rows, `use(first row, frames)`; there are at least as many as a vector holds.
+  template <class Use>
+  void walk_rows(const JointRows<N>& joints, const Use& use) const {
+    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+      for (Index next = 0; next < joints.rows(); next += W) {
+        const Index first = std::min(next, joints.rows() - W);  // the last vector overlaps with the one before
+        detail::BlockFrame<W> frame;
+        rows_.template walk_block<W>(joints.data() + first, joints.rows(), frame);
+        use(first, frame);
       }
-    }
-    return frame;
+    });
   }
 
-  std::array<DhRow, N> rows_{};
-  std::array<detail::SinCos, N> twist_{};   // of alpha
-  std::array<detail::SinCos, N> hayati_{};  // of beta
+  Rows rows_;
 };
 
 }  // namespace vernier

@@ -76,6 +76,25 @@ class Framed {
   Vector3 position(const JointVector<dof>& q) const noexcept {
     return base() * (model_.pose(q) * tool().translation());
   }
+  /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n joint combinations; equal to those one by
+  /// one to 1e-14.
+  PointRows positions(const JointRows<dof>& joints, const Vector3& point = Vector3::Zero()) const requires
+      requires(const Model& m) {
+    m.positions(joints, point);
+  }
+  {
+    const PointRows inner = model_.positions(joints, tool() * point);
+    return inner.lazyProduct(base().linear().transpose()).rowwise() + base().translation().transpose();
+  }
+  /// base_T_tool at n joint combinations.
+  std::vector<Isometry3> poses(const JointRows<dof>& joints) const requires requires(const Model& m) {
+    m.poses(joints);
+  }
+  {
+    std::vector<Isometry3> out = model_.poses(joints);
+    for (Isometry3& pose : out) pose = base() * pose * tool();
+    return out;
+  }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 

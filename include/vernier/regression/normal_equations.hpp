@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "vernier/regression/hidden_layer.hpp"
-#include "vernier/regression/simd.hpp"
+#include "vernier/core/simd.hpp"
 
 namespace vernier::detail {
 

@@ -1,0 +1,198 @@
+// Blocks of poses against poses one by one, and both against the chain written with the standard library's functions.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "random_chains.hpp"
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vn = vernier;
+using vernier_test::random_chain;
+using vernier_test::random_joint_rows;
+
+namespace {
+
+template <class Convention>
+class PoseBlocks : public ::testing::Test {};
+using Conventions = ::testing::Types<vn::StandardDh, vn::ModifiedDh>;
+TYPED_TEST_SUITE(PoseBlocks, Conventions);
+
+template <class Check>
+void for_all_sizes(const Check& check) {
+  check(std::integral_constant<int, 1>{});
+  check(std::integral_constant<int, 2>{});
+  check(std::integral_constant<int, 3>{});
+  check(std::integral_constant<int, 4>{});
+  check(std::integral_constant<int, 5>{});
+  check(std::integral_constant<int, 6>{});
+  check(std::integral_constant<int, 7>{});
+  check(std::integral_constant<int, 9>{});
+}
+
+TYPED_TEST(PoseBlocks, AreThePosesOneByOneToTheBit) {
+  vn::Rng rng(1);
+  for_all_sizes([&]<int N>(std::integral_constant<int, N>) {
+    for (const vn::Index n : {0, 1, 2, 3, 4, 5, 7, 8, 9, 13, 100}) {
+      const auto arm = random_chain<N, TypeParam>(rng);
+      const vn::JointRows<N> joints = random_joint_rows<N>(rng, n);
+      const vn::PointRows points = vn::positions(arm, joints);
+      const std::vector<vn::Isometry3> all = vn::poses(arm, joints);
+      ASSERT_EQ(points.rows(), n);
+      ASSERT_EQ(all.size(), static_cast<std::size_t>(n));
+      for (vn::Index i = 0; i < n; ++i) {
+        const vn::JointVector<N> q = joints.row(i).transpose();
+        EXPECT_EQ(points.row(i).transpose(), arm.position(q));
+        EXPECT_EQ(all[static_cast<std::size_t>(i)].matrix(), arm.pose(q).matrix());
+      }
+    }
+  });
+}
+
+TYPED_TEST(PoseBlocks, AndSinglePosesAreThoseOfTheLibraryFunctions) {
+  vn::Rng rng(2);
+  for_all_sizes([&]<int N>(std::integral_constant<int, N>) {
+    for (int repetition = 0; repetition < 20; ++repetition) {
+      const auto arm = random_chain<N, TypeParam>(rng);
+      const vn::JointRows<N> joints = random_joint_rows<N>(rng, 10);
+      const std::vector<vn::Isometry3> all = vn::poses(arm, joints);
+      for (vn::Index i = 0; i < joints.rows(); ++i) {
+        const vn::JointVector<N> q = joints.row(i).transpose();
+        const vn::Isometry3 expected = arm.template pose<double>(q, arm.parameters());
+        EXPECT_LE((all[static_cast<std::size_t>(i)].matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LE((arm.pose(q).matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+      }
+    }
+  });
+}
+
+TYPED_TEST(PoseBlocks, PointsOfTheToolAreWhereThePosePutsThem) {
+  vn::Rng rng(3);
+  const auto arm = random_chain<6, TypeParam>(rng);
+  const vn::JointRows<6> joints = random_joint_rows<6>(rng, 50);
+  for (const vn::Vector3& point : {vn::Vector3(0.1, -0.2, 0.3), vn::Vector3(0, 0, 1e-9)}) {
+    const vn::PointRows points = arm.positions(joints, point);
+    for (vn::Index i = 0; i < joints.rows(); ++i) {
+      const vn::Vector3 expected = arm.pose(joints.row(i).transpose()) * point;
+      EXPECT_LE((points.row(i).transpose() - expected).cwiseAbs().maxCoeff(), 1e-15);
+    }
+  }
+}
+
+/// Chain rows alone, so that the instruction set can be chosen.
+template <int N, class Rows>
+struct BySet {
+  Eigen::Matrix4d pose;
+  vn::PointRows points;
+
+  BySet(const Rows& rows, const vn::JointRows<N>& joints, vn::InstructionSet set) : points(joints.rows(), 3) {
+    const vn::JointVector<N> q = joints.row(0).transpose();
+    vn::detail::run_same_bits(
+        [&]<int W>() VERNIER_INLINED {
+          vn::detail::PoseFrame<W> one;
+          rows.template walk<W>(q.data(), one, [](int, vn::DhParameter, const auto&, const auto&) VERNIER_INLINED {});
+          vn::detail::store_pose<W>(pose.data(), one);
+          for (vn::Index i = 0; i < joints.rows(); i += W) {
+            vn::detail::BlockFrame<W> block;
+            rows.template walk_block<W>(joints.data() + i, joints.rows(), block);
+            for (int k = 0; k < 3; ++k) vn::detail::store<W>(&points(i, k), block.p[k]);
+          }
+        },
+        set);
+  }
+};
+
+TYPED_TEST(PoseBlocks, TheInstructionSetDoesNotChangeABit) {
+  vn::Rng rng(4);
+  for_all_sizes([&]<int N>(std::integral_constant<int, N>) {
+    const auto arm = random_chain<N, TypeParam>(rng);
+    const vn::detail::ChainRows<N, TypeParam> rows(arm.rows());
+    const vn::JointRows<N> joints = random_joint_rows<N>(rng, 40);
+    const BySet<N, decltype(rows)> plain(rows, joints, vn::InstructionSet::baseline),
+        wide(rows, joints, vn::widest_instruction_set());
+    EXPECT_EQ(plain.pose, wide.pose);
+    EXPECT_EQ(plain.points, wide.points);
+    EXPECT_EQ(plain.points, vn::positions(arm, joints));
+  });
+}
+
+TYPED_TEST(PoseBlocks, StrangeJointValuesStayInTheirRow) {
+  vn::Rng rng(5);
+  const auto arm = random_chain<6, TypeParam>(rng, {.prismatic = 0});
+  const vn::JointRows<6> calm = random_joint_rows<6>(rng, 11);
+  const vn::PointRows expected = vn::positions(arm, calm);
+  for (const double strange : {std::nan(""), std::numeric_limits<double>::infinity(), 3e7}) {
+    for (vn::Index row = 0; row < calm.rows(); ++row) {
+      vn::JointRows<6> joints = calm;
+      joints(row, 2) = strange;
+      const vn::PointRows points = vn::positions(arm, joints);
+      const vn::JointVector<6> q = joints.row(row).transpose();
+      for (vn::Index i = 0; i < calm.rows(); ++i) {
+        if (i != row) {
+          ASSERT_EQ(points.row(i), expected.row(i));
+        } else if (std::isfinite(strange)) {
+          ASSERT_EQ(points.row(i).transpose(), arm.position(q));
+          const vn::Isometry3 plain = arm.template pose<double>(q, arm.parameters());
+          ASSERT_LE((arm.pose(q).matrix() - plain.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+        } else {
+          ASSERT_FALSE(points.row(i).allFinite() || arm.position(q).allFinite() || arm.pose(q).linear().allFinite());
+          ASSERT_EQ(arm.pose(q).matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+        }
+      }
+    }
+  }
+}
+
+TEST(FramedPoseBlocks, AreThePosesOneByOne) {
+  vn::Vector6 base, tool, outer;
+  base << 1, 2, 3, 0.1, -0.2, 3.0;
+  tool << 0.1, 0, 0.2, 0, 1, 0;
+  outer << -0.5, 0.2, 0.1, 1, 0.3, -0.4;
+  const vn::Framed inner(vn::robots::barrett_wam().chain, vn::FrameParameters(base), vn::FrameParameters(tool));
+  const vn::Framed nested(inner, vn::FrameParameters(outer), vn::FrameParameters(base));
+  vn::Rng rng(6);
+  const vn::JointRows<7> joints = random_joint_rows<7>(rng, 21);
+  const auto check = [&](const auto& model) {
+    const vn::PointRows points = vn::positions(model, joints);
+    const std::vector<vn::Isometry3> all = vn::poses(model, joints);
+    for (vn::Index i = 0; i < joints.rows(); ++i) {
+      const vn::JointVector<7> q = joints.row(i).transpose();
+      EXPECT_LE((points.row(i).transpose() - model.position(q)).cwiseAbs().maxCoeff(), 1e-14);
+      EXPECT_LE((all[static_cast<std::size_t>(i)].matrix() - model.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    }
+  };
+  check(inner);
+  check(nested);
+  EXPECT_EQ(vn::positions(nested, vn::JointRows<7>(0, 7)).rows(), 0);
+}
+
+/// Framed around a model that knows nothing of blocks.
+struct Turntable {
+  static constexpr int dof = 1;
+  vn::Isometry3 pose(const vn::JointVector<1>& q) const noexcept {
+    return vn::Isometry3(Eigen::AngleAxisd(q(0), vn::Vector3::UnitZ()));
+  }
+  vn::Vector3 position(const vn::JointVector<1>&) const noexcept { return vn::Vector3::Zero(); }
+  vn::Jacobian<1> jacobian(const vn::JointVector<1>&) const noexcept { return vn::Vector6::Unit(5); }
+  vn::PoseAndJacobian<1> pose_and_jacobian(const vn::JointVector<1>& q) const noexcept {
+    return {pose(q), jacobian(q)};
+  }
+};
+
+TEST(FramedPoseBlocks, AModelWithoutThemIsAskedOneByOne) {
+  vn::Vector6 tool;
+  tool << 1, 0, 0, 0, 0, 0;
+  const vn::Framed model(Turntable{}, {}, vn::FrameParameters(tool));
+  const vn::JointRows<1> joints = vn::JointRows<1>::LinSpaced(5, 0, 1);
+  const vn::PointRows points = vn::positions(model, joints);
+  for (vn::Index i = 0; i < 5; ++i) {
+    EXPECT_NEAR(points(i, 0), std::cos(joints(i)), 1e-15);
+    EXPECT_NEAR(points(i, 1), std::sin(joints(i)), 1e-15);
+    EXPECT_EQ(vn::poses(model, joints)[static_cast<std::size_t>(i)].matrix(),
+              model.pose(vn::JointVector<1>(joints(i))).matrix());
+  }
+}
+
+}  // namespace

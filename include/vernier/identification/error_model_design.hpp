@@ -106,10 +106,14 @@ class ErrorModelDesign {
   [[gnu::noinline]] Isometry3 effect(int station, const JointVector<N>& q, PoseRows& out) const {
     const auto& framed = geometry(station);
     const JointVector<N> joints = errors_.effective(q).joints;
-    const PoseAndJacobian<N> at = framed.pose_and_jacobian(joints);
-    const auto parameters = framed.parameter_jacobian(joints);
+    const auto at = framed.pose_and_parameter_jacobian(joints);
+    const auto& parameters = at.jacobian;
     const Index few = terms().few();
-    out.joint = at.jacobian;
+    out.joint.resize(6, N);
+    for (int j = 0; j < N; ++j) {  // a joint adds to a parameter of its row
+      const bool revolute = framed.model().row(j).joint == JointType::revolute;
+      out.joint.col(j) = parameters.col(6 + 5 * j + static_cast<int>(revolute ? DhParameter::theta : DhParameter::d));
+    }
     out.dense.setZero(6, dense());
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
       if (concerns(unknowns_[k], station))

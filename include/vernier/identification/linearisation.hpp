@@ -31,7 +31,12 @@ struct Linearisation {
     if (with_jacobian) jacobian.resize(rows, columns);
     for (Index i = 0; i < n; ++i) {
       const JointVector<Model::dof> q = data.joints(i);
-      const Isometry3 pose = model.pose(q);
+      PoseAndParameterJacobian<Model::num_parameters> at;
+      if (with_jacobian)
+        at = pose_and_parameter_jacobian(model, q);
+      else
+        at.pose = model.pose(q);
+      const auto& [pose, all] = at;
       residuals.segment<3>(3 * i) = (pose.translation() - data.position(i)) / position_sigma;
       Vector3 turned = Vector3::Zero();
       if (oriented) {
@@ -39,7 +44,6 @@ struct Linearisation {
         residuals.segment<3>(3 * (n + i)) = turned / orientation_sigma;
       }
       if (!with_jacobian) continue;
-      const auto all = model.parameter_jacobian(q);
       for (Index k = 0; k < columns; ++k)
         jacobian.block<3, 1>(3 * i, k) =
             all.col(free[static_cast<std::size_t>(k)]).template head<3>() * (sizes(k) / position_sigma);

@@ -79,6 +79,18 @@ using PoseFrame = MovingFrame<typename Simd<W>::Double, 4 / W>;
 template <int W>
 using BlockFrame = MovingFrame<typename Simd<W>::Double, 3>;
 
+/// Reads a 4 x 4 matrix.
+template <int W>
+VERNIER_INLINE void load_pose(PoseFrame<W>& frame, const double* from) {
+  VERNIER_UNROLL
+  for (int k = 0; k < 4 / W; ++k) {
+    load<W>(frame.x[k], from + k * W);
+    load<W>(frame.y[k], from + 4 + k * W);
+    load<W>(frame.z[k], from + 8 + k * W);
+    load<W>(frame.p[k], from + 12 + k * W);
+  }
+}
+
 /// Writes three coordinates and an idle one.
 template <int W>
 VERNIER_INLINE void store_vector(double* out, const typename Simd<W>::Double (&v)[4 / W]) {
@@ -96,6 +108,24 @@ VERNIER_INLINE void store_pose(double* out, const PoseFrame<W>& frame) {
   out[3] = out[7] = out[11] = 0;
   out[15] = 1;
 }
+
+/// Where a chain stands, and which point fixed in its tool frame counts; null for its own base, and the tool's origin.
+struct Placement {
+  const double* base = nullptr;   // 4 x 4, column-major
+  const double* point = nullptr;  // three coordinates
+
+  template <int W>
+  VERNIER_INLINE void begin(PoseFrame<W>& frame) const {
+    base != nullptr ? load_pose<W>(frame, base) : frame.set_identity();
+  }
+  template <int W>
+  VERNIER_INLINE void end(PoseFrame<W>& frame) const {
+    if (point == nullptr) return;
+    frame.move(frame.x, point[0]);
+    frame.move(frame.y, point[1]);
+    frame.move(frame.z, point[2]);
+  }
+};
 
 /// A screw along the chain: what one elementary motion does to everything behind it.
 struct ElementaryMotion {
@@ -194,13 +224,12 @@ struct ChainRows {
     }
   }
 
-  /// From base to tool at joints q; `record(row, parameter, axis, point)` sees each elementary motion before it is
-  /// made.
+  /// From where the frame is, the base, to the tool at joints q; `record(row, parameter, axis, point)` sees each
+  /// elementary motion before it is made.
   template <int W, class Record>
   VERNIER_INLINE void walk(const double* q, PoseFrame<W>& frame, const Record& record) const {
     double sines[N + W], cosines[N + W];
     joint_sincos<W>(q, sines, cosines);
-    frame.set_identity();
     for (std::size_t i = 0; i < N; ++i) {
       const DhRow& r = rows[i];
       const double offset = r.joint == JointType::revolute ? r.d : r.d + q[i];

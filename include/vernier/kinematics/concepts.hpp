@@ -19,6 +19,13 @@ struct PoseAndJacobian {
   Jacobian<N> jacobian;  ///< 6 x N, linear rows first, base frame, at the tool point
 };
 
+/// A pose and its derivative with respect to P parameters, computed in one pass.
+template <int P>
+struct PoseAndParameterJacobian {
+  Isometry3 pose;                 ///< base_T_tool
+  ParameterJacobian<P> jacobian;  ///< 6 x P, rows as in `Jacobian`
+};
+
 /// Forward kinematics of N joints, with derivatives. None of the calls allocates or throws.
 ///
 /// - `M::dof`: number of joints, a compile-time constant
@@ -61,6 +68,17 @@ concept ParametricModel = KinematicModel<M> &&
   noexcept->std::same_as<ParameterJacobian<M::num_parameters>>;
   { model.template pose<double>(q, p) } -> std::same_as<Isometry3>;
 };
+
+/// Pose and parameter Jacobian; in one pass where the model has a member for it.
+template <ParametricModel M>
+PoseAndParameterJacobian<M::num_parameters> pose_and_parameter_jacobian(const M& model,
+                                                                        const JointVector<M::dof>& q) noexcept {
+  if constexpr (requires { model.pose_and_parameter_jacobian(q); }) {
+    return model.pose_and_parameter_jacobian(q);
+  } else {
+    return {model.pose(q), model.parameter_jacobian(q)};
+  }
+}
 
 /// Tool positions of n configurations, n x 3 [m]. A model that has `positions(joints)` itself is asked for them.
 template <KinematicModel M>

@@ -59,6 +59,7 @@ class DhChain {
     Isometry3 out;
     detail::run_same_bits([&]<int W>() VERNIER_INLINED {
       detail::PoseFrame<W> frame;
+      frame.set_identity();
       rows_.template walk<W>(q.data(), frame, ignore_motion);
       detail::store_pose<W>(out.data(), frame);
     });
@@ -69,6 +70,7 @@ class DhChain {
     double out[4];
     detail::run_same_bits([&]<int W>() VERNIER_INLINED {
       detail::PoseFrame<W> frame;
+      frame.set_identity();
       rows_.template walk<W>(q.data(), frame, ignore_motion);
       detail::store_vector<W>(out, frame.p);
     });
@@ -78,17 +80,27 @@ class DhChain {
   Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
 
   /// Both in one pass.
-  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
+  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept { return with_jacobian(q, {}); }
+  /// The same of the chain standing in a base frame, at a point [m] fixed in the tool frame: the pose's origin.
+  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q, const Isometry3& base,
+                                       const Vector3& point) const noexcept {
+    return with_jacobian(q, {base.data(), point.data()});
+  }
+
+ private:
+  PoseAndJacobian<N> with_jacobian(const JointVector<N>& q, const detail::Placement& placement) const noexcept {
     PoseAndJacobian<N> out;
     detail::run_same_bits([&]<int W>() VERNIER_INLINED {
       detail::ElementaryMotion joints[N];
       detail::PoseFrame<W> frame;
+      placement.begin<W>(frame);
       rows_.template walk<W>(q.data(), frame,
                              [&](int i, DhParameter parameter, const auto& axis, const auto& point) VERNIER_INLINED {
                                if (parameter != DhParameter::theta) return;  // a sliding joint's axis is the same
                                detail::store_vector<W>(joints[i].axis, axis);
                                detail::store_vector<W>(joints[i].point, point);
                              });
+      placement.end<W>(frame);
       detail::store_pose<W>(out.pose.data(), frame);
       for (int i = 0; i < N; ++i)
         joints[i].column(row(i).joint == JointType::revolute, out.pose.data() + 12, out.jacobian.data() + 6 * i);
@@ -96,6 +108,7 @@ class DhChain {
     return out;
   }
 
+ public:
   /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n joint combinations; several at a time.
   /// For the tool's origin the same bits as `position` of each (to 1e-14 where the compiler's flags allow FMA).
   PointRows positions(const JointRows<N>& joints, const Vector3& point = Vector3::Zero()) const {
@@ -146,7 +159,7 @@ class DhChain {
 
   /// Joint axes and origins of the link frames.
   Links links(const JointVector<N>& q) const noexcept {
-    const Motions motions = elementary_motions(q);
+    const Motions motions = elementary_motions(q, {});
     Links out;
     for (int i = 0; i < N; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -156,23 +169,18 @@ class DhChain {
       out.point[at] = Vector3(joint.point);
       if (i > 0) out.origin[at - 1] = Vector3(motions.of(i, Convention::order.front()).point);
     }
-    out.origin[N - 1] = Vector3(motions.tool);
+    out.origin[N - 1] = motions.tool.translation();
     return out;
   }
 
   /// 6 x 5N, analytic.
   ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<N>& q) const noexcept {
-    const Motions motions = elementary_motions(q);
-    ParameterJacobian<num_parameters> out;
-    for (int i = 0; i < N; ++i) {
-      VERNIER_UNROLL
-      for (int k = 0; k < 5; ++k) {
-        const auto parameter = static_cast<DhParameter>(k);
-        const bool rotation = parameter != DhParameter::a && parameter != DhParameter::d;
-        motions.of(i, parameter).column(rotation, motions.tool, out.data() + 6 * (5 * i + k));
-      }
-    }
-    return out;
+    return with_parameter_jacobian(q, {}).jacobian;
+  }
+  /// Pose and parameter Jacobian of the chain standing in a base frame, at a point [m] fixed in the tool frame.
+  PoseAndParameterJacobian<num_parameters> pose_and_parameter_jacobian(const JointVector<N>& q, const Isometry3& base,
+                                                                       const Vector3& point) const noexcept {
+    return with_parameter_jacobian(q, {base.data(), point.data()});
   }
 
   /// The pose as a function of joints and parameters, in any scalar.
@@ -247,25 +255,43 @@ class DhChain {
   /// All that moves what lies behind it, as parameters are counted, and where the tool is.
   struct Motions {
     detail::ElementaryMotion all[num_parameters];
-    double tool[4];
+    Isometry3 tool;
 
     const detail::ElementaryMotion& of(int i, DhParameter parameter) const {
       return all[5 * i + static_cast<int>(parameter)];
     }
   };
 
-  Motions elementary_motions(const JointVector<N>& q) const noexcept {
+  Motions elementary_motions(const JointVector<N>& q, const detail::Placement& placement) const noexcept {
     Motions out;
     detail::run_same_bits([&]<int W>() VERNIER_INLINED {
       detail::PoseFrame<W> frame;
+      placement.begin<W>(frame);
       rows_.template walk<W>(q.data(), frame,
                              [&](int i, DhParameter parameter, const auto& axis, const auto& point) VERNIER_INLINED {
                                auto& motion = out.all[5 * i + static_cast<int>(parameter)];
                                detail::store_vector<W>(motion.axis, axis);
                                detail::store_vector<W>(motion.point, point);
                              });
-      detail::store_vector<W>(out.tool, frame.p);
+      placement.end<W>(frame);
+      detail::store_pose<W>(out.tool.data(), frame);
     });
+    return out;
+  }
+
+  PoseAndParameterJacobian<num_parameters> with_parameter_jacobian(const JointVector<N>& q,
+                                                                   const detail::Placement& placement) const noexcept {
+    const Motions motions = elementary_motions(q, placement);
+    PoseAndParameterJacobian<num_parameters> out;
+    out.pose = motions.tool;
+    for (int i = 0; i < N; ++i) {
+      VERNIER_UNROLL
+      for (int k = 0; k < 5; ++k) {
+        const auto parameter = static_cast<DhParameter>(k);
+        const bool rotation = parameter != DhParameter::a && parameter != DhParameter::d;
+        motions.of(i, parameter).column(rotation, motions.tool.data() + 12, out.jacobian.data() + 6 * (5 * i + k));
+      }
+    }
     return out;
   }
 

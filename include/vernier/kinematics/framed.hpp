@@ -18,14 +18,19 @@ class FrameParameters {
   /// From a matrix or from its six values.
   FrameParameters(const Isometry3& frame) : frame_(frame) {  // NOLINT(google-explicit-constructor)
     values_ << frame.translation(), log_so3(frame.linear());
+    rate_ = left_jacobian_so3(values_.tail<3>());
   }
   /// From a matrix or from its six values.
-  explicit FrameParameters(const Vector6& values) : values_(values), frame_(isometry<double>(values)) {}
+  explicit FrameParameters(const Vector6& values)
+      : values_(values), frame_(isometry<double>(values)), rate_(left_jacobian_so3(values.tail<3>())) {}
 
   /// x, y, z [m], rx, ry, rz [rad].
   const Vector6& values() const { return values_; }
   /// As a matrix.
   const Isometry3& isometry() const { return frame_; }
+
+  /// What a rate of the rotation vector is as an angular velocity, outside the frame.
+  const Matrix3& rate() const { return rate_; }
 
   /// The frame of six values, in any scalar.
   template <class S>
@@ -39,6 +44,7 @@ class FrameParameters {
  private:
   Vector6 values_;
   Isometry3 frame_;
+  Matrix3 rate_;
 };
 
 /// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
@@ -100,8 +106,14 @@ class Framed {
 
   /// Both in one pass.
   [[gnu::noinline]] PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
-    return {base() * inner.pose * tool(), at_tool(inner.jacobian, inner.pose)};
+    if constexpr (requires { model_.pose_and_jacobian(q, base(), tool().translation()); }) {
+      PoseAndJacobian<dof> out = model_.pose_and_jacobian(q, base(), tool().translation());
+      out.pose.linear() *= tool().linear();
+      return out;
+    } else {
+      const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
+      return {base() * inner.pose * tool(), at_tool(inner.jacobian, inner.pose)};
+    }
   }
 
  private:
@@ -169,20 +181,35 @@ class Framed {
   }
 
   /// Derivative of the pose with respect to the parameters, 6 x P.
-  [[gnu::noinline]] ParameterJacobian<num_parameters> parameter_jacobian(
+  ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept requires
+      ParametricModel<Model> {
+    return pose_and_parameter_jacobian(q).jacobian;
+  }
+
+  /// Both in one pass.
+  [[gnu::noinline]] PoseAndParameterJacobian<num_parameters> pose_and_parameter_jacobian(
       const JointVector<dof>& q) const noexcept requires ParametricModel<Model> {
-    const Isometry3 flange = model_.pose(q);
-    const Matrix3 rotation = base().linear() * flange.linear();
-    const Vector3 arm = base().linear() * (flange * tool().translation());  // base origin to tool point
-    const Matrix3 base_rate = left_jacobian_so3(base_.values().template tail<3>());
-    ParameterJacobian<num_parameters> out = ParameterJacobian<num_parameters>::Zero();
-    out.template block<3, 3>(0, 0).setIdentity();
-    out.template block<3, 3>(0, 3) = -skew(arm) * base_rate;
-    out.template block<3, 3>(3, 3) = base_rate;
-    out.template middleCols<Model::num_parameters>(6) = at_tool(model_.parameter_jacobian(q), flange);
     constexpr int tool_column = 6 + Model::num_parameters;
-    out.template block<3, 3>(0, tool_column) = rotation;
-    out.template block<3, 3>(3, tool_column + 3) = rotation * left_jacobian_so3(tool_.values().template tail<3>());
+    PoseAndParameterJacobian<num_parameters> out;
+    out.jacobian.setZero();
+    auto inner = out.jacobian.template middleCols<Model::num_parameters>(6);
+    if constexpr (requires { model_.pose_and_parameter_jacobian(q, base(), tool().translation()); }) {
+      const auto at = model_.pose_and_parameter_jacobian(q, base(), tool().translation());
+      out.pose = at.pose;
+      inner = at.jacobian;
+    } else {
+      const Isometry3 flange = model_.pose(q);
+      out.pose = base() * flange * Eigen::Translation3d(tool().translation());
+      inner = at_tool(model_.parameter_jacobian(q), flange);
+    }
+    const Matrix3 rotation = out.pose.linear();
+    const Vector3 arm = out.pose.translation() - base().translation();  // base origin to tool point
+    out.jacobian.template block<3, 3>(0, 0).setIdentity();
+    out.jacobian.template block<3, 3>(0, 3) = -skew(arm) * base_.rate();
+    out.jacobian.template block<3, 3>(3, 3) = base_.rate();
+    out.jacobian.template block<3, 3>(0, tool_column) = rotation;
+    out.jacobian.template block<3, 3>(3, tool_column + 3) = rotation * tool_.rate();
+    out.pose.linear() = rotation * tool().linear();
     return out;
   }
 

@@ -99,7 +99,7 @@ double levenberg_marquardt(Problem& problem, VectorX& theta, int iterations, dou
                            Watch&& watch) {
   constexpr double rounding = 1e-26;  // of targets of spread 1
   double value = problem.evaluate(theta), at_check = value;
-  double damping = 1e-3, raise = 2;
+  double damping = 0.1, raise = 2;
   int accepted = 0;
   bool moved = true;
   VectorX gradient, scale;

@@ -24,6 +24,7 @@
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/var_pro_elm.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
@@ -44,14 +45,23 @@ struct Method {
   std::optional<double> paper[2];  ///< what the paper reports as reduction of the mean error: test set, random set [%]
 };
 
-constexpr std::array<Method, 6> methods{{
+constexpr std::array<Method, 8> methods{{
     {"uncompensated", "uncompensated", {}},
     {"joint_ga_elm", "joint-space GA-ELM", {69.48, 69.17}},
     {"joint_pso_elm", "joint-space PSO-ELM", {72.57, 71.58}},
     {"cartesian_ga_elm", "Cartesian GA-ELM", {92.60, 91.69}},
     {"cartesian_pso_elm", "Cartesian PSO-ELM", {95.06, 94.88}},
+    {"cartesian_var_pro_elm", "Cartesian VarProElm", {}},
+    {"cartesian_var_pro_elm_sin_cos", "  on sines and cosines", {}},
     {"identification", "identification", {}},
 }};
+constexpr std::size_t trained = 5, identified_method = 7;  // the two from `trained` on are asked for
+
+/// The methods of a comparison, in order.
+std::vector<std::size_t> methods_of(bool var_pro) {
+  return var_pro ? std::vector<std::size_t>{0, 1, 2, 3, 4, trained, trained + 1, identified_method}
+                 : std::vector<std::size_t>{0, 1, 2, 3, 4, identified_method};
+}
 
 struct PoseSet {
   const char* name;   ///< in JSON
@@ -68,7 +78,7 @@ struct Settings {
   Region region = Region::operating;
   vn::PositionRule positions = vn::PositionRule::unbounded;
   double noise = 0;  ///< of the measured positions [m]
-  bool quick = false;
+  bool quick = false, var_pro = false;
   std::string poses_file;
 };
 
@@ -80,6 +90,7 @@ struct Convergence {
 /// What one run found; index: set, method.
 struct Run {
   std::uint64_t seed = 0;
+  std::vector<std::size_t> ran;  ///< methods, in order
   std::array<std::array<vn::PositioningErrors, methods.size()>, sets.size()> errors;
   std::array<vn::PositioningErrors, sets.size()> full_pose;  ///< identification, aimed at the full pose
   std::array<double, methods.size()> seconds{};
@@ -122,6 +133,7 @@ class Experiment {
         executor_(threads),
         prefix_(std::move(prefix)) {
     run_.seed = seed;
+    run_.ran = methods_of(settings.var_pro);
     const Joints all =
         sample(robot, settings.region, settings.train + settings.test, vn::child_seed(seed, joints_stream));
     train_ = all.topRows(settings.train);  // the rows are independent draws: the first so many are a random choice
@@ -147,7 +159,12 @@ class Experiment {
     joint_space(2, vn::Tuned{vn::Elm{.hidden_nodes = 68}, pso(40, 300)}, scaled(300, settings_.budget));
     cartesian(3, vn::Tuned{vn::Elm{.hidden_nodes = 73}, ga(80, 400)}, scaled(400, settings_.budget));
     cartesian(4, vn::Tuned{vn::Elm{.hidden_nodes = 65}, pso(50, 300)}, scaled(300, settings_.budget));
-    identification(5);
+    if (settings_.var_pro) {  // as many nodes as PSO-ELM, and no search
+      const vn::VarProElm raw{.hidden_nodes = 65, .input_map = vn::InputMap::raw};
+      cartesian(trained, raw, raw.iterations);
+      cartesian(trained + 1, vn::VarProElm{.hidden_nodes = 65}, raw.iterations);
+    }
+    identification(identified_method);
     return run_;
   }
 
@@ -250,7 +267,7 @@ void print_tables(const Run& run) {
                "reduction of mean [%]");
     fmt::print("  {:<22}{:>9}{:>9}{:>9}{:>9}{:>9}{:>11}{:>9}{:>11}{:>9}\n", "", "max", "min", "mean", "rms", "p95",
                "mean", "max", "here", "paper");
-    for (std::size_t m = 0; m < methods.size(); ++m) {
+    for (const std::size_t m : run.ran) {
       const auto paper = methods[m].paper[set];
       print_row(
           methods[m].title, run.errors[set][m],
@@ -291,7 +308,8 @@ void print_spread(const std::vector<Run>& runs) {
   fmt::print("  {:<22}", "");
   for (const PoseSet& set : sets) fmt::print("{:>9}{:>7}  {:<18}{:>7}", set.name, "sd", "[min, max]", "paper");
   fmt::print("\n");
-  for (std::size_t m = 1; m < methods.size(); ++m) {
+  for (const std::size_t m : runs.front().ran) {
+    if (m == 0) continue;
     fmt::print("  {:<22}", methods[m].title);
     for (std::size_t set = 0; set < sets.size(); ++set) {
       const Spread spread = Spread::of(runs, set, m);
@@ -305,7 +323,7 @@ void print_spread(const std::vector<Run>& runs) {
 
 Json set_json(const Run& run, std::size_t set) {
   Json document{{"n", run.errors[set][0].position.size()}, {"methods", Json::object()}};
-  for (std::size_t m = 0; m < methods.size(); ++m) {
+  for (const std::size_t m : run.ran) {
     const auto mm = vn::ErrorStatistics::of(run.errors[set][m].position * 1e3),
                mrad = vn::ErrorStatistics::of(run.errors[set][m].rotation * 1e3);
     document["methods"][methods[m].name] = {{"mean_mm", mm.mean},     {"max_mm", mm.max},
@@ -331,11 +349,13 @@ Json json(const vn::Robot<6>& robot, const Settings& settings, const std::vector
                 {"budget", settings.budget},
                 {"noise_mm", settings.noise * 1e3},
                 {"sets", sets_json(runs.front())}};
-  for (std::size_t m = 1; m < methods.size(); ++m) document["seconds"][methods[m].name] = runs.front().seconds[m];
+  for (const std::size_t m : runs.front().ran)
+    if (m > 0) document["seconds"][methods[m].name] = runs.front().seconds[m];
   Json& repeated = document["runs"];
   repeated["count"] = runs.size();
   for (std::size_t set = 0; set < sets.size(); ++set)
-    for (std::size_t m = 1; m < methods.size(); ++m) {
+    for (const std::size_t m : runs.front().ran) {
+      if (m == 0) continue;
       const Spread spread = Spread::of(runs, set, m);
       repeated["reduction_percent"][sets[set].name][methods[m].name] = {
           {"mean", spread.mean}, {"sd", spread.sd}, {"min", spread.min}, {"max", spread.max}};
@@ -353,7 +373,7 @@ constexpr double smallest_shown = 1e-3;
 
 /// Series colours, alike in all figures; 0 is black.
 int colour(std::size_t method) {
-  constexpr std::array<int, methods.size()> colours{0, 1, 4, 2, 5, 3};
+  constexpr std::array<int, methods.size()> colours{0, 1, 4, 2, 5, 0, 6, 3};
   return colours[method];
 }
 
@@ -370,7 +390,8 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
     std::vector<support::Series> curves;
     std::vector<support::Sample> samples;
     std::string below;
-    for (std::size_t m = 0; m < methods.size(); ++m) {
+    for (const std::size_t m : run.ran) {
+      if (m == trained) continue;  // the palette has a colour for one of the two
       const vn::VectorX mm = run.errors[set][m].position * 1e3;
       if (mm.maxCoeff() < smallest_shown) {
         below += fmt::format("; {}: all below {} mm", methods[m].title, smallest_shown);
@@ -400,7 +421,7 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
         distribution_file);
   }
   std::vector<support::Series> convergence;
-  for (std::size_t m = 1; m + 1 < methods.size(); ++m)
+  for (std::size_t m = 1; m < trained; ++m)
     convergence.push_back(
         {methods[m].title, run.convergence[m].evaluations, run.convergence[m].best, support::Style::lines, colour(m)});
   const auto convergence_file = folder / "convergence.svg";
@@ -421,6 +442,8 @@ int body(support::Program& program) {
   const auto positive = CLI::Range(vn::Index{1}, vn::Index{1000000}).description("");
   app.add_flag("--quick", settings.quick,
                "1000 poses to learn from, 200 test, a quarter of the generations: under a minute");
+  app.add_flag("--varpro", settings.var_pro,
+               "also train the hidden layer by gradients (VarProElm); --scale-budget does not shorten it");
   app.add_option("--runs", settings.runs, "repeat over so many error tables and seeds; mean and spread")
       ->type_name("K")
       ->check(CLI::Range(1, 1000).description(""));
@@ -491,8 +514,12 @@ int body(support::Program& program) {
   if (runs.size() > 1) print_spread(runs);
 
   fmt::print("\nSeconds on {} thread{}:", threads, threads == 1 ? "" : "s");
-  for (std::size_t m = 1; m < methods.size(); ++m)
-    fmt::print("{} {} {:.1f}", m == 1 ? "" : ",", methods[m].title, runs.front().seconds[m]);
+  for (const std::size_t m : runs.front().ran)
+    if (m > 0) {
+      const std::string title = methods[m].title;
+      fmt::print("{} {} {:.1f}", m == 1 ? "" : ",", title.substr(title.find_first_not_of(' ')),
+                 runs.front().seconds[m]);
+    }
   fmt::print("\n");
   const auto files = draw_figures(runs.front(), folder);
   if (!files.empty()) fmt::print("Figures: {}\n", fmt::join(files, ", "));

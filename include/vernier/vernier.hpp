@@ -16,6 +16,7 @@
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
+#include "vernier/regression/var_pro_elm.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"

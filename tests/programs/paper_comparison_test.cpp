@@ -140,6 +140,19 @@ TEST(PaperComparison, EachOptionActsOnWhatItNames) {
   EXPECT_EQ(changed("--region full"), names);
 }
 
+TEST(PaperComparison, VarProAddsTwoMethodsAndChangesNoOther) {
+  const Outcome with = run_to_json("--threads 1 --varpro");
+  const Json& before = plain().json.at("runs").at("each")[0].at("sets").at("test").at("methods");
+  ASSERT_EQ(with.json.at("sets").at("test").at("methods").size(), names.size() + 2);
+  for (const auto& name : names) EXPECT_EQ(method(with, "test", name), before.at(name)) << name;
+  for (const char* name : {"cartesian_var_pro_elm", "cartesian_var_pro_elm_sin_cos"}) {
+    EXPECT_GT(method(with, "test", name).at("reduction_percent").get<double>(), 40) << name;
+    EXPECT_GT(with.json.at("seconds").at(name).get<double>(), 0) << name;
+  }
+  EXPECT_NE(with.command.output.find("Cartesian VarProElm"), std::string::npos);
+  EXPECT_EQ(plain().command.output.find("VarProElm"), std::string::npos);
+}
+
 TEST(PaperComparison, FiguresAreWholeAndTheProgramGoesOnWithoutGnuplot) {
   const TemporaryFolder folder("paper_comparison");
   const CommandResult without = run(folder, small, "PATH=/nonexistent");

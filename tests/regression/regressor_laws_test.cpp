@@ -7,6 +7,7 @@
 #include "laws.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
+#include "vernier/regression/var_pro_elm.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
@@ -45,12 +46,22 @@ TEST(RegressorLaws, RidgeElmWithEachActivationAndInputMap) {
   EXPECT_TRUE(no_violations(regressor_violations(RidgeElm{.hidden_nodes = 80})));
 }
 
+TEST(RegressorLaws, VarProElmWithEachActivationAndInputMap) {
+  for (const Activation activation : activations)
+    for (const InputMap input_map : input_maps)
+      EXPECT_TRUE(no_violations(regressor_violations(
+          VarProElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map, .iterations = 8})));
+  EXPECT_TRUE(no_violations(regressor_violations(VarProElm{.hidden_nodes = 80, .ridge = 1e-6, .iterations = 3})));
+  EXPECT_TRUE(no_violations(regressor_violations(VarProElm{.hidden_nodes = 4, .iterations = 5, .starts = 3})));
+}
+
 TEST(RegressorLaws, TunedElm) {
   const Pso pso{.particles = 6, .iterations = 4};
   const GeneticAlgorithm ga{.individuals = 6, .generations = 4};
   EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, pso})));
   EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, ga})));
   EXPECT_TRUE(no_violations(regressor_violations(Tuned{RidgeElm{.hidden_nodes = 5}, pso})));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{VarProElm{.hidden_nodes = 5, .iterations = 4}, pso})));
 }
 
 /// A user's own: y = A x + b by least squares, no randomness; and the base of the faults below.
@@ -166,10 +177,10 @@ struct SeedlessElm {
   }
 };
 
-static_assert(Regressor<Elm> && Regressor<RidgeElm> && Regressor<Linear> && Regressor<Nearest> &&
-              Regressor<SeedlessElm>);
+static_assert(Regressor<Elm> && Regressor<RidgeElm> && Regressor<VarProElm> && Regressor<Linear> &&
+              Regressor<Nearest> && Regressor<SeedlessElm>);
 static_assert(Regressor<Tuned<Elm, Pso>> && Regressor<Tuned<RidgeElm, GeneticAlgorithm>>);
-static_assert(TunableRegressor<Elm> && TunableRegressor<RidgeElm>);
+static_assert(TunableRegressor<Elm> && TunableRegressor<RidgeElm> && TunableRegressor<VarProElm>);
 static_assert(!TunableRegressor<Linear>, "nothing to search for");
 static_assert(Predictor<ElmPredictor<6, 3>> && Predictor<ElmPredictor<1, 1>> && Predictor<LinearMap<3, 2>>);
 

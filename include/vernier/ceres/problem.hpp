@@ -182,7 +182,7 @@ class IdentificationProblem {
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = options_.max_iterations;
-    solver.function_tolerance = 1e-14;  // Ceres' default of 1e-6 stops short of the sensor's noise
+    solver.function_tolerance = 1e-12;  // Ceres' default of 1e-6 stops short of the sensor's noise
     solver.gradient_tolerance = 1e-16;
     solver.parameter_tolerance = 1e-13;
     solver.logging_type = ceres::SILENT;

@@ -92,16 +92,16 @@ RidgeSolution relative_ridge(const Eigen::MatrixBase<H>& h, const Eigen::MatrixB
   return out;
 }
 
-/// The objective of `relative_ridge` from the products alone: no second pass over the samples, but digits are lost
+/// `min |H beta - T|^2 + lambda |beta|^2` from the products alone: no second pass over the samples, but digits are lost
 /// where the fit is nearly perfect or beta is huge. Returns -1 where fewer than seven digits would be left.
-/// @param gram            H'H, its lower triangle
-/// @param right           T'H, outputs x nodes
-/// @param target_square   |T|^2
-/// @param relative_lambda as in `relative_ridge`
+/// @param gram          H'H, its lower triangle
+/// @param right         T'H, outputs x nodes
+/// @param target_square |T|^2
+/// @param lambda        absolute
+/// @param trace         of H'H as summed up, before anything was subtracted from it
 template <class Gram, class Right>
-double relative_ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right,
-                                double target_square, double relative_lambda) {
-  const double trace = gram.trace(), lambda = relative_lambda * trace / static_cast<double>(gram.rows());
+double ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right, double target_square,
+                       double lambda, double trace) {
   if (!(lambda > 0) || !std::isfinite(lambda)) return -1;
   MatrixX regularised = gram;
   regularised.diagonal().array() += lambda;
@@ -114,6 +114,15 @@ double relative_ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen
                            beta.cwiseProduct(gram.template selfadjointView<Eigen::Lower>() * beta).sum() +
                            lambda * size;
   return objective > 1e-7 * target_square && objective > 1e-8 * trace * size ? objective : -1;
+}
+
+/// The objective of `relative_ridge` from the products alone, see `ridge_objective`.
+/// @param relative_lambda as in `relative_ridge`
+template <class Gram, class Right>
+double relative_ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right,
+                                double target_square, double relative_lambda) {
+  const double trace = gram.trace();
+  return ridge_objective(gram, right, target_square, relative_lambda * trace / static_cast<double>(gram.rows()), trace);
 }
 
 /// Ridge regression with an unpenalised mean, for every lambda from one decomposition.

@@ -4,15 +4,13 @@
 /// Normal equations of a sigmoid hidden layer in one pass over the samples: the inner loop of every ELM search.
 ///
 /// A tile of samples goes through hidden layer, activation and symmetric product while it stays in the first-level
-/// cache. Targets are further columns of the tile, so H'T and T'T fall out of the same product. Per sample of h nodes
-/// the product costs h^2 / 2 multiply-adds on h loaded numbers, so a block of accumulators kept in registers makes it
-/// arithmetic-bound.
+/// cache. Targets are further columns of the tile, so H'T and T'T fall out of the same product.
 
 #include <algorithm>
 #include <vector>
 
 #include "vernier/regression/hidden_layer.hpp"
-#include "vernier/core/simd.hpp"
+#include "vernier/regression/tile_product.hpp"
 
 namespace vernier::detail {
 
@@ -26,33 +24,6 @@ struct NormalEquationsBlock {
   Index samples, inputs, outputs, nodes, stride, tile_samples;
   bool tanh;
 };
-
-/// Adds rows i .. i+Rows of the product, columns j .. j+Vectors*W.
-template <int W, int Rows, int Vectors>
-VERNIER_INLINE void product_block(const NormalEquationsBlock& b, Index samples, Index i, Index j) {
-  typename Simd<W>::Double sum[Rows][Vectors], right[Vectors];
-  double* product = b.products + i * b.stride + j;
-  VERNIER_UNROLL
-  for (int r = 0; r < Rows; ++r) {
-    VERNIER_UNROLL
-    for (int v = 0; v < Vectors; ++v) load<W>(sum[r][v], product + r * b.stride + v * W);
-  }
-  for (Index s = 0; s < samples; ++s) {
-    const double* row = b.tile + s * b.stride;
-    VERNIER_UNROLL
-    for (int v = 0; v < Vectors; ++v) load<W>(right[v], row + j + v * W);
-    VERNIER_UNROLL
-    for (int r = 0; r < Rows; ++r) {
-      VERNIER_UNROLL
-      for (int v = 0; v < Vectors; ++v) sum[r][v] += row[i + r] * right[v];
-    }
-  }
-  VERNIER_UNROLL
-  for (int r = 0; r < Rows; ++r) {
-    VERNIER_UNROLL
-    for (int v = 0; v < Vectors; ++v) store<W>(product + r * b.stride + v * W, sum[r][v]);
-  }
-}
 
 /// Hidden layer, activation and product, tile by tile.
 template <int W, int Rows, int Vectors>
@@ -76,11 +47,7 @@ VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
       for (Index k = 0; k < b.outputs; ++k) row[b.nodes + k] = b.targets[k * b.samples + begin + s];
       for (Index k = b.nodes + b.outputs; k < b.stride; ++k) row[k] = 0;
     }
-    for (Index i = 0; i < b.stride; i += Rows) {
-      Index j = i / W * W;
-      for (; j + Vectors * W <= b.stride; j += Vectors * W) product_block<W, Rows, Vectors>(b, samples, i, j);
-      for (; j < b.stride; j += W) product_block<W, Rows, 1>(b, samples, i, j);
-    }
+    tile_product<W, Rows, Vectors>(b.tile, b.tile, b.products, b.stride, samples, true);
   }
 }
 

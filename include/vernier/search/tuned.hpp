@@ -36,7 +36,8 @@ struct Tuned {
   A algorithm;
   Stop stop{};  ///< beside the algorithm's own schedule
 
-  /// The search, then the fit at what it found. The observer of the options sees every generation.
+  /// The search, then the fit at what it found. The observer of the options sees every generation, then the steps of
+  /// the fit where that has some: a regressor may take the options as a fourth argument of `fit_at`.
   template <class X, class Y>
   auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
            const FitOptions& options = {}) const
@@ -44,7 +45,14 @@ struct Tuned {
     const SearchResult found =
         minimize(algorithm, regressor.objective(inputs, targets), regressor.box(X::ColsAtCompileTime), stop,
                  options.seed, options.executor, options.observer);
-    return regressor.fit_at(inputs, targets, found.best);
+    if constexpr (requires { regressor.fit_at(inputs, targets, found.best, options); }) {
+      const auto further = [&](const Progress& p) {
+        return options.observer(Progress{found.generations + p.generation, found.evaluations + p.evaluations, p.best});
+      };
+      return regressor.fit_at(inputs, targets, found.best, {options.seed, options.executor, further});
+    } else {
+      return regressor.fit_at(inputs, targets, found.best);
+    }
   }
 };
 

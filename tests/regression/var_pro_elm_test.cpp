@@ -1,0 +1,436 @@
+// The trained hidden layer: value, gradient and curvature against brute force, and what training brings.
+
+#include "vernier/regression/var_pro_elm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "vernier/regression/elm.hpp"
+#include "vernier/search/pso.hpp"
+#include "vernier/search/tuned.hpp"
+
+namespace vernier {
+namespace {
+
+constexpr Activation activations[] = {Activation::sigmoid, Activation::tanh, Activation::sine,
+                                      Activation::radial_basis};
+constexpr InputMap input_maps[] = {InputMap::raw, InputMap::sines_and_cosines};
+
+using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+Inputs inputs(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  Inputs x(n, 3);
+  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
+  return x;
+}
+
+Targets targets(const Inputs& x) {
+  Targets y(x.rows(), 2);
+  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
+  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
+  return y;
+}
+
+double error(const MatrixX& predicted, const MatrixX& expected) {
+  return (predicted - expected).norm() / (expected.rowwise() - expected.colwise().mean()).norm();
+}
+
+/// Features and targets as the objective sees them, from the words of the documentation.
+struct Scaled {
+  MatrixX features, t;
+  Scaled(const VarProElm& recipe, const Inputs& x, const Targets& y)
+      : features(recipe.layer().map(x)), t(y.rowwise() - y.colwise().mean()) {
+    features = recipe.layer().scaling(features).apply(features);
+    t /= std::sqrt(t.squaredNorm() / static_cast<double>(t.rows()));
+  }
+};
+
+/// The stacked least-squares problem: [H 1; sqrt(n ridge) I 0].
+MatrixX stacked(const VarProElm& recipe, const MatrixX& features, const VectorX& theta) {
+  MatrixX h;
+  recipe.layer().outputs(features, theta, h);
+  const Index n = h.rows(), k = h.cols();
+  MatrixX out = MatrixX::Zero(n + k, k + 1);
+  out.topLeftCorner(n, k) = h;
+  out.topRightCorner(n, 1).setOnes();
+  out.bottomLeftCorner(k, k).diagonal().setConstant(std::sqrt(static_cast<double>(n) * recipe.ridge));
+  return out;
+}
+
+MatrixX padded(const MatrixX& t, Index rows) {
+  MatrixX out = MatrixX::Zero(rows, t.cols());
+  out.topRows(t.rows()) = t;
+  return out;
+}
+
+double value(const VarProElm& recipe, const Inputs& x, const Targets& y, const VectorX& theta) {
+  VectorX fitness(1);
+  recipe.objective(x, y)(theta, fitness);
+  return fitness(0);
+}
+
+TEST(VarProObjective, IsTheLeastOverTheOutputWeights) {
+  const Inputs x = inputs(50, 1);
+  const Targets y = targets(x);
+  for (const Activation activation : activations)
+    for (const InputMap input_map : input_maps)
+      for (const double ridge : {1e-2, 1e-6, 1e-10, 1e-13}) {
+        const VarProElm recipe{
+            .hidden_nodes = 9, .activation = activation, .input_map = input_map, .weight_limit = 2, .ridge = ridge};
+        const Scaled scaled(recipe, x, y);
+        const VectorX theta = recipe.layer().draw(3, 2);
+        const MatrixX a = stacked(recipe, scaled.features, theta), b = padded(scaled.t, a.rows());
+        const MatrixX solution = a.householderQr().solve(b);
+        const double expected = (a * solution - b).squaredNorm() / 50;
+        EXPECT_NEAR(value(recipe, x, y, theta), expected, 1e-6 * expected);
+        detail::VariableProjection projection(recipe.layer(), scaled.features, scaled.t, ridge);
+        EXPECT_NEAR(projection.evaluate(theta), expected, 1e-9 * expected);
+        EXPECT_LT((projection.beta() - solution.topRows(9)).norm(), 1e-5 * solution.norm());
+        EXPECT_LT((projection.offset() - solution.row(9).transpose()).norm(), 1e-5 * solution.norm());
+      }
+}
+
+TEST(VarProObjective, GradientEqualsDifferences) {
+  const Inputs x = inputs(40, 3);
+  const Targets y = targets(x);
+  for (const Activation activation : activations)
+    for (const InputMap input_map : input_maps) {
+      const VarProElm recipe{
+          .hidden_nodes = 6, .activation = activation, .input_map = input_map, .weight_limit = 2, .ridge = 1e-6};
+      const VectorX theta = recipe.layer().draw(3, 4);
+      const Scaled scaled(recipe, x, y);
+      detail::VariableProjection projection(recipe.layer(), scaled.features, scaled.t, recipe.ridge);
+      const VectorX gradient = recipe.objective(x, y).gradient(theta);
+      ASSERT_EQ(gradient.size(), theta.size());
+      EXPECT_GT(gradient.norm(), 1e-4);
+      for (Index i = 0; i < theta.size(); ++i) {
+        const auto at = [&](double steps) {
+          return projection.evaluate(theta + 1e-3 * steps * VectorX::Unit(theta.size(), i));
+        };
+        const double difference = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / 12e-3;
+        EXPECT_NEAR(gradient(i), difference, 1e-7 * gradient.cwiseAbs().maxCoeff())
+            << "weight " << i << ", activation " << static_cast<int>(activation);
+      }
+    }
+}
+
+/// Kaufman's matrix from a dense Jacobian: derivatives of H by differences, times beta, less what the columns of the
+/// stacked problem take over.
+MatrixX dense_curvature(const VarProElm& recipe, const Scaled& scaled, const VectorX& theta) {
+  const MatrixX a = stacked(recipe, scaled.features, theta);
+  const MatrixX beta = a.householderQr().solve(padded(scaled.t, a.rows())).topRows(recipe.hidden_nodes);
+  const MatrixX q = MatrixX(a.householderQr().householderQ()).leftCols(a.cols());
+  const Index n = scaled.t.rows();
+  MatrixX out = MatrixX::Zero(theta.size(), theta.size());
+  for (Index o = 0; o < scaled.t.cols(); ++o) {
+    MatrixX jacobian = MatrixX::Zero(a.rows(), theta.size());
+    for (Index i = 0; i < theta.size(); ++i) {
+      MatrixX plus, minus;
+      recipe.layer().outputs(scaled.features, theta + 1e-5 * VectorX::Unit(theta.size(), i), plus);
+      recipe.layer().outputs(scaled.features, theta - 1e-5 * VectorX::Unit(theta.size(), i), minus);
+      jacobian.col(i).head(n) = (plus - minus) * beta.col(o) / 2e-5;
+    }
+    jacobian -= q * (q.transpose() * jacobian);
+    out += 2 / static_cast<double>(n) * jacobian.transpose() * jacobian;
+  }
+  return out;
+}
+
+TEST(VarProObjective, CurvatureEqualsTheDenseOne) {
+  for (const Index n : {30, 300, 1100}) {
+    const Inputs x = inputs(n, 5);
+    const Targets y = targets(x);
+    for (const Activation activation : activations)
+      for (const InputMap input_map : input_maps) {
+        const VarProElm recipe{
+            .hidden_nodes = 7, .activation = activation, .input_map = input_map, .weight_limit = 2, .ridge = 1e-5};
+        const VectorX theta = recipe.layer().draw(3, 6);
+        const Scaled scaled(recipe, x, y);
+        const MatrixX expected = dense_curvature(recipe, scaled, theta);
+        for (const auto set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+          if (set > widest_instruction_set()) continue;
+          detail::VariableProjection projection(recipe.layer(), scaled.features, scaled.t, recipe.ridge, set);
+          projection.evaluate(theta);
+          MatrixX curvature, threaded;
+          projection.curvature(curvature);
+          const MatrixX difference = curvature - expected;
+          EXPECT_LT(MatrixX(difference.triangularView<Eigen::Lower>()).norm(), 1e-7 * expected.norm())
+              << n << " samples, activation " << static_cast<int>(activation);
+          const ThreadExecutor threads(3);
+          projection.curvature(threaded, threads);
+          EXPECT_EQ(MatrixX(threaded.triangularView<Eigen::Lower>()),
+                    MatrixX(curvature.triangularView<Eigen::Lower>()));
+        }
+      }
+  }
+}
+
+// Equal nodes and hardly any ridge: the products cannot be factorised, the samples take over.
+TEST(VarProObjective, EqualNodes) {
+  const Inputs x = inputs(60, 7);
+  const Targets y = targets(x);
+  const VarProElm recipe{.hidden_nodes = 8, .input_map = InputMap::raw, .ridge = 1e-17};
+  const VarProElm one{.hidden_nodes = 1, .input_map = InputMap::raw, .ridge = 1e-17};
+  const VectorX node = one.layer().draw(3, 8), theta = node.replicate(8, 1);
+  EXPECT_NEAR(value(recipe, x, y, theta), value(one, x, y, node), 1e-6);
+  EXPECT_TRUE(recipe.objective(x, y).gradient(theta).allFinite());
+}
+
+TEST(VarProElm, WithoutIterationsIsARidgeAtTheDrawnWeights) {
+  const Inputs x = inputs(50, 9), fresh = inputs(20, 10);
+  const Targets y = targets(x);
+  const VarProElm recipe{.hidden_nodes = 9, .ridge = 1e-5, .iterations = 0};
+  const auto predictor = recipe.fit(x, y, {.seed = 3});
+  const VectorX theta = recipe.layer().draw(3, 3);
+  EXPECT_EQ(predictor.theta(), theta);
+  MatrixX h, at;
+  recipe.layer().outputs(recipe.layer().map(x), theta, h);
+  recipe.layer().outputs(recipe.layer().map(fresh), theta, at);
+  const RidgePath path(h, y);
+  const MatrixX beta = path.beta(50 * 1e-5);
+  EXPECT_LT(error(predictor.predict(fresh), (at * beta).rowwise() + path.offset(beta).transpose()), 1e-8);
+}
+
+TEST(VarProElm, TheObjectiveNeverRisesAndIsTheOneOfThePredictor) {
+  const Inputs x = inputs(300, 11);
+  const Targets y = targets(x);
+  for (const Activation activation : activations)
+    for (const InputMap input_map : input_maps) {
+      const VarProElm recipe{.hidden_nodes = 8, .activation = activation, .input_map = input_map, .iterations = 30};
+      std::vector<Progress> seen;
+      const auto observer = [&](const Progress& progress) { seen.push_back(progress); };
+      const auto predictor = recipe.fit(x, y, {.seed = 5, .observer = observer});
+      ASSERT_GE(seen.size(), 11u);
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        EXPECT_EQ(seen[i].generation, static_cast<Index>(i));
+        EXPECT_LE(seen[i].best, seen[std::max<std::size_t>(i, 1) - 1].best);
+      }
+      EXPECT_NEAR(seen.front().best, value(recipe, x, y, recipe.layer().draw(3, 5)), 1e-6 * seen.front().best);
+      EXPECT_LT(seen.back().best, 0.5 * seen.front().best) << static_cast<int>(activation);
+      EXPECT_NEAR(seen.back().best, value(recipe, x, y, predictor.theta()), 1e-6 * seen.back().best);
+      const double spread = (y.rowwise() - y.colwise().mean()).squaredNorm();
+      const double penalty = recipe.ridge * 300 * predictor.beta().squaredNorm() / spread;
+      EXPECT_NEAR(seen.back().best, (predictor.predict(x) - y).squaredNorm() / spread + penalty,
+                  1e-6 * seen.back().best);
+    }
+}
+
+/// The hidden weights of a network whose outputs a fit with as many nodes can meet perfectly.
+VectorX planted_weights(Activation activation) {
+  VectorX theta = HiddenLayer{.nodes = 4, .weight_limit = 1.5}.draw(3, 77);
+  if (activation == Activation::radial_basis)  // widths that show within the samples
+    theta.reshaped(4, 4).row(3) = Eigen::RowVector4d(0.6, 0.7, 0.8, 0.9);
+  return theta;
+}
+
+Targets planted(const Inputs& x, Activation activation) {
+  MatrixX h;
+  HiddenLayer{.nodes = 4, .activation = activation}.outputs(x, planted_weights(activation), h);
+  return h * (MatrixX(4, 2) << 1, -2, 3, 1, -2, 2, 1, 1).finished();
+}
+
+TEST(VarProElm, RecoversAPlantedNetwork) {
+  const Inputs x = inputs(400, 13), fresh = inputs(200, 14);
+  Rng rng(12);
+  for (const Activation activation : activations) {
+    const VarProElm recipe{.hidden_nodes = 4,
+                           .activation = activation,
+                           .input_map = InputMap::raw,
+                           .input_scaling = Scaling::none,
+                           .ridge = 1e-16,
+                           .iterations = 200,
+                           .tolerance = 0,
+                           .starts = 10};
+    const Targets y = planted(x, activation), expected = planted(fresh, activation);
+    const VectorX weights = planted_weights(activation);
+    VectorX near = weights;
+    for (auto& weight : near) weight += rng.uniform(-0.2, 0.2);
+    const auto found = recipe.fit_at(x, y, near);
+    EXPECT_LT(error(found.predict(fresh), expected), 1e-7) << static_cast<int>(activation);
+    EXPECT_LT((found.theta() - weights).norm(), 1e-5 * weights.norm()) << static_cast<int>(activation);
+    if (activation == Activation::radial_basis) continue;  // from afar it ends in other minima
+    EXPECT_LT(error(recipe.fit(x, y, {.seed = 1}).predict(fresh), expected), 1e-7) << static_cast<int>(activation);
+    EXPECT_GT(error(Elm{.hidden_nodes = 4, .activation = activation}.fit(x, y, {.seed = 1}).predict(fresh), expected),
+              1e-2);
+  }
+}
+
+TEST(VarProElm, TrainingBeatsDrawing) {
+  const Inputs x = inputs(500, 15), fresh = inputs(300, 16);
+  const Targets y = targets(x), expected = targets(fresh);
+  const VarProElm recipe{.hidden_nodes = 15, .input_map = InputMap::raw};
+  const double trained = error(recipe.fit(x, y, {.seed = 1}).predict(fresh), expected);
+  EXPECT_LT(trained, 0.02);
+  EXPECT_LT(10 * trained, error(Elm{.hidden_nodes = 15}.fit(x, y, {.seed = 1}).predict(fresh), expected));
+}
+
+TEST(VarProElm, TheRidgeLimitsTheOutputWeights) {
+  const Inputs x = inputs(200, 17);
+  const Targets y = targets(x);
+  double last = std::numeric_limits<double>::infinity();
+  for (const double ridge : {1e-12, 1e-8, 1e-4, 1e-1}) {
+    const VarProElm recipe{.hidden_nodes = 10, .ridge = ridge, .iterations = 20};
+    const double size = recipe.fit(x, y, {.seed = 2}).beta().norm() / detail::CommonScaling(y).spread;
+    EXPECT_LT(size, last);
+    EXPECT_LE(ridge * size * size, 1);  // the mean alone has the objective 1
+    last = size;
+  }
+  EXPECT_LT(last, 2);
+}
+
+// Outputs weigh as they are: in millimetres the same predictor as in metres, and a column of noise in the last digits
+// changes nothing.
+TEST(VarProElm, TargetsHaveOneUnit) {
+  const Inputs x = inputs(200, 18), fresh = inputs(50, 19);
+  const Targets y = targets(x);
+  const VarProElm recipe{.hidden_nodes = 6, .iterations = 1};  // further steps magnify the last digits
+  const MatrixX metres = recipe.fit(x, y, {.seed = 1}).predict(fresh);
+  const MatrixX doubled = recipe.fit(x, Targets(1024 * y), {.seed = 1}).predict(fresh);
+  EXPECT_LT(error(doubled / 1024, metres), 1e-9);
+  Rng rng(20);
+  Targets noisy = y;
+  for (Index i = 0; i < 200; ++i) noisy(i, 1) = 1e-12 * rng.normal();
+  Eigen::Matrix<double, Eigen::Dynamic, 1> alone = y.col(0);
+  EXPECT_LT(
+      error(recipe.fit(x, noisy, {.seed = 1}).predict(fresh).col(0), recipe.fit(x, alone, {.seed = 1}).predict(fresh)),
+      1e-6);
+}
+
+TEST(VarProElm, TheBestOfSeveralStartsIsKept) {
+  const Inputs x = inputs(150, 21);
+  const Targets y = targets(x);
+  VarProElm recipe{.hidden_nodes = 4, .iterations = 15};
+  const auto trained = [&](const VectorX& theta) { return value(recipe, x, y, recipe.fit_at(x, y, theta).theta()); };
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint64_t start = 0; start < 4; ++start)
+    least = std::min(least, trained(recipe.layer().draw(3, start == 0 ? 6 : child_seed(6, start))));
+  EXPECT_LT(least, trained(recipe.layer().draw(3, 6)));  // or the test would not see the first one being kept
+  recipe.starts = 4;
+  EXPECT_EQ(value(recipe, x, y, recipe.fit(x, y, {.seed = 6}).theta()), least);
+}
+
+TEST(VarProElm, AnObserverStopsIt) {
+  const Inputs x = inputs(100, 22);
+  const Targets y = targets(x);
+  Index calls = 0;
+  const auto observer = [&](const Progress&) { return ++calls < 4; };
+  const auto stopped = VarProElm{.hidden_nodes = 5, .starts = 3}.fit(x, y, {.seed = 1, .observer = observer});
+  EXPECT_EQ(calls, 4);
+  EXPECT_EQ(stopped.theta(), (VarProElm{.hidden_nodes = 5, .iterations = 3}.fit(x, y, {.seed = 1}).theta()));
+}
+
+TEST(VarProElm, StopsWhenSteadyOrPerfect) {
+  const Inputs x = inputs(100, 23);
+  Index calls = 0;
+  const auto count = [&](const VarProElm& recipe, const Targets& y) {
+    calls = 0;
+    const auto observer = [&](const Progress&) { ++calls; };
+    static_cast<void>(recipe.fit(x, y, {.seed = 1, .observer = observer}));
+    return calls;
+  };
+  EXPECT_EQ(count({.hidden_nodes = 5, .iterations = 400}, Targets::Constant(100, 2, 0.3)), 1);
+  EXPECT_LT(count({.hidden_nodes = 5, .iterations = 400, .tolerance = 0.5}, targets(x)), 100);
+  EXPECT_GT(count({.hidden_nodes = 5, .iterations = 400, .tolerance = 0}, targets(x)), 50);
+}
+
+// The search chooses where the training starts, by the same objective.
+TEST(VarProElm, FinishesWhatASearchBegan) {
+  const Inputs x = inputs(200, 24);
+  const Targets y = targets(x);
+  const VarProElm recipe{.hidden_nodes = 6, .iterations = 12};
+  const Pso pso{.particles = 10, .iterations = 8};
+  std::vector<Progress> seen;
+  const auto observer = [&](const Progress& progress) { seen.push_back(progress); };
+  const auto hybrid = Tuned{recipe, pso}.fit(x, y, {.seed = 4, .observer = observer});
+  const SearchResult found = minimize(pso, recipe.objective(x, y), recipe.box(3), {}, 4);
+  EXPECT_EQ(hybrid.theta(), recipe.fit_at(x, y, found.best).theta());
+  EXPECT_NE(hybrid.theta(), found.best);
+  ASSERT_EQ(seen.size(), 9u + 13u);
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    EXPECT_LE(seen[i].best, seen[i - 1].best * (1 + 1e-6));
+    EXPECT_GE(seen[i].generation, seen[i - 1].generation);
+  }
+  EXPECT_EQ(seen[8].evaluations, 90);
+  EXPECT_EQ(seen.back().evaluations, 90 + 13);
+  EXPECT_NEAR(seen[9].best, found.best_fitness, 1e-6 * found.best_fitness);
+  EXPECT_LT(seen.back().best, found.best_fitness);
+}
+
+// One sample, fewer samples than nodes, constant columns, one output: finite, and as good as it can be.
+TEST(VarProElm, SmallestProblems) {
+  for (const Activation activation : activations) {
+    const VarProElm recipe{.hidden_nodes = 12, .activation = activation, .iterations = 20};
+    const Inputs one = inputs(1, 25), few = inputs(7, 26);
+    EXPECT_LT((recipe.fit(one, targets(one)).predict(one) - targets(one)).norm(), 1e-12);
+    EXPECT_LT(error(recipe.fit(few, targets(few)).predict(few), targets(few)), 1e-3);
+    EXPECT_TRUE(recipe.fit(few, targets(few)).predict(inputs(50, 27)).allFinite());
+    Inputs constant = inputs(60, 28);
+    constant.col(1).setConstant(0.4);
+    EXPECT_LT(error(recipe.fit(constant, targets(constant)).predict(constant), targets(constant)), 0.1);
+    EXPECT_LT(error(VarProElm{.hidden_nodes = 12, .activation = activation, .input_map = InputMap::raw}
+                        .fit(constant, targets(constant))
+                        .predict(constant),
+                    targets(constant)),
+              0.1);
+    const Targets level = Targets::Constant(60, 2, 7);
+    EXPECT_LT((recipe.fit(constant, level).predict(constant) - level).norm(), 1e-12);
+    const Eigen::Matrix<double, Eigen::Dynamic, 1> single = targets(constant).col(1);
+    EXPECT_LT(error(recipe.fit(constant, single).predict(constant), single), 0.1);
+  }
+}
+
+/// Saturated everywhere: nothing to learn from, nothing to divide by.
+TEST(VarProElm, SaturatedNodes) {
+  const Inputs x = inputs(50, 29);
+  const Targets y = targets(x);
+  const VarProElm recipe{.hidden_nodes = 3, .input_map = InputMap::raw};
+  const VectorX theta = 1e4 * (VectorX(4) << 0, 0, 0, 1).finished().replicate(3, 1);
+  const auto predictor = recipe.fit_at(x, y, theta);
+  EXPECT_EQ(predictor.theta(), theta);
+  EXPECT_LT((predictor.predict(x).rowwise() - y.colwise().mean()).norm(), 1e-12);
+}
+
+/// What a call says when it refuses.
+template <class Call>
+std::string refusal(Call&& call) {
+  try {
+    static_cast<void>(call());
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(VarProElm, RefusesMisuseWithTheNumbers) {
+  const Inputs x = inputs(10, 30);
+  const Targets y = targets(x), fewer = y.topRows(9);
+  const auto says = [](const std::string& said, const char* text) {
+    EXPECT_NE(said.find(text), std::string::npos) << said;
+  };
+  EXPECT_EQ(refusal([&] { return VarProElm{}.fit(x, fewer); }), "VarProElm: 10 rows of inputs, but 9 rows of targets");
+  EXPECT_EQ(refusal([&] { return VarProElm{}.fit(Inputs(0, 3), Targets(0, 2)); }), "VarProElm: no samples");
+  says(refusal([&] { return VarProElm{.hidden_nodes = 0}.fit(x, y); }), "hidden_nodes is 0");
+  says(refusal([&] { return VarProElm{.weight_limit = -1}.fit(x, y); }), "weight_limit is -1");
+  for (const double ridge : {0.0, -1.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    says(refusal([&] { return VarProElm{.ridge = ridge}.fit(x, y); }), "VarProElm: ridge is ");
+    says(refusal([&] { return VarProElm{.ridge = ridge}.objective(x, y); }), "VarProElm: ridge is ");
+  }
+  says(refusal([&] { return VarProElm{.iterations = -2}.fit(x, y); }), "iterations is -2");
+  says(refusal([&] { return VarProElm{.tolerance = 1}.fit(x, y); }), "tolerance is 1");
+  says(refusal([&] { return VarProElm{.starts = 0}.fit(x, y); }), "starts is 0");
+  const VarProElm two{.hidden_nodes = 2, .input_map = InputMap::raw};
+  says(refusal([&] { return two.fit_at(x, y, VectorX::Ones(7)); }), "7 hidden weights, expected 8");
+  says(refusal([&] { return two.objective(x, y).gradient(VectorX::Ones(9)); }), "9 hidden weights, expected 8");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  says(refusal([&] { return two.fit_at(x, y, VectorX::Constant(8, nan)); }), "not finite");
+  Targets holed = y;
+  holed(2, 1) = nan;
+  says(refusal([&] { return VarProElm{}.fit(x, holed); }), "not finite");
+}
+
+}  // namespace
+}  // namespace vernier

@@ -11,13 +11,13 @@
 
 namespace support {
 
-/// `vernier::identify`, N = 3 to 9.
+/// `vernier::identify`, for the numbers of joints in dispatch.hpp, as all below.
 template <int N>
 vernier::Identified<vernier::DhChain<N>> identify_arm(const vernier::DhChain<N>& nominal,
                                                       const vernier::Dataset<N>& data,
                                                       const vernier::IdentifyOptions& options);
 
-/// `vernier::fit_error_model`, N = 3 to 9.
+/// `vernier::fit_error_model`.
 template <int N>
 vernier::FittedErrorModel<vernier::DhChain<N>> fit_errors(const vernier::Identified<vernier::DhChain<N>>& start,
                                                           std::span<const vernier::Dataset<N>> stations,
@@ -43,7 +43,7 @@ struct LearnedError {
 inline constexpr vernier::Index swarm_generations = 20;
 
 /// A PSO-ELM of what a model leaves, by leave-one-out error; the mean alone is among the candidates, so where nothing
-/// is left to learn nothing is learned. N = 3 to 9.
+/// is left to learn nothing is learned.
 template <int N>
 LearnedError<N> learn_residual(const vernier::ErrorModel<vernier::DhChain<N>>& model, const vernier::Dataset<N>& data,
                                const vernier::FitOptions& options);

@@ -92,6 +92,7 @@ struct BySet {
     vn::detail::run_same_bits(
         [&]<int W>() VERNIER_INLINED {
           vn::detail::PoseFrame<W> one;
+          one.set_identity();
           rows.template walk<W>(q.data(), one, [](int, vn::DhParameter, const auto&, const auto&) VERNIER_INLINED {});
           vn::detail::store_pose<W>(pose.data(), one);
           for (vn::Index i = 0; i < joints.rows(); i += W) {

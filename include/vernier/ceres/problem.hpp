@@ -109,26 +109,26 @@ class IdentificationProblem {
     bool has_jacobian = false;
   };
 
-  /// A group of rows of the shared linearisation.
+  /// Some rows of the shared linearisation.
   class Rows : public ceres::CostFunction {
    public:
-    Rows(const Preparation& preparation, Index row) : preparation_(preparation), row_(row) {
-      set_num_residuals(group);
+    Rows(const Preparation& preparation, Index row, Index count) : preparation_(preparation), row_(row), count_(count) {
+      set_num_residuals(static_cast<int>(count));
       mutable_parameter_block_sizes()->push_back(static_cast<int>(preparation.steps.size()));
     }
     bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-      using RowMajor = Eigen::Matrix<double, group, Eigen::Dynamic, Eigen::RowMajor>;
-      Eigen::Map<Eigen::Matrix<double, group, 1>> out(residuals);
-      out = preparation_.at.residuals.template segment<group>(row_);
+      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      Eigen::Map<VectorX> out(residuals, count_);
+      out = preparation_.at.residuals.segment(row_, count_);
       if (jacobians != nullptr && jacobians[0] != nullptr)
-        Eigen::Map<RowMajor>(jacobians[0], group, preparation_.steps.size()) =
-            preparation_.at.jacobian.template middleRows<group>(row_);
+        Eigen::Map<RowMajor>(jacobians[0], count_, preparation_.steps.size()) =
+            preparation_.at.jacobian.middleRows(row_, count_);
       return out.allFinite();
     }
 
    private:
     const Preparation& preparation_;
-    Index row_;
+    Index row_, count_;
   };
 
   /// Steps weighed by their priors.
@@ -175,12 +175,16 @@ class IdentificationProblem {
     problem_options.evaluation_callback = &preparation;
     ceres::Problem problem(problem_options);
     problem.AddParameterBlock(steps.data(), static_cast<int>(steps.size()));
-    for (Index row = 0; row < rows(); row += group)
-      problem.AddResidualBlock(new Rows(preparation, row),
-                               loss(row < group * data_.size() ? position_scale : orientation_scale), steps.data());
+    if (options_.loss == Loss::squared) {  // all in one: then linear algebra is what remains
+      problem.AddResidualBlock(new Rows(preparation, 0, rows()), nullptr, steps.data());
+    } else {
+      for (Index row = 0; row < rows(); row += group)
+        problem.AddResidualBlock(new Rows(preparation, row, group),
+                                 loss(row < group * data_.size() ? position_scale : orientation_scale), steps.data());
+    }
     if (prior_.maxCoeff() > 0) problem.AddResidualBlock(new PriorRows(prior_), nullptr, steps.data());
     ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;  // columns are scaled and told apart before
     solver.max_num_iterations = options_.max_iterations;
     solver.function_tolerance = 1e-12;  // Ceres' default of 1e-6 stops short of the sensor's noise
     solver.gradient_tolerance = 1e-16;

@@ -83,13 +83,16 @@ struct Precision {
     stacked.topRows(jacobian.rows()) = jacobian;
     MatrixX triangle =
         Eigen::HouseholderQR<MatrixX>(stacked).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
-    const VectorX data = Eigen::JacobiSVD<MatrixX>(triangle).singularValues();
+    Eigen::JacobiSVD<MatrixX> svd(triangle, Eigen::ComputeFullV);
+    const VectorX data = svd.singularValues();
     singular_values = data;
     rank = (data.array() > 1e-12 * data(0)).count();
     condition = rank < columns ? std::numeric_limits<double>::infinity() : data(0) / data(columns - 1);
-    stacked.resize(2 * columns, columns);
-    stacked << triangle, MatrixX(prior.cwiseSqrt().asDiagonal());
-    const Eigen::JacobiSVD<MatrixX> svd(stacked, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    if (!prior.isZero(0)) {
+      stacked.resize(2 * columns, columns);
+      stacked << triangle, MatrixX(prior.cwiseSqrt().asDiagonal());
+      svd.compute(stacked, Eigen::ComputeFullV);
+    }
     const VectorX& s = svd.singularValues();
     if (!(s(columns - 1) > 1e-12 * s(0))) return;
     inverse = svd.matrixV() * s.array().square().inverse().matrix().asDiagonal() * svd.matrixV().transpose();

@@ -6,6 +6,7 @@
 
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/least_squares.hpp"
+#include "vernier/regression/ridge_elm.hpp"
 
 namespace vernier {
 namespace {
@@ -149,6 +150,79 @@ TEST(ChooseLambda, IsNotFooledByInterpolation) {
 TEST(ChooseLambda, FewSamplesAndConstantNodes) {
   EXPECT_EQ(choose_lambda(RidgePath(random_matrix(1, 3, 16), random_matrix(1, 1, 17)), 1).lambda, infinity);
   EXPECT_EQ(choose_lambda(RidgePath(MatrixX::Constant(5, 3, 0.5), random_matrix(5, 1, 18)), 5).lambda, infinity);
+}
+
+/// Samples of a smooth function with noise, and hidden weights of some size.
+struct Layer {
+  MatrixX features, targets;
+  HiddenLayer layer;
+  VectorX theta;
+  Layer(Index samples, int nodes, double size, Activation activation, double noise = 0.05, int outputs = 3)
+      : features(samples, 4), targets(samples, outputs), layer{.nodes = nodes, .activation = activation} {
+    Rng rng(7);
+    for (auto& value : features.reshaped()) value = rng.uniform(-1, 1);
+    for (Index i = 0; i < samples; ++i)
+      for (Index o = 0; o < outputs; ++o)
+        targets(i, o) = 4 + std::sin(3 * features(i, o % 3) + features(i, 3)) + noise * rng.normal();
+    theta.resize(nodes * 5);
+    for (auto& value : theta) value = size * rng.uniform(-1, 1);
+  }
+  /// By singular values.
+  double expected() const {
+    MatrixX h;
+    layer.outputs(features, theta, h);
+    return choose_lambda(RidgePath(h, targets), targets.rows()).mean_squared_error;
+  }
+};
+
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> out{InstructionSet::baseline};
+  if (widest_instruction_set() >= InstructionSet::avx2) out.push_back(InstructionSet::avx2);
+  if (widest_instruction_set() >= InstructionSet::avx512) out.push_back(InstructionSet::avx512);
+  return out;
+}
+
+TEST(LeaveOneOutError, FromProductsIsThatOfSingularValues) {
+  for (const auto activation : {Activation::sigmoid, Activation::tanh})
+    for (const auto& [samples, nodes] : {std::pair<Index, int>{331, 17}, {500, 24}, {96, 40}, {64, 1}})
+      for (const double size : {0.3, 1.0, 5.0})
+        for (const int outputs : {1, 3}) {
+          const Layer at(samples, nodes, size, activation, 0.05, outputs);
+          const double expected = at.expected();
+          for (const InstructionSet set : instruction_sets()) {
+            detail::LeaveOneOutError error(at.layer, at.features, at.targets, set);
+            const double found = error(at.theta);
+            EXPECT_EQ(error(at.theta), found);      // keeps nothing
+            if (size < 1 && found == -1) continue;  // small weights ask for a ridge below what products tell
+            EXPECT_NEAR(found / expected, 1, 1e-8) << samples << ' ' << nodes << ' ' << size;
+          }
+        }
+}
+
+TEST(LeaveOneOutError, SaysWhereProductsDoNotTell) {
+  const auto says = [](const Layer& at) {
+    return detail::LeaveOneOutError(at.layer, at.features, at.targets)(at.theta);
+  };
+  EXPECT_EQ(says(Layer(400, 30, 1e-3, Activation::sigmoid, 0)), -1);  // nearly linear nodes, and nothing but signal
+  Layer constant(400, 5, 1, Activation::sigmoid);
+  constant.theta.setZero();  // equal, constant nodes
+  EXPECT_EQ(says(constant), -1);
+  Layer unusable(400, 5, 1, Activation::sigmoid);
+  unusable.theta(3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(says(unusable), -1);
+  EXPECT_FALSE(detail::LeaveOneOutError::supports({.nodes = 10, .activation = Activation::sine}, 1000));
+  EXPECT_FALSE(detail::LeaveOneOutError::supports({.nodes = 10}, 19));
+}
+
+TEST(LeaveOneOutError, TheObjectiveIsRightWhateverTheWeights) {
+  for (const double size : {0.0, 1e-6, 1e-3, 1.0, 1e3})
+    for (const double noise : {0.0, 0.1}) {
+      const Layer at(300, 12, size, Activation::sigmoid, noise);
+      const RidgeElm elm{.hidden_nodes = 12, .input_map = InputMap::raw, .input_scaling = Scaling::none};
+      VectorX fitness(1);
+      elm.objective(Eigen::Matrix<double, Eigen::Dynamic, 4>(at.features), PointRows(at.targets))(at.theta, fitness);
+      EXPECT_NEAR(fitness(0) / at.expected(), 1, 1e-6) << size << ' ' << noise;
+    }
 }
 
 }  // namespace

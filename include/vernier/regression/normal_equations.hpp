@@ -19,10 +19,11 @@ struct NormalEquationsBlock {
   const double* features;  // samples x inputs, column-major
   const double* targets;   // samples x outputs, column-major
   const double* weights;   // (inputs + 1) rows of `stride`, biases last
-  double* tile;            // tile_samples rows of `stride`
+  const double* shift;     // of the nodes, taken off their outputs; or null
+  double* tile;            // tile_samples rows of `stride`, or all samples where they are kept
   double* products;        // stride x stride, zero on entry; blocks on and right of the diagonal are added to
   Index samples, inputs, outputs, nodes, stride, tile_samples;
-  bool tanh;
+  bool tanh, keep;
 };
 
 /// Hidden layer, activation and product, tile by tile.
@@ -30,8 +31,9 @@ template <int W, int Rows, int Vectors>
 VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
   for (Index begin = 0; begin < b.samples; begin += b.tile_samples) {
     const Index samples = std::min(b.tile_samples, b.samples - begin);
+    double* tile = b.tile + (b.keep ? begin * b.stride : 0);
     for (Index s = 0; s < samples; ++s) {
-      double* row = b.tile + s * b.stride;
+      double* row = tile + s * b.stride;
       for (Index j = 0; j < b.nodes; j += W) {
         typename Simd<W>::Double z, w;
         load<W>(z, b.weights + b.inputs * b.stride + j);
@@ -42,12 +44,16 @@ VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
         if (b.tanh) z += z;
         sigmoid<W>(z);
         if (b.tanh) z = 2.0 * z - 1.0;
+        if (b.shift != nullptr) {
+          load<W>(w, b.shift + j);
+          z -= w;
+        }
         store<W>(row + j, z);
       }
       for (Index k = 0; k < b.outputs; ++k) row[b.nodes + k] = b.targets[k * b.samples + begin + s];
       for (Index k = b.nodes + b.outputs; k < b.stride; ++k) row[k] = 0;
     }
-    tile_product<W, Rows, Vectors>(b.tile, b.tile, b.products, b.stride, samples, true);
+    tile_product<W, Rows, Vectors>(tile, tile, b.products, b.stride, samples, true);
   }
 }
 
@@ -73,25 +79,30 @@ class NormalEquations {
   /// @param features samples x inputs, scaled; must outlive this
   /// @param targets  samples x outputs; must outlive this
   /// @param set      instructions to use; must be there
+  /// @param keep     whether the outputs of all nodes are kept
   NormalEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
-                  InstructionSet set = widest_instruction_set())
-      : layer_(layer), features_(features), targets_(targets), set_(set) {
+                  InstructionSet set = widest_instruction_set(), bool keep = false)
+      : layer_(layer), features_(features), targets_(targets), set_(set), keep_(keep) {
     stride_ = (layer.nodes + targets.cols() + 7) / 8 * 8;
     tile_samples_ = std::max<Index>(8, 3072 / stride_);  // 24 KiB
     weights_.resize(static_cast<std::size_t>((features.cols() + 1) * stride_));
-    tile_.resize(static_cast<std::size_t>(tile_samples_ * stride_));
+    tile_.resize(static_cast<std::size_t>((keep ? features.rows() : tile_samples_) * stride_));
+    shift_.resize(static_cast<std::size_t>(stride_));
     products_.resize(static_cast<std::size_t>(stride_ * stride_));
   }
 
   /// Forms the products at weights `theta`, node by node.
-  void form(const Eigen::Ref<const VectorX>& theta) {
+  /// @param shift taken off the outputs of the nodes; null for nothing
+  void form(const Eigen::Ref<const VectorX>& theta, const double* shift = nullptr) {
     const Index f = features_.cols();
     for (Index k = 0; k < layer_.nodes; ++k)
       for (Index j = 0; j <= f; ++j) weights_[static_cast<std::size_t>(j * stride_ + k)] = theta(k * (f + 1) + j);
+    if (shift != nullptr) std::copy(shift, shift + layer_.nodes, shift_.begin());  // padded
     std::fill(products_.begin(), products_.end(), 0.0);
     const NormalEquationsBlock block{features_.data(),
                                      targets_.data(),
                                      weights_.data(),
+                                     shift != nullptr ? shift_.data() : nullptr,
                                      tile_.data(),
                                      products_.data(),
                                      features_.rows(),
@@ -100,7 +111,8 @@ class NormalEquations {
                                      layer_.nodes,
                                      stride_,
                                      tile_samples_,
-                                     layer_.activation == Activation::tanh};
+                                     layer_.activation == Activation::tanh,
+                                     keep_};
     switch (set_) {
 #if defined(__x86_64__)
       case InstructionSet::avx512: return normal_equations_avx512(block);
@@ -110,6 +122,9 @@ class NormalEquations {
     }
   }
 
+  /// Where they are kept: a row a sample, `stride()` apart, outputs of the nodes (less their shift), then the targets.
+  const double* outputs() const { return tile_.data(); }
+  Index stride() const { return stride_; }
   /// H'H, nodes x nodes; its lower triangle.
   auto gram() const { return view().topLeftCorner(layer_.nodes, layer_.nodes); }
   /// T'H, outputs x nodes.
@@ -124,8 +139,9 @@ class NormalEquations {
   const MatrixX& features_;
   const MatrixX& targets_;
   InstructionSet set_;
+  bool keep_;
   Index stride_ = 0, tile_samples_ = 0;
-  std::vector<double> weights_, tile_, products_;
+  std::vector<double> weights_, shift_, tile_, products_;
 };
 
 }  // namespace vernier::detail

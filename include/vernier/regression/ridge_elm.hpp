@@ -3,8 +3,12 @@
 /// @file
 /// Extreme learning machine with a ridge on the output weights, chosen by closed-form leave-one-out.
 
+#include <limits>
+#include <optional>
+
 #include "vernier/regression/hidden_layer.hpp"
 #include "vernier/regression/least_squares.hpp"
+#include "vernier/regression/leave_one_out.hpp"
 
 namespace vernier {
 
@@ -18,8 +22,12 @@ class RidgeElmLeaveOneOutError {
 
   template <class Population, class Fitness>
   void operator()(const Eigen::MatrixBase<Population>& population, Fitness&& fitness) const {
+    std::optional<LeaveOneOutError> products;
+    if (LeaveOneOutError::supports(layer_, targets_.rows())) products.emplace(layer_, features_, targets_);
     MatrixX h;
     for (Index k = 0; k < population.cols(); ++k) {
+      fitness(k) = products ? (*products)(population.col(k)) : -1;
+      if (fitness(k) >= 0) continue;  // else the products do not tell: singular values do
       layer_.outputs(features_, population.col(k), h);
       fitness(k) = h.allFinite() ? choose_lambda(RidgePath(h, targets_), targets_.rows()).mean_squared_error
                                  : std::numeric_limits<double>::infinity();

@@ -3,18 +3,22 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "program.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/core/executor.hpp"
+#include "vernier/core/simd.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
-#include "vernier/core/simd.hpp"
+#include "vernier/regression/tile_product.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
@@ -94,6 +98,43 @@ double leave_one_out(const MatrixX& features, const MatrixX& targets, const Vect
     best = std::min(best, (residual.array().colwise() / rest.array()).matrix().squaredNorm() / samples);
   }
   return best;
+}
+
+/// Multiply-adds that wait for nothing, as wide as the machine has them: what it can do at most.
+template <int W>
+VERNIER_INLINE void multiply_add(double* sums, vn::Index rounds) {
+  constexpr int chains = 12;
+  typename vn::detail::Simd<W>::Double sum[chains], factor, step;
+  vn::detail::load<W>(factor, sums);
+  step = factor + 1.0;
+  for (int k = 0; k < chains; ++k) sum[k] = step * static_cast<double>(k);
+  for (vn::Index i = 0; i < rounds; ++i) {
+    VERNIER_UNROLL
+    for (int k = 0; k < chains; ++k) sum[k] = sum[k] * factor + step;
+  }
+  for (int k = 1; k < chains; ++k) sum[0] += sum[k];
+  vn::detail::store<W>(sums, sum[0]);
+}
+#if defined(__x86_64__)
+__attribute__((target("avx512f,avx512dq,fma"))) void multiply_add_avx512(double* s, vn::Index n) {
+  multiply_add<8>(s, n);
+}
+__attribute__((target("avx2,fma"))) void multiply_add_avx2(double* s, vn::Index n) { multiply_add<4>(s, n); }
+#endif
+
+/// Operations of so many rounds; two a multiply-add.
+double run_multiply_add(vn::Index rounds) {
+  double sums[8] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5};
+  int width = 2;
+  switch (vn::widest_instruction_set()) {
+#if defined(__x86_64__)
+    case vn::InstructionSet::avx512: multiply_add_avx512(sums, rounds), width = 8; break;
+    case vn::InstructionSet::avx2: multiply_add_avx2(sums, rounds), width = 4; break;
+#endif
+    default: multiply_add<2>(sums, rounds);
+  }
+  benchmark::DoNotOptimize(sums);
+  return 2.0 * 12 * width * static_cast<double>(rounds);
 }
 
 /// A predictor in dynamic matrices, scalings folded in as far as Vernier's.
@@ -198,7 +239,51 @@ int work(bench::Program& program, int argc, char** argv) {
   const auto compensation = vn::CartesianCompensation{elm}.fit(arm, data, {.seed = 1});
   program.measure("correct", "vernier", [=](std::size_t i) { return compensation.correct(at[i & 1023]); });
 
+  // how much of the machine's peak the symmetric product of a tile reaches, and how a fitness grows
+  constexpr vn::Index peak_rounds = 100000, stride = 72, tile = 40;
+  program.measure("peak", "multiply-adds", [](std::size_t) { return run_multiply_add(peak_rounds); });
+  std::vector<double> rows(tile * stride, 0.5), scaled(rows), ones(tile, 1.0), products(stride * stride, 0.0);
+  program.measure("symmetric product", "a tile", [=](std::size_t) mutable {
+    vn::detail::add_weighted_product({.left = rows.data(),
+                                      .right = rows.data(),
+                                      .weights = ones.data(),
+                                      .tile = scaled.data(),
+                                      .products = products.data(),
+                                      .samples = tile,
+                                      .stride = stride,
+                                      .tile_samples = tile,
+                                      .symmetric = true},
+                                     vn::widest_instruction_set());
+    return products[0];
+  });
+  const std::array<std::pair<vn::Index, int>, 5> sizes{{{1250, 65}, {5000, 33}, {5000, 65}, {5000, 130}, {20000, 65}}};
+  const auto size_name = [](vn::Index n, int h) { return "n = " + std::to_string(n) + ", h = " + std::to_string(h); };
+  for (const auto& [n, h] : sizes) {
+    const vn::Elm of_size{.hidden_nodes = h};
+    const Inputs q = vn::abb_irb120_operating_region().sample(arm, n, 2);
+    const Targets error = vn::positions(arm, q) - vn::positions(actual, q);
+    program.measure("growth", size_name(n, h),
+                    [objective = of_size.objective(q, error), at = of_size.layer().draw(6, 1)](std::size_t) {
+                      VectorX fitness(1);
+                      objective(at, fitness);
+                      return fitness(0);
+                    });
+  }
+
   if (const int status = program.run(argc, argv); status != 0) return status;
+  if (const double peak = program.median("peak", "multiply-adds"),
+      ours_ns = program.median("symmetric product", "a tile");
+      peak > 0 && ours_ns > 0) {
+    const double most = run_multiply_add(peak_rounds) / peak;  // operations a nanosecond
+    const double useful = static_cast<double>(tile * stride * (stride + 1)) / ours_ns;
+    std::printf(
+        "\nsymmetric product of a tile: %.1f GFLOP/s, %.0f %% of the %.1f that this machine's multiply-adds reach\n",
+        useful, 100 * useful / most, most);
+    for (const auto& [n, h] : sizes)
+      if (const double t = program.median("growth", size_name(n, h)); t > 0)
+        std::printf("fitness, %-18s %10.3f ms, %.1f GFLOP/s in the symmetric product alone\n", size_name(n, h).c_str(),
+                    t * 1e-6, static_cast<double>(n) * (h + 3) * (h + 4) / t);
+  }
   std::printf("\nfitness against Gram + LLT, Householder, BDCSVD: relative difference at most %.1e, %.1e, %.1e\n",
               by_gram, by_qr, by_svd);
   const char* sets[] = {"those of the compiler", "AVX2", "AVX-512"};

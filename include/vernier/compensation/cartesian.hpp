@@ -3,6 +3,8 @@
 /// @file
 /// Cartesian compensation: learn the position error over the joints, on top of any model.
 
+#include <tuple>
+
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
@@ -50,9 +52,16 @@ class CartesianCorrected {
     PoseAndJacobian<dof> out = model_.pose_and_jacobian(q);
     const double gate = gate_(q);
     if (gate == 0) return out;
-    const Vector3 error = learned_.predict(q);
+    Vector3 error;
+    Eigen::Matrix<double, 3, dof> slope;
+    if constexpr (requires { learned_.predict_and_derivative(q); }) {
+      std::tie(error, slope) = learned_.predict_and_derivative(q);
+    } else {
+      error = learned_.predict(q);
+      slope = learned_.derivative(q);
+    }
     out.pose.translation() -= gate * error;
-    out.jacobian.template topRows<3>() -= gate * learned_.derivative(q) + error * gate_.derivative(q);
+    out.jacobian.template topRows<3>() -= gate * slope + error * gate_.derivative(q);
     return out;
   }
 

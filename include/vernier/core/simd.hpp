@@ -5,6 +5,7 @@
 /// always inlined into an entry point with a target attribute, and take vectors by reference only, so that code
 /// compiled plainly runs wide instructions and never mixes ABIs with other libraries.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -79,6 +80,29 @@ template <class Kernel>
 void run_same_bits(const Kernel& kernel, InstructionSet set = widest_instruction_set()) noexcept {
 #if defined(__x86_64__)
   if (set != InstructionSet::baseline) return run_avx2(kernel);
+#else
+  static_cast<void>(set);
+#endif
+  run_baseline(kernel);
+}
+
+#if defined(__x86_64__)
+template <class Kernel>
+[[gnu::noinline, gnu::target("avx2,fma")]] void run_avx2_fma(const Kernel& kernel) noexcept {
+  kernel.template operator()<4>();
+}
+template <class Kernel>
+[[gnu::noinline, gnu::target("avx512f,avx512dq,fma")]] void run_avx512(const Kernel& kernel) noexcept {
+  kernel.template operator()<8>();
+}
+#endif
+
+/// The same with all that an instruction set has: results of another set differ in their last bits.
+template <class Kernel>
+void run_widest(const Kernel& kernel, InstructionSet set = widest_instruction_set()) noexcept {
+#if defined(__x86_64__)
+  if (set == InstructionSet::avx512) return run_avx512(kernel);
+  if (set == InstructionSet::avx2) return run_avx2_fma(kernel);
 #else
   static_cast<void>(set);
 #endif
@@ -176,6 +200,27 @@ VERNIER_INLINE void sincos(const typename Simd<W>::Double (&angle)[Count], typen
       }
     }
   }
+}
+
+/// Sines and cosines of N angles [rad], as `sincos`; the same bits on every machine.
+template <int N>
+void sines_and_cosines(const double* angles, double* sines, double* cosines) noexcept {
+  constexpr int padded = (N + 3) / 4 * 4;
+  double x[padded] = {}, s[padded], c[padded];
+  std::copy(angles, angles + N, x);
+  run_same_bits([&]<int W>() VERNIER_INLINED {
+    typename Simd<W>::Double angle[padded / W], sine[padded / W], cosine[padded / W];
+    VERNIER_UNROLL
+    for (int k = 0; k < padded / W; ++k) load<W>(angle[k], x + k * W);
+    sincos<W>(angle, sine, cosine);
+    VERNIER_UNROLL
+    for (int k = 0; k < padded / W; ++k) {
+      store<W>(s + k * W, sine[k]);
+      store<W>(c + k * W, cosine[k]);
+    }
+  });
+  std::copy(s, s + N, sines);
+  std::copy(c, c + N, cosines);
 }
 
 }  // namespace detail

@@ -3,7 +3,7 @@
 /// @file
 /// The extreme learning machine: a hidden layer of random or tuned weights, output weights by least squares.
 
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/elm_predictor.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/normal_equations.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/elm_predictor.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/leave_one_out.hpp"
 

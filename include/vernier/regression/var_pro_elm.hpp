@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/elm_predictor.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/normal_equations.hpp"
 #include "vernier/regression/variable_projection.hpp"

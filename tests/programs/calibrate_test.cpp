@@ -75,7 +75,8 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   EXPECT_EQ(c.command.errors, "");
   EXPECT_EQ(keys(c.json),
             (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "blocks", "parameters",
-                                      "identifiability", "gated_rows", "within_95_percent_ellipsoids", "verdict"}));
+                                      "identifiability", "gated_rows", "worst_harm_beside_geometry_mm",
+                                      "within_95_percent_ellipsoids", "verdict"}));
   EXPECT_EQ(c.json.at("robot"), "abb_irb120");
   EXPECT_EQ(c.json.at("train_rows"), 120);
   EXPECT_EQ(c.json.at("test_rows"), 30);
@@ -286,6 +287,40 @@ TEST(Calibrate, TwoStationsThenARemountedArm) {
   EXPECT_LT(again.at("stages").at("reregistered").at("mean_mrad"), 0.4);
   const auto model = load_calibrated_robot<6>(folder / "moved.json");
   EXPECT_LT((model.reference().base().translation() - elsewhere.head<3>()).norm(), 2e-3);
+}
+
+TEST(Calibrate, DistancesBesidePosesAndTunedPriors) {
+  const TemporaryFolder folder("calibrate");
+  const auto arm = actual_arm();
+  const auto region = abb_irb120_operating_region();
+  const DhChain<6> chain = robots::abb_irb120().chain;
+  write_dataset(folder / "poses.csv", measured(60, 1, false));
+  const auto wire = measure_distances(arm, Vector3(2, 0.5, 1), region.sample(chain, 100, 2), 0.03e-3, 3);
+  std::string text = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,distance_mm\n";
+  for (Index i = 0; i < wire.size(); ++i) {
+    for (int j = 0; j < 6; ++j) text += message(wire.joints()(i, j), ',');
+    text += message(wire.length(i) * 1e3, '\n');
+  }
+  write_file(folder / "wire.csv", text);
+  const auto geometry = [&](const std::string& options) {
+    const CommandResult done =
+        run(folder, "calibrate",
+            "--robot abb_irb120 --data poses.csv --test-every 5 --harmonics 5 --json r.json --out f " + options);
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    EXPECT_EQ(done.output.find("100 distances to learn from") != std::string::npos,
+              options.find("wire") != std::string::npos);
+    return Json::parse(read_file(folder / "r.json"));
+  };
+  const double alone = geometry("").at("stages").at("geometry").at("mean_mm");
+  const double both = geometry("--distances wire.csv").at("stages").at("geometry").at("mean_mm");
+  EXPECT_LT(both, 1.1 * alone);
+  EXPECT_NE(both, alone);
+  const Json tuned = geometry("--priors ga");
+  EXPECT_LE(tuned.at("stages").at("jointwise").at("mean_mm"), 0.1);
+  const CommandResult refused = run(folder, "calibrate", "--robot abb_irb120 --data poses.csv --distances poses.csv");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(refused.one_line_of_errors()) << refused.errors;
+  EXPECT_NE(refused.errors.find("no column distance_mm"), std::string::npos) << refused.errors;
 }
 
 TEST(Calibrate, FewRowsOfASeededShuffle) {

@@ -7,7 +7,7 @@
 
 #include "vernier/core/fit_options.hpp"
 #include "vernier/identification/fit_error_model.hpp"
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/elm_predictor.hpp"
 
 namespace support {
 

@@ -12,7 +12,7 @@
 #include "vernier/identification/error_model.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/elm_predictor.hpp"
 
 namespace vernier {
 

@@ -54,7 +54,8 @@ int work(bench::Program& program, int argc, char** argv) {
   const Chain nominal = vn::robots::ur10().chain;
   const auto found = vn::calibrate(nominal, data);
   const auto& design = found.errors.design;
-  const vn::detail::ErrorModelProblem<Chain> problem(design, {{&data, nullptr, true, 0.03e-3, 0.1e-3}}, vn::Loss::squared);
+  const vn::detail::ErrorModelProblem<Chain> problem(design, {{&data, nullptr, true, 0.03e-3, 0.1e-3}},
+                                                     vn::Loss::squared);
   const auto ours = [&](std::size_t) {
     return problem.with_system(
         [](const vn::detail::PoseSystem& s) { return vn::detail::PoseNormalEquations(s).matrix; });

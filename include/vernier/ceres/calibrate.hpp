@@ -77,9 +77,13 @@ Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nomi
 }
 
 /// The same from poses and distances.
+/// @param nominal   the arm as designed
+/// @param stations  measured poses, one set a place of the sensor; may be empty
 /// @param distances measured distances, one set a fixed point; they count in the second step, in both where there are
 /// no
 ///                  poses. Then frames are those of the first fixed point, see `identify`
+/// @param options   of both steps
+/// @param search    of priors, see `fit_error_model`
 template <int N, class Convention>
 Calibration<DhChain<N, Convention>> calibrate(const DhChain<N, Convention>& nominal,
                                               std::span<const Dataset<N>> stations,

@@ -299,7 +299,9 @@ Identified<DhChain<N, Convention>> identify(const DhChain<N, Convention>& nomina
 
 /// The same from distances to one fixed point. The base frame then has its origin at that point; its orientation, which
 /// distances do not tell, is that of the start. `position_sigma` is that of a distance, errors are those of distances.
-/// @param data n >= 1 samples, the tool point roughly known: see `tool_start`
+/// @param nominal the arm as designed
+/// @param data    n >= 1 samples, the tool point roughly known: see `tool_start`
+/// @param options as above
 template <int N, class Convention>
 Identified<DhChain<N, Convention>> identify(const DhChain<N, Convention>& nominal, const Distances<N>& data,
                                             const IdentifyOptions& options = {}) {

@@ -49,6 +49,7 @@ struct JointTerms {
   Index size() const { return transmission_begin(N); }
 
   /// The columns of Phi before the transmission's.
+  /// @param q   joint values [rad, m]
   /// @param out N x few()
   void few_basis(const JointVector<N>& q, Basis& out) const noexcept {
     out.setZero();

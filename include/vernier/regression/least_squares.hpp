@@ -117,6 +117,9 @@ double ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixB
 }
 
 /// The objective of `relative_ridge` from the products alone, see `ridge_objective`.
+/// @param gram            H'H, its lower triangle
+/// @param right           T'H, outputs x nodes
+/// @param target_square   |T|^2
 /// @param relative_lambda as in `relative_ridge`
 template <class Gram, class Right>
 double relative_ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right,

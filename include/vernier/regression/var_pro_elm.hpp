@@ -174,9 +174,9 @@ struct VarProElm {
   /// Where a search looks for a start.
   Box box(int inputs) const { return layer().box(inputs); }
 
-  /// What training lowers, as a function of hidden weights: `|H beta + 1 c' - T|^2 / n + ridge |beta|^2` at its minimum
-  /// over beta and c, T being the targets in units of their spread; the mean alone has 1. Its member `gradient(theta)`
-  /// is the exact gradient.
+  /// What training lowers, as a function of hidden weights: `|H beta + C - T|^2 / n + ridge |beta|^2` at its minimum
+  /// over beta and C, whose rows are equal, T being the targets in units of their spread; the mean alone has 1. Its
+  /// member `gradient(theta)` is the exact gradient.
   template <class X, class Y>
   detail::VarProTrainingError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
     validate(inputs, targets);

@@ -71,8 +71,11 @@ Dataset<Actual::dof> measure(const Actual& actual, const JointRows<Actual::dof>&
 }
 
 /// What a draw-wire encoder or a ball-bar sees of an arm at n joint combinations: distances from a fixed point.
+/// @param actual the arm
 /// @param anchor the fixed point, in the arm's base frame [m]
+/// @param joints n x N [rad, m]
 /// @param sigma  standard deviation of a distance [m]
+/// @param seed   of the noise
 template <KinematicModel Actual>
 Distances<Actual::dof> measure_distances(const Actual& actual, const Vector3& anchor,
                                          const JointRows<Actual::dof>& joints, double sigma = 0,

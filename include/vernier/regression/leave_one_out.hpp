@@ -113,16 +113,6 @@ VERNIER_INLINE void leave_one_out_kernel(const LeaveOneOutBlock& b) {
   }
 }
 
-inline void leave_one_out_baseline(const LeaveOneOutBlock& b) { leave_one_out_kernel<2, 4, 2>(b); }
-#if defined(__x86_64__)
-__attribute__((target("avx2,fma"))) inline void leave_one_out_avx2(const LeaveOneOutBlock& b) {
-  leave_one_out_kernel<4, 4, 3>(b);
-}
-__attribute__((target("avx512f,avx512dq,fma"))) inline void leave_one_out_avx512(const LeaveOneOutBlock& b) {
-  leave_one_out_kernel<8, 8, 3>(b);
-}
-#endif
-
 /// Leave-one-out errors of hidden weights at the best ridge. Allocates in the constructor, and the decomposition of
 /// the nodes' Gram matrix.
 template <class Scalar>  // a template so that only its users pay for compiling the decomposition
@@ -211,13 +201,7 @@ class LeaveOneOutErrorOf {
   static constexpr Index lambdas = 25, padded_lambdas = 32, trusted = 17;
 
   void run(const LeaveOneOutBlock& block) const {
-    switch (set_) {
-#if defined(__x86_64__)
-      case InstructionSet::avx512: return leave_one_out_avx512(block);
-      case InstructionSet::avx2: return leave_one_out_avx2(block);
-#endif
-      default: return leave_one_out_baseline(block);
-    }
+    run_widest([&]<int W>() VERNIER_INLINED { leave_one_out_kernel<W, block_rows<W>, block_vectors<W>>(block); }, set_);
   }
 
   HiddenLayer layer_;

@@ -57,17 +57,6 @@ VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
   }
 }
 
-// Accumulators fill the registers: 8 x 3 of 32, 4 x 3 of 16.
-inline void normal_equations_baseline(const NormalEquationsBlock& b) { normal_equations_kernel<2, 4, 2>(b); }
-#if defined(__x86_64__)
-__attribute__((target("avx2,fma"))) inline void normal_equations_avx2(const NormalEquationsBlock& b) {
-  normal_equations_kernel<4, 4, 3>(b);
-}
-__attribute__((target("avx512f,avx512dq,fma"))) inline void normal_equations_avx512(const NormalEquationsBlock& b) {
-  normal_equations_kernel<8, 8, 3>(b);
-}
-#endif
-
 /// H'H, H'T and T'T of hidden weights, for layers of sigmoid or tanh nodes. Allocates once, in the constructor.
 class NormalEquations {
  public:
@@ -113,13 +102,8 @@ class NormalEquations {
                                      tile_samples_,
                                      layer_.activation == Activation::tanh,
                                      keep_};
-    switch (set_) {
-#if defined(__x86_64__)
-      case InstructionSet::avx512: return normal_equations_avx512(block);
-      case InstructionSet::avx2: return normal_equations_avx2(block);
-#endif
-      default: return normal_equations_baseline(block);
-    }
+    run_widest([&]<int W>() VERNIER_INLINED { normal_equations_kernel<W, block_rows<W>, block_vectors<W>>(block); },
+               set_);
   }
 
   /// Where they are kept: a row a sample, `stride()` apart, outputs of the nodes (less their shift), then the targets.

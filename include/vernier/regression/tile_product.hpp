@@ -13,6 +13,12 @@
 
 namespace vernier::detail {
 
+/// Rows and vectors of a block of accumulators: they fill the registers, 8 x 3 of 32, 4 x 3 of 16.
+template <int W>
+inline constexpr int block_rows = W == 8 ? 8 : 4;
+template <int W>
+inline constexpr int block_vectors = W == 2 ? 2 : 3;
+
 /// Adds rows i .. i+Rows of the product, columns j .. j+Vectors*W.
 template <int W, int Rows, int Vectors>
 VERNIER_INLINE void product_block(const double* left, const double* right_tile, double* products, Index stride,
@@ -83,26 +89,9 @@ VERNIER_INLINE void weighted_product_kernel(const WeightedProduct& p) {
   }
 }
 
-// Accumulators fill the registers: 8 x 3 of 32, 4 x 3 of 16.
-inline void weighted_product_baseline(const WeightedProduct& p) { weighted_product_kernel<2, 4, 2>(p); }
-#if defined(__x86_64__)
-__attribute__((target("avx2,fma"))) inline void weighted_product_avx2(const WeightedProduct& p) {
-  weighted_product_kernel<4, 4, 3>(p);
-}
-__attribute__((target("avx512f,avx512dq,fma"))) inline void weighted_product_avx512(const WeightedProduct& p) {
-  weighted_product_kernel<8, 8, 3>(p);
-}
-#endif
-
 /// Adds `left' diag(weights) right` with the instructions of `set`, which must be there.
 inline void add_weighted_product(const WeightedProduct& p, InstructionSet set) {
-  switch (set) {
-#if defined(__x86_64__)
-    case InstructionSet::avx512: return weighted_product_avx512(p);
-    case InstructionSet::avx2: return weighted_product_avx2(p);
-#endif
-    default: return weighted_product_baseline(p);
-  }
+  run_widest([&]<int W>() VERNIER_INLINED { weighted_product_kernel<W, block_rows<W>, block_vectors<W>>(p); }, set);
 }
 
 }  // namespace vernier::detail

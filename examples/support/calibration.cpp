@@ -289,8 +289,8 @@ std::vector<std::string> verdict(const vernier::NominalArm<N>& arm, const Calibr
         Eigen::Map<const vernier::VectorX>(inside.data(), static_cast<Index>(inside.size())));
     out.push_back(message("Good to ", brief(e.mean), " mm mean, ", brief(e.p95), " mm (95 %), ", brief(e.max),
                           " mm at worst, inside the measured joint ranges: ", e.n, " of ", last.size(),
-                          " held-out poses. None of them is worse than with geometry alone by more than ",
-                          brief(report.worst_harm * 1e3), " mm."));
+                          " held-out poses. None of them is worse than with geometry alone",
+                          report.worst_harm > 0 ? " by more than " + brief(report.worst_harm * 1e3) + " mm." : "."));
   }
   if (report.gated > 0)
     out.push_back(message(report.gated,

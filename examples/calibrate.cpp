@@ -225,11 +225,12 @@ int run(support::Program& program) {
          "of the sensor")
       ->required()
       ->type_name("FILE...");
-  app.add_option("--distances", distances,
-                 "measured distances from a fixed point (draw-wire, ball-bar), to learn from beside the poses: "
-                 "q1_rad.., distance_mm; one file for each fixed point")
-      ->type_name("FILE...")
-      ->always_capture_default(false);
+  auto* distances_option =
+      app.add_option("--distances", distances,
+                     "measured distances from a fixed point (draw-wire, ball-bar), to learn from beside the poses: "
+                     "q1_rad.., distance_mm; one file for each fixed point")
+          ->type_name("FILE...")
+          ->always_capture_default(false);
   app.add_option("--distance-sigma", distance_sigma_mm, "standard deviation of a distance [mm]; of poses it is 0.03 mm")
       ->type_name("MM")
       ->check(CLI::Range(1e-6, 1e3).description(""));
@@ -288,7 +289,11 @@ int run(support::Program& program) {
   auto* free_option = app.add_option("--free", free, "with --model: what may move, base, tool and offsets, by commas")
                           ->type_name("WHAT")
                           ->always_capture_default(false);
-  model_option->excludes(robot_option)->excludes(every_option)->excludes(split_option)->excludes(train_option);
+  model_option->excludes(distances_option)
+      ->excludes(robot_option)
+      ->excludes(every_option)
+      ->excludes(split_option)
+      ->excludes(train_option);
   model_option->needs(free_option);
   free_option->needs(model_option);
   program.parse("calibrate_out");

@@ -14,6 +14,7 @@
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/evaluation/statistics.hpp"
+#include "vernier/identification/frames.hpp"
 #include "vernier/identification/stations.hpp"
 #include "vernier/io/model_file.hpp"
 
@@ -136,6 +137,18 @@ void require_plausible(const vernier::NominalArm<N>& arm, const vernier::Dataset
            " times as wide as the measured ones: x, y, z in m called _mm?";
   throw CalibrationFailure(file + ": after registering the frames the model of " + arm.name + " misses by " +
                            brief(frames_rms * 1e3) + " mm (rms): " + hint);
+}
+
+/// Likewise for distances, once the frames are known.
+template <class Model, int N>
+void require_plausible(const Model& registered, const vernier::Distances<N>& data, const std::string& file) {
+  const vernier::PointRows points = vernier::positions(registered, data.joints());
+  const vernier::Vector3 fixed_point = vernier::trilaterate(points, data.lengths());
+  const vernier::VectorX modelled = (points.rowwise() - fixed_point.transpose()).rowwise().norm();
+  const double rms = std::sqrt((modelled - data.lengths()).squaredNorm() / static_cast<double>(data.size()));
+  if (!(rms <= 0.05))
+    throw CalibrationFailure(file + ": from no fixed point do these distances fit the arm, the best one misses by " +
+                             brief(rms * 1e3) + " mm (rms): wrong units, columns or rows?");
 }
 
 /// Stops where an identification must not be used.
@@ -335,6 +348,9 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   const auto& test = stations.test;
   report.train_rows = stations.rows(train);
   report.test_rows = stations.rows(test);
+  std::vector<vn::Distances<N>> distances;
+  for (const auto& file : settings.distances) distances.push_back(vn::read_distances<N>(file));
+  for (const auto& data : distances) report.distances += data.size();
   const bool oriented = stations.oriented(train) && stations.oriented(test);
 
   vn::ErrorModelOptions errors;
@@ -358,6 +374,8 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
     require_plausible(arm, train[s], registered.back().rms_after, settings.data[s].string());
     require_usable(registered.back(), "registering the frames");
   }
+  for (std::size_t d = 0; d < distances.size(); ++d)
+    require_plausible(registered.front().model, distances[d], settings.distances[d].string());
   const auto judge = [&](const char* key, const char* title, auto&& model) {
     report.stages.push_back(
         {key, title,
@@ -373,9 +391,6 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   const auto identified =
       identify_arm<N>(arm.chain, vn::in_one_frame<N>(std::span<const vn::Dataset<N>>(train), bases), options);
   require_usable(identified, "identifying the geometry");
-  std::vector<vn::Distances<N>> distances;
-  for (const auto& file : settings.distances) distances.push_back(vn::read_distances<N>(file));
-  for (const auto& data : distances) report.distances += data.size();
   const vn::ThreadExecutor executor(settings.threads);
   const vn::FitOptions learning{.seed = settings.seed, .executor = executor, .observer = settings.observer};
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {

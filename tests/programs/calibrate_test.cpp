@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "replaced.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/evaluation/statistics.hpp"
@@ -321,6 +322,15 @@ TEST(Calibrate, DistancesBesidePosesAndTunedPriors) {
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(refused.one_line_of_errors()) << refused.errors;
   EXPECT_NE(refused.errors.find("no column distance_mm"), std::string::npos) << refused.errors;
+  write_file(folder / "metres.csv", testing_support::replaced(text, "distance_mm", "distance_m"));
+  const CommandResult metres = run(folder, "calibrate", "--robot abb_irb120 --data poses.csv --distances metres.csv");
+  EXPECT_EQ(metres.exit_code, 1);
+  EXPECT_TRUE(metres.one_line_of_errors()) << metres.errors;
+  EXPECT_NE(metres.errors.find("metres.csv: from no fixed point"), std::string::npos) << metres.errors;
+  const CommandResult both_ways =
+      run(folder, "calibrate", "--model m.json --free base --data poses.csv --distances wire.csv");
+  EXPECT_EQ(both_ways.exit_code, 2) << both_ways.output;
+  EXPECT_TRUE(both_ways.one_line_of_errors()) << both_ways.errors;
 }
 
 TEST(Calibrate, FewRowsOfASeededShuffle) {

@@ -11,8 +11,8 @@
 
 #include "vernier/identification/error_model_options.hpp"
 #include "vernier/identification/error_model_problem.hpp"
+#include "vernier/identification/error_model_start.hpp"
 #include "vernier/identification/fitted_error_model.hpp"
-#include "vernier/identification/frames.hpp"
 #include "vernier/identification/identified.hpp"
 #include "vernier/identification/prior_objective.hpp"
 
@@ -30,9 +30,10 @@ class ErrorModelFit {
                 std::span<const Distances<N>> distances, const ErrorModelOptions& options)
       : nominal_(start.model.reference().model()),
         options_(options),
-        problem_(ErrorModelDesign<Chain>(arms(start, stations, distances),
-                                         unknowns(start, stations.size(), stations.size() + distances.size(), options)),
-                 sensors(stations, distances, options), options.loss),
+        problem_(ErrorModelDesign<Chain>(
+                     starting_arms(start, stations, distances),
+                     geometric_unknowns(start, stations.size(), stations.size() + distances.size(), options)),
+                 sensors<N>(stations, distances, options), options.loss),
         stride_(std::max<Index>(1, problem_.judged() / options.left_out)) {
     joints_.resize(problem_.poses(), N);
     for (Index b = 0; b < joints_.rows(); ++b) joints_.row(b) = problem_.joints(b).transpose();
@@ -75,72 +76,6 @@ class ErrorModelFit {
   }
 
  private:
-  /// The identified arm in every station's own base; that of distances has its origin at their fixed point.
-  static std::vector<Framed<Chain>> arms(const Identified<Chain>& start, std::span<const Dataset<N>> stations,
-                                         std::span<const Distances<N>> distances) {
-    const Framed<Chain>& first = start.model.actual();
-    if (stations.size() + distances.size() == 1) {
-      require((stations.empty() ? distances.front().size() : stations.front().size()) >= 1,
-              "fit_error_model: a station without measurements");
-      return {first};
-    }
-    const Framed<Chain> unregistered(first.model(), {}, first.tool());
-    std::vector<Framed<Chain>> out;
-    for (const Dataset<N>& data : stations) {
-      require(data.size() >= 1, "fit_error_model: a station without poses");
-      out.emplace_back(first.model(), register_points(positions(unregistered, data.joints()), data.positions()),
-                       first.tool());
-    }
-    for (const Distances<N>& data : distances) {
-      require(data.size() >= 1, "fit_error_model: a station without distances");
-      Isometry3 base = Isometry3::Identity();
-      base.translation() = -trilaterate(positions(unregistered, data.joints()), data.lengths());
-      out.emplace_back(first.model(), base, first.tool());
-    }
-    return out;
-  }
-
-  /// @param of_poses how many stations see poses, the first of all `stations`
-  static std::vector<GeometricUnknown> unknowns(const Identified<Chain>& start, std::size_t of_poses,
-                                                std::size_t stations, const ErrorModelOptions& options) {
-    std::vector<GeometricUnknown> out;
-    const auto own = [&](Index k) {
-      return stations > 1 && (k < 6 || (options.own_tools && k >= 6 + Chain::num_parameters));  // a base, or a tool
-    };
-    for (const Index k : start.free) {
-      const ParameterEstimate& p = start.parameters[static_cast<std::size_t>(k)];
-      const bool of_chain = k >= 6 && k < 6 + Chain::num_parameters;
-      // thirty expected sizes bind nothing that is determined
-      const double deviation = std::isfinite(p.prior) ? p.prior / p.size : 30;
-      const double precision = of_chain ? 1 / (deviation * deviation) : 0;
-      if (!own(k)) {
-        out.push_back({k, -1, p.size, precision});
-        continue;
-      }
-      const auto last = k < 6 ? of_poses : stations;
-      for (std::size_t s = 0; s < last; ++s) out.push_back({k, static_cast<int>(s), p.size, precision});
-    }
-    // a fixed point has a place, but no orientation
-    for (std::size_t s = of_poses; s < stations && stations > 1; ++s)
-      for (Index k = 0; k < 3; ++k)
-        out.push_back({k, static_cast<int>(s), start.parameters[static_cast<std::size_t>(k)].size, 0});
-    return out;
-  }
-
-  static std::vector<Station<N>> sensors(std::span<const Dataset<N>> stations, std::span<const Distances<N>> distances,
-                                         const ErrorModelOptions& options) {
-    std::vector<Station<N>> out;
-    for (const Dataset<N>& data : stations)
-      out.push_back({.poses = &data,
-                     .oriented = options.use_orientations && data.has_orientations(),
-                     .position_sigma = options.position_sigma,
-                     .orientation_sigma = options.orientation_sigma,
-                     .joint_sigma = options.joint_sigma});
-    for (const Distances<N>& data : distances)
-      out.push_back({.distances = &data, .position_sigma = options.distance_sigma, .joint_sigma = options.joint_sigma});
-    return out;
-  }
-
   AngleBasis basis(int joint) const {
     if (nominal_.row(joint).joint != JointType::revolute) return Fourier{0};
     if (options_.joint_nodes == 0) return Fourier{options_.harmonics};

@@ -145,6 +145,15 @@ struct ElementaryMotion {
   }
 };
 
+/// All that moves what lies behind it, as parameters are counted, and where the tool is.
+template <int N>
+struct ElementaryMotions {
+  ElementaryMotion all[5 * N];
+  Isometry3 tool;
+
+  const ElementaryMotion& of(int i, DhParameter parameter) const { return all[5 * i + static_cast<int>(parameter)]; }
+};
+
 /// Rows of a chain, with all that does not depend on the joints.
 template <int N, class Convention>
 struct ChainRows {
@@ -237,6 +246,23 @@ struct ChainRows {
         record(static_cast<int>(i), parameter, axis, frame.p);
       });
     }
+  }
+
+  /// All elementary motions at joints q.
+  ElementaryMotions<N> motions(const double* q, const Placement& placement) const noexcept {
+    ElementaryMotions<N> out;
+    run_same_bits([&]<int W>() VERNIER_INLINED {
+      PoseFrame<W> frame;
+      placement.begin<W>(frame);
+      walk<W>(q, frame, [&](int i, DhParameter parameter, const auto& axis, const auto& point) VERNIER_INLINED {
+        ElementaryMotion& motion = out.all[5 * i + static_cast<int>(parameter)];
+        store_vector<W>(motion.axis, axis);
+        store_vector<W>(motion.point, point);
+      });
+      placement.end<W>(frame);
+      store_pose<W>(out.tool.data(), frame);
+    });
+    return out;
   }
 
   /// From base to tool at W joint combinations, joint i of the first at q[i * stride].

@@ -159,7 +159,7 @@ class DhChain {
 
   /// Joint axes and origins of the link frames.
   Links links(const JointVector<N>& q) const noexcept {
-    const Motions motions = elementary_motions(q, {});
+    const detail::ElementaryMotions<N> motions = rows_.motions(q.data(), {});
     Links out;
     for (int i = 0; i < N; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -252,36 +252,9 @@ class DhChain {
 
   static constexpr auto ignore_motion = [](int, DhParameter, const auto&, const auto&) VERNIER_INLINED {};
 
-  /// All that moves what lies behind it, as parameters are counted, and where the tool is.
-  struct Motions {
-    detail::ElementaryMotion all[num_parameters];
-    Isometry3 tool;
-
-    const detail::ElementaryMotion& of(int i, DhParameter parameter) const {
-      return all[5 * i + static_cast<int>(parameter)];
-    }
-  };
-
-  Motions elementary_motions(const JointVector<N>& q, const detail::Placement& placement) const noexcept {
-    Motions out;
-    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
-      detail::PoseFrame<W> frame;
-      placement.begin<W>(frame);
-      rows_.template walk<W>(q.data(), frame,
-                             [&](int i, DhParameter parameter, const auto& axis, const auto& point) VERNIER_INLINED {
-                               auto& motion = out.all[5 * i + static_cast<int>(parameter)];
-                               detail::store_vector<W>(motion.axis, axis);
-                               detail::store_vector<W>(motion.point, point);
-                             });
-      placement.end<W>(frame);
-      detail::store_pose<W>(out.tool.data(), frame);
-    });
-    return out;
-  }
-
   PoseAndParameterJacobian<num_parameters> with_parameter_jacobian(const JointVector<N>& q,
                                                                    const detail::Placement& placement) const noexcept {
-    const Motions motions = elementary_motions(q, placement);
+    const detail::ElementaryMotions<N> motions = rows_.motions(q.data(), placement);
     PoseAndParameterJacobian<num_parameters> out;
     out.pose = motions.tool;
     for (int i = 0; i < N; ++i) {

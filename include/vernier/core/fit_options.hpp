@@ -8,6 +8,7 @@
 
 #include "vernier/core/executor.hpp"
 #include "vernier/core/function_ref.hpp"
+#include "vernier/core/types.hpp"
 
 namespace vernier {
 
@@ -50,6 +51,9 @@ struct FitOptions {
   std::uint64_t seed = 0;  ///< same seed, same bits, whatever the executor
   ExecutorRef executor{};  ///< who evaluates; must outlive the call
   ObserverRef observer{};  ///< who watches; must outlive the call
+  /// Weights of the samples, positive, one a row: a sample of weight 2 counts as two. Null: all count the same. Must
+  /// outlive the call.
+  const VectorX* weights = nullptr;
 };
 
 }  // namespace vernier

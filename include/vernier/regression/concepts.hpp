@@ -26,6 +26,16 @@ concept Predictor = requires(const P& predictor, const Eigen::Matrix<double, P::
   noexcept->std::same_as<Eigen::Matrix<double, P::outputs, P::inputs>>;
 };
 
+/// A predictor that says how certain it is.
+///
+/// - `standard_deviation(x)`: of each predicted output, without the noise of a new measurement; does not throw
+template <class P>
+concept UncertainPredictor = Predictor<P> &&
+    requires(const P& predictor, const Eigen::Matrix<double, P::inputs, 1>& x) {
+  { predictor.standard_deviation(x) }
+  noexcept->std::same_as<Eigen::Matrix<double, P::outputs, 1>>;
+};
+
 /// What `R::fit` gives for samples of some inputs and outputs.
 template <class R, int Inputs, int Outputs>
 using PredictorOf = decltype(std::declval<const R&>().fit(
@@ -59,6 +69,23 @@ void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, con
           " rows of targets");
   require(inputs.rows() >= 1, caller, ": no samples");
   require(inputs.allFinite() && targets.allFinite(), caller, ": the samples have a value that is not finite");
+}
+
+/// The same, and the weights.
+template <class X, class Y>
+void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                     const FitOptions& options) {
+  require_samples(caller, inputs, targets);
+  if (options.weights == nullptr) return;
+  require(options.weights->size() == inputs.rows(), caller, ": ", options.weights->size(), " weights for ",
+          inputs.rows(), " samples");
+  require(options.weights->allFinite() && options.weights->minCoeff() > 0, caller, ": the weights go down to ",
+          options.weights->minCoeff(), ", all must be finite and positive");
+}
+
+/// For recipes that have no use for weights.
+inline void require_no_weights(const char* caller, const FitOptions& options) {
+  require(options.weights == nullptr, caller, " takes no weights");
 }
 
 }  // namespace detail

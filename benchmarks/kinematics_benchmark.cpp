@@ -33,6 +33,8 @@ constexpr const char* about =
   10,000 poses         the same with orientations
   inverse kinematics   full pose to 1e-6 m and 1e-6 rad from a seed up to 0.05 rad off in each joint, no joint limits:
                        ChainIkSolverPos_LMA, ChainIkSolverPos_NR
+  the same, cold       any pose within the joint limits from any other joints within them; joints may leave the limits,
+                       as KDL has none in these solvers. Vernier starts anew up to 20 times where it does not converge.
 
 "vernier, constexpr table" is the same chain with its table known to the compiler; "vernier" reads it at run time, as an
 identified arm does. KDL is the library as installed, called through its solvers with everything allocated beforehand.
@@ -153,6 +155,33 @@ int work(bench::Program& program, int argc, char** argv) {
     for (std::size_t who = 0; who < 3; ++who)
       if (difference(arm.pose(answers[who]), kdl_targets[i]) < 5 * Kdl::tolerance) ++solved[who];
   }
+  // Cold starts, more of them than are timed.
+  constexpr std::size_t many_colds = 10000;
+  const vn::JointLimits<6> limits = vn::robots::abb_irb120().limits;
+  vn::IkOptions<6> cold = ik;
+  cold.restarts = 20;
+  std::vector<Joints> cold_seeds(many_colds);
+  std::vector<vn::Isometry3> cold_targets(many_colds);
+  std::vector<KDL::JntArray> kdl_cold_seeds(many_colds);
+  std::vector<KDL::Frame> kdl_cold_targets(many_colds);
+  std::array<std::size_t, 3> solved_cold{};
+  for (std::size_t i = 0; i < many_colds; ++i) {
+    Joints q;
+    for (int k = 0; k < 6; ++k) {
+      q(k) = rng.uniform(limits.lower(k), limits.upper(k));
+      cold_seeds[i](k) = rng.uniform(limits.lower(k), limits.upper(k));
+    }
+    cold_targets[i] = arm.pose(q);
+    kdl_cold_seeds[i] = kdl_joints(cold_seeds[i]);
+    kdl->forward.JntToCart(kdl_joints(q), kdl_cold_targets[i]);
+    KDL::JntArray by_lma(6), by_newton(6);
+    kdl->lma.CartToJnt(kdl_cold_seeds[i], kdl_cold_targets[i], by_lma);
+    kdl->newton.CartToJnt(kdl_cold_seeds[i], kdl_cold_targets[i], by_newton);
+    const Joints answers[] = {vn::inverse_kinematics(arm, cold_targets[i], cold_seeds[i], cold).joints, by_lma.data,
+                              by_newton.data};
+    for (std::size_t who = 0; who < 3; ++who)
+      if (difference(arm.pose(answers[who]), kdl_cold_targets[i]) < 5 * Kdl::tolerance) ++solved_cold[who];
+  }
   bench::require_agreement("poses", pose, 1e-12);
   bench::require_agreement("Jacobians", jacobian, 1e-12);
   bench::require_agreement("parameter Jacobians", parameters, 1e-8);
@@ -227,9 +256,26 @@ int work(bench::Program& program, int argc, char** argv) {
     return status;
   });
 
+  const char* from_anywhere = "inverse kinematics, cold";
+  program.measure(from_anywhere, "vernier", [=](std::size_t i) {
+    return vn::inverse_kinematics(arm, cold_targets[i & mask], cold_seeds[i & mask], cold);
+  });
+  program.measure(from_anywhere, "KDL LMA", [=, out = KDL::JntArray(6)](std::size_t i) mutable {
+    const int status = kdl->lma.CartToJnt(kdl_cold_seeds[i & mask], kdl_cold_targets[i & mask], out);
+    benchmark::DoNotOptimize(out.data.data());
+    return status;
+  });
+  program.measure(from_anywhere, "KDL NR", [=, out = KDL::JntArray(6)](std::size_t i) mutable {
+    const int status = kdl->newton.CartToJnt(kdl_cold_seeds[i & mask], kdl_cold_targets[i & mask], out);
+    benchmark::DoNotOptimize(out.data.data());
+    return status;
+  });
+
   if (const int status = program.run(argc, argv); status != 0) return status;
   std::printf("\ninverse kinematics solved, of %zu: vernier %zu, KDL LMA %zu, KDL NR %zu\n", n, solved[0], solved[1],
               solved[2]);
+  std::printf("cold, of %zu: vernier %zu, KDL LMA %zu, KDL NR %zu\n", many_colds, solved_cold[0], solved_cold[1],
+              solved_cold[2]);
   return 0;
 }
 

@@ -72,7 +72,7 @@ constexpr std::array<PoseSet, 2> sets{{{"test", "test set"}, {"random", "random 
 enum class Region { operating, full };
 
 struct Settings {
-  vn::Index train = 5000, test = 400, fresh = 200;
+  vn::Index train = 5000, test = 400, fresh = 200, search_samples = 0;
   double budget = 1;  ///< factor of the paper's generations and iterations
   int runs = 1;
   Region region = Region::operating;
@@ -155,10 +155,13 @@ class Experiment {
       return vn::Pso{
           .particles = particles, .iterations = scaled(iterations, settings_.budget), .positions = settings_.positions};
     };
-    joint_space(1, vn::Tuned{vn::Elm{.hidden_nodes = 58}, ga(100, 350)}, scaled(350, settings_.budget));
-    joint_space(2, vn::Tuned{vn::Elm{.hidden_nodes = 68}, pso(40, 300)}, scaled(300, settings_.budget));
-    cartesian(3, vn::Tuned{vn::Elm{.hidden_nodes = 73}, ga(80, 400)}, scaled(400, settings_.budget));
-    cartesian(4, vn::Tuned{vn::Elm{.hidden_nodes = 65}, pso(50, 300)}, scaled(300, settings_.budget));
+    const auto tuned = [&](int nodes, const auto& algorithm) {
+      return vn::Tuned{vn::Elm{.hidden_nodes = nodes}, algorithm, vn::Stop{}, settings_.search_samples};
+    };
+    joint_space(1, tuned(58, ga(100, 350)), scaled(350, settings_.budget));
+    joint_space(2, tuned(68, pso(40, 300)), scaled(300, settings_.budget));
+    cartesian(3, tuned(73, ga(80, 400)), scaled(400, settings_.budget));
+    cartesian(4, tuned(65, pso(50, 300)), scaled(300, settings_.budget));
     if (settings_.var_pro) {  // as many nodes as PSO-ELM, and no search
       const vn::VarProElm raw{.hidden_nodes = 65, .input_map = vn::InputMap::raw};
       cartesian(trained, raw, raw.iterations);
@@ -347,6 +350,7 @@ Json json(const vn::Robot<6>& robot, const Settings& settings, const std::vector
                 {"positions", settings.positions == vn::PositionRule::clamped ? "clamped" : "unbounded"},
                 {"train", settings.train},
                 {"budget", settings.budget},
+                {"search_samples", settings.search_samples},
                 {"noise_mm", settings.noise * 1e3},
                 {"sets", sets_json(runs.front())}};
   for (const std::size_t m : runs.front().ran)
@@ -466,6 +470,10 @@ int body(support::Program& program) {
   app.add_option("--scale-budget", budget, "factor of the paper's generations and iterations")
       ->type_name("F")
       ->check(CLI::Range(1e-4, 100.0).description(""));
+  app.add_option("--search-samples", settings.search_samples,
+                 "the searches judge by so many of the poses, the fit has all; 0: all")
+      ->type_name("N")
+      ->check(CLI::Range(vn::Index{0}, vn::Index{1000000}).description(""));
   app.add_option("--noise-mm", noise_mm, "standard deviation of the measured positions, per component")
       ->type_name("S")
       ->check(CLI::Range(0.0, 100.0).description(""));
@@ -500,6 +508,8 @@ int body(support::Program& program) {
         "REDUCED: the paper has 5000 poses to learn from and its full number of generations; here {} and {:g} times "
         "those.\n",
         settings.train, settings.budget);
+  if (settings.search_samples > 0)
+    fmt::print("The searches judge by {} of the poses to learn from.\n", settings.search_samples);
   if (settings.positions == vn::PositionRule::clamped) fmt::print("PSO's particles are kept in [-1, 1].\n");
   fmt::print("\n");
   std::fflush(stdout);

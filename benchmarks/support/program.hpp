@@ -86,10 +86,11 @@ class Program {
   }
 
   /// Runs everything, prints the ratios.
+  /// @param repetitions of each, unless the command line says another number
   /// @return 0, or 2 for wrong usage
-  int run(int argc, char** argv) {
+  int run(int argc, char** argv, int repetitions = 9) {
     // Defaults come first, so that the user's own options win.
-    std::string defaults[] = {"--benchmark_repetitions=9", "--benchmark_min_time=0.05",
+    std::string defaults[] = {"--benchmark_repetitions=" + std::to_string(repetitions), "--benchmark_min_time=0.05",
                               "--benchmark_enable_random_interleaving=true"};
     std::vector<char*> arguments{argv[0]};
     for (std::string& argument : defaults) arguments.push_back(argument.data());
@@ -109,13 +110,13 @@ class Program {
       if (std::strcmp(argv[i], "--help") != 0 && std::strcmp(argv[i], "-h") != 0) continue;
       std::printf("%s\n%s", about_.c_str(), R"(
 Repetitions of all benchmarks are run in random order. The table gives the median and the quartiles of the processor
-time of one call, or of the time on the wall where it says so. At the end stands, for every peer, its median divided by Vernier's (above 1: Vernier is faster); in
-brackets what the quartiles make of it at worst and at best.
+time of one call, or of the time on the wall where it says so. At the end stands, for every peer, its median divided by
+Vernier's (above 1: Vernier is faster); in brackets what the quartiles make of it at worst and at best.
 
 options (of Google Benchmark)
   --benchmark_filter=REGEX      only the benchmarks whose name topic/who matches
   --benchmark_list_tests        names only
-  --benchmark_repetitions=N     default 9
+  --benchmark_repetitions=N     default 9, of what takes seconds 3
   --benchmark_min_time=SECONDS  of one repetition, default 0.05
   --benchmark_out=FILE          all repetitions as JSON
   --help                        this text

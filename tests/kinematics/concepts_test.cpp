@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "random_chains.hpp"
+#include "turntable.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 
@@ -21,18 +22,7 @@ static_assert(!vn::KinematicModel<int>);
 static_assert(!vn::KinematicModel<vn::DhTable<6>>);
 static_assert(!vn::ParametricModel<vn::Robot<6>>);
 
-/// The least that a model must have.
-struct Turntable {
-  static constexpr int dof = 1;
-  vn::Isometry3 pose(const vn::JointVector<1>& q) const noexcept {
-    return vn::Isometry3(Eigen::AngleAxisd(q(0), vn::Vector3::UnitZ()));
-  }
-  vn::Vector3 position(const vn::JointVector<1>&) const noexcept { return vn::Vector3::Zero(); }
-  vn::Jacobian<1> jacobian(const vn::JointVector<1>&) const noexcept { return vn::Vector6::Unit(5); }
-  vn::PoseAndJacobian<1> pose_and_jacobian(const vn::JointVector<1>& q) const noexcept {
-    return {pose(q), jacobian(q)};
-  }
-};
+using vernier_test::Turntable;
 static_assert(vn::KinematicModel<Turntable>);
 static_assert(!vn::ParametricModel<Turntable>);
 static_assert(vn::KinematicModel<vn::Framed<Turntable>>);

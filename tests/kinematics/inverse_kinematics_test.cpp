@@ -288,6 +288,42 @@ TEST(InverseKinematics, WorksOnAnyModel) {
   EXPECT_LE((result.joints - q).norm(), 1e-7);
 }
 
+// From anywhere: single starts fail now and then, restarts find the pose.
+TEST(InverseKinematics, RestartsReachWhatOneStartMisses) {
+  const auto robot = vn::robots::abb_irb120();
+  vn::Rng rng(5);
+  vn::IkOptions<6> once{.limits = robot.limits}, again = once, unbounded;
+  again.restarts = 20;
+  unbounded.restarts = 20;
+  int missed = 0;
+  for (int i = 0; i < 500; ++i) {
+    const vn::JointVector<6> seed = random_joints<6>(rng, robot.limits);
+    const vn::Isometry3 target = robot.chain.pose(random_joints<6>(rng, robot.limits));
+    const auto first = inverse_kinematics(robot.chain, target, seed, once);
+    const auto found = inverse_kinematics(robot.chain, target, seed, again);
+    EXPECT_EQ(found.status, vn::IkStatus::converged);
+    EXPECT_TRUE(robot.limits.contains(found.joints));
+    EXPECT_LT(vn::pose_difference(target, robot.chain.pose(found.joints)).norm(), 2e-9);
+    EXPECT_EQ(found.joints, inverse_kinematics(robot.chain, target, seed, again).joints);
+    EXPECT_EQ(inverse_kinematics(robot.chain, target, seed, unbounded).status, vn::IkStatus::converged);
+    if (first.status == vn::IkStatus::converged) {
+      EXPECT_EQ(found.joints, first.joints);
+    } else {
+      ++missed;
+      EXPECT_GT(found.iterations, first.iterations);
+    }
+  }
+  EXPECT_GT(missed, 5);
+  // Out of reach: the nearest of all starts, and honest about it.
+  vn::Isometry3 far = vn::Isometry3::Identity();
+  far.translation() << 2, 0, 0.3;
+  const vn::JointVector<6> zero = vn::JointVector<6>::Zero();
+  const auto first = inverse_kinematics(robot.chain, far, zero, once),
+             all = inverse_kinematics(robot.chain, far, zero, again);
+  EXPECT_NE(all.status, vn::IkStatus::converged);
+  EXPECT_LE(weighted_error(all), weighted_error(first));
+}
+
 TEST(InverseKinematics, WhatIsNotANumberStallsAtTheSeed) {
   const vn::JointVector<2> seed(0.1, 0.2);
   const auto result = inverse_kinematics(planar, vn::Vector3(std::nan(""), 0, 0), seed);

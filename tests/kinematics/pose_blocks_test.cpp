@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "random_chains.hpp"
+#include "turntable.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 
@@ -170,22 +171,10 @@ TEST(FramedPoseBlocks, AreThePosesOneByOne) {
 }
 
 /// Framed around a model that knows nothing of blocks.
-struct Turntable {
-  static constexpr int dof = 1;
-  vn::Isometry3 pose(const vn::JointVector<1>& q) const noexcept {
-    return vn::Isometry3(Eigen::AngleAxisd(q(0), vn::Vector3::UnitZ()));
-  }
-  vn::Vector3 position(const vn::JointVector<1>&) const noexcept { return vn::Vector3::Zero(); }
-  vn::Jacobian<1> jacobian(const vn::JointVector<1>&) const noexcept { return vn::Vector6::Unit(5); }
-  vn::PoseAndJacobian<1> pose_and_jacobian(const vn::JointVector<1>& q) const noexcept {
-    return {pose(q), jacobian(q)};
-  }
-};
-
 TEST(FramedPoseBlocks, AModelWithoutThemIsAskedOneByOne) {
   vn::Vector6 tool;
   tool << 1, 0, 0, 0, 0, 0;
-  const vn::Framed model(Turntable{}, {}, vn::FrameParameters(tool));
+  const vn::Framed model(vernier_test::Turntable{}, {}, vn::FrameParameters(tool));
   const vn::JointRows<1> joints = vn::JointRows<1>::LinSpaced(5, 0, 1);
   const vn::PointRows points = vn::positions(model, joints);
   for (vn::Index i = 0; i < 5; ++i) {

@@ -4,12 +4,15 @@
 
 #include <limits>
 
+#include "instruction_sets.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 
 namespace vernier {
 namespace {
+
+using vernier_test::instruction_sets;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -174,13 +177,6 @@ struct Layer {
     return choose_lambda(RidgePath(h, targets), targets.rows()).mean_squared_error;
   }
 };
-
-std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> out{InstructionSet::baseline};
-  if (widest_instruction_set() >= InstructionSet::avx2) out.push_back(InstructionSet::avx2);
-  if (widest_instruction_set() >= InstructionSet::avx512) out.push_back(InstructionSet::avx512);
-  return out;
-}
 
 TEST(LeaveOneOutError, FromProductsIsThatOfSingularValues) {
   for (const auto activation : {Activation::sigmoid, Activation::tanh})

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "instruction_sets.hpp"
 #include "vernier/regression/elm.hpp"
 
 namespace vernier {
@@ -12,13 +13,6 @@ MatrixX uniform(Index rows, Index columns, double limit, std::uint64_t seed) {
   MatrixX out(rows, columns);
   for (auto& x : out.reshaped()) x = rng.uniform(-limit, limit);
   return out;
-}
-
-std::vector<InstructionSet> available() {
-  std::vector<InstructionSet> sets{InstructionSet::baseline};
-  if (widest_instruction_set() >= InstructionSet::avx2) sets.push_back(InstructionSet::avx2);
-  if (widest_instruction_set() >= InstructionSet::avx512) sets.push_back(InstructionSet::avx512);
-  return sets;
 }
 
 TEST(Sigmoid, EqualsTheLibraryFunction) {
@@ -44,7 +38,7 @@ TEST(NormalEquations, EqualThePlainProductsOnEveryInstructionSet) {
         MatrixX h;
         layer.outputs(x, theta, h);
         const MatrixX gram = h.transpose() * h, right = t.transpose() * h;
-        for (const InstructionSet set : available()) {
+        for (const InstructionSet set : vernier_test::instruction_sets()) {
           detail::NormalEquations equations(layer, x, t, set);
           equations.form(theta);
           equations.form(theta);  // nothing is left over from before

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <vector>
+#include "instruction_sets.hpp"
 
 #include "vernier/core/rng.hpp"
 
@@ -22,8 +23,7 @@ RowMatrix uniform(Index rows, Index columns, std::uint64_t seed) {
 
 // Sizes that leave remainders everywhere: samples and the tile, the stride and the blocks of accumulators.
 TEST(TileProduct, EqualsThePlainProductOnEveryInstructionSet) {
-  for (const auto set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
-    if (set > widest_instruction_set()) continue;
+  for (const auto set : vernier_test::instruction_sets()) {
     for (const Index stride : {8, 16, 24, 40, 72})
       for (const Index samples : {1, 7, 16, 53}) {
         const RowMatrix a = uniform(samples, stride, 1), b = uniform(samples, stride, 2);

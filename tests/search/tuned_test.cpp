@@ -6,6 +6,7 @@
 
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
+#include "vernier/regression/var_pro_elm.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/pso.hpp"
 
@@ -138,6 +139,38 @@ TEST(Tuned, WhereWeightsMayGo) {
   EXPECT_GT(largest(Tuned{elm, pso}), 1);
   EXPECT_LE(largest(Tuned{elm, clamped}), 1);
   EXPECT_LE(largest(Tuned{elm, ga}), 1);
+}
+
+// The search sees a part of the samples, always the same for a seed; the fit has all of them.
+TEST(Tuned, ASearchByAPartOfTheSamples) {
+  const auto fit = [](std::uint64_t seed, Index samples) {
+    return Tuned{elm, pso, Stop{}, samples}.fit(train.x, train.y, {.seed = seed});
+  };
+  const auto found = fit(4, 60);
+  EXPECT_EQ(found.theta(), fit(4, 60).theta());
+  EXPECT_NE(found.theta(), fit(5, 60).theta());
+  EXPECT_NE(found.theta(), fit(4, 150).theta());
+  EXPECT_EQ(fit(4, 150).theta(), (Tuned{elm, pso}.fit(train.x, train.y, {.seed = 4}).theta()));
+  EXPECT_EQ(found.beta(), elm.fit_at(train.x, train.y, found.theta()).beta());
+  // it is worth it: better than no search at all
+  EXPECT_LT(error(found, fresh), error(elm.fit(train.x, train.y, {.seed = 4}), fresh));
+  EXPECT_THROW(static_cast<void>(fit(1, -1)), std::invalid_argument);
+}
+
+// Weights reach the search and the fit; a regressor without use for them refuses.
+TEST(Tuned, PassesWeightsOn) {
+  VectorX weights = VectorX::Ones(150);
+  weights.tail(50) *= 10;
+  const Pso short_pso{.particles = 10, .iterations = 5};
+  const auto weighted = Tuned{elm, short_pso}.fit(train.x, train.y, {.seed = 4, .weights = &weights});
+  const SearchResult found = minimize(short_pso, elm.objective(train.x, train.y, &weights), elm.box(3), {}, 4);
+  EXPECT_EQ(weighted.theta(), found.best);
+  EXPECT_EQ(weighted.beta(), elm.fit_at(train.x, train.y, found.best, {.weights = &weights}).beta());
+  const auto of_part = Tuned{elm, short_pso, Stop{}, 60}.fit(train.x, train.y, {.seed = 4, .weights = &weights});
+  EXPECT_NE(of_part.theta(), (Tuned{elm, short_pso, Stop{}, 60}.fit(train.x, train.y, {.seed = 4}).theta()));
+  EXPECT_THROW(static_cast<void>(Tuned{VarProElm{.hidden_nodes = 5}, short_pso}.fit(train.x, train.y,
+                                                                                    {.seed = 4, .weights = &weights})),
+               std::invalid_argument);
 }
 
 TEST(Tuned, RefusesWhatItsPartsRefuse) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "vernier/core/function_ref.hpp"
+#include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
@@ -30,7 +31,10 @@ struct IkOptions {
   double position_tolerance = 1e-9;  ///< [m]
   double rotation_tolerance = 1e-9;  ///< [rad]
   double rotation_length = 0.3;      ///< 1 rad of rotation error weighs as many metres [m]
-  int max_iterations = 200;          ///< evaluations of the model
+  int max_iterations = 200;          ///< evaluations of the model, from each start
+  int restarts = 0;                  ///< further starts where one does not converge: drawn within the limits, half a
+                                     ///< turn (pi m) to either side of the seed where there are none; always the
+                                     ///< same ones. The solution may then lie on another branch than the seed.
   int moving_joints = N;             ///< only the first so many joints move, 1..N
 };
 
@@ -130,9 +134,36 @@ IkResult<N> damped_inverse_kinematics(FunctionRef<PoseAndJacobian<N>(const Joint
   return finish(best, IkStatus::converged, iterations);
 }
 
+/// The same, from further starts until one converges; the best of all.
+template <int N>
+IkResult<N> restarted_inverse_kinematics(FunctionRef<PoseAndJacobian<N>(const JointVector<N>&)> model,
+                                         const Isometry3& target, bool oriented, const JointVector<N>& seed,
+                                         const IkOptions<N>& options) noexcept {
+  IkResult<N> best = damped_inverse_kinematics<N>(model, target, oriented, seed, options);
+  const auto error = [&](const IkResult<N>& r) {
+    return std::hypot(r.position_error, options.rotation_length * r.rotation_error);
+  };
+  const int moving = std::clamp(options.moving_joints, 1, N);
+  Rng rng;
+  for (int k = 0; k < options.restarts && best.status != IkStatus::converged; ++k) {
+    JointVector<N> start = seed;
+    for (int i = 0; i < moving; ++i) {
+      const bool bounded = std::isfinite(options.limits.upper(i) - options.limits.lower(i));
+      start(i) = bounded ? rng.uniform(options.limits.lower(i), options.limits.upper(i))
+                         : seed(i) + rng.uniform(-3.14159265358979323846, 3.14159265358979323846);
+    }
+    IkResult<N> found = damped_inverse_kinematics<N>(model, target, oriented, start, options);
+    const int spent = best.iterations + found.iterations;
+    if (found.status == IkStatus::converged || error(found) < error(best)) best = found;
+    best.iterations = spent;
+  }
+  return best;
+}
+
 }  // namespace detail
 
-/// Joints that bring the tool to a full pose, on the branch of the seed and near to it. Does not allocate.
+/// Joints that bring the tool to a full pose, on the branch of the seed and near to it unless restarts are asked for.
+/// Does not allocate.
 /// @param model   any kinematic model
 /// @param target  base_T_tool
 /// @param seed    where to start [rad, m]; taken into the limits first
@@ -144,7 +175,7 @@ template <KinematicModel M>
                                                   const JointVector<M::dof>& seed,
                                                   const IkOptions<M::dof>& options = {}) noexcept {
   const auto evaluate = [&](const JointVector<M::dof>& q) { return model.pose_and_jacobian(q); };
-  return detail::damped_inverse_kinematics<M::dof>(evaluate, target, true, seed, options);
+  return detail::restarted_inverse_kinematics<M::dof>(evaluate, target, true, seed, options);
 }
 
 /// Joints that bring the tool to a position [m], whatever its orientation; otherwise as above.
@@ -155,7 +186,7 @@ template <KinematicModel M>
   Isometry3 pose = Isometry3::Identity();
   pose.translation() = target;
   const auto evaluate = [&](const JointVector<M::dof>& q) { return model.pose_and_jacobian(q); };
-  return detail::damped_inverse_kinematics<M::dof>(evaluate, pose, false, seed, options);
+  return detail::restarted_inverse_kinematics<M::dof>(evaluate, pose, false, seed, options);
 }
 
 }  // namespace vernier

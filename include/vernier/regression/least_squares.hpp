@@ -92,31 +92,42 @@ RidgeSolution relative_ridge(const Eigen::MatrixBase<H>& h, const Eigen::MatrixB
   return out;
 }
 
-/// `min |H beta - T|^2 + lambda |beta|^2` from the products alone: no second pass over the samples, but digits are lost
+/// Output weights, nodes x outputs, of `min |H beta - T|^2 + lambda |beta|^2` from the products alone; empty where they
+/// are too badly conditioned.
+/// @param gram   H'H, its lower triangle
+/// @param right  T'H, outputs x nodes
+/// @param lambda absolute
+template <class Gram, class Right>
+MatrixX ridge_weights(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right, double lambda) {
+  if (!(lambda > 0) || !std::isfinite(lambda)) return {};
+  MatrixX regularised = gram;
+  regularised.diagonal().array() += lambda;
+  const Eigen::LLT<Eigen::Ref<MatrixX>> factor(regularised);  // in place
+  if (factor.info() != Eigen::Success) return {};
+  return factor.solve(right.transpose());
+}
+
+/// `|H beta - T|^2 + lambda |beta|^2` from the products alone: no second pass over the samples, but digits are lost
 /// where the fit is nearly perfect or beta is huge. Returns -1 where fewer than seven digits would be left.
 /// @param gram          H'H, its lower triangle
 /// @param right         T'H, outputs x nodes
 /// @param target_square |T|^2
+/// @param beta          nodes x outputs, or empty
 /// @param lambda        absolute
 /// @param trace         of H'H as summed up, before anything was subtracted from it
 template <class Gram, class Right>
-double ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right, double target_square,
-                       double lambda, double trace) {
-  if (!(lambda > 0) || !std::isfinite(lambda)) return -1;
-  MatrixX regularised = gram;
-  regularised.diagonal().array() += lambda;
-  const Eigen::LLT<Eigen::Ref<MatrixX>> factor(regularised);  // in place
-  if (factor.info() != Eigen::Success) return -1;
-  const MatrixX beta = factor.solve(right.transpose());
+double objective_from_products(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right,
+                               double target_square, const MatrixX& beta, double lambda, double trace) {
+  if (beta.size() == 0) return -1;
   const double size = beta.squaredNorm();
-  // quadratic in beta, so that an error of beta enters squared
+  // quadratic in beta, so that an error of beta enters squared where beta is the best
   const double objective = target_square - 2 * right.transpose().cwiseProduct(beta).sum() +
                            beta.cwiseProduct(gram.template selfadjointView<Eigen::Lower>() * beta).sum() +
                            lambda * size;
   return objective > 1e-7 * target_square && objective > 1e-8 * trace * size ? objective : -1;
 }
 
-/// The objective of `relative_ridge` from the products alone, see `ridge_objective`.
+/// The objective of `relative_ridge` from the products alone, see `objective_from_products`.
 /// @param gram            H'H, its lower triangle
 /// @param right           T'H, outputs x nodes
 /// @param target_square   |T|^2
@@ -124,23 +135,27 @@ double ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixB
 template <class Gram, class Right>
 double relative_ridge_objective(const Eigen::MatrixBase<Gram>& gram, const Eigen::MatrixBase<Right>& right,
                                 double target_square, double relative_lambda) {
-  const double trace = gram.trace();
-  return ridge_objective(gram, right, target_square, relative_lambda * trace / static_cast<double>(gram.rows()), trace);
+  const double trace = gram.trace(), lambda = relative_lambda * trace / static_cast<double>(gram.rows());
+  return objective_from_products(gram, right, target_square, ridge_weights(gram, right, lambda), lambda, trace);
 }
 
-/// Ridge regression with an unpenalised mean, for every lambda from one decomposition.
+/// Ridge regression with an unpenalised mean, for every lambda from one decomposition. Samples may have weights, which
+/// count relative to their mean.
 /// @cite Allen 1974 (PRESS); Huang 2012
 template <class Scalar>
 class RidgePathOf {
  public:
-  /// @param h n x nodes, centred here
-  /// @param t n x outputs, centred here
+  /// @param h       n x nodes, centred here
+  /// @param t       n x outputs, centred here
+  /// @param weights of the samples, positive; null: all the same
   template <class H, class T>
-  RidgePathOf(const Eigen::MatrixBase<H>& h, const Eigen::MatrixBase<T>& t)
-      : mean_h_(h.colwise().mean()),
-        mean_t_(t.colwise().mean()),
-        centred_t_(t.rowwise() - mean_t_),
-        svd_(h.rowwise() - mean_h_) {
+  RidgePathOf(const Eigen::MatrixBase<H>& h, const Eigen::MatrixBase<T>& t, const VectorX* weights = nullptr)
+      : shares_(weights != nullptr ? VectorX(*weights / weights->sum())
+                                   : VectorX(VectorX::Constant(h.rows(), 1 / static_cast<double>(h.rows())))),
+        mean_h_(weights != nullptr ? Row(shares_.transpose() * h) : Row(h.colwise().mean())),
+        mean_t_(weights != nullptr ? Row(shares_.transpose() * t) : Row(t.colwise().mean())),
+        centred_t_(scaled(t.rowwise() - mean_t_, weights != nullptr)),
+        svd_(scaled(h.rowwise() - mean_h_, weights != nullptr)) {
     projected_ = svd_.u.transpose() * centred_t_;
     if (rank() == 0) svd_.s.setZero();
   }
@@ -164,11 +179,12 @@ class RidgePathOf {
   /// What is added to H beta: `mean(T) - mean(H) beta`.
   VectorX offset(const MatrixX& beta) const { return (mean_t_ - mean_h_ * beta).transpose(); }
 
-  /// Residuals of leaving each sample out, n x outputs, at `lambda` > 0; infinity is the mean alone. With as many nodes
+  /// Residuals of leaving each sample out, n x outputs, at `lambda` > 0; infinity is the mean alone. Those of samples
+  /// with weights are multiplied by the square root of the weight relative to the mean weight. With as many nodes
   /// as samples the residual and `1 - leverage` are sums over lambda / (s^2 + lambda), never differences that cancel.
   MatrixX leave_one_out_residuals(double lambda) const {
     const Index n = centred_t_.rows();
-    if (!std::isfinite(lambda)) return centred_t_ * (static_cast<double>(n) / static_cast<double>(n - 1));
+    if (!std::isfinite(lambda)) return (1 - shares_.array()).inverse().matrix().asDiagonal() * centred_t_;
     const Index r = rank();
     const auto u = svd_.u.leftCols(r);
     const Eigen::ArrayXd s2 = svd_.s.head(r).array().square();
@@ -176,7 +192,7 @@ class RidgePathOf {
     VectorX one_minus_leverage = u.cwiseAbs2() * kept;
     MatrixX residual = u * (kept.asDiagonal() * projected_.topRows(r));
     if (r < n - 1) {  // what U does not span; where it spans all centred samples, nothing but rounding
-      one_minus_leverage.array() += (1 - 1.0 / static_cast<double>(n) - u.rowwise().squaredNorm().array()).max(0.0);
+      one_minus_leverage.array() += (1 - shares_.array() - u.rowwise().squaredNorm().array()).max(0.0);
       residual += centred_t_ - u * projected_.topRows(r);
     }
     for (Index i = 0; i < n; ++i) residual.row(i) /= std::max(one_minus_leverage(i), 1e-300);
@@ -184,7 +200,16 @@ class RidgePathOf {
   }
 
  private:
-  Eigen::RowVectorXd mean_h_, mean_t_;
+  using Row = Eigen::RowVectorXd;
+
+  template <class Derived>
+  MatrixX scaled(const Eigen::MatrixBase<Derived>& rows, bool weighted) const {
+    if (!weighted) return rows;
+    return (shares_ * static_cast<double>(shares_.size())).cwiseSqrt().asDiagonal() * rows;
+  }
+
+  VectorX shares_;  // of the samples, sum 1
+  Row mean_h_, mean_t_;
   MatrixX centred_t_;
   detail::ThinSvd svd_;
   MatrixX projected_;

@@ -20,6 +20,7 @@ struct NormalEquationsBlock {
   const double* targets;   // samples x outputs, column-major
   const double* weights;   // (inputs + 1) rows of `stride`, biases last
   const double* shift;     // of the nodes, taken off their outputs; or null
+  const double* scale;     // of the samples, a factor of their rows; or null
   double* tile;            // tile_samples rows of `stride`, or all samples where they are kept
   double* products;        // stride x stride, zero on entry; blocks on and right of the diagonal are added to
   Index samples, inputs, outputs, nodes, stride, tile_samples;
@@ -51,6 +52,8 @@ VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
         store<W>(row + j, z);
       }
       for (Index k = 0; k < b.outputs; ++k) row[b.nodes + k] = b.targets[k * b.samples + begin + s];
+      if (b.scale != nullptr)
+        for (Index k = 0; k < b.nodes + b.outputs; ++k) row[k] *= b.scale[begin + s];
       for (Index k = b.nodes + b.outputs; k < b.stride; ++k) row[k] = 0;
     }
     tile_product<W, Rows, Vectors>(tile, tile, b.products, b.stride, samples, true);
@@ -69,9 +72,10 @@ class NormalEquations {
   /// @param targets  samples x outputs; must outlive this
   /// @param set      instructions to use; must be there
   /// @param keep     whether the outputs of all nodes are kept
+  /// @param scale    factors of the rows of H and T, one a sample, which must outlive this; null for 1
   NormalEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
-                  InstructionSet set = widest_instruction_set(), bool keep = false)
-      : layer_(layer), features_(features), targets_(targets), set_(set), keep_(keep) {
+                  InstructionSet set = widest_instruction_set(), bool keep = false, const double* scale = nullptr)
+      : layer_(layer), features_(features), targets_(targets), set_(set), keep_(keep), scale_(scale) {
     stride_ = (layer.nodes + targets.cols() + 7) / 8 * 8;
     tile_samples_ = std::max<Index>(8, 3072 / stride_);  // 24 KiB
     weights_.resize(static_cast<std::size_t>((features.cols() + 1) * stride_));
@@ -92,6 +96,7 @@ class NormalEquations {
                                      targets_.data(),
                                      weights_.data(),
                                      shift != nullptr ? shift_.data() : nullptr,
+                                     scale_,
                                      tile_.data(),
                                      products_.data(),
                                      features_.rows(),
@@ -124,6 +129,7 @@ class NormalEquations {
   const MatrixX& targets_;
   InstructionSet set_;
   bool keep_;
+  const double* scale_;
   Index stride_ = 0, tile_samples_ = 0;
   std::vector<double> weights_, shift_, tile_, products_;
 };

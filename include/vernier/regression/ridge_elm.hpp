@@ -17,19 +17,23 @@ namespace detail {
 /// Fitness of hidden weights by leave-one-out error at the best ridge, the mean alone among the candidates.
 class RidgeElmLeaveOneOutError {
  public:
-  RidgeElmLeaveOneOutError(const HiddenLayer& layer, MatrixX features, MatrixX targets)
-      : layer_(layer), features_(std::move(features)), targets_(std::move(targets)) {}
+  RidgeElmLeaveOneOutError(const HiddenLayer& layer, MatrixX features, MatrixX targets, const VectorX* weights)
+      : layer_(layer), features_(std::move(features)), targets_(std::move(targets)) {
+    if (weights != nullptr) weights_ = *weights;
+  }
 
   template <class Population, class Fitness>
   void operator()(const Eigen::MatrixBase<Population>& population, Fitness&& fitness) const {
     std::optional<LeaveOneOutError> products;
-    if (LeaveOneOutError::supports(layer_, targets_.rows())) products.emplace(layer_, features_, targets_);
+    const VectorX* weights = weights_.size() > 0 ? &weights_ : nullptr;
+    if (weights == nullptr && LeaveOneOutError::supports(layer_, targets_.rows()))
+      products.emplace(layer_, features_, targets_);
     MatrixX h;
     for (Index k = 0; k < population.cols(); ++k) {
       fitness(k) = products ? (*products)(population.col(k)) : -1;
       if (fitness(k) >= 0) continue;  // else the products do not tell: singular values do
       layer_.outputs(features_, population.col(k), h);
-      fitness(k) = h.allFinite() ? choose_lambda(RidgePath(h, targets_), targets_.rows()).mean_squared_error
+      fitness(k) = h.allFinite() ? choose_lambda(RidgePath(h, targets_, weights), targets_.rows()).mean_squared_error
                                  : std::numeric_limits<double>::infinity();
     }
   }
@@ -37,6 +41,7 @@ class RidgeElmLeaveOneOutError {
  private:
   HiddenLayer layer_;
   MatrixX features_, targets_;
+  VectorX weights_;  // empty: all the same
 };
 
 }  // namespace detail
@@ -64,30 +69,33 @@ struct RidgeElm {
   Box box(int inputs) const { return layer().box(inputs); }
 
   /// Leave-one-out mean squared error of hidden weights, in squared units of the targets.
+  /// @param weights of the samples; null: all the same
   template <class X, class Y>
-  detail::RidgeElmLeaveOneOutError objective(const Eigen::MatrixBase<X>& inputs,
-                                             const Eigen::MatrixBase<Y>& targets) const {
-    validate(inputs, targets);
+  detail::RidgeElmLeaveOneOutError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                                             const VectorX* weights = nullptr) const {
+    validate(inputs, targets, {.weights = weights});
     const MatrixX mapped = layer().map(inputs);
-    return {layer(), layer().scaling(mapped).apply(mapped), targets};
+    return {layer(), layer().scaling(mapped).apply(mapped), targets, weights};
   }
 
   /// Fit with given hidden weights.
   /// @param inputs  n x inputs
   /// @param targets n x outputs
   /// @param theta   `dimension(inputs)` weights, node by node
+  /// @param options sample weights; nothing else matters here
   template <class X, class Y>
   ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit_at(const Eigen::MatrixBase<X>& inputs,
                                                                   const Eigen::MatrixBase<Y>& targets,
-                                                                  const VectorX& theta) const {
-    validate(inputs, targets);
+                                                                  const VectorX& theta,
+                                                                  const FitOptions& options = {}) const {
+    validate(inputs, targets, options);
     require(theta.size() == dimension(X::ColsAtCompileTime), "RidgeElm: ", theta.size(), " hidden weights, expected ",
             dimension(X::ColsAtCompileTime));
     const MatrixX mapped = layer().map(inputs);
     const ColumnScaling in = layer().scaling(mapped);
     MatrixX h;
     layer().outputs(in.apply(mapped), theta, h);
-    const RidgePath path(h, targets);
+    const RidgePath path(h, targets, options.weights);
     double lambda = choose_lambda(path, h.rows()).lambda;
     if (evidence_against_mean(path, lambda, h.rows()) < evidence) lambda = std::numeric_limits<double>::infinity();
     const MatrixX beta = path.beta(lambda);
@@ -100,14 +108,15 @@ struct RidgeElm {
                                                                const Eigen::MatrixBase<Y>& targets,
                                                                const FitOptions& options = {}) const {
     layer().validate("RidgeElm");
-    return fit_at(inputs, targets, layer().draw(X::ColsAtCompileTime, options.seed));
+    return fit_at(inputs, targets, layer().draw(X::ColsAtCompileTime, options.seed), options);
   }
 
  private:
   template <class X, class Y>
-  void validate(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
+  void validate(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                const FitOptions& options) const {
     layer().validate("RidgeElm");
-    detail::require_samples("RidgeElm", inputs, targets);
+    detail::require_samples("RidgeElm", inputs, targets, options);
   }
 };
 

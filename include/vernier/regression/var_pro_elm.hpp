@@ -59,8 +59,9 @@ class VarProTrainingError {
         const VectorX sum = equations.right().row(0).transpose();
         MatrixX gram = equations.gram();
         gram -= sum * sum.transpose() / n;
-        objective = ridge_objective(gram, equations.right().bottomRows(targets_.cols()), targets_.squaredNorm(),
-                                    ridge_ * n, equations.gram().trace());
+        const auto right = equations.right().bottomRows(targets_.cols());
+        objective = objective_from_products(gram, right, targets_.squaredNorm(), ridge_weights(gram, right, ridge_ * n),
+                                            ridge_ * n, equations.gram().trace());
       }
       if (!(objective >= 0)) {  // too nearly perfect or too badly conditioned to be told from the products
         if (!projection) projection.emplace(layer_, features_, targets_, ridge_);
@@ -195,6 +196,7 @@ struct VarProElm {
                                                                   const VectorX& theta,
                                                                   const FitOptions& options = {}) const {
     validate(inputs, targets);
+    detail::require_no_weights("VarProElm", options);
     require(theta.size() == dimension(X::ColsAtCompileTime), "VarProElm: ", theta.size(), " hidden weights, expected ",
             dimension(X::ColsAtCompileTime));
     return train<X::ColsAtCompileTime, Y::ColsAtCompileTime>(inputs, targets, 1, options,
@@ -207,6 +209,7 @@ struct VarProElm {
                                                                const Eigen::MatrixBase<Y>& targets,
                                                                const FitOptions& options = {}) const {
     validate(inputs, targets);
+    detail::require_no_weights("VarProElm", options);
     return train<X::ColsAtCompileTime, Y::ColsAtCompileTime>(inputs, targets, starts, options, [&](int start) {
       return layer().draw(X::ColsAtCompileTime,
                           start == 0 ? options.seed : child_seed(options.seed, static_cast<std::uint64_t>(start)));

@@ -4,7 +4,9 @@
 /// Joins the two worlds: a regressor whose inner weights a metaheuristic finds. PSO-ELM is `Tuned{Elm{}, Pso{}}`.
 
 #include <utility>
+#include <vector>
 
+#include "vernier/core/rng.hpp"
 #include "vernier/regression/concepts.hpp"
 #include "vernier/search/minimize.hpp"
 
@@ -34,25 +36,58 @@ struct Tuned {
   R regressor;
   /// What searches.
   A algorithm;
-  Stop stop{};  ///< beside the algorithm's own schedule
+  Stop stop{};               ///< beside the algorithm's own schedule
+  Index search_samples = 0;  ///< the search judges by so many samples, drawn from the seed; the fit has all. 0: by all
 
   /// The search, then the fit at what it found. The observer of the options sees every generation, then the steps of
-  /// the fit where that has some: a regressor may take the options as a fourth argument of `fit_at`.
+  /// the fit where that has some. `objective` may take sample weights as a third argument, `fit_at` the options as a
+  /// fourth.
   template <class X, class Y>
   auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
            const FitOptions& options = {}) const
       -> decltype(std::declval<const R&>().fit_at(inputs, targets, VectorX())) {  // known without compiling the body
-    const SearchResult found =
-        minimize(algorithm, regressor.objective(inputs, targets), regressor.box(X::ColsAtCompileTime), stop,
-                 options.seed, options.executor, options.observer);
+    detail::require_samples("Tuned", inputs, targets, options);
+    require(search_samples >= 0, "Tuned: search_samples is ", search_samples, ", must not be negative");
+    const SearchResult found = search_samples > 0 && search_samples < inputs.rows()
+                                   ? search_part(inputs, targets, options)
+                                   : search(inputs, targets, options.weights, options);
     if constexpr (requires { regressor.fit_at(inputs, targets, found.best, options); }) {
       const auto further = [&](const Progress& p) {
         return options.observer(Progress{found.generations + p.generation, found.evaluations + p.evaluations, p.best});
       };
-      return regressor.fit_at(inputs, targets, found.best, {options.seed, options.executor, further});
+      return regressor.fit_at(inputs, targets, found.best, {options.seed, options.executor, further, options.weights});
     } else {
       return regressor.fit_at(inputs, targets, found.best);
     }
+  }
+
+ private:
+  template <class X, class Y>
+  SearchResult search(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets, const VectorX* weights,
+                      const FitOptions& options) const {
+    const auto at_best = [&](const auto& objective) {
+      return minimize(algorithm, objective, regressor.box(X::ColsAtCompileTime), stop, options.seed, options.executor,
+                      options.observer);
+    };
+    if constexpr (requires { regressor.objective(inputs, targets, weights); }) {
+      return at_best(regressor.objective(inputs, targets, weights));
+    } else {
+      detail::require_no_weights("Tuned: the regressor's objective", options);
+      return at_best(regressor.objective(inputs, targets));
+    }
+  }
+
+  /// By rows drawn without replacement.
+  template <class X, class Y>
+  SearchResult search_part(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                           const FitOptions& options) const {
+    std::vector<Index> rows = Rng(child_seed(options.seed, 1)).permutation(inputs.rows());
+    rows.resize(static_cast<std::size_t>(search_samples));
+    const Eigen::Matrix<double, Eigen::Dynamic, X::ColsAtCompileTime> x = inputs(rows, Eigen::all);
+    const Eigen::Matrix<double, Eigen::Dynamic, Y::ColsAtCompileTime> y = targets(rows, Eigen::all);
+    if (options.weights == nullptr) return search(x, y, nullptr, options);
+    const VectorX weights = (*options.weights)(rows);
+    return search(x, y, &weights, options);
   }
 };
 
@@ -62,5 +97,8 @@ Tuned(R, A) -> Tuned<R, A>;
 /// Deduction guide, for compilers that have none for aggregates.
 template <class R, class A>
 Tuned(R, A, Stop) -> Tuned<R, A>;
+/// Deduction guide, for compilers that have none for aggregates.
+template <class R, class A>
+Tuned(R, A, Stop, Index) -> Tuned<R, A>;
 
 }  // namespace vernier

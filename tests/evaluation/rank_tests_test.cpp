@@ -1,0 +1,176 @@
+// Rank tests against published figures and against all arrangements, counted.
+
+#include "vernier/evaluation/rank_tests.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+
+#include "complaint.hpp"
+#include "vernier/core/rng.hpp"
+
+namespace vernier {
+namespace {
+
+using vernier_test::complaint;
+
+VectorX of(std::initializer_list<double> values) {
+  VectorX out(static_cast<Index>(values.size()));
+  std::copy(values.begin(), values.end(), out.begin());
+  return out;
+}
+
+const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Ranks, TiesShareTheirMean) {
+  EXPECT_EQ(ranks(of({3, 1, 2})), of({3, 1, 2}));
+  EXPECT_EQ(ranks(of({5, 2, 5, 5, -infinity, infinity})), of({4, 2, 4, 4, 1, 6}));
+  EXPECT_EQ(ranks(VectorX()).size(), 0);
+  EXPECT_EQ(complaint([] { ranks(of({1, nan})); }), "ranks: value 1 is not a number");
+}
+
+// The examples of the manuals: R's wilcox.test (Hollander and Wolfe's permeability; ozone in May and August, with
+// ties), SciPy's mannwhitneyu.
+TEST(RankSum, PublishedFigures) {
+  const VectorX term = of({0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46});
+  const VectorX early = of({1.15, 0.88, 0.90, 0.74, 1.21});
+  const RankTest permeability = rank_sum_test(term, early);
+  EXPECT_EQ(permeability.statistic, 35);
+  EXPECT_TRUE(permeability.exact);
+  EXPECT_NEAR(permeability.p_value / 2, 0.1272, 5e-5);
+
+  const VectorX males = of({19, 22, 16, 29, 24}), females = of({20, 11, 17, 12});
+  EXPECT_EQ(rank_sum_test(males, females).statistic, 17);
+  EXPECT_NEAR(rank_sum_test(males, females).p_value, 1.0 / 9, 1e-15);
+  const RankTest approximate = rank_sum_test(males, females, 0);
+  EXPECT_FALSE(approximate.exact);
+  EXPECT_NEAR(approximate.p_value, 0.11134688653314041, 1e-14);
+
+  const VectorX may =
+      of({41, 36, 12, 18, 28, 23, 19, 8, 7, 16, 11, 14, 18, 14, 34, 6, 30, 11, 1, 11, 4, 32, 23, 45, 115, 37});
+  const VectorX august =
+      of({39, 9, 16, 78, 35, 66, 122, 89, 110, 44, 28, 65, 22, 59, 23, 31, 44, 21, 9, 45, 168, 73, 76, 118, 84, 85});
+  const RankTest ozone = rank_sum_test(may, august);
+  EXPECT_FALSE(ozone.exact);
+  EXPECT_EQ(ozone.statistic, 127.5);
+  EXPECT_NEAR(ozone.p_value, 0.0001208, 5e-8);
+}
+
+// R's wilcox.test (Hamilton's depression scale, one-sided p 0.01953); SciPy's wilcoxon (heights of maize).
+TEST(SignedRank, PublishedFigures) {
+  const VectorX before = of({1.83, 0.50, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.30});
+  const VectorX after = of({0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29});
+  const RankTest depression = signed_rank_test(before, after);
+  EXPECT_EQ(depression.statistic, 40);
+  EXPECT_TRUE(depression.exact);
+  EXPECT_NEAR(depression.p_value / 2, 0.01953, 5e-6);
+
+  const VectorX maize = of({6, 8, 14, 16, 23, 24, 28, 29, 41, -48, 49, 56, 60, -67, 75});
+  EXPECT_EQ(signed_rank_test(maize, VectorX::Zero(15)).statistic, 120 - 24);
+  EXPECT_EQ(signed_rank_test(maize, VectorX::Zero(15)).p_value, 0.041259765625);
+}
+
+/// Share of all ways to deal n + m ranks whose U is as far from its mean as the given one, or farther.
+double dealt(Index n, Index m, double u) {
+  const double mean = static_cast<double>(n * m) / 2;
+  long far = 0, all = 0;
+  for (unsigned hand = 0; hand < 1u << (n + m); ++hand) {
+    if (std::popcount(hand) != n) continue;
+    double sum = 0;
+    for (Index r = 0; r < n + m; ++r) sum += (hand >> r) & 1u ? static_cast<double>(r + 1) : 0;
+    ++all;
+    far += std::abs(sum - static_cast<double>(n * (n + 1)) / 2 - mean) >= std::abs(u - mean) ? 1 : 0;
+  }
+  return static_cast<double>(far) / static_cast<double>(all);
+}
+
+TEST(RankSum, AllArrangements) {
+  Rng rng(1);
+  for (const auto& [n, m] : {std::pair<Index, Index>{1, 1}, {1, 6}, {3, 4}, {5, 2}, {6, 6}, {4, 9}, {9, 4}})
+    for (int round = 0; round < 20; ++round) {
+      VectorX a(n), b(m);
+      for (auto& x : a) x = rng.uniform();
+      for (auto& x : b) x = rng.uniform() + 0.1 * round;
+      const RankTest test = rank_sum_test(a, b);
+      double u = 0;
+      for (const double x : a) u += static_cast<double>((b.array() < x).count());
+      EXPECT_TRUE(test.exact);
+      EXPECT_EQ(test.statistic, u);
+      EXPECT_NEAR(test.p_value, dealt(n, m, u), 1e-14) << n << " " << m;
+    }
+}
+
+TEST(SignedRank, AllSigns) {
+  Rng rng(2);
+  for (const Index n : {1, 2, 5, 10})
+    for (int round = 0; round < 20; ++round) {
+      VectorX a(n), b(n);
+      for (auto& x : a) x = rng.normal();
+      for (auto& x : b) x = rng.normal() + 0.1 * round;
+      const RankTest test = signed_rank_test(a, b);
+      const double mean = static_cast<double>(n * (n + 1)) / 4;
+      long far = 0;
+      for (unsigned signs = 0; signs < 1u << n; ++signs) {
+        double sum = 0;
+        for (Index r = 0; r < n; ++r) sum += (signs >> r) & 1u ? static_cast<double>(r + 1) : 0;
+        far += std::abs(sum - mean) >= std::abs(test.statistic - mean) ? 1 : 0;
+      }
+      EXPECT_NEAR(test.p_value, static_cast<double>(far) / std::pow(2, n), 1e-15);
+    }
+}
+
+// Where both are to be had, the normal p of larger samples is close to the exact one.
+TEST(RankTests, TheApproximationApproximates) {
+  Rng rng(3);
+  for (int round = 0; round < 20; ++round) {
+    VectorX a(25), b(25);
+    for (auto& x : a) x = rng.normal();
+    for (auto& x : b) x = rng.normal() + 0.05 * round;
+    EXPECT_NEAR(rank_sum_test(a, b).p_value, rank_sum_test(a, b, 0).p_value, 0.005);
+    EXPECT_NEAR(signed_rank_test(a, b).p_value, signed_rank_test(a, b, 0).p_value, 0.01);
+  }
+}
+
+// Swapped samples mirror the statistic and keep p; what is all equal differs in nothing; infinities have their rank.
+TEST(RankTests, SymmetryAndEnds) {
+  const VectorX a = of({1, 4, 4, 9, infinity}), b = of({4, 2, 7, 8, infinity});
+  EXPECT_EQ(rank_sum_test(a, b).statistic + rank_sum_test(b, a).statistic, 25);
+  EXPECT_EQ(rank_sum_test(a, b).p_value, rank_sum_test(b, a).p_value);
+  EXPECT_EQ(signed_rank_test(a, b).statistic + signed_rank_test(b, a).statistic, 10);
+  EXPECT_EQ(signed_rank_test(a, b).p_value, signed_rank_test(b, a).p_value);
+  EXPECT_EQ(rank_sum_test(VectorX::Ones(5), VectorX::Ones(4)).p_value, 1);
+  EXPECT_EQ(signed_rank_test(a, a).p_value, 1);
+  EXPECT_EQ(rank_sum_test(of({1, 2}), of({3, infinity})).p_value, rank_sum_test(of({1, 2}), of({3, 4})).p_value);
+  // 49 against 49 apart: 2 of 98 over 49 arrangements, 2.5e28 of them
+  const double all = std::exp(std::lgamma(99) - 2 * std::lgamma(50));
+  EXPECT_NEAR(rank_sum_test(VectorX::LinSpaced(49, 0, 1), VectorX::LinSpaced(49, 2, 3)).p_value * all, 2, 1e-9);
+}
+
+// R: p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm") is 0.03 0.06 0.06 0.02.
+TEST(Holm, ByHand) {
+  EXPECT_LT((holm(of({0.01, 0.04, 0.03, 0.005})) - of({0.03, 0.06, 0.06, 0.02})).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_EQ(holm(of({0.7, 0.9})), of({1, 1}));
+  EXPECT_EQ(holm(of({0.2})), of({0.2}));
+  EXPECT_EQ(holm(VectorX()).size(), 0);
+}
+
+TEST(AverageRanks, ByHand) {
+  MatrixX values(3, 3);
+  values << 0.1, 0.2, 0.3,  //
+      5, 5, 9,              //
+      2, 3, 1;
+  EXPECT_LT((average_ranks(values) - of({4.5 / 3, 6.5 / 3, 7.0 / 3})).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(RankTests, Misuse) {
+  EXPECT_EQ(complaint([] { rank_sum_test(VectorX(), of({1})); }), "rank_sum_test: samples of 0 and 1 values");
+  EXPECT_EQ(complaint([] { rank_sum_test(of({nan}), of({1})); }), "ranks: value 0 is not a number");
+  EXPECT_EQ(complaint([] { signed_rank_test(of({1, 2}), of({1})); }), "signed_rank_test: 2 and 1 values are no pairs");
+  EXPECT_EQ(complaint([] { signed_rank_test(of({1, nan}), of({1, 2})); }), "ranks: value 0 is not a number");
+  EXPECT_EQ(complaint([] { holm(of({0.5, 1.5})); }), "holm: p-value 1.5 must lie in [0, 1]");
+  EXPECT_EQ(complaint([] { average_ranks(MatrixX(0, 3)); }), "average_ranks: 0 cases of 3 methods");
+}
+
+}  // namespace
+}  // namespace vernier

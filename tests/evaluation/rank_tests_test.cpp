@@ -172,5 +172,23 @@ TEST(RankTests, Misuse) {
   EXPECT_EQ(complaint([] { average_ranks(MatrixX(0, 3)); }), "average_ranks: 0 cases of 3 methods");
 }
 
+// Demsar 2006, table 5: q / sqrt(2) at 0.05 and 0.1; his example, 4 methods on 14 data sets, has CD 1.25 (0.05: 2.569).
+TEST(CriticalDifference, DemsarsTable) {
+  const auto tabled = [](Index methods, double alpha) {
+    const auto k = static_cast<double>(methods);
+    return critical_difference(methods, 1, alpha) / std::sqrt(k * (k + 1) / 6);
+  };
+  const double at_5[] = {1.960, 2.343, 2.569, 2.728, 2.850, 2.949, 3.031, 3.102, 3.164};
+  const double at_10[] = {1.645, 2.052, 2.291, 2.459, 2.589, 2.693, 2.780, 2.855, 2.920};
+  for (Index k = 2; k <= 10; ++k) {
+    EXPECT_NEAR(tabled(k, 0.05), at_5[k - 2], 1.1e-3) << k;
+    EXPECT_NEAR(tabled(k, 0.1), at_10[k - 2], 1.1e-3) << k;
+  }
+  EXPECT_NEAR(critical_difference(4, 14), 1.25, 5e-3);
+  EXPECT_THROW(static_cast<void>(critical_difference(1, 5)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(critical_difference(3, 0)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(critical_difference(3, 5, 1)), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace vernier

@@ -154,4 +154,28 @@ inline VectorX average_ranks(const Eigen::Ref<const MatrixX>& values) {
   return sum / static_cast<double>(values.rows());
 }
 
+/// By how much the average ranks of two of k methods over n cases must differ to show anything at level `alpha`
+/// (Nemenyi's test): `q sqrt(k (k + 1) / (12 n))`, q the quantile of the range of k standard normal values.
+/// @throws std::invalid_argument unless methods >= 2, cases >= 1 and alpha lies in (0, 1)
+/// @cite Nemenyi 1963; Demsar 2006
+inline double critical_difference(Index methods, Index cases, double alpha = 0.05) {
+  require(methods >= 2 && cases >= 1, "critical_difference: ", methods, " methods over ", cases, " cases");
+  require(alpha > 0 && alpha < 1, "critical_difference: alpha is ", alpha, ", must lie in (0, 1)");
+  const auto normal = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
+  // P(range <= q): one value is the largest, at z, and all others lie within q below it
+  const auto within = [&](double q) {
+    constexpr double step = 0.01;
+    double sum = 0;
+    for (int i = -800; i <= 800; ++i) {
+      const double z = i * step;
+      sum += std::exp(-z * z / 2) * std::pow(normal(z) - normal(z - q), static_cast<double>(methods - 1));
+    }
+    return static_cast<double>(methods) * sum * step / std::sqrt(2 * 3.14159265358979323846);
+  };
+  double low = 0, high = 40;
+  for (int i = 0; i < 60; ++i) (within((low + high) / 2) < 1 - alpha ? low : high) = (low + high) / 2;
+  const auto k = static_cast<double>(methods);
+  return high * std::sqrt(k * (k + 1) / (12 * static_cast<double>(cases)));
+}
+
 }  // namespace vernier

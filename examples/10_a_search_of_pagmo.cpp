@@ -1,0 +1,42 @@
+// A search from another library: pagmo2's algorithms through an adapter (support/pagmo_search.hpp), under the same
+// laws, in the same places.
+
+#include <cstdio>
+#include <pagmo/algorithms/de.hpp>
+#include <pagmo/algorithms/pso_gen.hpp>
+#include <vernier/search/differential_evolution.hpp>
+#include <vernier/testing/metaheuristic_laws.hpp>
+#include <vernier/vernier.hpp>
+
+#include "support/pagmo_search.hpp"
+
+namespace vn = vernier;
+
+int main() {
+  const support::PagmoSearch de{pagmo::algorithm(pagmo::de(1)), 20, 60};
+  const support::PagmoSearch pso{pagmo::algorithm(pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true)), 20, 60};
+  static_assert(vn::Metaheuristic<support::PagmoSearch>);
+  for (const auto* search : {&de, &pso}) {
+    const auto violations = vn::testing::metaheuristic_violations(*search, /*keeps_box=*/true);
+    for (const auto& violation : violations) std::printf("broken law: %s\n", violation.c_str());
+    if (!violations.empty()) return 1;
+    std::printf("%s obeys the laws of metaheuristics\n", search->algorithm.get_name().c_str());
+  }
+
+  const auto nominal = vn::robots::abb_irb120().chain;
+  const auto actual = vn::with_geometric_errors(nominal, {}, /*seed=*/1);
+  const auto region = vn::abb_irb120_operating_region();
+  const auto train = vn::measure(actual, region.sample(nominal, 300, 1));
+  const auto test = vn::measure(actual, region.sample(nominal, 300, 2));
+  const vn::Elm elm{.hidden_nodes = 25};
+  const auto report = [&](const char* name, const auto& regressor) {
+    const auto fitted = vn::CartesianCompensation{regressor}.fit(nominal, train, {.seed = 1});
+    std::printf("  %-28s %.3f mm\n", name, vn::prediction_error(fitted, test).mean * 1e3);
+  };
+  std::printf("mean error on 300 fresh poses, 1220 evaluations each:\n");
+  report("ELM", elm);
+  report("pagmo2's DE", vn::Tuned{elm, de});
+  report("pagmo2's PSO, a generation", vn::Tuned{elm, pso});
+  report("differential evolution", vn::Tuned{elm, vn::DifferentialEvolution{.individuals = 20, .generations = 60}});
+  report("PSO", vn::Tuned{elm, vn::Pso{.particles = 20, .iterations = 60}});
+}

@@ -1,0 +1,401 @@
+/// @file
+/// Learners and searches on equal terms: a grid of problems, methods, numbers of poses and seeds, its tables, tests and
+/// figures.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "cli.hpp"
+#include "comparison.hpp"
+#include "figures.hpp"
+#include "progress.hpp"
+#include "vernier/evaluation/rank_tests.hpp"
+
+namespace {
+
+namespace vn = vernier;
+using namespace support;
+
+/// Outcomes of a whole grid.
+class Grid {
+ public:
+  Grid(const Plan& plan, Results& results) : plan_(plan) {
+    for (std::size_t p = 0; p < plan.problems.size(); ++p)
+      for (const vn::Index poses : plan.poses)
+        for (const std::uint64_t seed : plan.seeds)
+          for (std::size_t m = 0; m < plan.methods.size(); ++m) cells_.push_back({p, m, poses, seed});
+    outcomes_.resize(cells_.size());
+    for (std::size_t c = 0; c < cells_.size(); ++c) outcomes_[c] = results.find(plan, cells_[c]);
+  }
+
+  std::size_t cells() const { return cells_.size(); }
+  std::size_t missing() const {
+    return static_cast<std::size_t>(
+        std::count_if(outcomes_.begin(), outcomes_.end(), [](const auto& o) { return !o.has_value(); }));
+  }
+
+  /// Computes what is missing, several cells at a time; what is done is kept whatever happens next.
+  void compute_missing(Results& results, int threads) {
+    ProgressBar bar("cells", static_cast<vn::Index>(cells_.size()));
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::exception_ptr broken;
+    const auto work = [&] {
+      for (std::size_t c; (c = next++) < cells_.size();) {
+        if (outcomes_[c]) continue;
+        Outcome outcome;
+        try {
+          outcome = compute(plan_, cells_[c]);
+        } catch (const UsageError&) {
+          const std::lock_guard lock(mutex);
+          if (!broken) broken = std::current_exception();
+          next = cells_.size();
+          return;
+        } catch (const std::exception& error) {
+          outcome.failure = error.what();
+        }
+        const std::lock_guard lock(mutex);
+        try {
+          results.add(plan_, cells_[c], outcome);
+        } catch (...) {
+          if (!broken) broken = std::current_exception();
+          next = cells_.size();
+          return;
+        }
+        outcomes_[c] = std::move(outcome);
+        bar.update(static_cast<vn::Index>(cells_.size() - missing()), plan_.methods[cells_[c].method].text);
+      }
+    };
+    std::vector<std::thread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(work);
+    work();
+    for (std::thread& other : others) other.join();
+    if (broken) std::rethrow_exception(broken);
+  }
+
+  /// Outcomes of one method on one problem, by seed.
+  std::vector<const Outcome*> of(std::size_t problem, std::size_t method, vn::Index poses) const {
+    std::vector<const Outcome*> out;
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      if (cells_[c].problem == problem && cells_[c].method == method && cells_[c].poses == poses)
+        out.push_back(&*outcomes_[c]);
+    return out;
+  }
+
+ private:
+  const Plan& plan_;
+  std::vector<Cell> cells_;
+  std::vector<std::optional<Outcome>> outcomes_;
+};
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// One number of each outcome; infinite where it failed.
+template <class Of>
+vn::VectorX values(const std::vector<const Outcome*>& outcomes, const Of& of) {
+  vn::VectorX out(static_cast<vn::Index>(outcomes.size()));
+  for (std::size_t k = 0; k < outcomes.size(); ++k)
+    out(static_cast<vn::Index>(k)) = outcomes[k]->failed() ? infinity : of(*outcomes[k]);
+  return out;
+}
+
+double quantile(vn::VectorX values, double share) {
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<vn::Index>(at);
+  const vn::Index above = std::min(below + 1, values.size() - 1);
+  if (values(below) == values(above)) return values(below);
+  return values(below) + (at - static_cast<double>(below)) * (values(above) - values(below));
+}
+
+/// A method's line in a table.
+struct Row {
+  std::size_t method;
+  vn::VectorX mean;  ///< by seed
+  double median, lower, upper, p95, max, seconds, p_value = 1;
+  vn::Index failures;
+};
+
+/// All methods on one problem, best first, and whether the others differ from the best: paired over seeds, corrected
+/// for as many tests as there are.
+std::vector<Row> ranked(const Grid& grid, const Plan& plan, std::size_t problem, vn::Index poses) {
+  std::vector<Row> rows;
+  for (std::size_t m = 0; m < plan.methods.size(); ++m) {
+    const auto outcomes = grid.of(problem, m, poses);
+    const vn::VectorX mean = values(outcomes, [](const Outcome& o) { return o.mean; });
+    const auto median_of = [&](const auto& of) { return quantile(values(outcomes, of), 0.5); };
+    rows.push_back({m, mean, quantile(mean, 0.5), quantile(mean, 0.25), quantile(mean, 0.75),
+                    median_of([](const Outcome& o) { return o.p95; }),
+                    median_of([](const Outcome& o) { return o.max; }),
+                    median_of([](const Outcome& o) { return o.seconds; }), 1,
+                    static_cast<vn::Index>(std::count_if(outcomes.begin(), outcomes.end(),
+                                                         [](const Outcome* o) { return o->failed(); }))});
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.median < b.median; });
+  if (plan.seeds.size() < 2 || rows.size() < 2) return rows;
+  vn::VectorX p(static_cast<vn::Index>(rows.size()) - 1);
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    p(static_cast<vn::Index>(k) - 1) = vn::signed_rank_test(rows[k].mean, rows[0].mean).p_value;
+  const vn::VectorX corrected = vn::holm(p);
+  for (std::size_t k = 1; k < rows.size(); ++k) rows[k].p_value = corrected(static_cast<vn::Index>(k) - 1);
+  return rows;
+}
+
+std::string poses_words(vn::Index poses) { return poses == 0 ? "all poses" : fmt::format("{} poses", poses); }
+
+void print_table(const Grid& grid, const Plan& plan, std::size_t problem, vn::Index poses) {
+  const auto before = grid.of(problem, 0, poses);
+  fmt::print("{}, {} to learn from, {} seed{}; without learning {:.4g} mm\n", plan.problems[problem].name,
+             poses_words(poses), plan.seeds.size(), plan.seeds.size() == 1 ? "" : "s",
+             quantile(values(before, [](const Outcome& o) { return o.before; }), 0.5));
+  fmt::print("  {:<34}{:>10}  {:<20}{:>9}{:>9}{:>9}{:>9}\n", "mean error [mm]", "median", "quartiles", "p95", "max",
+             "seconds", "p");
+  bool first = true;
+  for (const Row& row : ranked(grid, plan, problem, poses)) {
+    fmt::print("  {:<34}{:>10.4g}  {:<20}{:>9.4g}{:>9.4g}{:>9.3g}{:>9}{}\n", plan.methods[row.method].text, row.median,
+               fmt::format("[{:.4g}, {:.4g}]", row.lower, row.upper), row.p95, row.max, row.seconds,
+               first || plan.seeds.size() < 2 ? "" : fmt::format("{:.2g}", row.p_value),
+               row.failures > 0 ? fmt::format("  ({} failed: {})", row.failures,
+                                              [&] {
+                                                for (const Outcome* o : grid.of(problem, row.method, poses))
+                                                  if (o->failed()) return o->failure;
+                                                return std::string();
+                                              }())
+                                : "");
+    first = false;
+  }
+  fmt::print("\n");
+}
+
+/// Cases x methods: mean errors of every problem, number of poses and seed.
+vn::MatrixX all_cases(const Grid& grid, const Plan& plan) {
+  const auto seeds = static_cast<vn::Index>(plan.seeds.size()), methods = static_cast<vn::Index>(plan.methods.size());
+  vn::MatrixX out(seeds * static_cast<vn::Index>(plan.problems.size() * plan.poses.size()), methods);
+  for (vn::Index m = 0; m < methods; ++m) {
+    vn::Index at = 0;
+    for (std::size_t p = 0; p < plan.problems.size(); ++p)
+      for (const vn::Index poses : plan.poses) {
+        out.col(m).segment(at, seeds) =
+            values(grid.of(p, static_cast<std::size_t>(m), poses), [](const Outcome& o) { return o.mean; });
+        at += seeds;
+      }
+  }
+  return out;
+}
+
+void print_ranks(const Plan& plan, const vn::MatrixX& cases) {
+  const vn::VectorX ranks = vn::average_ranks(cases);
+  std::vector<vn::Index> order(static_cast<std::size_t>(ranks.size()));
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<vn::Index>(k);
+  std::stable_sort(order.begin(), order.end(), [&](vn::Index a, vn::Index b) { return ranks(a) < ranks(b); });
+  fmt::print(
+      "Average rank over {} cases (1 is best; two differ by Nemenyi's test where their ranks are {:.2f} apart)\n",
+      cases.rows(), vn::critical_difference(cases.cols(), cases.rows()));
+  for (const vn::Index m : order)
+    fmt::print("  {:<34}{:>10.2f}\n", plan.methods[static_cast<std::size_t>(m)].text, ranks(m));
+  fmt::print("\n");
+}
+
+// --- figures ---------------------------------------------------------------------------------------------------------
+
+/// A file name of a problem's name.
+std::string slug(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (plain) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (!plain && !out.empty() && out.back() != '_') out += '_';
+  }
+  return out;
+}
+
+/// The outcome whose mean error is the median of all.
+const Outcome* typical(std::vector<const Outcome*> outcomes) {
+  std::erase_if(outcomes, [](const Outcome* o) { return o->failed(); });
+  if (outcomes.empty()) return nullptr;
+  std::stable_sort(outcomes.begin(), outcomes.end(),
+                   [](const Outcome* a, const Outcome* b) { return a->mean < b->mean; });
+  return outcomes[(outcomes.size() - 1) / 2];
+}
+
+std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::MatrixX& cases,
+                              const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  const auto keep = [&](bool drawn, const std::filesystem::path& path) {
+    if (drawn) files.push_back(path.string());
+  };
+  const auto plot = [&](const std::string& file, const std::string& title, const char* x, const char* y,
+                        const std::vector<Series>& series, const FigureOptions& options) {
+    if (!series.empty()) keep(plot_svg(folder / file, title, x, y, series, options), folder / file);
+  };
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    const std::string& name = plan.problems[p].name;
+    std::vector<Series> learning, distribution, by_evaluations, by_seconds;
+    for (std::size_t m = 0; m < plan.methods.size(); ++m) {
+      const std::string& method = plan.methods[m].text;
+      Series curve{.name = method, .x = {}, .y = {}};
+      for (const vn::Index poses : plan.poses) {
+        const double median = quantile(values(grid.of(p, m, poses), [](const Outcome& o) { return o.mean; }), 0.5);
+        if (poses == 0 || !std::isfinite(median)) continue;
+        curve.x.push_back(static_cast<double>(poses));
+        curve.y.push_back(median);
+      }
+      if (!curve.x.empty() && plan.poses.size() > 1) learning.push_back(curve);
+      const Outcome* one = typical(grid.of(p, m, plan.poses.back()));
+      if (one == nullptr) continue;
+      Series shares{.name = method, .x = one->quantiles, .y = {}};
+      for (std::size_t k = 0; k < shares.x.size(); ++k) shares.y.push_back(5.0 * static_cast<double>(k));
+      if (!shares.x.empty()) distribution.push_back(shares);
+      if (one->convergence.best.empty()) continue;
+      by_evaluations.push_back({.name = method, .x = one->convergence.evaluations, .y = one->convergence.best});
+      by_seconds.push_back({.name = method, .x = one->convergence.seconds, .y = one->convergence.best});
+    }
+    const std::string at = slug(name);
+    plot("learning_" + at + ".svg", name + ": error against the number of poses", "poses to learn from",
+         "mean error [mm], median over seeds", learning, {.log_x = true, .log_y = true});
+    plot("errors_" + at + ".svg", name + ": distribution of the error, " + poses_words(plan.poses.back()),
+         "position error [mm]", "share of the held-out poses [%]", distribution, {.log_x = true});
+    plot("convergence_" + at + ".svg", name + ": convergence, " + poses_words(plan.poses.back()), "evaluations",
+         "best fitness, each learner's own", by_evaluations, {.log_x = true, .log_y = true});
+    plot("seconds_" + at + ".svg", name + ": convergence in time, " + poses_words(plan.poses.back()), "seconds",
+         "best fitness, each learner's own", by_seconds, {.log_x = true, .log_y = true});
+  }
+  if (plan.methods.size() > 1) {
+    Series ranks{.name = "", .x = {}, .y = {}};
+    std::vector<std::string> labels;
+    const vn::VectorX average = vn::average_ranks(cases);
+    for (std::size_t m = 0; m < plan.methods.size(); ++m) {
+      labels.push_back(plan.methods[m].text);
+      ranks.y.push_back(average(static_cast<vn::Index>(m)));
+    }
+    const auto path = folder / "ranks.svg";
+    keep(bars_svg(path,
+                  fmt::format("Average rank over {} cases; a difference of {:.2f} shows something", cases.rows(),
+                              vn::critical_difference(cases.cols(), cases.rows())),
+                  "average rank, 1 is best", labels, {ranks}),
+         path);
+  }
+  return files;
+}
+
+/// All figures but times, which are never the same twice.
+Json json(const Grid& grid, const Plan& plan, const vn::MatrixX& cases) {
+  Json out{{"evaluations", plan.evaluations}, {"seeds", plan.seeds}, {"problems", Json::array()}};
+  for (std::size_t p = 0; p < plan.problems.size(); ++p)
+    for (const vn::Index poses : plan.poses) {
+      Json table{{"problem", plan.problems[p].name}, {"poses", poses}, {"methods", Json::object()}};
+      for (const Row& row : ranked(grid, plan, p, poses))
+        table["methods"][plan.methods[row.method].text] = {
+            {"median_mm", row.median},
+            {"lower_quartile_mm", row.lower},
+            {"upper_quartile_mm", row.upper},
+            {"p95_mm", row.p95},
+            {"max_mm", row.max},
+            {"p", row.p_value},
+            {"failures", row.failures},
+            {"means_mm", std::vector<double>(row.mean.begin(), row.mean.end())}};
+      out["problems"].push_back(table);
+    }
+  if (plan.methods.size() > 1) {
+    const vn::VectorX average = vn::average_ranks(cases);
+    for (std::size_t m = 0; m < plan.methods.size(); ++m)
+      out["average_ranks"][plan.methods[m].text] = average(static_cast<vn::Index>(m));
+    out["critical_difference"] = vn::critical_difference(cases.cols(), cases.rows());
+  }
+  return out;
+}
+
+// --- command line ----------------------------------------------------------------------------------------------------
+
+void list() {
+  const auto print = [](const char* title, const std::vector<Named>& names) {
+    fmt::print("{}\n", title);
+    for (const Named& n : names) fmt::print("  {:<16}{}\n", n.name, n.title);
+  };
+  print("classical methods", classical_names());
+  print("learners: [geometry+][SEARCH:]LEARNER[@MAP]; MAP is raw, sincos or products", learner_names());
+  print("searches, for elm, ridge_elm and var_pro_elm", search_names());
+}
+
+int body(Program& program) {
+  Plan plan;
+  Problem problem;
+  std::string plan_file, results_file, name;
+  std::vector<std::string> methods;
+  bool listed = false;
+  CLI::App& app = program.app();
+  app.add_option("plan", plan_file, "the whole grid as a JSON file, in place of the options up to --nodes")
+      ->type_name("PLAN.json")
+      ->always_capture_default(false);
+  app.add_flag("--list", listed, "all methods, and how they are written");
+  app.add_option("--methods", methods, "what to compare, see --list")->type_name("M,...")->delimiter(',');
+  app.add_option("--robot", problem.robot, "an arm of the catalogue with 6 or 7 joints, or a JSON file")
+      ->type_name("R");
+  app.add_option("--errors", problem.errors, "of a simulated arm; full: joint errors too")->type_name("geometric|full");
+  app.add_option("--region", problem.region, "joints of simulated poses")->type_name("operating|full");
+  app.add_option("--noise-mm", problem.noise_mm, "of simulated positions, per component")->type_name("S");
+  app.add_option("--data", problem.data, "measured poses instead")->type_name("FILE")->always_capture_default(false);
+  app.add_option("--split", problem.split, "which fifth of the measured poses is held out")
+      ->type_name("random|region|time");
+  app.add_option("--poses", plan.poses, "to learn from; 0: all measured ones")->type_name("N,...")->delimiter(',');
+  app.add_option("--seeds", plan.seeds, "of data and fits")->type_name("S,...")->delimiter(',');
+  app.add_option("--evaluations", plan.evaluations, "of every search")->type_name("E");
+  app.add_option("--seconds", plan.seconds, "of every search and iterative fit instead; 0: by evaluations")
+      ->type_name("T");
+  app.add_option("--nodes", plan.nodes, "of hidden layers")->type_name("H");
+  app.add_option("--results", results_file, "file that keeps every cell; a run goes on where another one stopped")
+      ->type_name("FILE")
+      ->default_str("OUT/results.jsonl")
+      ->always_capture_default(false);
+  program.parse("compare_out");
+  if (listed) {
+    list();
+    return 0;
+  }
+  if (!plan_file.empty() && !methods.empty()) throw UsageError("a plan and --methods exclude each other");
+  if (!plan_file.empty()) {
+    plan = Plan::read(plan_file);
+  } else {
+    if (methods.empty()) throw UsageError("--methods or a plan is needed; --list names all methods");
+    for (const std::string& m : methods) plan.methods.push_back(Method::parse(m));
+    problem.name = problem.measured() ? problem.data.stem().string() : problem.robot;
+    plan.problems.push_back(problem);
+    plan.validate();
+  }
+  const std::filesystem::path folder = program.output_folder();
+  Results results(results_file.empty() ? folder / "results.jsonl" : std::filesystem::path(results_file));
+  Grid grid(plan, results);
+  fmt::print("{} cells, {} of them to be computed\n\n", grid.cells(), grid.missing());
+  std::fflush(stdout);
+  grid.compute_missing(results, program.common().threads);
+
+  for (std::size_t p = 0; p < plan.problems.size(); ++p)
+    for (const vn::Index poses : plan.poses) print_table(grid, plan, p, poses);
+  fmt::print(
+      "Methods in the order of their median over seeds. p: Wilcoxon's signed-rank test against the first, over the "
+      "same\n"
+      "seeds, corrected by Holm for the number of methods. p95, max and seconds are medians over seeds.\n\n");
+  const vn::MatrixX cases = all_cases(grid, plan);
+  if (plan.methods.size() > 1) print_ranks(plan, cases);
+  const auto files = draw(grid, plan, cases, folder);
+  if (!files.empty()) fmt::print("Figures: {}\n", fmt::join(files, ", "));
+  if (!program.common().json.empty()) write_json(program.common().json, json(grid, plan, cases));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program("compare",
+                              "Learners and searches on equal terms: the same poses, budget and seeds for all, on\n"
+                              "simulated or measured arms. A run that was stopped goes on where it was.",
+                              argc, argv, body);
+}

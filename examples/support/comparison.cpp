@@ -1,0 +1,367 @@
+#include "comparison.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <span>
+
+#include "calibration_stages.hpp"
+#include "cli.hpp"
+#include "joint_units.hpp"
+#include "learners.hpp"
+#include "robot_choice.hpp"
+#include "vernier/data/split.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace support {
+
+namespace {
+
+namespace vn = vernier;
+using vn::Index;
+
+bool known(const std::vector<Named>& names, const std::string& name) {
+  return std::any_of(names.begin(), names.end(), [&](const Named& n) { return name == n.name; });
+}
+
+std::string all_of(const std::vector<Named>& names) {
+  std::string out;
+  for (const Named& n : names) out += (out.empty() ? "" : ", ") + std::string(n.name);
+  return out;
+}
+
+/// Independent streams of a seed.
+enum Stream : std::uint64_t { train_stream = 1, test_stream, noise_stream, error_stream, subset_stream, fit_stream };
+
+/// Poses to learn from and to judge by, and the arm as designed.
+template <int N>
+struct Samples {
+  vn::DhChain<N> nominal;
+  vn::Dataset<N> train, test;
+  bool framed = false;  ///< the sensor's frame and the tool are unknown
+};
+
+template <int N>
+Samples<N> simulate(const Problem& problem, const vn::NominalArm<N>& arm, Index poses, std::uint64_t seed) {
+  const auto sample = [&](Index n, std::uint64_t stream) -> vn::JointRows<N> {
+    if constexpr (N == 6)
+      if (problem.region == "operating")
+        return vn::abb_irb120_operating_region().sample(arm.chain, n, vn::child_seed(seed, stream));
+    return vn::sample_joints(arm.limits, n, vn::child_seed(seed, stream));
+  };
+  const vn::JointRows<N> train = sample(poses, train_stream), test = sample(1000, test_stream);
+  const vn::DhChain<N> actual = vn::with_geometric_errors(arm.chain, {}, seed);
+  const vn::MeasurementNoise noise{.position = problem.noise_mm * 1e-3, .with_orientations = false};
+  const std::uint64_t noise_seed = vn::child_seed(seed, noise_stream);
+  const vn::MeasurementNoise none{.with_orientations = false};
+  if (problem.errors == "geometric")
+    return {arm.chain, vn::measure(actual, train, noise, noise_seed), vn::measure(actual, test, none)};
+  const vn::WithJointErrors<vn::DhChain<N>> full(actual,
+                                                 vn::draw_joint_errors(actual, {}, vn::child_seed(seed, error_stream)));
+  return {arm.chain, vn::measure(full, train, noise, noise_seed), vn::measure(full, test, none)};
+}
+
+template <int N>
+Samples<N> measured(const Problem& problem, const vn::NominalArm<N>& arm, Index poses, std::uint64_t seed) {
+  const vn::Dataset<N> data = read_poses(problem.data, arm.chain, true);
+  constexpr vn::Face faces[] = {vn::Face::x_high, vn::Face::x_low, vn::Face::z_high, vn::Face::z_low};
+  vn::Split<N> split = problem.split == "random" ? vn::split(data, {.seed = seed})
+                       : problem.split == "time" ? vn::split_time(data)
+                                                 : vn::split_region(data, {.face = faces[(seed + 3) % 4]});
+  if (poses > split.train.size())
+    throw UsageError(vn::message(problem.data.string(), ": ", poses, " poses are asked for, there are ",
+                                 split.train.size(), " to learn from"));
+  if (poses > 0) {
+    const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(split.train.size());
+    split.train = split.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
+  }
+  return {arm.chain, split.train, split.test, true};
+}
+
+/// A cell of an arm with N joints.
+template <int N>
+class Computation {
+ public:
+  Computation(const Plan& plan, const Cell& cell, const vn::NominalArm<N>& arm, vn::ObserverRef observer)
+      : plan_(plan),
+        method_(plan.methods[cell.method]),
+        seed_(cell.seed),
+        observer_(observer),
+        samples_(plan.problems[cell.problem].measured()
+                     ? measured(plan.problems[cell.problem], arm, cell.poses, cell.seed)
+                     : simulate(plan.problems[cell.problem], arm, cell.poses, cell.seed)) {}
+
+  Outcome run() const {
+    Outcome out;
+    // the arm as designed, brought into the sensor's frame: the same start for all
+    const auto registered = identify(false);
+    out.before = 1e3 * vn::position_errors(registered.model, samples_.test).mean();
+    const auto start = std::chrono::steady_clock::now();
+    const vn::VectorX errors = 1e3 * errors_after(registered, out.convergence);
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!errors.allFinite()) {
+      out.failure = "predictions are not finite";
+      return out;
+    }
+    const auto statistics = vn::ErrorStatistics::of(errors);
+    out.mean = statistics.mean;
+    out.median = statistics.median;
+    out.rms = statistics.rms;
+    out.p95 = statistics.p95;
+    out.max = statistics.max;
+    std::vector<double> sorted(errors.begin(), errors.end());
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 0; k <= 20; ++k) out.quantiles.push_back(sorted[k * (sorted.size() - 1) / 20]);
+    return out;
+  }
+
+ private:
+  using Identified = vn::Identified<vn::DhChain<N>>;
+
+  Identified identify(bool geometry) const {
+    vn::IdentifyOptions options;
+    options.frames = samples_.framed ? vn::Frames::base_and_tool : vn::Frames::none;
+    options.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared;
+    options.geometry = geometry;
+    return identify_arm<N>(samples_.nominal, samples_.train, options);
+  }
+
+  vn::VectorX errors_after(const Identified& registered, Convergence& record) const {
+    if (method_.learner == "none") return vn::position_errors(registered.model, samples_.test);
+    if (method_.learner == "geometry") return vn::position_errors(identify(true).model, samples_.test);
+    if (method_.learner == "jointwise") {
+      vn::ErrorModelOptions options;
+      options.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared;
+      return vn::position_errors(
+          fit_errors<N>(identify(true), std::span(&samples_.train, 1), {}, options, {}).models.front(), samples_.test);
+    }
+    if (!method_.on_geometry) return errors_after_learning(registered, record);
+    return errors_after_learning(identify(true), record);
+  }
+
+  vn::VectorX errors_after_learning(const Identified& base, Convergence& record) const {
+    const vn::PointRows left = samples_.train.positions() - vn::positions(base.model, samples_.train.joints());
+    const vn::FitOptions options{.seed = vn::child_seed(seed_, fit_stream), .observer = observer_};
+    const LearnedErrors<N> learned = learn<N>(method_, plan_, samples_.train.joints(), left, options, record);
+    const vn::PointRows after =
+        samples_.test.positions() - vn::positions(base.model, samples_.test.joints()) - learned(samples_.test.joints());
+    return after.rowwise().norm();
+  }
+
+  const Plan& plan_;
+  const Method& method_;
+  std::uint64_t seed_;
+  vn::ObserverRef observer_;
+  Samples<N> samples_;
+};
+
+/// What decides the outcome of a cell.
+std::string key(const Plan& plan, const Cell& cell) {
+  const Problem& p = plan.problems[cell.problem];
+  const Method& m = plan.methods[cell.method];
+  Json out{{"robot", p.robot}};
+  if (p.measured()) {
+    out["data"] = p.data.filename().string();
+    out["split"] = p.split;
+  } else {
+    out["errors"] = p.errors;
+    out["region"] = p.region;
+    out["noise_mm"] = p.noise_mm;
+  }
+  out["method"] = m.text;
+  out["poses"] = cell.poses;
+  out["seed"] = cell.seed;
+  if (!m.search.empty() || plan.seconds > 0)
+    plan.seconds > 0 ? out["seconds_allowed"] = plan.seconds : out["evaluations"] = plan.evaluations;
+  out["nodes"] = plan.nodes;
+  return out.dump();
+}
+
+constexpr const char* numbers[] = {"mean", "median", "rms", "p95", "max", "before", "seconds"};
+
+std::vector<double*> fields(Outcome& o) { return {&o.mean, &o.median, &o.rms, &o.p95, &o.max, &o.before, &o.seconds}; }
+
+}  // namespace
+
+const std::vector<Named>& classical_names() {
+  static const std::vector<Named> names{
+      {"none", "the arm as designed, in the sensor's frame"},
+      {"geometry", "Denavit-Hartenberg parameters identified"},
+      {"jointwise", "geometry, compliance and functions of single joints, solved together"},
+  };
+  return names;
+}
+
+Method Method::parse(const std::string& text) {
+  Method out{.text = text};
+  std::string rest = text;
+  if (rest.starts_with("geometry+")) {
+    out.on_geometry = true;
+    rest = rest.substr(9);
+  }
+  if (const auto at = rest.find('@'); at != std::string::npos) {
+    out.map = rest.substr(at + 1);
+    rest = rest.substr(0, at);
+    if (out.map != "raw" && out.map != "sincos" && out.map != "products")
+      throw UsageError("'" + text + "': no input map is called '" + out.map + "'; there are raw, sincos, products");
+  }
+  if (const auto colon = rest.find(':'); colon != std::string::npos) {
+    out.search = rest.substr(0, colon);
+    rest = rest.substr(colon + 1);
+    if (!known(search_names(), out.search))
+      throw UsageError("'" + text + "': no search is called '" + out.search + "'; there are " + all_of(search_names()));
+  }
+  out.learner = rest;
+  const bool classical = known(classical_names(), rest);
+  if (!classical && !known(learner_names(), rest))
+    throw UsageError("'" + text + "': no learner is called '" + rest + "'; there are " + all_of(classical_names()) +
+                     " and " + all_of(learner_names()));
+  if (classical && (out.on_geometry || !out.map.empty() || !out.search.empty()))
+    throw UsageError("'" + text + "': " + rest + " stands alone");
+  constexpr const char* tunable[] = {"elm", "ridge_elm", "var_pro_elm"};
+  if (!out.search.empty() && std::find(std::begin(tunable), std::end(tunable), rest) == std::end(tunable))
+    throw UsageError("'" + text + "': only elm, ridge_elm and var_pro_elm can be searched for");
+  return out;
+}
+
+Plan Plan::read(const std::filesystem::path& path) {
+  const Json document = read_json(path);
+  Plan plan;
+  const auto fail = [&](const std::string& what) { throw UsageError(path.string() + ": " + what); };
+  const auto only = [&](const Json& object, const std::string& where, std::initializer_list<const char*> names) {
+    if (!object.is_object()) fail(where + " must be an object");
+    for (const auto& [name, value] : object.items())
+      if (std::find(names.begin(), names.end(), name) == names.end()) fail(where + " has no member '" + name + "'");
+  };
+  try {
+    only(document, "the plan", {"problems", "methods", "poses", "seeds", "evaluations", "seconds", "nodes"});
+    for (const Json& p : document.at("problems")) {
+      only(p, "a problem", {"name", "robot", "errors", "region", "noise_mm", "data", "split"});
+      Problem problem;
+      problem.robot = p.value("robot", problem.robot);
+      problem.errors = p.value("errors", problem.errors);
+      problem.region = p.value("region", problem.region);
+      problem.noise_mm = p.value("noise_mm", 0.0);
+      if (p.contains("data")) problem.data = path.parent_path() / p.at("data").get<std::string>();
+      problem.split = p.value("split", problem.split);
+      problem.name = p.value("name", problem.robot);
+      plan.problems.push_back(problem);
+    }
+    for (const Json& m : document.at("methods")) plan.methods.push_back(Method::parse(m.get<std::string>()));
+    if (document.contains("poses")) plan.poses = document.at("poses").get<std::vector<Index>>();
+    if (document.contains("seeds")) plan.seeds = document.at("seeds").get<std::vector<std::uint64_t>>();
+    plan.evaluations = document.value("evaluations", plan.evaluations);
+    plan.seconds = document.value("seconds", plan.seconds);
+    plan.nodes = document.value("nodes", plan.nodes);
+  } catch (const Json::exception& error) {
+    fail(std::string("a member is missing or of another kind (") + error.what() + ")");
+  }
+  plan.validate();
+  return plan;
+}
+
+void Plan::validate() const {
+  const auto check = [](bool holds, const auto&... parts) {
+    if (!holds) throw UsageError(vn::message(parts...));
+  };
+  check(!problems.empty() && !methods.empty() && !poses.empty() && !seeds.empty(),
+        "a plan needs problems, methods, numbers of poses and seeds");
+  for (const Problem& p : problems) {
+    check(p.errors == "geometric" || p.errors == "full", p.name, ": errors are '", p.errors,
+          "', must be geometric or full");
+    check(p.region == "operating" || p.region == "full", p.name, ": the region is '", p.region,
+          "', must be operating or full");
+    check(p.split == "random" || p.split == "region" || p.split == "time", p.name, ": the split is '", p.split,
+          "', must be random, region or time");
+    check(p.noise_mm >= 0 && p.noise_mm <= 100, p.name, ": noise_mm is ", p.noise_mm, ", must lie in 0..100");
+    check(p.measured() || p.region == "full" || p.robot == "abb_irb120", p.name,
+          ": only the abb_irb120 has an operating region; say \"region\": \"full\"");
+    const int dof = choose_robot(p.robot).dof();
+#define VERNIER_IS(N) || dof == N
+    check(false VERNIER_FOR_COMPARED_DOF(VERNIER_IS), p.robot, " has ", dof, " joints; comparisons serve 6 and 7");
+#undef VERNIER_IS
+  }
+  for (const Index n : poses) check(n >= 0 && n <= 1000000, "poses: ", n, " is none (0 stands for all measured ones)");
+  for (const Problem& p : problems)
+    check(p.measured() || std::find(poses.begin(), poses.end(), 0) == poses.end(), p.name,
+          ": simulated poses need a number");
+  check(evaluations >= 100 && evaluations <= 100000000, "evaluations is ", evaluations, ", must be 100 or more");
+  check(seconds >= 0 && seconds < 1e6, "seconds is ", seconds, ", must be 0 or more");
+  check(nodes >= 1 && nodes <= 5000, "nodes is ", nodes, ", must lie in 1..5000");
+}
+
+Outcome compute(const Plan& plan, const Cell& cell, vn::ObserverRef observer) {
+  const vn::RobotDescription robot = choose_robot(plan.problems[cell.problem].robot);
+  const auto compute_for = [&]<int N>(std::integral_constant<int, N>) {
+    return Computation<N>(plan, cell, robot.arm<N>(), observer).run();
+  };
+#define VERNIER_CASE(N) \
+  if (robot.dof() == N) return compute_for(std::integral_constant<int, N>{});
+  VERNIER_FOR_COMPARED_DOF(VERNIER_CASE)
+#undef VERNIER_CASE
+  throw std::logic_error("a plan was not validated");
+}
+
+Results::Results(const std::filesystem::path& path) : path_(path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
+    const std::string text = vn::read_file(path);
+    std::size_t begin = 0, line = 1;
+    for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1, ++line) {
+      const Json entry = Json::parse(text.substr(begin, end - begin), nullptr, false);
+      if (!entry.is_object() || !entry.contains("cell") || !entry.contains("outcome"))
+        throw std::invalid_argument(vn::message(path.string(), ", line ", line, ": no result of a comparison"));
+      Outcome outcome;
+      const Json& of = entry["outcome"];
+      outcome.failure = of.value("failure", "");
+      const auto all = fields(outcome);
+      for (std::size_t k = 0; k < all.size(); ++k) *all[k] = of.value(numbers[k], 0.0);
+      if (of.contains("quantiles")) outcome.quantiles = of["quantiles"].get<std::vector<double>>();
+      if (of.contains("convergence")) {
+        const auto& c = of["convergence"];
+        outcome.convergence = {c["evaluations"].get<std::vector<double>>(), c["seconds"].get<std::vector<double>>(),
+                               c["best"].get<std::vector<double>>()};
+      }
+      known_.emplace_back(entry["cell"].dump(), outcome);
+    }
+    if (begin < text.size()) vn::write_file(path, std::string_view(text).substr(0, begin));  // cut off in its middle
+    std::sort(known_.begin(), known_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  }
+  require_writable(path);
+}
+
+std::optional<Outcome> Results::find(const Plan& plan, const Cell& cell) const {
+  const std::string wanted = key(plan, cell);
+  const auto at = std::lower_bound(known_.begin(), known_.end(), wanted,
+                                   [](const auto& entry, const std::string& k) { return entry.first < k; });
+  if (at == known_.end() || at->first != wanted) return {};
+  return at->second;
+}
+
+void Results::add(const Plan& plan, const Cell& cell, const Outcome& outcome) {
+  const std::string of = key(plan, cell);
+  Json entry{{"cell", Json::parse(of)}, {"outcome", Json::object()}};
+  Json& to = entry["outcome"];
+  Outcome copy = outcome;
+  const auto all = fields(copy);
+  for (std::size_t k = 0; k < all.size(); ++k) to[numbers[k]] = *all[k];
+  if (outcome.failed()) to["failure"] = outcome.failure;
+  if (!outcome.quantiles.empty()) to["quantiles"] = outcome.quantiles;
+  if (!outcome.convergence.best.empty())
+    to["convergence"] = {{"evaluations", outcome.convergence.evaluations},
+                         {"seconds", outcome.convergence.seconds},
+                         {"best", outcome.convergence.best}};
+  std::ofstream file(path_, std::ios::app | std::ios::binary);
+  file << entry.dump() << '\n';
+  file.flush();
+  if (!file) throw std::runtime_error(path_.string() + ": a result could not be written");
+  known_.insert(std::lower_bound(known_.begin(), known_.end(), of,
+                                 [](const auto& e, const std::string& k) { return e.first < k; }),
+                {of, outcome});
+}
+
+}  // namespace support

@@ -1,0 +1,119 @@
+#pragma once
+
+/// @file
+/// A comparison of methods: problems, methods, numbers of poses and seeds span a grid, whose cells are computed one by
+/// one and kept in a file.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "json_file.hpp"
+#include "vernier/core/fit_options.hpp"
+
+namespace support {
+
+/// An arm, and where its poses come from.
+struct Problem {
+  std::string name;
+  std::string robot = "abb_irb120";  ///< of the catalogue, or a robot file
+  // simulated
+  std::string errors = "geometric";  ///< geometric; full: joint errors too
+  std::string region = "operating";  ///< operating (of the IRB 120); full: the joint limits
+  double noise_mm = 0;               ///< of the measured positions, per component
+  // measured
+  std::filesystem::path data{};  ///< measured poses; empty: simulated
+  std::string split = "random";  ///< random, region, time: what is held out, a fifth
+
+  bool measured() const { return !data.empty(); }
+};
+
+/// `[geometry+][SEARCH:]LEARNER[@MAP]`, or one of the classical ones: none, geometry, jointwise.
+struct Method {
+  std::string text;                        ///< as it was written
+  bool on_geometry = false;                ///< learns what an identified geometry leaves
+  std::string search{}, learner{}, map{};  ///< empty where there is none, or the learner's own
+
+  /// @throws UsageError naming the part that is not known
+  static Method parse(const std::string& text);
+  bool operator==(const Method&) const = default;
+};
+
+/// What is to be computed.
+struct Plan {
+  std::vector<Problem> problems;
+  std::vector<Method> methods;
+  std::vector<vernier::Index> poses{100, 1000};  ///< to learn from
+  std::vector<std::uint64_t> seeds{1, 2, 3, 4, 5};
+  vernier::Index evaluations = 2000;  ///< of every search
+  double seconds = 0;                 ///< of every fit that can be longer or shorter; 0: by evaluations
+  int nodes = 65;                     ///< of hidden layers
+
+  /// From a JSON file.
+  /// @throws UsageError naming what is wrong
+  static Plan read(const std::filesystem::path& path);
+  /// @throws UsageError where something is missing or not known
+  void validate() const;
+};
+
+/// One point of the grid.
+struct Cell {
+  std::size_t problem = 0, method = 0;
+  vernier::Index poses = 0;
+  std::uint64_t seed = 0;
+};
+
+/// Best fitness of a search after so many evaluations and seconds.
+struct Convergence {
+  std::vector<double> evaluations, seconds, best;
+};
+
+/// What a cell gave.
+struct Outcome {
+  double mean = 0, median = 0, rms = 0, p95 = 0, max = 0;  ///< of held-out position errors [mm]
+  std::vector<double> quantiles{};                         ///< of the same, 0 to 100 % in steps of 5 %
+  double before = 0;                                       ///< mean without learning [mm]
+  double seconds = 0;                                      ///< of the fit
+  Convergence convergence{};                               ///< of the search, where there is one
+  std::string failure{};                                   ///< why there are no errors
+
+  bool failed() const { return !failure.empty(); }
+};
+
+/// A method by its name in `--list`.
+struct Named {
+  const char* name;
+  const char* title;
+};
+
+/// All learners.
+const std::vector<Named>& learner_names();
+/// All searches.
+const std::vector<Named>& search_names();
+/// The classical methods, which are no learners.
+const std::vector<Named>& classical_names();
+
+/// Computes a cell: the same bits for the same plan, times apart.
+Outcome compute(const Plan& plan, const Cell& cell, vernier::ObserverRef observer = {});
+
+/// The outcomes so far, one line of JSON each in a file that only grows; a cell is known by all that decides its
+/// outcome, so plans may share a file.
+class Results {
+ public:
+  /// Opens the file, or begins it. A last line that was cut off is dropped.
+  /// @throws std::runtime_error where it cannot be written, or a line in it is none of ours
+  explicit Results(const std::filesystem::path& path);
+
+  std::optional<Outcome> find(const Plan& plan, const Cell& cell) const;
+  /// Appends at once.
+  void add(const Plan& plan, const Cell& cell, const Outcome& outcome);
+
+ private:
+  std::filesystem::path path_;
+  std::vector<std::pair<std::string, Outcome>> known_;  // sorted by key
+};
+
+}  // namespace support

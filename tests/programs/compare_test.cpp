@@ -1,0 +1,138 @@
+// The comparison program: the same figures twice, goes on where it stopped, refuses what it does not know.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "run_command.hpp"
+#include "temporary_folder.hpp"
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using vernier::read_file;
+using vernier::testing_support::CommandResult;
+using vernier::testing_support::TemporaryFolder;
+
+CommandResult run(const TemporaryFolder& folder, const std::string& arguments) {
+  const std::string program = std::string(VERNIER_EXAMPLES_DIR) + "/compare";
+  return vernier::testing_support::run_command("cd '" + folder.path().string() + "'; '" + program + "' " + arguments,
+                                               folder.path());
+}
+
+const std::string grid =
+    "--methods none,geometry,elm,ridge_elm,pso:elm,geometry+ga:ridge_elm --poses 40,80 --seeds 1,2,3 --evaluations 200 "
+    "--nodes 15 --noise-mm 0.03 --errors full ";
+
+/// The grid that several tests look at, with one thread.
+struct First {
+  TemporaryFolder folder{"compare"};
+  CommandResult command = run(folder, grid + "--threads 1 --json result.json");
+  Json json = command.exit_code == 0 ? Json::parse(read_file(folder / "result.json")) : Json();
+  std::string results = command.exit_code == 0 ? read_file(folder / "compare_out/results.jsonl") : "";
+};
+const First& first() {
+  static const First once;
+  return once;
+}
+
+/// Mean errors of a method by seed.
+std::vector<double> means(const Json& json, std::size_t table, const std::string& method) {
+  return json.at("problems").at(table).at("methods").at(method).at("means_mm").get<std::vector<double>>();
+}
+
+TEST(Compare, TablesHaveEveryCell) {
+  ASSERT_EQ(first().command.exit_code, 0) << first().command.errors;
+  ASSERT_EQ(first().json.at("problems").size(), 2u);
+  for (std::size_t table = 0; table < 2; ++table) {
+    ASSERT_EQ(first().json.at("problems")[table].at("methods").size(), 6u);
+    const auto before = means(first().json, table, "none");
+    for (const auto& [name, method] : first().json.at("problems")[table].at("methods").items()) {
+      const auto errors = means(first().json, table, name);
+      ASSERT_EQ(errors.size(), 3u);
+      auto sorted = errors;
+      std::sort(sorted.begin(), sorted.end());
+      EXPECT_EQ(method.at("median_mm"), sorted[1]);
+      EXPECT_EQ(method.at("failures"), 0);
+      for (std::size_t s = 0; s < 3; ++s)
+        if (name != "none") EXPECT_LT(errors[s], before[s]) << name;
+    }
+    // learning on top of an identified geometry beats both
+    EXPECT_LT(means(first().json, table, "geometry")[0], 0.5 * before[0]);
+  }
+  EXPECT_EQ(std::count(first().results.begin(), first().results.end(), '\n'), 36);
+  EXPECT_NE(first().command.output.find("36 cells, 36 of them to be computed"), std::string::npos);
+}
+
+TEST(Compare, SameBitsTwiceAndForAnyNumberOfThreads) {
+  const TemporaryFolder folder("compare");
+  const CommandResult again = run(folder, grid + "--threads 3 --json result.json");
+  ASSERT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(read_file(folder / "result.json"), first().json.dump(2) + "\n");
+}
+
+// Killed in the middle of a line, the file is mended and what it has is not computed again.
+TEST(Compare, GoesOnWhereItStopped) {
+  const TemporaryFolder folder("compare");
+  std::size_t cut = 0;
+  for (int lines = 0; lines < 20; ++lines) cut = first().results.find('\n', cut) + 1;
+  std::ofstream(folder / "part.jsonl", std::ios::binary) << first().results.substr(0, cut + 30);
+  const CommandResult rest = run(folder, grid + "--results part.jsonl --json result.json");
+  ASSERT_EQ(rest.exit_code, 0) << rest.errors;
+  EXPECT_NE(rest.output.find("36 cells, 16 of them to be computed"), std::string::npos) << rest.output;
+  EXPECT_EQ(read_file(folder / "result.json"), first().json.dump(2) + "\n");
+  EXPECT_EQ(read_file(folder / "part.jsonl").substr(0, cut), first().results.substr(0, cut));
+  // all there: nothing to do; another budget: the searches alone
+  EXPECT_NE(run(folder, grid + "--results part.jsonl").output.find(" 0 of them"), std::string::npos);
+  std::string other = grid;
+  other.replace(other.find("--evaluations 200"), 17, "--evaluations 150");
+  EXPECT_NE(run(folder, other + "--results part.jsonl").output.find(" 12 of them"), std::string::npos);
+}
+
+TEST(Compare, APlanSaysTheSameAsOptions) {
+  const TemporaryFolder folder("compare");
+  std::ofstream(folder / "plan.json") << R"({
+    "problems": [{"name": "abb_irb120", "errors": "full", "noise_mm": 0.03}],
+    "methods": ["none", "geometry", "elm", "ridge_elm", "pso:elm", "geometry+ga:ridge_elm"],
+    "poses": [40, 80], "seeds": [1, 2, 3], "evaluations": 200, "nodes": 15})";
+  std::ofstream(folder / "results.jsonl", std::ios::binary) << first().results;
+  const CommandResult result = run(folder, "plan.json --results results.jsonl --json result.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find(" 0 of them"), std::string::npos);
+  EXPECT_EQ(read_file(folder / "result.json"), first().json.dump(2) + "\n");
+}
+
+TEST(Compare, RefusesWhatItDoesNotKnow) {
+  const TemporaryFolder folder("compare");
+  std::ofstream(folder / "plan.json") << R"({"problems": [{"robot": "abb_irb120"}], "methods": ["elm"], "seed": [1]})";
+  std::ofstream(folder / "none.jsonl") << "not a result\n";
+  const auto refused = [&](const std::string& arguments, int code, const std::string& words) {
+    const CommandResult result = run(folder, arguments);
+    EXPECT_EQ(result.exit_code, code) << arguments;
+    EXPECT_TRUE(result.one_line_of_errors()) << arguments << '\n' << result.errors;
+    EXPECT_NE(result.errors.find(words), std::string::npos) << arguments << '\n' << result.errors;
+  };
+  refused("", 2, "--methods or a plan is needed");
+  refused("--methods elmo", 2, "no learner is called 'elmo'");
+  refused("--methods psso:elm", 2, "no search is called 'psso'");
+  refused("--methods elm@cosine", 2, "no input map is called 'cosine'");
+  refused("--methods pso:geometry", 2, "geometry stands alone");
+  refused("--methods elm --robot ur99", 2, "no robot is called 'ur99'");
+  refused("--methods elm --robot ur10", 2, "only the abb_irb120 has an operating region");
+  refused("--methods elm --poses 0", 2, "simulated poses need a number");
+  refused("--methods elm --evaluations 10", 2, "evaluations is 10");
+  refused("plan.json", 2, "the plan has no member 'seed'");
+  refused("missing.json", 1, "missing.json");
+  refused("--methods elm --results none.jsonl", 1, "none.jsonl, line 1: no result of a comparison");
+}
+
+TEST(Compare, ListsItsMethods) {
+  const TemporaryFolder folder("compare");
+  const CommandResult result = run(folder, "--list");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* name : {"jointwise", "ridge_elm", "pso"})
+    EXPECT_NE(result.output.find(name), std::string::npos) << name;
+}
+
+}  // namespace

@@ -50,6 +50,7 @@ struct KernelSystemOf {
   double precision;  ///< 1'A^-1 1
   VectorX mean;      ///< one an output
   MatrixX alpha;     ///< n x outputs
+  VectorX square;    ///< (T - mean)'A^-1 (T - mean), one an output
   bool solved;       ///< false where A is not positive definite; then nothing else holds
 
   /// @param a       K, its lower triangle
@@ -62,13 +63,17 @@ struct KernelSystemOf {
     solved = llt.info() == Eigen::Success;
     if (!solved) return;
     const Index n = factor.rows();
-    MatrixX right(n, 1 + targets.cols());
-    right << VectorX::Ones(n), targets;
+    const Index m = targets.cols();
+    const Eigen::RowVectorXd centre = targets.colwise().mean();  // first, so that little cancels later
+    MatrixX right(n, 1 + m);
+    right << VectorX::Ones(n), targets.rowwise() - centre;
     const MatrixX solution = llt.solve(right);
     ones = solution.col(0);
     precision = ones.sum();
-    mean = solution.rightCols(targets.cols()).colwise().sum().transpose() / precision;
-    alpha = solution.rightCols(targets.cols()) - ones * mean.transpose();
+    mean = solution.rightCols(m).colwise().sum().transpose() / precision;
+    alpha = solution.rightCols(m) - ones * mean.transpose();
+    square = right.rightCols(m).cwiseProduct(alpha).colwise().sum().transpose();
+    mean += centre.transpose();
   }
 
   /// log |A|

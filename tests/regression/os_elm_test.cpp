@@ -134,6 +134,17 @@ TEST(OsElm, UpdatesFromAnyPrefixEqualTheBatch) {
   }
 }
 
+TEST(OsElm, OneInputAndOneOutput) {
+  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = VectorX::LinSpaced(50, -1, 1), y = x.array().cube();
+  const OsElm recipe{.hidden_nodes = 5, .lambda = 1e-3};
+  const auto all = recipe.fit(x, y);
+  auto single = recipe.fit(x.topRows(10).eval(), y.topRows(10).eval()), block = single;
+  for (Index i = 10; i < 50; ++i) single.update(Eigen::Matrix<double, 1, 1>(x(i)), Eigen::Matrix<double, 1, 1>(y(i)));
+  block.update(x.bottomRows(40).eval(), y.bottomRows(40).eval());
+  EXPECT_LT((single.predict(x) - all.predict(x)).norm(), 1e-10);
+  EXPECT_LT((block.predict(x) - all.predict(x)).norm(), 1e-10);
+}
+
 TEST(OsElm, AnIntegerWeightCountsAsSoManySamples) {
   const Inputs x = inputs(100, 6);
   const Targets y = targets(x, 0.01);

@@ -3,8 +3,8 @@
 /// @file
 /// Gaussian process regression: a prediction and how far it may be off.
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>

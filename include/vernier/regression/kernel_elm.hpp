@@ -4,9 +4,11 @@
 /// The kernel extreme learning machine: a hidden layer of infinitely many nodes, known by its kernel alone.
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/rng.hpp"

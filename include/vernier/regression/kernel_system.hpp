@@ -4,8 +4,7 @@
 /// The linear system of kernel methods: (K + N) alpha = T - mean, with the mean that fits best beside it.
 
 #include <Eigen/Cholesky>
-#include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "vernier/regression/kernel_predictor.hpp"
 

@@ -3,7 +3,7 @@
 /// @file
 /// How likely hyper-parameters of a Gaussian process make its targets, with the exact gradient.
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

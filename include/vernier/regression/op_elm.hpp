@@ -4,7 +4,9 @@
 /// The optimally pruned extreme learning machine: as many of its nodes as leave-one-out asks for.
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 

@@ -86,15 +86,21 @@ class OsElmPredictor {
   template <class Derived>
     requires detail::SampleOf<Derived, Inputs> Output standard_deviation(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
-    constexpr Index tile = 32;
+    constexpr Index tile = 128;
     const Input at = x;
+    double features[2 * Inputs];
+    for (int j = 0; j < Inputs; ++j) {
+      const bool raw = layer_.input_map == InputMap::raw;
+      features[j] = raw ? at(j) : std::sin(at(j));
+      features[Inputs + j] = raw ? 0 : std::cos(at(j));
+    }
     const Index size = root_.rows();
     double square = 0;
     for (Index first = 0; first < size; first += tile) {
       const Index count = std::min(tile, size - first);
       double product[tile] = {};
       for (Index k = 0; k < size; ++k) {
-        const double h = node(k, at);
+        const double h = node(k, features);
         for (Index i = 0; i < count; ++i) product[i] += root_(first + i, k) * h;
       }
       for (const double part : product) square += part * part;
@@ -153,23 +159,15 @@ class OsElmPredictor {
     return out;
   }
 
-  /// One of them.
-  double node(Index k, const Input& x) const noexcept {
+  /// One of them, of features.
+  double node(Index k, const double* features) const noexcept {
     if (k == layer_.nodes) return 1;
     const Index f = layer_.features(Inputs);
     const double* w = theta_.data() + k * (f + 1);
     double z = 0, square = 0;
-    const auto see = [&](Index j, double value) {
-      z += w[j] * value;
-      square += (value - w[j]) * (value - w[j]);
-    };
-    for (int j = 0; j < Inputs; ++j) {
-      if (layer_.input_map == InputMap::raw) {
-        see(j, x(j));
-      } else {
-        see(j, std::sin(x(j)));
-        see(Inputs + j, std::cos(x(j)));
-      }
+    for (Index j = 0; j < f; ++j) {
+      z += w[j] * features[j];
+      square += (features[j] - w[j]) * (features[j] - w[j]);
     }
     z += w[f];
     switch (layer_.activation) {

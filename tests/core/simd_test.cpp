@@ -1,4 +1,5 @@
-// Sines and cosines of vectors against the standard library's, for every instruction set that the machine has.
+// Sines, cosines and exponentials of vectors against the standard library's, for every instruction set that the machine
+// has.
 
 #include "vernier/core/simd.hpp"
 
@@ -153,6 +154,55 @@ TEST(VectorSinCos, ALaneIsNotDisturbedByItsNeighbours) {
       }
     }
   }
+}
+
+/// By each instruction set in turn.
+std::vector<std::vector<double>> exponentials_by_all(std::vector<double> x) {
+  while (x.size() % 8 != 0) x.push_back(0);
+  std::vector<std::vector<double>> all;
+  for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (set > widest_instruction_set()) break;
+    std::vector<double> out(x.size());
+    detail::run_widest(
+        [&]<int W>() VERNIER_INLINED {
+          typename detail::Simd<W>::Double v;
+          for (std::size_t i = 0; i < x.size(); i += W) {
+            detail::load<W>(v, x.data() + i);
+            detail::exponential<W>(v);
+            detail::store<W>(out.data() + i, v);
+          }
+        },
+        set);
+    all.push_back(out);
+  }
+  return all;
+}
+
+TEST(VectorExponential, EqualsTheLibraryFunctionOverManyRanges) {
+  Rng rng(4);
+  for (const double range : {1e-300, 1e-12, 1e-4, 0.35, 1.0, 30.0, 708.0}) {
+    std::vector<double> x(48000);
+    for (double& value : x) value = rng.uniform(-range, range);
+    for (const auto& found : exponentials_by_all(x))
+      for (std::size_t i = 0; i < x.size(); ++i)
+        ASSERT_NEAR(found[i], std::exp(x[i]), 4.5e-16 * std::exp(x[i])) << x[i];
+  }
+}
+
+TEST(VectorExponential, IsExactAtZeroAndHeldBeyondItsRange) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> x{0,     -0.0, 708,  -708, std::nextafter(708, 709), -1e300, infinity, -infinity,
+                              1e300, -709, -745, 709};
+  for (const auto& found : exponentials_by_all(x)) {
+    EXPECT_EQ(found[0], 1);
+    EXPECT_EQ(found[1], 1);
+    for (std::size_t i = 2; i < x.size(); ++i) {
+      const double expected = std::exp(x[i] > 0 ? 708 : -708);
+      EXPECT_NEAR(found[i], expected, 4.5e-16 * expected) << x[i];
+    }
+  }
+  for (const auto& found : exponentials_by_all({std::numeric_limits<double>::quiet_NaN(), 1}))
+    EXPECT_TRUE(std::isnan(found[0]) && std::abs(found[1] - std::exp(1)) < 1e-15);
 }
 
 }  // namespace

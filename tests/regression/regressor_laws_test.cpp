@@ -17,6 +17,7 @@ namespace {
 
 using testing::regressor_violations;
 using testing::RegressorLaws;
+using testing::SampleWeights;
 using vernier_test::mentions;
 using vernier_test::no_violations;
 
@@ -72,7 +73,7 @@ struct LinearMap {
   Eigen::Matrix<double, Outputs, Inputs> a;
   Eigen::Matrix<double, Outputs, 1> b;
   bool calls_count = false, wrong_rows = false;
-  double slope_error = 0;
+  double slope_error = 0, deviation = 1e-3;
   mutable int calls = 0;
 
   Eigen::Matrix<double, Outputs, 1> predict(const Eigen::Matrix<double, Inputs, 1>& x) const noexcept {
@@ -92,6 +93,9 @@ struct LinearMap {
   Eigen::Matrix<double, Outputs, Inputs> derivative(const Eigen::Matrix<double, Inputs, 1>&) const noexcept {
     return a * (1 + slope_error);
   }
+  Eigen::Matrix<double, Outputs, 1> standard_deviation(const Eigen::Matrix<double, Inputs, 1>&) const noexcept {
+    return Eigen::Matrix<double, Outputs, 1>::Constant(calls_count ? deviation * ++calls : deviation);
+  }
 };
 
 enum class Fault {
@@ -105,6 +109,14 @@ enum class Fault {
   throws_something_else,
   remembers_fits,
   asks_executor,
+  ignores_weights,
+  ignores_usable_weights,
+  takes_any_weights,
+  scales_with_weights,
+  changes_weights,
+  squares_weights,
+  negative_deviation,
+  infinite_deviation,
 };
 
 struct Linear {
@@ -117,16 +129,29 @@ struct Linear {
                                  const Eigen::Matrix<double, Eigen::Dynamic, Outputs>& y,
                                  const FitOptions& options = {}) const {
     if (fault == Fault::throws_something_else && x.rows() != y.rows()) throw std::runtime_error("rows");
-    if (fault != Fault::ignores_rows) detail::require_samples("Linear", x, y);
+    const bool any_weights = fault == Fault::takes_any_weights || fault == Fault::ignores_weights;
+    if (fault != Fault::ignores_rows) {
+      any_weights ? detail::require_samples("Linear", x, y) : detail::require_samples("Linear", x, y, options);
+    }
     const Index n = std::min(x.rows(), y.rows());
     MatrixX h(n, Inputs + 1);
     h << x.topRows(n), VectorX::Ones(n);
-    const MatrixX solution = Eigen::HouseholderQR<MatrixX>(h).solve(MatrixX(y.topRows(n)));
+    VectorX root = VectorX::Ones(n);
+    if (options.weights != nullptr && fault != Fault::ignores_weights && fault != Fault::ignores_usable_weights) {
+      root.head(std::min(n, options.weights->size())) = options.weights->head(std::min(n, options.weights->size()));
+      if (fault != Fault::squares_weights) root = root.cwiseAbs().cwiseSqrt();
+      if (fault == Fault::changes_weights) const_cast<double&>((*options.weights)(0)) += 1e-9;
+    }
+    MatrixX solution =
+        Eigen::HouseholderQR<MatrixX>(root.asDiagonal() * h).solve(MatrixX(root.asDiagonal() * y.topRows(n)));
+    if (fault == Fault::scales_with_weights && options.weights != nullptr) solution *= 1 + 1e-6;
     LinearMap<Inputs, Outputs> map{solution.topRows(Inputs).transpose(), solution.row(Inputs).transpose()};
     if (uses_seed) map.b.array() += 1e-6 * Rng(options.seed).uniform();
     map.calls_count = fault == Fault::call_order;
     map.wrong_rows = fault == Fault::rows_differ;
     map.slope_error = fault == Fault::derivative ? 1e-5 : 0;
+    if (fault == Fault::negative_deviation) map.deviation = -1e-3;
+    if (fault == Fault::infinite_deviation) map.deviation = std::numeric_limits<double>::infinity();
     if (fault == Fault::changes_inputs) const_cast<double&>(x(0, 0)) += 1e-9;
     if (fault == Fault::changes_targets) const_cast<double&>(y(0, 0)) += 1e-9;
     if (fault == Fault::remembers_fits) map.b(0) += 1e-9 * fits++;
@@ -182,6 +207,7 @@ static_assert(Regressor<Elm> && Regressor<RidgeElm> && Regressor<VarProElm> && R
 static_assert(Regressor<Tuned<Elm, Pso>> && Regressor<Tuned<RidgeElm, GeneticAlgorithm>>);
 static_assert(TunableRegressor<Elm> && TunableRegressor<RidgeElm> && TunableRegressor<VarProElm>);
 static_assert(!TunableRegressor<Linear>, "nothing to search for");
+static_assert(UncertainPredictor<LinearMap<3, 2>> && !UncertainPredictor<ElmPredictor<6, 3>>);
 static_assert(Predictor<ElmPredictor<6, 3>> && Predictor<ElmPredictor<1, 1>> && Predictor<LinearMap<3, 2>>);
 
 /// Near misses of the concepts.
@@ -211,10 +237,13 @@ static_assert(!Regressor<FitNotConst> && !Regressor<FitGivesNothing> && !Regress
 TEST(RegressorLaws, UsersOwnRegressor) {
   EXPECT_TRUE(no_violations(regressor_violations(Linear{}, {.uses_seed = false})));
   EXPECT_TRUE(no_violations(regressor_violations(Linear{.uses_seed = true})));
+  EXPECT_TRUE(no_violations(regressor_violations(
+      Linear{}, {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-12})));
 }
 
 void expect_caught(Fault fault, const char* sentence) {
-  const auto violations = regressor_violations(Linear{.fault = fault}, {.uses_seed = false});
+  const auto violations =
+      regressor_violations(Linear{.fault = fault}, {.uses_seed = false, .weights = SampleWeights::counted});
   EXPECT_TRUE(mentions(violations, sentence)) << sentence << no_violations(violations).message();
 }
 
@@ -230,6 +259,29 @@ TEST(RegressorLaws, CatchPlantedFaults) {
   expect_caught(Fault::asks_executor, "with an executor of 2 threads");
 }
 
+TEST(RegressorLaws, CatchFaultsOfWeights) {
+  expect_caught(Fault::ignores_weights, "the weights are ignored");
+  expect_caught(Fault::ignores_usable_weights, "the weights are ignored");
+  for (const char* sentence :
+       {"too many weights did not throw", "too few weights did not throw", "a weight of zero did not throw",
+        "a negative weight did not throw", "a weight that is no number did not throw"})
+    expect_caught(Fault::takes_any_weights, sentence);
+  expect_caught(Fault::scales_with_weights, "weights of all one make a difference");
+  expect_caught(Fault::changes_weights, "fit changed its weights");
+  expect_caught(Fault::squares_weights, "integer weights differ from repeated samples");
+  // Who claims less is not told off for less, who claims to refuse is.
+  EXPECT_TRUE(no_violations(regressor_violations(Linear{.fault = Fault::squares_weights},
+                                                 {.uses_seed = false, .weights = SampleWeights::taken})));
+  EXPECT_TRUE(mentions(regressor_violations(Linear{}, {.uses_seed = false, .weights = SampleWeights::refused}),
+                       "claims not to take did not throw"));
+}
+
+TEST(RegressorLaws, CatchFaultsOfStandardDeviations) {
+  expect_caught(Fault::negative_deviation, "a standard deviation is negative or not finite");
+  expect_caught(Fault::infinite_deviation, "a standard deviation is negative or not finite");
+  expect_caught(Fault::call_order, "the standard deviations of a copy are others");
+}
+
 TEST(RegressorLaws, CatchFaultsOfSeedAndLifetime) {
   EXPECT_TRUE(mentions(regressor_violations(SeedlessElm{}), "another seed gave the same predictor"));
   EXPECT_TRUE(mentions(regressor_violations(Elm{.hidden_nodes = 5}, {.uses_seed = false}), "the seed matters"));
@@ -239,6 +291,10 @@ TEST(RegressorLaws, CatchFaultsOfSeedAndLifetime) {
 // Each fault is one violation for either pair of sizes, not an avalanche.
 TEST(RegressorLaws, NameOnlyWhatIsWrong) {
   EXPECT_EQ(regressor_violations(Linear{.fault = Fault::derivative}, {.uses_seed = false}).size(), 2u);
+  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_usable_weights},
+                                 {.uses_seed = false, .weights = SampleWeights::taken})
+                .size(),
+            2u);
   EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_rows}, {.uses_seed = false}).size(), 2u);
   EXPECT_THROW(regressor_violations(Linear{}, {.samples = 1}), std::invalid_argument);
 }

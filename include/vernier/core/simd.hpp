@@ -121,17 +121,17 @@ VERNIER_INLINE void store(double* to, const typename Simd<W>::Double& v) {
   std::memcpy(to, &v, sizeof v);
 }
 
-/// z becomes 1 / (1 + exp(-z)), to about 1e-15 relative: exp(-z) = 2^k exp(r), |r| <= ln(2) / 2, Taylor to r^13.
+/// x becomes exp(x), to 4e-16 relative; beyond +-708 that of +-708. exp(x) = 2^k exp(r), |r| <= ln(2) / 2, Taylor to
+/// r^13.
 template <int W>
-VERNIER_INLINE void sigmoid(typename Simd<W>::Double& z) {
+VERNIER_INLINE void exponential(typename Simd<W>::Double& x) {
   using Double = typename Simd<W>::Double;
   using Integer = typename Simd<W>::Integer;
   constexpr double magic = 0x1.8p52;  // adding it rounds to an integer, readable in the low bits
   constexpr double factors[14] = {
       1.0,        1.0,         1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,        1.0 / 720,
       1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600., 1.0 / 6227020800.};
-  Double x = -z;
-  x = x > 708.0 ? Double{} + 708.0 : x;  // beyond: exp overflows, the sigmoid is 0 or 1 to the last bit
+  x = x > 708.0 ? Double{} + 708.0 : x;
   x = x < -708.0 ? Double{} - 708.0 : x;
   const Double shifted = VERNIER_AS_WRITTEN(x * 1.44269504088896338700 + magic);
   const Double k = VERNIER_AS_WRITTEN(shifted - magic);
@@ -144,7 +144,15 @@ VERNIER_INLINE void sigmoid(typename Simd<W>::Double& z) {
   bits = (bits + 1023) << 52;  // the magic's own bits are shifted out
   Double power;
   std::memcpy(&power, &bits, sizeof power);
-  z = 1.0 / (1.0 + p * power);
+  x = p * power;
+}
+
+/// z becomes 1 / (1 + exp(-z)), to about 1e-15 relative; beyond +-708 it is 0 or 1 to the last bit.
+template <int W>
+VERNIER_INLINE void sigmoid(typename Simd<W>::Double& z) {
+  typename Simd<W>::Double x = -z;
+  exponential<W>(x);
+  z = 1.0 / (1.0 + x);
 }
 
 /// Sines and cosines of `Count` vectors of angles [rad], to 3e-16 absolute; beyond 1e5 rad by the standard library.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/rng.hpp"
@@ -15,12 +16,22 @@
 
 namespace vernier::testing {
 
+/// What a recipe does with `FitOptions::weights`.
+enum class SampleWeights {
+  unchecked,  ///< nothing is claimed and nothing looked at
+  refused,    ///< weights throw `std::invalid_argument`
+  taken,      ///< they matter; all one, they do not; unusable ones throw
+  counted,    ///< and integer weights equal repeated samples
+};
+
 /// What a recipe claims beside the concept, and how closely it is looked at.
 struct RegressorLaws {
   bool uses_seed = true;               ///< another seed gives another predictor; otherwise the same one
   Index samples = 60;                  ///< rows a fit gets, at least 2
   std::uint64_t seed = 7;              ///< of the samples and the fits
   double derivative_tolerance = 1e-6;  ///< of the derivative against differences, relative to its largest entry
+  SampleWeights weights = SampleWeights::unchecked;  ///< what becomes of weights
+  double weight_tolerance = 1e-9;  ///< of predictions where weights should make no difference, relative to the largest
 };
 
 namespace detail {
@@ -55,7 +66,9 @@ class RegressorCheck {
     try {
       repeatability();
       predictions();
+      certainty();
       misuse();
+      weights();
     } catch (const std::exception& error) {
       violate("threw on good samples: ", error.what());
     }
@@ -160,17 +173,86 @@ class RegressorCheck {
     return out;
   }
 
+  void certainty() {
+    if constexpr (UncertainPredictor<Fitted>) {
+      const Rows x = fresh();
+      const Fitted predictor = fit(laws_.seed), copy = predictor;
+      MatrixX forwards(x.rows(), Outputs), backwards(x.rows(), Outputs);
+      for (Index i = 0; i < x.rows(); ++i)
+        forwards.row(i) = predictor.standard_deviation(Sample(x.row(i).transpose())).transpose();
+      for (Index i = x.rows(); i-- > 0;)
+        backwards.row(i) = copy.standard_deviation(Sample(x.row(i).transpose())).transpose();
+      expect(forwards.allFinite() && forwards.minCoeff() >= 0, "a standard deviation is negative or not finite");
+      expect(same_bits(forwards, backwards), "the standard deviations of a copy are others");
+    }
+  }
+
   void misuse() {
     const Rows longer = Samples<Inputs, Outputs>(laws_.samples + 1, laws_.seed).x;
+    expect_refused("mismatched rows",
+                   [&] { static_cast<void>(recipe_.fit(longer, train_.y, FitOptions{.seed = laws_.seed})); });
+  }
+
+  template <class Work>
+  void expect_refused(const char* what, Work&& work) {
     try {
-      static_cast<void>(recipe_.fit(longer, train_.y, FitOptions{.seed = laws_.seed}));
+      work();
     } catch (const std::invalid_argument&) {
       return;
     } catch (const std::exception& error) {
-      violate("mismatched rows threw something other than std::invalid_argument: ", error.what());
+      violate(what, " threw something other than std::invalid_argument: ", error.what());
       return;
     }
-    violate("mismatched rows did not throw");
+    violate(what, " did not throw");
+  }
+
+  MatrixX weighted(const VectorX& weights) const {
+    return recipe_.fit(train_.x, train_.y, FitOptions{.seed = laws_.seed, .weights = &weights}).predict(fresh());
+  }
+
+  void weights() {
+    if (laws_.weights == SampleWeights::unchecked) return;
+    const Index n = train_.x.rows();
+    const VectorX ones = VectorX::Ones(n);
+    if (laws_.weights == SampleWeights::refused)
+      return expect_refused("weights that the recipe claims not to take", [&] { static_cast<void>(weighted(ones)); });
+
+    const auto unusable = [&](const char* what, const VectorX& weights) {
+      expect_refused(what, [&] { static_cast<void>(weighted(weights)); });
+    };
+    unusable("too many weights", VectorX::Ones(n + 1));
+    unusable("too few weights", VectorX::Ones(n - 1));
+    for (const auto& [what, value] : {std::pair{"a weight of zero", 0.0}, std::pair{"a negative weight", -1.0},
+                                      std::pair{"a weight that is no number", std::nan("")}}) {
+      VectorX weights = ones;
+      weights(n / 2) = value;
+      unusable(what, weights);
+    }
+
+    const MatrixX plain = fit(laws_.seed).predict(fresh());
+    const auto same = [&](const MatrixX& a, const MatrixX& b) {
+      return (a - b).cwiseAbs().maxCoeff() <= laws_.weight_tolerance * plain.cwiseAbs().maxCoeff();
+    };
+    expect(same(weighted(ones), plain), "weights of all one make a difference");
+    VectorX counts(n);
+    for (Index i = 0; i < n; ++i) counts(i) = static_cast<double>(1 + i % 3);
+    const VectorX kept = counts;
+    const MatrixX counted = weighted(counts);
+    expect(same_bits(kept, counts), "fit changed its weights");
+    expect(!same_bits(counted, plain), "the weights are ignored");
+    if (laws_.weights != SampleWeights::counted) return;
+
+    const auto total = static_cast<Index>(kept.sum());
+    Samples<Inputs, Outputs> repeated(total, 0);
+    for (Index i = 0, to = 0; i < n; ++i)
+      for (double copies = 0; copies < kept(i); ++copies, ++to) {
+        repeated.x.row(to) = train_.x.row(i);
+        repeated.y.row(to) = train_.y.row(i);
+      }
+    const MatrixX expected = recipe_.fit(repeated.x, repeated.y, FitOptions{.seed = laws_.seed}).predict(fresh());
+    const double error = (counted - expected).cwiseAbs().maxCoeff();
+    if (!same(counted, expected))
+      violate("integer weights differ from repeated samples by ", error, " of ", plain.cwiseAbs().maxCoeff());
   }
 
   const R& recipe_;
@@ -188,7 +270,9 @@ class RegressorCheck {
 /// - `fit` leaves its samples unchanged, and the predictor does not refer to them;
 /// - `predict(rows)` equals `predict(sample)` row by row, whatever the order of the calls;
 /// - `derivative` equals central differences;
-/// - numbers of rows that differ throw `std::invalid_argument`.
+/// - `standard_deviation`, where there is one, is finite and not negative, and a copy's the same;
+/// - numbers of rows that differ throw `std::invalid_argument`;
+/// - weights are refused, or matter as claimed (`SampleWeights`); unusable ones throw `std::invalid_argument`.
 /// @return one sentence a violation; empty when all laws hold
 template <Regressor R>
 std::vector<std::string> regressor_violations(const R& recipe, const RegressorLaws& laws = {}) {

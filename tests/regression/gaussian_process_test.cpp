@@ -1,0 +1,369 @@
+// Gaussian processes: likelihood, prediction and variance against dense algebra written out, gradients against
+// differences.
+
+#include "vernier/regression/gaussian_process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "allocation_counter.hpp"
+#include "complaint.hpp"
+#include "laws.hpp"
+#include "vernier/testing/regressor_laws.hpp"
+
+namespace vernier {
+namespace {
+
+using testing::regressor_violations;
+using testing::same_bits;
+using testing::SampleWeights;
+using vernier_test::complaint;
+using vernier_test::no_violations;
+
+using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+constexpr Kernel both_kernels[] = {Kernel::squared_exponential, Kernel::matern_5_2};
+
+Inputs inputs(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  Inputs x(n, 3);
+  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
+  return x;
+}
+
+Targets targets(const Inputs& x, double noise = 0) {
+  Rng rng(99);
+  Targets y(x.rows(), 2);
+  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
+  y.col(1) = 2e-3 * (x.col(1).array() - x.col(0).array()).cos();
+  for (auto& value : y.reshaped()) value += noise * rng.normal();
+  return y;
+}
+
+VectorX random_weights(Index n) {
+  Rng rng(5);
+  VectorX w(n);
+  for (auto& value : w) value = rng.uniform(0.2, 4);
+  return w;
+}
+
+/// Inputs as they are, or their sines and cosines, divided by the length scales.
+MatrixX seen(InputMap map, const Inputs& x, const VectorX& lengths) {
+  if (map == InputMap::raw) return x * lengths.cwiseInverse().asDiagonal();
+  MatrixX out(x.rows(), 6);
+  out << x.array().sin().matrix() * lengths.cwiseInverse().asDiagonal(),
+      x.array().cos().matrix() * lengths.cwiseInverse().asDiagonal();
+  return out;
+}
+
+MatrixX kernels(Kernel kernel, const MatrixX& a, const MatrixX& b) {
+  MatrixX k(a.rows(), b.rows());
+  for (Index i = 0; i < a.rows(); ++i)
+    for (Index j = 0; j < b.rows(); ++j) {
+      const double r = (a.row(i) - b.row(j)).norm(), s = std::sqrt(5.0) * r;
+      k(i, j) = kernel == Kernel::squared_exponential ? std::exp(-r * r / 2) : (1 + s + s * s / 3) * std::exp(-s);
+    }
+  return k;
+}
+
+/// What the textbook says, by explicit inverses.
+struct Dense {
+  MatrixX mean, deviation;  // at the fresh inputs
+  VectorX variance;
+
+  Dense(Kernel kernel, InputMap map, const Inputs& x, const Targets& y, const VectorX& weights, const VectorX& lengths,
+        double ratio, const Inputs& at) {
+    const Index n = x.rows();
+    MatrixX a = kernels(kernel, seen(map, x, lengths), seen(map, x, lengths));
+    a.diagonal() += ratio * weights.cwiseInverse();
+    const MatrixX inverse = Eigen::FullPivLU<MatrixX>(a).inverse();
+    const VectorX one = VectorX::Ones(n);
+    const Eigen::RowVectorXd constant = one.transpose() * inverse * y / one.dot(inverse * one);
+    const MatrixX centred = y.rowwise() - constant;
+    variance = (centred.transpose() * inverse * centred).diagonal() / weights.sum();
+    const MatrixX k = kernels(kernel, seen(map, at, lengths), seen(map, x, lengths));
+    mean = (k * inverse * centred).rowwise() + constant;
+    deviation.resize(at.rows(), 2);
+    for (Index i = 0; i < at.rows(); ++i) {
+      const VectorX row = k.row(i).transpose();
+      const double unit = 1 - row.dot(inverse * row) + std::pow(1 - one.dot(inverse * row), 2) / one.dot(inverse * one);
+      deviation.row(i) = (variance * unit).cwiseSqrt().transpose();
+    }
+  }
+};
+
+TEST(GaussianProcess, PredictionAndVarianceEqualADenseSolve) {
+  const Vector3 lengths(0.8, 1.7, 3.0);
+  for (const Index n : {40, 64, 150}) {  // fewer than a tile, one, several
+    const Inputs x = inputs(n, 1), fresh = inputs(30, 2);
+    const Targets y = targets(x, 1e-4);
+    const VectorX weights = random_weights(n);
+    for (const Kernel kernel : both_kernels)
+      for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines})
+        for (const VectorX* w : {static_cast<const VectorX*>(nullptr), &weights}) {
+          const GaussianProcess recipe{.kernel = kernel,
+                                       .input_map = map,
+                                       .input_scaling = Scaling::none,
+                                       .length_scales = lengths,
+                                       .noise_ratio = 1e-2};
+          const auto predictor = recipe.fit(x, y, {.weights = w});
+          const Dense expected(kernel, map, x, y, w != nullptr ? *w : VectorX(VectorX::Ones(n)), lengths, 1e-2, fresh);
+          EXPECT_LT((predictor.predict(fresh) - expected.mean).cwiseAbs().maxCoeff(), 1e-10 * 1e-3);
+          EXPECT_LT((predictor.signal_variance() - expected.variance).cwiseAbs().maxCoeff(),
+                    1e-10 * expected.variance.maxCoeff());
+          EXPECT_LT((predictor.noise_variance() - 1e-2 * predictor.signal_variance()).norm(), 1e-20);
+          for (Index i = 0; i < fresh.rows(); ++i) {
+            const Eigen::Vector2d given = predictor.standard_deviation(fresh.row(i).transpose());
+            EXPECT_LT((given - expected.deviation.row(i).transpose()).cwiseAbs().maxCoeff(),
+                      1e-10 * expected.deviation.maxCoeff());
+          }
+        }
+  }
+}
+
+// Two samples at distance d: everything by hand.
+TEST(GaussianProcess, TwoSamplesByHand) {
+  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = Eigen::Vector2d(0, 1), y = Eigen::Vector2d(2, 3);
+  const auto predictor =
+      GaussianProcess{.input_scaling = Scaling::none, .length_scales = VectorX::Constant(1, 0.5), .noise_ratio = 0.25}
+          .fit(x, y);
+  const double k = std::exp(-2.0);
+  // A = [1.25 k; k 1.25]: alpha = -+0.5 / (1.25 - k), s^2 = 0.5 / (1.25 - k) / 2
+  EXPECT_NEAR(predictor.mean()(0), 2.5, 1e-15);
+  EXPECT_NEAR(predictor.signal_variance()(0), 0.25 / (1.25 - k), 1e-15);
+  // half way: both kernels are exp(-1/2), 1'A^-1 k = 2 e / (1.25 + k), k'A^-1 k = 2 e^2 / (1.25 + k)
+  const double e = std::exp(-0.5), known = 2 * e / (1.25 + k);
+  const double unit = 1 - e * known + (1 - known) * (1 - known) * (1.25 + k) / 2;
+  EXPECT_NEAR(predictor.standard_deviation(Eigen::Matrix<double, 1, 1>(0.5))(0),
+              std::sqrt(unit * predictor.signal_variance()(0)), 1e-15);
+}
+
+/// Minus the log likelihood of samples a unit of weight, from determinant and inverse, with mean and variance scanned
+/// by nobody: their closed forms are checked by the test below.
+double minus_log_likelihood(Kernel kernel, const MatrixX& features, const VectorX& y, double ratio, double variance,
+                            double mean) {
+  const Index n = features.rows();
+  MatrixX covariance = kernels(kernel, features, features);
+  covariance.diagonal().array() += ratio;
+  covariance *= variance;
+  const VectorX off = y.array() - mean;
+  const Eigen::FullPivLU<MatrixX> lu(covariance);
+  double log_determinant = 0;
+  for (Index i = 0; i < n; ++i) log_determinant += std::log(std::abs(lu.matrixLU()(i, i)));
+  return 0.5 * (off.dot(lu.solve(off)) + log_determinant + static_cast<double>(n) * std::log(2 * std::numbers::pi));
+}
+
+TEST(MarginalLikelihood, IsThatOfTheBestMeanAndVariance) {
+  const Index n = 25;
+  const Inputs x = inputs(n, 3);
+  const Targets y = targets(x, 1e-4);
+  const Vector3 lengths(0.8, 1.7, 3.0);
+  const double ratio = 0.03;
+  for (const Kernel kernel : both_kernels) {
+    const MatrixX features = seen(InputMap::raw, x, lengths);
+    const Dense dense(kernel, InputMap::raw, x, y, VectorX::Ones(n), lengths, ratio, x);
+    MatrixX a = kernels(kernel, features, features);
+    a.diagonal().array() += ratio;
+    const VectorX ones = Eigen::FullPivLU<MatrixX>(a).solve(VectorX::Ones(n));
+    double sum = 0;
+    for (int o = 0; o < 2; ++o) {
+      const double mean = ones.dot(y.col(o)) / ones.sum();
+      const double best = minus_log_likelihood(kernel, features, y.col(o), ratio, dense.variance(o), mean);
+      sum += best;
+      for (const double factor : {0.99, 1.01})
+        EXPECT_GT(minus_log_likelihood(kernel, features, y.col(o), ratio, factor * dense.variance(o), mean), best);
+      for (const double shift : {-1e-5, 1e-5})
+        EXPECT_GT(minus_log_likelihood(kernel, features, y.col(o), ratio, dense.variance(o), mean + shift), best);
+    }
+    const detail::MarginalLikelihood likelihood(kernel, x, 3, y, VectorX::Ones(n));
+    VectorX logarithms(4), gradient;
+    logarithms << lengths.array().log().matrix(), std::log(ratio);
+    EXPECT_NEAR(likelihood(logarithms, gradient), sum / (2 * n), 1e-10 * std::abs(sum) / (2 * n));
+  }
+}
+
+TEST(MarginalLikelihood, GradientEqualsDifferences) {
+  const Index n = 40;
+  const Inputs x = inputs(n, 4);
+  Targets y = targets(x, 1e-4);
+  const VectorX weights = random_weights(n);
+  Rng rng(6);
+  for (const bool constant : {false, true}) {
+    if (constant) y.col(1).setConstant(0.3);
+    for (const Kernel kernel : both_kernels)
+      for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines}) {
+        const detail::MarginalLikelihood likelihood(kernel, seen(map, x, Vector3::Ones()), 3, y, weights);
+        for (int repeat = 0; repeat < 5; ++repeat) {
+          VectorX at(4), gradient, unused;
+          for (auto& value : at) value = rng.uniform(-1, 1);
+          at(3) = rng.uniform(-6, 1);
+          EXPECT_TRUE(std::isfinite(likelihood(at, gradient)));
+          for (Index j = 0; j < 4; ++j) {
+            const auto value = [&](double steps) {
+              VectorX moved = at;
+              moved(j) += steps * 1e-3;
+              return likelihood(moved, unused);
+            };
+            const double expected = (8 * (value(1) - value(-1)) - (value(2) - value(-2))) / (12e-3);
+            EXPECT_NEAR(gradient(j), expected, 1e-8 * (1 + gradient.cwiseAbs().maxCoeff()));
+          }
+        }
+      }
+  }
+}
+
+TEST(MarginalLikelihood, IntegerWeightsCountSamples) {
+  const Inputs x = inputs(20, 5);
+  const Targets y = targets(x, 1e-4);
+  VectorX weights(20);
+  std::vector<Index> rows;
+  for (Index i = 0; i < 20; ++i) {
+    weights(i) = static_cast<double>(1 + i % 3);
+    for (Index copy = 0; copy <= i % 3; ++copy) rows.push_back(i);
+  }
+  const MatrixX repeated_x = x(rows, Eigen::all), repeated_y = y(rows, Eigen::all);
+  const detail::MarginalLikelihood counted(Kernel::matern_5_2, x, 3, y, weights);
+  const detail::MarginalLikelihood repeated(Kernel::matern_5_2, repeated_x, 3, repeated_y,
+                                            VectorX::Ones(repeated_x.rows()));
+  VectorX at(4), gradient, expected;
+  at << 0.1, -0.2, 0.5, -3;
+  EXPECT_NEAR(counted(at, gradient), repeated(at, expected), 1e-11);
+  EXPECT_LT((gradient - expected).norm(), 1e-11);
+}
+
+TEST(BoundedBfgs, FindsRosenbrocksMinimumAndThatAtABound) {
+  const auto rosenbrock = [](const VectorX& x, VectorX& g) {
+    const double u = 1 - x(0), v = x(1) - x(0) * x(0);
+    g(0) = -2 * u - 400 * x(0) * v;
+    g(1) = 200 * v;
+    return u * u + 100 * v * v;
+  };
+  const VectorX wide = VectorX::Constant(2, 5);
+  const auto free = detail::minimise_within(rosenbrock, Eigen::Vector2d(-1.2, 1), -wide, wide, 200, 1e-10);
+  EXPECT_LT((free.x - Eigen::Vector2d(1, 1)).norm(), 1e-8);
+  // x <= 0.5: the minimum is (0.5, 0.25); x >= 1.5: (1.5, 2.25)
+  const auto low =
+      detail::minimise_within(rosenbrock, Eigen::Vector2d(-1.2, 1), -wide, Eigen::Vector2d(0.5, 5), 200, 1e-10);
+  EXPECT_LT((low.x - Eigen::Vector2d(0.5, 0.25)).norm(), 1e-8);
+  const auto high =
+      detail::minimise_within(rosenbrock, Eigen::Vector2d(3, 1), Eigen::Vector2d(1.5, -5), wide, 200, 1e-10);
+  EXPECT_LT((high.x - Eigen::Vector2d(1.5, 2.25)).norm(), 1e-8);
+  EXPECT_EQ(high.x(0), 1.5);
+}
+
+// Samples of a known process: what it was is found again, within what so many samples tell.
+TEST(GaussianProcess, FindsWhatTheSamplesWereDrawnFrom) {
+  const Index n = 200;
+  Rng rng(8);
+  const Inputs x = inputs(n, 9);
+  const Vector3 lengths(0.6, 1.5, 40);
+  MatrixX k = kernels(Kernel::squared_exponential, seen(InputMap::raw, x, lengths), seen(InputMap::raw, x, lengths));
+  k.diagonal().array() += 1e-10;
+  const MatrixX root = Eigen::LLT<MatrixX>(k).matrixL();
+  Targets y(n, 2);
+  for (int o = 0; o < 2; ++o) {
+    VectorX z(n);
+    for (auto& value : z) value = rng.normal();
+    y.col(o) = (o + 1) * (root * z);
+    for (Index i = 0; i < n; ++i) y(i, o) += (o + 1) * 0.1 * rng.normal();
+  }
+  const auto predictor = GaussianProcess{.input_scaling = Scaling::none}.fit(x, y, {.seed = 1});
+  const VectorX found = predictor.scaling().factor.cwiseInverse();
+  EXPECT_NEAR(found(0), 0.6, 0.1);
+  EXPECT_NEAR(found(1), 1.5, 0.3);
+  EXPECT_GT(found(2), 8);  // does not matter
+  for (int o = 0; o < 2; ++o) EXPECT_NEAR(std::sqrt(predictor.noise_variance()(o)), 0.1 * (o + 1), 0.03 * (o + 1));
+}
+
+// Of many fresh samples, errors in units of the standard deviation have about unit size.
+TEST(GaussianProcess, ErrorsAreAsLargeAsItSays) {
+  const Inputs x = inputs(120, 10), fresh = inputs(300, 11);
+  const auto predictor = GaussianProcess{}.fit(x, targets(x, 1e-4), {.seed = 1});
+  const Targets truth = targets(fresh);
+  double square = 0;
+  for (Index i = 0; i < 300; ++i) {
+    const Vector3 at = fresh.row(i).transpose();
+    square += ((predictor.predict(at) - truth.row(i).transpose()).array() / predictor.standard_deviation(at).array())
+                  .square()
+                  .sum();
+  }
+  EXPECT_GT(std::sqrt(square / 600), 0.6);
+  EXPECT_LT(std::sqrt(square / 600), 1.5);
+  // far away nothing is known but the spread
+  const Eigen::Vector2d far = predictor.standard_deviation(Vector3(1e3, 1e3, 1e3));
+  EXPECT_TRUE((far.array() >= predictor.signal_variance().cwiseSqrt().array()).all());
+  EXPECT_LT((predictor.predict(Vector3(1e3, 1e3, 1e3)) - predictor.mean()).norm(), 1e-15);
+}
+
+TEST(GaussianProcess, ConstantOutputsAndSingleSamples) {
+  const Inputs x = inputs(30, 12);
+  Targets y = targets(x);
+  y.col(1).setConstant(0.1);
+  const auto one = GaussianProcess{.starts = 1}.fit(x, y);
+  EXPECT_NEAR(one.predict(Vector3(0.1, 0.2, 0.3))(1), 0.1, 1e-14);
+  EXPECT_EQ(one.standard_deviation(Vector3(0.1, 0.2, 0.3))(1), 0);
+  EXPECT_GT(one.standard_deviation(Vector3(0.1, 0.2, 0.3))(0), 0);
+  const auto single = GaussianProcess{}.fit(x.topRows(1), y.topRows(1));
+  EXPECT_LT((single.predict(Vector3(0, 0, 0)) - y.row(0).transpose()).norm(), 1e-15);
+  EXPECT_EQ(single.standard_deviation(Vector3(0, 0, 0)), Eigen::Vector2d(0, 0));
+}
+
+TEST(GaussianProcess, KeepsTheLaws) {
+  for (const Kernel kernel : both_kernels)
+    for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines}) {
+      EXPECT_TRUE(no_violations(
+          regressor_violations(GaussianProcess{.kernel = kernel, .input_map = map, .noise_ratio = 1e-4, .starts = 1},
+                               {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-5})));
+    }
+  EXPECT_TRUE(
+      no_violations(regressor_violations(GaussianProcess{.noise_ratio = 1e-3, .starts = 2, .max_hyper_samples = 30},
+                                         {.weights = SampleWeights::taken, .weight_tolerance = 1e-6})));
+}
+
+TEST(GaussianProcess, ALargeFitIsDecidedByASample) {
+  const Inputs x = inputs(300, 13), fresh = inputs(100, 14);
+  const GaussianProcess recipe{.starts = 2, .max_hyper_samples = 80};
+  const auto predictor = recipe.fit(x, targets(x), {.seed = 3});
+  EXPECT_EQ(predictor.samples(), 300);
+  EXPECT_LT((predictor.predict(fresh) - targets(fresh)).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(GaussianProcess, DoesNotAllocate) {
+  const Inputs x = inputs(150, 15);
+  const GaussianProcess recipe{.kernel = Kernel::matern_5_2,
+                               .input_map = InputMap::sines_and_cosines,
+                               .length_scales = Vector3(1, 2, 3),
+                               .noise_ratio = 1e-3};
+  const auto predictor = recipe.fit(x, targets(x));
+  const Vector3 at(0.1, 0.2, 0.3);
+  EXPECT_EQ(vernier_test::allocations([&] {
+              vernier_test::keep(predictor.predict(at));
+              vernier_test::keep(predictor.derivative(at));
+              vernier_test::keep(predictor.standard_deviation(at));
+            }),
+            0);
+}
+
+TEST(GaussianProcess, RefusesWhatItCannotUse) {
+  const Inputs x = inputs(10, 16);
+  const Targets y = targets(x);
+  const auto told = [&](const GaussianProcess& recipe, const char* sentence) {
+    const std::string text = complaint([&] { static_cast<void>(recipe.fit(x, y)); });
+    EXPECT_NE(text.find(sentence), std::string::npos) << text;
+  };
+  told({.length_scales = VectorX::Ones(2)}, "2 length scales for 3 inputs");
+  told({.length_scales = Vector3(1, 0, 1)}, "length scales must be positive");
+  told({.noise_ratio = 0.0}, "noise_ratio is 0");
+  told({.starts = 0}, "starts is 0");
+  told({.iterations = 0}, "iterations is 0");
+  told({.max_hyper_samples = 1}, "max_hyper_samples is 1");
+  told({.length_scales = Vector3::Constant(1e9), .noise_ratio = 1e-30}, "too small for 10 samples");
+}
+
+static_assert(Regressor<GaussianProcess> && UncertainPredictor<GaussianProcessPredictor<6, 3>> &&
+              UncertainPredictor<GaussianProcessPredictor<1, 1>>);
+
+}  // namespace
+}  // namespace vernier

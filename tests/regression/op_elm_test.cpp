@@ -1,0 +1,225 @@
+// Pruning by leave-one-out: the ranking and its errors against fits that leave each sample out.
+
+#include "vernier/regression/op_elm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <vector>
+
+#include "complaint.hpp"
+#include "laws.hpp"
+#include "vernier/testing/regressor_laws.hpp"
+
+namespace vernier {
+namespace {
+
+using testing::regressor_violations;
+using testing::SampleWeights;
+using vernier_test::complaint;
+using vernier_test::no_violations;
+
+using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+Inputs inputs(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  Inputs x(n, 3);
+  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
+  return x;
+}
+
+Targets targets(const Inputs& x, double noise = 0) {
+  Rng rng(99);
+  Targets y(x.rows(), 2);
+  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
+  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
+  for (auto& value : y.reshaped()) value += noise * rng.normal();
+  return y;
+}
+
+VectorX random_weights(Index n) {
+  Rng rng(5);
+  VectorX w(n);
+  for (auto& value : w) value = rng.uniform(0.2, 4);
+  return w;
+}
+
+/// Columns drawn at random, as no layer gives them: well conditioned.
+MatrixX random_columns(Index n, Index count) {
+  Rng rng(3);
+  MatrixX h(n, count);
+  for (auto& value : h.reshaped()) value = rng.normal();
+  return h;
+}
+
+MatrixX with_ones(const MatrixX& h) {
+  MatrixX out(h.rows(), h.cols() + 1);
+  out << h, VectorX::Ones(h.rows());
+  return out;
+}
+
+/// Weighted least squares by the pivoted QR of the rows themselves.
+MatrixX solve(const MatrixX& design, const MatrixX& y, const VectorX& w) {
+  const VectorX root = w.cwiseSqrt();
+  return Eigen::ColPivHouseholderQR<MatrixX>(root.asDiagonal() * design).solve(MatrixX(root.asDiagonal() * y));
+}
+
+double squared_error(const MatrixX& design, const MatrixX& y, const VectorX& w) {
+  return (w.cwiseSqrt().asDiagonal() * (y - design * solve(design, y, w))).squaredNorm();
+}
+
+TEST(RankNodes, PressEqualsLeavingEachSampleOut) {
+  const Index n = 24;
+  const Inputs x = inputs(n, 1);
+  const Targets y = targets(x, 1e-4);
+  const HiddenLayer layer{.nodes = 9, .activation = Activation::sine, .weight_limit = 2};
+  MatrixX h;
+  layer.outputs(x, layer.draw(3, 4), h);
+  for (const VectorX& w : {VectorX(VectorX::Ones(n)), random_weights(n)}) {
+    const detail::RankedNodes ranked = detail::rank_nodes(h, y, w);
+    ASSERT_EQ(ranked.order.size(), 9u);
+    ASSERT_EQ(ranked.press.size(), 10u);
+    for (std::size_t count = 0; count <= 9; ++count) {
+      const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + static_cast<std::ptrdiff_t>(count));
+      const MatrixX design = with_ones(h(Eigen::all, nodes));
+      double sum = 0;
+      for (Index left = 0; left < n; ++left) {
+        std::vector<Index> rest;
+        for (Index i = 0; i < n; ++i)
+          if (i != left) rest.push_back(i);
+        const MatrixX beta = solve(design(rest, Eigen::all), y(rest, Eigen::all), w(rest));
+        sum += w(left) * (y.row(left) - design.row(left) * beta).squaredNorm();
+      }
+      EXPECT_NEAR(ranked.press[count], sum / w.sum(), 1e-8 * sum / w.sum()) << count;
+    }
+  }
+}
+
+// Each node taken is the one whose addition lowers the error of all outputs together by the most.
+TEST(RankNodes, TakesTheBestNodeEachTime) {
+  const Index n = 40;
+  const MatrixX h = random_columns(n, 8), y = random_columns(n, 10).rightCols(2);
+  const VectorX w = random_weights(n);
+  const detail::RankedNodes ranked = detail::rank_nodes(h, y, w);
+  ASSERT_EQ(ranked.order.size(), 8u);
+  std::vector<Index> taken;
+  for (const Index next : ranked.order) {
+    std::vector<Index> trial = taken;
+    trial.push_back(next);
+    const double chosen = squared_error(with_ones(h(Eigen::all, trial)), y, w);
+    for (Index other = 0; other < 8; ++other) {
+      if (other == next || std::find(taken.begin(), taken.end(), other) != taken.end()) continue;
+      trial.back() = other;
+      EXPECT_GT(squared_error(with_ones(h(Eigen::all, trial)), y, w), chosen);
+    }
+    taken.push_back(next);
+  }
+}
+
+// Targets made of three columns: those come first, and no other is needed.
+TEST(RankNodes, FindsTheColumnsThatMadeTheTargets) {
+  const MatrixX h = random_columns(60, 20);
+  MatrixX y(60, 2);
+  y << 3 * h.col(4) + 0.5 * h.col(11), h.col(17) - 2 * h.col(4);
+  Rng rng(8);
+  for (auto& value : y.reshaped()) value += 1 + 1e-3 * rng.normal();
+  const detail::RankedNodes ranked = detail::rank_nodes(h, y, VectorX::Ones(60));
+  std::vector<Index> first(ranked.order.begin(), ranked.order.begin() + 3);
+  EXPECT_EQ(first[0], 4);
+  std::sort(first.begin(), first.end());
+  EXPECT_EQ(first, (std::vector<Index>{4, 11, 17}));
+  EXPECT_LT(ranked.press[3], 3e-6);
+  EXPECT_GT(ranked.press[2], 0.1);
+}
+
+TEST(RankNodes, LeavesOutWhatDependsOnOthersAndWhatReproducesSamples) {
+  MatrixX h = random_columns(30, 6);
+  h.col(2) = h.col(0) + h.col(1);
+  h.col(5).setConstant(3);  // the mean is free already
+  const MatrixX y = random_columns(30, 9).rightCols(2);
+  const detail::RankedNodes ranked = detail::rank_nodes(h, y, VectorX::Ones(30));
+  EXPECT_EQ(ranked.order.size(), 4u);
+  EXPECT_EQ(std::count(ranked.order.begin(), ranked.order.end(), 5), 0);
+  // as many columns as samples: the last count reproduces them all and may not be chosen
+  const detail::RankedNodes full = detail::rank_nodes(random_columns(8, 20), y.topRows(8), VectorX::Ones(8));
+  EXPECT_EQ(full.order.size(), 7u);
+  EXPECT_TRUE(std::isinf(full.press.back()));
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_TRUE(std::isfinite(full.press[i]));
+}
+
+// What is kept is the least-squares fit of as many nodes as PRESS asks for.
+TEST(OpElm, KeepsTheLeastPress) {
+  const Inputs x = inputs(150, 6), fresh = inputs(40, 7);
+  const Targets y = targets(x, 1e-4);
+  const VectorX w = random_weights(150);
+  const OpElm recipe{.hidden_nodes = 60, .activation = Activation::tanh, .weight_limit = 2};
+  MatrixX h, h_fresh;
+  const VectorX theta = recipe.layer().draw(3, 2);
+  recipe.layer().outputs(recipe.layer().map(x), theta, h);
+  recipe.layer().outputs(recipe.layer().map(fresh), theta, h_fresh);
+  for (const VectorX* weights : {static_cast<const VectorX*>(nullptr), &w}) {
+    const VectorX used = weights != nullptr ? w : VectorX(VectorX::Ones(150));
+    const auto predictor = recipe.fit(x, y, {.seed = 2, .weights = weights});
+    const detail::RankedNodes ranked = detail::rank_nodes(h, y, used);
+    const auto kept = std::min_element(ranked.press.begin(), ranked.press.end()) - ranked.press.begin();
+    EXPECT_GT(kept, 5);
+    EXPECT_LT(kept, 50);
+    ASSERT_EQ(predictor.layer().nodes, kept);
+    const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + kept);
+    const MatrixX beta = solve(with_ones(h(Eigen::all, nodes)), y, used);
+    EXPECT_LT((predictor.predict(fresh) - with_ones(h_fresh(Eigen::all, nodes)) * beta).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+// Many nodes on few noisy samples: pruned, they predict better than all of them.
+TEST(OpElm, PruningBeatsAllNodes) {
+  const Inputs x = inputs(100, 8), fresh = inputs(300, 9);
+  const Targets y = targets(x, 2e-4), truth = targets(fresh);
+  const OpElm recipe{.hidden_nodes = 80};
+  MatrixX h, h_fresh;
+  const VectorX theta = recipe.layer().draw(3, 1);
+  recipe.layer().outputs(recipe.layer().map(x), theta, h);
+  recipe.layer().outputs(recipe.layer().map(fresh), theta, h_fresh);
+  const MatrixX all = with_ones(h_fresh) * solve(with_ones(h), y, VectorX::Ones(100));
+  const double pruned = (recipe.fit(x, y, {.seed = 1}).predict(fresh) - truth).squaredNorm();
+  EXPECT_LT(pruned, 0.25 * (all - truth).squaredNorm());
+  EXPECT_LT(pruned, 0.25 * (truth.rowwise() - truth.colwise().mean()).squaredNorm());
+}
+
+TEST(OpElm, WithNothingToLearnTheMeanIsLeft) {
+  const Inputs x = inputs(40, 10);
+  const Targets constant = Targets::Constant(40, 2, 3.25);
+  const auto predictor = OpElm{}.fit(x, constant);
+  EXPECT_LT((predictor.predict(x).array() - 3.25).abs().maxCoeff(), 1e-12);
+  const auto single = OpElm{}.fit(x.topRows(1), constant.topRows(1));
+  EXPECT_LT((single.predict(x).array() - 3.25).abs().maxCoeff(), 1e-15);
+  // a target that one sample alone has: leaving samples out says keep the mean
+  Targets spike = Targets::Zero(40, 2);
+  spike(3, 0) = 1;
+  const auto calm = OpElm{.hidden_nodes = 3}.fit(x, spike, {.seed = 1});
+  EXPECT_EQ(calm.layer().nodes, 1);
+  EXPECT_LT(calm.derivative(Vector3(0, 0, 0)).norm(), 1e-15);
+}
+
+TEST(OpElm, KeepsTheLaws) {
+  for (const Activation activation :
+       {Activation::sigmoid, Activation::tanh, Activation::sine, Activation::radial_basis})
+    for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines})
+      EXPECT_TRUE(
+          no_violations(regressor_violations(OpElm{.hidden_nodes = 15, .activation = activation, .input_map = map},
+                                             {.weights = SampleWeights::taken, .weight_tolerance = 1e-8})));
+}
+
+TEST(OpElm, RefusesWhatItCannotUse) {
+  const Inputs x = inputs(10, 11);
+  EXPECT_NE(
+      complaint([&] { static_cast<void>(OpElm{.hidden_nodes = 0}.fit(x, targets(x))); }).find("hidden_nodes is 0"),
+      std::string::npos);
+}
+
+static_assert(Regressor<OpElm>);
+
+}  // namespace
+}  // namespace vernier

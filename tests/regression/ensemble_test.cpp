@@ -1,0 +1,226 @@
+// Bagging against its own words: members refitted by hand, their mean and spread.
+
+#include "vernier/regression/ensemble.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "allocation_counter.hpp"
+#include "complaint.hpp"
+#include "laws.hpp"
+#include "vernier/regression/elm.hpp"
+#include "vernier/regression/trigonometric_regression.hpp"
+#include "vernier/search/pso.hpp"
+#include "vernier/search/tuned.hpp"
+#include "vernier/testing/regressor_laws.hpp"
+
+namespace vernier {
+namespace {
+
+using testing::regressor_violations;
+using vernier_test::complaint;
+using vernier_test::no_violations;
+
+using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+static_assert(Regressor<Ensemble<Elm>> && Regressor<Ensemble<Tuned<Elm, Pso>>>);
+static_assert(UncertainPredictor<PredictorOf<Ensemble<Elm>, 6, 3>>);
+
+Inputs inputs(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  Inputs x(n, 3);
+  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
+  return x;
+}
+
+Targets targets(const Inputs& x, double noise = 0) {
+  Rng rng(99);
+  Targets y(x.rows(), 2);
+  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
+  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
+  for (auto& value : y.reshaped()) value += noise * rng.normal();
+  return y;
+}
+
+TEST(Ensemble, KeepsTheLaws) {
+  EXPECT_TRUE(no_violations(regressor_violations(Ensemble{Elm{.hidden_nodes = 5}, 5})));
+  EXPECT_TRUE(no_violations(regressor_violations(Ensemble{TrigonometricRegression{.max_degree = 1}, 3})));
+  EXPECT_TRUE(no_violations(regressor_violations(
+      Ensemble{Tuned{Elm{.hidden_nodes = 3}, Pso{.particles = 4, .iterations = 3}}, 3, 0.6, false})));
+}
+
+TEST(EnsemblePredictor, IsTheMeanAndTheSpreadOfItsMembers) {
+  const Inputs x = inputs(60, 1), fresh = inputs(10, 2);
+  const auto ensemble = Ensemble{Elm{.hidden_nodes = 6}, 7}.fit(x, targets(x), {.seed = 3});
+  ASSERT_EQ(ensemble.members().size(), 7u);
+  for (Index i = 0; i < 10; ++i) {
+    const Vector3 at = fresh.row(i).transpose();
+    for (int o = 0; o < 2; ++o) {
+      VectorX values(7), slopes(7);
+      for (Index k = 0; k < 7; ++k) {
+        values(k) = ensemble.members()[static_cast<std::size_t>(k)].predict(at)(o);
+        slopes(k) = ensemble.members()[static_cast<std::size_t>(k)].derivative(at)(o, 1);
+      }
+      const double spread = std::sqrt((values.array() - values.mean()).square().sum() / 6);
+      EXPECT_GT(spread, 1e-6);
+      EXPECT_NEAR(ensemble.predict(at)(o), values.mean(), 1e-14);
+      EXPECT_NEAR(ensemble.derivative(at)(o, 1), slopes.mean(), 1e-14);
+      EXPECT_NEAR(ensemble.standard_deviation(at)(o), spread, 1e-12);
+    }
+  }
+}
+
+/// Notes which rows a fit gets: inputs are their numbers.
+struct Noted {
+  std::vector<double> rows, weights;
+  std::uint64_t seed = 0;
+};
+
+struct NotedMap : PredictorOf<Elm, 1, 1> {
+  Noted noted;
+};
+
+struct Noting {
+  template <class X, class Y>
+  auto fit(const Eigen::MatrixBase<X>& x, const Eigen::MatrixBase<Y>& y, const FitOptions& options = {}) const {
+    if constexpr (X::ColsAtCompileTime == 1 && Y::ColsAtCompileTime == 1) {
+      NotedMap map{Elm{.hidden_nodes = 2}.fit(x, y), {}};
+      map.noted.seed = options.seed;
+      for (Index i = 0; i < x.rows(); ++i) {
+        EXPECT_EQ(y(i, 0), 100 + x(i, 0));  // targets stay with their inputs
+        map.noted.rows.push_back(x(i, 0));
+        map.noted.weights.push_back(options.weights != nullptr ? (*options.weights)(i) : -1);
+      }
+      return map;
+    } else {
+      return Elm{}.fit(x, y, options);
+    }
+  }
+};
+
+TEST(Ensemble, DrawsRowsAndSeedsForEachMember) {
+  const Index n = 500;
+  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)),
+                                                 y = x.array() + 100;
+  const VectorX weights = x.array() + 1;
+  const auto noted = [&](const Ensemble<Noting>& recipe, const VectorX* q) {
+    std::vector<Noted> out;
+    const auto ensemble = recipe.fit(x, y, {.seed = 5, .weights = q});
+    for (const NotedMap& member : ensemble.members()) out.push_back(member.noted);
+    return out;
+  };
+  const auto distinct = [](const Noted& member) {
+    return std::set<double>(member.rows.begin(), member.rows.end()).size();
+  };
+
+  const auto bootstrap = noted({Noting{}, 20}, &weights);
+  ASSERT_EQ(bootstrap.size(), 20u);
+  double sum = 0;
+  for (std::size_t k = 0; k < 20; ++k) {
+    EXPECT_EQ(bootstrap[k].rows.size(), 500u);
+    // (1 - 1/n)^n of the rows are never drawn: 1/e
+    EXPECT_NEAR(static_cast<double>(distinct(bootstrap[k])) / 500, 0.632, 0.07);
+    for (std::size_t i = 0; i < 500; ++i) {
+      EXPECT_EQ(bootstrap[k].weights[i], bootstrap[k].rows[i] + 1);  // weights stay with their rows
+      sum += bootstrap[k].rows[i];
+    }
+    for (std::size_t l = 0; l < k; ++l) {
+      EXPECT_NE(bootstrap[k].seed, bootstrap[l].seed);
+      EXPECT_NE(bootstrap[k].rows, bootstrap[l].rows);
+    }
+  }
+  EXPECT_NEAR(sum / 10000, 249.5, 4 * 144.3 / 100);  // all rows alike
+
+  for (const Noted& member : noted({Noting{}, 4, 0.6, false}, nullptr)) {
+    EXPECT_EQ(member.rows.size(), 300u);
+    EXPECT_EQ(distinct(member), 300u);
+    EXPECT_EQ(member.weights[0], -1);
+  }
+  const auto all = noted({Noting{}, 2, 1, false}, nullptr);
+  EXPECT_EQ(distinct(all[0]), 500u);
+  EXPECT_EQ(all[0].rows, all[1].rows);
+  EXPECT_NE(all[0].seed, all[1].seed);
+}
+
+// What one random layer gets wrong another gets wrong otherwise.
+TEST(Ensemble, BeatsItsMembers) {
+  const Inputs x = inputs(150, 6), fresh = inputs(200, 7);
+  const Targets expected = targets(fresh);
+  const auto ensemble = Ensemble{Elm{.hidden_nodes = 40}, 20}.fit(x, targets(x, 3e-4), {.seed = 8});
+  double mean = 0;
+  for (const auto& member : ensemble.members()) mean += (member.predict(fresh) - expected).norm() / 20;
+  EXPECT_LT((ensemble.predict(fresh) - expected).norm(), 0.75 * mean);
+}
+
+// The spread of bootstrap fits of a linear model is the standard error of its predictions, as theory has it.
+TEST(Ensemble, TheSpreadIsTheStandardError) {
+  const Inputs x = inputs(200, 9), fresh = inputs(50, 10);
+  const TrigonometricRegression recipe{.max_degree = 1, .ridge = 1e-8};
+  Rng rng(11);
+  Targets y(200, 2);
+  y.col(0) = x.col(0).array().sin() + x.col(1).array().cos();
+  y.col(1) = x.col(2).array().sin();
+  for (auto& value : y.reshaped()) value += 0.1 * rng.normal();
+  const auto ensemble = Ensemble{recipe, 100}.fit(x, y, {.seed = 12});
+  const auto linear = recipe.fit(x, y);
+  double spread = 0, theory = 0;
+  for (Index i = 0; i < 50; ++i) {
+    const Vector3 at = fresh.row(i).transpose();
+    spread += ensemble.standard_deviation(at).squaredNorm();
+    theory += linear.standard_deviation(at).squaredNorm();
+  }
+  EXPECT_NEAR(std::sqrt(spread / theory), 1, 0.15);
+}
+
+TEST(Ensemble, TheObserverCountsMembersAndStopsThem) {
+  const Inputs x = inputs(40, 13);
+  const Targets y = targets(x);
+  const Ensemble recipe{Elm{.hidden_nodes = 3}, 6};
+  std::vector<Index> seen;
+  const auto watch = [&](const Progress& progress) { seen.push_back(progress.generation); };
+  const ThreadExecutor threads(2);
+  static_cast<void>(recipe.fit(x, y, {.executor = threads, .observer = watch}));
+  EXPECT_EQ(seen, (std::vector<Index>{1, 2, 3, 4, 5, 6}));
+  const auto stop = [](const Progress& progress) { return progress.generation < 2; };
+  const auto stopped = recipe.fit(x, y, {.observer = stop});
+  ASSERT_EQ(stopped.members().size(), 2u);
+  EXPECT_EQ(stopped.members()[1].theta(), recipe.fit(x, y).members()[1].theta());
+}
+
+TEST(EnsemblePredictor, DoesNotAllocate) {
+  const Inputs x = inputs(60, 14);
+  const auto ensemble = Ensemble{Elm{.hidden_nodes = 9}, 4}.fit(x, targets(x), {.seed = 1});
+  const Vector3 at(0.1, -0.2, 0.3);
+  EXPECT_EQ(vernier_test::allocations([&] {
+              vernier_test::keep(ensemble.predict(at));
+              vernier_test::keep(ensemble.derivative(at));
+              vernier_test::keep(ensemble.standard_deviation(at));
+            }),
+            0);
+  EXPECT_GT(vernier_test::allocations([&] { vernier_test::keep(ensemble.predict(x)); }), 0);
+}
+
+TEST(Ensemble, RefusesMisuseWithTheNumbers) {
+  const Inputs x = inputs(10, 15);
+  const Targets y = targets(x), fewer = y.topRows(9);
+  const auto says = [&](const Ensemble<Elm>& recipe, const VectorX* weights = nullptr) {
+    return complaint([&] { static_cast<void>(recipe.fit(x, y, {.weights = weights})); });
+  };
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  EXPECT_TRUE(has(says({Elm{}, 1}), "members is 1"));
+  EXPECT_TRUE(has(says({Elm{}, 5, 0}), "share is 0"));
+  EXPECT_TRUE(has(says({Elm{}, 5, 1.5}), "share is 1.5"));
+  EXPECT_TRUE(has(says({Elm{.hidden_nodes = 0}, 5}), "hidden_nodes is 0"));  // a member's own complaint
+  const VectorX nine = VectorX::Ones(9), zero = VectorX::Zero(10);
+  EXPECT_TRUE(has(says({Elm{}, 5}, &nine), "9 weights for 10 samples"));
+  EXPECT_TRUE(has(says({Elm{}, 5}, &zero), "weights go down to 0"));
+  EXPECT_TRUE(has(complaint([&] { static_cast<void>(Ensemble{Elm{}}.fit(x, fewer)); }), "9 rows of targets"));
+  EXPECT_THROW((EnsemblePredictor<ElmPredictor<3, 2>>({})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vernier

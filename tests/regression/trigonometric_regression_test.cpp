@@ -1,0 +1,358 @@
+// Products of sines and cosines: features, ridge, leave-one-out and spread against brute force; and an arm, exactly.
+
+#include "vernier/regression/trigonometric_regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "allocation_counter.hpp"
+#include "complaint.hpp"
+#include "laws.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+#include "vernier/testing/regressor_laws.hpp"
+
+namespace vernier {
+namespace {
+
+using testing::regressor_violations;
+using testing::RegressorLaws;
+using vernier_test::complaint;
+using vernier_test::no_violations;
+
+static_assert(Regressor<TrigonometricRegression> && UncertainPredictor<TrigonometricPredictor<6, 3>>);
+
+using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+Inputs inputs(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  Inputs x(n, 3);
+  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
+  return x;
+}
+
+Targets targets(const Inputs& x, double noise = 0) {
+  Rng rng(99);
+  Targets y(x.rows(), 2);
+  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
+  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
+  for (auto& value : y.reshaped()) value += noise * rng.normal();
+  return y;
+}
+
+VectorX some_weights(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  VectorX q(n);
+  for (auto& value : q) value = static_cast<double>(1 + rng.below(3));
+  return q;
+}
+
+/// One feature of one sample, in the words of the documentation; and how many angles it has.
+double feature(Index f, const Vector3& x, int* degree = nullptr) {
+  const std::array<Index, 3> digits{f / 9, f / 3 % 3, f % 3};
+  double product = 1;
+  if (degree != nullptr) *degree = 0;
+  for (int j = 0; j < 3; ++j) {
+    const Index digit = digits[static_cast<std::size_t>(j)];
+    if (digit == 1) product *= std::sin(x(j));
+    if (digit == 2) product *= std::cos(x(j));
+    if (degree != nullptr && digit != 0) ++*degree;
+  }
+  return product;
+}
+
+/// All of them, n x 27, and the ridge of each for a growth.
+MatrixX features(const Inputs& x) {
+  MatrixX phi(x.rows(), 27);
+  for (Index i = 0; i < x.rows(); ++i)
+    for (Index f = 0; f < 27; ++f) phi(i, f) = feature(f, x.row(i).transpose());
+  return phi;
+}
+VectorX penalties(double growth) {
+  VectorX out(27);
+  for (Index f = 0; f < 27; ++f) {
+    int degree = 0;
+    feature(f, Vector3::Zero(), &degree);
+    out(f) = degree == 0 ? 0 : std::pow(growth, degree);
+  }
+  return out;
+}
+
+TEST(TrigonometricRegression, KeepsTheLaws) {
+  const RegressorLaws laws{.uses_seed = false};
+  EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{}, laws)));
+  EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{.max_degree = 1}, laws)));
+  EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{.max_degree = 0}, laws)));
+  EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{.ridge = 1e-3, .growth = 1}, laws)));
+  EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{}, {.uses_seed = false, .samples = 12})));
+}
+
+TEST(TrigonometricPredictor, IsTheSumOfItsFeatures) {
+  Rng rng(1);
+  TrigonometricPredictor<3, 2>::Coefficients b(27, 2);
+  for (auto& value : b.reshaped()) value = rng.uniform(-1, 1);
+  const TrigonometricPredictor<3, 2> predictor(b, {});
+  const Inputs x = inputs(10, 2);
+  const MatrixX phi = features(x);
+  EXPECT_LT((predictor.predict(x) - phi * b).norm(), 1e-13);
+  for (Index i = 0; i < 10; ++i) {
+    const Vector3 at = x.row(i).transpose();
+    const auto both = predictor.predict_and_derivative(at);
+    EXPECT_EQ(both.first, predictor.predict(at));
+    EXPECT_EQ(both.second, predictor.derivative(at));
+    for (int j = 0; j < 3; ++j) {  // the derivative of a sine is the sine a quarter of a turn on
+      Vector3 quarter = at;
+      quarter(j) += std::acos(-1.0) / 2;
+      Eigen::Vector2d expected = Eigen::Vector2d::Zero();
+      const Index place = j == 0 ? 9 : j == 1 ? 3 : 1;
+      for (Index f = 0; f < 27; ++f)
+        if (f / place % 3 != 0) expected += feature(f, quarter) * b.row(f).transpose();
+      EXPECT_LT((both.second.col(j) - expected).norm(), 1e-13) << "input " << j;
+    }
+  }
+}
+
+/// Coefficients from the normal equations with the free mean among the unknowns.
+MatrixX dense(const MatrixX& phi, const MatrixX& y, const VectorX& q, const VectorX& ridge) {
+  const MatrixX gram = phi.transpose() * q.asDiagonal() * phi + MatrixX(ridge.asDiagonal());
+  return gram.ldlt().solve(phi.transpose() * q.asDiagonal() * y);
+}
+
+TEST(TrigonometricRegression, IsTheRidgeThatGrowsWithTheDegree) {
+  for (const Index n : {15, 26, 27, 28, 60}) {  // fewer samples than features, and more
+    const Inputs x = inputs(n, 3);
+    const Targets y = targets(x, 1e-4);
+    for (const bool weighted : {false, true})
+      for (const double growth : {0.5, 1.0, 3.0}) {
+        const VectorX q = weighted ? some_weights(n, 4) : VectorX(VectorX::Ones(n));
+        const double ridge = 1e-4;
+        const auto predictor =
+            TrigonometricRegression{.ridge = ridge, .growth = growth}.fit(x, y, {.weights = weighted ? &q : nullptr});
+        const MatrixX expected = dense(features(x), y, q, ridge * q.sum() * penalties(growth));
+        EXPECT_LT((predictor.coefficients() - expected).norm(), 1e-9 * expected.norm())
+            << n << " samples, growth " << growth;
+      }
+  }
+}
+
+TEST(TrigonometricRegression, TinyRidgesAreSolvedFromTheSamples) {
+  for (const Index n : {20, 200}) {
+    const Inputs x = inputs(n, 5);
+    const Targets y = targets(x, 1e-4);
+    MatrixX stacked(n + 27, 27), right = MatrixX::Zero(n + 27, 2);
+    for (const double ridge : {1e-15, 1e-9}) {
+      stacked << features(x), MatrixX((static_cast<double>(n) * ridge * penalties(2)).cwiseSqrt().asDiagonal());
+      right.topRows(n) = y;
+      const MatrixX expected = stacked.householderQr().solve(right);
+      EXPECT_LT((TrigonometricRegression{.ridge = ridge}.fit(x, y).predict(x) - features(x) * expected).norm(),
+                1e-8 * y.norm());
+    }
+  }
+}
+
+TEST(TrigonometricRegression, LeavesHighDegreesOut) {
+  const Inputs x = inputs(60, 6);
+  const auto predictor = TrigonometricRegression{.max_degree = 2, .ridge = 1e-6}.fit(x, targets(x));
+  for (Index f = 0; f < 27; ++f) {
+    int degree = 0;
+    feature(f, Vector3::Zero(), &degree);
+    EXPECT_EQ(predictor.coefficients().row(f).isZero(0), degree > 2) << f;
+  }
+  const auto mean = TrigonometricRegression{.max_degree = 0}.fit(x, targets(x));
+  EXPECT_LT((mean.predict(x).rowwise() - targets(x).colwise().mean()).norm(), 1e-14);
+}
+
+TEST(FeatureRidge, LeaveOneOutIsLeavingOneOut) {
+  for (const Index n : {12, 40})
+    for (const bool weighted : {false, true}) {
+      const Inputs x = inputs(n, 7);
+      const Targets y = targets(x, 1e-4);
+      VectorX q = weighted ? some_weights(n, 8) : VectorX(VectorX::Ones(n));
+      if (weighted) q(0) = 0.4;  // less than a unit: it goes whole
+      const MatrixX phi = features(x);
+      const detail::FeatureRidge path(phi.rightCols(26), y, weighted ? &q : nullptr);
+      const VectorX lambdas = (VectorX(4) << 1e-5, 1e-2, 10, std::numeric_limits<double>::infinity()).finished();
+      const VectorX errors = path.leave_one_out(lambdas);
+      for (Index l = 0; l < lambdas.size(); ++l) {
+        const bool mean = !std::isfinite(lambdas(l));
+        double sum = 0;
+        for (Index i = 0; i < n; ++i) {
+          VectorX rest = q;
+          rest(i) -= std::min(1.0, q(i));
+          const MatrixX b =
+              mean ? dense(phi.leftCols(1), y, rest, VectorX::Zero(1)) : dense(phi, y, rest, lambdas(l) * penalties(1));
+          sum += q(i) * (y.row(i) - phi.row(i).head(b.rows()) * b).squaredNorm();
+        }
+        EXPECT_NEAR(errors(l), sum / q.sum(), 1e-6 * errors(l)) << n << " samples, lambda " << lambdas(l);
+      }
+    }
+}
+
+TEST(FeatureRidge, TheBestFitHasTheLeastError) {
+  const Inputs x = inputs(40, 9);
+  const Targets y = targets(x, 3e-4);
+  const detail::FeatureRidge path(features(x).rightCols(26), y, nullptr);
+  const double best = path.best_fit().lambda;
+  ASSERT_TRUE(std::isfinite(best));
+  const VectorX around = (VectorX(5) << best / 10, best / 3.16, best, best * 3.16, best * 10).finished();
+  Index least = 0;
+  path.leave_one_out(around).minCoeff(&least);
+  EXPECT_EQ(least, 2);
+}
+
+// Nothing but noise: the mean alone.
+TEST(TrigonometricRegression, DoesNotFollowNoise) {
+  const Inputs x = inputs(40, 10), fresh = inputs(200, 11);
+  Rng rng(12);
+  Targets noise(40, 2);
+  for (auto& value : noise.reshaped()) value = 1e-3 * rng.normal() + 0.3;
+  const auto excess = [&](const auto& predictor) {
+    return std::sqrt((predictor.predict(fresh).array() - 0.3).square().mean());
+  };
+  EXPECT_LT(excess(TrigonometricRegression{}.fit(x, noise)), 5e-4);
+  EXPECT_GT(excess(TrigonometricRegression{.ridge = 1e-12}.fit(x, noise)), 1e-3);
+}
+
+TEST(TrigonometricRegression, AWeightIsSoManySamples) {
+  const Index n = 30;
+  const Inputs x = inputs(n, 13), fresh = inputs(20, 14);
+  const Targets y = targets(x, 1e-4);
+  const VectorX q = some_weights(n, 15);
+  Inputs repeated_x(static_cast<Index>(q.sum()), 3);
+  Targets repeated_y(repeated_x.rows(), 2);
+  for (Index i = 0, row = 0; i < n; ++i)
+    for (int k = 0; k < static_cast<int>(q(i)); ++k, ++row) {
+      repeated_x.row(row) = x.row(i);
+      repeated_y.row(row) = y.row(i);
+    }
+  for (const auto& recipe :
+       {TrigonometricRegression{}, TrigonometricRegression{.max_degree = 1}, TrigonometricRegression{.ridge = 1e-5}}) {
+    const auto weighted = recipe.fit(x, y, {.weights = &q}), repeated = recipe.fit(repeated_x, repeated_y);
+    EXPECT_LT((weighted.predict(fresh) - repeated.predict(fresh)).norm(), 1e-10);
+    EXPECT_GT((weighted.predict(fresh) - recipe.fit(x, y).predict(fresh)).norm(), 1e-6);
+    for (Index i = 0; i < 20; ++i) {
+      const Vector3 at = fresh.row(i).transpose();
+      EXPECT_LT((weighted.standard_deviation(at) - repeated.standard_deviation(at)).norm(),
+                1e-7 * weighted.standard_deviation(at).norm());
+    }
+  }
+}
+
+// The textbook: covariance s^2 (Phi'Q Phi + ridge)^-1, the mean among the unknowns; s^2 from the residuals.
+TEST(TrigonometricPredictor, StandardDeviationIsTheBayesianOne) {
+  for (const Index n : {15, 60})
+    for (const double ridge : {1e-2, 1e-6, 1e-14}) {
+      if (n < 27 && ridge < 1e-12) continue;  // the dense inverse knows nothing there
+      const Inputs x = inputs(n, 16), fresh = inputs(10, 17);
+      const Targets y = targets(x, 1e-4);
+      const VectorX q = some_weights(n, 18);
+      const auto predictor = TrigonometricRegression{.ridge = ridge}.fit(x, y, {.weights = &q});
+      const MatrixX phi = features(x), at = features(fresh);
+      const VectorX penalty = ridge * q.sum() * penalties(2);
+      const MatrixX gram = phi.transpose() * q.asDiagonal() * phi;
+      const MatrixX inverse = (gram + MatrixX(penalty.asDiagonal())).ldlt().solve(MatrixX::Identity(27, 27));
+      const double used = (inverse * gram).trace();
+      const MatrixX residual = y - phi * dense(phi, y, q, penalty);
+      for (int o = 0; o < 2; ++o) {
+        const double noise = std::sqrt(q.dot(residual.col(o).cwiseAbs2()) / (q.sum() - used));
+        EXPECT_NEAR(predictor.noise()(o), noise, 1e-5 * noise);
+        for (Index i = 0; i < 10; ++i) {
+          const double expected = noise * std::sqrt((at.row(i) * inverse).dot(at.row(i)));
+          EXPECT_NEAR(predictor.standard_deviation(Vector3(fresh.row(i).transpose()))(o), expected, 1e-4 * expected)
+              << n << " samples, ridge " << ridge;
+        }
+      }
+    }
+}
+
+TEST(TrigonometricPredictor, DoesNotAllocate) {
+  const Inputs x = inputs(60, 19);
+  const auto predictor = TrigonometricRegression{}.fit(x, targets(x, 1e-4));
+  const Vector3 at(0.1, -0.2, 0.3);
+  EXPECT_EQ(vernier_test::allocations([&] {
+              vernier_test::keep(predictor.predict(at));
+              vernier_test::keep(predictor.derivative(at));
+              vernier_test::keep(predictor.standard_deviation(at));
+            }),
+            0);
+  EXPECT_GT(vernier_test::allocations([&] { vernier_test::keep(predictor.predict(x)); }), 0);
+}
+
+/// Position errors of an arm with geometric errors at the angles its nominal model believes in.
+PointRows errors_of(const DhChain<6>& nominal, const DhChain<6>& actual, const JointRows<6>& joints) {
+  PointRows out(joints.rows(), 3);
+  for (Index i = 0; i < joints.rows(); ++i) {
+    const JointVector<6> q = joints.row(i).transpose();
+    out.row(i) = (actual.position(q) - nominal.position(q)).transpose();
+  }
+  return out;
+}
+
+// Errors of geometry are exactly linear in the features: 1,000 poses without noise leave less than a nanometre of the
+// millimetres at any fresh pose; and 100 poses leave what the spread says.
+TEST(TrigonometricRegression, KnowsAnArmExactly) {
+  const DhChain<6> nominal = robots::abb_irb120().chain, actual = with_geometric_errors(nominal, {}, 1);
+  const OperatingRegion<6> region = abb_irb120_operating_region();
+  const JointRows<6> joints = region.sample(nominal, 1000, 2), fresh = region.sample(nominal, 300, 3);
+  const PointRows y = errors_of(nominal, actual, joints), expected = errors_of(nominal, actual, fresh);
+  EXPECT_GT(expected.rowwise().norm().mean(), 1e-3);
+  const auto exact = TrigonometricRegression{}.fit(joints, y);
+  EXPECT_LT((exact.predict(fresh) - expected).rowwise().norm().maxCoeff(), 1e-12);
+
+  const JointRows<6> few = joints.topRows(100);
+  const PointRows few_y = y.topRows(100);
+  const auto rough = TrigonometricRegression{}.fit(few, few_y);
+  const double left = std::sqrt((rough.predict(fresh) - expected).squaredNorm() / 300);
+  EXPECT_LT(left, 0.4 * std::sqrt(expected.squaredNorm() / 300));
+  double believed = 0;
+  for (Index i = 0; i < 300; ++i)
+    believed += rough.standard_deviation(JointVector<6>(fresh.row(i).transpose())).squaredNorm() / 300;
+  EXPECT_NEAR(std::sqrt(believed), left, 0.3 * left);
+}
+
+TEST(TrigonometricRegression, SmallestProblems) {
+  const Inputs one = inputs(1, 20);
+  const Targets y = targets(one);
+  for (const auto& recipe : {TrigonometricRegression{}, TrigonometricRegression{.ridge = 1e-4}}) {
+    const auto predictor = recipe.fit(one, y);
+    EXPECT_LT((predictor.predict(one) - y).norm(), 1e-15);
+    EXPECT_TRUE(predictor.standard_deviation(Vector3(1, 2, 3)).allFinite());
+  }
+  Inputs constant = inputs(40, 21);
+  constant.col(1).setConstant(0.4);
+  const Targets level = Targets::Constant(40, 2, 7);
+  EXPECT_LT((TrigonometricRegression{}.fit(constant, level).predict(constant) - level).norm(), 1e-12);
+  const Targets varied = targets(constant);
+  EXPECT_LT((TrigonometricRegression{}.fit(constant, varied).predict(constant) - varied).norm(), 1e-3);
+  const Inputs same = one.replicate(20, 1);
+  const Targets seen = y.replicate(20, 1);
+  EXPECT_LT((TrigonometricRegression{}.fit(same, seen).predict(same) - seen).norm(), 1e-14);
+  EXPECT_LT((TrigonometricRegression{.ridge = 1e-6}.fit(same, seen).predict(same) - seen).norm(), 1e-14);
+}
+
+TEST(TrigonometricRegression, RefusesMisuseWithTheNumbers) {
+  const Inputs x = inputs(10, 22);
+  const Targets y = targets(x);
+  const auto says = [&](const TrigonometricRegression& recipe, const VectorX* weights = nullptr) {
+    return complaint([&] { static_cast<void>(recipe.fit(x, y, {.weights = weights})); });
+  };
+  EXPECT_NE(says({.max_degree = -1}).find("max_degree is -1"), std::string::npos);
+  EXPECT_NE(says({.ridge = 0}).find("ridge is 0"), std::string::npos);
+  EXPECT_NE(says({.ridge = -1}).find("ridge is -1"), std::string::npos);
+  EXPECT_NE(says({.growth = 0}).find("growth is 0"), std::string::npos);
+  const VectorX nine = VectorX::Ones(9), negative = -VectorX::Ones(10);
+  EXPECT_NE(says({}, &nine).find("9 weights for 10 samples"), std::string::npos);
+  EXPECT_NE(says({}, &negative).find("down to -1"), std::string::npos);
+  EXPECT_NE(complaint([&] {
+              static_cast<void>(TrigonometricRegression{}.fit(Inputs(0, 3), Targets(0, 2)));
+            }).find("no samples"),
+            std::string::npos);
+  EXPECT_THROW((TrigonometricPredictor<3, 2>(MatrixX::Zero(26, 2), {})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -81,6 +81,12 @@ TEST(MetaheuristicLaws, GeneticAlgorithmsOtherOperators) {
   }
 }
 
+TEST(MetaheuristicLaws, TruncatingGeneticAlgorithm) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(
+      RealGeneticAlgorithm{.individuals = 9, .generations = 20, .elites = 0, .survival = Survival::best_of_both},
+      true)));
+}
+
 TEST(MetaheuristicLaws, Spso2011) {
   EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 10, .iterations = 20}, true)));
   EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 1, .iterations = 20}, true)));

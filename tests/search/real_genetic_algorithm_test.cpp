@@ -203,6 +203,40 @@ TEST(RealGeneticAlgorithm, ElitesSurvive) {
   }
 }
 
+// Values 1 5 3 and 4 2 3: the best three are 1, 2 and the old 3.
+TEST(RealGeneticAlgorithm, BestOfBothByHand) {
+  MatrixX genes(1, 3), children(1, 3);
+  genes << 10, 50, 30;
+  children << 41, 21, 31;
+  VectorX fitness = Eigen::Vector3d(1, 5, 3);
+  keep_best_of_both(genes, fitness, children, Eigen::Vector3d(4, 2, 3));
+  EXPECT_EQ(fitness, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(genes, Eigen::RowVector3d(10, 21, 30));
+}
+
+// With truncation no value of a place in the ranking ever rises; with elites alone those behind them do.
+TEST(RealGeneticAlgorithm, WhoSurvives) {
+  for (const auto survival : {Survival::elites, Survival::best_of_both}) {
+    const Ga ga{.individuals = 12, .generations = 30, .mutations = 6, .survival = survival};
+    const Box box = Box::cube(6, -1, 1);
+    const auto evaluate = [](const MatrixX& population, VectorX& fitness) {
+      fitness = population.colwise().squaredNorm().transpose();
+    };
+    Ga::State s = ga.start(box, 8, evaluate);
+    bool rises = false;
+    while (!ga.done(s)) {
+      VectorX before = s.fitness;
+      ga.step(s, box, evaluate);
+      VectorX after = s.fitness;
+      std::sort(before.begin(), before.end());
+      std::sort(after.begin(), after.end());
+      rises = rises || (after.array() > before.array()).any();
+      EXPECT_LT((s.fitness - s.positions.colwise().squaredNorm().transpose()).cwiseAbs().maxCoeff(), 1e-15);
+    }
+    EXPECT_EQ(rises, survival == Survival::elites);
+  }
+}
+
 TEST(RealGeneticAlgorithm, RefusesUnusableOptions) {
   const auto said = [](const Ga& ga) {
     return vernier_test::complaint([&] { ga.start(Box::cube(2, 0, 1), 1, evaluate_sum); });

@@ -71,6 +71,47 @@ void for_each_hit(double count, double probability, Rng& rng, Hit&& hit) {
   }
 }
 
+/// The first `count` places of a ranking by fitness, the best first; equals in their order.
+inline std::vector<Index> best_of(const VectorX& fitness, Index count) {
+  std::vector<Index> order(static_cast<std::size_t>(fitness.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::partial_sort(order.begin(), order.begin() + count, order.end(),
+                    [&](Index a, Index b) { return fitness(a) != fitness(b) ? fitness(a) < fitness(b) : a < b; });
+  order.resize(static_cast<std::size_t>(count));
+  return order;
+}
+
+/// The elites, then the children.
+template <class Genes>
+void replace_all_but(Index elites, Genes& genes, VectorX& fitness, const Genes& children, const VectorX& values) {
+  Genes survivors(genes.rows(), genes.cols());
+  VectorX kept(genes.cols());
+  Index k = 0;
+  for (const Index elite : best_of(fitness, elites)) {
+    survivors.col(k) = genes.col(elite);
+    kept(k++) = fitness(elite);
+  }
+  survivors.rightCols(children.cols()) = children;
+  kept.tail(children.cols()) = values;
+  genes.swap(survivors);
+  fitness.swap(kept);
+}
+
+/// The best of old and new individuals, as many as there were; an old one where they are equal.
+template <class Genes>
+void keep_best_of_both(Genes& genes, VectorX& fitness, const Genes& children, const VectorX& values) {
+  const Index n = genes.cols();
+  Genes all(genes.rows(), n + children.cols());
+  all << genes, children;
+  VectorX joined(all.cols());
+  joined << fitness, values;
+  Index k = 0;
+  for (const Index survivor : best_of(joined, n)) {
+    genes.col(k) = all.col(survivor);
+    fitness(k++) = joined(survivor);
+  }
+}
+
 /// One generation of a genetic algorithm: children of chosen parents in pairs, crossed and mutated, take the place of
 /// all but the elites.
 /// @param ga     shows `selection`, `tournament`, `crossover_probability` and `elites`
@@ -79,9 +120,10 @@ void for_each_hit(double count, double probability, Rng& rng, Hit&& hit) {
 /// @param cross  `cross(children, k)` crosses children k and k + 1
 /// @param mutate `mutate(children)`
 /// @param decode the points that genes stand for
+/// @param best_survive whether instead the best of old and new ones survive
 template <class Algorithm, class State, class Genes, class Cross, class Mutate, class Decode>
 void next_generation(const Algorithm& ga, State& s, Genes& genes, Cross&& cross, Mutate&& mutate, Decode&& decode,
-                     Evaluate evaluate) {
+                     Evaluate evaluate, bool best_survive = false) {
   const Index n = genes.cols(), elites = ga.elites, count = n - elites;
   const ParentChoice parent(ga.selection, ga.tournament, s.fitness);
   Genes children(genes.rows(), count);
@@ -98,21 +140,11 @@ void next_generation(const Algorithm& ga, State& s, Genes& genes, Cross&& cross,
   evaluate(points, values);
   s.keep_best(points, values);
 
-  std::vector<Index> order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::partial_sort(order.begin(), order.begin() + elites, order.end(), [&](Index a, Index b) {
-    return s.fitness(a) != s.fitness(b) ? s.fitness(a) < s.fitness(b) : a < b;
-  });
-  Genes survivors(genes.rows(), n);
-  VectorX fitness(n);
-  for (Index k = 0; k < elites; ++k) {
-    survivors.col(k) = genes.col(order[static_cast<std::size_t>(k)]);
-    fitness(k) = s.fitness(order[static_cast<std::size_t>(k)]);
+  if (best_survive) {
+    keep_best_of_both(genes, s.fitness, children, values);
+  } else {
+    replace_all_but(elites, genes, s.fitness, children, values);
   }
-  survivors.rightCols(count) = children;
-  fitness.tail(count) = values;
-  genes.swap(survivors);
-  s.fitness.swap(fitness);
   ++s.generation;
 }
 

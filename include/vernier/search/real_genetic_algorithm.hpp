@@ -29,6 +29,12 @@ enum class RealMutation {
   gaussian,    ///< a normal step, mirrored at the bounds
 };
 
+/// Who lives on after a generation.
+enum class Survival {
+  elites,        ///< the elites and all children
+  best_of_both,  ///< the best of parents and children, as many as there were
+};
+
 /// Real-coded genetic algorithm: pairs of parents are crossed with `crossover_probability`, each variable of a child
 /// mutates with probability `mutations / dimension`, the `elites` best survive unchanged (and are not evaluated again).
 /// Nothing outside the box is evaluated.
@@ -39,13 +45,15 @@ struct RealGeneticAlgorithm {
   double crossover_probability = 0.9;  ///< per pair
   double mutations = 1;                ///< expected number of variables that mutate in a child
   int tournament = 2;                  ///< 1 selects at random
-  int elites = 1;                      ///< below `individuals`
+  int elites = 1;                      ///< below `individuals`; that many fewer children are made
   /// How pairs are crossed.
   RealCrossover crossover = RealCrossover::sbx;
   /// How variables mutate.
   RealMutation mutation = RealMutation::polynomial;
   /// How parents are chosen.
   ParentSelection selection = ParentSelection::tournament;
+  /// Who lives on.
+  Survival survival = Survival::elites;
   double crossover_index = 15;   ///< eta of SBX: the larger, the closer children are to their parents
   double mutation_index = 20;    ///< eta of the polynomial mutation
   double blend = 0.5;            ///< alpha of BLX
@@ -96,7 +104,7 @@ struct RealGeneticAlgorithm {
     };
     next_generation(
         *this, s, s.positions, [&](MatrixX& children, Index k) { cross(children, k, box, s.rng); }, mutated,
-        [](const MatrixX& points) -> const MatrixX& { return points; }, evaluate);
+        [](const MatrixX& points) -> const MatrixX& { return points; }, evaluate, survival == Survival::best_of_both);
   }
 
   /// Whether all generations of the schedule were stepped.

@@ -7,9 +7,15 @@
 #include <numbers>
 #include <vector>
 
+#include "vernier/search/cma_es.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/l_shade.hpp"
 #include "vernier/search/minimize.hpp"
 #include "vernier/search/pso.hpp"
+#include "vernier/search/random_search.hpp"
+#include "vernier/search/real_genetic_algorithm.hpp"
+#include "vernier/search/restarted.hpp"
+#include "vernier/search/spso2011.hpp"
 
 namespace vernier {
 namespace {
@@ -67,10 +73,11 @@ double median_of_random_sampling(const F& objective, const Box& box, Index budge
 }
 
 struct Targets {
-  double pso, ga;
+  double pso, ga, constriction, ring, spso, real_ga, de, l_shade, cma;
 };
 
-/// 40 particles or 41 individuals (one elite is not evaluated again), 200 generations: some 8,040 evaluations. Each
+/// 40 particles or 41 individuals (one elite is not evaluated again), 200 generations: some 8,040 evaluations, for
+/// L-SHADE and CMA-ES in populations of their own size. Each
 /// median must stay below its target; random sampling of that size, a swarm without its common pull and a GA without
 /// selection must miss it clearly.
 template <class F>
@@ -88,14 +95,84 @@ void expect_medians(const F& objective, const Box& box, const Targets& targets) 
   EXPECT_LT(median_of(pso, objective, box, budget), targets.pso);
   EXPECT_LT(median_of(clamped, objective, box, budget), targets.pso);
   EXPECT_LT(median_of(ga, objective, box, budget), targets.ga);
-  EXPECT_GT(median_of_random_sampling(objective, box, budget), 2 * std::max(targets.pso, targets.ga));
+  const double random = median_of_random_sampling(objective, box, budget);
+  EXPECT_GT(random, 2 * std::max(targets.pso, targets.ga));
+  EXPECT_NEAR(median_of(RandomSearch{.individuals = 40, .generations = 200}, objective, box, 8040) / random, 1, 0.5);
+
+  Pso constriction = Pso::constriction();
+  constriction.particles = 40;
+  constriction.iterations = 200;
+  EXPECT_LT(median_of(constriction, objective, box, budget), targets.constriction);
+  for (const Neighbourhood neighbourhood : {Neighbourhood::ring, Neighbourhood::von_neumann}) {
+    Pso local = constriction;
+    local.neighbourhood = neighbourhood;
+    local.positions = PositionRule::reflected;
+    EXPECT_LT(median_of(local, objective, box, budget), targets.ring);
+  }
+  EXPECT_LT(median_of(Spso2011{.iterations = 200}, objective, box, budget), targets.spso);
+  EXPECT_LT(median_of(RealGeneticAlgorithm{.individuals = 41, .generations = 200}, objective, box, budget),
+            targets.real_ga);
+  EXPECT_LT(median_of(DifferentialEvolution{.individuals = 40, .generations = 200}, objective, box, budget),
+            targets.de);
+  EXPECT_LT(median_of(LShade{.max_evaluations = 8040}, objective, box, budget), targets.l_shade);
+  // a run may converge before the budget is spent
+  EXPECT_LT(median([&](std::uint64_t seed) {
+              return minimize(CmaEs{.restarts = 9}, objective, box, {.max_evaluations = budget}, seed).best_fitness;
+            }),
+            targets.cma);
   EXPECT_GT(median_of(unsocial, objective, box, budget), 2 * targets.pso);
   EXPECT_GT(median_of(unselective, objective, box, budget), 2 * targets.ga);
 }
 
-TEST(Medians, SphereOfTenDimensions) { expect_medians(sphere, Box::cube(10, -5, 5), {1e-4, 1.6}); }
-TEST(Medians, RosenbrockOfFourDimensions) { expect_medians(rosenbrock, Box::cube(4, -5, 5), {1, 6}); }
-TEST(Medians, RastriginOfSixDimensions) { expect_medians(rastrigin, Box::cube(6, -5.12, 5.12), {4, 8}); }
+TEST(Medians, SphereOfTenDimensions) {
+  expect_medians(sphere, Box::cube(10, -5, 5),
+                 {.pso = 1e-4,
+                  .ga = 1.6,
+                  .constriction = 1e-7,
+                  .ring = 1e-3,
+                  .spso = 1e-8,
+                  .real_ga = 0.02,
+                  .de = 1e-6,
+                  .l_shade = 1e-5,
+                  .cma = 1e-12});
+}
+TEST(Medians, RosenbrockOfFourDimensions) {
+  expect_medians(rosenbrock, Box::cube(4, -5, 5),
+                 {.pso = 1,
+                  .ga = 6,
+                  .constriction = 1,
+                  .ring = 1,
+                  .spso = 0.5,
+                  .real_ga = 2,
+                  .de = 0.2,
+                  .l_shade = 1e-12,
+                  .cma = 1e-12});
+}
+TEST(Medians, RastriginOfSixDimensions) {
+  expect_medians(rastrigin, Box::cube(6, -5.12, 5.12),
+                 {.pso = 4,
+                  .ga = 8,
+                  .constriction = 4,
+                  .ring = 4,
+                  .spso = 7,
+                  .real_ga = 0.5,
+                  .de = 11,
+                  .l_shade = 1e-3,
+                  .cma = 5});
+}
+
+// Restarts pay where one run ends in a local minimum: several short runs of CMA-ES against a single one.
+TEST(Medians, RestartsPay) {
+  const Box box = Box::cube(6, -5.12, 5.12);
+  const auto found = [&](const auto& algorithm) {
+    return median([&](std::uint64_t seed) {
+      return minimize(algorithm, rastrigin, box, {.max_evaluations = 20000}, seed).best_fitness;
+    });
+  };
+  const double once = found(CmaEs{.generations = 3000});
+  EXPECT_LT(found(Restarted{CmaEs{.generations = 3000}, 50}), 0.7 * once);
+  EXPECT_LT(found(CmaEs{.generations = 3000, .restarts = 9}), 0.5 * once);
+}
 
 }  // namespace
 }  // namespace vernier

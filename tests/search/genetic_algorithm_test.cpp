@@ -163,6 +163,61 @@ TEST(GeneticAlgorithm, TournamentsPreferTheBetter) {
   }
 }
 
+// Values 0 .. 19: rank k weighs 19 - k of 190 in all; the worst is never a parent, nor is what is not finite.
+TEST(GeneticAlgorithm, RouletteTurnsInProportion) {
+  VectorX fitness = VectorX::LinSpaced(21, 0, 20);
+  fitness(20) = std::numeric_limits<double>::infinity();
+  const ParentChoice parent(ParentSelection::roulette, 2, fitness);
+  Rng rng(4);
+  constexpr int draws = 100000;
+  std::array<int, 21> hits{};
+  for (int i = 0; i < draws; ++i) ++hits[static_cast<std::size_t>(parent(rng))];
+  for (std::size_t k = 0; k < 20; ++k) {
+    const double share = (19 - static_cast<double>(k)) / 190;
+    EXPECT_NEAR(hits[k] / static_cast<double>(draws), share, 4 * std::sqrt(share * (1 - share) / draws)) << k;
+  }
+  EXPECT_EQ(hits[19] + hits[20], 0);
+
+  // nothing to tell them apart: all alike
+  const VectorX flat = VectorX::Constant(10, 3), lost = VectorX::Constant(10, fitness(20));
+  for (const VectorX* values : {&flat, &lost}) {
+    const ParentChoice any(ParentSelection::roulette, 5, *values);
+    std::array<int, 10> counts{};
+    for (int i = 0; i < draws; ++i) ++counts[static_cast<std::size_t>(any(rng))];
+    for (const int count : counts) EXPECT_NEAR(count, draws / 10, 4 * std::sqrt(0.09 * draws));
+  }
+}
+
+// Every bit of a pair comes from one parent, its opposite from the other, half of them each way and one as free as the
+// other.
+TEST(GeneticAlgorithm, UniformCrossoverMixesEveryBit) {
+  const GeneticAlgorithm ga{.individuals = 100,
+                            .generations = 1,
+                            .crossover_probability = 1,
+                            .mutation_probability = 0,
+                            .tournament = 1,
+                            .elites = 0,
+                            .crossover = BitCrossover::uniform};
+  std::array<int, 10> ones{};
+  int pairs = 0, equal_neighbours = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    GeneticAlgorithm::State s = uniform_state(ga, 2, 0, seed);
+    s.codes.rightCols(50).setConstant(0b1111111111);
+    ga.step(s, Box::cube(2, 0, 1), evaluate_sum);
+    for (Index k = 0; k < 100; k += 2) {
+      const unsigned a = s.codes(0, k), b = s.codes(0, k + 1);
+      if (a == b) continue;  // like parents
+      ASSERT_EQ(a ^ b, 0b1111111111u);
+      ++pairs;
+      for (unsigned bit = 0; bit < 10; ++bit) ones[bit] += (a >> bit) & 1u;
+      for (unsigned bit = 0; bit < 9; ++bit) equal_neighbours += ((a >> bit) & 1u) == ((a >> (bit + 1)) & 1u);
+    }
+  }
+  ASSERT_GT(pairs, 2000);
+  for (const int count : ones) EXPECT_NEAR(count, pairs / 2.0, 4 * std::sqrt(pairs / 4.0));
+  EXPECT_NEAR(equal_neighbours, 9 * pairs / 2.0, 4 * std::sqrt(9 * pairs / 4.0));
+}
+
 // Parents 0000000000 and 1111111111 in equal parts: a pair of unlike parents, every second one, exchanges bits with the
 // stated probability, and then a cut at 0 (1 of 10) changes nothing that can be seen.
 TEST(GeneticAlgorithm, CrossesAtItsRate) {

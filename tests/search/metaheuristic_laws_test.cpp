@@ -7,8 +7,14 @@
 #include <memory>
 
 #include "laws.hpp"
+#include "vernier/search/cma_es.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/l_shade.hpp"
 #include "vernier/search/pso.hpp"
+#include "vernier/search/random_search.hpp"
+#include "vernier/search/real_genetic_algorithm.hpp"
+#include "vernier/search/restarted.hpp"
+#include "vernier/search/spso2011.hpp"
 
 namespace vernier {
 namespace {
@@ -21,6 +27,18 @@ TEST(MetaheuristicLaws, Pso) {
   EXPECT_TRUE(no_violations(metaheuristic_violations(vernier::Pso{.particles = 10, .iterations = 20}, false)));
   EXPECT_TRUE(no_violations(metaheuristic_violations(
       vernier::Pso{.particles = 10, .iterations = 20, .positions = PositionRule::clamped}, true)));
+  EXPECT_TRUE(no_violations(metaheuristic_violations(
+      vernier::Pso{.particles = 10, .iterations = 20, .velocity_limit = 9, .positions = PositionRule::reflected},
+      true)));
+  for (const Neighbourhood neighbourhood : {Neighbourhood::ring, Neighbourhood::von_neumann}) {
+    vernier::Pso pso = vernier::Pso::constriction();
+    pso.iterations = 20;
+    pso.neighbourhood = neighbourhood;
+    for (const int particles : {1, 2, 7, 12}) {
+      pso.particles = particles;
+      EXPECT_TRUE(no_violations(metaheuristic_violations(pso, true))) << particles;
+    }
+  }
   EXPECT_TRUE(no_violations(metaheuristic_violations(vernier::Pso{.particles = 1, .iterations = 5}, false)));
   EXPECT_TRUE(no_violations(metaheuristic_violations(vernier::Pso{.particles = 3, .iterations = 0}, true)));
 }
@@ -42,6 +60,75 @@ TEST(MetaheuristicLaws, GeneticAlgorithm) {
   EXPECT_TRUE(no_violations(metaheuristic_violations(Ga{.individuals = 8, .generations = 20, .bits = 1}, true)));
 }
 
+TEST(MetaheuristicLaws, GeneticAlgorithmsOtherOperators) {
+  using Ga = vernier::GeneticAlgorithm;
+  using Real = vernier::RealGeneticAlgorithm;
+  for (const auto selection : {ParentSelection::tournament, ParentSelection::roulette}) {
+    EXPECT_TRUE(no_violations(metaheuristic_violations(
+        Ga{.individuals = 11, .generations = 20, .crossover = BitCrossover::uniform, .selection = selection}, true)));
+    for (const auto crossover :
+         {RealCrossover::sbx, RealCrossover::blx, RealCrossover::one_point, RealCrossover::uniform})
+      for (const auto mutation : {RealMutation::polynomial, RealMutation::gaussian})
+        EXPECT_TRUE(no_violations(metaheuristic_violations(Real{.individuals = 10,
+                                                                .generations = 20,
+                                                                .mutations = 3,
+                                                                .elites = 2,
+                                                                .crossover = crossover,
+                                                                .mutation = mutation,
+                                                                .selection = selection,
+                                                                .mutation_sigma = 2},
+                                                           true)));
+  }
+}
+
+TEST(MetaheuristicLaws, TruncatingGeneticAlgorithm) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(
+      RealGeneticAlgorithm{.individuals = 9, .generations = 20, .elites = 0, .survival = Survival::best_of_both},
+      true)));
+}
+
+TEST(MetaheuristicLaws, Spso2011) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 10, .iterations = 20}, true)));
+  EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 1, .iterations = 20}, true)));
+}
+
+TEST(MetaheuristicLaws, DifferentialEvolution) {
+  for (const auto base : {DifferentialBase::random, DifferentialBase::best})
+    for (const int individuals : {4, 15})
+      EXPECT_TRUE(no_violations(metaheuristic_violations(
+          DifferentialEvolution{.individuals = individuals, .generations = 20, .weight = 0.9, .base = base}, true)));
+}
+
+// Budgets that end within the law suite's twelve generations and beyond; populations shrink with every generation.
+TEST(MetaheuristicLaws, LShade) {
+  for (const Index budget : {72, 73, 300, 3000})
+    EXPECT_TRUE(no_violations(metaheuristic_violations(LShade{.max_evaluations = budget}, true))) << budget;
+  EXPECT_TRUE(no_violations(metaheuristic_violations(
+      LShade{.max_evaluations = 120, .individuals_per_dimension = 3, .archive_rate = 0}, true)));
+}
+
+// With coarse tolerances several runs fit in, each with a larger population.
+TEST(MetaheuristicLaws, CmaEs) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.generations = 20}, true)));
+  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.individuals = 2, .generations = 20}, true)));
+  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.restarts = 4, .tolerance_x = 0.28}, true)));
+  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.restarts = 1, .growth = 3, .tolerance_x = 0.25}, true)));
+}
+
+TEST(MetaheuristicLaws, RandomSearch) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(RandomSearch{.individuals = 7, .generations = 20}, true)));
+}
+
+TEST(MetaheuristicLaws, Restarted) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(Restarted{vernier::Pso{.particles = 5, .iterations = 3}}, false)));
+  EXPECT_TRUE(no_violations(metaheuristic_violations(
+      Restarted{vernier::GeneticAlgorithm{.individuals = 9, .generations = 2, .elites = 3}, 3}, true)));
+  EXPECT_TRUE(no_violations(
+      metaheuristic_violations(Restarted{LShade{.max_evaluations = 50, .individuals_per_dimension = 3}, 5}, true)));
+  EXPECT_TRUE(
+      no_violations(metaheuristic_violations(Restarted{RandomSearch{.individuals = 7, .generations = 0}}, true)));
+}
+
 enum class Fault {
   none,
   leaves_box,
@@ -54,7 +141,7 @@ enum class Fault {
 };
 
 /// Random search, right or with one fault.
-struct RandomSearch {
+struct PlantedSearch {
   Fault fault = Fault::none;
   Index points = 6;
   mutable Rng hidden{9};
@@ -99,16 +186,20 @@ struct RandomSearch {
   }
 };
 
-static_assert(Metaheuristic<vernier::Pso> && Metaheuristic<vernier::GeneticAlgorithm> && Metaheuristic<RandomSearch>);
+static_assert(Metaheuristic<Spso2011> && Metaheuristic<RealGeneticAlgorithm> && Metaheuristic<DifferentialEvolution> &&
+              Metaheuristic<LShade> && Metaheuristic<CmaEs> && Metaheuristic<RandomSearch> &&
+              Metaheuristic<Restarted<Restarted<CmaEs>>>);
+static_assert(ListedState<Restarted<CmaEs>::State> && ListedState<vernier::GeneticAlgorithm::State>);
+static_assert(Metaheuristic<vernier::Pso> && Metaheuristic<vernier::GeneticAlgorithm> && Metaheuristic<PlantedSearch>);
 
 /// Near misses of the concept.
 struct NoState {
   void step(int&, const Box&, Evaluate) const {}
 };
-struct StepNotConst : RandomSearch {
-  void step(State& s, const Box& box, Evaluate evaluate) { RandomSearch::step(s, box, evaluate); }
+struct StepNotConst : PlantedSearch {
+  void step(State& s, const Box& box, Evaluate evaluate) { PlantedSearch::step(s, box, evaluate); }
 };
-struct StateWithoutBest : RandomSearch {
+struct StateWithoutBest : PlantedSearch {
   struct State {
     double best_fitness;
     Index generation;
@@ -129,12 +220,10 @@ static_assert(ScalarObjective<decltype(scalar_objective)> && !BatchObjective<dec
 static_assert(BatchObjective<decltype(batch_objective)> && !ScalarObjective<decltype(batch_objective)>);
 static_assert(!Objective<decltype(no_objective)> && !Objective<int>);
 
-TEST(MetaheuristicLaws, UsersOwnRandomSearch) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(RandomSearch{}, true)));
-}
+TEST(MetaheuristicLaws, UsersOwnSearch) { EXPECT_TRUE(no_violations(metaheuristic_violations(PlantedSearch{}, true))); }
 
 void expect_caught(Fault fault, const char* sentence) {
-  const auto violations = metaheuristic_violations(RandomSearch{.fault = fault}, true);
+  const auto violations = metaheuristic_violations(PlantedSearch{.fault = fault}, true);
   EXPECT_TRUE(mentions(violations, sentence)) << sentence << no_violations(violations).message();
 }
 
@@ -142,6 +231,7 @@ TEST(MetaheuristicLaws, CatchPlantedFaults) {
   expect_caught(Fault::leaves_box, "a point outside the box was evaluated");
   expect_caught(Fault::hides_state, "the same seed searched elsewhere");
   expect_caught(Fault::hides_state, "the algorithm hides state");
+  expect_caught(Fault::hides_state, "a search that was stopped and gone on with came to another result");
   expect_caught(Fault::ignores_seed, "another seed made the same search");
   expect_caught(Fault::forgets_best, "the best value became worse");
   expect_caught(Fault::invents_best, "best is not the best point evaluated");
@@ -151,24 +241,24 @@ TEST(MetaheuristicLaws, CatchPlantedFaults) {
 }
 
 TEST(MetaheuristicLaws, NameOnlyWhatIsWrong) {
-  EXPECT_EQ(metaheuristic_violations(RandomSearch{.fault = Fault::leaves_box}, true).size(), 1u);
-  EXPECT_TRUE(no_violations(metaheuristic_violations(RandomSearch{.fault = Fault::leaves_box}, false)));
+  EXPECT_EQ(metaheuristic_violations(PlantedSearch{.fault = Fault::leaves_box}, true).size(), 1u);
+  EXPECT_TRUE(no_violations(metaheuristic_violations(PlantedSearch{.fault = Fault::leaves_box}, false)));
 }
 
 /// State behind the copy: two states share their engine, so each step of one moves the other.
 struct SharedEngine {
-  struct State : RandomSearch::State {
+  struct State : PlantedSearch::State {
     std::shared_ptr<Rng> engine;
   };
   State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
     State s;
-    static_cast<RandomSearch::State&>(s) = RandomSearch{}.start(box, seed, evaluate);
+    static_cast<PlantedSearch::State&>(s) = PlantedSearch{}.start(box, seed, evaluate);
     s.engine = std::make_shared<Rng>(seed + 1);
     return s;
   }
   void step(State& s, const Box& box, Evaluate evaluate) const {
     s.rng = *s.engine;
-    RandomSearch{}.step(s, box, evaluate);
+    PlantedSearch{}.step(s, box, evaluate);
     *s.engine = s.rng;
   }
   bool done(const State&) const { return false; }
@@ -178,21 +268,53 @@ TEST(MetaheuristicLaws, CatchStatesThatShareTheirEngine) {
   EXPECT_TRUE(mentions(metaheuristic_violations(SharedEngine{}, true), "a copied state went on differently"));
 }
 
-/// Looks at more points with every generation.
-struct GrowingSearch {
-  using State = RandomSearch::State;
+/// Looks at other numbers of points with every generation, in one call or two.
+struct BreathingSearch {
+  Index grow = 1, calls = 1;
+  using State = PlantedSearch::State;
   State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
-    return RandomSearch{}.start(box, seed, evaluate);
+    return PlantedSearch{}.start(box, seed, evaluate);
   }
   void step(State& s, const Box& box, Evaluate evaluate) const {
-    RandomSearch{.points = 6 + s.generation}.step(s, box, evaluate);
+    const Index points = grow > 0 ? 6 + grow * s.generation : std::max<Index>(1, 40 + grow * s.generation);
+    for (Index call = 0; call < calls; ++call) {
+      PlantedSearch{.points = points + call}.step(s, box, evaluate);
+      if (call > 0) --s.generation;
+    }
   }
   bool done(const State&) const { return false; }
 };
 
-// A population that grows from step to step is allowed; its evaluations are counted as they come.
-TEST(MetaheuristicLaws, PopulationsMayGrow) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(GrowingSearch{}, true)));
+// Populations may grow, by leaps, and shrink; their evaluations are counted as they come, and none passes the budget.
+TEST(MetaheuristicLaws, PopulationsMayChangeSize) {
+  for (const Index grow : {1, 50, -4})
+    EXPECT_TRUE(no_violations(metaheuristic_violations(BreathingSearch{.grow = grow}, true))) << grow;
+  const auto objective = [](const VectorX& x) { return x.squaredNorm(); };
+  for (const Index budget : {6, 7, 12, 18, 19, 100, 5000})
+    EXPECT_LE(
+        minimize(BreathingSearch{.grow = 10, .calls = 2}, objective, Box::cube(2, -1, 1), {.max_evaluations = budget})
+            .evaluations,
+        budget);
+}
+
+/// Keeps what refuses it further evaluations to itself, and takes the values that were not computed for good.
+struct StubbornSearch : PlantedSearch {
+  void step(State& s, const Box& box, Evaluate evaluate) const {
+    const auto unstoppable = [&](const MatrixX& population, VectorX& fitness) {
+      try {
+        evaluate(population, fitness);
+      } catch (...) {
+        fitness = VectorX::Zero(population.cols());
+      }
+    };
+    PlantedSearch::step(s, box, unstoppable);
+  }
+};
+
+// Even so no evaluation is made beyond the budget, but the generation counts.
+TEST(MetaheuristicLaws, CatchStepsThatSwallowTheEndOfTheBudget) {
+  EXPECT_TRUE(mentions(metaheuristic_violations(StubbornSearch{}, true),
+                       "another number of generations than the budget of evaluations allows"));
 }
 
 }  // namespace

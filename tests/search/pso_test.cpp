@@ -6,8 +6,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <string>
+#include <vector>
+
+#include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/minimize.hpp"
 
 namespace vernier {
 namespace {
@@ -150,6 +155,133 @@ TEST(Pso, ClampedParticlesStopAtTheBound) {
       EXPECT_EQ(s.velocities(1, 1), 0);
     }
   }
+}
+
+// Clerc and Kennedy's figures for phi = 4.1.
+TEST(Pso, ConstrictionHasThePapersConstants) {
+  const Pso pso = Pso::constriction();
+  EXPECT_NEAR(pso.inertia(1), 0.72984, 5e-6);
+  EXPECT_EQ(pso.inertia(1), pso.inertia(200));
+  EXPECT_NEAR(pso.cognitive, 1.49618, 5e-6);
+  EXPECT_EQ(pso.cognitive, pso.social);
+}
+
+/// Neighbours written out: cells of a grid of so many rows and columns that lie within a step on a torus.
+std::vector<Index> neighbours_on_torus(Index k, Index rows, Index columns) {
+  std::vector<Index> out;
+  const auto apart = [](Index a, Index b, Index n) { return std::min((a - b + n) % n, (b - a + n) % n); };
+  for (Index other = 0; other < rows * columns; ++other)
+    if (apart(k / columns, other / columns, rows) + apart(k % columns, other % columns, columns) <= 1)
+      out.push_back(other);
+  return out;
+}
+
+// Of all orders of values the whole neighbourhood is asked: both sides of a ring, all four sides of a grid.
+TEST(Pso, NeighbourhoodsAreWhole) {
+  const Pso ring{.neighbourhood = Neighbourhood::ring}, grid{.neighbourhood = Neighbourhood::von_neumann};
+  EXPECT_EQ(grid.grid_columns(50), 10);
+  EXPECT_EQ(grid.grid_columns(36), 6);
+  EXPECT_EQ(grid.grid_columns(13), 13);
+  EXPECT_EQ(grid.grid_columns(1), 1);
+  EXPECT_EQ(ring.grid_columns(50), 50);
+  for (const auto& [n, columns] : {std::pair<Index, Index>{1, 1}, {2, 2}, {5, 5}, {12, 4}, {50, 10}, {50, 50}}) {
+    for (Index k = 0; k < n; ++k) {
+      const auto neighbours = neighbours_on_torus(k, n / columns, columns);
+      for (Index better = 0; better < n; ++better) {
+        VectorX values = VectorX::Ones(n);
+        values(better) = 0;
+        const bool near = std::find(neighbours.begin(), neighbours.end(), better) != neighbours.end();
+        ASSERT_EQ(Pso::informant(values, k, columns), near ? better : k) << n << " " << columns << " " << k;
+      }
+    }
+  }
+}
+
+// Neither inertia nor own memory: a particle of a ring moves by c2 r2 (best of its neighbours - x), r2 the second
+// number drawn in each coordinate.
+TEST(Pso, RingUpdatesByHand) {
+  const Pso pso{.particles = 5,
+                .iterations = 4,
+                .inertia_start = 0,
+                .inertia_end = 0,
+                .cognitive = 0,
+                .social = 0.5,
+                .neighbourhood = Neighbourhood::ring};
+  Pso::State s = pso.start(box2(), 8, evaluate_bowl);
+  s.best_values << 3, 1, 4, 2, 5;
+  const Index leader[5] = {1, 1, 1, 3, 3};
+  Rng rng = s.rng;
+  const Pso::State before = s;
+  pso.step(s, box2(), evaluate_bowl);
+  for (Index k = 0; k < 5; ++k)
+    for (Index d = 0; d < 2; ++d) {
+      rng.uniform();
+      const double pull = 0.5 * rng.uniform() * (before.best_positions(d, leader[k]) - before.positions(d, k));
+      EXPECT_NEAR(s.velocities(d, k), pull, 1e-14) << k;
+    }
+}
+
+// 2.9 + 1.7 bounces off 3 to 1.4; -0.9 - 5.5 (of width 4) off -1 and then off 3 to 2.6 - 1 = 1.6: an odd number of
+// bounces turns the velocity round, an even one does not.
+TEST(Pso, ReflectedParticlesBounce) {
+  const Pso pso{.particles = 3,
+                .iterations = 10,
+                .inertia_start = 1,
+                .inertia_end = 1,
+                .cognitive = 0,
+                .social = 0,
+                .velocity_limit = 10,
+                .positions = PositionRule::reflected};
+  Pso::State s = pso.start(box2(), 2, evaluate_bowl);
+  s.positions.row(0) << 2.9, -0.9, 0;
+  s.velocities.row(0) << 1.7, -5.5, 2.5;
+  s.positions.row(1).setConstant(15);
+  s.velocities.row(1) << -6, 4, 0;
+  pso.step(s, box2(), evaluate_bowl);
+  EXPECT_NEAR(s.positions(0, 0), 1.4, 1e-14);
+  EXPECT_EQ(s.velocities(0, 0), -1.7);
+  EXPECT_NEAR(s.positions(0, 1), 3 - (5.5 - 0.1 - 4), 1e-14);
+  EXPECT_EQ(s.velocities(0, 1), -5.5);
+  EXPECT_EQ(s.positions(0, 2), 2.5);
+  EXPECT_EQ(s.velocities(0, 2), 2.5);
+  EXPECT_NEAR(s.positions(1, 0), 11, 1e-14);
+  EXPECT_EQ(s.velocities(1, 0), 6);
+  EXPECT_EQ(s.positions(1, 1), 19);
+}
+
+TEST(Bounds, MirrorsAndMiddles) {
+  for (const double x : {-1.0, 0.25, 3.0}) EXPECT_EQ(reflected(x, -1, 3), x);
+  EXPECT_EQ(reflected(-1.5, -1, 3), -0.5);
+  EXPECT_EQ(reflected(3.5, -1, 3), 2.5);
+  EXPECT_EQ(reflected(7.5, -1, 3), -0.5);
+  EXPECT_EQ(reflected(-6.5, -1, 3), 1.5);
+  EXPECT_EQ(halfway(-2, 1, -1, 3), 0);
+  EXPECT_EQ(halfway(5, 1, -1, 3), 2);
+  EXPECT_EQ(halfway(2, 1, -1, 3), 2);
+}
+
+/// A hash of every coordinate a search evaluates.
+template <class A>
+std::uint64_t trace(const A& algorithm) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto objective = [&](const VectorX& x) {
+    double sum = 0;
+    for (Index i = 0; i < x.size(); ++i) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x(i))) * 0x100000001b3u;
+      const double d = x(i) - 0.3 * static_cast<double>(i);
+      sum += d * d * static_cast<double>(i + 1);
+    }
+    return sum;
+  };
+  minimize(algorithm, objective, Box::cube(5, -1, 2), {}, 7);
+  return hash;
+}
+
+// What was found with a seed is found again: the numbers of version 0.1, to the bit.
+TEST(Pso, OldSearchesKeepTheirBits) {
+  EXPECT_EQ(trace(Pso{.particles = 12, .iterations = 40}), 0x8c85096c5a4f3e00u);
+  EXPECT_EQ(trace(Pso{.particles = 12, .iterations = 40, .positions = PositionRule::clamped}), 0x560b23789fd41eb7u);
+  EXPECT_EQ(trace(GeneticAlgorithm{.individuals = 13, .generations = 40, .elites = 2}), 0xd37703db4dc808e8u);
 }
 
 TEST(Pso, RefusesUnusableOptions) {

@@ -40,15 +40,12 @@ inline VectorX ranks(const Eigen::Ref<const VectorX>& values) {
 
 namespace detail {
 
-/// Sum of t^3 - t over groups of t equal ranks.
+/// Sum of t^3 - t over groups of t equal ranks: t^2 - 1 for each of their members. O(n^2).
 inline double ties(const VectorX& ranks) {
-  std::vector<double> sorted(ranks.begin(), ranks.end());
-  std::sort(sorted.begin(), sorted.end());
   double sum = 0;
-  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
-    const auto t = static_cast<double>(end - begin);
-    sum += t * t * t - t;
+  for (const double rank : ranks) {
+    const auto t = static_cast<double>((ranks.array() == rank).count());
+    sum += t * t - 1;
   }
   return sum;
 }

@@ -3,27 +3,30 @@
 /// @file
 /// A binary-coded genetic algorithm.
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
-#include "vernier/core/rng.hpp"
-#include "vernier/search/concepts.hpp"
+#include "vernier/search/genetic_operators.hpp"
 
 namespace vernier {
+
+/// How two chromosomes are crossed.
+enum class BitCrossover {
+  one_point,  ///< all bits behind one cut change sides
+  uniform,    ///< each bit changes sides with probability 1/2
+};
 
 /// Genetic algorithm with the paper's constants. The paper states neither encoding nor selection; ours are the
 /// classical ones:
 ///
 /// - encoding: each variable is `bits` bits of plain binary over its interval, so nothing outside the box can be
 /// expressed;
-/// - selection: tournaments of `tournament` individuals;
-/// - crossover: with `crossover_probability` a pair exchanges all bits behind one cut, anywhere in the chromosome;
+/// - selection: tournaments of `tournament` individuals, or roulette;
+/// - crossover: with `crossover_probability` a pair exchanges all bits behind one cut, anywhere in the chromosome; or,
+/// uniform, each bit with probability 1/2;
 /// - mutation: each *bit* flips with `mutation_probability`: at 0.01 and 10 bits, about a tenth of the variables of a
 /// child change;
 /// - elitism: the `elites` best survive unchanged (and are not evaluated again).
-/// @cite Holland 1975; Goldberg 1989
+/// @cite Holland 1975; Goldberg 1989; Syswerda 1989
 struct GeneticAlgorithm {
   int individuals = 80;                ///< at least 2
   Index generations = 400;             ///< after the first population
@@ -32,22 +35,31 @@ struct GeneticAlgorithm {
   int bits = 10;                       ///< per variable, 1 to 16
   int tournament = 2;                  ///< 1 selects at random
   int elites = 1;                      ///< below `individuals`
+  /// How pairs are crossed.
+  BitCrossover crossover = BitCrossover::one_point;
+  /// How parents are chosen.
+  ParentSelection selection = ParentSelection::tournament;
 
   /// Binary codes, one variable a number.
   using Codes = Eigen::Matrix<std::uint16_t, Eigen::Dynamic, Eigen::Dynamic>;
 
   /// A population between two generations.
-  struct State {
+  struct State : CommonState {
     Codes codes;      ///< dimension x individuals
     VectorX fitness;  ///< one value an individual
-    /// Best point of all.
-    VectorX best;
-    /// Its value.
-    double best_fitness = 0;
-    /// Generations stepped.
-    Index generation = 0;
-    /// Source of all randomness.
-    Rng rng;
+
+    /// Lists the members.
+    template <class Self, class Visit>
+    static void each_member(Self& s, Visit&& visit) {
+      CommonState::each_member(s, visit);
+      visit("codes", s.codes);
+      visit("fitness", s.fitness);
+    }
+
+    /// Whether the sizes of the members agree.
+    bool consistent() const {
+      return codes.cols() >= 2 && codes.rows() == best.size() && fitness.size() == codes.cols();
+    }
   };
 
   /// Every bit drawn at random.
@@ -59,50 +71,28 @@ struct GeneticAlgorithm {
     for (auto& code : s.codes.reshaped()) code = static_cast<std::uint16_t>(s.rng.below(std::uint64_t{1} << bits));
     const MatrixX points = decode(s.codes, box);
     evaluate(points, s.fitness);
-    Index leader = 0;
-    s.best_fitness = s.fitness.minCoeff(&leader);
-    s.best = points.col(leader);
+    s.keep_best(points, s.fitness);
     return s;
   }
 
   /// One generation.
   void step(State& s, const Box& box, Evaluate evaluate) const {
-    const Index n = s.codes.cols(), children = n - elites;
-    Codes next(s.codes.rows(), children);
-    for (Index k = 0; k < children; k += 2) {
-      next.col(k) = s.codes.col(select(s));
-      if (k + 1 == children) break;
-      next.col(k + 1) = s.codes.col(select(s));
-      if (s.rng.uniform() < crossover_probability)
-        cross(next, k,
+    const auto crossed = [&](Codes& children, Index k) {
+      if (crossover == BitCrossover::one_point) {
+        cross(children, k,
               static_cast<Index>(
-                  s.rng.below(static_cast<std::uint64_t>(next.rows()) * static_cast<std::uint64_t>(bits))));
-    }
-    mutate(next, s.rng);
-
-    const MatrixX points = decode(next, box);
-    VectorX fitness;
-    evaluate(points, fitness);
-    std::vector<Index> order(static_cast<std::size_t>(n));
-    for (Index k = 0; k < n; ++k) order[static_cast<std::size_t>(k)] = k;
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return s.fitness(a) != s.fitness(b) ? s.fitness(a) < s.fitness(b) : a < b; });
-    Codes survivors(s.codes.rows(), n);
-    VectorX values(n);
-    for (Index k = 0; k < elites; ++k) {
-      survivors.col(k) = s.codes.col(order[static_cast<std::size_t>(k)]);
-      values(k) = s.fitness(order[static_cast<std::size_t>(k)]);
-    }
-    survivors.rightCols(children) = next;
-    values.tail(children) = fitness;
-    s.codes.swap(survivors);
-    s.fitness.swap(values);
-    Index leader = 0;
-    if (const double best = fitness.minCoeff(&leader); best < s.best_fitness) {
-      s.best_fitness = best;
-      s.best = points.col(leader);
-    }
-    ++s.generation;
+                  s.rng.below(static_cast<std::uint64_t>(children.rows()) * static_cast<std::uint64_t>(bits))));
+      } else {
+        for (Index d = 0; d < children.rows(); ++d)
+          exchange(children(d, k), children(d, k + 1), static_cast<std::uint16_t>(s.rng() >> (64 - bits)));
+      }
+    };
+    const auto mutated = [&](Codes& children) {
+      for_each_hit(static_cast<double>(children.size()) * bits, mutation_probability, s.rng,
+                   [&](Index bit) { children.data()[bit / bits] ^= static_cast<std::uint16_t>(1u << (bit % bits)); });
+    };
+    next_generation(
+        *this, s, s.codes, crossed, mutated, [&](const Codes& codes) { return decode(codes, box); }, evaluate);
   }
 
   /// Whether all generations of the schedule were stepped.
@@ -121,36 +111,17 @@ struct GeneticAlgorithm {
   void cross(Codes& codes, Index k, Index cut) const {
     const Index variable = cut / bits;
     const auto low = static_cast<std::uint16_t>((1u << (bits - static_cast<int>(cut % bits))) - 1);
-    std::uint16_t& a = codes(variable, k);
-    std::uint16_t& b = codes(variable, k + 1);
-    const auto differing = static_cast<std::uint16_t>((a ^ b) & low);
-    a = static_cast<std::uint16_t>(a ^ differing);
-    b = static_cast<std::uint16_t>(b ^ differing);
+    exchange(codes(variable, k), codes(variable, k + 1), low);
     const Index rest = codes.rows() - variable - 1;
     codes.col(k).tail(rest).swap(codes.col(k + 1).tail(rest));
   }
 
  private:
-  Index select(State& s) const {
-    Index winner = static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(s.codes.cols())));
-    for (int round = 1; round < tournament; ++round) {
-      const auto rival = static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(s.codes.cols())));
-      if (s.fitness(rival) < s.fitness(winner)) winner = rival;
-    }
-    return winner;
-  }
-
-  /// Flips each bit with the mutation probability, by jumping from flip to flip (geometric gaps).
-  void mutate(Codes& codes, Rng& rng) const {
-    if (mutation_probability <= 0) return;
-    const double total = static_cast<double>(codes.size()) * bits;
-    const double log_stay = std::log1p(-std::min(mutation_probability, 1 - 1e-12));
-    for (double at = -1;;) {
-      at += 1 + std::floor(std::log1p(-rng.uniform()) / log_stay);
-      if (!(at < total)) return;
-      const auto bit = static_cast<Index>(at);
-      codes.data()[bit / bits] ^= static_cast<std::uint16_t>(1u << (bit % bits));
-    }
+  /// Exchanges the bits of a mask.
+  static void exchange(std::uint16_t& a, std::uint16_t& b, std::uint16_t mask) {
+    const auto differing = static_cast<std::uint16_t>((a ^ b) & mask);
+    a = static_cast<std::uint16_t>(a ^ differing);
+    b = static_cast<std::uint16_t>(b ^ differing);
   }
 
   void validate() const {

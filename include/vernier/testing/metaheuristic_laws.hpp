@@ -3,6 +3,7 @@
 /// @file
 /// What every `Metaheuristic` must do, as a list of violations.
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <exception>
@@ -45,6 +46,8 @@ class MetaheuristicCheck {
       repeatability();
       best_point();
       through_minimize();
+      budgets();
+      going_on();
       unusable_values();
     } catch (const std::exception& error) {
       violations_.push_back(message("metaheuristic: threw on a good problem: ", error.what()));
@@ -64,6 +67,11 @@ class MetaheuristicCheck {
   double bowl(const Eigen::Ref<const VectorX>& x) const {
     const VectorX bottom = (VectorX(4) << 0.3, 1.1, -0.1, 0.6).finished();
     return ((x - box_.lower).cwiseQuotient(box_.upper - box_.lower) - bottom).squaredNorm() + 0.25;
+  }
+
+  /// The bowl as an objective.
+  auto whole() const {
+    return [this](const VectorX& x) { return bowl(x); };
   }
 
   /// Evaluates the bowl and writes down what was asked.
@@ -182,11 +190,50 @@ class MetaheuristicCheck {
                  equal(minimize(algorithm_, batch, box_, stop, 5, executor)),
              threads == 1 ? "another result with an executor of 1 thread" : "another result with 2 threads");
     }
-    if (record.populations.size() < 3) return;
-    const Index first = record.values.front().size(), budget = first + record.values[1].size();
-    calls = 0;
-    const SearchResult limited = minimize(algorithm_, objective, box_, Stop{.max_evaluations = budget}, 5);
-    expect(limited.evaluations <= budget && calls == limited.evaluations, "the budget of evaluations was passed");
+  }
+
+  /// Every budget, whatever size populations have, ends the search before the generation that would pass it.
+  void budgets() {
+    std::vector<Index> spent;
+    const auto watch = [&](const Progress& progress) { spent.push_back(progress.evaluations); };
+    minimize(algorithm_, whole(), box_, Stop{.max_generations = generations}, 5, {}, watch);
+    bool kept = true, exhausted = true;
+    for (const Index at : spent)
+      for (const Index budget : {at - 1, at, at + 1}) {
+        if (budget < spent.front()) continue;
+        std::atomic<Index> calls = 0;
+        const auto objective = [&](const VectorX& x) {
+          ++calls;
+          return bowl(x);
+        };
+        const SearchResult limited =
+            minimize(algorithm_, objective, box_, Stop{.max_evaluations = budget, .max_generations = generations}, 5);
+        kept = kept && limited.evaluations <= budget && calls == limited.evaluations;
+        const auto affordable = std::count_if(spent.begin(), spent.end(), [&](Index s) { return s <= budget; });
+        exhausted = exhausted && limited.generations == affordable - 1;
+      }
+    expect(kept, "the budget of evaluations was passed");
+    expect(exhausted, "another number of generations than the budget of evaluations allows");
+  }
+
+  /// A search that is stopped and gone on with, also after a generation that was too dear, is one that never stopped.
+  void going_on() {
+    std::vector<Index> spent;
+    const auto watch = [&](const Progress& progress) { spent.push_back(progress.evaluations); };
+    const Stop last{.max_generations = generations};
+    const SearchResult right = minimize(algorithm_, whole(), box_, last, 6, {}, watch);
+    for (std::size_t g = 0; g + 1 < spent.size(); ++g)
+      for (const Stop& pause : {Stop{.max_generations = static_cast<Index>(g)},
+                                Stop{.max_evaluations = spent[g] + 1, .max_generations = generations}}) {
+        auto search = start_search(algorithm_, whole(), box_, 6);
+        minimize(algorithm_, whole(), box_, search, pause);
+        auto copy = search;
+        const SearchResult found = minimize(algorithm_, whole(), box_, copy, last);
+        if (same_bits(found.best, right.best) && found.best_fitness == right.best_fitness &&
+            found.evaluations == right.evaluations && found.generations == right.generations)
+          continue;
+        return expect(false, "a search that was stopped and gone on with came to another result");
+      }
   }
 
   /// Values that are not finite arrive as +infinity, which is never the best once something finite was evaluated.
@@ -233,6 +280,8 @@ class MetaheuristicCheck {
 /// - the best value never becomes worse, and best is the best of what was evaluated;
 /// - nothing outside the box is evaluated, where the algorithm says so;
 /// - 1 and 2 threads give the same bits, and evaluations are counted as they are made;
+/// - no budget of evaluations is passed, and none left that a generation could have had;
+/// - a search that is stopped and gone on with comes to the same bits;
 /// - a value that is not finite is never the best.
 /// @param algorithm its schedule should allow a few generations
 /// @param keeps_box whether nothing outside the box may be evaluated

@@ -1,0 +1,213 @@
+// Constants against published figures, the update against its formulas written out, invariance, convergence and
+// restarts.
+
+#include "vernier/search/cma_es.hpp"
+
+#include <gtest/gtest.h>
+
+#include "complaint.hpp"
+#include "vernier/search/minimize.hpp"
+
+namespace vernier {
+namespace {
+
+const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
+  fitness = population.colwise().squaredNorm().transpose();
+};
+
+// Ten dimensions, ten individuals: the weights and effective size that Hansen's own programs print.
+TEST(CmaEs, ConstantsOfTenDimensions) {
+  const CmaEsConstants c(10, 10);
+  EXPECT_EQ(c.mu, 5);
+  const double expected[5] = {0.4563, 0.2708, 0.1622, 0.0852, 0.0255};
+  for (Index i = 0; i < 5; ++i) EXPECT_NEAR(c.weights(i), expected[i], 1e-4);
+  EXPECT_NEAR(c.mu_eff, 3.1673, 1e-4);
+  EXPECT_NEAR(c.c_sigma, (3.1673 + 2) / (10 + 3.1673 + 5), 1e-5);
+  EXPECT_NEAR(c.d_sigma, 1 + c.c_sigma, 1e-15);
+  EXPECT_NEAR(c.c_c, (4 + 0.31673) / (14 + 0.63346), 1e-5);
+  EXPECT_NEAR(c.c_1, 2 / (11.3 * 11.3 + 3.1673), 1e-7);
+  EXPECT_NEAR(c.c_mu, 2 * (0.25 + 3.1673 + 1 / 3.1673 - 2) / (144 + 3.1673), 1e-5);
+  EXPECT_NEAR(c.expected_norm, 3.0847, 1e-4);
+}
+
+// In every dimension the rates leave C positive definite: no more than all of it is replaced, and the negative weights
+// sum to no more than allows.
+TEST(CmaEs, ConstantsAreSound) {
+  for (const Index n : {1, 2, 5, 30, 500})
+    for (const Index lambda : {2, 3, 4, 14, 100, 1000}) {
+      const CmaEsConstants c(n, lambda);
+      EXPECT_NEAR(c.weights.head(c.mu).sum(), 1, 1e-12);
+      EXPECT_GE(c.weights.head(c.mu).minCoeff(), 0);
+      EXPECT_LE(c.weights.tail(lambda - c.mu).maxCoeff(), 0);
+      EXPECT_GT(c.c_1, 0);
+      EXPECT_GE(c.c_mu, 0);
+      EXPECT_LE(c.c_1 + c.c_mu, 1 + 1e-15);
+      EXPECT_LE(-c.weights.tail(lambda - c.mu).sum() * static_cast<double>(n) * c.c_mu, 1 - c.c_1 - c.c_mu + 1e-12);
+      EXPECT_TRUE(std::isfinite(c.weights.sum()));
+    }
+}
+
+/// A state in the middle of a run.
+CmaEs::State some_state(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  CmaEs::State s;
+  MatrixX root(n, n);
+  for (auto& x : root.reshaped()) x = rng.normal();
+  s.covariance = root * root.transpose() / static_cast<double>(n) + 0.1 * MatrixX::Identity(n, n);
+  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(s.covariance);
+  s.basis = eigen.eigenvectors();
+  s.scales = eigen.eigenvalues().cwiseSqrt();
+  s.mean = s.path_c = s.path_sigma = VectorX::Zero(n);
+  for (Index d = 0; d < n; ++d) {
+    s.mean(d) = rng.uniform();
+    s.path_c(d) = 0.1 * rng.normal();
+    s.path_sigma(d) = 0.1 * rng.normal();
+  }
+  s.sigma = 0.2;
+  s.updates = s.decomposed = 7;
+  return s;
+}
+
+// The tutorial's equations, one after the other, with sums over points and the inverse root of C itself.
+TEST(CmaEs, UpdateByItsFormulas) {
+  for (const double long_path : {0.0, 50.0}) {
+    const Index n = 4, lambda = 9;
+    CmaEs::State s = some_state(n, 3);
+    s.path_sigma(0) += long_path;  // stops the path of C
+    const CmaEs::State old = s;
+    Rng rng(5);
+    MatrixX z(n, lambda);
+    for (auto& x : z.reshaped()) x = rng.normal();
+    const std::vector<Index> order{3, 1, 4, 0, 5, 8, 2, 6, 7};
+    CmaEs::update(s, z, order);
+
+    const CmaEsConstants c(n, lambda);
+    const MatrixX inverse_root = old.basis * old.scales.cwiseInverse().asDiagonal() * old.basis.transpose();
+    ASSERT_LT((inverse_root * old.covariance * inverse_root - MatrixX::Identity(n, n)).norm(), 1e-10);
+    std::vector<VectorX> y;
+    for (const Index k : order) y.push_back(old.basis * old.scales.asDiagonal() * z.col(k));
+    VectorX step = VectorX::Zero(n);
+    for (Index i = 0; i < c.mu; ++i) step += c.weights(i) * y[static_cast<std::size_t>(i)];
+    EXPECT_LT((s.mean - (old.mean + 0.2 * step)).norm(), 1e-13);
+    const VectorX path_sigma =
+        (1 - c.c_sigma) * old.path_sigma + std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * (inverse_root * step);
+    EXPECT_LT((s.path_sigma - path_sigma).norm(), 1e-11);
+    const double h = path_sigma.norm() / std::sqrt(1 - std::pow(1 - c.c_sigma, 16)) < (1.4 + 2.0 / 5) * c.expected_norm;
+    EXPECT_EQ(h, long_path == 0 ? 1 : 0);
+    const VectorX path_c = (1 - c.c_c) * old.path_c + h * std::sqrt(c.c_c * (2 - c.c_c) * c.mu_eff) * step;
+    EXPECT_LT((s.path_c - path_c).norm(), 1e-12);
+    EXPECT_NEAR(s.sigma,
+                0.2 * std::exp(std::min(1.0, c.c_sigma / c.d_sigma * (path_sigma.norm() / c.expected_norm - 1))),
+                1e-12);
+    MatrixX covariance =
+        (1 + c.c_1 * (1 - h) * c.c_c * (2 - c.c_c) - c.c_1 - c.c_mu * c.weights.sum()) * old.covariance +
+        c.c_1 * path_c * path_c.transpose();
+    for (Index i = 0; i < lambda; ++i) {
+      const VectorX& yi = y[static_cast<std::size_t>(i)];
+      const double w = c.weights(i) * (c.weights(i) >= 0 ? 1 : 4 / (inverse_root * yi).squaredNorm());
+      covariance += c.c_mu * w * yi * yi.transpose();
+    }
+    EXPECT_LT((s.covariance - covariance).norm(), 1e-12);
+    EXPECT_GT(c.weights(c.mu) - c.weights(lambda - 1), 0.1);  // negative weights are at work
+    // decomposed anew
+    EXPECT_EQ(s.decomposed, 8);
+    EXPECT_LT((s.basis * s.scales.cwiseAbs2().asDiagonal() * s.basis.transpose() - s.covariance).norm(), 1e-12);
+  }
+}
+
+// Ranks alone count: a rising transformation of the objective changes no bit of what is evaluated.
+TEST(CmaEs, OnlyRanksCount) {
+  const auto points = [](auto&& transform) {
+    std::vector<MatrixX> out;
+    const auto evaluate = [&](const MatrixX& population, VectorX& fitness) {
+      out.push_back(population);
+      evaluate_bowl(population, fitness);
+      for (auto& f : fitness) f = transform(f);
+    };
+    const CmaEs cma{.generations = 60};
+    const Box box = Box::cube(5, -1, 2);
+    CmaEs::State s = cma.start(box, 4, evaluate);
+    while (!cma.done(s)) cma.step(s, box, evaluate);
+    return out;
+  };
+  EXPECT_EQ(points([](double f) { return f; }), points([](double f) { return 1e6 * std::sqrt(f) - 3; }));
+}
+
+// On an ellipsoid whose axes differ by 1000 the covariance becomes the inverse Hessian, but for a factor.
+TEST(CmaEs, LearnsTheShape) {
+  const Index n = 4;
+  Rng rng(2);
+  MatrixX directions(n, n);
+  for (auto& x : directions.reshaped()) x = rng.normal();
+  const MatrixX basis = directions.householderQr().householderQ();
+  const VectorX weights = (VectorX(4) << 1, 100, 1e4, 1e6).finished();
+  const MatrixX hessian = basis * weights.asDiagonal() * basis.transpose();
+  const auto evaluate = [&](const MatrixX& population, VectorX& fitness) {
+    const MatrixX off = population.array() - 0.3;
+    fitness = (hessian * off).cwiseProduct(off).colwise().sum().transpose();
+  };
+  const CmaEs cma{.generations = 250};
+  const Box box = Box::cube(n, -4, 4);
+  CmaEs::State s = cma.start(box, 4, evaluate);
+  while (!cma.done(s) && s.best_fitness > 1e-8) cma.step(s, box, evaluate);
+  EXPECT_LT(s.best_fitness, 1e-8);
+  const Eigen::SelfAdjointEigenSolver<MatrixX> product(weights.cwiseSqrt().asDiagonal() * basis.transpose() *
+                                                       s.covariance * basis * weights.cwiseSqrt().asDiagonal());
+  EXPECT_LT(product.eigenvalues()(3) / product.eigenvalues()(0), 30);  // 1e6 at the start
+}
+
+// Runs end by their tolerances, and the next has a larger population; without restarts the search is over.
+TEST(CmaEs, ConvergesAndRestarts) {
+  const Box box = Box::cube(3, -1, 2);
+  const CmaEs once{.generations = 5000};
+  const auto sphere = [](const VectorX& x) { return x.squaredNorm(); };
+  const SearchResult result = minimize(once, sphere, box, {}, 1);
+  EXPECT_EQ(result.status, SearchStatus::schedule_ended);
+  EXPECT_LT(result.generations, 400);
+  EXPECT_LT(result.best_fitness, 1e-12);
+
+  const CmaEs ipop{.generations = 5000, .restarts = 3};
+  CmaEs::State s = ipop.start(box, 1, evaluate_bowl);
+  std::vector<Index> sizes{s.individuals};
+  while (!ipop.done(s)) {
+    ipop.step(s, box, evaluate_bowl);
+    if (s.individuals != sizes.back()) {
+      sizes.push_back(s.individuals);
+      EXPECT_EQ(s.updates, 1);
+      EXPECT_GT(s.sigma, 0.1);
+    }
+  }
+  EXPECT_EQ(sizes, (std::vector<Index>{7, 14, 28, 56}));
+  EXPECT_EQ(s.run, 3);
+  EXPECT_LT(s.generation, 5000);
+  // a flat objective converges, too, and so does one without any finite value
+  const auto nowhere = [](const VectorX&) { return std::numeric_limits<double>::infinity(); };
+  EXPECT_LT(minimize(
+                once, [](const VectorX&) { return 2.0; }, box, {}, 1)
+                .generations,
+            60);
+  EXPECT_LT(minimize(once, nowhere, box, {}, 1).generations, 60);
+}
+
+// The optimum in a corner: the mirrors lead there.
+TEST(CmaEs, FindsACorner) {
+  const auto slope = [](const VectorX& x) { return x(0) - x(1) + x(2); };
+  const SearchResult result = minimize(CmaEs{}, slope, Box::cube(3, -1, 2), {}, 2);
+  EXPECT_NEAR(result.best_fitness, -4, 1e-6);
+}
+
+TEST(CmaEs, RefusesUnusableOptions) {
+  const auto said = [](const CmaEs& cma) {
+    return vernier_test::complaint([&] { cma.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });
+  };
+  EXPECT_EQ(said({.individuals = 1}), "CmaEs: individuals is 1, must be 0 or at least 2");
+  EXPECT_NE(said({.generations = -1}), "");
+  EXPECT_NE(said({.sigma = 0}), "");
+  EXPECT_NE(said({.restarts = -1}), "");
+  EXPECT_NE(said({.growth = 0.5}), "");
+  EXPECT_NE(said({.tolerance_x = -1}), "");
+  EXPECT_NE(said({.tolerance_f = std::nan("")}), "");
+}
+
+}  // namespace
+}  // namespace vernier

@@ -5,8 +5,16 @@
 #include <limits>
 
 #include "searches.hpp"
+#include "vernier/regression/back_propagation.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/ensemble.hpp"
+#include "vernier/regression/gaussian_process.hpp"
+#include "vernier/regression/kernel_elm.hpp"
+#include "vernier/regression/on_features.hpp"
+#include "vernier/regression/op_elm.hpp"
+#include "vernier/regression/os_elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
+#include "vernier/regression/trigonometric_regression.hpp"
 #include "vernier/regression/var_pro_elm.hpp"
 
 namespace support {
@@ -47,13 +55,20 @@ class Learning {
 
   LearnedErrors<N> run() const {
     const std::string& name = method_.learner;
-    if (name == "elm") return tunable(mapped(vn::Elm{.hidden_nodes = plan_.nodes}));
-    if (name == "ridge_elm") return tunable(mapped(vn::RidgeElm{.hidden_nodes = plan_.nodes}));
-    if (name == "var_pro_elm") {
-      vn::VarProElm recipe = mapped(vn::VarProElm{.hidden_nodes = plan_.nodes});
-      if (plan_.seconds > 0 && method_.search.empty()) recipe.starts = 1000000;  // until the time is over
-      return tunable(recipe);
-    }
+    const int nodes = plan_.nodes;
+    const bool until_time_is_over = plan_.seconds > 0 && method_.search.empty();
+    if (name == "elm") return of_family(vn::Elm{.hidden_nodes = nodes});
+    if (name == "ridge_elm") return of_family(vn::RidgeElm{.hidden_nodes = nodes});
+    if (name == "var_pro_elm")
+      return of_family(vn::VarProElm{.hidden_nodes = nodes, .starts = until_time_is_over ? 1000000 : 1});
+    if (name == "bp_lm") return plain(mapped(vn::BackPropagation{.hidden_nodes = nodes}));
+    if (name == "bp_adam") return plain(mapped(vn::BackPropagation{.hidden_nodes = nodes, .training = vn::Adam{}}));
+    if (name == "kernel_elm") return plain(mapped(vn::KernelElm{}));
+    if (name == "gp") return plain(mapped(vn::GaussianProcess{}));
+    if (name == "os_elm") return plain(mapped(vn::OsElm{.hidden_nodes = nodes}));
+    if (name == "op_elm") return plain(mapped(vn::OpElm{.hidden_nodes = nodes}));
+    if (name == "trig") return plain(vn::TrigonometricRegression{});
+    if (name == "bagged") return plain(vn::Ensemble{mapped(vn::RidgeElm{.hidden_nodes = nodes}), 20, 0.6, false});
     throw std::logic_error("no learner is called " + name);
   }
 
@@ -63,6 +78,14 @@ class Learning {
     if (method_.map == "raw") recipe.input_map = vn::InputMap::raw;
     if (method_.map == "sincos") recipe.input_map = vn::InputMap::sines_and_cosines;
     return recipe;
+  }
+
+  /// One that a search can tune, and that may be shown products of sines and cosines.
+  template <class R>
+  LearnedErrors<N> of_family(R recipe) const {
+    if (method_.map != "products") return tunable(mapped(recipe));
+    recipe.input_map = vn::InputMap::raw;
+    return tunable(vn::OnFeatures{vn::SineCosineProducts<2>{}, recipe});
   }
 
   /// Fitted as it is, or at what a search finds.
@@ -105,9 +128,17 @@ class Learning {
 
 const std::vector<Named>& learner_names() {
   static const std::vector<Named> names{
-      {"elm", "extreme learning machine as in the paper, minimum-norm output weights (raw angles unless told)"},
-      {"ridge_elm", "the same with a ridge chosen by leave-one-out (sines and cosines unless told)"},
-      {"var_pro_elm", "hidden layer trained by variable projection (sines and cosines unless told)"},
+      {"elm", "extreme learning machine as in the paper: minimum-norm output weights, raw angles"},
+      {"ridge_elm", "the same with a ridge chosen by leave-one-out; sines and cosines"},
+      {"var_pro_elm", "hidden layer trained by variable projection; sines and cosines"},
+      {"bp_lm", "back-propagation network, Levenberg-Marquardt; sines and cosines"},
+      {"bp_adam", "the same by Adam"},
+      {"kernel_elm", "kernel ELM, length scale and ridge by leave-one-out; raw angles"},
+      {"gp", "Gaussian process, a length scale an input by marginal likelihood; raw angles"},
+      {"os_elm", "online sequential ELM, here in one batch; sines and cosines"},
+      {"op_elm", "ELM pruned by leave-one-out; sines and cosines"},
+      {"trig", "tensor products of sines and cosines of all angles, ridge by degree"},
+      {"bagged", "20 ridge ELMs, each on 60 % of the poses"},
   };
   return names;
 }

@@ -4,8 +4,21 @@
 #include <limits>
 
 #include "comparison.hpp"
+#include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/l_shade.hpp"
 #include "vernier/search/pso.hpp"
+#include "vernier/search/random_search.hpp"
+#include "vernier/search/real_genetic_algorithm.hpp"
+#include "vernier/search/spso2011.hpp"
+#ifdef VERNIER_HAS_PAGMO
+#include <pagmo/algorithms/cmaes.hpp>
+#include <pagmo/algorithms/de.hpp>
+#include <pagmo/algorithms/pso_gen.hpp>
+
+#include "pagmo_search.hpp"
+#endif
 
 namespace support {
 
@@ -13,16 +26,27 @@ namespace {
 
 namespace vn = vernier;
 
-/// Named random search: what every other one has to beat.
 constexpr int population = 50;
 
 }  // namespace
 
 const std::vector<Named>& search_names() {
   static const std::vector<Named> names{
+      {"random", "points drawn at random: what every other search has to beat"},
       {"pso", "PSO as in the paper: falling inertia, particles may leave the box"},
       {"pso_clamped", "the same, particles kept in the box"},
+      {"pso_constriction", "PSO with Clerc's constriction, a ring of neighbours, kept in the box"},
+      {"spso2011", "standard PSO 2011"},
       {"ga", "binary genetic algorithm with the paper's constants"},
+      {"real_ga", "real-coded genetic algorithm: SBX, polynomial mutation"},
+      {"de", "differential evolution, rand/1/bin"},
+      {"lshade", "L-SHADE"},
+      {"cmaes", "CMA-ES"},
+#ifdef VERNIER_HAS_PAGMO
+      {"pagmo_de", "pagmo2's differential evolution"},
+      {"pagmo_pso", "pagmo2's particle swarm, generation by generation"},
+      {"pagmo_cmaes", "pagmo2's CMA-ES"},
+#endif
   };
   return names;
 }
@@ -37,7 +61,30 @@ vn::SearchResult run_search(const std::string& name, const AnyObjective& objecti
   if (name == "pso") return run(vn::Pso{.particles = population, .iterations = generations});
   if (name == "pso_clamped")
     return run(vn::Pso{.particles = population, .iterations = generations, .positions = vn::PositionRule::clamped});
+  if (name == "pso_constriction") {
+    vn::Pso pso = vn::Pso::constriction();
+    pso.particles = population;
+    pso.iterations = generations;
+    pso.neighbourhood = vn::Neighbourhood::ring;
+    return run(pso);
+  }
+  if (name == "spso2011") return run(vn::Spso2011{.particles = population, .iterations = generations});
   if (name == "ga") return run(vn::GeneticAlgorithm{.individuals = population, .generations = generations});
+  if (name == "real_ga") return run(vn::RealGeneticAlgorithm{.individuals = population, .generations = generations});
+  if (name == "de") return run(vn::DifferentialEvolution{.individuals = population, .generations = generations});
+  if (name == "lshade")  // the published 18 a dimension would not get beyond its first population here
+    return run(vn::LShade{.max_evaluations = evaluations,
+                          .individuals_per_dimension = 2.0 * population / static_cast<double>(box.dimension())});
+  if (name == "cmaes") return run(vn::CmaEs{.individuals = population, .generations = evaluations});
+  if (name == "random") return run(vn::RandomSearch{.individuals = population, .generations = generations});
+#ifdef VERNIER_HAS_PAGMO
+  const auto run_pagmo = [&](const auto& algorithm) {
+    return run(PagmoSearch{pagmo::algorithm(algorithm), population, generations});
+  };
+  if (name == "pagmo_de") return run_pagmo(pagmo::de(1));
+  if (name == "pagmo_pso") return run_pagmo(pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true));
+  if (name == "pagmo_cmaes") return run_pagmo(pagmo::cmaes(1, -1, -1, -1, -1, 0.5, 1e-12, 1e-12, true, true));
+#endif
   throw std::logic_error("no search is called " + name);
 }
 

@@ -36,7 +36,8 @@ struct HarmonicMap {
 // The recipe. Numbers of inputs and outputs come from the columns of the samples.
 struct HarmonicRegression {
   template <class X, class Y>
-  auto fit(const Eigen::MatrixBase<X>& x, const Eigen::MatrixBase<Y>& y, const vn::FitOptions& = {}) const {
+  auto fit(const Eigen::MatrixBase<X>& x, const Eigen::MatrixBase<Y>& y, const vn::FitOptions& options = {}) const {
+    vn::require(options.weights == nullptr, "HarmonicRegression takes no weights");
     vn::require(x.rows() == y.rows(), "HarmonicRegression: ", x.rows(), " inputs, but ", y.rows(), " targets");
     using Map = HarmonicMap<X::ColsAtCompileTime, Y::ColsAtCompileTime>;
     vn::MatrixX h(x.rows(), 2 * Map::inputs + 1);

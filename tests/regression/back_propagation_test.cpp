@@ -171,16 +171,19 @@ TEST(NetworkError, CurvatureIsTheJacobiansSquare) {
 }
 
 TEST(BackPropagation, KeepsTheLaws) {
+  const testing::RegressorLaws taken{.weights = testing::SampleWeights::taken};
   for (const Activation activation : activations)
     for (const InputMap input_map : input_maps) {
       BackPropagation recipe{.hidden_nodes = 6, .activation = activation, .input_map = input_map};
       recipe.training = LevenbergMarquardt{.epochs = 8};
-      EXPECT_TRUE(no_violations(regressor_violations(recipe)));
+      EXPECT_TRUE(no_violations(regressor_violations(recipe, taken)));
       recipe.training = Adam{.epochs = 5, .batch = 16};
-      EXPECT_TRUE(no_violations(regressor_violations(recipe)));
+      EXPECT_TRUE(no_violations(regressor_violations(recipe, taken)));
     }
-  EXPECT_TRUE(no_violations(regressor_violations(BackPropagation{
-      .hidden_nodes = 6, .training = LevenbergMarquardt{.epochs = 8}, .validation_share = 0.3, .patience = 3})));
+  EXPECT_TRUE(no_violations(regressor_violations(
+      BackPropagation{
+          .hidden_nodes = 6, .training = LevenbergMarquardt{.epochs = 8}, .validation_share = 0.3, .patience = 3},
+      taken)));
 }
 
 /// What the observer is told, against the predictor that comes out.

@@ -47,10 +47,11 @@ Targets targets(const Inputs& x, double noise = 0) {
 }
 
 TEST(Ensemble, KeepsTheLaws) {
-  EXPECT_TRUE(no_violations(regressor_violations(Ensemble{Elm{.hidden_nodes = 5}, 5})));
-  EXPECT_TRUE(no_violations(regressor_violations(Ensemble{TrigonometricRegression{.max_degree = 1}, 3})));
+  const testing::RegressorLaws taken{.weights = testing::SampleWeights::taken};
+  EXPECT_TRUE(no_violations(regressor_violations(Ensemble{Elm{.hidden_nodes = 5}, 5}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(Ensemble{TrigonometricRegression{.max_degree = 1}, 3}, taken)));
   EXPECT_TRUE(no_violations(regressor_violations(
-      Ensemble{Tuned{Elm{.hidden_nodes = 3}, Pso{.particles = 4, .iterations = 3}}, 3, 0.6, false})));
+      Ensemble{Tuned{Elm{.hidden_nodes = 3}, Pso{.particles = 4, .iterations = 3}}, 3, 0.6, false}, taken)));
 }
 
 TEST(EnsemblePredictor, IsTheMeanAndTheSpreadOfItsMembers) {

@@ -140,12 +140,13 @@ TEST(SinesAndCosines, AreWhatTheHiddenLayerSees) {
 
 TEST(OnFeatures, KeepsTheLaws) {
   const RidgeElm ridge{.hidden_nodes = 9, .input_map = InputMap::raw};
-  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{RawAngles{}, ridge})));
-  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{SinesAndCosines{}, ridge})));
-  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{SineCosineProducts<2>{}, ridge})));
+  const testing::RegressorLaws taken{.weights = testing::SampleWeights::taken};
+  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{RawAngles{}, ridge}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{SinesAndCosines{}, ridge}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{SineCosineProducts<2>{}, ridge}, taken)));
   const Pso pso{.particles = 6, .iterations = 4};
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{OnFeatures{SineCosineProducts<2>{}, ridge}, pso})));
-  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{SinesAndCosines{}, Tuned{ridge, pso}})));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{OnFeatures{SineCosineProducts<2>{}, ridge}, pso}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(OnFeatures{SinesAndCosines{}, Tuned{ridge, pso}}, taken)));
 }
 
 // A map that changes nothing changes nothing; and sines and cosines are what the ELM would make of the inputs itself.

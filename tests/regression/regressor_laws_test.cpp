@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "laws.hpp"
+#include "regression_samples.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 #include "vernier/regression/var_pro_elm.hpp"
@@ -21,30 +22,31 @@ using testing::SampleWeights;
 using vernier_test::mentions;
 using vernier_test::no_violations;
 
-constexpr Activation activations[] = {Activation::sigmoid, Activation::tanh, Activation::sine,
-                                      Activation::radial_basis};
-constexpr InputMap input_maps[] = {InputMap::raw, InputMap::sines_and_cosines};
+using vernier_test::activations;
+using vernier_test::input_maps;
+
+constexpr RegressorLaws taken{.weights = SampleWeights::taken}, counted{.weights = SampleWeights::counted};
 
 TEST(RegressorLaws, ElmWithEachActivationAndInputMap) {
   for (const Activation activation : activations)
     for (const InputMap input_map : input_maps)
       EXPECT_TRUE(no_violations(
-          regressor_violations(Elm{.hidden_nodes = 9, .activation = activation, .input_map = input_map})));
+          regressor_violations(Elm{.hidden_nodes = 9, .activation = activation, .input_map = input_map}, counted)));
 }
 
 TEST(RegressorLaws, ElmWithEachScalingAndMoreNodesThanSamples) {
   for (const Scaling scaling : {Scaling::none, Scaling::min_max, Scaling::standard})
     EXPECT_TRUE(no_violations(
-        regressor_violations(Elm{.hidden_nodes = 9, .input_scaling = scaling, .target_scaling = scaling})));
-  EXPECT_TRUE(no_violations(regressor_violations(Elm{.hidden_nodes = 80, .rcond = 1e-8})));
+        regressor_violations(Elm{.hidden_nodes = 9, .input_scaling = scaling, .target_scaling = scaling}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(Elm{.hidden_nodes = 80, .rcond = 1e-8}, taken)));
 }
 
 TEST(RegressorLaws, RidgeElmWithEachActivationAndInputMap) {
   for (const Activation activation : activations)
     for (const InputMap input_map : input_maps)
       EXPECT_TRUE(no_violations(
-          regressor_violations(RidgeElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map})));
-  EXPECT_TRUE(no_violations(regressor_violations(RidgeElm{.hidden_nodes = 80})));
+          regressor_violations(RidgeElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(RidgeElm{.hidden_nodes = 80}, taken)));
 }
 
 TEST(RegressorLaws, VarProElmWithEachActivationAndInputMap) {
@@ -59,9 +61,9 @@ TEST(RegressorLaws, VarProElmWithEachActivationAndInputMap) {
 TEST(RegressorLaws, TunedElm) {
   const Pso pso{.particles = 6, .iterations = 4};
   const GeneticAlgorithm ga{.individuals = 6, .generations = 4};
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, pso})));
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, ga})));
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{RidgeElm{.hidden_nodes = 5}, pso})));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, pso}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, ga}, taken)));
+  EXPECT_TRUE(no_violations(regressor_violations(Tuned{RidgeElm{.hidden_nodes = 5}, pso}, taken)));
   EXPECT_TRUE(no_violations(regressor_violations(Tuned{VarProElm{.hidden_nodes = 5, .iterations = 4}, pso})));
 }
 
@@ -235,8 +237,8 @@ static_assert(!Predictor<ThrowingMap> && !Predictor<NoDerivative> && !Predictor<
 static_assert(!Regressor<FitNotConst> && !Regressor<FitGivesNothing> && !Regressor<Pso> && !Regressor<int>);
 
 TEST(RegressorLaws, UsersOwnRegressor) {
-  EXPECT_TRUE(no_violations(regressor_violations(Linear{}, {.uses_seed = false})));
-  EXPECT_TRUE(no_violations(regressor_violations(Linear{.uses_seed = true})));
+  EXPECT_TRUE(no_violations(regressor_violations(Linear{}, {.uses_seed = false, .weights = SampleWeights::counted})));
+  EXPECT_TRUE(no_violations(regressor_violations(Linear{.uses_seed = true}, counted)));
   EXPECT_TRUE(no_violations(regressor_violations(
       Linear{}, {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-12})));
 }
@@ -290,12 +292,18 @@ TEST(RegressorLaws, CatchFaultsOfSeedAndLifetime) {
 
 // Each fault is one violation for either pair of sizes, not an avalanche.
 TEST(RegressorLaws, NameOnlyWhatIsWrong) {
-  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::derivative}, {.uses_seed = false}).size(), 2u);
+  EXPECT_EQ(
+      regressor_violations(Linear{.fault = Fault::derivative}, {.uses_seed = false, .weights = SampleWeights::counted})
+          .size(),
+      2u);
   EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_usable_weights},
                                  {.uses_seed = false, .weights = SampleWeights::taken})
                 .size(),
             2u);
-  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_rows}, {.uses_seed = false}).size(), 2u);
+  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_rows},
+                                 {.uses_seed = false, .weights = SampleWeights::counted})
+                .size(),
+            2u);
   EXPECT_THROW(regressor_violations(Linear{}, {.samples = 1}), std::invalid_argument);
 }
 

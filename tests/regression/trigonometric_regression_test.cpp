@@ -83,12 +83,13 @@ VectorX penalties(double growth) {
 }
 
 TEST(TrigonometricRegression, KeepsTheLaws) {
-  const RegressorLaws laws{.uses_seed = false};
+  const RegressorLaws laws{.uses_seed = false, .weights = testing::SampleWeights::taken};
   EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{}, laws)));
   EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{.max_degree = 1}, laws)));
   EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{.max_degree = 0}, laws)));
   EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{.ridge = 1e-3, .growth = 1}, laws)));
-  EXPECT_TRUE(no_violations(regressor_violations(TrigonometricRegression{}, {.uses_seed = false, .samples = 12})));
+  EXPECT_TRUE(no_violations(regressor_violations(
+      TrigonometricRegression{}, {.uses_seed = false, .samples = 12, .weights = testing::SampleWeights::taken})));
 }
 
 TEST(TrigonometricPredictor, IsTheSumOfItsFeatures) {

@@ -18,10 +18,9 @@ namespace vernier::testing {
 
 /// What a recipe does with `FitOptions::weights`.
 enum class SampleWeights {
-  unchecked,  ///< nothing is claimed and nothing looked at
-  refused,    ///< weights throw `std::invalid_argument`
-  taken,      ///< they matter; all one, they do not; unusable ones throw
-  counted,    ///< and integer weights equal repeated samples
+  refused,  ///< weights throw `std::invalid_argument`
+  taken,    ///< they matter; all one, they do not; unusable ones throw
+  counted,  ///< and integer weights equal repeated samples
 };
 
 /// What a recipe claims beside the concept, and how closely it is looked at.
@@ -30,7 +29,7 @@ struct RegressorLaws {
   Index samples = 60;                  ///< rows a fit gets, at least 2
   std::uint64_t seed = 7;              ///< of the samples and the fits
   double derivative_tolerance = 1e-6;  ///< of the derivative against differences, relative to its largest entry
-  SampleWeights weights = SampleWeights::unchecked;  ///< what becomes of weights
+  SampleWeights weights = SampleWeights::refused;  ///< what becomes of weights
   double weight_tolerance = 1e-9;  ///< of predictions where weights should make no difference, relative to the largest
 };
 
@@ -211,7 +210,6 @@ class RegressorCheck {
   }
 
   void weights() {
-    if (laws_.weights == SampleWeights::unchecked) return;
     const Index n = train_.x.rows();
     const VectorX ones = VectorX::Ones(n);
     if (laws_.weights == SampleWeights::refused)

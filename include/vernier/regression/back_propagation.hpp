@@ -28,8 +28,8 @@ struct LevenbergMarquardt {
 /// epoch, from the seed; the learning rate falls to zero as half a cosine.
 /// @cite Kingma and Ba 2015; Loshchilov and Hutter 2017 (the cosine)
 struct Adam {
-  int epochs = 1000;            ///< passes over all samples, 0 or more
-  int batch = 50;               ///< samples of a step, at least 1
+  int epochs = 500;             ///< passes over all samples, 0 or more
+  int batch = 100;              ///< samples of a step, at least 1
   double learning_rate = 0.01;  ///< at the start; in (0, 1)
   double momentum = 0.9;        ///< share that the mean gradient keeps in a step, in [0, 1)
   double memory = 0.999;        ///< share that the mean squared gradient keeps in a step, in [0, 1)

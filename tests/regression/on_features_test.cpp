@@ -9,9 +9,11 @@
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
+#include "regression_samples.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 #include "vernier/search/pso.hpp"
+#include "vernier/search/tuned.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier {
@@ -21,8 +23,10 @@ using testing::regressor_violations;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
-using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+using vernier_test::Inputs;
+using vernier_test::inputs;
+using vernier_test::Targets;
+using vernier_test::targets;
 
 using RidgeOnProducts = OnFeatures<SineCosineProducts<2>, RidgeElm>;
 static_assert(FeatureMap<RawAngles> && FeatureMap<SinesAndCosines> && FeatureMap<SineCosineProducts<2>>);
@@ -49,20 +53,6 @@ struct WrongCount : RawAngles {
   static constexpr int features(int inputs) { return inputs + 1; }
 };
 static_assert(!FeatureMap<NotNoexcept> && !FeatureMap<NoDerivative> && !FeatureMap<WrongCount> && !FeatureMap<int>);
-
-Inputs inputs(Index n, std::uint64_t seed) {
-  Rng rng(seed);
-  Inputs x(n, 3);
-  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
-  return x;
-}
-
-Targets targets(const Inputs& x) {
-  Targets y(x.rows(), 2);
-  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
-  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
-  return y;
-}
 
 template <int N, class Map>
 void expect_derivative(const Map& map) {

@@ -10,6 +10,7 @@
 
 #include "complaint.hpp"
 #include "laws.hpp"
+#include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier {
@@ -20,24 +21,10 @@ using testing::SampleWeights;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
-using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
-
-Inputs inputs(Index n, std::uint64_t seed) {
-  Rng rng(seed);
-  Inputs x(n, 3);
-  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
-  return x;
-}
-
-Targets targets(const Inputs& x, double noise = 0) {
-  Rng rng(99);
-  Targets y(x.rows(), 2);
-  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
-  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
-  for (auto& value : y.reshaped()) value += noise * rng.normal();
-  return y;
-}
+using vernier_test::Inputs;
+using vernier_test::inputs;
+using vernier_test::Targets;
+using vernier_test::targets;
 
 VectorX random_weights(Index n) {
   Rng rng(5);

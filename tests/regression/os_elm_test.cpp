@@ -9,6 +9,7 @@
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
+#include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier {
@@ -20,19 +21,12 @@ using testing::SampleWeights;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
-using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+using vernier_test::Inputs;
+using vernier_test::inputs;
+using vernier_test::Targets;
 using Fitted = OsElmPredictor<3, 2>;
 
-constexpr Activation activations[] = {Activation::sigmoid, Activation::tanh, Activation::sine,
-                                      Activation::radial_basis};
-
-Inputs inputs(Index n, std::uint64_t seed) {
-  Rng rng(seed);
-  Inputs x(n, 3);
-  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
-  return x;
-}
+using vernier_test::activations;
 
 Targets targets(const Inputs& x, double noise = 0) {
   Rng rng(99);

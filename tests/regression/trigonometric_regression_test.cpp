@@ -10,6 +10,7 @@
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
+#include "regression_samples.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -25,24 +26,10 @@ using vernier_test::no_violations;
 
 static_assert(Regressor<TrigonometricRegression> && UncertainPredictor<TrigonometricPredictor<6, 3>>);
 
-using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-using Targets = Eigen::Matrix<double, Eigen::Dynamic, 2>;
-
-Inputs inputs(Index n, std::uint64_t seed) {
-  Rng rng(seed);
-  Inputs x(n, 3);
-  for (auto& value : x.reshaped()) value = rng.uniform(-1.5, 1.5);
-  return x;
-}
-
-Targets targets(const Inputs& x, double noise = 0) {
-  Rng rng(99);
-  Targets y(x.rows(), 2);
-  y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
-  y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
-  for (auto& value : y.reshaped()) value += noise * rng.normal();
-  return y;
-}
+using vernier_test::Inputs;
+using vernier_test::inputs;
+using vernier_test::Targets;
+using vernier_test::targets;
 
 VectorX some_weights(Index n, std::uint64_t seed) {
   Rng rng(seed);

@@ -22,11 +22,14 @@ inline Inputs inputs(vernier::Index n, std::uint64_t seed) {
   return x;
 }
 
-/// Millimetres in metres, the first output far from zero.
-inline Targets targets(const Inputs& x) {
+/// Millimetres in metres, the first output far from zero, with normal noise.
+inline Targets targets(const Inputs& x, double noise = 0) {
+  vernier::Rng rng(99);
   Targets y(x.rows(), 2);
   y.col(0) = 1e-3 * (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
   y.col(1) = 1e-3 * (x.col(2).array() - x.col(0).array()).cos();
+  if (noise > 0)
+    for (auto& value : y.reshaped()) value += noise * rng.normal();
   return y;
 }
 

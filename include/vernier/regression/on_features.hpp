@@ -7,9 +7,9 @@
 #include <concepts>
 #include <utility>
 
+#include "vernier/core/box.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/regression/concepts.hpp"
-#include "vernier/search/tuned.hpp"
 
 namespace vernier {
 
@@ -203,6 +203,17 @@ class FeaturePredictor {
   P predictor_;
 };
 
+namespace detail {
+
+/// A recipe whose inner parameters can be searched for.
+template <class R>
+concept HasInnerParameters = requires(const R& regressor) {
+  { regressor.dimension(1) } -> std::convertible_to<Index>;
+  { regressor.box(1) } -> std::same_as<Box>;
+};
+
+}  // namespace detail
+
 /// A regressor that is shown features of its inputs: `OnFeatures{SineCosineProducts<2>{}, RidgeElm{.input_map =
 /// InputMap::raw}}`, lest the ELM take sines of products. It can be tuned where its regressor can.
 template <FeatureMap Map, Regressor R>
@@ -230,13 +241,15 @@ struct OnFeatures {
   }
 
   /// Length of the vector that a search moves.
-  Index dimension(int inputs) const requires TunableRegressor<R> { return regressor.dimension(Map::features(inputs)); }
+  Index dimension(int inputs) const requires detail::HasInnerParameters<R> {
+    return regressor.dimension(Map::features(inputs));
+  }
   /// Where a search looks.
-  Box box(int inputs) const requires TunableRegressor<R> { return regressor.box(Map::features(inputs)); }
+  Box box(int inputs) const requires detail::HasInnerParameters<R> { return regressor.box(Map::features(inputs)); }
 
   /// The regressor's objective on the features of all samples, which it must not refer to. It takes options where the
   /// regressor's does.
-  template <class X, class Y, TunableRegressor Inner = R, class... Options>
+  template <class X, class Y, detail::HasInnerParameters Inner = R, class... Options>
   auto objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
                  const Options&... options) const
       -> decltype(std::declval<const Inner&>().objective(std::declval<const Features<X>&>(),
@@ -245,7 +258,7 @@ struct OnFeatures {
   }
 
   /// The regressor's fit at one vector that a search found. It takes options where the regressor's does.
-  template <class X, class Y, TunableRegressor Inner = R, class... Options>
+  template <class X, class Y, detail::HasInnerParameters Inner = R, class... Options>
   auto fit_at(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets, const VectorX& theta,
               const Options&... options) const
       -> FeaturePredictor<Map,

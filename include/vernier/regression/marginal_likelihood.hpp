@@ -29,7 +29,7 @@ Eigen::ArrayXd varying_outputs(const Eigen::MatrixBase<Targets>& targets) {
 /// (`s^2 = r / N`, `r = (T - mean)' A^-1 (T - mean)`, `A = K + ratio W^-1`, N the sum of the weights), so the unknowns
 /// are the logarithms of the length scales, one an input, and of the ratio, which comes last. A sample of weight w
 /// counts as w samples: its likelihood is raised to the power of w. Constant outputs are left out.
-/// @cite Rasmussen and Williams 2006, chapter 5
+/// @cite Rasmussen and Williams 2006
 template <class Scalar>  // a template so that only users pay for compiling it
 class MarginalLikelihoodOf {
  public:

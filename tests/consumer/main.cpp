@@ -1,18 +1,23 @@
 // What a user's program sees of Vernier: the headers, the namespace, the version, and the libraries of what it asked
 // for.
 
-#include <vernier/vernier.hpp>
+#include <vernier/core/literals.hpp>
+#include <vernier/core/version.hpp>
+#include <vernier/kinematics/dh_chain.hpp>
 #ifdef CONSUMER_IO
-#include <vernier/io.hpp>
+#include <vernier/io/json.hpp>
 #endif
 #ifdef CONSUMER_CERES
-#include <vernier/ceres.hpp>
+#include <vernier/ceres/problem.hpp>
 #endif
 #ifdef CONSUMER_TBB
 #include <vernier/tbb.hpp>
 #endif
 #ifdef CONSUMER_MPI
 #include <vernier/mpi.hpp>
+#endif
+#if !defined(CONSUMER_IO) && !defined(CONSUMER_CERES) && !defined(CONSUMER_TBB)  // all that needs Eigen alone
+#include <vernier/vernier.hpp>
 #endif
 
 #include <atomic>

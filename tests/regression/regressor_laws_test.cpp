@@ -300,10 +300,6 @@ TEST(RegressorLaws, NameOnlyWhatIsWrong) {
                                  {.uses_seed = false, .weights = SampleWeights::taken})
                 .size(),
             2u);
-  EXPECT_EQ(regressor_violations(Linear{.fault = Fault::ignores_rows},
-                                 {.uses_seed = false, .weights = SampleWeights::counted})
-                .size(),
-            2u);
   EXPECT_THROW(regressor_violations(Linear{}, {.samples = 1}), std::invalid_argument);
 }
 

@@ -178,8 +178,6 @@ pagmo::pso_gen own_pso(unsigned seed) {
   return algorithm;
 }
 const vn::RealGeneticAlgorithm real_ga{.individuals = breed, .generations = budget};
-const vn::RealGeneticAlgorithm truncating_ga{
-    .individuals = breed, .generations = budget, .elites = 0, .survival = vn::Survival::best_of_both};
 pagmo::sga equal_sga(unsigned seed) {
   return pagmo::sga(generations_of(breed), 0.9, 15, 1.0 / dimension, 20, 2, "sbx", "polynomial", "tournament", seed);
 }
@@ -188,7 +186,9 @@ pagmo::sga own_sga(unsigned seed) {
   algorithm.set_seed(seed);
   return algorithm;
 }
-vn::DifferentialEvolution de(vn::DifferentialBase base) { return {.generations = budget, .base = base}; }
+vn::DifferentialEvolution de(vn::DifferentialBase base, vn::TrialRule rule = vn::TrialRule::redrawn) {
+  return {.generations = budget, .base = base, .trials_outside = rule};
+}
 pagmo::de equal_de(unsigned variant, unsigned seed) {
   return pagmo::de(generations_of(swarm), 0.5, 0.9, variant, 0, 0, seed);
 }
@@ -319,14 +319,13 @@ int work(bench::Program& program, int argc, char** argv) {
   compare("PSO, own", run(paper), with(swarm, [](const Objective&, unsigned seed) { return own_pso(seed); }));
   compare("PSO, 4 neighbours, own", run(constriction(vn::Neighbourhood::von_neumann)),
           with(swarm, [](const Objective&, unsigned seed) { return own_pso(seed); }));
-  compare("real GA, equal", run(truncating_ga),
-          with(breed, [](const Objective&, unsigned seed) { return equal_sga(seed); }));
+  compare("real GA, equal", run(real_ga), with(breed, [](const Objective&, unsigned seed) { return equal_sga(seed); }));
   compare("real GA, own", run(real_ga), with(breed, [](const Objective&, unsigned seed) { return own_sga(seed); }));
   compare("DE rand/1/bin, equal", run(de(vn::DifferentialBase::random)),
           with(swarm, [](const Objective&, unsigned seed) { return equal_de(7, seed); }));
   compare("DE best/1/bin, equal", run(de(vn::DifferentialBase::best)),
           with(swarm, [](const Objective&, unsigned seed) { return equal_de(6, seed); }));
-  compare("DE, own", run(de(vn::DifferentialBase::random)),
+  compare("DE, own", run(de(vn::DifferentialBase::random, vn::TrialRule::halfway)),
           with(swarm, [](const Objective&, unsigned seed) { return own_de(seed); }));
   compare("CMA-ES, one run, equal", run(cma_once),
           with(lambda, [](const Objective& objective, unsigned seed) { return equal_cma(objective, seed); }));

@@ -39,9 +39,11 @@ First: the time of whole searches on the sphere, and of one evaluation beside th
 Then: medians of the best values found over seeds 1 to 25, ours and pagmo2's, with the p of the two-sided rank-sum test
 and a star where pagmo2's are lower at p < 0.01. All minima are 0 and shifted off the centre of the box; the ellipsoid
 (axes 1 to 1000) is rotated. "equal" means equal constants, "own" each library's own defaults, at equal numbers of
-evaluations. The best point evaluated counts, whether or not a population keeps it. Nothing outside the box is evaluated:
-Vernier's default PSO, which may leave it, has its positions clamped, and pagmo2's cmaes runs with force_bounds. Tolerances
-that would stop pagmo2 before its budget are zero in "equal". The last rows have no peer.
+evaluations. The best point evaluated counts, whether or not a population keeps it.
+
+Nothing outside the box is evaluated: Vernier's default PSO, which may leave it, has its positions clamped, and pagmo2's
+cmaes runs with force_bounds. Tolerances that would end a search before its budget are zero in "equal", and DE draws
+coordinates outside the box anew there, as pagmo2 does. The last rows have no peer.
 
 The medians take some minutes. pagmo2 is the library as installed.)";
 

@@ -20,12 +20,18 @@ const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
 };
 
 // Every trial from its formula: three others drawn by rejection, one certain dimension, the rest by CR, a bound passed
-// becomes the middle between it and the parent.
+// becomes the middle between it and the parent or a new number.
 TEST(DifferentialEvolution, TrialsByHand) {
   const Box box{Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)};
-  for (const auto base : {DifferentialBase::random, DifferentialBase::best}) {
-    const DifferentialEvolution de{
-        .individuals = 6, .generations = 5, .weight = 0.9, .crossover_probability = 0.6, .base = base};
+  for (const auto& [base, rule] : {std::pair{DifferentialBase::random, TrialRule::halfway},
+                                   {DifferentialBase::best, TrialRule::halfway},
+                                   {DifferentialBase::random, TrialRule::redrawn}}) {
+    const DifferentialEvolution de{.individuals = 6,
+                                   .generations = 5,
+                                   .weight = 0.9,
+                                   .crossover_probability = 0.6,
+                                   .base = base,
+                                   .trials_outside = rule};
     DifferentialEvolution::State s = de.start(box, 3, evaluate_bowl);
     int repaired = 0, taken = 0, kept = 0;
     for (int generation = 0; generation < 5; ++generation) {
@@ -52,7 +58,9 @@ TEST(DifferentialEvolution, TrialsByHand) {
             const double mutant = from + 0.9 * (before.positions(d, r[1]) - before.positions(d, r[2]));
             const double bound = mutant < -1 ? -1 : 1;
             repaired += std::abs(mutant) > 1;
-            expected = std::abs(mutant) > 1 ? (bound + expected) / 2 : mutant;
+            expected = std::abs(mutant) <= 1        ? mutant
+                       : rule == TrialRule::halfway ? (bound + expected) / 2
+                                                    : rng.uniform(-1, 1);
           }
           ASSERT_NEAR(asked(d, k), expected, 1e-15);
         }

@@ -81,15 +81,20 @@ TEST(MetaheuristicLaws, GeneticAlgorithmsOtherOperators) {
   }
 }
 
-TEST(MetaheuristicLaws, TruncatingGeneticAlgorithm) {
+TEST(MetaheuristicLaws, GeneticAlgorithmWithElites) {
   EXPECT_TRUE(no_violations(metaheuristic_violations(
-      RealGeneticAlgorithm{.individuals = 9, .generations = 20, .elites = 0, .survival = Survival::best_of_both},
-      true)));
+      RealGeneticAlgorithm{.individuals = 9, .generations = 20, .elites = 3, .survival = Survival::elites}, true)));
 }
 
 TEST(MetaheuristicLaws, Spso2011) {
   EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 10, .iterations = 20}, true)));
   EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 1, .iterations = 20}, true)));
+}
+
+TEST(MetaheuristicLaws, DifferentialEvolutionRedrawn) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(
+      DifferentialEvolution{.individuals = 9, .generations = 20, .weight = 2, .trials_outside = TrialRule::redrawn},
+      true)));
 }
 
 TEST(MetaheuristicLaws, DifferentialEvolution) {

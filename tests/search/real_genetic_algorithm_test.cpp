@@ -153,6 +153,7 @@ TEST(RealGeneticAlgorithm, SbxCrossesHalfTheVariables) {
 /// Steps of all children of equal parents at the middle of the box [0, 2]^50.
 VectorX steps(Ga ga) {
   ga.elites = 0;
+  ga.survival = Survival::elites;
   ga.individuals = 40;
   std::vector<double> out;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -183,7 +184,7 @@ TEST(RealGeneticAlgorithm, MutatesAtItsRateAndSize) {
 }
 
 TEST(RealGeneticAlgorithm, ElitesSurvive) {
-  const Ga ga{.individuals = 12, .generations = 20, .mutations = 6, .elites = 3};
+  const Ga ga{.individuals = 12, .generations = 20, .mutations = 6, .elites = 3, .survival = Survival::elites};
   const Box box = Box::cube(6, -1, 1);
   Index evaluated = 0;
   const auto evaluate = [&](const MatrixX& population, VectorX& fitness) {

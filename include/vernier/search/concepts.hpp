@@ -32,7 +32,8 @@ concept SearchState = std::copyable<S> && requires(const S& state) {
 /// - `step(state, box, evaluate)`: one generation, in place; depends on the state alone, so N steps equal a run of N
 /// - `done(state)`: whether the algorithm's own schedule has ended
 ///
-/// All randomness comes from the seed through the state. `evaluate` is called with whole populations.
+/// All randomness comes from the seed through the state. `evaluate` is called with whole populations, which may change
+/// size; it may throw to end a search, which a step lets pass.
 template <class A>
 concept Metaheuristic = std::copyable<A> && SearchState<typename A::State> &&
     requires(const A& algorithm, typename A::State& state, const Box& box, std::uint64_t seed, Evaluate evaluate) {

@@ -17,15 +17,26 @@ Index index_besides(Index n, Rng& rng, Others... others) {
     if (const auto i = static_cast<Index>(rng.below(static_cast<std::uint64_t>(n))); ((i != others) && ...)) return i;
 }
 
+/// What becomes of a trial's coordinate that leaves the box.
+enum class TrialRule {
+  halfway,  ///< put halfway between the individual it challenges and the bound
+  redrawn,  ///< drawn anew, uniformly: keeps populations apart that would close in too early
+};
+
 /// Binomial crossover: `trial` takes `mutant(d)` in one dimension drawn at random and in each other one with
-/// probability `rate`, otherwise it keeps the parent's; what leaves the box comes back halfway between the parent and
-/// the bound.
+/// probability `rate`, otherwise it keeps the parent's.
 template <class Parent, class Mutant, class Trial>
-void cross_binomially(const Parent& parent, Mutant&& mutant, double rate, const Box& box, Rng& rng, Trial&& trial) {
+void cross_binomially(const Parent& parent, Mutant&& mutant, double rate, TrialRule rule, const Box& box, Rng& rng,
+                      Trial&& trial) {
   const auto certain = static_cast<Index>(rng.below(static_cast<std::uint64_t>(parent.size())));
-  for (Index d = 0; d < parent.size(); ++d)
-    trial(d) =
-        rng.uniform() < rate || d == certain ? halfway(mutant(d), parent(d), box.lower(d), box.upper(d)) : parent(d);
+  for (Index d = 0; d < parent.size(); ++d) {
+    const double lower = box.lower(d), upper = box.upper(d);
+    double x = parent(d);
+    if (rng.uniform() < rate || d == certain) x = mutant(d);
+    if (x < lower || x > upper)
+      x = rule == TrialRule::halfway ? halfway(x, parent(d), lower, upper) : rng.uniform(lower, upper);
+    trial(d) = x;
+  }
 }
 
 /// What a difference is added to.
@@ -36,8 +47,7 @@ enum class DifferentialBase {
 
 /// Differential evolution, DE/rand/1/bin or DE/best/1/bin: every individual is challenged by
 /// `base + weight (x_r2 - x_r3)`, crossed with it binomially, and gives way to a trial that is not worse. All trials of
-/// a generation are made, then evaluated. A coordinate that would leave the box is put halfway between the individual
-/// it challenges and the bound: nothing outside is evaluated.
+/// a generation are made, then evaluated; nothing outside the box is.
 /// @cite Storn and Price 1997; Zhang and Sanderson 2009
 struct DifferentialEvolution {
   int individuals = 50;                ///< at least 4
@@ -46,6 +56,8 @@ struct DifferentialEvolution {
   double crossover_probability = 0.9;  ///< CR, per variable
   /// What the difference is added to.
   DifferentialBase base = DifferentialBase::random;
+  /// What becomes of coordinates outside the box.
+  TrialRule trials_outside = TrialRule::halfway;
 
   /// A population between two generations.
   struct State : CommonState {
@@ -87,8 +99,8 @@ struct DifferentialEvolution {
                   r3 = index_besides(n, s.rng, k, r1, r2);
       const double* from = base == DifferentialBase::best ? s.best.data() : x.col(r1).data();
       cross_binomially(
-          x.col(k), [&](Index d) { return from[d] + weight * (x(d, r2) - x(d, r3)); }, crossover_probability, box,
-          s.rng, trials.col(k));
+          x.col(k), [&](Index d) { return from[d] + weight * (x(d, r2) - x(d, r3)); }, crossover_probability,
+          trials_outside, box, s.rng, trials.col(k));
     }
     VectorX values;
     evaluate(trials, values);

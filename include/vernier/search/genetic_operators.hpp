@@ -120,11 +120,11 @@ void keep_best_of_both(Genes& genes, VectorX& fitness, const Genes& children, co
 /// @param cross  `cross(children, k)` crosses children k and k + 1
 /// @param mutate `mutate(children)`
 /// @param decode the points that genes stand for
-/// @param best_survive whether instead the best of old and new ones survive
+/// @param best_survive whether instead of elites and children the best of old and new ones survive
 template <class Algorithm, class State, class Genes, class Cross, class Mutate, class Decode>
 void next_generation(const Algorithm& ga, State& s, Genes& genes, Cross&& cross, Mutate&& mutate, Decode&& decode,
                      Evaluate evaluate, bool best_survive = false) {
-  const Index n = genes.cols(), elites = ga.elites, count = n - elites;
+  const Index n = genes.cols(), elites = best_survive ? 0 : ga.elites, count = n - elites;
   const ParentChoice parent(ga.selection, ga.tournament, s.fitness);
   Genes children(genes.rows(), count);
   for (Index k = 0; k < count; k += 2) {

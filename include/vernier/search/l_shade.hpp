@@ -107,7 +107,7 @@ struct LShade {
       const double* other = r2 < n ? x.col(r2).data() : s.archive.col(r2 - n).data();
       cross_binomially(
           x.col(k), [&](Index d) { return x(d, k) + f(k) * (x(d, leader) - x(d, k)) + f(k) * (x(d, r1) - other[d]); },
-          cr(k), box, s.rng, trials.col(k));
+          cr(k), TrialRule::halfway, box, s.rng, trials.col(k));
     }
     evaluate(trials, values);
     s.evaluations += count;

@@ -36,8 +36,8 @@ enum class Survival {
 };
 
 /// Real-coded genetic algorithm: pairs of parents are crossed with `crossover_probability`, each variable of a child
-/// mutates with probability `mutations / dimension`, the `elites` best survive unchanged (and are not evaluated again).
-/// Nothing outside the box is evaluated.
+/// mutates with probability `mutations / dimension`, the best of parents and children live on, or the children and the
+/// `elites` best (which are not evaluated again). Nothing outside the box is evaluated.
 /// @cite Deb and Agrawal 1995; Eshelman and Schaffer 1993; Deb and Goyal 1996; Goldberg 1989
 struct RealGeneticAlgorithm {
   int individuals = 80;                ///< at least 2
@@ -45,7 +45,7 @@ struct RealGeneticAlgorithm {
   double crossover_probability = 0.9;  ///< per pair
   double mutations = 1;                ///< expected number of variables that mutate in a child
   int tournament = 2;                  ///< 1 selects at random
-  int elites = 1;                      ///< below `individuals`; that many fewer children are made
+  int elites = 1;                      ///< of `Survival::elites`, below `individuals`
   /// How pairs are crossed.
   RealCrossover crossover = RealCrossover::sbx;
   /// How variables mutate.
@@ -53,7 +53,7 @@ struct RealGeneticAlgorithm {
   /// How parents are chosen.
   ParentSelection selection = ParentSelection::tournament;
   /// Who lives on.
-  Survival survival = Survival::elites;
+  Survival survival = Survival::best_of_both;
   double crossover_index = 15;   ///< eta of SBX: the larger, the closer children are to their parents
   double mutation_index = 20;    ///< eta of the polynomial mutation
   double blend = 0.5;            ///< alpha of BLX

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Robots and calibrated models as JSON files: needs nlohmann-json beside Eigen.
+/// Robots, calibrated models and searches under way as JSON files: needs nlohmann-json beside Eigen.
 
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/robot_file.hpp"
+#include "vernier/io/search_state.hpp"

@@ -65,26 +65,6 @@ void train(NetworkError& problem, VectorX& theta, const Adam& adam, std::uint64_
   }
 }
 
-/// Weighted mean of targets, and their common spread: outputs weigh as they are.
-struct WeightedScaling {
-  VectorX mean;   ///< of each column
-  double spread;  ///< root of the mean squared distance from the mean; 1 where that is rounding
-
-  /// Of n x m targets with n weights.
-  template <class Targets>
-  WeightedScaling(const Eigen::MatrixBase<Targets>& targets, const VectorX& weights)
-      : mean((weights.transpose() * targets).transpose() / weights.sum()),
-        spread(std::sqrt(weights.dot((targets.rowwise() - mean.transpose()).rowwise().squaredNorm()) / weights.sum())) {
-    if (!(spread > 1e-12 * targets.cwiseAbs().maxCoeff())) spread = 1;
-  }
-
-  /// Scaled targets.
-  template <class Targets>
-  MatrixX apply(const Eigen::MatrixBase<Targets>& targets) const {
-    return (targets.rowwise() - mean.transpose()) / spread;
-  }
-};
-
 }  // namespace detail
 
 /// The classical back-propagation network: one hidden layer of sigmoid or tanh nodes, linear outputs, all weights
@@ -127,7 +107,7 @@ struct BackPropagation {
     const VectorX weights = options.weights != nullptr ? *options.weights : VectorX(VectorX::Ones(n));
     const MatrixX mapped = layer().map(inputs);
     const ColumnScaling in = layer().scaling(mapped);
-    const detail::WeightedScaling out(targets, weights);
+    const detail::CommonScaling out(targets, options.weights);
     const MatrixX features = in.apply(mapped), scaled = out.apply(targets);
 
     std::vector<Index> kept = Rng(child_seed(options.seed, 1)).permutation(n);

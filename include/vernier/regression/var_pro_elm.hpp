@@ -24,10 +24,15 @@ struct CommonScaling {
   VectorX mean;   ///< of each column
   double spread;  ///< root of the mean squared distance from the mean; 1 where that is rounding
 
+  /// Of n x m targets with n weights; null: all the same.
   template <class Targets>
-  explicit CommonScaling(const Eigen::MatrixBase<Targets>& targets)
-      : mean(targets.colwise().mean().transpose()),
-        spread(std::sqrt((targets.rowwise() - mean.transpose()).squaredNorm() / static_cast<double>(targets.rows()))) {
+  explicit CommonScaling(const Eigen::MatrixBase<Targets>& targets, const VectorX* weights = nullptr) {
+    const auto mean_of = [&](const auto& rows) -> VectorX {
+      if (weights == nullptr) return rows.colwise().mean().transpose();
+      return rows.transpose() * *weights / weights->sum();
+    };
+    mean = mean_of(targets);
+    spread = std::sqrt(mean_of((targets.rowwise() - mean.transpose()).rowwise().squaredNorm())(0));
     if (!(spread > 1e-12 * targets.cwiseAbs().maxCoeff())) spread = 1;
   }
 

@@ -63,8 +63,9 @@ struct PagmoSearch {
     s.algorithm = algorithm;
     s.algorithm.set_seed(static_cast<unsigned>(seed));
     const auto shared = std::make_shared<Evaluations>(Evaluations{evaluate, {}, HUGE_VAL});
-    s.population = {pagmo::problem(Problem{box, shared}), static_cast<std::size_t>(individuals),
-                    static_cast<unsigned>(seed)};
+    s.population =
+        pagmo::population(pagmo::problem(Problem{box, shared}), static_cast<pagmo::population::size_type>(individuals),
+                          static_cast<unsigned>(seed));
     take_best(s, *shared);
     return s;
   }

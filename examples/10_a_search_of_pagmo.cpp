@@ -2,9 +2,8 @@
 // laws, in the same places.
 
 #include <cstdio>
-#include <pagmo/algorithms/de.hpp>
+#include <pagmo/algorithms/gaco.hpp>
 #include <pagmo/algorithms/pso_gen.hpp>
-#include <vernier/search/differential_evolution.hpp>
 #include <vernier/testing/metaheuristic_laws.hpp>
 #include <vernier/vernier.hpp>
 
@@ -13,10 +12,13 @@
 namespace vn = vernier;
 
 int main() {
-  const support::PagmoSearch de{pagmo::algorithm(pagmo::de(1)), 20, 60};
-  const support::PagmoSearch pso{pagmo::algorithm(pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true)), 20, 60};
-  static_assert(vn::Metaheuristic<support::PagmoSearch>);
-  for (const auto* search : {&de, &pso}) {
+  using support::PagmoSearch;
+  const PagmoSearch pso{PagmoSearch::whole_generations(pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true)), 20,
+                        60};
+  const PagmoSearch ants{
+      PagmoSearch::whole_generations(pagmo::gaco(1, 13, 1.0, 0.0, 0.01, 7, 100, 100000, 100000, 0.0, true)), 20, 60};
+  static_assert(vn::Metaheuristic<PagmoSearch>);
+  for (const auto* search : {&pso, &ants}) {
     const auto violations = vn::testing::metaheuristic_violations(*search, /*keeps_box=*/true);
     for (const auto& violation : violations) std::printf("broken law: %s\n", violation.c_str());
     if (!violations.empty()) return 1;
@@ -35,8 +37,7 @@ int main() {
   };
   std::printf("mean error on 300 fresh poses, 1220 evaluations each:\n");
   report("ELM", elm);
-  report("pagmo2's DE", vn::Tuned{elm, de});
-  report("pagmo2's PSO, a generation", vn::Tuned{elm, pso});
-  report("differential evolution", vn::Tuned{elm, vn::DifferentialEvolution{.individuals = 20, .generations = 60}});
+  report("pagmo2's ant colony", vn::Tuned{elm, ants});
+  report("pagmo2's PSO", vn::Tuned{elm, pso});
   report("PSO", vn::Tuned{elm, vn::Pso{.particles = 20, .iterations = 60}});
 }

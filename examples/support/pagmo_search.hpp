@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 #include <pagmo/algorithm.hpp>
+#include <pagmo/batch_evaluators/member_bfe.hpp>
+#include <pagmo/bfe.hpp>
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 #include <utility>
@@ -14,8 +16,8 @@
 
 namespace support {
 
-/// Any algorithm of pagmo2 that makes one generation a call and remembers the rest: `pagmo::de(1)`,
-/// `pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true)`. Evaluates point by point.
+/// Algorithms of pagmo2 that make one generation a call, remember the rest and evaluate a generation as a whole:
+/// `PagmoSearch{PagmoSearch::whole_generations(pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true))}`.
 struct PagmoSearch {
   pagmo::algorithm algorithm;        ///< one generation a call
   int individuals = 50;              ///< of the population
@@ -33,16 +35,19 @@ struct PagmoSearch {
     vernier::Box box;
     std::shared_ptr<Evaluations> shared;
 
-    pagmo::vector_double fitness(const pagmo::vector_double& x) const {
-      const vernier::MatrixX point = Eigen::Map<const vernier::VectorX>(x.data(), box.dimension());
-      vernier::VectorX value;
-      shared->evaluate(point, value);
-      if (shared->best.size() == 0 || value(0) < shared->best_fitness) {
-        shared->best = point.col(0);
-        shared->best_fitness = value(0);
+    pagmo::vector_double batch_fitness(const pagmo::vector_double& points) const {
+      const auto count = static_cast<vernier::Index>(points.size()) / box.dimension();
+      const vernier::MatrixX population = Eigen::Map<const vernier::MatrixX>(points.data(), box.dimension(), count);
+      vernier::VectorX values;
+      shared->evaluate(population, values);
+      vernier::Index leader = 0;
+      if (const double least = values.minCoeff(&leader); shared->best.size() == 0 || least < shared->best_fitness) {
+        shared->best = population.col(leader);
+        shared->best_fitness = least;
       }
-      return {value(0)};
+      return {values.begin(), values.end()};
     }
+    pagmo::vector_double fitness(const pagmo::vector_double& x) const { return batch_fitness(x); }
     std::pair<pagmo::vector_double, pagmo::vector_double> get_bounds() const {
       return {{box.lower.begin(), box.lower.end()}, {box.upper.begin(), box.upper.end()}};
     }
@@ -56,6 +61,13 @@ struct PagmoSearch {
     pagmo::algorithm algorithm{};
     pagmo::population population{};
   };
+
+  /// An algorithm that is told to evaluate a generation as a whole.
+  template <class Algorithm>
+  static pagmo::algorithm whole_generations(Algorithm algorithm) {
+    algorithm.set_bfe(pagmo::bfe(pagmo::member_bfe()));
+    return pagmo::algorithm(std::move(algorithm));
+  }
 
   /// The first population, drawn by pagmo.
   State start(const vernier::Box& box, std::uint64_t seed, vernier::Evaluate evaluate) const {

@@ -13,8 +13,7 @@
 #include "vernier/search/real_genetic_algorithm.hpp"
 #include "vernier/search/spso2011.hpp"
 #ifdef VERNIER_HAS_PAGMO
-#include <pagmo/algorithms/cmaes.hpp>
-#include <pagmo/algorithms/de.hpp>
+#include <pagmo/algorithms/gaco.hpp>
 #include <pagmo/algorithms/pso_gen.hpp>
 
 #include "pagmo_search.hpp"
@@ -43,9 +42,8 @@ const std::vector<Named>& search_names() {
       {"lshade", "L-SHADE"},
       {"cmaes", "CMA-ES"},
 #ifdef VERNIER_HAS_PAGMO
-      {"pagmo_de", "pagmo2's differential evolution"},
       {"pagmo_pso", "pagmo2's particle swarm, generation by generation"},
-      {"pagmo_cmaes", "pagmo2's CMA-ES"},
+      {"pagmo_gaco", "pagmo2's ant colony"},
 #endif
   };
   return names;
@@ -79,11 +77,10 @@ vn::SearchResult run_search(const std::string& name, const AnyObjective& objecti
   if (name == "random") return run(vn::RandomSearch{.individuals = population, .generations = generations});
 #ifdef VERNIER_HAS_PAGMO
   const auto run_pagmo = [&](const auto& algorithm) {
-    return run(PagmoSearch{pagmo::algorithm(algorithm), population, generations});
+    return run(PagmoSearch{PagmoSearch::whole_generations(algorithm), population, generations});
   };
-  if (name == "pagmo_de") return run_pagmo(pagmo::de(1));
   if (name == "pagmo_pso") return run_pagmo(pagmo::pso_gen(1, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true));
-  if (name == "pagmo_cmaes") return run_pagmo(pagmo::cmaes(1, -1, -1, -1, -1, 0.5, 1e-12, 1e-12, true, true));
+  if (name == "pagmo_gaco") return run_pagmo(pagmo::gaco(1, 13, 1.0, 0.0, 0.01, 7, 100, 100000, 100000, 0.0, true));
 #endif
   throw std::logic_error("no search is called " + name);
 }

@@ -135,12 +135,10 @@ SearchResult minimize(const A& algorithm, const F& objective, const Box& box, On
     // How large a population will be only the step knows: one that would pass the budget is undone.
     if (limited) before = state;
     const double best = state.best_fitness;
-    const Index spent = evaluations;
     try {
       algorithm.step(state, box, counted);
     } catch (const detail::BudgetSpent&) {
       state = std::move(before);
-      evaluations = spent;  // of a search that evaluates in several calls, too
       return result(SearchStatus::budget_spent);
     }
     if (state.best_fitness < best) improved_at = state.generation;

@@ -128,7 +128,8 @@ struct KernelElm {
     double length_scale = 1, lambda = 1, error = std::numeric_limits<double>::infinity();
   };
 
-  Choice choose(const MatrixX& features, const MatrixX& targets, const VectorX& weights,
+  template <class Features>  // a template so that only users pay for compiling the decomposition
+  Choice choose(const Features& features, const MatrixX& targets, const VectorX& weights,
                 const FitOptions& options) const {
     if (length_scale && lambda) return {*length_scale, *lambda, 0};
     const Index n = features.rows(), m = std::min(n, max_search_samples);

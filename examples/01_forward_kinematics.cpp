@@ -2,7 +2,9 @@
 
 #include <cstdio>
 #include <numbers>
-#include <vernier/vernier.hpp>
+#include <vernier/core/so3.hpp>
+#include <vernier/kinematics/framed.hpp>
+#include <vernier/kinematics/robots.hpp>
 
 namespace vn = vernier;
 using namespace vernier::literals;

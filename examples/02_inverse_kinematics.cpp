@@ -2,7 +2,8 @@
 
 #include <cstdio>
 #include <numbers>
-#include <vernier/vernier.hpp>
+#include <vernier/kinematics/inverse_kinematics.hpp>
+#include <vernier/kinematics/robots.hpp>
 
 namespace vn = vernier;
 using namespace vernier::literals;

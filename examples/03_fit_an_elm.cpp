@@ -1,7 +1,11 @@
 // Learn an error from samples: an extreme learning machine (ELM) draws its hidden weights and solves for the others.
 
 #include <cstdio>
-#include <vernier/vernier.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/regression/elm.hpp>
+#include <vernier/regression/ridge_elm.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 
 namespace vn = vernier;
 

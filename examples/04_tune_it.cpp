@@ -1,7 +1,13 @@
 // Tune the hidden weights instead of drawing them: PSO-ELM and GA-ELM are one line each.
 
 #include <cstdio>
-#include <vernier/vernier.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/regression/elm.hpp>
+#include <vernier/search/genetic_algorithm.hpp>
+#include <vernier/search/pso.hpp>
+#include <vernier/search/tuned.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 
 namespace vn = vernier;
 

@@ -1,7 +1,12 @@
 // Send the robot where it is told: learn its position errors, then correct the commands.
 
 #include <cstdio>
-#include <vernier/vernier.hpp>
+#include <vernier/compensation/cartesian.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/regression/ridge_elm.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 
 namespace vn = vernier;
 

@@ -1,8 +1,12 @@
 // Find out how the real arm differs from its drawing: classical identification with Ceres.
 
 #include <cstdio>
-#include <vernier/ceres.hpp>
-#include <vernier/vernier.hpp>
+#include <vernier/ceres/identify.hpp>
+#include <vernier/compensation/compensated.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 
 namespace vn = vernier;
 using namespace vernier::literals;

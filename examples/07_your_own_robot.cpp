@@ -2,8 +2,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <vernier/compensation/cartesian.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/regression/ridge_elm.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 #include <vernier/testing/kinematic_laws.hpp>
-#include <vernier/vernier.hpp>
 
 namespace vn = vernier;
 

@@ -2,8 +2,13 @@
 
 #include <Eigen/QR>
 #include <cstdio>
+#include <vernier/compensation/cartesian.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/regression/elm.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 #include <vernier/testing/regressor_laws.hpp>
-#include <vernier/vernier.hpp>
 
 namespace vn = vernier;
 

@@ -4,8 +4,15 @@
 #include <cstdio>
 #include <pagmo/algorithms/gaco.hpp>
 #include <pagmo/algorithms/pso_gen.hpp>
+#include <vernier/compensation/cartesian.hpp>
+#include <vernier/evaluation/statistics.hpp>
+#include <vernier/kinematics/robots.hpp>
+#include <vernier/regression/elm.hpp>
+#include <vernier/search/pso.hpp>
+#include <vernier/search/tuned.hpp>
+#include <vernier/simulation/sampling.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 #include <vernier/testing/metaheuristic_laws.hpp>
-#include <vernier/vernier.hpp>
 
 #include "support/pagmo_search.hpp"
 

@@ -55,7 +55,8 @@ struct Tuned {
       const auto further = [&](const Progress& p) {
         return options.observer(Progress{found.generations + p.generation, found.evaluations + p.evaluations, p.best});
       };
-      return regressor.fit_at(inputs, targets, found.best, {options.seed, options.executor, further, options.weights});
+      const FitOptions rest{options.seed, options.executor, further, options.weights};
+      return regressor.fit_at(inputs, targets, found.best, rest);
     } else {
       return regressor.fit_at(inputs, targets, found.best);
     }

@@ -293,7 +293,7 @@ TEST(InverseKinematics, RestartsReachWhatOneStartMisses) {
   const auto robot = vn::robots::abb_irb120();
   vn::Rng rng(5);
   vn::IkOptions<6> once{.limits = robot.limits}, again = once, unbounded;
-  again.restarts = 20;
+  again.restarts = 200;  // within the limits a few poses are reached from one start in twenty
   unbounded.restarts = 20;
   int missed = 0;
   for (int i = 0; i < 500; ++i) {

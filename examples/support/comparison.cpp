@@ -271,6 +271,7 @@ void Plan::validate() const {
   check(!problems.empty() && !methods.empty() && !poses.empty() && !seeds.empty(),
         "a plan needs problems, methods, numbers of poses and seeds");
   for (const Problem& p : problems) {
+    const int dof = choose_robot(p.robot).dof();
     check(p.errors == "geometric" || p.errors == "full", p.name, ": errors are '", p.errors,
           "', must be geometric or full");
     check(p.region == "operating" || p.region == "full", p.name, ": the region is '", p.region,
@@ -280,7 +281,6 @@ void Plan::validate() const {
     check(p.noise_mm >= 0 && p.noise_mm <= 100, p.name, ": noise_mm is ", p.noise_mm, ", must lie in 0..100");
     check(p.measured() || p.region == "full" || p.robot == "abb_irb120", p.name,
           ": only the abb_irb120 has an operating region; say \"region\": \"full\"");
-    const int dof = choose_robot(p.robot).dof();
 #define VERNIER_IS(N) || dof == N
     check(false VERNIER_FOR_COMPARED_DOF(VERNIER_IS), p.robot, " has ", dof, " joints; comparisons serve 6 and 7");
 #undef VERNIER_IS

@@ -36,6 +36,8 @@ struct Elm {
 
   /// Error of hidden weights in scaled targets, per sample: what the paper minimises,
   /// `|H beta - T|^2 + lambda |beta|^2` at its minimum over beta, divided by n; or that of the samples held out.
+  /// @param inputs  n x inputs
+  /// @param targets n x outputs
   /// @param weights of the samples; null: all the same
   template <class X, class Y>
   detail::ElmFitness objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,

@@ -69,6 +69,8 @@ struct RidgeElm {
   Box box(int inputs) const { return layer().box(inputs); }
 
   /// Leave-one-out mean squared error of hidden weights, in squared units of the targets.
+  /// @param inputs  n x inputs
+  /// @param targets n x outputs
   /// @param weights of the samples; null: all the same
   template <class X, class Y>
   detail::RidgeElmLeaveOneOutError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,

@@ -19,9 +19,15 @@ namespace vernier {
 /// Recombination weights and learning rates of CMA-ES for a dimension and a population; the names are Hansen's.
 /// @cite Hansen 2016
 struct CmaEsConstants {
-  VectorX weights;  ///< of the ranks, the best first; the better half sums to 1, the worse half is not positive
-  Index mu;         ///< how many weights are positive
-  double mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, expected_norm;  ///< as Hansen names them; the last is E|N(0, I)|
+  VectorX weights;       ///< of the ranks, the best first; the better half sums to 1, the worse half is not positive
+  Index mu;              ///< how many weights are positive
+  double mu_eff;         ///< variance effective selection mass
+  double c_sigma;        ///< learning rate of the step size's path
+  double d_sigma;        ///< damping of the step size
+  double c_c;            ///< learning rate of the covariance's path
+  double c_1;            ///< of the rank-one update
+  double c_mu;           ///< of the rank-mu update
+  double expected_norm;  ///< E|N(0, I)|
 
   /// For `individuals` in `dimension`s, with negative weights for the worse half (active CMA).
   CmaEsConstants(Index dimension, Index individuals) : weights(individuals), mu(individuals / 2) {

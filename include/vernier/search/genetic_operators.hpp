@@ -23,7 +23,9 @@ enum class ParentSelection {
 /// Chooses parents from a population.
 class ParentChoice {
  public:
-  /// @param fitness values of the population; must outlive this
+  /// @param selection  how
+  /// @param tournament how many are drawn
+  /// @param fitness    values of the population; must outlive this
   ParentChoice(ParentSelection selection, int tournament, const VectorX& fitness)
       : fitness_(fitness), tournament_(tournament) {
     if (selection != ParentSelection::roulette) return;
@@ -120,6 +122,7 @@ void keep_best_of_both(Genes& genes, VectorX& fitness, const Genes& children, co
 /// @param cross  `cross(children, k)` crosses children k and k + 1
 /// @param mutate `mutate(children)`
 /// @param decode the points that genes stand for
+/// @param evaluate as a search's
 /// @param best_survive whether instead of elites and children the best of old and new ones survive
 template <class Algorithm, class State, class Genes, class Cross, class Mutate, class Decode>
 void next_generation(const Algorithm& ga, State& s, Genes& genes, Cross&& cross, Mutate&& mutate, Decode&& decode,

@@ -104,9 +104,14 @@ OngoingSearch<typename A::State> start_search(const A& algorithm, const F& objec
 
 /// Goes on with a search, in place: stopped anywhere and gone on with, it comes to the bits of one that was never
 /// stopped. `max_evaluations`, `max_generations` and `patience` count from the search's very beginning.
-/// @param search from `start_search`, from this function or from a file; its algorithm, objective and box are for the
-/// caller to keep. An observer may save it whenever it is called. After an exception of the objective it is lost.
-/// @param observer sees the generation it goes on from, too
+/// @param algorithm the one it was started with, as are objective and box: they are for the caller to keep
+/// @param objective as below
+/// @param box       bounds
+/// @param search    from `start_search`, from this function or from a file. An observer may save it whenever it is
+/// called. After an exception of the objective it is lost.
+/// @param stop      budget and stopping
+/// @param executor  who evaluates a population
+/// @param observer  sees the generation it goes on from, too
 /// @throws std::invalid_argument on an unusable box or option, or a search of another dimension
 template <Metaheuristic A, Objective F>
 SearchResult minimize(const A& algorithm, const F& objective, const Box& box, OngoingSearch<typename A::State>& search,

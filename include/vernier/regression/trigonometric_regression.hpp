@@ -58,7 +58,7 @@ struct TrigonometricRegression {
     const VectorX scale = Eigen::Map<const VectorX>(roots.data(), static_cast<Index>(roots.size()));
     MatrixX z(inputs.rows(), scale.size());
     VectorX all(Predictor::features);
-    for (Index i = 0; i < z.rows(); ++i) {
+    for (Index i = 0; i < z.rows() && z.cols() > 0; ++i) {
       detail::trigonometric_features<n_inputs>(typename Predictor::Input(inputs.row(i).transpose()), all.data());
       z.row(i) = all(features).cwiseProduct(scale).transpose();
     }

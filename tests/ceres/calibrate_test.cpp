@@ -14,7 +14,7 @@
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 
-namespace vernier {
+namespace vernier::calibrate_test {
 namespace {
 
 using Chain = DhChain<6>;
@@ -33,12 +33,11 @@ JointLimits<6> measured_ranges() {
   return out;
 }
 
-/// Errors that a fit looks for by default.
-const JointErrorSizes by_default{.gear_ratio = 0, .coupling = 0};
+/// Compliance and harmonics alone.
+const JointErrorSizes compliant{.gear_ratio = 0, .coupling = 0};
 
 /// An arm with geometric errors and joint errors.
-Actual actual_arm(const Isometry3& base = frame(2, -1, 0.5, 0.1, -0.2, 1.5),
-                  const JointErrorSizes& sizes = by_default) {
+Actual actual_arm(const Isometry3& base = frame(2, -1, 0.5, 0.1, -0.2, 1.5), const JointErrorSizes& sizes = compliant) {
   const Chain off =
       with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
   return Actual({off, draw_joint_errors(robot.chain, sizes, 5)}, base, frame(0.02, 0.03, 0.11, 0, 0.1, 0));
@@ -55,8 +54,7 @@ double mean_error(const ErrorModel<Chain>& model, const Actual& actual, std::uin
 TEST(Calibrate, FindsEverySourceItContains) {
   const Actual actual = actual_arm(frame(2, -1, 0.5, 0.1, -0.2, 1.5), {});  // gear ratios and coupling as well
   for (const auto& [poses, limit] : {std::pair<Index, double>{100, 0.06e-3}, {1000, 0.02e-3}}) {
-    const auto found = calibrate(robot.chain, measure(actual, joints(poses, 1), noise, 2),
-                                 {.errors = {.gear_ratio = true, .coupling = true}});
+    const auto found = calibrate(robot.chain, measure(actual, joints(poses, 1), noise, 2));
     EXPECT_TRUE(found.geometry.converged());
     EXPECT_TRUE(found.errors.converged);
     const double geometry = mean_error(found.errors.geometry[0], actual), all = mean_error(found.model(), actual);
@@ -95,7 +93,7 @@ TEST(Calibrate, EllipsoidsHoldWhatTheySay) {
 }
 
 TEST(Calibrate, WhatIsNotThereIsLeftOut) {
-  JointErrorSizes none = by_default;
+  JointErrorSizes none = compliant;
   none.compliance = none.harmonic = 0;
   const Actual rigid = actual_arm(frame(1, 0, 0, 0, 0, 1), none);
   int used = 0;
@@ -164,7 +162,7 @@ TEST(Calibrate, CorrectedCommandsReachTheNominalPose) {
 
 TEST(Calibrate, UnmodelledSourcesOneByOne) {
   // reported, and bounded: the fit knows none of these
-  JointErrorSizes rippled = by_default;
+  JointErrorSizes rippled = compliant;
   rippled.ripple = 0.02e-3;
   rippled.ripple_harmonic = 101;
   const Actual actual = actual_arm(), ripple = actual_arm(frame(2, -1, 0.5, 0.1, -0.2, 1.5), rippled);
@@ -256,4 +254,4 @@ TEST(CalibrateMeasured, WamIsNotHelpedNorHarmed) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::calibrate_test

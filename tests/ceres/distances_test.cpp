@@ -9,7 +9,7 @@
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 
-namespace vernier {
+namespace vernier::distances_test {
 namespace {
 
 using vernier_test::complaint;
@@ -188,4 +188,4 @@ TEST(Distances, MisuseThrows) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::distances_test

@@ -13,7 +13,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::identify_test {
 namespace {
 
 using namespace vernier::literals;
@@ -230,4 +230,4 @@ TEST(IdentifyMeasured, Ur5) { expect_measured<6>("ur5_grid.csv", robots::ur5().c
 TEST(IdentifyMeasured, BarrettWam) { expect_measured<7>("wam_grid.csv", robots::barrett_wam().chain, 4.26, 2.2); }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::identify_test

@@ -23,6 +23,7 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 
+namespace cartesian_test {
 namespace {
 
 using namespace vernier;
@@ -233,3 +234,4 @@ TEST(CartesianCompensation, MisuseIsNamed) {
 }
 
 }  // namespace
+}  // namespace cartesian_test

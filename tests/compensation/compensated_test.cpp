@@ -19,6 +19,7 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 
+namespace compensated_test {
 namespace {
 
 using namespace vernier;
@@ -287,3 +288,4 @@ TEST(CorrectionOptions, UnusableValuesAreNamed) {
 }
 
 }  // namespace
+}  // namespace compensated_test

@@ -21,6 +21,7 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 
+namespace joint_space_test {
 namespace {
 
 using namespace vernier;
@@ -227,3 +228,4 @@ TEST(JointCompensation, NothingToLearnFromIsNamed) {
 }
 
 }  // namespace
+}  // namespace joint_space_test

@@ -13,6 +13,7 @@
 namespace vn = vernier;
 namespace fs = std::filesystem;
 
+namespace atomic_file_test {
 namespace {
 
 /// A folder of its own for each test.
@@ -126,3 +127,4 @@ TEST_F(AtomicFile, ReadingSaysWhatIsWrong) {
 }
 
 }  // namespace
+}  // namespace atomic_file_test

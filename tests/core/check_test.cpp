@@ -14,6 +14,7 @@
 
 namespace vn = vernier;
 
+namespace check_test {
 namespace {
 
 using vernier_test::complaint;
@@ -66,3 +67,4 @@ TEST(Box, ChecksItsBoundsAndNamesThem) {
 }
 
 }  // namespace
+}  // namespace check_test

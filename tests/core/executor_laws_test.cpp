@@ -6,7 +6,7 @@
 
 #include "laws.hpp"
 
-namespace vernier {
+namespace vernier::executor_laws_test {
 namespace {
 
 using testing::executor_violations;
@@ -146,4 +146,4 @@ TEST(GatheringExecutors, InASearch) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::executor_laws_test

@@ -16,6 +16,7 @@
 
 namespace vn = vernier;
 
+namespace executor_test {
 namespace {
 
 /// Runs backwards, one number at a time: a user's own.
@@ -133,3 +134,4 @@ TEST(ThreadExecutor, NeedsAThread) {
 }
 
 }  // namespace
+}  // namespace executor_test

@@ -12,6 +12,7 @@
 
 namespace vn = vernier;
 
+namespace function_ref_test {
 namespace {
 
 using Unary = vn::FunctionRef<int(int)>;
@@ -115,3 +116,4 @@ TEST(ObserverRef, TakesAPlainFunction) {
 }
 
 }  // namespace
+}  // namespace function_ref_test

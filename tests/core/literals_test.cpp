@@ -10,6 +10,7 @@
 
 using namespace vernier::literals;
 
+namespace literals_test {
 namespace {
 
 static_assert(290_mm == 0.29 && 270_mm == 0.27 && 70_mm == 0.07 && 302_mm == 0.302 && 72_mm == 0.072);
@@ -40,3 +41,4 @@ TEST(Literals, MillimetresAreTheDecimalNumbersTheyRead) {
 }
 
 }  // namespace
+}  // namespace literals_test

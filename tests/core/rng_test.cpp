@@ -12,6 +12,7 @@
 
 namespace vn = vernier;
 
+namespace rng_test {
 namespace {
 
 static_assert(std::uniform_random_bit_generator<vn::Rng>);
@@ -186,3 +187,4 @@ TEST(Rng, ChildSeedsDiffer) {
 }
 
 }  // namespace
+}  // namespace rng_test

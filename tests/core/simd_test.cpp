@@ -13,7 +13,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/constexpr_trig.hpp"
 
-namespace vernier {
+namespace vernier::simd_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -206,4 +206,4 @@ TEST(VectorExponential, IsExactAtZeroAndHeldBeyondItsRange) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::simd_test

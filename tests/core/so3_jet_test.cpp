@@ -10,6 +10,7 @@
 
 namespace vn = vernier;
 
+namespace so3_jet_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -79,3 +80,4 @@ TEST(LogSo3OfDualNumbers, IsFiniteAtHalfATurn) {
 }
 
 }  // namespace
+}  // namespace so3_jet_test

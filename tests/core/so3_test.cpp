@@ -13,6 +13,7 @@
 namespace vn = vernier;
 using vernier_test::random_direction;
 
+namespace so3_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -161,3 +162,4 @@ TEST(PoseDifference, TakesOneFrameToTheOther) {
 }
 
 }  // namespace
+}  // namespace so3_test

@@ -11,6 +11,7 @@
 #include <vernier/core/rng.hpp>
 #include <vernier/data/csv.hpp>
 
+namespace csv_test {
 namespace {
 
 using vernier::DataError;
@@ -352,3 +353,4 @@ TEST(MeasuredFiles, HaveTheRightSizes) {
 }
 
 }  // namespace
+}  // namespace csv_test

@@ -7,6 +7,7 @@
 
 #include "complaint.hpp"
 
+namespace dataset_test {
 namespace {
 
 using vernier::Dataset;
@@ -90,3 +91,4 @@ TEST(Dataset, RefusesWhatIsNotFiniteAndNamesTheRow) {
 }
 
 }  // namespace
+}  // namespace dataset_test

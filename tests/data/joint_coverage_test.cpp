@@ -7,6 +7,7 @@
 #include <vernier/core/rng.hpp>
 #include <vernier/data/joint_coverage.hpp>
 
+namespace joint_coverage_test {
 namespace {
 
 using vernier::JointCoverage;
@@ -140,3 +141,4 @@ TEST(JointCoverage, InfinitelyFarIsZero) {
 }
 
 }  // namespace
+}  // namespace joint_coverage_test

@@ -9,6 +9,7 @@
 #include <vernier/core/rng.hpp>
 #include <vernier/data/split.hpp>
 
+namespace split_test {
 namespace {
 
 using vernier::Dataset;
@@ -161,3 +162,4 @@ TEST(Split, OneRowCannotBeSplit) {
 }
 
 }  // namespace
+}  // namespace split_test

@@ -28,6 +28,7 @@ using vernier_test::keep;
 using vn::Index;
 using vn::VectorX;
 
+namespace joint_errors_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -446,3 +447,4 @@ TEST(NoAllocation, JointErrors) {
 }
 
 }  // namespace
+}  // namespace joint_errors_test

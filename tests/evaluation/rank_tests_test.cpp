@@ -10,7 +10,7 @@
 #include "complaint.hpp"
 #include "vernier/core/rng.hpp"
 
-namespace vernier {
+namespace vernier::rank_tests_test {
 namespace {
 
 using vernier_test::complaint;
@@ -191,4 +191,4 @@ TEST(CriticalDifference, DemsarsTable) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::rank_tests_test

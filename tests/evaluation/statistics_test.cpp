@@ -10,6 +10,7 @@
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>
 
+namespace statistics_test {
 namespace {
 
 using namespace vernier;
@@ -131,3 +132,4 @@ TEST(CorrectedCommands, RowByRow) {
 }
 
 }  // namespace
+}  // namespace statistics_test

@@ -20,6 +20,7 @@ using vernier_test::keep;
 using vn::Index;
 using vn::VectorX;
 
+namespace error_model_test {
 namespace {
 
 static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<6>>>);
@@ -255,3 +256,4 @@ TEST(NoAllocation, ErrorModel) {
 }
 
 }  // namespace
+}  // namespace error_model_test

@@ -7,7 +7,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::frames_test {
 namespace {
 
 TEST(RegisterPoints, FindsTheMotionExactly) {
@@ -51,4 +51,4 @@ TEST(StartingFrames, KnownFramesStay) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::frames_test

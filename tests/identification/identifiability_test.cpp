@@ -8,7 +8,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::identifiability_test {
 namespace {
 
 MatrixX random_matrix(Index rows, Index columns, std::uint64_t seed) {
@@ -118,4 +118,4 @@ TEST(Linearisation, JacobianEqualsCentralDifferences) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::identifiability_test

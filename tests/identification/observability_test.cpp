@@ -6,7 +6,7 @@
 
 #include "vernier/core/rng.hpp"
 
-namespace vernier {
+namespace vernier::observability_test {
 namespace {
 
 using Candidates = std::vector<MatrixX>;
@@ -155,4 +155,4 @@ TEST(HelpfulPoses, MisuseThrows) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::observability_test

@@ -26,7 +26,7 @@ using SparseSolver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::L
 }
 #endif
 
-namespace vernier {
+namespace vernier::pose_system_test {
 namespace {
 
 using detail::FactorisedSystem;
@@ -532,4 +532,4 @@ TEST(ErrorModelProblem, ErrorsInVariablesAreThoseOfTheFullSparseSystem) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::pose_system_test

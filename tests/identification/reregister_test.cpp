@@ -14,7 +14,7 @@
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 
-namespace vernier {
+namespace vernier::reregister_test {
 namespace {
 
 using vernier_test::complaint;
@@ -433,4 +433,4 @@ TEST(OnlineUpdate, MisuseThrows) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::reregister_test

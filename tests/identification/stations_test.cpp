@@ -10,7 +10,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::stations_test {
 namespace {
 
 using vernier_test::complaint;
@@ -81,4 +81,4 @@ TEST(InOneFrame, MisuseThrows) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::stations_test

@@ -12,7 +12,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::bad_input_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -289,4 +289,4 @@ TEST(BadInput, MissingFilesAndFolders) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::bad_input_test

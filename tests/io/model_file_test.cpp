@@ -8,7 +8,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::model_file_test {
 namespace {
 
 static_assert(KinematicModel<CalibratedRobot<6>> && Compensator<CalibratedRobot<6>>);
@@ -134,4 +134,4 @@ TEST_F(ModelFile, TheWrongNumberOfJointsIsRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::model_file_test

@@ -6,7 +6,7 @@
 #include "temporary_folder.hpp"
 #include "vernier/simulation/sampling.hpp"
 
-namespace vernier {
+namespace vernier::robot_file_test {
 namespace {
 
 class RobotFile : public testing::Test {
@@ -101,4 +101,4 @@ TEST_F(RobotFile, ComplaintsNameFileAndKey) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::robot_file_test

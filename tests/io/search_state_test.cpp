@@ -21,7 +21,7 @@
 #include "vernier/search/spso2011.hpp"
 #include "vernier/testing/same_bits.hpp"
 
-namespace vernier {
+namespace vernier::search_state_test {
 namespace {
 
 using testing::same_bits;
@@ -187,4 +187,4 @@ TEST(SearchState, FilesThatAreWrongAreRefused) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::search_state_test

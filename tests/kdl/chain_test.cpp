@@ -12,6 +12,7 @@
 
 namespace vn = vernier;
 
+namespace chain_test {
 namespace {
 
 constexpr double tolerance = 1e-12;  // m, and entries of rotations and Jacobians, on arms of up to about 6 m
@@ -82,3 +83,4 @@ TEST(AgainstKdl, StandardChains) { compare_all<vn::StandardDh>(OneToNine{}, 1); 
 TEST(AgainstKdl, ModifiedChains) { compare_all<vn::ModifiedDh>(OneToNine{}, 2); }
 
 }  // namespace
+}  // namespace chain_test

@@ -11,6 +11,7 @@
 
 namespace vn = vernier;
 
+namespace concepts_test {
 namespace {
 
 static_assert(vn::ParametricModel<vn::DhChain<1>>);
@@ -89,3 +90,4 @@ TEST(KinematicModel, ReferenceIsItsOwnOrTheModelItself) {
 }
 
 }  // namespace
+}  // namespace concepts_test

@@ -15,6 +15,7 @@
 
 using vernier::detail::constexpr_sincos;
 
+namespace constexpr_trig_test {
 namespace {
 
 // Known at compile time.
@@ -61,3 +62,4 @@ TEST(ConstexprSinCos, WithinTwoUlpsForSmallAndLargeAngles) {
 }
 
 }  // namespace
+}  // namespace constexpr_trig_test

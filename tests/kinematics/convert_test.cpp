@@ -5,7 +5,7 @@
 
 #include "vernier/core/rng.hpp"
 
-namespace vernier {
+namespace vernier::convert_test {
 namespace {
 
 /// Largest difference of any pose entry between random modified chains (prismatic joints and beta included) and their
@@ -47,4 +47,4 @@ TEST(ToStandard, TheLastRowIsFree) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::convert_test

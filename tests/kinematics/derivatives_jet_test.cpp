@@ -13,6 +13,7 @@
 
 namespace vn = vernier;
 
+namespace derivatives_jet_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -113,3 +114,4 @@ TEST(DerivativesOfTheCatalogue, ThreeWays) {
 }
 
 }  // namespace
+}  // namespace derivatives_jet_test

@@ -16,6 +16,7 @@ namespace vn = vernier;
 using namespace vernier::literals;
 using vernier_test::no_violations;
 
+namespace dh_chain_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -220,3 +221,4 @@ TEST(DhChain, WithParametersKeepsTheJointTypes) {
 }
 
 }  // namespace
+}  // namespace dh_chain_test

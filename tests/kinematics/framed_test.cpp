@@ -12,6 +12,7 @@
 
 namespace vn = vernier;
 
+namespace framed_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -150,3 +151,4 @@ TEST(FrameParameters, ValuesAndMatrixAgree) {
 }
 
 }  // namespace
+}  // namespace framed_test

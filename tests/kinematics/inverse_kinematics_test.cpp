@@ -13,6 +13,7 @@
 namespace vn = vernier;
 using vernier_test::random_joints;
 
+namespace inverse_kinematics_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -340,3 +341,4 @@ TEST(InverseKinematics, AlreadyThereCostsOneEvaluation) {
 }
 
 }  // namespace
+}  // namespace inverse_kinematics_test

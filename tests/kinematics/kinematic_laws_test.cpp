@@ -15,6 +15,7 @@ using vernier_test::no_violations;
 using vn::testing::kinematic_model_violations;
 using vn::testing::parametric_model_violations;
 
+namespace kinematic_laws_test {
 namespace {
 
 using Chain = vn::DhChain<3>;
@@ -171,3 +172,4 @@ TEST(ParametricLaws, EachBrokenLawIsNamed) {
 }
 
 }  // namespace
+}  // namespace kinematic_laws_test

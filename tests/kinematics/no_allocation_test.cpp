@@ -14,6 +14,7 @@ namespace vn = vernier;
 using vernier_test::allocations;
 using vernier_test::keep;
 
+namespace no_allocation_test {
 namespace {
 
 TEST(AllocationCounter, SeesEveryWayToAllocate) {
@@ -90,3 +91,4 @@ TEST(NoAllocation, FramedChains) {
 }
 
 }  // namespace
+}  // namespace no_allocation_test

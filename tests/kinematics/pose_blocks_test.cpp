@@ -14,6 +14,7 @@ namespace vn = vernier;
 using vernier_test::random_chain;
 using vernier_test::random_joint_rows;
 
+namespace pose_blocks_test {
 namespace {
 
 template <class Convention>
@@ -186,3 +187,4 @@ TEST(FramedPoseBlocks, AModelWithoutThemIsAskedOneByOne) {
 }
 
 }  // namespace
+}  // namespace pose_blocks_test

@@ -11,6 +11,7 @@
 namespace vn = vernier;
 using namespace vernier::literals;
 
+namespace robots_test {
 namespace {
 
 constexpr vn::DhChain<6> contract_arm{{{
@@ -97,3 +98,4 @@ TEST(JointLimits, ContainAndClamp) {
 }
 
 }  // namespace
+}  // namespace robots_test

@@ -13,7 +13,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::bad_input_test {
 namespace {
 
 using testing_support::CommandResult;
@@ -64,6 +64,15 @@ class BadInputToPrograms : public testing::Test {
 };
 
 const std::string calibrate = "calibrate --robot abb_irb120 --save m.json --json r.json --out figures ";
+
+TEST_F(BadInputToPrograms, CompareFiles) {
+  const std::string compare = "compare --methods none,elm --seeds 1,2 --json r.json --data ";
+  expect_refused(compare + "missing.csv --poses 0", 1, "compare: missing.csv: No such file or directory");
+  write_file(folder_ / "nan.csv", text_ + "nan,0,0,0,0,0,1,2,3\n");
+  expect_refused(compare + "nan.csv --poses 0", 1, "nan.csv, line 62, column q1_rad: 'nan' is not finite");
+  expect_refused(compare + "poses.csv --poses 20,49", 2,
+                 "poses.csv: 49 poses are asked for, there are 48 to learn from");
+}
 
 TEST_F(BadInputToPrograms, CalibrateFiles) {
   expect_refused(calibrate + "--data missing.csv", 1, "calibrate: missing.csv: No such file or directory");
@@ -172,4 +181,4 @@ TEST_F(BadInputToPrograms, Correct) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::bad_input_test

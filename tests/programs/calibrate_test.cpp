@@ -16,7 +16,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::calibrate_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -206,22 +206,27 @@ TEST(Calibrate, TestFileFixedParametersAndRobustLoss) {
 
 TEST(Calibrate, ARobotFromAFileWithAPrismaticJointInTheModifiedConvention) {
   const TemporaryFolder folder("calibrate");
-  write_file(folder / "scara.json", R"({"name": "a scara", "convention": "modified", "joints": [
+  write_file(folder / "stanford.json", R"({"name": "a stanford arm", "convention": "modified", "joints": [
     {"a_mm": 0, "alpha_deg": 0, "d_mm": 400, "theta_deg": 0, "lower_deg": -150, "upper_deg": 150},
-    {"a_mm": 325, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "lower_deg": -140, "upper_deg": 140},
-    {"type": "prismatic", "a_mm": 275, "alpha_deg": 180, "d_mm": 0, "theta_deg": 0, "lower_mm": 0, "upper_mm": 200},
-    {"a_mm": 0, "alpha_deg": 0, "d_mm": 50, "theta_deg": 0, "lower_deg": -180, "upper_deg": 180}]})");
-  const DhChain<4, ModifiedDh> nominal{{{
+    {"a_mm": 0, "alpha_deg": -90, "d_mm": 150, "theta_deg": 0, "lower_deg": -80, "upper_deg": 80},
+    {"type": "prismatic", "a_mm": 0, "alpha_deg": 90, "d_mm": 0, "theta_deg": 0, "lower_mm": 200, "upper_mm": 700},
+    {"a_mm": 0, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "lower_deg": -170, "upper_deg": 170},
+    {"a_mm": 0, "alpha_deg": -90, "d_mm": 0, "theta_deg": 0, "lower_deg": -100, "upper_deg": 100},
+    {"a_mm": 0, "alpha_deg": 90, "d_mm": 100, "theta_deg": 0, "lower_deg": -170, "upper_deg": 170}]})");
+  constexpr double quarter = 1.5707963267948966;
+  const DhChain<6, ModifiedDh> nominal{{{
       {.d = 0.4},
-      {.a = 0.325},
-      {.a = 0.275, .alpha = 3.141592653589793, .joint = JointType::prismatic},
-      {.d = 0.05},
+      {.alpha = -quarter, .d = 0.15},
+      {.alpha = quarter, .joint = JointType::prismatic},
+      {},
+      {.alpha = -quarter},
+      {.alpha = quarter, .d = 0.1},
   }}};
-  const Framed<DhChain<4, ModifiedDh>> actual(with_geometric_errors(nominal, {}, 2), frame({0.5, 0.2, 1, 0, 0.1, 0}),
+  const Framed<DhChain<6, ModifiedDh>> actual(with_geometric_errors(nominal, {}, 2), frame({0.5, 0.2, 1, 0, 0.1, 0}),
                                               frame({0.03, 0.01, 0.02, 0, 0, 0}));
-  JointLimits<4> limits;
-  limits.lower << -2.6, -2.4, 0, -3.1;
-  limits.upper << 2.6, 2.4, 0.2, 3.1;
+  JointLimits<6> limits;
+  limits.lower << -2.6, -1.4, 0.2, -2.9, -1.7, -2.9;
+  limits.upper << 2.6, 1.4, 0.7, 2.9, 1.7, 2.9;
   const auto data = measure(actual, sample_joints(limits, 200, 5), {.position = 0.02e-3, .orientation = 0.1e-3}, 6);
   write_dataset(folder / "poses.csv", data);
   std::string text = read_file(folder / "poses.csv");
@@ -229,22 +234,22 @@ TEST(Calibrate, ARobotFromAFileWithAPrismaticJointInTheModifiedConvention) {
   text.replace(text.find("q3_rad"), 6, "q3_m");
   write_file(folder / "poses.csv", text);
 
-  const CommandResult wrong = run(folder, "calibrate", "--robot scara.json --data wrong.csv");
+  const CommandResult wrong = run(folder, "calibrate", "--robot stanford.json --data wrong.csv");
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_EQ(wrong.errors,
             "calibrate: wrong.csv, line 1: column q3_rad, but joint 3 is prismatic: a length is needed\n");
 
-  const CommandResult done =
-      run(folder, "calibrate", "--robot scara.json --data poses.csv --test-fraction 0.25 --json r.json --save m.json");
+  const CommandResult done = run(
+      folder, "calibrate", "--robot stanford.json --data poses.csv --test-fraction 0.25 --json r.json --save m.json");
   ASSERT_EQ(done.exit_code, 0) << done.errors;
   const Json report = Json::parse(read_file(folder / "r.json"));
-  EXPECT_EQ(report.at("robot"), "a scara");
+  EXPECT_EQ(report.at("robot"), "a stanford arm");
   EXPECT_EQ(report.at("test_rows"), 50);
   EXPECT_GT(report.at("stages").at("frames").at("mean_mm"), 0.3);
   EXPECT_LT(report.at("stages").at("geometry").at("mean_mm"), 0.05);
-  const auto model = load_calibrated_robot<4>(folder / "m.json");
+  const auto model = load_calibrated_robot<6>(folder / "m.json");
   EXPECT_EQ(model.nominal().row(2).joint, JointType::prismatic);
-  EXPECT_EQ(model.limits().upper(2), 0.2);
+  EXPECT_EQ(model.limits().upper(2), 0.7);
 }
 
 /// An arm with joint errors as well, seen from two places.
@@ -390,4 +395,4 @@ TEST(CalibrateMeasured, BarrettWam) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::calibrate_test

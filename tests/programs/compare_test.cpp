@@ -7,7 +7,12 @@
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
 
+namespace compare_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -57,7 +62,7 @@ TEST(Compare, TablesHaveEveryCell) {
       EXPECT_EQ(method.at("failures"), 0);
       for (std::size_t s = 0; s < 3 && name != "none"; ++s) EXPECT_LT(errors[s], before[s]) << name;
     }
-    // learning on top of an identified geometry beats both
+    // geometric errors are most of what there is
     EXPECT_LT(means(first().json, table, "geometry")[0], 0.5 * before[0]);
   }
   EXPECT_EQ(std::count(first().results.begin(), first().results.end(), '\n'), 36);
@@ -87,6 +92,40 @@ TEST(Compare, GoesOnWhereItStopped) {
   std::string other = grid;
   other.replace(other.find("--evaluations 200"), 17, "--evaluations 150");
   EXPECT_NE(run(folder, other + "--results part.jsonl").output.find(" 12 of them"), std::string::npos);
+}
+
+// What failed is told, is no result, and is tried again.
+TEST(Compare, FailuresAreTriedAgain) {
+  const TemporaryFolder folder("compare");
+  const std::string arguments = "--methods none,geometry --poses 3 --seeds 1,2 --results r.jsonl --json r.json";
+  for (const char* words : {"4 cells, 4 of them", "4 cells, 2 of them"}) {
+    const CommandResult result = run(folder, arguments);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.output.find(words), std::string::npos) << result.output;
+    EXPECT_NE(result.output.find("(2 failed: "), std::string::npos) << result.output;
+    EXPECT_NE(result.errors.find("compare: 2 of 4 cells failed"), std::string::npos) << result.errors;
+    EXPECT_EQ(Json::parse(read_file(folder / "r.json")).at("problems")[0].at("methods").at("geometry").at("failures"),
+              2);
+  }
+  const std::string kept = read_file(folder / "r.jsonl");
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 2);
+}
+
+// Results belong to the poses in a file, not to its name.
+TEST(Compare, OtherPosesAreOtherCells) {
+  const TemporaryFolder folder("compare");
+  const auto robot = vernier::robots::abb_irb120();
+  const auto write = [&](std::uint64_t seed) {
+    const auto joints = vernier::abb_irb120_operating_region().sample(robot.chain, 50, seed);
+    vernier::write_dataset(folder / "poses.csv",
+                           vernier::measure(vernier::with_geometric_errors(robot.chain, {}, seed), joints, {}, seed));
+  };
+  const std::string arguments = "--methods none,geometry --data poses.csv --poses 20,0 --seeds 1,2";
+  write(3);
+  EXPECT_NE(run(folder, arguments).output.find("8 cells, 8 of them"), std::string::npos);
+  EXPECT_NE(run(folder, arguments).output.find("8 cells, 0 of them"), std::string::npos);
+  write(4);
+  EXPECT_NE(run(folder, arguments).output.find("8 cells, 8 of them"), std::string::npos);
 }
 
 TEST(Compare, APlanSaysTheSameAsOptions) {
@@ -135,3 +174,4 @@ TEST(Compare, ListsItsMethods) {
 }
 
 }  // namespace
+}  // namespace compare_test

@@ -14,7 +14,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
-namespace vernier {
+namespace vernier::correct_test {
 namespace {
 
 using testing_support::CommandResult;
@@ -98,4 +98,4 @@ TEST_F(Correct, ATargetOutOfReachIsARowThatSaysSo) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::correct_test

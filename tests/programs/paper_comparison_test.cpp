@@ -11,6 +11,7 @@
 #include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/robots.hpp"
 
+namespace paper_comparison_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -229,3 +230,4 @@ TEST(PaperComparison, HelpListsTheOptions) {
 }
 
 }  // namespace
+}  // namespace paper_comparison_test

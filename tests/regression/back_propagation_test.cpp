@@ -14,7 +14,7 @@
 #include "vernier/regression/elm.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::back_propagation_test {
 namespace {
 
 using detail::NetworkError;
@@ -337,4 +337,4 @@ TEST(BackPropagation, RefusesMisuseWithTheNumbers) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::back_propagation_test

@@ -12,7 +12,7 @@
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 
-namespace vernier {
+namespace vernier::elm_fitness_test {
 namespace {
 
 using vernier_test::complaint;
@@ -206,4 +206,4 @@ TEST(ElmFitness, RefusesMisuse) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::elm_fitness_test

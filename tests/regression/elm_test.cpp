@@ -8,7 +8,7 @@
 #include "regression_samples.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 
-namespace vernier {
+namespace vernier::elm_test {
 namespace {
 
 using vernier_test::activations;
@@ -278,4 +278,4 @@ TEST(Elm, SmallestProblems) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::elm_test

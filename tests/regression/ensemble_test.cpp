@@ -18,7 +18,7 @@
 #include "vernier/search/tuned.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::ensemble_test {
 namespace {
 
 using testing::regressor_violations;
@@ -211,4 +211,4 @@ TEST(Ensemble, RefusesMisuseWithTheNumbers) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::ensemble_test

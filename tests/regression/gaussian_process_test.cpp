@@ -13,7 +13,7 @@
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::gaussian_process_test {
 namespace {
 
 using testing::regressor_violations;
@@ -361,4 +361,4 @@ static_assert(Regressor<GaussianProcess> && UncertainPredictor<GaussianProcessPr
               UncertainPredictor<GaussianProcessPredictor<1, 1>>);
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::gaussian_process_test

@@ -12,7 +12,7 @@
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::kernel_elm_test {
 namespace {
 
 using testing::regressor_violations;
@@ -254,4 +254,4 @@ TEST(KernelElm, RefusesWhatItCannotUse) {
 static_assert(Regressor<KernelElm> && Predictor<KernelPredictor<6, 3>> && !UncertainPredictor<KernelPredictor<6, 3>>);
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::kernel_elm_test

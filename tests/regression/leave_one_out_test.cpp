@@ -9,7 +9,7 @@
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 
-namespace vernier {
+namespace vernier::leave_one_out_test {
 namespace {
 
 using vernier_test::instruction_sets;
@@ -222,4 +222,4 @@ TEST(LeaveOneOutError, TheObjectiveIsRightWhateverTheWeights) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::leave_one_out_test

@@ -5,7 +5,7 @@
 #include "lstsq_cases.hpp"
 #include "vernier/regression/elm.hpp"
 
-namespace vernier {
+namespace vernier::lstsq_test {
 namespace {
 
 MatrixX matrix(const std::vector<double>& values, Index rows, Index cols) {
@@ -98,4 +98,4 @@ TEST(LstsqCut, RcondIsRelativeToTheLargestSingularValue) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::lstsq_test

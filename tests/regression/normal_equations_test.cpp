@@ -5,7 +5,7 @@
 #include "instruction_sets.hpp"
 #include "vernier/regression/elm.hpp"
 
-namespace vernier {
+namespace vernier::normal_equations_test {
 namespace {
 
 MatrixX uniform(Index rows, Index columns, double limit, std::uint64_t seed) {
@@ -100,4 +100,4 @@ TEST(ElmFitness, ANearlyPerfectFitKeepsItsDigits) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::normal_equations_test

@@ -16,7 +16,7 @@
 #include "vernier/search/tuned.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::on_features_test {
 namespace {
 
 using testing::regressor_violations;
@@ -251,4 +251,4 @@ TEST(FeaturePredictor, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::on_features_test

@@ -13,7 +13,7 @@
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::op_elm_test {
 namespace {
 
 using testing::regressor_violations;
@@ -209,4 +209,4 @@ TEST(OpElm, RefusesWhatItCannotUse) {
 static_assert(Regressor<OpElm>);
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::op_elm_test

@@ -12,7 +12,7 @@
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::os_elm_test {
 namespace {
 
 using testing::regressor_violations;
@@ -257,4 +257,4 @@ TEST(OsElm, RefusesWhatItCannotUse) {
 static_assert(Regressor<OsElm> && UncertainPredictor<OsElmPredictor<6, 3>> && UncertainPredictor<OsElmPredictor<1, 1>>);
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::os_elm_test

@@ -13,7 +13,7 @@
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
 
-namespace vernier {
+namespace vernier::regressor_laws_test {
 namespace {
 
 using testing::regressor_violations;
@@ -304,4 +304,4 @@ TEST(RegressorLaws, NameOnlyWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::regressor_laws_test

@@ -5,7 +5,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/elm.hpp"
 
-namespace vernier {
+namespace vernier::relative_ridge_test {
 namespace {
 
 constexpr double relative_lambda = 1e-10;
@@ -177,4 +177,4 @@ TEST(ElmObjective, IsTheRidgeObjectivePerSampleInScaledUnits) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::relative_ridge_test

@@ -9,7 +9,7 @@
 
 #include "vernier/core/rng.hpp"
 
-namespace vernier {
+namespace vernier::tile_product_test {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -47,4 +47,4 @@ TEST(TileProduct, EqualsThePlainProductOnEveryInstructionSet) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::tile_product_test

@@ -16,7 +16,7 @@
 #include "vernier/simulation/virtual_robot.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
-namespace vernier {
+namespace vernier::trigonometric_regression_test {
 namespace {
 
 using testing::regressor_violations;
@@ -343,4 +343,4 @@ TEST(TrigonometricRegression, RefusesMisuseWithTheNumbers) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::trigonometric_regression_test

@@ -12,7 +12,7 @@
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
 
-namespace vernier {
+namespace vernier::var_pro_elm_test {
 namespace {
 
 using vernier_test::activations;
@@ -420,4 +420,4 @@ TEST(VarProElm, RefusesMisuseWithTheNumbers) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::var_pro_elm_test

@@ -17,7 +17,7 @@
 #include "vernier/search/restarted.hpp"
 #include "vernier/search/spso2011.hpp"
 
-namespace vernier {
+namespace vernier::benchmark_functions_test {
 namespace {
 
 /// All have their minimum 0 off the centre of the box and off every bound, so that nothing finds it by symmetry.
@@ -175,4 +175,4 @@ TEST(Medians, RestartsPay) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::benchmark_functions_test

@@ -8,7 +8,7 @@
 #include "complaint.hpp"
 #include "vernier/search/minimize.hpp"
 
-namespace vernier {
+namespace vernier::cma_es_test {
 namespace {
 
 const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
@@ -210,4 +210,4 @@ TEST(CmaEs, RefusesUnusableOptions) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::cma_es_test

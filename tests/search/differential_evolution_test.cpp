@@ -10,7 +10,7 @@
 #include "complaint.hpp"
 #include "vernier/search/l_shade.hpp"
 
-namespace vernier {
+namespace vernier::differential_evolution_test {
 namespace {
 
 using vernier_test::complaint;
@@ -179,4 +179,4 @@ TEST(LShade, RefusesUnusableOptions) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::differential_evolution_test

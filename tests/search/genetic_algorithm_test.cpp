@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string>
 
-namespace vernier {
+namespace vernier::genetic_algorithm_test {
 namespace {
 
 using Codes = GeneticAlgorithm::Codes;
@@ -286,4 +286,4 @@ TEST(GeneticAlgorithm, RefusesUnusableOptions) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::genetic_algorithm_test

@@ -7,7 +7,7 @@
 #include "vernier/search/minimize.hpp"
 #include "vernier/search/pso.hpp"
 
-namespace vernier {
+namespace vernier::log_test {
 namespace {
 
 const Pso pso{.particles = 10, .iterations = 30};
@@ -63,4 +63,4 @@ TEST(SearchLog, GoesOnWithASearch) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::log_test

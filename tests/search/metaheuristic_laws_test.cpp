@@ -16,7 +16,7 @@
 #include "vernier/search/restarted.hpp"
 #include "vernier/search/spso2011.hpp"
 
-namespace vernier {
+namespace vernier::metaheuristic_laws_test {
 namespace {
 
 using testing::metaheuristic_violations;
@@ -323,4 +323,4 @@ TEST(MetaheuristicLaws, CatchStepsThatSwallowTheEndOfTheBudget) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::metaheuristic_laws_test

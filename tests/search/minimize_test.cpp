@@ -11,7 +11,7 @@
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/pso.hpp"
 
-namespace vernier {
+namespace vernier::minimize_test {
 namespace {
 
 const Pso pso{.particles = 10, .iterations = 50};
@@ -204,4 +204,4 @@ TEST(Minimize, RefusesUnusableStops) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::minimize_test

@@ -14,7 +14,7 @@
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/minimize.hpp"
 
-namespace vernier {
+namespace vernier::pso_test {
 namespace {
 
 /// Two coordinates of different width.
@@ -303,4 +303,4 @@ TEST(Pso, RefusesUnusableOptions) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::pso_test

@@ -11,7 +11,7 @@
 
 #include "complaint.hpp"
 
-namespace vernier {
+namespace vernier::real_genetic_algorithm_test {
 namespace {
 
 using Ga = RealGeneticAlgorithm;
@@ -255,4 +255,4 @@ TEST(RealGeneticAlgorithm, RefusesUnusableOptions) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::real_genetic_algorithm_test

@@ -6,7 +6,7 @@
 
 #include "complaint.hpp"
 
-namespace vernier {
+namespace vernier::spso2011_test {
 namespace {
 
 const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
@@ -121,4 +121,4 @@ TEST(Spso2011, RefusesUnusableOptions) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::spso2011_test

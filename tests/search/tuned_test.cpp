@@ -10,7 +10,7 @@
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/pso.hpp"
 
-namespace vernier {
+namespace vernier::tuned_test {
 namespace {
 
 using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 3>;
@@ -184,4 +184,4 @@ TEST(Tuned, RefusesWhatItsPartsRefuse) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::tuned_test

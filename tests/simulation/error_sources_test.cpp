@@ -17,6 +17,7 @@
 #include "laws.hpp"
 #include "random_chains.hpp"
 
+namespace error_sources_test {
 namespace {
 
 using namespace vernier;
@@ -313,3 +314,4 @@ TEST(Outliers, UnusableOptionsAreNamed) {
 }
 
 }  // namespace
+}  // namespace error_sources_test

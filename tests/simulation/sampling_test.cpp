@@ -8,6 +8,7 @@
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/sampling.hpp>
 
+namespace sampling_test {
 namespace {
 
 using namespace vernier;
@@ -125,3 +126,4 @@ TEST(OperatingRegion, AClearanceOutOfReachThrows) {
 }
 
 }  // namespace
+}  // namespace sampling_test

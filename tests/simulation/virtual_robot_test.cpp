@@ -9,6 +9,7 @@
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>
 
+namespace virtual_robot_test {
 namespace {
 
 using namespace vernier;
@@ -146,3 +147,4 @@ TEST(Measure, SeedsDecideAlone) {
 }
 
 }  // namespace
+}  // namespace virtual_robot_test

@@ -1,32 +1,20 @@
 #pragma once
 
-// Counts what the calling thread allocates, whether through operator new, malloc or Eigen. Defines the allocation
-// functions of the whole program: include it in one source file of a test.
-
-#include <Eigen/Core>  // first: clang declares posix_memalign in its intrinsics, without noexcept
-#include <cerrno>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-
-#if defined(__SANITIZE_ADDRESS__)
-#define VERNIER_TEST_ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define VERNIER_TEST_ADDRESS_SANITIZER 1
-#endif
-#endif
+// Counts what the calling thread allocates, whether through operator new, malloc or Eigen: allocation_counter.cpp, part
+// of every test program, defines the allocation functions.
 
 namespace vernier_test {
 
-inline constinit thread_local long allocation_count = 0;
+/// How often this thread has allocated. (A function elsewhere: compilers take for granted that malloc changes no
+/// variable they can see.)
+long allocation_count();
 
 /// Number of allocations that this thread makes while `work` runs.
 template <class Work>
 long allocations(Work&& work) {
-  const long before = allocation_count;
+  const long before = allocation_count();
   work();
-  return allocation_count - before;
+  return allocation_count() - before;
 }
 
 /// Keeps a result, so that the work that made it is not optimised away.
@@ -36,52 +24,3 @@ void keep(const T& value) {
 }
 
 }  // namespace vernier_test
-
-#ifdef VERNIER_TEST_ADDRESS_SANITIZER
-
-// The sanitizer owns the allocation functions and offers a hook instead.
-extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
-                                                         void (*free_hook)(const volatile void*));
-
-namespace vernier_test {
-inline const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(
-    [](const volatile void*, std::size_t) { ++allocation_count; }, [](const volatile void*) {});
-}  // namespace vernier_test
-
-#else
-
-// glibc: the program's own definitions come first, for every library too; operator new is built on malloc.
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* old, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) noexcept {
-  ++vernier_test::allocation_count;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) noexcept {
-  ++vernier_test::allocation_count;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, std::size_t size) noexcept {
-  ++vernier_test::allocation_count;
-  return __libc_realloc(old, size);
-}
-void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  ++vernier_test::allocation_count;
-  return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  ++vernier_test::allocation_count;
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept {
-  ++vernier_test::allocation_count;
-  *out = __libc_memalign(alignment, size);
-  return *out != nullptr ? 0 : ENOMEM;
-}
-}
-
-#endif

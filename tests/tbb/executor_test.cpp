@@ -16,7 +16,7 @@
 #include "vernier/tbb.hpp"
 #include "vernier/testing/executor_laws.hpp"
 
-namespace vernier {
+namespace vernier::executor_test {
 namespace {
 
 using vernier_test::no_violations;
@@ -105,4 +105,4 @@ TEST(TbbExecutor, NeedsAThread) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::executor_test

@@ -13,13 +13,14 @@
 #include <string>
 #include <vector>
 
+#include "calibration_stages.hpp"
 #include "cli.hpp"
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "progress.hpp"
-#include "vernier/ceres.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/joint_space.hpp"
+#include "vernier/core/argsort.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -210,7 +211,7 @@ class Experiment {
 
   void identification(std::size_t method) {
     const auto identified = learn(method, 0, [&](const vn::FitOptions&) {
-      return vn::identify(nominal_, measured_, {.frames = vn::Frames::none});
+      return support::identify_arm<6>(nominal_, measured_, {.frames = vn::Frames::none});
     });
     if (!identified.converged()) run_.identification_remark = identified.message;
     judge(method, vn::compensate(identified.model, paper_correction));
@@ -388,9 +389,7 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
   };
   for (std::size_t set = 0; set < sets.size(); ++set) {
     const vn::VectorX before = run.errors[set][0].position;
-    std::vector<vn::Index> order(static_cast<std::size_t>(before.size()));
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<vn::Index>(i);
-    std::stable_sort(order.begin(), order.end(), [&](vn::Index a, vn::Index b) { return before(a) < before(b); });
+    const auto order = vn::argsort(before);
     std::vector<support::Series> curves;
     std::vector<support::Sample> samples;
     std::string below;

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/types.hpp"
 
@@ -26,10 +27,8 @@ struct RankTest {
 /// Ranks 1 .. n of values in rising order; equal ones share the mean of theirs.
 /// @throws std::invalid_argument for a value that is not a number
 inline VectorX ranks(const Eigen::Ref<const VectorX>& values) {
-  std::vector<Index> order(static_cast<std::size_t>(values.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  for (const Index i : order) require(!std::isnan(values(i)), "ranks: value ", i, " is not a number");
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values(a) < values(b); });
+  for (Index i = 0; i < values.size(); ++i) require(!std::isnan(values(i)), "ranks: value ", i, " is not a number");
+  const auto order = argsort(values);
   VectorX out(values.size());
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     while (end < order.size() && values(order[end]) == values(order[begin])) ++end;
@@ -125,10 +124,8 @@ inline RankTest signed_rank_test(const Eigen::Ref<const VectorX>& a, const Eigen
 /// @cite Holm 1979
 inline VectorX holm(const Eigen::Ref<const VectorX>& p_values) {
   const Index n = p_values.size();
-  std::vector<Index> order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), Index{0});
   for (const double p : p_values) require(p >= 0 && p <= 1, "holm: p-value ", p, " must lie in [0, 1]");
-  std::sort(order.begin(), order.end(), [&](Index i, Index j) { return p_values(i) < p_values(j); });
+  const auto order = argsort(p_values);
   VectorX out(n);
   double greatest = 0;
   for (Index k = 0; k < n; ++k) {

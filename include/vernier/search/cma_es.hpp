@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
+#include "vernier/core/argsort.hpp"
 #include "vernier/search/bounds.hpp"
 #include "vernier/search/state.hpp"
 
@@ -221,9 +221,7 @@ struct CmaEs {
     VectorX fitness;
     evaluate(points, fitness);
     s.keep_best(points, fitness);
-    std::vector<Index> order(static_cast<std::size_t>(lambda));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return fitness(a) < fitness(b); });
+    const auto order = argsort(fitness);
     update(s, z, order);
     look_for_convergence(s, fitness(order.front()), fitness(order.back()));
   }

@@ -60,32 +60,16 @@ struct DifferentialEvolution {
   TrialRule trials_outside = TrialRule::halfway;
 
   /// A population between two generations.
-  struct State : CommonState {
-    MatrixX positions;  ///< dimension x individuals
-    VectorX fitness;    ///< one value an individual
-
-    /// Lists the members.
-    template <class Self, class Visit>
-    static void each_member(Self& s, Visit&& visit) {
-      CommonState::each_member(s, visit);
-      visit("positions", s.positions);
-      visit("fitness", s.fitness);
-    }
-
+  struct State : PointPopulation {
     /// Whether the sizes of the members agree.
-    bool consistent() const {
-      return positions.cols() >= 4 && positions.rows() == best.size() && fitness.size() == positions.cols();
-    }
+    bool consistent() const { return PointPopulation::consistent(4); }
   };
 
   /// Individuals uniform in the box.
   State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
     validate();
     State s;
-    s.rng = Rng(seed);
-    s.positions = uniform_points(box, individuals, s.rng);
-    evaluate(s.positions, s.fitness);
-    s.keep_best(s.positions, s.fitness);
+    s.draw(box, individuals, seed, evaluate);
     return s;
   }
 

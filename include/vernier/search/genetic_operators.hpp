@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <vector>
 
+#include "vernier/core/argsort.hpp"
 #include "vernier/search/state.hpp"
 
 namespace vernier {
@@ -75,10 +75,7 @@ void for_each_hit(double count, double probability, Rng& rng, Hit&& hit) {
 
 /// The first `count` places of a ranking by fitness, the best first; equals in their order.
 inline std::vector<Index> best_of(const VectorX& fitness, Index count) {
-  std::vector<Index> order(static_cast<std::size_t>(fitness.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::partial_sort(order.begin(), order.begin() + count, order.end(),
-                    [&](Index a, Index b) { return fitness(a) != fitness(b) ? fitness(a) < fitness(b) : a < b; });
+  auto order = argsort(fitness);
   order.resize(static_cast<std::size_t>(count));
   return order;
 }

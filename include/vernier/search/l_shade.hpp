@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
+#include "vernier/core/argsort.hpp"
 #include "vernier/search/differential_evolution.hpp"
 
 namespace vernier {
@@ -36,9 +36,7 @@ struct LShade {
   double best_share = 0.11;               ///< p: the share of the population that counts as best, at least two
 
   /// A population between two generations.
-  struct State : CommonState {
-    MatrixX positions;        ///< dimension x individuals
-    VectorX fitness;          ///< one value an individual
+  struct State : PointPopulation {
     MatrixX archive;          ///< dimension x beaten individuals
     VectorX weights;          ///< remembered F
     VectorX crossover_rates;  ///< remembered CR; negative: stays zero
@@ -49,9 +47,7 @@ struct LShade {
     /// Lists the members.
     template <class Self, class Visit>
     static void each_member(Self& s, Visit&& visit) {
-      CommonState::each_member(s, visit);
-      visit("positions", s.positions);
-      visit("fitness", s.fitness);
+      PointPopulation::each_member(s, visit);
       visit("archive", s.archive);
       visit("weights", s.weights);
       visit("crossover_rates", s.crossover_rates);
@@ -62,9 +58,8 @@ struct LShade {
 
     /// Whether the sizes of the members agree.
     bool consistent() const {
-      return positions.cols() >= 4 && positions.rows() == best.size() && fitness.size() == positions.cols() &&
-             archive.rows() == best.size() && weights.size() >= 1 && crossover_rates.size() == weights.size() &&
-             oldest >= 0 && oldest < weights.size();
+      return PointPopulation::consistent(4) && archive.rows() == best.size() && weights.size() >= 1 &&
+             crossover_rates.size() == weights.size() && oldest >= 0 && oldest < weights.size();
     }
   };
 
@@ -72,16 +67,13 @@ struct LShade {
   State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
     validate();
     State s;
-    s.rng = Rng(seed);
     s.first_size = std::max<Index>(final_individuals,
                                    std::lround(individuals_per_dimension * static_cast<double>(box.dimension())));
     require(max_evaluations >= s.first_size, "LShade: max_evaluations is ", max_evaluations,
             ", less than the first population of ", s.first_size);
-    s.positions = uniform_points(box, s.first_size, s.rng);
+    s.draw(box, s.first_size, seed, evaluate);
     s.archive.resize(box.dimension(), 0);
     s.weights = s.crossover_rates = VectorX::Constant(memory, 0.5);
-    evaluate(s.positions, s.fitness);
-    s.keep_best(s.positions, s.fitness);
     s.evaluations = s.first_size;
     return s;
   }
@@ -90,7 +82,7 @@ struct LShade {
   void step(State& s, const Box& box, Evaluate evaluate) const {
     const MatrixX& x = s.positions;
     const Index n = x.cols(), count = std::min(n, max_evaluations - s.evaluations);
-    const auto order = ranking(s.fitness);
+    const auto order = argsort(s.fitness);
     const auto leaders = static_cast<std::uint64_t>(
         std::min<Index>(n, std::max<Index>(2, std::lround(best_share * static_cast<double>(n)))));
     MatrixX trials(x.rows(), count);
@@ -151,13 +143,6 @@ struct LShade {
   }
 
  private:
-  static std::vector<Index> ranking(const VectorX& fitness) {
-    std::vector<Index> order(static_cast<std::size_t>(fitness.size()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return fitness(a) < fitness(b); });
-    return order;
-  }
-
   Index archive_size(Index individuals) const { return std::lround(archive_rate * static_cast<double>(individuals)); }
 
   /// Trials that are not worse take their places; whom they bettered goes to the archive, at random places once it is
@@ -183,7 +168,7 @@ struct LShade {
   void shrink(State& s) const {
     const Index n = std::max<Index>(final_individuals, individuals(s.first_size, s.evaluations));
     if (n >= s.positions.cols()) return;
-    const auto order = ranking(s.fitness);
+    const auto order = argsort(s.fitness);
     MatrixX positions(s.positions.rows(), n);
     VectorX fitness(n);
     for (Index k = 0; k < n; ++k) {

@@ -4,6 +4,7 @@
 /// What the states of all searches have in common.
 
 #include <concepts>
+#include <cstdint>
 #include <limits>
 
 #include "vernier/core/rng.hpp"
@@ -42,6 +43,41 @@ struct CommonState {
   }
 };
 
+/// Points drawn uniformly from a box, one a column, coordinate by coordinate.
+inline MatrixX uniform_points(const Box& box, Index count, Rng& rng) {
+  MatrixX points(box.dimension(), count);
+  for (Index k = 0; k < count; ++k)
+    for (Index d = 0; d < points.rows(); ++d) points(d, k) = rng.uniform(box.lower(d), box.upper(d));
+  return points;
+}
+
+/// A population of points between two generations.
+struct PointPopulation : CommonState {
+  MatrixX positions;  ///< dimension x individuals
+  VectorX fitness;    ///< one value an individual
+
+  /// So many individuals uniform in the box, evaluated.
+  void draw(const Box& box, Index individuals, std::uint64_t seed, Evaluate evaluate) {
+    rng = Rng(seed);
+    positions = uniform_points(box, individuals, rng);
+    evaluate(positions, fitness);
+    keep_best(positions, fitness);
+  }
+
+  /// Lists the members.
+  template <class Self, class Visit>
+  static void each_member(Self& s, Visit&& visit) {
+    CommonState::each_member(s, visit);
+    visit("positions", s.positions);
+    visit("fitness", s.fitness);
+  }
+
+  /// Whether the sizes of the members agree, and there are as many individuals as an algorithm needs.
+  bool consistent(Index least) const {
+    return positions.cols() >= least && positions.rows() == best.size() && fitness.size() == positions.cols();
+  }
+};
+
 /// A state whose members can be listed, so that it can be saved; `consistent()` says whether their sizes agree, which
 /// is what a file is asked.
 template <class S>
@@ -50,13 +86,5 @@ concept ListedState = SearchState<S> && std::default_initializable<S> && require
   S::each_member(saved, [](const char*, const auto&) {});
   { saved.consistent() } -> std::same_as<bool>;
 };
-
-/// Points drawn uniformly from a box, one a column, coordinate by coordinate.
-inline MatrixX uniform_points(const Box& box, Index count, Rng& rng) {
-  MatrixX points(box.dimension(), count);
-  for (Index k = 0; k < count; ++k)
-    for (Index d = 0; d < points.rows(); ++d) points(d, k) = rng.uniform(box.lower(d), box.upper(d));
-  return points;
-}
 
 }  // namespace vernier

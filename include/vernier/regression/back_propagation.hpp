@@ -104,7 +104,7 @@ struct BackPropagation {
     validate();
     detail::require_samples("BackPropagation", inputs, targets, options);
     const Index n = inputs.rows(), m = targets.cols();
-    const VectorX weights = options.weights != nullptr ? *options.weights : VectorX(VectorX::Ones(n));
+    const VectorX weights = detail::weights_or_ones(options.weights, n);
     const MatrixX mapped = layer().map(inputs);
     const ColumnScaling in = layer().scaling(mapped);
     const detail::CommonScaling out(targets, options.weights);

@@ -83,6 +83,11 @@ void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, con
           options.weights->minCoeff(), ", all must be finite and positive");
 }
 
+/// The weights of n samples; ones where there are none.
+inline VectorX weights_or_ones(const VectorX* weights, Index n) {
+  return weights != nullptr ? *weights : VectorX(VectorX::Ones(n));
+}
+
 /// For recipes that have no use for weights.
 inline void require_no_weights(const char* caller, const FitOptions& options) {
   require(options.weights == nullptr, caller, " takes no weights");

@@ -17,7 +17,9 @@ namespace vernier::detail {
 /// `min over beta of (|H beta - T|^2 + lambda |beta|^2) / n`. With samples held out that beta is found from the others,
 /// and `|H beta - T|^2 / n` is that of the held-out ones; products of theirs give it, at the price of a training sample
 /// each.
-class ElmFitness {
+/// (A template, so that only its users pay for compiling it.)
+template <class Scalar>
+class ElmFitnessOf {
  public:
   /// @param layer           the nodes
   /// @param features        n x f, scaled
@@ -25,8 +27,8 @@ class ElmFitness {
   /// @param relative_lambda ridge, relative to tr(H'H) / nodes
   /// @param hold_out_every  each so-manieth sample is held out; 0: none
   /// @param weights         of the samples; null: all the same
-  ElmFitness(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets, double relative_lambda,
-             int hold_out_every, const VectorX* weights)
+  ElmFitnessOf(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets, double relative_lambda,
+               int hold_out_every, const VectorX* weights)
       : layer_(layer), relative_lambda_(relative_lambda) {
     std::vector<Index> fitted, held_out;
     for (Index i = 0; i < features.rows(); ++i)
@@ -110,5 +112,8 @@ class ElmFitness {
   Samples fitted_, held_out_;
   double relative_lambda_;
 };
+
+/// In double precision.
+using ElmFitness = ElmFitnessOf<double>;
 
 }  // namespace vernier::detail

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "vernier/core/simd.hpp"
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/mapped_sample.hpp"
 
 namespace vernier {
 
@@ -72,10 +72,10 @@ class ElmPredictor {
   template <class Derived>
     requires detail::SampleOf<Derived, Inputs> Output predict(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
-    const Features at(*this, x);
+    const Sample at(layer_.input_map, scaling_, x);
     Sums sums{};
     evaluate<false>(at, sums);
-    return output(sums);
+    return sums.total(offset_);
   }
 
   /// Samples as rows, n x inputs to n x outputs.
@@ -99,18 +99,10 @@ class ElmPredictor {
     requires detail::SampleOf<Derived, Inputs> std::pair<Output, Eigen::Matrix<double, Outputs, Inputs>>
     predict_and_derivative(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
-    const Features at(*this, x);
+    const Sample at(layer_.input_map, scaling_, x);
     Sums sums{};
     evaluate<true>(at, sums);
-    Eigen::Matrix<double, Outputs, Inputs> slope;
-    for (int j = 0; j < Inputs; ++j)
-      for (int o = 0; o < Outputs; ++o) {
-        slope(o, j) = added(sums.by_feature[j][o]) * scaling_.factor(j);
-        if (layer_.input_map == InputMap::sines_and_cosines)
-          slope(o, j) = slope(o, j) * at.cosine[j] -
-                        added(sums.by_feature[Inputs + j][o]) * scaling_.factor(Inputs + j) * at.sine[j];
-      }
-    return {output(sums), slope};
+    return {sums.total(offset_), sums.slope(layer_.input_map, scaling_, at)};
   }
 
   /// The hidden layer.
@@ -127,32 +119,12 @@ class ElmPredictor {
   const Output& offset() const { return offset_; }
 
  private:
-  static constexpr int lanes = 8;  // sums are kept in so many parts
-
-  /// What the layer sees of a sample.
-  struct Features {
-    double value[2 * Inputs], sine[Inputs], cosine[Inputs];
-
-    template <class Derived>
-    Features(const ElmPredictor& of, const Eigen::MatrixBase<Derived>& sample) noexcept {
-      const Input x = sample;
-      const bool raw = of.layer_.input_map == InputMap::raw;
-      if (!raw) detail::sines_and_cosines<Inputs>(x.data(), sine, cosine);
-      const auto scaled = [&](Index j, double v) { return (v - of.scaling_.offset(j)) * of.scaling_.factor(j); };
-      for (int j = 0; j < Inputs; ++j) {
-        value[j] = scaled(j, raw ? x(j) : sine[j]);
-        value[Inputs + j] = raw ? 0 : scaled(Inputs + j, cosine[j]);
-      }
-    }
-  };
-
-  /// Sums over the nodes.
-  struct Sums {
-    double output[Outputs][lanes], by_feature[2 * Inputs][Outputs][lanes];
-  };
+  using Sample = detail::MappedSample<Inputs>;
+  using Sums = detail::LaneSums<Inputs, Outputs>;
+  static constexpr int lanes = Sums::lanes;
 
   template <bool WithDerivative>
-  void evaluate(const Features& at, Sums& sums) const noexcept {
+  void evaluate(const Sample& at, Sums& sums) const noexcept {
     const Index f = features();
     if (layer_.activation == Activation::radial_basis) {
       for (Index k = 0; k < layer_.nodes; ++k) {
@@ -166,12 +138,6 @@ class ElmPredictor {
     }
     detail::run_widest([&]<int W>() VERNIER_INLINED {
       typename detail::Simd<W>::Double z, slope, weight, effect[Outputs];
-      const auto add = [](double* to, const typename detail::Simd<W>::Double& more) VERNIER_INLINED {
-        typename detail::Simd<W>::Double sum;
-        detail::load<W>(sum, to);
-        sum += more;
-        detail::store<W>(to, sum);
-      };
       for (Index k = 0; k < packed_.cols(); k += W) {
         detail::load<W>(z, row(f) + k);
         for (Index j = 0; j < f; ++j) {
@@ -182,13 +148,14 @@ class ElmPredictor {
         VERNIER_UNROLL
         for (int o = 0; o < Outputs; ++o) {
           detail::load<W>(weight, row(f + 1 + o) + k);
-          add(sums.output[o] + k % lanes, weight * z);
+          Sums::template add<W>(sums.output[o] + k % lanes, weight * z);
           effect[o] = weight * slope;
         }
         for (Index j = 0; WithDerivative && j < f; ++j) {
           detail::load<W>(weight, row(j) + k);
           VERNIER_UNROLL
-          for (int o = 0; o < Outputs; ++o) add(sums.by_feature[j][o] + k % lanes, effect[o] * weight);
+          for (int o = 0; o < Outputs; ++o)
+            Sums::template add<W>(sums.by_feature[j][o] + k % lanes, effect[o] * weight);
         }
       }
     });
@@ -200,20 +167,11 @@ class ElmPredictor {
   const double* row(Index i) const noexcept { return packed_.data() + i * packed_.cols(); }
   double beta(int output, Index node) const noexcept { return packed_(features() + 1 + output, node); }
 
-  double radial_basis(Index k, const Features& at) const noexcept {
+  double radial_basis(Index k, const Sample& at) const noexcept {
     double square = 0;
     for (Index j = 0; j < features(); ++j) square += std::pow(at.value[j] - packed_(j, k), 2);
     const double width = packed_(features(), k);
     return std::exp(-width * width * square);
-  }
-
-  Output output(const Sums& sums) const noexcept {
-    Output y = offset_;
-    for (int o = 0; o < Outputs; ++o) y(o) += added(sums.output[o]);
-    return y;
-  }
-  static double added(const double (&parts)[lanes]) noexcept {
-    return ((parts[0] + parts[4]) + (parts[2] + parts[6])) + ((parts[1] + parts[5]) + (parts[3] + parts[7]));
   }
 
   HiddenLayer layer_;

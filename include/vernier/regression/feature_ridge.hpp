@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vernier/core/types.hpp"
+#include "vernier/regression/concepts.hpp"
 
 namespace vernier::detail {
 
@@ -40,7 +40,7 @@ class FeatureRidgeOf {
   template <class Features, class Targets>
   FeatureRidgeOf(const Eigen::MatrixBase<Features>& features, const Eigen::MatrixBase<Targets>& targets,
                  const VectorX* weights)
-      : weights_(weights != nullptr ? *weights : VectorX(VectorX::Ones(features.rows()))), total_(weights_.sum()) {
+      : weights_(weights_or_ones(weights, features.rows())), total_(weights_.sum()) {
     const VectorX root = weights_.cwiseSqrt();
     mean_features_ = (weights_.transpose() * features) / total_;
     mean_targets_ = (weights_.transpose() * targets) / total_;

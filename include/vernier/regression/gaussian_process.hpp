@@ -117,7 +117,7 @@ class GaussianProcessPredictor : public KernelPredictor<Inputs, Outputs> {
   template <class Derived>
     requires detail::SampleOf<Derived, Inputs> Output standard_deviation(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
-    const typename Base::Features at(*this, x);
+    const typename Base::Sample at = this->sample(x);
     const Index padded = (this->samples() + 7) / 8 * 8;
     const auto fill = [&](Index first, double* out) {
       const Index count = std::min(tile, padded - first);

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "vernier/core/simd.hpp"
-#include "vernier/regression/hidden_layer.hpp"
+#include "vernier/regression/mapped_sample.hpp"
 
 namespace vernier {
 
@@ -102,10 +102,10 @@ class KernelPredictor {
   template <class Derived>
     requires detail::SampleOf<Derived, Inputs> Output predict(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
-    const Features at(*this, x);
+    const Sample at = sample(x);
     Sums sums{};
     evaluate<false>(at, sums);
-    return output(sums);
+    return sums.total(mean_);
   }
 
   /// Samples as rows, n x inputs to n x outputs.
@@ -129,18 +129,10 @@ class KernelPredictor {
     requires detail::SampleOf<Derived, Inputs> std::pair<Output, Eigen::Matrix<double, Outputs, Inputs>>
     predict_and_derivative(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
-    const Features at(*this, x);
+    const Sample at = sample(x);
     Sums sums{};
     evaluate<true>(at, sums);
-    Eigen::Matrix<double, Outputs, Inputs> slope;
-    for (int j = 0; j < Inputs; ++j)
-      for (int o = 0; o < Outputs; ++o) {
-        slope(o, j) = added(sums.by_feature[j][o]) * scaling_.factor(j);
-        if (input_map_ == InputMap::sines_and_cosines)
-          slope(o, j) = slope(o, j) * at.cosine[j] -
-                        added(sums.by_feature[Inputs + j][o]) * scaling_.factor(Inputs + j) * at.sine[j];
-      }
-    return {output(sums), slope};
+    return {sums.total(mean_), sums.slope(input_map_, scaling_, at)};
   }
 
   /// The kernel.
@@ -159,28 +151,16 @@ class KernelPredictor {
   const Output& mean() const { return mean_; }
 
   /// What the kernel sees of a sample.
-  struct Features {
-    double value[2 * Inputs];  ///< mapped and scaled
-    double sine[Inputs];       ///< of the inputs, where they are mapped so
-    double cosine[Inputs];     ///< of the inputs, where they are mapped so
-
-    /// Maps and scales.
-    template <class Derived>
-    Features(const KernelPredictor& of, const Eigen::MatrixBase<Derived>& sample) noexcept {
-      const Input x = sample;
-      const bool raw = of.input_map_ == InputMap::raw;
-      if (!raw) detail::sines_and_cosines<Inputs>(x.data(), sine, cosine);
-      const auto scaled = [&](Index j, double v) { return (v - of.scaling_.offset(j)) * of.scaling_.factor(j); };
-      for (int j = 0; j < Inputs; ++j) {
-        value[j] = scaled(j, raw ? x(j) : sine[j]);
-        value[Inputs + j] = raw ? 0 : scaled(Inputs + j, cosine[j]);
-      }
-    }
-  };
+  using Sample = detail::MappedSample<Inputs>;
+  /// Maps and scales.
+  template <class Derived>
+  Sample sample(const Eigen::MatrixBase<Derived>& x) const noexcept {
+    return {input_map_, scaling_, x};
+  }
 
   /// Kernels between a sample and centres first .. first + count, a multiple of 8 each; centres beyond the last lie at
   /// zero.
-  void kernels(const Features& at, Index first, Index count, double* out) const noexcept {
+  void kernels(const Sample& at, Index first, Index count, double* out) const noexcept {
     detail::run_widest([&]<int W>() VERNIER_INLINED {
       typename detail::Simd<W>::Double value, slope;
       for (Index k = first; k < first + count; k += W) {
@@ -192,19 +172,15 @@ class KernelPredictor {
   }
 
  private:
-  static constexpr int lanes = 8;  // sums are kept in so many parts
+  using Sums = detail::LaneSums<Inputs, Outputs>;
+  static constexpr int lanes = Sums::lanes;
   using Packed = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  /// Sums over the samples.
-  struct Sums {
-    double output[Outputs][lanes], by_feature[2 * Inputs][Outputs][lanes];
-  };
 
   Index features() const noexcept { return input_map_ == InputMap::raw ? Inputs : 2 * Inputs; }
   const double* row(Index i) const noexcept { return packed_.data() + i * packed_.cols(); }
 
   template <int W>
-  VERNIER_INLINE void square_distance(const Features& at, Index k, typename detail::Simd<W>::Double& square) const {
+  VERNIER_INLINE void square_distance(const Sample& at, Index k, typename detail::Simd<W>::Double& square) const {
     typename detail::Simd<W>::Double along;
     square = typename detail::Simd<W>::Double{};
     for (Index j = 0; j < features(); ++j) {
@@ -215,15 +191,9 @@ class KernelPredictor {
   }
 
   template <bool WithDerivative>
-  void evaluate(const Features& at, Sums& sums) const noexcept {
+  void evaluate(const Sample& at, Sums& sums) const noexcept {
     detail::run_widest([&]<int W>() VERNIER_INLINED {
       typename detail::Simd<W>::Double value, slope, weight, along, effect[Outputs];
-      const auto add = [](double* to, const typename detail::Simd<W>::Double& more) VERNIER_INLINED {
-        typename detail::Simd<W>::Double sum;
-        detail::load<W>(sum, to);
-        sum += more;
-        detail::store<W>(to, sum);
-      };
       const Index f = features();
       for (Index k = 0; k < packed_.cols(); k += W) {
         square_distance<W>(at, k, value);
@@ -231,26 +201,17 @@ class KernelPredictor {
         VERNIER_UNROLL
         for (int o = 0; o < Outputs; ++o) {
           detail::load<W>(weight, row(f + o) + k);
-          add(sums.output[o] + k % lanes, weight * value);
+          Sums::template add<W>(sums.output[o] + k % lanes, weight * value);
           effect[o] = weight * slope;
         }
         for (Index j = 0; WithDerivative && j < f; ++j) {
           detail::load<W>(along, row(j) + k);
           along = at.value[j] - along;
           VERNIER_UNROLL
-          for (int o = 0; o < Outputs; ++o) add(sums.by_feature[j][o] + k % lanes, effect[o] * along);
+          for (int o = 0; o < Outputs; ++o) Sums::template add<W>(sums.by_feature[j][o] + k % lanes, effect[o] * along);
         }
       }
     });
-  }
-
-  Output output(const Sums& sums) const noexcept {
-    Output y = mean_;
-    for (int o = 0; o < Outputs; ++o) y(o) += added(sums.output[o]);
-    return y;
-  }
-  static double added(const double (&parts)[lanes]) noexcept {
-    return ((parts[0] + parts[4]) + (parts[2] + parts[6])) + ((parts[1] + parts[5]) + (parts[3] + parts[7]));
   }
 
   Kernel kernel_;

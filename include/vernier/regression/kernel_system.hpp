@@ -35,11 +35,6 @@ struct KernelFeatures {
   }
 };
 
-/// A sample's weight; one without weights.
-inline VectorX weights_or_ones(const VectorX* weights, Index n) {
-  return weights != nullptr ? *weights : VectorX(VectorX::Ones(n));
-}
-
 /// The Cholesky factor of `A = K + diag(noise)` and what follows from it. The mean is that of generalised least
 /// squares, so that alpha sums to zero: `mean = 1'A^-1 T / 1'A^-1 1`, `alpha = A^-1 (T - 1 mean)`. O(n^3).
 template <class Scalar>  // a template so that only users pay for compiling it

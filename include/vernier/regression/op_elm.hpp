@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "vernier/regression/elm_predictor.hpp"
-#include "vernier/regression/kernel_system.hpp"
 
 namespace vernier {
 

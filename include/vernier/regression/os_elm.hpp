@@ -87,20 +87,14 @@ class OsElmPredictor {
     requires detail::SampleOf<Derived, Inputs> Output standard_deviation(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
     constexpr Index tile = 128;
-    const Input at = x;
-    double features[2 * Inputs];
-    for (int j = 0; j < Inputs; ++j) {
-      const bool raw = layer_.input_map == InputMap::raw;
-      features[j] = raw ? at(j) : std::sin(at(j));
-      features[Inputs + j] = raw ? 0 : std::cos(at(j));
-    }
+    const detail::MappedSample<Inputs> at(layer_.input_map, learned_.scaling(), x);
     const Index size = root_.rows();
     double square = 0;
     for (Index first = 0; first < size; first += tile) {
       const Index count = std::min(tile, size - first);
       double product[tile] = {};
       for (Index k = 0; k < size; ++k) {
-        const double h = node(k, features);
+        const double h = node(k, at.value);
         for (Index i = 0; i < count; ++i) product[i] += root_(first + i, k) * h;
       }
       for (const double part : product) square += part * part;

@@ -278,7 +278,6 @@ int run(support::Program& program) {
                  "of the joint errors: the default rule, or tuned by pso or ga on poses left out (takes a minute)")
       ->type_name("HOW")
       ->check(CLI::IsMember({"default", "pso", "ga"}).description(""));
-  app.add_flag("--gears", settings.gears, "look for gear ratios and coupling of neighbouring joints too");
   app.add_flag("--own-tools", settings.own_tools, "every file of --data has its own tool, not just its own base");
   app.add_flag("--positions-only", settings.positions_only, "ignore measured orientations");
   app.add_option("--date", settings.date, "date kept in the model")->type_name("DATE");

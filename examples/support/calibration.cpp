@@ -357,7 +357,6 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   errors.harmonics = settings.harmonics;
   errors.joint_nodes = settings.joint_nodes;
   errors.distance_sigma = settings.distance_sigma;
-  errors.gear_ratio = errors.coupling = settings.gears;
   errors.loss = settings.loss;
   errors.own_tools = settings.own_tools;
   vn::IdentifyOptions options;

@@ -50,7 +50,6 @@ struct CalibrationSettings {
   std::vector<std::string> fixed{};                ///< parameters that stay nominal
   bool positions_only = false;                     ///< measured orientations are ignored
   bool own_tools = false;                          ///< every station has its own tool
-  bool gears = false;                              ///< gear ratios and coupling of neighbouring joints count too
   int harmonics = 60;                              ///< of the joint-wise terms
   int joint_nodes = 0;                             ///< above 0: so many hidden nodes a joint in place of harmonics
   PriorTuning priors = PriorTuning::none;          ///< of the joint errors

@@ -4,7 +4,6 @@
 /// Closed-form starting values for base and tool frames.
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <vector>
 
@@ -48,13 +47,14 @@ template <class Points, class Lengths>
 Vector3 trilaterate(const Eigen::MatrixBase<Points>& points, const Eigen::MatrixBase<Lengths>& distances) {
   const Index n = points.rows();
   require(n == distances.size() && n >= 1, "trilaterate: ", n, " points, ", distances.size(), " distances");
-  // |p - a|^2 = l^2 is linear in a and |a|^2; about the mean of the points
+  // |p - a|^2 = l^2 is linear in a and |a|^2; about the mean of the points the two come apart
   const Eigen::RowVector3d mean = points.colwise().mean();
-  Eigen::Matrix<double, Eigen::Dynamic, 4> rows(n, 4);
-  rows << -2 * (points.rowwise() - mean), VectorX::Ones(n);
-  const VectorX right = distances.array().square().matrix() - (points.rowwise() - mean).rowwise().squaredNorm();
-  const Eigen::Vector4d solution = rows.completeOrthogonalDecomposition().solve(right);
-  return mean.transpose() + solution.head<3>();
+  const PointRows centred = points.rowwise() - mean;
+  const VectorX right = distances.array().square().matrix() - centred.rowwise().squaredNorm();
+  Eigen::JacobiSVD<Matrix3, Eigen::NoQRPreconditioner> scatter(Matrix3(centred.transpose() * centred),
+                                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
+  scatter.setThreshold(1e-12);
+  return mean.transpose() - 0.5 * scatter.solve(centred.transpose() * right);
 }
 
 /// Base and tool frames that roughly explain the data, links nominal: the base by registering positions with the tool

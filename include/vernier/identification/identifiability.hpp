@@ -27,7 +27,8 @@ struct IndependentColumns {
 
   /// @param jacobian  rows x columns, columns scaled to expected sizes, in order of preference
   /// @param tolerance a column is dependent when less than this share of it is new
-  explicit IndependentColumns(const MatrixX& jacobian, double tolerance = 1e-7) {
+  template <class Derived>  // a template, as all below, so that only its users pay for compiling decompositions
+  explicit IndependentColumns(const Eigen::MatrixBase<Derived>& jacobian, double tolerance = 1e-7) {
     const double largest = jacobian.cols() > 0 ? std::sqrt(jacobian.colwise().squaredNorm().maxCoeff()) : 0;
     MatrixX basis(jacobian.rows(), std::min(jacobian.rows(), jacobian.cols()));
     MatrixX triangle = MatrixX::Zero(basis.cols(), basis.cols());  // kept columns = basis * triangle
@@ -73,7 +74,8 @@ struct Precision {
   /// @param jacobian     whitened rows
   /// @param row_variance variance of each whitened row as estimated from residuals
   /// @param prior        inverse squared prior deviations per column, zero for none
-  Precision(const MatrixX& jacobian, const VectorX& row_variance, const VectorX& prior) {
+  template <class Derived>
+  Precision(const Eigen::MatrixBase<Derived>& jacobian, const VectorX& row_variance, const VectorX& prior) {
     const Index columns = jacobian.cols();
     if (columns == 0) {
       condition = 1;
@@ -106,7 +108,8 @@ struct Precision {
 /// Root mean square, over poses, of the position or distance residual (whitened) of each pose when it is left out, in
 /// closed form: `e_b = (I - H_bb)^-1 r_b` with all rows of the pose in block b.
 /// @cite Allen 1974
-inline double leave_one_pose_out(const Linearisation& at, Index poses, const MatrixX& inverse) {
+template <class Derived>
+double leave_one_pose_out(const Linearisation& at, Index poses, const Eigen::MatrixBase<Derived>& inverse) {
   if (inverse.size() == 0) return std::numeric_limits<double>::infinity();
   const Index size = at.residuals.size() / poses;  // 1, 3, or 6 with orientations
   const Index group = at.group;

@@ -70,7 +70,8 @@ class PriorObjective {
   }
 
   /// The error with some precisions [m]; infinite where they leave the problem singular.
-  double error(const VectorX& precisions) const {
+  template <class Vector>  // a template, so that only its users pay for compiling it
+  double error(const Eigen::MatrixBase<Vector>& precisions) const {
     const detail::FactorisedSystem solved(normal_, precisions, steps_);
     return left_out_errors(system_, solved, stride_).colwise().norm().mean();
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,7 @@
 #include "comparison.hpp"
 #include "figures.hpp"
 #include "progress.hpp"
+#include "vernier/core/argsort.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 
 namespace {
@@ -42,7 +44,13 @@ class Grid {
         std::count_if(outcomes_.begin(), outcomes_.end(), [](const auto& o) { return !o.has_value(); }));
   }
 
-  /// Computes what is missing, several cells at a time; what is done is kept whatever happens next.
+  std::size_t failed() const {
+    return static_cast<std::size_t>(
+        std::count_if(outcomes_.begin(), outcomes_.end(), [](const auto& o) { return o && o->failed(); }));
+  }
+
+  /// Computes what is missing, several cells at a time; what is done is kept whatever happens next, and what failed is
+  /// not, so that it is tried again.
   void compute_missing(Results& results, int threads) {
     ProgressBar bar("cells", static_cast<vn::Index>(cells_.size()));
     std::atomic<std::size_t> next = 0;
@@ -54,17 +62,12 @@ class Grid {
         Outcome outcome;
         try {
           outcome = compute(plan_, cells_[c]);
-        } catch (const UsageError&) {
-          const std::lock_guard lock(mutex);
-          if (!broken) broken = std::current_exception();
-          next = cells_.size();
-          return;
         } catch (const std::exception& error) {
           outcome.failure = error.what();
         }
         const std::lock_guard lock(mutex);
         try {
-          results.add(plan_, cells_[c], outcome);
+          if (!outcome.failed()) results.add(plan_, cells_[c], outcome);
         } catch (...) {
           if (!broken) broken = std::current_exception();
           next = cells_.size();
@@ -193,13 +196,10 @@ vn::MatrixX all_cases(const Grid& grid, const Plan& plan) {
 
 void print_ranks(const Plan& plan, const vn::MatrixX& cases) {
   const vn::VectorX ranks = vn::average_ranks(cases);
-  std::vector<vn::Index> order(static_cast<std::size_t>(ranks.size()));
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<vn::Index>(k);
-  std::stable_sort(order.begin(), order.end(), [&](vn::Index a, vn::Index b) { return ranks(a) < ranks(b); });
   fmt::print(
       "Average rank over {} cases (1 is best; two differ by Nemenyi's test where their ranks are {:.2f} apart)\n",
       cases.rows(), vn::critical_difference(cases.cols(), cases.rows()));
-  for (const vn::Index m : order)
+  for (const vn::Index m : vn::argsort(ranks))
     fmt::print("  {:<34}{:>10.2f}\n", plan.methods[static_cast<std::size_t>(m)].text, ranks(m));
   fmt::print("\n");
 }
@@ -238,15 +238,18 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
   };
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     const std::string& name = plan.problems[p].name;
-    std::vector<Series> learning, distribution, by_evaluations, by_seconds;
+    std::vector<Series> learning, distribution;
+    std::map<std::string, std::array<std::vector<Series>, 2>> convergence;  // by learner: each has a fitness of its own
     for (std::size_t m = 0; m < plan.methods.size(); ++m) {
       const std::string& method = plan.methods[m].text;
       Series curve{.name = method, .x = {}, .y = {}};
       for (const vn::Index poses : plan.poses) {
-        const double median = quantile(values(grid.of(p, m, poses), [](const Outcome& o) { return o.mean; }), 0.5);
-        if (poses == 0 || !std::isfinite(median)) continue;
-        curve.x.push_back(static_cast<double>(poses));
-        curve.y.push_back(median);
+        const auto outcomes = grid.of(p, m, poses);
+        const auto median = [&](const auto& of) { return quantile(values(outcomes, of), 0.5); };
+        const double error = median([](const Outcome& o) { return o.mean; });
+        if (!std::isfinite(error)) continue;
+        curve.x.push_back(median([](const Outcome& o) { return o.learned_from; }));
+        curve.y.push_back(error);
       }
       if (!curve.x.empty() && plan.poses.size() > 1) learning.push_back(curve);
       const Outcome* one = typical(grid.of(p, m, plan.poses.back()));
@@ -255,6 +258,9 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       for (std::size_t k = 0; k < shares.x.size(); ++k) shares.y.push_back(5.0 * static_cast<double>(k));
       if (!shares.x.empty()) distribution.push_back(shares);
       if (one->convergence.best.empty()) continue;
+      const Method& searched = plan.methods[m];
+      auto& [by_evaluations, by_seconds] =
+          convergence[(searched.on_geometry ? "geometry+" : "") + searched.learner + searched.map];
       by_evaluations.push_back({.name = method, .x = one->convergence.evaluations, .y = one->convergence.best});
       by_seconds.push_back({.name = method, .x = one->convergence.seconds, .y = one->convergence.best});
     }
@@ -263,24 +269,25 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
          "mean error [mm], median over seeds", learning, {.log_x = true, .log_y = true});
     plot("errors_" + at + ".svg", name + ": distribution of the error, " + poses_words(plan.poses.back()),
          "position error [mm]", "share of the held-out poses [%]", distribution, {.log_x = true});
-    plot("convergence_" + at + ".svg", name + ": convergence, " + poses_words(plan.poses.back()), "evaluations",
-         "best fitness, each learner's own", by_evaluations, {.log_x = true, .log_y = true});
-    plot("seconds_" + at + ".svg", name + ": convergence in time, " + poses_words(plan.poses.back()), "seconds",
-         "best fitness, each learner's own", by_seconds, {.log_x = true, .log_y = true});
+    for (const auto& [learner, curves] : convergence) {
+      const std::string words = ", " + learner + ", " + poses_words(plan.poses.back());
+      plot("convergence_" + at + "_" + slug(learner) + ".svg", name + ": convergence" + words, "evaluations",
+           "best fitness", curves[0], {.log_x = true, .log_y = true});
+      plot("seconds_" + at + "_" + slug(learner) + ".svg", name + ": convergence in time" + words, "seconds",
+           "best fitness", curves[1], {.log_x = true, .log_y = true});
+    }
   }
   if (plan.methods.size() > 1) {
-    Series ranks{.name = "", .x = {}, .y = {}};
-    std::vector<std::string> labels;
+    std::vector<Interval> ranks;
     const vn::VectorX average = vn::average_ranks(cases);
-    for (std::size_t m = 0; m < plan.methods.size(); ++m) {
-      labels.push_back(plan.methods[m].text);
-      ranks.y.push_back(average(static_cast<vn::Index>(m)));
-    }
+    for (const vn::Index m : vn::argsort(average))
+      ranks.push_back({plan.methods[static_cast<std::size_t>(m)].text, average(m),
+                       vn::critical_difference(cases.cols(), cases.rows()) / 2});
     const auto path = folder / "ranks.svg";
-    keep(bars_svg(path,
-                  fmt::format("Average rank over {} cases; a difference of {:.2f} shows something", cases.rows(),
-                              vn::critical_difference(cases.cols(), cases.rows())),
-                  "average rank, 1 is best", labels, {ranks}),
+    keep(intervals_svg(
+             path,
+             fmt::format("Average ranks over {} cases: where two bars do not overlap, methods differ", cases.rows()),
+             "average rank, 1 is best", ranks),
          path);
   }
   return files;
@@ -368,7 +375,7 @@ int body(Program& program) {
     for (const std::string& m : methods) plan.methods.push_back(Method::parse(m));
     problem.name = problem.measured() ? problem.data.stem().string() : problem.robot;
     plan.problems.push_back(problem);
-    plan.validate();
+    plan.prepare();
   }
   const std::filesystem::path folder = program.output_folder();
   Results results(results_file.empty() ? folder / "results.jsonl" : std::filesystem::path(results_file));
@@ -388,6 +395,9 @@ int body(Program& program) {
   const auto files = draw(grid, plan, cases, folder);
   if (!files.empty()) fmt::print("Figures: {}\n", fmt::join(files, ", "));
   if (!program.common().json.empty()) write_json(program.common().json, json(grid, plan, cases));
+  if (grid.failed() > 0)
+    throw std::runtime_error(
+        fmt::format("{} of {} cells failed; the same command tries them again", grid.failed(), grid.cells()));
   return 0;
 }
 

@@ -149,7 +149,14 @@ bool draw(const std::filesystem::path& path, const std::string& script) {
 
 bool plot_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
               const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options) {
-  std::string script = preamble(title, y_label, options);
+  FigureOptions page = options;
+  std::string key;
+  if (series.size() > palette.size()) {  // too many for a legend below
+    page.width += 300;
+    page.height = std::max(page.height, 110 + 25 * static_cast<int>(series.size()));
+    key = "set key outside right top vertical maxcols 1 maxrows 0\n";
+  }
+  std::string script = preamble(title, y_label, page) + key;
   script += fmt::format("set xlabel {} offset 0,0.4\n", quoted(x_label));
   script += options.log_x ? log_axis("x", series, options.x_range, [](const Series& s) { return s.x; })
                           : range("x", options.x_range);
@@ -174,7 +181,9 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
     const char* c = colour(s, k);
     const auto look = [&]() -> std::string {
       switch (s.style) {
-        case Style::lines: return fmt::format("with lines linewidth 1.8 linecolor rgb '{}'", c);
+        case Style::lines:
+          return fmt::format("with lines linewidth 1.8 dashtype {} linecolor rgb '{}'",
+                             s.colour < 0 ? 1 + k / palette.size() : 1, c);
         case Style::dashed: return fmt::format("with lines dashtype 2 linewidth 1.6 linecolor rgb '{}'", c);
         case Style::points: return fmt::format("with points pointtype 7 pointsize 0.32 linecolor rgb '{}'", c);
         case Style::steps: return fmt::format("with steps linewidth 1.8 linecolor rgb '{}'", c);
@@ -224,6 +233,26 @@ bool bars_svg(const std::filesystem::path& path, const std::string& title, const
                    k == 0 ? ":xtic(1)" : "", colour(series[k], bar_colours[k % bar_colours.size()]),
                    series[k].name.empty() ? "notitle" : "title " + quoted(series[k].name));
   return draw(path, script + "\n");
+}
+
+bool intervals_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+                   const std::vector<Interval>& intervals) {
+  vernier::require(!intervals.empty(), "intervals_svg: nothing to draw in ", path.string());
+  std::string script = preamble(title, "", {.height = 130 + 26 * static_cast<int>(intervals.size())}), data, ticks;
+  double row = 0;
+  for (const Interval& i : intervals) {
+    row -= 1;
+    ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", quoted(i.name), row);
+    if (std::isfinite(i.centre) && std::isfinite(i.half_width))
+      data += fmt::format("{} {} {}\n", i.centre, row, i.half_width);
+  }
+  script += fmt::format("set xlabel {} offset 0,0.4\nset yrange [{}:0]\nset ytics ({}) scale 0\nunset key\n",
+                        quoted(x_label), row - 1, ticks);
+  script += "$data << EOD\n" + data + "EOD\n";
+  return draw(path,
+              script + fmt::format("plot $data using 1:2:3 with xerrorbars pointtype 7 pointsize 0.9 linewidth 1.8 "
+                                   "linecolor rgb '{}'\n",
+                                   palette[5]));
 }
 
 std::vector<Series> histogram(const std::vector<Sample>& samples, int bins, bool log, std::optional<double> smallest) {

@@ -36,7 +36,8 @@ struct FigureOptions {
   int height = 540;  ///< [px]
 };
 
-/// The palette has this many colours: those of Okabe and Ito, told apart by colour-blind readers too. 0 is black.
+/// The palette has this many colours: those of Okabe and Ito, told apart by colour-blind readers too. 0 is black. Lines
+/// beyond them have the same colours and other dashes.
 inline constexpr int palette_size = 7;
 
 /// Draws series over x. Labels name the unit: "position error [mm]".
@@ -50,6 +51,18 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
 bool bars_svg(const std::filesystem::path& path, const std::string& title, const std::string& y_label,
               const std::vector<std::string>& labels, const std::vector<Series>& series,
               const FigureOptions& options = {});
+
+/// A value and what surrounds it.
+struct Interval {
+  std::string name;
+  double centre = 0;
+  double half_width = 0;
+};
+
+/// Draws intervals below each other, the first one at the top.
+/// @throws as `plot_svg`
+bool intervals_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+                   const std::vector<Interval>& intervals);
 
 /// Values of one kind, to be counted.
 struct Sample {

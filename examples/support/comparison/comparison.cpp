@@ -1,5 +1,7 @@
 #include "comparison.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -65,21 +67,51 @@ Samples<N> simulate(const Problem& problem, const vn::NominalArm<N>& arm, Index 
   return {arm.chain, vn::measure(full, train, noise, noise_seed), vn::measure(full, test, none)};
 }
 
+/// The fifth of measured poses that a seed holds out, and the others.
+template <int N>
+vn::Split<N> split(const Problem& problem, const vn::Dataset<N>& data, std::uint64_t seed) {
+  if (problem.split == "random") return vn::split(data, {.seed = seed});
+  if (problem.split == "time") return vn::split_time(data);
+  constexpr vn::Face faces[] = {vn::Face::x_high, vn::Face::x_low, vn::Face::z_high, vn::Face::z_low};
+  return vn::split_region(data, {.face = faces[(seed + 3) % 4]});
+}
+
 template <int N>
 Samples<N> measured(const Problem& problem, const vn::NominalArm<N>& arm, Index poses, std::uint64_t seed) {
-  const vn::Dataset<N> data = read_poses(problem.data, arm.chain, true);
-  constexpr vn::Face faces[] = {vn::Face::x_high, vn::Face::x_low, vn::Face::z_high, vn::Face::z_low};
-  vn::Split<N> split = problem.split == "random" ? vn::split(data, {.seed = seed})
-                       : problem.split == "time" ? vn::split_time(data)
-                                                 : vn::split_region(data, {.face = faces[(seed + 3) % 4]});
-  if (poses > split.train.size())
-    throw UsageError(vn::message(problem.data.string(), ": ", poses, " poses are asked for, there are ",
-                                 split.train.size(), " to learn from"));
+  vn::Split<N> parts = split<N>(problem, read_poses(problem.data, arm.chain, true), seed);
   if (poses > 0) {
-    const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(split.train.size());
-    split.train = split.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
+    const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(parts.train.size());
+    parts.train = parts.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
   }
-  return {arm.chain, split.train, split.test, true};
+  return {arm.chain, parts.train, parts.test, true};
+}
+
+/// Reads measured poses, and makes sure that every split has as many as the plan asks for.
+template <int N>
+void check_poses(const Plan& plan, const Problem& problem, const vn::NominalArm<N>& arm) {
+  const vn::Dataset<N> data = read_poses(problem.data, arm.chain, true);
+  const Index most = *std::max_element(plan.poses.begin(), plan.poses.end());
+  for (const std::uint64_t seed : plan.seeds)
+    if (const Index there = split<N>(problem, data, seed).train.size(); most > there)
+      throw UsageError(
+          vn::message(problem.data.string(), ": ", most, " poses are asked for, there are ", there, " to learn from"));
+}
+
+/// Calls with the arm of a robot whose number of joints comparisons serve.
+template <class Work>
+decltype(auto) with_arm(const vn::RobotDescription& robot, Work&& work) {
+#define VERNIER_CASE(N) \
+  if (robot.dof() == N) return work(robot.arm<N>());
+  VERNIER_FOR_COMPARED_DOF(VERNIER_CASE)
+#undef VERNIER_CASE
+  throw UsageError(vn::message(robot.name, " has ", robot.dof(), " joints; comparisons serve 6 and 7"));
+}
+
+/// Sixteen digits that differ between files of different contents: Fowler, Noll and Vo's hash.
+std::string fingerprint(const std::filesystem::path& path) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : vn::read_file(path)) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return fmt::format("{:016x}", hash);
 }
 
 /// A cell of an arm with N joints.
@@ -113,6 +145,7 @@ class Computation {
     out.rms = statistics.rms;
     out.p95 = statistics.p95;
     out.max = statistics.max;
+    out.learned_from = static_cast<double>(samples_.train.size());
     std::vector<double> sorted(errors.begin(), errors.end());
     std::sort(sorted.begin(), sorted.end());
     for (std::size_t k = 0; k <= 20; ++k) out.quantiles.push_back(sorted[k * (sorted.size() - 1) / 20]);
@@ -163,7 +196,7 @@ class Computation {
 std::string key(const Plan& plan, const Cell& cell) {
   const Problem& p = plan.problems[cell.problem];
   const Method& m = plan.methods[cell.method];
-  Json out{{"robot", p.robot}};
+  Json out{{"robot", std::filesystem::path(p.robot).filename().string()}};
   if (p.measured()) {
     out["data"] = p.data.filename().string();
     out["split"] = p.split;
@@ -172,6 +205,7 @@ std::string key(const Plan& plan, const Cell& cell) {
     out["region"] = p.region;
     out["noise_mm"] = p.noise_mm;
   }
+  if (!p.fingerprint.empty()) out["fingerprint"] = p.fingerprint;
   out["method"] = m.text;
   out["poses"] = cell.poses;
   out["seed"] = cell.seed;
@@ -181,9 +215,11 @@ std::string key(const Plan& plan, const Cell& cell) {
   return out.dump();
 }
 
-constexpr const char* numbers[] = {"mean", "median", "rms", "p95", "max", "before", "seconds"};
+constexpr const char* numbers[] = {"mean", "median", "rms", "p95", "max", "before", "seconds", "learned_from"};
 
-std::vector<double*> fields(Outcome& o) { return {&o.mean, &o.median, &o.rms, &o.p95, &o.max, &o.before, &o.seconds}; }
+std::vector<double*> fields(Outcome& o) {
+  return {&o.mean, &o.median, &o.rms, &o.p95, &o.max, &o.before, &o.seconds, &o.learned_from};
+}
 
 }  // namespace
 
@@ -260,18 +296,18 @@ Plan Plan::read(const std::filesystem::path& path) {
   } catch (const Json::exception& error) {
     fail(std::string("a member is missing or of another kind (") + error.what() + ")");
   }
-  plan.validate();
+  plan.prepare();
   return plan;
 }
 
-void Plan::validate() const {
+void Plan::prepare() {
   const auto check = [](bool holds, const auto&... parts) {
     if (!holds) throw UsageError(vn::message(parts...));
   };
   check(!problems.empty() && !methods.empty() && !poses.empty() && !seeds.empty(),
         "a plan needs problems, methods, numbers of poses and seeds");
   for (const Problem& p : problems) {
-    const int dof = choose_robot(p.robot).dof();
+    with_arm(choose_robot(p.robot), [](const auto&) {});
     check(p.errors == "geometric" || p.errors == "full", p.name, ": errors are '", p.errors,
           "', must be geometric or full");
     check(p.region == "operating" || p.region == "full", p.name, ": the region is '", p.region,
@@ -281,9 +317,6 @@ void Plan::validate() const {
     check(p.noise_mm >= 0 && p.noise_mm <= 100, p.name, ": noise_mm is ", p.noise_mm, ", must lie in 0..100");
     check(p.measured() || p.region == "full" || p.robot == "abb_irb120", p.name,
           ": only the abb_irb120 has an operating region; say \"region\": \"full\"");
-#define VERNIER_IS(N) || dof == N
-    check(false VERNIER_FOR_COMPARED_DOF(VERNIER_IS), p.robot, " has ", dof, " joints; comparisons serve 6 and 7");
-#undef VERNIER_IS
   }
   for (const Index n : poses) check(n >= 0 && n <= 1000000, "poses: ", n, " is none (0 stands for all measured ones)");
   for (const Problem& p : problems)
@@ -292,18 +325,17 @@ void Plan::validate() const {
   check(evaluations >= 100 && evaluations <= 100000000, "evaluations is ", evaluations, ", must be 100 or more");
   check(seconds >= 0 && seconds < 1e6, "seconds is ", seconds, ", must be 0 or more");
   check(nodes >= 1 && nodes <= 5000, "nodes is ", nodes, ", must lie in 1..5000");
+  for (Problem& p : problems) {
+    p.fingerprint.clear();
+    for (const std::filesystem::path& file : {std::filesystem::path(p.robot), p.data})
+      if (std::filesystem::is_regular_file(file)) p.fingerprint += fingerprint(file);
+    if (p.measured()) with_arm(choose_robot(p.robot), [&](const auto& arm) { check_poses(*this, p, arm); });
+  }
 }
 
 Outcome compute(const Plan& plan, const Cell& cell, vn::ObserverRef observer) {
-  const vn::RobotDescription robot = choose_robot(plan.problems[cell.problem].robot);
-  const auto compute_for = [&]<int N>(std::integral_constant<int, N>) {
-    return Computation<N>(plan, cell, robot.arm<N>(), observer).run();
-  };
-#define VERNIER_CASE(N) \
-  if (robot.dof() == N) return compute_for(std::integral_constant<int, N>{});
-  VERNIER_FOR_COMPARED_DOF(VERNIER_CASE)
-#undef VERNIER_CASE
-  throw std::logic_error("a plan was not validated");
+  return with_arm(choose_robot(plan.problems[cell.problem].robot),
+                  [&]<int N>(const vn::NominalArm<N>& arm) { return Computation<N>(plan, cell, arm, observer).run(); });
 }
 
 Results::Results(const std::filesystem::path& path) : path_(path) {
@@ -317,7 +349,6 @@ Results::Results(const std::filesystem::path& path) : path_(path) {
         throw std::invalid_argument(vn::message(path.string(), ", line ", line, ": no result of a comparison"));
       Outcome outcome;
       const Json& of = entry["outcome"];
-      outcome.failure = of.value("failure", "");
       const auto all = fields(outcome);
       for (std::size_t k = 0; k < all.size(); ++k) *all[k] = of.value(numbers[k], 0.0);
       if (of.contains("quantiles")) outcome.quantiles = of["quantiles"].get<std::vector<double>>();
@@ -349,7 +380,6 @@ void Results::add(const Plan& plan, const Cell& cell, const Outcome& outcome) {
   Outcome copy = outcome;
   const auto all = fields(copy);
   for (std::size_t k = 0; k < all.size(); ++k) to[numbers[k]] = *all[k];
-  if (outcome.failed()) to["failure"] = outcome.failure;
   if (!outcome.quantiles.empty()) to["quantiles"] = outcome.quantiles;
   if (!outcome.convergence.best.empty())
     to["convergence"] = {{"evaluations", outcome.convergence.evaluations},

@@ -27,6 +27,7 @@ struct Problem {
   // measured
   std::filesystem::path data{};  ///< measured poses; empty: simulated
   std::string split = "random";  ///< random, region, time: what is held out, a fifth
+  std::string fingerprint{};     ///< of the files that describe it, whose names alone say too little
 
   bool measured() const { return !data.empty(); }
 };
@@ -52,11 +53,13 @@ struct Plan {
   double seconds = 0;                 ///< of every fit that can be longer or shorter; 0: by evaluations
   int nodes = 65;                     ///< of hidden layers
 
-  /// From a JSON file.
-  /// @throws UsageError naming what is wrong
+  /// From a JSON file, prepared.
+  /// @throws UsageError naming what is wrong; and as `prepare`
   static Plan read(const std::filesystem::path& path);
-  /// @throws UsageError where something is missing or not known
-  void validate() const;
+  /// Checks everything that can be checked before any work, measured poses too, and takes the files' fingerprints.
+  /// @throws UsageError where something is missing or not known, or more poses are asked for than there are
+  /// @throws vernier::DataError on measured poses that cannot be read
+  void prepare();
 };
 
 /// One point of the grid.
@@ -77,6 +80,7 @@ struct Outcome {
   std::vector<double> quantiles{};                         ///< of the same, 0 to 100 % in steps of 5 %
   double before = 0;                                       ///< mean without learning [mm]
   double seconds = 0;                                      ///< of the fit
+  double learned_from = 0;                                 ///< poses
   Convergence convergence{};                               ///< of the search, where there is one
   std::string failure{};                                   ///< why there are no errors
 
@@ -109,6 +113,7 @@ class Results {
 
   std::optional<Outcome> find(const Plan& plan, const Cell& cell) const;
   /// Appends at once.
+  /// @param outcome one that did not fail: failures are to be tried again
   void add(const Plan& plan, const Cell& cell, const Outcome& outcome);
 
  private:

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "vernier/core/rng.hpp"
-#include "vernier/regression/concepts.hpp"
+#include "vernier/testing/any_regressor.hpp"
 #include "vernier/testing/same_bits.hpp"
 
 namespace vernier::testing {
@@ -35,31 +36,13 @@ struct RegressorLaws {
 
 namespace detail {
 
-/// Samples of a smooth function: joint angles in, millimetres in metres out.
-template <int Inputs, int Outputs>
-struct Samples {
-  Eigen::Matrix<double, Eigen::Dynamic, Inputs> x;
-  Eigen::Matrix<double, Eigen::Dynamic, Outputs> y;
-
-  Samples(Index n, std::uint64_t seed) : x(n, Inputs), y(n, Outputs) {
-    Rng rng(seed);
-    for (Index i = 0; i < n; ++i) {
-      for (int j = 0; j < Inputs; ++j) x(i, j) = rng.uniform(-1.5, 1.5);
-      for (int k = 0; k < Outputs; ++k) {
-        double value = 0.1 * (k + 1);
-        for (int j = 0; j < Inputs; ++j) value += std::sin((1 + 0.3 * j) * x(i, j) + k) * (1 + 0.2 * x(i, 0));
-        y(i, k) = 1e-3 * (k + 1) * value;
-      }
-    }
-  }
-};
-
-/// Checks one recipe with one pair of numbers of inputs and outputs.
-template <int Inputs, int Outputs, Regressor R>
+/// Checks one recipe for one pair of numbers of inputs and outputs. (A template, so that only its users pay for
+/// compiling it.)
+template <class Recipe>
 class RegressorCheck {
  public:
-  RegressorCheck(const R& recipe, const RegressorLaws& laws, std::vector<std::string>& violations)
-      : recipe_(recipe), laws_(laws), violations_(violations), train_(laws.samples, laws.seed) {}
+  RegressorCheck(const Recipe& recipe, const RegressorLaws& laws, std::vector<std::string>& violations)
+      : recipe_(recipe), laws_(laws), violations_(violations), train_(samples(laws.samples, laws.seed)) {}
 
   void run() {
     try {
@@ -74,38 +57,40 @@ class RegressorCheck {
   }
 
  private:
-  using Sample = Eigen::Matrix<double, Inputs, 1>;
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Inputs>;
-  using Fitted = PredictorOf<R, Inputs, Outputs>;
+  using Fitted = std::unique_ptr<AnyPredictor>;
 
   template <class... Parts>
   void violate(const Parts&... parts) {
-    violations_.push_back(message("regressor, ", Inputs, " inputs, ", Outputs, " outputs: ", parts...));
+    violations_.push_back(message("regressor, ", recipe_.inputs, " inputs, ", recipe_.outputs, " outputs: ", parts...));
   }
 
   void expect(bool holds, const char* law) {
     if (!holds) violate(law);
   }
 
+  Samples samples(Index n, std::uint64_t seed) const { return {n, recipe_.inputs, recipe_.outputs, seed}; }
+
+  Fitted fit(Samples passed, const FitOptions& options) const { return recipe_.fit(passed, options); }
+
   Fitted fit(std::uint64_t seed, ExecutorRef executor = {}) const {
-    return recipe_.fit(train_.x, train_.y, FitOptions{.seed = seed, .executor = executor});
+    return fit(train_, FitOptions{.seed = seed, .executor = executor});
   }
 
-  Rows fresh() const { return Samples<Inputs, Outputs>(20, laws_.seed + 1).x; }
+  MatrixX fresh() const { return samples(20, laws_.seed + 1).x; }
 
   void repeatability() {
-    const Samples<Inputs, Outputs> kept = train_;
-    const Rows x = fresh();
-    const MatrixX first = fit(laws_.seed).predict(x);
-    expect(same_bits(kept.x, train_.x) && same_bits(kept.y, train_.y), "fit changed its samples");
-    train_ = kept;
-    expect(same_bits(first, fit(laws_.seed).predict(x)), "the same seed gave another predictor");
+    const MatrixX x = fresh();
+    Samples passed = train_;
+    const Fitted fitted = recipe_.fit(passed, FitOptions{.seed = laws_.seed});
+    const MatrixX first = fitted->predict_rows(x);
+    expect(same_bits(passed.x, train_.x) && same_bits(passed.y, train_.y), "fit changed its samples");
+    expect(same_bits(first, fit(laws_.seed)->predict_rows(x)), "the same seed gave another predictor");
 
-    const Samples<Inputs, Outputs> others(laws_.samples + 3, laws_.seed + 2);
-    static_cast<void>(recipe_.fit(others.x, others.y, FitOptions{.seed = laws_.seed + 1}));
-    expect(same_bits(first, fit(laws_.seed).predict(x)), "a fit in between changed the next: the recipe has a memory");
+    static_cast<void>(fit(samples(laws_.samples + 3, laws_.seed + 2), FitOptions{.seed = laws_.seed + 1}));
+    expect(same_bits(first, fit(laws_.seed)->predict_rows(x)),
+           "a fit in between changed the next: the recipe has a memory");
 
-    const MatrixX other_seed = fit(laws_.seed + 1).predict(x);
+    const MatrixX other_seed = fit(laws_.seed + 1)->predict_rows(x);
     if (laws_.uses_seed) {
       expect(!same_bits(first, other_seed), "another seed gave the same predictor");
     } else {
@@ -113,42 +98,37 @@ class RegressorCheck {
     }
     for (const int threads : {1, 2}) {
       const ThreadExecutor executor(threads);
-      if (!same_bits(first, fit(laws_.seed, executor).predict(x)))
+      if (!same_bits(first, fit(laws_.seed, executor)->predict_rows(x)))
         violate("another predictor with an executor of ", threads, " threads");
     }
-
-    Samples<Inputs, Outputs> passing = train_;
-    const Fitted fitted = recipe_.fit(passing.x, passing.y, FitOptions{.seed = laws_.seed});
-    passing.x.setConstant(17);
-    passing.y.setConstant(17);
-    expect(same_bits(first, fitted.predict(x)), "the predictor refers to the samples it was fitted on");
+    fitted->overwrite_samples();
+    expect(same_bits(first, fitted->predict_rows(x)), "the predictor refers to the samples it was fitted on");
   }
 
   void predictions() {
-    const Rows x = fresh();
+    const MatrixX x = fresh();
     const Fitted predictor = fit(laws_.seed);
-    const MatrixX rows = predictor.predict(x);
-    expect(rows.rows() == x.rows() && rows.cols() == Outputs, "predict(rows) has the wrong shape");
-    if (rows.rows() != x.rows() || rows.cols() != Outputs) return;
+    const MatrixX rows = predictor->predict_rows(x);
+    expect(rows.rows() == x.rows() && rows.cols() == recipe_.outputs, "predict(rows) has the wrong shape");
+    if (rows.rows() != x.rows() || rows.cols() != recipe_.outputs) return;
     expect(rows.allFinite(), "a prediction is not finite");
 
-    MatrixX forwards(x.rows(), Outputs), backwards(x.rows(), Outputs);
-    for (Index i = 0; i < x.rows(); ++i) forwards.row(i) = predictor.predict(Sample(x.row(i).transpose())).transpose();
+    MatrixX forwards(x.rows(), rows.cols()), backwards(x.rows(), rows.cols());
+    for (Index i = 0; i < x.rows(); ++i) forwards.row(i) = predictor->predict(x.row(i).transpose()).transpose();
     for (Index i = x.rows(); i-- > 0;) {
-      static_cast<void>(predictor.derivative(Sample(x.row(x.rows() - 1 - i).transpose())));
-      backwards.row(i) = predictor.predict(Sample(x.row(i).transpose())).transpose();
+      static_cast<void>(predictor->derivative(x.row(x.rows() - 1 - i).transpose()));
+      backwards.row(i) = predictor->predict(x.row(i).transpose()).transpose();
     }
     expect(same_bits(forwards, backwards), "predictions depend on the order of the calls");
     expect((rows - forwards).cwiseAbs().maxCoeff() <= 1e-12 * (rows.cwiseAbs().maxCoeff() + 1e-3),
            "predict(rows) differs from predict(sample)");
-    expect(predictor.predict(Rows(0, Inputs)).rows() == 0, "no rows are predicted as some");
-    const Fitted copy = predictor;  // NOLINT(performance-unnecessary-copy-initialization)
-    expect(same_bits(rows, copy.predict(x)), "a copy predicts something else");
+    expect(predictor->predict_rows(MatrixX(0, recipe_.inputs)).rows() == 0, "no rows are predicted as some");
+    expect(same_bits(rows, predictor->copy()->predict_rows(x)), "a copy predicts something else");
 
     for (Index i = 0; i < x.rows(); ++i) {
-      const Sample at = x.row(i).transpose();
-      const MatrixX given = predictor.derivative(at);
-      const MatrixX expected = differences(predictor, at);
+      const VectorX at = x.row(i).transpose();
+      const MatrixX given = predictor->derivative(at);
+      const MatrixX expected = differences(*predictor, at);
       const double scale = expected.cwiseAbs().maxCoeff() + 1e-3;
       const double error = (given - expected).cwiseAbs().maxCoeff();
       if (error <= laws_.derivative_tolerance * scale) continue;
@@ -158,14 +138,14 @@ class RegressorCheck {
   }
 
   /// Central differences of fourth order: a step wide enough for predictors whose large terms cancel.
-  MatrixX differences(const Fitted& predictor, const Sample& at) const {
+  MatrixX differences(const AnyPredictor& predictor, const VectorX& at) const {
     constexpr double step = 1e-3;
-    MatrixX out(Outputs, Inputs);
-    for (int j = 0; j < Inputs; ++j) {
+    MatrixX out(recipe_.outputs, recipe_.inputs);
+    for (Index j = 0; j < recipe_.inputs; ++j) {
       const auto value = [&](double steps) {
-        Sample x = at;
+        VectorX x = at;
         x(j) += steps * step;
-        return VectorX(predictor.predict(x));
+        return predictor.predict(x);
       };
       out.col(j) = (8 * (value(1) - value(-1)) - (value(2) - value(-2))) / (12 * step);
     }
@@ -173,23 +153,21 @@ class RegressorCheck {
   }
 
   void certainty() {
-    if constexpr (UncertainPredictor<Fitted>) {
-      const Rows x = fresh();
-      const Fitted predictor = fit(laws_.seed), copy = predictor;
-      MatrixX forwards(x.rows(), Outputs), backwards(x.rows(), Outputs);
-      for (Index i = 0; i < x.rows(); ++i)
-        forwards.row(i) = predictor.standard_deviation(Sample(x.row(i).transpose())).transpose();
-      for (Index i = x.rows(); i-- > 0;)
-        backwards.row(i) = copy.standard_deviation(Sample(x.row(i).transpose())).transpose();
-      expect(forwards.allFinite() && forwards.minCoeff() >= 0, "a standard deviation is negative or not finite");
-      expect(same_bits(forwards, backwards), "the standard deviations of a copy are others");
-    }
+    const MatrixX x = fresh();
+    const Fitted predictor = fit(laws_.seed), copy = predictor->copy();
+    if (!predictor->standard_deviation(x.row(0).transpose())) return;
+    MatrixX forwards(x.rows(), recipe_.outputs), backwards(x.rows(), recipe_.outputs);
+    for (Index i = 0; i < x.rows(); ++i)
+      forwards.row(i) = predictor->standard_deviation(x.row(i).transpose())->transpose();
+    for (Index i = x.rows(); i-- > 0;) backwards.row(i) = copy->standard_deviation(x.row(i).transpose())->transpose();
+    expect(forwards.allFinite() && forwards.minCoeff() >= 0, "a standard deviation is negative or not finite");
+    expect(same_bits(forwards, backwards), "the standard deviations of a copy are others");
   }
 
   void misuse() {
-    const Rows longer = Samples<Inputs, Outputs>(laws_.samples + 1, laws_.seed).x;
-    expect_refused("mismatched rows",
-                   [&] { static_cast<void>(recipe_.fit(longer, train_.y, FitOptions{.seed = laws_.seed})); });
+    Samples mismatched = train_;
+    mismatched.x = samples(laws_.samples + 1, laws_.seed).x;
+    expect_refused("mismatched rows", [&] { static_cast<void>(fit(mismatched, FitOptions{.seed = laws_.seed})); });
   }
 
   template <class Work>
@@ -206,7 +184,7 @@ class RegressorCheck {
   }
 
   MatrixX weighted(const VectorX& weights) const {
-    return recipe_.fit(train_.x, train_.y, FitOptions{.seed = laws_.seed, .weights = &weights}).predict(fresh());
+    return fit(train_, FitOptions{.seed = laws_.seed, .weights = &weights})->predict_rows(fresh());
   }
 
   void weights() {
@@ -227,7 +205,7 @@ class RegressorCheck {
       unusable(what, weights);
     }
 
-    const MatrixX plain = fit(laws_.seed).predict(fresh());
+    const MatrixX plain = fit(laws_.seed)->predict_rows(fresh());
     const auto same = [&](const MatrixX& a, const MatrixX& b) {
       return (a - b).cwiseAbs().maxCoeff() <= laws_.weight_tolerance * plain.cwiseAbs().maxCoeff();
     };
@@ -240,23 +218,22 @@ class RegressorCheck {
     expect(!same_bits(counted, plain), "the weights are ignored");
     if (laws_.weights != SampleWeights::counted) return;
 
-    const auto total = static_cast<Index>(kept.sum());
-    Samples<Inputs, Outputs> repeated(total, 0);
+    Samples repeated = samples(static_cast<Index>(kept.sum()), 0);
     for (Index i = 0, to = 0; i < n; ++i)
       for (double copies = 0; copies < kept(i); ++copies, ++to) {
         repeated.x.row(to) = train_.x.row(i);
         repeated.y.row(to) = train_.y.row(i);
       }
-    const MatrixX expected = recipe_.fit(repeated.x, repeated.y, FitOptions{.seed = laws_.seed}).predict(fresh());
+    const MatrixX expected = fit(repeated, FitOptions{.seed = laws_.seed})->predict_rows(fresh());
     const double error = (counted - expected).cwiseAbs().maxCoeff();
     if (!same(counted, expected))
       violate("integer weights differ from repeated samples by ", error, " of ", plain.cwiseAbs().maxCoeff());
   }
 
-  const R& recipe_;
+  const Recipe& recipe_;
   const RegressorLaws& laws_;
   std::vector<std::string>& violations_;
-  Samples<Inputs, Outputs> train_;
+  Samples train_;
 };
 
 }  // namespace detail
@@ -276,8 +253,9 @@ template <Regressor R>
 std::vector<std::string> regressor_violations(const R& recipe, const RegressorLaws& laws = {}) {
   require(laws.samples >= 2, "regressor_violations: samples is ", laws.samples, ", must be at least 2");
   std::vector<std::string> violations;
-  detail::RegressorCheck<3, 2, R>(recipe, laws, violations).run();
-  detail::RegressorCheck<1, 1, R>(recipe, laws, violations).run();
+  const auto check = [&](const detail::AnyRecipe& any) { detail::RegressorCheck(any, laws, violations).run(); };
+  check(detail::RecipeOf<R, 3, 2>(recipe));
+  check(detail::RecipeOf<R, 1, 1>(recipe));
   return violations;
 }
 

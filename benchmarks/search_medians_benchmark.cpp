@@ -322,6 +322,11 @@ int work(bench::Program& program, int argc, char** argv) {
   compare("PSO, 4 neighbours, own", run(constriction(vn::Neighbourhood::von_neumann)),
           with(swarm, [](const Objective&, unsigned seed) { return own_pso(seed); }));
   compare("real GA, equal", run(real_ga), with(breed, [](const Objective&, unsigned seed) { return equal_sga(seed); }));
+  // sga's polynomial mutation steps in proportion to the distance from a bound: in the middle of the box half as far
+  vn::RealGeneticAlgorithm half_steps = real_ga;
+  half_steps.mutation_index = 41;
+  compare("real GA, equal steps", run(half_steps),
+          with(breed, [](const Objective&, unsigned seed) { return equal_sga(seed); }));
   compare("real GA, own", run(real_ga), with(breed, [](const Objective&, unsigned seed) { return own_sga(seed); }));
   compare("DE rand/1/bin, equal", run(de(vn::DifferentialBase::random)),
           with(swarm, [](const Objective&, unsigned seed) { return equal_de(7, seed); }));

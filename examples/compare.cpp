@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <new>
 #include <set>
 #include <thread>
 
@@ -62,6 +63,8 @@ class Grid {
         Outcome outcome;
         try {
           outcome = compute(plan_, cells_[c]);
+        } catch (const std::bad_alloc&) {
+          outcome.failure = "out of memory";
         } catch (const std::exception& error) {
           outcome.failure = error.what();
         }
@@ -233,7 +236,13 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
     if (drawn) files.push_back(path.string());
   };
   const auto plot = [&](const std::string& file, const std::string& title, const char* x, const char* y,
-                        const std::vector<Series>& series, const FigureOptions& options) {
+                        std::vector<Series> series, const FigureOptions& options) {
+    // what no logarithmic axis shows, e.g. errors of nothing at all
+    std::erase_if(series, [&](const Series& s) {
+      for (std::size_t i = 0; i < s.x.size(); ++i)
+        if ((s.x[i] > 0 || !options.log_x) && (s.y[i] > 0 || !options.log_y)) return false;
+      return true;
+    });
     if (!series.empty()) keep(plot_svg(folder / file, title, x, y, series, options), folder / file);
   };
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
@@ -325,7 +334,7 @@ Json json(const Grid& grid, const Plan& plan, const vn::MatrixX& cases) {
 void list() {
   const auto print = [](const char* title, const std::vector<Named>& names) {
     fmt::print("{}\n", title);
-    for (const Named& n : names) fmt::print("  {:<16}{}\n", n.name, n.title);
+    for (const Named& n : names) fmt::print("  {:<18}{}\n", n.name, n.title);
   };
   print("classical methods", classical_names());
   print("learners: [geometry+][SEARCH:]LEARNER[@MAP]; MAP is raw, sincos or products", learner_names());
@@ -392,9 +401,9 @@ int body(Program& program) {
       "seeds, corrected by Holm for the number of methods. p95, max and seconds are medians over seeds.\n\n");
   const vn::MatrixX cases = all_cases(grid, plan);
   if (plan.methods.size() > 1) print_ranks(plan, cases);
+  if (!program.common().json.empty()) write_json(program.common().json, json(grid, plan, cases));
   const auto files = draw(grid, plan, cases, folder);
   if (!files.empty()) fmt::print("Figures: {}\n", fmt::join(files, ", "));
-  if (!program.common().json.empty()) write_json(program.common().json, json(grid, plan, cases));
   if (grid.failed() > 0)
     throw std::runtime_error(
         fmt::format("{} of {} cells failed; the same command tries them again", grid.failed(), grid.cells()));

@@ -152,9 +152,11 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
   FigureOptions page = options;
   std::string key;
   if (series.size() > palette.size()) {  // too many for a legend below
-    page.width += 300;
     page.height = std::max(page.height, 110 + 25 * static_cast<int>(series.size()));
-    key = "set key outside right top vertical maxcols 1 maxrows 0\n";
+    std::size_t longest = 0;
+    for (const Series& one : series) longest = std::max(longest, one.name.size());
+    page.width += 80 + 9 * static_cast<int>(longest);
+    key = fmt::format("set key outside right top vertical maxcols 1 maxrows 0\nset rmargin {}\n", 10 + longest);
   }
   std::string script = preamble(title, y_label, page) + key;
   script += fmt::format("set xlabel {} offset 0,0.4\n", quoted(x_label));

@@ -331,6 +331,7 @@ std::vector<std::string> verdict(const vernier::NominalArm<N>& arm, const Calibr
           "Joint-wise terms are left out: this robot's errors are no functions of single joints "}},
         {"elastic_with_jointwise",
          {"Beside joint-wise terms gravity compliance is in ", "Beside joint-wise terms gravity compliance is out "}},
+        {"gears", {"Gear ratios and coupling help ", "Gear ratios and coupling do not help "}},
         {"tuned_priors", {"Tuned priors help ", "Tuned priors are left out: they do not help "}}};
     const auto& [helps, does_not] = words.at(block.name);
     out.push_back(message(block.used ? helps : does_not, errors, "."));

@@ -37,13 +37,17 @@ class ErrorModelDesign {
     set_terms({}, VectorX(), VectorX());
   }
 
-  /// Puts joint errors in. Where the few joint errors were in before, their coefficients stay; others are zero.
+  /// Puts joint errors in. Coefficients that were there before stay where the new terms only follow the few ones, or
+  /// only go before all others; others are zero.
   /// @param sizes      units of the coefficients
   /// @param precisions of their zero-mean priors, in those units
   void set_terms(JointTerms<Chain> terms, VectorX sizes, VectorX precisions) {
     VectorX coefficients = VectorX::Zero(terms.size());
-    if (!errors_.empty() && errors_.terms().few() == terms.few())
-      coefficients.head(terms.few()) = errors_.coefficients().head(terms.few());
+    const Index few = errors_.terms().few(), all = errors_.terms().size();
+    if (!errors_.empty() && few == terms.few())
+      coefficients.head(few) = errors_.coefficients().head(few);
+    else if (!errors_.empty() && all - few == terms.size() - terms.few())
+      coefficients.tail(all) = errors_.coefficients();
     errors_ = JointErrors<Chain>(std::move(terms), std::move(coefficients));
     coefficient_sizes_ = std::move(sizes);
     coefficient_precisions_ = std::move(precisions);

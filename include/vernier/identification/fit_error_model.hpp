@@ -45,8 +45,6 @@ class ErrorModelFit {
     for (int s = 0; s < problem_.design.stations(); ++s) out.geometry.push_back({nominal_, problem_.design.arm(s)});
 
     JointTerms<Chain> few;
-    few.gear_ratio = options_.gear_ratio;
-    few.coupling = options_.coupling;
     if (options_.compliance) few.gravity.emplace(nominal_, options_.down);
     if (few.size() > 0) add(out, "elastic", few);
     for (int s = 0; s < problem_.design.stations(); ++s) out.elastic.push_back({nominal_, problem_.design.arm(s)});
@@ -60,6 +58,10 @@ class ErrorModelFit {
         out.blocks.push_back(choose("elastic_with_jointwise", 0, few.size()));
         out.converged = problem_.solve() && out.converged;
       }
+      // linear in the joints, so they would go far beyond the measured ranges: they come with the terms that do not
+      all.gear_ratio = options_.gear_ratio;
+      all.coupling = options_.coupling;
+      if (all.gear_ratio || all.coupling) add(out, "gears", all);
       if (search) out.converged = tune(out, search) && out.converged;
     }
     const auto coverage = JointCoverage<N>::covering(joints_);
@@ -108,10 +110,12 @@ class ErrorModelFit {
   bool add(FittedErrorModel<Chain>& out, const char* name, const JointTerms<Chain>& terms) {
     const auto before = problem_.design;
     const Index old = before.terms().size();
+    const bool in_front =
+        terms.few() > before.terms().few() && old > 0;  // the order of terms: gears, sag, transmission
     VectorX precisions = VectorX::Ones(terms.size());
-    precisions.head(old) = before.precisions().tail(old);
+    precisions.segment(in_front ? terms.size() - old : 0, old) = before.precisions().tail(old);
     problem_.design.set_terms(terms, sizes(terms), precisions);
-    out.blocks.push_back(choose(name, old, terms.size() - old));
+    out.blocks.push_back(choose(name, in_front ? 0 : old, terms.size() - old));
     if (!out.blocks.back().used) {
       problem_.design = before;
       return false;

@@ -14,11 +14,11 @@ namespace vernier {
 
 /// What leave-one-pose-out said of a block of joint errors.
 struct BlockChoice {
-  std::string name;      ///< `elastic` (gravity, gears, coupling), `jointwise` (transmission), or
-                         ///< `elastic_with_jointwise`: elastic ones judged again once transmissions are in
-  double without = 0;    ///< mean position error of poses left out, without the block [m]
-  double with = 0;       ///< with it, as it was fitted [m]; what it would have been where it was not used
-  bool used = false;     ///< whether it is in the model
+  std::string name;    ///< `elastic` (gravity), `jointwise` (transmission); where that is in, `elastic_with_jointwise`
+                       ///< (judged again) and `gears` (gear ratios, coupling)
+  double without = 0;  ///< mean position error of poses left out, without the block [m]
+  double with = 0;     ///< with it, as it was fitted [m]; what it would have been where it was not used
+  bool used = false;   ///< whether it is in the model
   double tightness = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t)
 };
 

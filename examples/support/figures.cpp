@@ -152,7 +152,7 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
   FigureOptions page = options;
   std::string key;
   if (series.size() > palette.size()) {  // too many for a legend below
-    page.height = std::max(page.height, 110 + 25 * static_cast<int>(series.size()));
+    page.height = std::max(page.height, 160 + 29 * static_cast<int>(series.size()));
     std::size_t longest = 0;
     for (const Series& one : series) longest = std::max(longest, one.name.size());
     page.width += 80 + 9 * static_cast<int>(longest);

@@ -268,8 +268,8 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       if (!shares.x.empty()) distribution.push_back(shares);
       if (one->convergence.best.empty()) continue;
       const Method& searched = plan.methods[m];
-      auto& [by_evaluations, by_seconds] =
-          convergence[(searched.on_geometry ? "geometry+" : "") + searched.learner + searched.map];
+      auto& [by_evaluations, by_seconds] = convergence[(searched.on_geometry ? "geometry+" : "") + searched.learner +
+                                                       (searched.map.empty() ? "" : "@" + searched.map)];
       by_evaluations.push_back({.name = method, .x = one->convergence.evaluations, .y = one->convergence.best});
       by_seconds.push_back({.name = method, .x = one->convergence.seconds, .y = one->convergence.best});
     }

@@ -14,8 +14,8 @@ namespace vernier {
 /// The defaults serve every robot; how far the data support a block is decided by leave-one-pose-out on those data.
 struct ErrorModelOptions {
   bool compliance = true;             ///< joints give way under gravity
-  bool gear_ratio = true;             ///< joint errors proportional to the joint
-  bool coupling = true;               ///< joint errors proportional to the joint before
+  bool gear_ratio = true;             ///< joint errors proportional to the joint; where joint-wise terms are in
+  bool coupling = true;               ///< joint errors proportional to the joint before; likewise
   int harmonics = 60;                 ///< of the Fourier terms of each joint; 0: none
   int joint_nodes = 0;                ///< above 0: so many hidden nodes that read one joint, in place of Fourier terms
   bool own_tools = false;             ///< every station has a tool of its own, not just a base

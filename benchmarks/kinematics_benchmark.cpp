@@ -31,6 +31,9 @@ constexpr const char* about =
   parameter jacobian   6 x 30, derivative of the pose with respect to the DH parameters: central differences
   10,000 positions     tool positions of 10,000 joint combinations, as a block and one by one
   10,000 poses         the same with orientations
+  10,000 jacobians     poses and Jacobians of 10,000 joint combinations, 100 at a time, as a block and one by one;
+                       and ChainFkSolverPos_recursive with ChainJntToJacSolver
+  10,000 parameter jacobians   the same with respect to the DH parameters
   inverse kinematics   full pose to 1e-6 m and 1e-6 rad from a seed up to 0.05 rad off in each joint, no joint limits:
                        ChainIkSolverPos_LMA, ChainIkSolverPos_NR
   the same, cold       any pose within the joint limits from any other joints within them; joints may leave the limits,
@@ -241,6 +244,52 @@ int work(bench::Program& program, int argc, char** argv) {
     std::vector<vn::Isometry3> out(static_cast<std::size_t>(many.rows()));
     for (vn::Index i = 0; i < many.rows(); ++i) out[static_cast<std::size_t>(i)] = arm.pose(many.row(i).transpose());
     return out;
+  });
+
+  // In blocks that stay in the cache, into storage that is used again: as identification does.
+  constexpr vn::Index few = 100;
+  std::vector<vn::JointRows<6>> blocks;
+  for (vn::Index first = 0; first < many.rows(); first += few) blocks.emplace_back(many.middleRows(first, few));
+  program.measure("10,000 jacobians", "vernier", [=, at = vn::PosesAndJacobians<6>()](std::size_t) mutable {
+    for (const auto& block : blocks) {
+      at = vn::poses_and_jacobians(arm, block, std::move(at));
+      benchmark::DoNotOptimize(at.jacobians.data());
+    }
+    return at.jacobians(0, 0);
+  });
+  program.measure("10,000 jacobians", "vernier, one by one", [=](std::size_t) {
+    double sum = 0;
+    for (vn::Index i = 0; i < many.rows(); ++i) {
+      auto at = arm.pose_and_jacobian(many.row(i).transpose());
+      benchmark::DoNotOptimize(at);
+      sum += at.jacobian(0, 0);
+    }
+    return sum;
+  });
+  program.measure("10,000 jacobians", "KDL", [=, j = KDL::Jacobian(6)](std::size_t) mutable {
+    KDL::Frame frame;
+    for (const auto& q : kdl_many) {
+      kdl->forward.JntToCart(q, frame);
+      kdl->derivative.JntToJac(q, j);
+      benchmark::DoNotOptimize(j.data.data());
+    }
+    return frame;
+  });
+  program.measure("10,000 parameter jacobians", "vernier", [=, at = vn::PosesAndJacobians<30>()](std::size_t) mutable {
+    for (const auto& block : blocks) {
+      at = vn::poses_and_parameter_jacobians(arm, block, std::move(at));
+      benchmark::DoNotOptimize(at.jacobians.data());
+    }
+    return at.jacobians(0, 0);
+  });
+  program.measure("10,000 parameter jacobians", "vernier, one by one", [=](std::size_t) {
+    double sum = 0;
+    for (vn::Index i = 0; i < many.rows(); ++i) {
+      auto at = vn::pose_and_parameter_jacobian(arm, vn::JointVector<6>(many.row(i).transpose()));
+      benchmark::DoNotOptimize(at);
+      sum += at.jacobian(0, 0);
+    }
+    return sum;
   });
 
   program.measure("inverse kinematics", "vernier",

@@ -67,7 +67,7 @@ TEST(Trilaterate, FindsThePoint) {
 
 TEST(Distances, LinearisationEqualsCentralDifferences) {
   const Framed<Chain> arm(robot.chain, FrameParameters(Vector6{1, -2, 0.4, 0.1, 0.2, -0.5}).isometry(), tool);
-  const auto data = measure_distances(arm, Vector3::Zero(), joints(5, 1), 1e-2, 3);
+  const auto data = measure_distances(arm, Vector3::Zero(), joints(53, 1), 1e-2, 3);
   std::vector<Index> free;
   for (Index k = 0; k < arm.parameters().size(); ++k) free.push_back(k);
   const VectorX sizes = VectorX::Constant(arm.parameters().size(), 1e-3);

@@ -99,8 +99,10 @@ struct BySet {
           vn::detail::store_pose<W>(pose.data(), one);
           for (vn::Index i = 0; i < joints.rows(); i += W) {
             vn::detail::BlockFrame<W> block;
-            rows.template walk_block<W>(joints.data() + i, joints.rows(), block);
-            for (int k = 0; k < 3; ++k) vn::detail::store<W>(&points(i, k), block.p[k]);
+            block.set_identity();
+            rows.template walk_block<W>(joints.data() + i, joints.rows(), block,
+                                        [](int, vn::DhParameter, const auto&) VERNIER_INLINED {});
+            block.store_positions(&points(i, 0), joints.rows());
           }
         },
         set);

@@ -60,7 +60,7 @@ class Identification {
     const std::vector<bool> weak = restrain_weak(solved);
 
     const Arm arm = problem_.arm();
-    const Linearisation at = problem_.linearise();
+    const Linearisation& at = problem_.linearise();
     const Precision precision(at.jacobian, row_variance(at), problem_.prior());
     Identified<Chain> out{.model = Calibrated<Chain>(arm, nominal_),
                           .status = IdentifyStatus::converged,
@@ -142,7 +142,7 @@ class Identification {
     const auto moved = static_cast<Index>(problem_.free().size());
     std::vector<bool> weak(static_cast<std::size_t>(moved), false);
     if (!options_.priors || moved == 0) return weak;
-    const Linearisation at = problem_.linearise();
+    const Linearisation& at = problem_.linearise();
     const VectorX variance = row_variance(at);
     const Precision free(at.jacobian, variance, problem_.prior());
     VectorX weight = VectorX::Zero(moved);
@@ -166,7 +166,7 @@ class Identification {
       problem_.set_values(start);
       problem_.set_prior(weight / (scale * scale));
       const bool converged = problem_.solve();
-      const Linearisation there = problem_.linearise();
+      const Linearisation& there = problem_.linearise();
       const Precision precision(there.jacobian, row_variance(there), problem_.prior());
       candidates.push_back({leave_one_pose_out(there, data_.size(), precision.inverse), scale, problem_.prior(),
                             problem_.values(), converged});

@@ -74,7 +74,8 @@ class IdentificationProblem {
   }
   void set_prior(const VectorX& weights) { prior_ = weights; }
 
-  Linearisation linearise() const { return linearise(values_, true); }
+  /// Residuals and Jacobian at the present values; valid until the next call or solve.
+  const Linearisation& linearise() { return linearise(values_, true); }
 
   /// Least squares from the present values; a robust loss settles its scale in further rounds.
   /// @return whether the solver converged
@@ -82,7 +83,7 @@ class IdentificationProblem {
     if (free_.empty()) return true;
     bool converged = run(0, 0);
     for (int round = 0; options_.loss != Loss::squared && round < 4; ++round) {
-      const Linearisation at = linearise(values_, false);
+      const Linearisation& at = linearise(values_, false);
       const Index n = group * data_.size();
       constexpr double bend = group == 1 ? 1.345 : 2.8;  // of a number, or of the norm of a 3-vector
       converged =
@@ -97,16 +98,14 @@ class IdentificationProblem {
  private:
   /// The linearisation shared by all cost functions of an evaluation.
   struct Preparation : ceres::EvaluationCallback {
-    Preparation(const IdentificationProblem& owner, const VectorX& point) : problem(owner), steps(point) {}
-    void PrepareForEvaluation(bool with_jacobian, bool new_point) override {
-      if (!new_point && (has_jacobian || !with_jacobian)) return;
-      at = problem.linearise(problem.values_at(steps), with_jacobian);
-      has_jacobian = with_jacobian;
+    Preparation(IdentificationProblem& owner, const VectorX& point) : problem(owner), steps(point), at(owner.at_) {}
+    /// With the Jacobian always: most steps are accepted, and then it is asked for.
+    void PrepareForEvaluation(bool, bool new_point) override {
+      if (new_point) problem.linearise(problem.values_at(steps), true);
     }
-    const IdentificationProblem& problem;
+    IdentificationProblem& problem;
     const VectorX& steps;
-    Linearisation at;
-    bool has_jacobian = false;
+    const Linearisation& at;
   };
 
   /// Some rows of the shared linearisation.
@@ -157,11 +156,10 @@ class IdentificationProblem {
     return p;
   }
 
-  Linearisation linearise(const Parameters& values, bool with_jacobian) const {
-    Linearisation out;
-    out.evaluate(anchor_.with_parameters(values), data_, oriented_, options_.position_sigma, options_.orientation_sigma,
+  const Linearisation& linearise(const Parameters& values, bool with_jacobian) {
+    at_.evaluate(anchor_.with_parameters(values), data_, oriented_, options_.position_sigma, options_.orientation_sigma,
                  free_, sizes_, with_jacobian);
-    return out;
+    return at_;
   }
 
   /// One solve; a scale above zero is the residual size at which a robust loss starts to bend.
@@ -213,6 +211,7 @@ class IdentificationProblem {
   VectorX all_sizes_;
   std::vector<Index> free_;
   VectorX sizes_, prior_;
+  Linearisation at_;  // kept for its storage
   int iterations_ = 0;
   std::string message_ = "nothing to move";
 };

@@ -47,4 +47,9 @@ using Jacobian = Eigen::Matrix<double, 6, N>;
 template <int P>
 using ParameterJacobian = Eigen::Matrix<double, 6, P>;
 
+/// 6 x P Jacobians of n configurations, n x 6P: each row is one of them, column by column, so that an entry of all n
+/// lies side by side. `rows.row(i).reshaped(6, P)` is the Jacobian of configuration i.
+template <int P>
+using JacobianRows = Eigen::Matrix<double, Eigen::Dynamic, 6 * P>;
+
 }  // namespace vernier

@@ -41,10 +41,14 @@ struct IndependentColumns {
         continue;
       }
       VectorX projection = VectorX::Zero(rank);
-      for (int pass = 0; pass < 2; ++pass) {  // twice is enough
+      double before = norm;
+      for (int pass = 0; pass < 2; ++pass) {  // twice is enough, and once where little was taken off
         const VectorX more = basis.leftCols(rank).transpose() * column;
         column -= basis.leftCols(rank) * more;
         projection += more;
+        const double left = column.norm();
+        if (left > 0.5 * before) break;
+        before = left;
       }
       if (rank < basis.cols() && column.norm() > tolerance * norm) {
         triangle.col(rank).head(rank) = projection;
@@ -81,17 +85,17 @@ struct Precision {
       condition = 1;
       return;
     }
-    MatrixX stacked = MatrixX::Zero(std::max(jacobian.rows(), columns), columns);
-    stacked.topRows(jacobian.rows()) = jacobian;
-    MatrixX triangle =
-        Eigen::HouseholderQR<MatrixX>(stacked).matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+    const Index height = std::min(jacobian.rows(), columns);
+    const Eigen::HouseholderQR<MatrixX> qr(jacobian);
+    MatrixX triangle = MatrixX::Zero(columns, columns);
+    triangle.topRows(height) = qr.matrixQR().topRows(height).template triangularView<Eigen::Upper>();
     Eigen::JacobiSVD<MatrixX> svd(triangle, Eigen::ComputeFullV);
     const VectorX data = svd.singularValues();
     singular_values = data;
     rank = (data.array() > 1e-12 * data(0)).count();
     condition = rank < columns ? std::numeric_limits<double>::infinity() : data(0) / data(columns - 1);
     if (!prior.isZero(0)) {
-      stacked.resize(2 * columns, columns);
+      MatrixX stacked(2 * columns, columns);
       stacked << triangle, MatrixX(prior.cwiseSqrt().asDiagonal());
       svd.compute(stacked, Eigen::ComputeFullV);
     }

@@ -3,7 +3,9 @@
 /// @file
 /// Weighted residuals of a model against data, and their Jacobian: the one place where a measurement meets a model.
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/so3.hpp"
@@ -25,53 +27,72 @@ struct Linearisation {
   template <ParametricModel Model>
   void evaluate(const Model& model, const Dataset<Model::dof>& data, bool oriented, double position_sigma,
                 double orientation_sigma, const std::vector<Index>& free, const VectorX& sizes, bool with_jacobian) {
-    const Index n = data.size(), rows = (oriented ? 6 : 3) * n, columns = static_cast<Index>(free.size());
+    const Index n = data.size();
     group = 3;
-    residuals.resize(rows);
-    if (with_jacobian) jacobian.resize(rows, columns);
-    for (Index i = 0; i < n; ++i) {
-      const JointVector<Model::dof> q = data.joints(i);
-      PoseAndParameterJacobian<Model::num_parameters> at;
-      if (with_jacobian)
-        at = pose_and_parameter_jacobian(model, q);
-      else
-        at.pose = model.pose(q);
-      const auto& [pose, all] = at;
-      residuals.segment<3>(3 * i) = (pose.translation() - data.position(i)) / position_sigma;
-      Vector3 turned = Vector3::Zero();
-      if (oriented) {
-        turned = log_so3(pose.linear() * data.orientation(i).transpose());
-        residuals.segment<3>(3 * (n + i)) = turned / orientation_sigma;
+    resize((oriented ? 6 : 3) * n, free, with_jacobian);
+    visit(model, data.joints(), with_jacobian, [&](Index first, const auto& at) {
+      const Index count = static_cast<Index>(at.poses.size());
+      for (Index k = 0; with_jacobian && k < jacobian.cols(); ++k) {
+        const double* entries = at.jacobians.data() + 6 * free[static_cast<std::size_t>(k)] * count;
+        double* out = &jacobian(3 * first, k);
+        for (Index i = 0; i < count; ++i)
+          for (Index r = 0; r < 3; ++r) out[3 * i + r] = entries[r * count + i] * (sizes(k) / position_sigma);
       }
-      if (!with_jacobian) continue;
-      for (Index k = 0; k < columns; ++k)
-        jacobian.block<3, 1>(3 * i, k) =
-            all.col(free[static_cast<std::size_t>(k)]).template head<3>() * (sizes(k) / position_sigma);
-      if (!oriented) continue;
-      const Matrix3 rate = left_jacobian_inverse_so3(turned) / orientation_sigma;
-      for (Index k = 0; k < columns; ++k)
-        jacobian.block<3, 1>(3 * (n + i), k) =
-            rate * (all.col(free[static_cast<std::size_t>(k)]).template tail<3>() * sizes(k));
-    }
+      for (Index i = 0; i < count; ++i) {
+        const Isometry3& pose = at.poses[static_cast<std::size_t>(i)];
+        const Index row = first + i;
+        residuals.segment<3>(3 * row) = (pose.translation() - data.position(row)) / position_sigma;
+        if (!oriented) continue;
+        const Vector3 turned = log_so3(pose.linear() * data.orientation(row).transpose());
+        residuals.segment<3>(3 * (n + row)) = turned / orientation_sigma;
+        if (!with_jacobian) continue;
+        const Matrix3 rate = left_jacobian_inverse_so3(turned) / orientation_sigma;
+        for (Index k = 0; k < jacobian.cols(); ++k) {
+          const Index column = 6 * free[static_cast<std::size_t>(k)];
+          jacobian.block<3, 1>(3 * (n + row), k) =
+              rate * (at.jacobians.template block<1, 3>(i, column + 3).transpose() * sizes(k));
+        }
+      }
+    });
   }
 
   /// model minus measured: |p| - distance, the fixed point being the origin of the model's base frame.
   template <ParametricModel Model>
   void evaluate(const Model& model, const Distances<Model::dof>& data, bool, double sigma, double,
                 const std::vector<Index>& free, const VectorX& sizes, bool with_jacobian) {
-    const Index n = data.size(), columns = static_cast<Index>(free.size());
     group = 1;
-    residuals.resize(n);
-    if (with_jacobian) jacobian.resize(n, columns);
-    for (Index i = 0; i < n; ++i) {
-      const JointVector<Model::dof> q = data.joints(i);
-      const Vector3 p = model.position(q);
-      residuals(i) = (p.norm() - data.length(i)) / sigma;
-      if (!with_jacobian) continue;
-      const auto all = model.parameter_jacobian(q);
-      const Vector3 along = p.normalized() / sigma;
-      for (Index k = 0; k < columns; ++k)
-        jacobian(i, k) = along.dot(all.col(free[static_cast<std::size_t>(k)]).template head<3>()) * sizes(k);
+    resize(data.size(), free, with_jacobian);
+    visit(model, data.joints(), with_jacobian, [&](Index first, const auto& at) {
+      for (Index i = 0; i < static_cast<Index>(at.poses.size()); ++i) {
+        const Vector3 p = at.poses[static_cast<std::size_t>(i)].translation();
+        residuals(first + i) = (p.norm() - data.length(first + i)) / sigma;
+        const Vector3 along = p.normalized() / sigma;
+        for (Index k = 0; with_jacobian && k < jacobian.cols(); ++k)
+          jacobian(first + i, k) =
+              at.jacobians.template block<1, 3>(i, 6 * free[static_cast<std::size_t>(k)]).dot(along) * sizes(k);
+      }
+    });
+  }
+
+ private:
+  void resize(Index rows, const std::vector<Index>& free, bool with_jacobian) {
+    residuals.resize(rows);
+    if (with_jacobian) jacobian.resize(rows, static_cast<Index>(free.size()));
+  }
+
+  /// Poses, with derivatives where they are asked for, of a few configurations at a time: `use(first row, poses)`. So
+  /// few, that all their derivatives stay in the cache.
+  template <ParametricModel Model, class Use>
+  static void visit(const Model& model, const JointRows<Model::dof>& joints, bool with_jacobian, const Use& use) {
+    PosesAndJacobians<Model::num_parameters> at;
+    constexpr Index few = 24;
+    for (Index first = 0; first < joints.rows(); first += few) {
+      const JointRows<Model::dof> q = joints.middleRows(first, std::min(few, joints.rows() - first));
+      if (with_jacobian)
+        at = poses_and_parameter_jacobians(model, q, std::move(at));
+      else
+        at.poses = poses(model, q);
+      use(first, at);
     }
   }
 };

@@ -6,6 +6,7 @@
 
 #include <concepts>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/types.hpp"
@@ -25,6 +26,35 @@ struct PoseAndParameterJacobian {
   Isometry3 pose;                 ///< base_T_tool
   ParameterJacobian<P> jacobian;  ///< 6 x P, rows as in `Jacobian`
 };
+
+/// Poses and their derivatives at n configurations.
+template <int P>
+struct PosesAndJacobians {
+  std::vector<Isometry3> poses;  ///< base_T_tool
+  JacobianRows<P> jacobians;     ///< n x 6P
+
+  /// Room for n configurations.
+  void resize(Index n) {
+    poses.resize(static_cast<std::size_t>(n));
+    jacobians.resize(n, 6 * P);
+  }
+};
+
+namespace detail {
+
+/// Fills a block with what `evaluate(q)` says of each configuration.
+template <int N, int P, class Evaluate>
+PosesAndJacobians<P> one_by_one(const JointRows<N>& joints, PosesAndJacobians<P> out, const Evaluate& evaluate) {
+  out.resize(joints.rows());
+  for (Index i = 0; i < joints.rows(); ++i) {
+    const auto at = evaluate(JointVector<N>(joints.row(i).transpose()));
+    out.poses[static_cast<std::size_t>(i)] = at.pose;
+    out.jacobians.row(i) = at.jacobian.reshaped().transpose();
+  }
+  return out;
+}
+
+}  // namespace detail
 
 /// Forward kinematics of N joints, with derivatives. None of the calls allocates or throws.
 ///
@@ -97,6 +127,31 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
   out.reserve(static_cast<std::size_t>(joints.rows()));
   for (Index i = 0; i < joints.rows(); ++i) out.push_back(model.pose(joints.row(i).transpose()));
   return out;
+}
+
+/// Poses and Jacobians of n configurations. A model that has `poses_and_jacobians(joints, out)` itself is asked for
+/// them.
+/// @param out storage to be used again
+template <KinematicModel M>
+PosesAndJacobians<M::dof> poses_and_jacobians(const M& model, const JointRows<M::dof>& joints,
+                                              PosesAndJacobians<M::dof> out = {}) {
+  if constexpr (requires { model.poses_and_jacobians(joints, std::move(out)); }) {
+    return model.poses_and_jacobians(joints, std::move(out));
+  } else {
+    return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return model.pose_and_jacobian(q); });
+  }
+}
+
+/// Poses and parameter Jacobians of n configurations, as above.
+template <ParametricModel M>
+PosesAndJacobians<M::num_parameters> poses_and_parameter_jacobians(const M& model, const JointRows<M::dof>& joints,
+                                                                   PosesAndJacobians<M::num_parameters> out = {}) {
+  if constexpr (requires { model.poses_and_parameter_jacobians(joints, std::move(out)); }) {
+    return model.poses_and_parameter_jacobians(joints, std::move(out));
+  } else {
+    return detail::one_by_one(joints, std::move(out),
+                              [&](const auto& q) { return pose_and_parameter_jacobian(model, q); });
+  }
 }
 
 /// The arm that a model corrects towards: its `reference()` where it has one (an identified model knows the nominal

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/check.hpp"
@@ -100,7 +100,7 @@ class DhChain {
                                detail::store_vector<W>(joints[i].axis, axis);
                                detail::store_vector<W>(joints[i].point, point);
                              });
-      placement.end<W>(frame);
+      placement.end(frame);
       detail::store_pose<W>(out.pose.data(), frame);
       for (int i = 0; i < N; ++i)
         joints[i].column(row(i).joint == JointType::revolute, out.pose.data() + 12, out.jacobian.data() + 6 * i);
@@ -113,41 +113,76 @@ class DhChain {
   /// For the tool's origin the same bits as `position` of each (to 1e-14 where the compiler's flags allow FMA).
   PointRows positions(const JointRows<N>& joints, const Vector3& point = Vector3::Zero()) const {
     const Index n = joints.rows();
-    if (n < widest) return positions(padded(joints), point).topRows(n);
+    if (n < block) return positions(padded(joints), point).topRows(n);
     PointRows out(n, 3);
     const bool at_origin = point.isZero(0);
-    walk_rows(joints, [&](Index first, const auto& frame) VERNIER_INLINED {
-      for (int k = 0; k < 3; ++k) {
-        auto p = frame.p[k];
-        if (!at_origin) p += (point[0] * frame.x[k] + point[1] * frame.y[k]) + point[2] * frame.z[k];
-        std::memcpy(out.data() + k * n + first, &p, sizeof p);
-      }
-    });
+    visit_poses(joints, {nullptr, at_origin ? nullptr : point.data()},
+                [&](Index first, const auto& frame) VERNIER_INLINED { frame.store_positions(out.data() + first, n); });
     return out;
   }
 
   /// base_T_tool at n joint combinations, several at a time; the same bits as `pose` of each (as above).
   std::vector<Isometry3> poses(const JointRows<N>& joints) const {
-    if (joints.rows() < widest) {
+    if (joints.rows() < block) {
       std::vector<Isometry3> out = poses(padded(joints));
       out.resize(static_cast<std::size_t>(joints.rows()));
       return out;
     }
     std::vector<Isometry3> out(static_cast<std::size_t>(joints.rows()));
-    walk_rows(joints, [&](Index first, const auto& frame) VERNIER_INLINED {
-      constexpr std::size_t width = sizeof frame.p[0] / sizeof(double);
-      for (std::size_t lane = 0; lane < width; ++lane) {
-        double* pose = out[static_cast<std::size_t>(first) + lane].data();
-        VERNIER_UNROLL
-        for (int k = 0; k < 3; ++k) {
-          pose[k] = frame.x[k][lane];
-          pose[4 + k] = frame.y[k][lane];
-          pose[8 + k] = frame.z[k][lane];
-          pose[12 + k] = frame.p[k][lane];
-        }
-      }
+    visit_poses(joints, {}, [&](Index first, const auto& frame) VERNIER_INLINED {
+      frame.store_poses(&out[static_cast<std::size_t>(first)]);
     });
     return out;
+  }
+
+  /// Poses and Jacobians at n joint combinations, several at a time; the same bits as `pose_and_jacobian` of each (as
+  /// above).
+  /// @param out storage to be used again
+  PosesAndJacobians<N> poses_and_jacobians(const JointRows<N>& joints, PosesAndJacobians<N> out = {}) const {
+    if (joints.rows() < block)
+      return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_jacobian(q); });
+    visit_motions(joints, {}, out, [&](const auto& columns, const auto& motions, const auto&) VERNIER_INLINED {
+      for (int i = 0; i < N; ++i) columns.write_joint(i, row(i).joint, motions);
+    });
+    return out;
+  }
+
+  /// Poses and parameter Jacobians at n joint combinations, as above.
+  PosesAndJacobians<num_parameters> poses_and_parameter_jacobians(const JointRows<N>& joints,
+                                                                  PosesAndJacobians<num_parameters> out = {}) const {
+    if (joints.rows() < block)
+      return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return with_parameter_jacobian(q, {}); });
+    visit_motions(joints, {}, out, [](const auto& columns, const auto& motions, const auto&) VERNIER_INLINED {
+      columns.write_parameters(0, motions);
+    });
+    return out;
+  }
+
+  /// As many configurations as a vector holds of any instruction set: fewer are taken one by one, or padded.
+  static constexpr Index block = 4;
+
+  /// For models that stand on this chain: fills `out` at n >= `block` joint combinations, several at a time.
+  /// `write(columns, motions, frames)`, an always inlined lambda, has them write their columns of derivatives, by the
+  /// elementary motions as parameters are counted; it may move on the frames, which become the poses.
+  template <int P, class Write>
+  void visit_motions(const JointRows<N>& joints, const detail::Placement& placement, PosesAndJacobians<P>& out,
+                     const Write& write) const {
+    out.resize(joints.rows());
+    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+      for (Index next = 0; next < joints.rows(); next += W) {
+        const Index first = std::min(next, joints.rows() - W);  // the last vector overlaps with the one before
+        detail::BlockFrame<W> frame;
+        detail::BlockMotion<W> motions[num_parameters];
+        placement.begin<W>(frame);
+        rows_.template walk_block<W>(joints.data() + first, joints.rows(), frame,
+                                     [&](int i, DhParameter parameter, const auto& axis) VERNIER_INLINED {
+                                       motions[5 * i + static_cast<int>(parameter)].set(axis, frame.p);
+                                     });
+        placement.end(frame);
+        write(detail::BlockColumns<W>(out.jacobians, first, frame), motions, frame);
+        frame.store_poses(&out.poses[static_cast<std::size_t>(first)]);
+      }
+    });
   }
 
   /// Where the links are at a configuration, base frame.
@@ -268,22 +303,23 @@ class DhChain {
     return out;
   }
 
-  static constexpr Index widest = 4;  // as many poses as any vector holds
-
   static JointRows<N> padded(const JointRows<N>& joints) {
-    JointRows<N> out = JointRows<N>::Zero(widest, N);
+    JointRows<N> out = JointRows<N>::Zero(block, N);
     out.topRows(joints.rows()) = joints;
     return out;
   }
 
   /// Hands out the frames of all rows, `use(first row, frames)`; there are at least as many as a vector holds.
   template <class Use>
-  void walk_rows(const JointRows<N>& joints, const Use& use) const {
+  void visit_poses(const JointRows<N>& joints, const detail::Placement& placement, const Use& use) const {
     detail::run_same_bits([&]<int W>() VERNIER_INLINED {
       for (Index next = 0; next < joints.rows(); next += W) {
         const Index first = std::min(next, joints.rows() - W);  // the last vector overlaps with the one before
         detail::BlockFrame<W> frame;
-        rows_.template walk_block<W>(joints.data() + first, joints.rows(), frame);
+        placement.begin<W>(frame);
+        rows_.template walk_block<W>(joints.data() + first, joints.rows(), frame,
+                                     [](int, DhParameter, const auto&) VERNIER_INLINED {});
+        placement.end(frame);
         use(first, frame);
       }
     });

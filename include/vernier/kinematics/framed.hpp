@@ -213,6 +213,57 @@ class Framed {
     return out;
   }
 
+  /// Poses and Jacobians at n joint combinations, several at a time; equal to those one by one to 1e-14.
+  /// @param out storage to be used again
+  PosesAndJacobians<dof> poses_and_jacobians(const JointRows<dof>& joints,
+                                             PosesAndJacobians<dof> out = {}) const requires requires {
+    Model::block;
+  }
+  {
+    if (joints.rows() < Model::block)
+      return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_jacobian(q); });
+    model_.visit_motions(joints, {base().data(), tool_.values().data()}, out,
+                         [&](const auto& columns, const auto& motions, auto& frame) VERNIER_INLINED {
+                           for (int i = 0; i < dof; ++i) columns.write_joint(i, model_.row(i).joint, motions);
+                           frame.rotate(tool().linear().eval().data());
+                         });
+    return out;
+  }
+
+  /// Poses and parameter Jacobians at n joint combinations, several at a time; equal to those one by one to 1e-14.
+  /// @param out storage to be used again
+  PosesAndJacobians<num_parameters> poses_and_parameter_jacobians(
+      const JointRows<dof>& joints, PosesAndJacobians<num_parameters> out = {}) const requires requires {
+    Model::block;
+  }
+  {
+    if (joints.rows() < Model::block)
+      return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_parameter_jacobian(q); });
+    const Matrix3 base_rate = base_.rate(), tool_rate = tool_.rate(), turn = tool().linear();
+    const Vector3 standing = base().translation();
+    model_.visit_motions(joints, {base().data(), tool_.values().data()}, out,
+                         [&](const auto& columns, const auto& motions, auto& frame) VERNIER_INLINED {
+                           constexpr int tool_column = 6 + Model::num_parameters;
+                           detail::BlockMotion<std::decay_t<decltype(frame)>::width> m;
+                           columns.write_parameters(6, motions);
+                           for (int k = 0; k < 3; ++k) {
+                             m.set_constant(Matrix3::Identity().col(k).eval().data(), standing.data());
+                             columns.write(k, false, m);
+                             m.set_constant(base_rate.col(k).data(), standing.data());
+                             columns.write(3 + k, true, m);
+                           }
+                           m.set(frame.x, frame.p), columns.write(tool_column, false, m);
+                           m.set(frame.y, frame.p), columns.write(tool_column + 1, false, m);
+                           m.set(frame.z, frame.p), columns.write(tool_column + 2, false, m);
+                           for (int k = 0; k < 3; ++k) {
+                             frame.direction(tool_rate.col(k).data(), m.axis);
+                             columns.write(tool_column + 3 + k, true, m);
+                           }
+                           frame.rotate(turn.data());
+                         });
+    return out;
+  }
+
   /// The pose as a function of joints and parameters, in any scalar.
   template <class S>
   IsometryOf<S> pose(const Eigen::Matrix<S, dof, 1>& q,

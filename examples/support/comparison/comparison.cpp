@@ -104,7 +104,10 @@ decltype(auto) with_arm(const vn::RobotDescription& robot, Work&& work) {
   if (robot.dof() == N) return work(robot.arm<N>());
   VERNIER_FOR_COMPARED_DOF(VERNIER_CASE)
 #undef VERNIER_CASE
-  throw UsageError(vn::message(robot.name, " has ", robot.dof(), " joints; comparisons serve 6 and 7"));
+#define VERNIER_NUMBER(N) " " #N
+  throw UsageError(vn::message(robot.name, " has ", robot.dof(),
+                               " joints; comparisons serve arms of these:", VERNIER_FOR_COMPARED_DOF(VERNIER_NUMBER)));
+#undef VERNIER_NUMBER
 }
 
 /// Sixteen digits that differ between files of different contents: Fowler, Noll and Vo's hash.

@@ -8,6 +8,7 @@
 
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/moving_frame.hpp"
 
 namespace vernier {
 

@@ -36,7 +36,7 @@ const Chain& chain() {
   return value;
 }
 
-enum class Fault { none, position, rotation, mirror, pose, jacobian, derivative, repeat, infinite };
+enum class Fault { none, position, rotation, mirror, pose, jacobian, derivative, repeat, infinite, blocks };
 
 /// A chain that breaks one law.
 struct Faulty {
@@ -68,6 +68,11 @@ struct Faulty {
     if (fault == Fault::derivative) both.jacobian(4, 1) += 1e-6;
     return both;
   }
+  std::vector<vn::Isometry3> poses(const vn::JointRows<3>& joints) const {
+    std::vector<vn::Isometry3> all = chain().poses(joints);
+    if (fault == Fault::blocks) all.back() = all.front();
+    return all;
+  }
 };
 static_assert(vn::KinematicModel<Faulty>);
 
@@ -85,7 +90,8 @@ TEST(KinematicLaws, EachBrokenLawIsNamed) {
                                {Fault::jacobian, "jacobian(q) is the jacobian of pose_and_jacobian(q)"},
                                {Fault::derivative, "jacobian(q) is the central difference"},
                                {Fault::repeat, "a repeated call gives the same bits"},
-                               {Fault::infinite, "inf"}};
+                               {Fault::infinite, "inf"},
+                               {Fault::blocks, "many configurations at once"}};
   for (const auto& [fault, sentence] : faults) {
     const auto violations = kinematic_model_violations(Faulty{fault}, samples());
     EXPECT_TRUE(mentions(violations, sentence)) << sentence;

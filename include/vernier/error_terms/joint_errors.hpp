@@ -196,6 +196,12 @@ class WithJointErrors {
   }
   /// Tool position [m], base frame.
   Vector3 position(const JointVector<dof>& q) const noexcept { return chain_.position(errors_.effective(q).joints); }
+  /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n joint combinations.
+  PointRows positions(const JointRows<dof>& joints, const Vector3& point = Vector3::Zero()) const {
+    return chain_.positions(effective(joints), point);
+  }
+  /// base_T_tool at n joint combinations.
+  std::vector<Isometry3> poses(const JointRows<dof>& joints) const { return chain_.poses(effective(joints)); }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
   /// Both in one pass.
@@ -207,6 +213,13 @@ class WithJointErrors {
   }
 
  private:
+  JointRows<dof> effective(const JointRows<dof>& joints) const {
+    JointRows<dof> out(joints.rows(), dof);
+    for (Index i = 0; i < joints.rows(); ++i)
+      out.row(i) = errors_.effective(joints.row(i).transpose()).joints.transpose();
+    return out;
+  }
+
   Chain chain_;
   JointErrors<Chain> errors_;
 };

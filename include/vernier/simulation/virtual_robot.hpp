@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
@@ -61,8 +62,9 @@ Dataset<Actual::dof> measure(const Actual& actual, const JointRows<Actual::dof>&
     return Vector3{sigma * rng.normal(), sigma * rng.normal(), sigma * rng.normal()};
   };  // braces: left to right
   PointRows positions(joints.rows(), 3), orientations(noise.with_orientations ? joints.rows() : 0, 3);
+  const std::vector<Isometry3> all = poses(actual, joints);
   for (Index i = 0; i < joints.rows(); ++i) {
-    const Isometry3 pose = actual.pose(joints.row(i).transpose());
+    const Isometry3& pose = all[static_cast<std::size_t>(i)];
     positions.row(i) = (pose.translation() + normal3(noise.position)).transpose();
     if (noise.with_orientations)
       orientations.row(i) = log_so3(exp_so3(normal3(noise.orientation)) * pose.linear()).transpose();
@@ -81,9 +83,8 @@ Distances<Actual::dof> measure_distances(const Actual& actual, const Vector3& an
                                          const JointRows<Actual::dof>& joints, double sigma = 0,
                                          std::uint64_t seed = 0) {
   Rng rng(seed);
-  VectorX lengths(joints.rows());
-  for (Index i = 0; i < joints.rows(); ++i)
-    lengths(i) = (actual.position(joints.row(i).transpose()) - anchor).norm() + sigma * rng.normal();
+  VectorX lengths = (positions(actual, joints).rowwise() - anchor.transpose()).rowwise().norm();
+  for (double& length : lengths) length += sigma * rng.normal();
   return {joints, lengths};
 }
 

@@ -81,7 +81,8 @@ inline Vector6 difference_quotient(const Isometry3& after, const Isometry3& befo
 
 /// Checks that a model obeys the laws of `KinematicModel` at each row of `samples`:
 /// position is the pose's translation, the rotation is orthonormal and right-handed, `jacobian` and `pose` are those of
-/// `pose_and_jacobian`, the Jacobian is the central difference of the pose, and a repeated call gives the same bits.
+/// `pose_and_jacobian`, the Jacobian is the central difference of the pose, a repeated call gives the same bits, and
+/// all samples at once (`positions`, `poses`, `poses_and_jacobians`) give what each gives.
 /// @param model   the model
 /// @param samples joint configurations, n x dof, n >= 1; a step of the central difference away from any kink
 /// @param options tolerances
@@ -97,7 +98,11 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
   detail::Law same_jacobian("jacobian(q) is the jacobian of pose_and_jacobian(q)", options.value_tolerance);
   detail::Law derivative("jacobian(q) is the central difference of pose(q)", options.derivative_tolerance);
   detail::Law repeatable("a repeated call gives the same bits", 0);
+  detail::Law blocks("many configurations at once give what each gives", options.value_tolerance);
 
+  const PointRows points = positions(model, samples);
+  const std::vector<Isometry3> all = poses(model, samples);
+  const auto derivatives = poses_and_jacobians(model, samples);
   for (Index s = 0; s < samples.rows(); ++s) {
     const JointVector<M::dof> q = samples.row(s).transpose();
     const Isometry3 pose = model.pose(q);
@@ -128,10 +133,16 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
     const PoseAndJacobian<M::dof> again = model.pose_and_jacobian(q);
     repeatable.same_bits(both.pose.matrix(), again.pose.matrix(), s);
     repeatable.same_bits(both.jacobian, again.jacobian, s);
+
+    blocks.compare(points.row(s), position.transpose(), s);
+    blocks.compare(all[static_cast<std::size_t>(s)].matrix(), pose.matrix(), s);
+    blocks.compare(derivatives.poses[static_cast<std::size_t>(s)].matrix(), pose.matrix(), s);
+    blocks.compare(derivatives.jacobians.row(s), jacobian.reshaped().transpose(), s);
   }
 
   std::vector<std::string> violations;
-  for (const detail::Law* law : {&translation, &orthonormal, &same_pose, &same_jacobian, &derivative, &repeatable})
+  for (const detail::Law* law :
+       {&translation, &orthonormal, &same_pose, &same_jacobian, &derivative, &repeatable, &blocks})
     law->report(violations);
   return violations;
 }
@@ -139,7 +150,8 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
 /// Checks that a model obeys what `ParametricModel` adds to `KinematicModel`:
 /// parameters survive `with_parameters` bit for bit, names and kinds have one entry per parameter and no name is given
 /// twice, `pose(q, p)` equals `with_parameters(p).pose(q)`, `with_parameters(parameters())` is the same model, and
-/// `parameter_jacobian` is the central difference of the pose; at the model's own parameters and away from them.
+/// `parameter_jacobian` is the central difference of the pose, of all samples at once too; at the model's own
+/// parameters and away from them.
 /// @param model   the model
 /// @param samples joint configurations, n x dof, n >= 1
 /// @param options tolerances
@@ -176,6 +188,7 @@ std::vector<std::string> parametric_model_violations(const M& model, const Joint
   for (const Parameters& p : {own, away}) {
     const M moved = model.with_parameters(p);
     round_trip.same_bits(moved.parameters(), p, 0);
+    const auto all = poses_and_parameter_jacobians(moved, samples);
     for (Index s = 0; s < samples.rows(); ++s) {
       const JointVector<M::dof> q = samples.row(s).transpose();
       const Isometry3 pose = model.template pose<double>(q, p);
@@ -191,6 +204,7 @@ std::vector<std::string> parametric_model_violations(const M& model, const Joint
                                                         model.with_parameters(before).pose(q), after(k) - before(k));
       }
       derivative.compare(moved.parameter_jacobian(q), difference, s);
+      derivative.compare(all.jacobians.row(s), difference.reshaped().transpose(), s);
     }
   }
   for (const detail::Law* law : {&round_trip, &same_model, &same_pose, &derivative}) law->report(violations);

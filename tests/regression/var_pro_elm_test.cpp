@@ -140,7 +140,7 @@ TEST(VarProObjective, CurvatureEqualsTheDenseOne) {
         const MatrixX expected = dense_curvature(recipe, scaled, theta);
         for (const auto set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
           if (set > widest_instruction_set()) continue;
-          detail::VariableProjection projection(recipe.layer(), scaled.features, scaled.t, recipe.ridge, set);
+          detail::VariableProjection projection(recipe.layer(), scaled.features, scaled.t, recipe.ridge, nullptr, set);
           projection.evaluate(theta);
           MatrixX curvature, threaded;
           projection.curvature(curvature);
@@ -154,6 +154,45 @@ TEST(VarProObjective, CurvatureEqualsTheDenseOne) {
         }
       }
   }
+}
+
+// A sample of weight k is k samples: value, gradient and curvature, also where the products cannot be factorised.
+TEST(VarProObjective, WeightsAreRepeatedSamples) {
+  const Inputs x = inputs(70, 5);
+  const Targets y = targets(x);
+  for (const Activation activation : activations)
+    for (const bool equal_nodes : {false, true}) {
+      const VarProElm recipe{
+          .hidden_nodes = 6, .activation = activation, .weight_limit = 2, .ridge = equal_nodes ? 1e-14 : 1e-5};
+      VectorX theta = recipe.layer().draw(3, 6);
+      if (equal_nodes) theta = theta.head(theta.size() / 6).eval().replicate(6, 1);
+      const Scaled scaled(recipe, x, y);
+      VectorX weights(70);
+      for (Index i = 0; i < 70; ++i) weights(i) = static_cast<double>(1 + i % 3);
+      std::vector<Index> rows;
+      for (Index i = 0; i < 70; ++i) rows.insert(rows.end(), static_cast<std::size_t>(weights(i)), i);
+      const MatrixX features = scaled.features(rows, Eigen::all), t = scaled.t(rows, Eigen::all);
+
+      detail::VariableProjection weighted(recipe.layer(), scaled.features, scaled.t, recipe.ridge, &weights),
+          repeated(recipe.layer(), features, t, recipe.ridge);
+      EXPECT_NEAR(weighted.evaluate(theta) / repeated.evaluate(theta), 1, 1e-10);
+      VectorX fitness(2);  // as a search sees it
+      const Inputs repeated_x = x(rows, Eigen::all);
+      const Targets repeated_y = y(rows, Eigen::all);
+      recipe.objective(x, y, &weights)(theta, fitness.head(1));
+      recipe.objective(repeated_x, repeated_y)(theta, fitness.tail(1));
+      EXPECT_NEAR(fitness(0) / fitness(1), 1, 1e-8);
+      if (equal_nodes) continue;  // which of them is used for what is a matter of rounding
+      EXPECT_LT((weighted.beta() - repeated.beta()).norm(), 1e-8 * repeated.beta().norm());
+      EXPECT_LT((weighted.offset() - repeated.offset()).norm(), 1e-8 * repeated.offset().norm());
+      const VectorX gradient = repeated.gradient();
+      EXPECT_LT((weighted.gradient() - gradient).norm(), 1e-9 * gradient.norm());
+      MatrixX a, b;
+      weighted.curvature(a);
+      repeated.curvature(b);
+      const MatrixX difference = (a - b).triangularView<Eigen::Lower>();
+      EXPECT_LT(difference.norm(), 1e-9 * MatrixX(b.triangularView<Eigen::Lower>()).norm());
+    }
 }
 
 // Equal nodes and hardly any ridge: the products cannot be factorised, the samples take over.

@@ -45,17 +45,21 @@ struct CommonScaling {
 /// The reduced objective of `VarProElm` for searches: see `VarProElm::objective`.
 class VarProTrainingError {
  public:
-  VarProTrainingError(const HiddenLayer& layer, MatrixX features, MatrixX targets, double ridge)
-      : layer_(layer), features_(std::move(features)), targets_(std::move(targets)), ridge_(ridge) {}
+  VarProTrainingError(const HiddenLayer& layer, MatrixX features, MatrixX targets, double ridge, const VectorX* weights)
+      : layer_(layer), features_(std::move(features)), targets_(std::move(targets)), ridge_(ridge) {
+    if (weights != nullptr) weights_ = *weights;
+  }
 
   /// @param population dimension x particles
   /// @param fitness    one value a particle
   template <class Population, class Fitness>
   void operator()(const Eigen::MatrixBase<Population>& population, Fitness&& fitness) const {
-    const double n = static_cast<double>(targets_.rows());
+    const VectorX roots = weights_or_ones(weights(), targets_.rows()).cwiseSqrt();
+    const double n = roots.squaredNorm(), target_square = (roots.asDiagonal() * targets_).squaredNorm();
     MatrixX ones_and_targets(targets_.rows(), targets_.cols() + 1);
     ones_and_targets << VectorX::Ones(targets_.rows()), targets_;
-    NormalEquations equations(layer_, features_, ones_and_targets);
+    NormalEquations equations(layer_, features_, ones_and_targets, widest_instruction_set(), false,
+                              weights_ ? roots.data() : nullptr);
     std::optional<VariableProjection> projection;
     for (Index k = 0; k < population.cols(); ++k) {
       double objective = -1;
@@ -65,11 +69,11 @@ class VarProTrainingError {
         MatrixX gram = equations.gram();
         gram -= sum * sum.transpose() / n;
         const auto right = equations.right().bottomRows(targets_.cols());
-        objective = objective_from_products(gram, right, targets_.squaredNorm(), ridge_weights(gram, right, ridge_ * n),
+        objective = objective_from_products(gram, right, target_square, ridge_weights(gram, right, ridge_ * n),
                                             ridge_ * n, equations.gram().trace());
       }
       if (!(objective >= 0)) {  // too nearly perfect or too badly conditioned to be told from the products
-        if (!projection) projection.emplace(layer_, features_, targets_, ridge_);
+        if (!projection) projection.emplace(layer_, features_, targets_, ridge_, weights());
         objective = projection->evaluate(population.col(k)) * n;
       }
       fitness(k) = objective / n;
@@ -79,7 +83,7 @@ class VarProTrainingError {
   /// Its exact gradient with respect to the hidden weights.
   template <class Theta>
   VectorX gradient(const Eigen::MatrixBase<Theta>& theta) const {
-    VariableProjection projection(layer_, features_, targets_, ridge_);
+    VariableProjection projection(layer_, features_, targets_, ridge_, weights());
     require(theta.size() == projection.dimension(), "VarProElm: ", theta.size(), " hidden weights, expected ",
             projection.dimension());
     projection.evaluate(theta);
@@ -87,9 +91,12 @@ class VarProTrainingError {
   }
 
  private:
+  const VectorX* weights() const { return weights_ ? &*weights_ : nullptr; }
+
   HiddenLayer layer_;
   MatrixX features_, targets_;
   double ridge_;
+  std::optional<VectorX> weights_;
 };
 
 /// Levenberg-Marquardt on the hidden weights. The damping follows the ratio of gained to predicted decrease.
@@ -183,25 +190,29 @@ struct VarProElm {
   /// What training lowers, as a function of hidden weights: `|H beta + C - T|^2 / n + ridge |beta|^2` at its minimum
   /// over beta and C, whose rows are equal, T being the targets in units of their spread; the mean alone has 1. Its
   /// member `gradient(theta)` is the exact gradient.
+  /// @param inputs  n x inputs
+  /// @param targets n x outputs
+  /// @param weights of the samples; null: all the same
   template <class X, class Y>
-  detail::VarProTrainingError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
-    validate(inputs, targets);
+  detail::VarProTrainingError objective(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                                        const VectorX* weights = nullptr) const {
+    validate(inputs, targets, {.weights = weights});
     const MatrixX mapped = layer().map(inputs);
-    return {layer(), layer().scaling(mapped).apply(mapped), detail::CommonScaling(targets).apply(targets), ridge};
+    return {layer(), layer().scaling(mapped).apply(mapped), detail::CommonScaling(targets, weights).apply(targets),
+            ridge, weights};
   }
 
   /// Training that starts from given hidden weights.
   /// @param inputs  n x inputs
   /// @param targets n x outputs
   /// @param theta   `dimension(inputs)` weights, node by node
-  /// @param options executor and observer, which sees every step and the objective so far
+  /// @param options weights, executor, and observer, which sees every step and the objective so far
   template <class X, class Y>
   ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit_at(const Eigen::MatrixBase<X>& inputs,
                                                                   const Eigen::MatrixBase<Y>& targets,
                                                                   const VectorX& theta,
                                                                   const FitOptions& options = {}) const {
-    validate(inputs, targets);
-    detail::require_no_weights("VarProElm", options);
+    validate(inputs, targets, options);
     require(theta.size() == dimension(X::ColsAtCompileTime), "VarProElm: ", theta.size(), " hidden weights, expected ",
             dimension(X::ColsAtCompileTime));
     return train<X::ColsAtCompileTime, Y::ColsAtCompileTime>(inputs, targets, 1, options,
@@ -213,8 +224,7 @@ struct VarProElm {
   ElmPredictor<X::ColsAtCompileTime, Y::ColsAtCompileTime> fit(const Eigen::MatrixBase<X>& inputs,
                                                                const Eigen::MatrixBase<Y>& targets,
                                                                const FitOptions& options = {}) const {
-    validate(inputs, targets);
-    detail::require_no_weights("VarProElm", options);
+    validate(inputs, targets, options);
     return train<X::ColsAtCompileTime, Y::ColsAtCompileTime>(inputs, targets, starts, options, [&](int start) {
       return layer().draw(X::ColsAtCompileTime,
                           start == 0 ? options.seed : child_seed(options.seed, static_cast<std::uint64_t>(start)));
@@ -227,8 +237,8 @@ struct VarProElm {
                                       int count, const FitOptions& options, Draw&& draw) const {
     const MatrixX mapped = layer().map(inputs);
     const ColumnScaling in = layer().scaling(mapped);
-    const detail::CommonScaling out(targets);
-    detail::VariableProjection projection(layer(), in.apply(mapped), out.apply(targets), ridge);
+    const detail::CommonScaling out(targets, options.weights);
+    detail::VariableProjection projection(layer(), in.apply(mapped), out.apply(targets), ridge, options.weights);
     VectorX best;
     double least = std::numeric_limits<double>::infinity();
     Progress progress{-1, 0, least};
@@ -253,13 +263,14 @@ struct VarProElm {
   }
 
   template <class X, class Y>
-  void validate(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) const {
+  void validate(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                const FitOptions& options = {}) const {
     layer().validate("VarProElm");
     require(ridge > 0 && ridge < 1, "VarProElm: ridge is ", ridge, ", must lie in (0, 1)");
     require(iterations >= 0, "VarProElm: iterations is ", iterations, ", must not be negative");
     require(tolerance >= 0 && tolerance < 1, "VarProElm: tolerance is ", tolerance, ", must lie in [0, 1)");
     require(starts >= 1, "VarProElm: starts is ", starts, ", must be at least 1");
-    detail::require_samples("VarProElm", inputs, targets);
+    detail::require_samples("VarProElm", inputs, targets, options);
   }
 };
 

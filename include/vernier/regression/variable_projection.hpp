@@ -18,7 +18,9 @@
 
 namespace vernier::detail {
 
-/// `F(w) = min over B, c of |H(w) B + 1 c' - T|^2 / n + ridge |B|^2`, H being the hidden layer at weights w.
+/// `F(w) = min over B, c of |H(w) B + 1 c' - T|^2 / n + ridge |B|^2`, H being the hidden layer at weights w. Where
+/// samples are weighted, their squares are, and n is the sum of the weights: all rows below are times the roots of
+/// those.
 ///
 /// A node's output has derivatives `s(z) L phi`: a slope, times features phi that all nodes share, through a small
 /// matrix of the node (the identity but for radial bases). With S the slopes, the Jacobian of the residuals of output o
@@ -34,15 +36,18 @@ class VariableProjectionOf {
   /// @param features n x f, scaled
   /// @param targets  n x m, centred
   /// @param ridge    of the output weights, per sample, positive
+  /// @param weights  n weights of the samples, positive; null: all the same
   /// @param set      instructions to use; must be there
   VariableProjectionOf(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets, double ridge,
-                       InstructionSet set = widest_instruction_set())
+                       const VectorX* weights = nullptr, InstructionSet set = widest_instruction_set())
       : layer_(layer),
         features_(features),
-        targets_(targets),
+        roots_(weights != nullptr ? VectorX(weights->cwiseSqrt()) : VectorX(VectorX::Ones(features.rows()))),
+        targets_(roots_.asDiagonal() * targets),
         samples_(features.rows()),
         nodes_(layer.nodes),
-        lambda_(ridge * static_cast<double>(samples_)),
+        n_(weights != nullptr ? weights->sum() : static_cast<double>(samples_)),
+        lambda_(ridge * n_),
         set_(set),
         stride_((nodes_ + 1 + targets.cols() + 7) / 8 * 8),
         shared_(samples_, features.cols() + (radial() ? 2 : 1)),
@@ -52,8 +57,8 @@ class VariableProjectionOf {
     shared_.leftCols(features.cols()) = features;
     shared_.col(features.cols()).setOnes();
     if (radial()) shared_.rightCols(1) = features.rowwise().squaredNorm();
-    hidden_.col(nodes_).setOnes();
-    hidden_.middleCols(nodes_ + 1, targets.cols()) = targets;
+    hidden_.col(nodes_) = roots_;
+    hidden_.middleCols(nodes_ + 1, targets.cols()) = targets_;
   }
 
   /// Number of hidden weights and biases.
@@ -66,26 +71,25 @@ class VariableProjectionOf {
     fill(theta_, hidden_);
     if (!hidden_.leftCols(nodes_).allFinite()) return std::numeric_limits<double>::infinity();
     const Index m = targets_.cols();
-    const double n = static_cast<double>(samples_);
     products_.setZero();
     add_product(hidden_, hidden_, ones_.data(), samples_, products_, true);
-    mean_ = products_.col(nodes_).head(nodes_) / n;
+    mean_ = products_.col(nodes_).head(nodes_) / n_;
     MatrixX gram = products_.topLeftCorner(nodes_, nodes_).transpose();  // its lower triangle
-    gram.template triangularView<Eigen::Lower>() -= MatrixX(n * mean_ * mean_.transpose());
+    gram.template triangularView<Eigen::Lower>() -= MatrixX(n_ * mean_ * mean_.transpose());
     gram.diagonal().array() += lambda_;
     factorise(gram);
     const auto correlate = [&](const MatrixX& residual) -> MatrixX {  // centred H' residual
-      return hidden_.leftCols(nodes_).transpose() * residual - mean_ * residual.colwise().sum();
+      return hidden_.leftCols(nodes_).transpose() * residual - mean_ * (roots_.transpose() * residual);
     };
-    beta_ = solve(products_.block(0, nodes_ + 1, nodes_, m) - mean_ * targets_.colwise().sum());
+    beta_ = solve(products_.block(0, nodes_ + 1, nodes_, m) - mean_ * (roots_.transpose() * targets_));
     residual_ = targets_ - hidden_.leftCols(nodes_) * beta_;
-    residual_.rowwise() += mean_.transpose() * beta_;
+    residual_.noalias() += roots_ * (mean_.transpose() * beta_);
     // The products lose digits that the samples have: one step of refinement brings them back.
     const MatrixX more = solve(correlate(residual_) - lambda_ * beta_);
     beta_ += more;
     residual_.noalias() -= hidden_.leftCols(nodes_) * more;
-    residual_.rowwise() += mean_.transpose() * more;
-    return (residual_.squaredNorm() + lambda_ * beta_.squaredNorm()) / n;
+    residual_.noalias() += roots_ * (mean_.transpose() * more);
+    return (residual_.squaredNorm() + lambda_ * beta_.squaredNorm()) / n_;
   }
 
   /// dF/dw. By the envelope theorem the output weights, being at their best, need not be differentiated.
@@ -95,7 +99,7 @@ class VariableProjectionOf {
     const MatrixX by_shared = shared_.transpose() * pulled;
     MatrixX out(features_.cols() + 1, nodes_);
     for (Index k = 0; k < nodes_; ++k) out.col(k) = to_weights(k, by_shared.col(k));
-    return (-2 / static_cast<double>(samples_)) * out.reshaped();
+    return (-2 / n_) * out.reshaped();
   }
 
   /// Kaufman's Gauss-Newton approximation of d2F/dw2.
@@ -109,7 +113,6 @@ class VariableProjectionOf {
 
     // What the output weights and the mean take over: rows of `taken` times themselves.
     const Index padded = (dimension() + 7) / 8 * 8;
-    const double n = static_cast<double>(samples_);
     MatrixX cross(nodes_, dimension());
     RowMatrix taken = RowMatrix::Zero(nodes_ + 1, padded);
     MatrixX of_node(d, nodes_ + 1);
@@ -118,7 +121,7 @@ class VariableProjectionOf {
         of_node.row(j) = by_pair_[static_cast<std::size_t>(pairs + j)].row(k).head(nodes_ + 1);
       const MatrixX of_weights = to_weights(k, of_node);
       cross.middleCols(k * p, p) = of_weights.leftCols(nodes_).transpose() - mean_ * of_weights.col(nodes_).transpose();
-      taken.row(nodes_).segment(k * p, p) = of_weights.col(nodes_).transpose() / std::sqrt(n);
+      taken.row(nodes_).segment(k * p, p) = of_weights.col(nodes_).transpose() / std::sqrt(n_);
     }
     factor_.template triangularView<Eigen::Lower>().solveInPlace(cross);
     taken.topLeftCorner(nodes_, dimension()) = cross;
@@ -126,7 +129,7 @@ class VariableProjectionOf {
     add_product(taken, taken, ones_.data(), nodes_ + 1, all_taken, true, nodes_ + 1);
 
     out.resize(dimension(), dimension());
-    const MatrixX weight = (2 / n) * beta_ * beta_.transpose();
+    const MatrixX weight = (2 / n_) * beta_ * beta_.transpose();
     MatrixX block(d, d);
     for (Index k = 0; k < nodes_; ++k)
       for (Index l = k; l < nodes_; ++l) {
@@ -155,14 +158,14 @@ class VariableProjectionOf {
 
   bool radial() const { return layer_.activation == Activation::radial_basis; }
 
-  /// The layer's outputs, one sample a row.
+  /// The layer's outputs, one sample a row, times the roots of the weights.
   void fill(const VectorX& theta, RowMatrix& rows) const {
     constexpr Index tile = 256;
     MatrixX block;
     for (Index begin = 0; begin < samples_; begin += tile) {
       const Index count = std::min(tile, samples_ - begin);
       layer_.outputs(features_.middleRows(begin, count), theta, block);
-      rows.block(begin, 0, count, nodes_) = block;
+      rows.block(begin, 0, count, nodes_) = roots_.segment(begin, count).asDiagonal() * block;
     }
   }
 
@@ -171,11 +174,11 @@ class VariableProjectionOf {
     if (slopes_known_) return;
     slopes_known_ = true;
     if (slopes_.size() == 0) slopes_ = RowMatrix::Zero(samples_, stride_);
-    const auto h = hidden_.leftCols(nodes_).array();
+    const auto h = hidden_.leftCols(nodes_).array();  // root times output; the slopes are root times slope
     auto s = slopes_.leftCols(nodes_).array();
     switch (layer_.activation) {
-      case Activation::sigmoid: s = h * (1 - h); break;
-      case Activation::tanh: s = 1 - h.square(); break;
+      case Activation::sigmoid: s = h * (1 - h.colwise() / roots_.array()); break;
+      case Activation::tanh: s = (-h.square()).colwise() / roots_.array(), s.colwise() += roots_.array(); break;
       case Activation::radial_basis: s = h; break;
       case Activation::sine: {  // cos z = sin(z + pi / 2)
         VectorX shifted = theta_;
@@ -247,7 +250,7 @@ class VariableProjectionOf {
       return;
     }
     MatrixX stacked(samples_ + nodes_, nodes_);
-    stacked << hidden_.leftCols(nodes_).rowwise() - mean_.transpose(),
+    stacked << hidden_.leftCols(nodes_) - roots_ * mean_.transpose(),
         std::sqrt(lambda_) * MatrixX::Identity(nodes_, nodes_);
     const Eigen::HouseholderQR<MatrixX> qr(stacked);
     factor_ = MatrixX(qr.matrixQR().topRows(nodes_).template triangularView<Eigen::Upper>()).transpose();
@@ -259,17 +262,19 @@ class VariableProjectionOf {
   }
 
   HiddenLayer layer_;
-  MatrixX features_, targets_;
+  MatrixX features_;
+  VectorX roots_;    // of the weights
+  MatrixX targets_;  // times them
   Index samples_, nodes_;
-  double lambda_;
+  double n_, lambda_;
   InstructionSet set_;
   Index stride_;
   MatrixX shared_;                  // n x d: features, one, and for radial bases their squared norm
-  RowMatrix hidden_;                // n x stride: H, one, targets, zeros
+  RowMatrix hidden_;                // n x stride: H, one, targets (each times roots_), zeros
   RowMatrix products_;              // of hidden_ with itself
   VectorX ones_, theta_, mean_;     // mean_ of H
   MatrixX factor_;                  // lower, of the centred H'H + lambda
-  MatrixX beta_, residual_;         // nodes x m, n x m: T - H beta - mean
+  MatrixX beta_, residual_;         // nodes x m, n x m: roots times T - H beta - mean
   RowMatrix slopes_;                // n x stride
   std::vector<RowMatrix> by_pair_;  // see products_of_pairs
   bool slopes_known_ = false;

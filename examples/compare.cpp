@@ -268,8 +268,9 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       if (!shares.x.empty()) distribution.push_back(shares);
       if (one->convergence.best.empty()) continue;
       const Method& searched = plan.methods[m];
-      auto& [by_evaluations, by_seconds] = convergence[(searched.on_geometry ? "geometry+" : "") + searched.learner +
-                                                       (searched.map.empty() ? "" : "@" + searched.map)];
+      auto& [by_evaluations, by_seconds] =
+          convergence[(searched.base.empty() ? "" : searched.base + "+") + searched.learner +
+                      (searched.map.empty() ? "" : "@" + searched.map)];
       by_evaluations.push_back({.name = method, .x = one->convergence.evaluations, .y = one->convergence.best});
       by_seconds.push_back({.name = method, .x = one->convergence.seconds, .y = one->convergence.best});
     }
@@ -337,7 +338,7 @@ void list() {
     for (const Named& n : names) fmt::print("  {:<18}{}\n", n.name, n.title);
   };
   print("classical methods", classical_names());
-  print("learners: [geometry+][SEARCH:]LEARNER[@MAP]; MAP is raw, sincos or products", learner_names());
+  print("learners: [geometry+|jointwise+][SEARCH:]LEARNER[@MAP]; MAP is raw, sincos or products", learner_names());
   print("searches, for elm, ridge_elm and var_pro_elm", search_names());
 }
 

@@ -47,6 +47,21 @@ std::vector<double> means(const Json& json, std::size_t table, const std::string
   return json.at("problems").at(table).at("methods").at(method).at("means_mm").get<std::vector<double>>();
 }
 
+TEST(Compare, LearnsWhatAJointWiseModelLeaves) {
+  const TemporaryFolder folder("compare");
+  const CommandResult found = run(folder,
+                                  "--methods none,jointwise,jointwise+gp --poses 60 --seeds 1,2 --errors full "
+                                  "--noise-mm 0.03 --threads 1 --json result.json");
+  ASSERT_EQ(found.exit_code, 0) << found.errors;
+  const Json json = Json::parse(read_file(folder / "result.json"));
+  const auto base = means(json, 0, "jointwise"), both = means(json, 0, "jointwise+gp"), none = means(json, 0, "none");
+  for (std::size_t s = 0; s < 2; ++s) {
+    EXPECT_LT(base[s], 0.1 * none[s]);
+    EXPECT_NE(both[s], base[s]);
+    EXPECT_LT(both[s], 1.5 * base[s]);  // there is hardly anything left to learn, and a process knows it
+  }
+}
+
 TEST(Compare, TablesHaveEveryCell) {
   ASSERT_EQ(first().command.exit_code, 0) << first().command.errors;
   ASSERT_EQ(first().json.at("problems").size(), 2u);
@@ -144,6 +159,7 @@ TEST(Compare, APlanSaysTheSameAsOptions) {
   EXPECT_EQ(read_file(folder / "result.json"), first().json.dump(2) + "\n");
 }
 
+  refused("--methods jointwise+none", 2, "none stands alone");
 TEST(Compare, RefusesWhatItDoesNotKnow) {
   const TemporaryFolder folder("compare");
   std::ofstream(folder / "plan.json") << R"({"problems": [{"robot": "abb_irb120"}], "methods": ["elm"], "seed": [1]})";

@@ -167,24 +167,27 @@ class Computation {
   }
 
   vn::VectorX errors_after(const Identified& registered, Convergence& record) const {
-    if (method_.learner == "none") return vn::position_errors(registered.model, samples_.test);
-    if (method_.learner == "geometry") return vn::position_errors(identify(true).model, samples_.test);
-    if (method_.learner == "jointwise") {
+    const bool alone = known(classical_names(), method_.learner);
+    const std::string& base = alone ? method_.learner : method_.base;
+    const auto errors = [&](const auto& model) {
+      return alone ? vn::position_errors(model, samples_.test) : errors_after_learning(model, record);
+    };
+    if (base == "geometry") return errors(identify(true).model);
+    if (base == "jointwise") {
       vn::ErrorModelOptions options;
       options.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared;
-      return vn::position_errors(
-          fit_errors<N>(identify(true), std::span(&samples_.train, 1), {}, options, {}).models.front(), samples_.test);
+      return errors(fit_errors<N>(identify(true), std::span(&samples_.train, 1), {}, options, {}).models.front());
     }
-    if (!method_.on_geometry) return errors_after_learning(registered, record);
-    return errors_after_learning(identify(true), record);
+    return errors(registered.model);
   }
 
-  vn::VectorX errors_after_learning(const Identified& base, Convergence& record) const {
-    const vn::PointRows left = samples_.train.positions() - vn::positions(base.model, samples_.train.joints());
+  template <class Model>
+  vn::VectorX errors_after_learning(const Model& base, Convergence& record) const {
+    const vn::PointRows left = samples_.train.positions() - vn::positions(base, samples_.train.joints());
     const vn::FitOptions options{.seed = vn::child_seed(seed_, fit_stream), .observer = observer_};
     const LearnedErrors<N> learned = learn<N>(method_, plan_, samples_.train.joints(), left, options, record);
     const vn::PointRows after =
-        samples_.test.positions() - vn::positions(base.model, samples_.test.joints()) - learned(samples_.test.joints());
+        samples_.test.positions() - vn::positions(base, samples_.test.joints()) - learned(samples_.test.joints());
     return after.rowwise().norm();
   }
 
@@ -238,10 +241,12 @@ const std::vector<Named>& classical_names() {
 Method Method::parse(const std::string& text) {
   Method out{.text = text};
   std::string rest = text;
-  if (rest.starts_with("geometry+")) {
-    out.on_geometry = true;
-    rest = rest.substr(9);
-  }
+  for (const char* base : {"geometry", "jointwise"})
+    if (rest.starts_with(base + std::string("+"))) {
+      out.base = base;
+      rest = rest.substr(out.base.size() + 1);
+      break;
+    }
   if (const auto at = rest.find('@'); at != std::string::npos) {
     out.map = rest.substr(at + 1);
     rest = rest.substr(0, at);
@@ -259,7 +264,7 @@ Method Method::parse(const std::string& text) {
   if (!classical && !known(learner_names(), rest))
     throw UsageError("'" + text + "': no learner is called '" + rest + "'; there are " + all_of(classical_names()) +
                      " and " + all_of(learner_names()));
-  if (classical && (out.on_geometry || !out.map.empty() || !out.search.empty()))
+  if (classical && (!out.base.empty() || !out.map.empty() || !out.search.empty()))
     throw UsageError("'" + text + "': " + rest + " stands alone");
   constexpr const char* tunable[] = {"elm", "ridge_elm", "var_pro_elm"};
   if (!out.search.empty() && std::find(std::begin(tunable), std::end(tunable), rest) == std::end(tunable))

@@ -32,10 +32,10 @@ struct Problem {
   bool measured() const { return !data.empty(); }
 };
 
-/// `[geometry+][SEARCH:]LEARNER[@MAP]`, or one of the classical ones: none, geometry, jointwise.
+/// `[geometry+|jointwise+][SEARCH:]LEARNER[@MAP]`, or one of the classical ones: none, geometry, jointwise.
 struct Method {
   std::string text;                        ///< as it was written
-  bool on_geometry = false;                ///< learns what an identified geometry leaves
+  std::string base{};                      ///< the classical method that leaves what is learned; empty for `none`
   std::string search{}, learner{}, map{};  ///< empty where there is none, or the learner's own
 
   /// @throws UsageError naming the part that is not known

@@ -159,7 +159,6 @@ TEST(Compare, APlanSaysTheSameAsOptions) {
   EXPECT_EQ(read_file(folder / "result.json"), first().json.dump(2) + "\n");
 }
 
-  refused("--methods jointwise+none", 2, "none stands alone");
 TEST(Compare, RefusesWhatItDoesNotKnow) {
   const TemporaryFolder folder("compare");
   std::ofstream(folder / "plan.json") << R"({"problems": [{"robot": "abb_irb120"}], "methods": ["elm"], "seed": [1]})";
@@ -175,6 +174,7 @@ TEST(Compare, RefusesWhatItDoesNotKnow) {
   refused("--methods psso:elm", 2, "no search is called 'psso'");
   refused("--methods elm@cosine", 2, "no input map is called 'cosine'");
   refused("--methods pso:geometry", 2, "geometry stands alone");
+  refused("--methods jointwise+none", 2, "none stands alone");
   refused("--methods elm --robot ur99", 2, "no robot is called 'ur99'");
   refused("--methods elm --robot ur10", 2, "only the abb_irb120 has an operating region");
   refused("--methods elm --poses 0", 2, "simulated poses need a number");

@@ -223,10 +223,11 @@ class Framed {
   {
     if (joints.rows() < Model::block)
       return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_jacobian(q); });
+    const Matrix3 turn = tool().linear();
     model_.visit_motions(joints, {base().data(), tool_.values().data()}, out,
                          [&](const auto& columns, const auto& motions, auto& frame) VERNIER_INLINED {
                            for (int i = 0; i < dof; ++i) columns.write_joint(i, model_.row(i).joint, motions);
-                           frame.rotate(tool().linear().eval().data());
+                           frame.rotate(turn.data());
                          });
     return out;
   }
@@ -240,7 +241,8 @@ class Framed {
   {
     if (joints.rows() < Model::block)
       return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_parameter_jacobian(q); });
-    const Matrix3 base_rate = base_.rate(), tool_rate = tool_.rate(), turn = tool().linear();
+    const Matrix3 axes = Matrix3::Identity(), turn = tool().linear();
+    const Matrix3 base_rate = base_.rate(), tool_rate = tool_.rate();
     const Vector3 standing = base().translation();
     model_.visit_motions(joints, {base().data(), tool_.values().data()}, out,
                          [&](const auto& columns, const auto& motions, auto& frame) VERNIER_INLINED {
@@ -248,7 +250,7 @@ class Framed {
                            detail::BlockMotion<std::decay_t<decltype(frame)>::width> m;
                            columns.write_parameters(6, motions);
                            for (int k = 0; k < 3; ++k) {
-                             m.set_constant(Matrix3::Identity().col(k).eval().data(), standing.data());
+                             m.set_constant(axes.col(k).data(), standing.data());
                              columns.write(k, false, m);
                              m.set_constant(base_rate.col(k).data(), standing.data());
                              columns.write(3 + k, true, m);

@@ -194,7 +194,7 @@ struct ElementaryMotions {
   const ElementaryMotion& of(int i, DhParameter parameter) const { return all[5 * i + static_cast<int>(parameter)]; }
 };
 
-/// The same of W poses at a time, coordinates as in a `BlockFrame`.
+/// An elementary motion in W poses, coordinates as in a `BlockFrame`.
 template <int W>
 struct BlockMotion {
   using Double = typename Simd<W>::Double;

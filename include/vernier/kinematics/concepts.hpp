@@ -131,7 +131,9 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
 
 /// Poses and Jacobians of n configurations. A model that has `poses_and_jacobians(joints, out)` itself is asked for
 /// them.
-/// @param out storage to be used again
+/// @param model  any kinematic model
+/// @param joints n x N
+/// @param out    storage to be used again
 template <KinematicModel M>
 PosesAndJacobians<M::dof> poses_and_jacobians(const M& model, const JointRows<M::dof>& joints,
                                               PosesAndJacobians<M::dof> out = {}) {

@@ -137,7 +137,8 @@ class DhChain {
 
   /// Poses and Jacobians at n joint combinations, several at a time; the same bits as `pose_and_jacobian` of each (as
   /// above).
-  /// @param out storage to be used again
+  /// @param joints n x N
+  /// @param out    storage to be used again
   PosesAndJacobians<N> poses_and_jacobians(const JointRows<N>& joints, PosesAndJacobians<N> out = {}) const {
     if (joints.rows() < block)
       return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_jacobian(q); });

@@ -215,7 +215,8 @@ class Framed {
   }
 
   /// Poses and Jacobians at n joint combinations, several at a time; equal to those one by one to 1e-14.
-  /// @param out storage to be used again
+  /// @param joints n x N
+  /// @param out    storage to be used again
   PosesAndJacobians<dof> poses_and_jacobians(const JointRows<dof>& joints,
                                              PosesAndJacobians<dof> out = {}) const requires requires {
     Model::block;
@@ -233,7 +234,8 @@ class Framed {
   }
 
   /// Poses and parameter Jacobians at n joint combinations, several at a time; equal to those one by one to 1e-14.
-  /// @param out storage to be used again
+  /// @param joints n x N
+  /// @param out    storage to be used again
   PosesAndJacobians<num_parameters> poses_and_parameter_jacobians(
       const JointRows<dof>& joints, PosesAndJacobians<num_parameters> out = {}) const requires requires {
     Model::block;

@@ -36,6 +36,8 @@ constexpr const char* about =
                     Eigen Gram + LLT    H'H + lambda I, the same lambda
                     Eigen Householder   QR of H, no ridge
                     Eigen BDCSVD        minimum norm
+  kernel          its hidden layer and normal equations alone, with the widest instructions of this machine; with AVX2,
+                  and with those the compiler was told of
   leave-one-out   fitness of RidgeElm (sines and cosines in) over 25 ridges and the mean alone: one BDCSVD of the
                   centred H, leverages written out
   generation      of 50 particles, as a search evaluates it: two threads against one, by the clock on the wall. Two cores
@@ -213,6 +215,19 @@ int work(bench::Program& program, int argc, char** argv) {
                   [=](std::size_t i) { return householder_fitness(features, targets, theta[i & mask]); });
   program.measure("fitness", "Eigen BDCSVD",
                   [=](std::size_t i) { return svd_fitness(features, targets, theta[i & mask]); });
+
+  const auto kernel = [&](const char* who, vn::InstructionSet set) {
+    if (set > vn::widest_instruction_set()) return;
+    const auto kept = std::make_shared<std::pair<MatrixX, MatrixX>>(features, targets);  // the equations refer to them
+    const auto equations = std::make_shared<vn::detail::NormalEquations>(elm.layer(), kept->first, kept->second, set);
+    program.measure("kernel", who, [=, keep = kept](std::size_t i) {
+      equations->form(theta[i & mask]);
+      return keep->first(0);
+    });
+  };
+  kernel("vernier", vn::widest_instruction_set());
+  kernel("AVX2", vn::InstructionSet::avx2);
+  kernel("those of the compiler", vn::InstructionSet::baseline);
 
   program.measure("leave-one-out", "vernier", [=](std::size_t i) { return our_leave_one_out(wide[i & mask]); });
   program.measure("leave-one-out", "Eigen BDCSVD",

@@ -35,8 +35,9 @@ struct Linearisation {
       for (Index k = 0; with_jacobian && k < jacobian.cols(); ++k) {
         const double* entries = at.jacobians.data() + 6 * free[static_cast<std::size_t>(k)] * count;
         double* out = &jacobian(3 * first, k);
+        const double scale = sizes(k) / position_sigma;
         for (Index i = 0; i < count; ++i)
-          for (Index r = 0; r < 3; ++r) out[3 * i + r] = entries[r * count + i] * (sizes(k) / position_sigma);
+          for (Index r = 0; r < 3; ++r) out[3 * i + r] = entries[r * count + i] * scale;
       }
       for (Index i = 0; i < count; ++i) {
         const Isometry3& pose = at.poses[static_cast<std::size_t>(i)];

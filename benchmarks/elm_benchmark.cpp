@@ -285,6 +285,15 @@ int work(bench::Program& program, int argc, char** argv) {
                     });
   }
 
+  for (const vn::Index particles_of : {10, 50, 250})
+    program.measure("growth", std::to_string(particles_of) + " particles",
+                    [objective = elm.objective(x, y),
+                     all = MatrixX(swarm.leftCols(10).replicate(1, particles_of / 10))](std::size_t) {
+                      VectorX fitness(all.cols());
+                      objective(all, fitness);
+                      return fitness(0);
+                    });
+
   if (const int status = program.run(argc, argv); status != 0) return status;
   if (const double peak = program.median("peak", "multiply-adds"),
       ours_ns = program.median("symmetric product", "a tile");

@@ -34,6 +34,7 @@ constexpr const char* about =
   10,000 jacobians     poses and Jacobians of 10,000 joint combinations, 100 at a time, as a block and one by one;
                        and ChainFkSolverPos_recursive with ChainJntToJacSolver
   10,000 parameter jacobians   the same with respect to the DH parameters
+  growth               pose and Jacobian of arms with 2 to 10 joints
   inverse kinematics   full pose to 1e-6 m and 1e-6 rad from a seed up to 0.05 rad off in each joint, no joint limits:
                        ChainIkSolverPos_LMA, ChainIkSolverPos_NR
   the same, cold       any pose within the joint limits from any other joints within them; joints may leave the limits,
@@ -111,6 +112,24 @@ vn::ParameterJacobian<30> central_differences(const Chain& arm, const Joints& q)
     out.col(k).tail<3>() = vn::log_so3(a.linear() * b.linear().transpose()) / (2 * step);
   }
   return out;
+}
+
+/// Poses and Jacobians of arms with N joints.
+template <int N>
+void measure_growth(bench::Program& program) {
+  vn::Rng rng(N);
+  std::array<vn::DhRow, N> rows;
+  for (vn::DhRow& row : rows)
+    row = {.a = rng.uniform(-0.5, 0.5),
+           .alpha = rng.uniform(-3, 3),
+           .d = rng.uniform(-0.5, 0.5),
+           .theta = rng.uniform(-3, 3)};
+  const auto arm = vn::DhChain<N>::from_rows(rows);
+  std::vector<vn::JointVector<N>> joints(256);
+  for (auto& q : joints)
+    for (double& angle : q) angle = rng.uniform(-3, 3);
+  program.measure("growth", std::to_string(N) + " joints",
+                  [=](std::size_t i) { return arm.pose_and_jacobian(joints[i & 255]); });
 }
 
 int work(bench::Program& program, int argc, char** argv) {
@@ -291,6 +310,12 @@ int work(bench::Program& program, int argc, char** argv) {
     }
     return sum;
   });
+
+  measure_growth<2>(program);
+  measure_growth<4>(program);
+  measure_growth<6>(program);
+  measure_growth<8>(program);
+  measure_growth<10>(program);
 
   program.measure("inverse kinematics", "vernier",
                   [=](std::size_t i) { return vn::inverse_kinematics(arm, targets[i & mask], seeds[i & mask], ik); });

@@ -26,11 +26,16 @@ UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 def vernier_seconds(folder, program, topic):
     """Vernier's median of a topic, as a program printed it."""
-    with open(os.path.join(folder, program + ".txt")) as text:
-        for line in text:
-            found = re.match(re.escape(topic) + r"/vernier\s+([\d.]+(?:e[+-]?\d+)?) (\w+)", line)
-            if found:
-                return float(found[1]) * UNITS[found[2]]
+    path = os.path.join(folder, program + ".txt")
+    try:
+        with open(path) as text:
+            lines = text.readlines()
+    except OSError as error:
+        sys.exit(f"scipy_peers.py: {path}: {error.strerror}; ./dev bench writes it")
+    for line in lines:
+        found = re.match(re.escape(topic) + r"/vernier\s+([\d.]+(?:e[+-]?\d+)?) (\w+)", line)
+        if found:
+            return float(found[1]) * UNITS[found[2]]
     sys.exit(f"scipy_peers.py: {program}.txt has no line {topic}/vernier")
 
 
@@ -123,8 +128,12 @@ def identification(rng):
 
 
 def main():
-    if len(sys.argv) != 2 or sys.argv[1] in ("-h", "--help"):
-        sys.exit(__doc__)
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+        return
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
     folder, rng = sys.argv[1], np.random.default_rng(1)
     fitness = vernier_seconds(folder, "elm_benchmark", "fitness")
     identify = vernier_seconds(folder, "identification_benchmark", "identify")

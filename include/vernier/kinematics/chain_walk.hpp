@@ -146,6 +146,43 @@ struct ChainRows {
       });
     }
   }
+
+  /// Walks n joint combinations, W at a time: `use(first row, frames)`; n is at least what a vector holds.
+  template <class Use>
+  void visit_poses(const JointRows<N>& joints, const Placement& placement, const Use& use) const {
+    for_blocks(joints.rows(), [&]<int W>(Index first) VERNIER_INLINED {
+      BlockFrame<W> frame;
+      placement.begin<W>(frame);
+      walk_block<W>(joints.data() + first, joints.rows(), frame, [](int, DhParameter, const auto&) VERNIER_INLINED {});
+      placement.end(frame);
+      use(first, frame);
+    });
+  }
+
+  /// The same with all elementary motions, as parameters are counted: `use(first row, frames, motions)`.
+  template <class Use>
+  void visit_blocks(const JointRows<N>& joints, const Placement& placement, const Use& use) const {
+    for_blocks(joints.rows(), [&]<int W>(Index first) VERNIER_INLINED {
+      BlockFrame<W> frame;
+      BlockMotion<W> motions[5 * N];
+      placement.begin<W>(frame);
+      walk_block<W>(joints.data() + first, joints.rows(), frame,
+                    [&](int i, DhParameter parameter, const auto& axis)
+                        VERNIER_INLINED { motions[5 * i + static_cast<int>(parameter)].set(axis, frame.p); });
+      placement.end(frame);
+      use(first, frame, motions);
+    });
+  }
+
+ private:
+  /// Calls `use.template operator()<W>(first)` for rows first to first + W - 1; the last vector overlaps with the one
+  /// before.
+  template <class Use>
+  static void for_blocks(Index rows, const Use& use) {
+    run_same_bits([&]<int W>() VERNIER_INLINED {
+      for (Index next = 0; next < rows; next += W) use.template operator()<W>(std::min(next, rows - W));
+    });
+  }
 };
 
 }  // namespace vernier::detail

@@ -3,7 +3,6 @@
 /// @file
 /// A serial arm as a compile-time chain of Denavit-Hartenberg rows.
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -113,23 +112,25 @@ class DhChain {
   /// For the tool's origin the same bits as `position` of each (to 1e-14 where the compiler's flags allow FMA).
   PointRows positions(const JointRows<N>& joints, const Vector3& point = Vector3::Zero()) const {
     const Index n = joints.rows();
-    if (n < block) return positions(padded(joints), point).topRows(n);
     PointRows out(n, 3);
-    const bool at_origin = point.isZero(0);
-    visit_poses(joints, {nullptr, at_origin ? nullptr : point.data()},
-                [&](Index first, const auto& frame) VERNIER_INLINED { frame.store_positions(out.data() + first, n); });
+    if (n < block) {
+      for (Index i = 0; i < n; ++i) out.row(i) = (pose(joints.row(i).transpose()) * point).transpose();
+      return out;
+    }
+    rows_.visit_poses(joints, {nullptr, point.isZero(0) ? nullptr : point.data()},
+                      [&](Index first, const auto& frame)
+                          VERNIER_INLINED { frame.store_positions(out.data() + first, n); });
     return out;
   }
 
   /// base_T_tool at n joint combinations, several at a time; the same bits as `pose` of each (as above).
   std::vector<Isometry3> poses(const JointRows<N>& joints) const {
+    std::vector<Isometry3> out(static_cast<std::size_t>(joints.rows()));
     if (joints.rows() < block) {
-      std::vector<Isometry3> out = poses(padded(joints));
-      out.resize(static_cast<std::size_t>(joints.rows()));
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = pose(joints.row(static_cast<Index>(i)).transpose());
       return out;
     }
-    std::vector<Isometry3> out(static_cast<std::size_t>(joints.rows()));
-    visit_poses(joints, {}, [&](Index first, const auto& frame) VERNIER_INLINED {
+    rows_.visit_poses(joints, {}, [&](Index first, const auto& frame) VERNIER_INLINED {
       frame.store_poses(&out[static_cast<std::size_t>(first)]);
     });
     return out;
@@ -159,7 +160,7 @@ class DhChain {
     return out;
   }
 
-  /// As many configurations as a vector holds of any instruction set: fewer are taken one by one, or padded.
+  /// As many configurations as a vector holds of any instruction set: fewer are taken one by one.
   static constexpr Index block = 4;
 
   /// For models that stand on this chain: fills `out` at n >= `block` joint combinations, several at a time.
@@ -169,20 +170,9 @@ class DhChain {
   void visit_motions(const JointRows<N>& joints, const detail::Placement& placement, PosesAndJacobians<P>& out,
                      const Write& write) const {
     out.resize(joints.rows());
-    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
-      for (Index next = 0; next < joints.rows(); next += W) {
-        const Index first = std::min(next, joints.rows() - W);  // the last vector overlaps with the one before
-        detail::BlockFrame<W> frame;
-        detail::BlockMotion<W> motions[num_parameters];
-        placement.begin<W>(frame);
-        rows_.template walk_block<W>(joints.data() + first, joints.rows(), frame,
-                                     [&](int i, DhParameter parameter, const auto& axis) VERNIER_INLINED {
-                                       motions[5 * i + static_cast<int>(parameter)].set(axis, frame.p);
-                                     });
-        placement.end(frame);
-        write(detail::BlockColumns<W>(out.jacobians, first, frame), motions, frame);
-        frame.store_poses(&out.poses[static_cast<std::size_t>(first)]);
-      }
+    rows_.visit_blocks(joints, placement, [&](Index first, auto& frames, const auto& motions) VERNIER_INLINED {
+      write(detail::BlockColumns(out.jacobians, first, frames), motions, frames);
+      frames.store_poses(&out.poses[static_cast<std::size_t>(first)]);
     });
   }
 
@@ -302,28 +292,6 @@ class DhChain {
       }
     }
     return out;
-  }
-
-  static JointRows<N> padded(const JointRows<N>& joints) {
-    JointRows<N> out = JointRows<N>::Zero(block, N);
-    out.topRows(joints.rows()) = joints;
-    return out;
-  }
-
-  /// Hands out the frames of all rows, `use(first row, frames)`; there are at least as many as a vector holds.
-  template <class Use>
-  void visit_poses(const JointRows<N>& joints, const detail::Placement& placement, const Use& use) const {
-    detail::run_same_bits([&]<int W>() VERNIER_INLINED {
-      for (Index next = 0; next < joints.rows(); next += W) {
-        const Index first = std::min(next, joints.rows() - W);  // the last vector overlaps with the one before
-        detail::BlockFrame<W> frame;
-        placement.begin<W>(frame);
-        rows_.template walk_block<W>(joints.data() + first, joints.rows(), frame,
-                                     [](int, DhParameter, const auto&) VERNIER_INLINED {});
-        placement.end(frame);
-        use(first, frame);
-      }
-    });
   }
 
   Rows rows_;

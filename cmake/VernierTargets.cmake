@@ -1,38 +1,97 @@
-# vernier::vernier (Eigen and threads); vernier::io, ::ceres, ::tbb and ::mpi add a library each.
-# INTERFACE targets without a flag: they ask for C++20 and nothing else.
+# vernier::vernier (Eigen and threads), header-only; vernier::io, ::ceres, ::tbb and ::mpi add a library each. INTERFACE
+# targets without a flag: they ask for C++20 and nothing else.
+#
+# vernier::compiled is the same with the definitions of the .ipp files in a static library, and vernier::compiled_io and
+# ::compiled_ceres are likewise. Where Vernier is embedded they are built only if something links them.
 
-file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp")
-foreach(component io ceres tbb mpi)
+set(vernier_components io ceres tbb mpi)
+list(JOIN vernier_components "|" vernier_component_regex)
+
+file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp"
+     "${PROJECT_SOURCE_DIR}/include/vernier/*.ipp")
+foreach(component IN LISTS vernier_components)
   set(vernier_${component}_headers ${vernier_headers})
-  list(FILTER vernier_${component}_headers INCLUDE REGEX "/include/vernier/${component}(/.*)?\\.hpp$")
+  list(FILTER vernier_${component}_headers INCLUDE REGEX "/include/vernier/${component}(/.*)?\\.[hi]pp$")
 endforeach()
-list(FILTER vernier_headers EXCLUDE REGEX "/include/vernier/(io|ceres|tbb|mpi)(/.*)?\\.hpp$")
+list(FILTER vernier_headers EXCLUDE REGEX "/include/vernier/(${vernier_component_regex})(/.*)?\\.[hi]pp$")
 
-# vernier_add_interface(<component> HEADERS <file>... LINK <target>...) makes vernier::<component>.
-function(vernier_add_interface component)
+# vernier_name_target(<target> <export name>): what users call it, here and behind find_package
+function(vernier_name_target target name)
+  add_library(vernier::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+endfunction()
+
+# vernier_add_component(<component> HEADERS <file>... LINK <target>...) makes vernier::<component>, and its compiled
+# counterpart where the component has .ipp files.
+function(vernier_add_component component)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LINK")
   if(component STREQUAL "vernier")
     set(target vernier)
+    set(compiled compiled)
   else()
     set(target vernier_${component})
+    set(compiled compiled_${component})
   endif()
+  set(definitions ${arg_HEADERS})
+  list(FILTER definitions INCLUDE REGEX "\\.ipp$")
+  list(FILTER arg_HEADERS INCLUDE REGEX "\\.hpp$")
+
   add_library(${target} INTERFACE)
-  add_library(vernier::${component} ALIAS ${target})
+  vernier_name_target(${target} ${component})
   target_compile_features(${target} INTERFACE cxx_std_20)
   target_link_libraries(${target} INTERFACE ${arg_LINK})
   target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${arg_HEADERS})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${component})
+  if(definitions)  # apart from the headers, which are also compiled alone, see below
+    target_sources(${target} INTERFACE FILE_SET definitions TYPE HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include"
+                   FILES ${definitions})
+    set_target_properties(${target} PROPERTIES INTERFACE_HEADER_SETS_TO_VERIFY HEADERS)
+  endif()
+  set(missing)
   # With CMAKE_VERIFY_INTERFACE_HEADER_SETS every header is compiled alone, where its libraries are at hand.
   foreach(library IN LISTS arg_LINK)
     if(NOT TARGET ${library})
+      list(APPEND missing ${library})
       set_target_properties(${target} PROPERTIES VERIFY_INTERFACE_HEADER_SETS OFF)
       message(STATUS "Vernier: ${library} not found, so vernier::${component} cannot be used in this build")
     endif()
   endforeach()
+  if(missing OR NOT VERNIER_COMPILED)
+    return()
+  endif()
+
+  if(NOT definitions)
+    add_library(vernier_${compiled} INTERFACE)
+    vernier_name_target(vernier_${compiled} ${compiled})
+    target_link_libraries(vernier_${compiled} INTERFACE ${target} vernier::compiled)
+    return()
+  endif()
+  set(sources)
+  foreach(file IN LISTS definitions)  # a translation unit each
+    cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${PROJECT_SOURCE_DIR}/include" OUTPUT_VARIABLE include)
+    string(REGEX REPLACE "[/.]" "_" name "${include}")
+    file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/compiled/${name}.cpp" CONTENT "#include \"@include@\"\n" @ONLY)
+    list(APPEND sources "${PROJECT_BINARY_DIR}/compiled/${name}.cpp")
+  endforeach()
+  add_library(vernier_${compiled} STATIC ${sources})
+  vernier_name_target(vernier_${compiled} ${compiled})
+  target_compile_definitions(vernier_${compiled} PUBLIC VERNIER_COMPILED)
+  target_link_libraries(vernier_${compiled} PUBLIC ${target})
+  if(NOT component STREQUAL "vernier")
+    target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled)
+  endif()
+  if(TARGET vernier_internal)
+    target_link_libraries(vernier_${compiled} PRIVATE $<BUILD_INTERFACE:vernier_internal>)
+  endif()
+  # Parsing Eigen is most of a small file's cost.
+  set_target_properties(vernier_${compiled} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD ON
+                        UNITY_BUILD_BATCH_SIZE 4)
+  if(NOT VERNIER_INSTALL)
+    set_target_properties(vernier_${compiled} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
 endfunction()
 
-vernier_add_interface(vernier HEADERS ${vernier_headers} LINK Eigen3::Eigen Threads::Threads)
-vernier_add_interface(io HEADERS ${vernier_io_headers} LINK vernier::vernier nlohmann_json::nlohmann_json)
-vernier_add_interface(ceres HEADERS ${vernier_ceres_headers} LINK vernier::vernier Ceres::ceres)
-vernier_add_interface(tbb HEADERS ${vernier_tbb_headers} LINK vernier::vernier TBB::tbb)
-vernier_add_interface(mpi HEADERS ${vernier_mpi_headers} LINK vernier::vernier MPI::MPI_CXX)
+vernier_add_component(vernier HEADERS ${vernier_headers} LINK Eigen3::Eigen Threads::Threads)
+vernier_add_component(io HEADERS ${vernier_io_headers} LINK vernier::vernier nlohmann_json::nlohmann_json)
+vernier_add_component(ceres HEADERS ${vernier_ceres_headers} LINK vernier::vernier Ceres::ceres)
+vernier_add_component(tbb HEADERS ${vernier_tbb_headers} LINK vernier::vernier TBB::tbb)
+vernier_add_component(mpi HEADERS ${vernier_mpi_headers} LINK vernier::vernier MPI::MPI_CXX)

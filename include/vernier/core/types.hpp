@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "vernier/core/api.hpp"
+
 /// Calibration and error compensation of serial robot arms.
 namespace vernier {
 
@@ -21,6 +23,15 @@ using Matrix3 = Eigen::Matrix3d;
 using MatrixX = Eigen::MatrixXd;
 /// Any length.
 using VectorX = Eigen::VectorXd;
+
+/// A matrix argument that is read: a matrix, or columns and rows of one, without a copy.
+using ConstMatrixRef = Eigen::Ref<const MatrixX>;
+/// A matrix argument that is written.
+using MatrixRef = Eigen::Ref<MatrixX>;
+/// A vector argument that is read.
+using ConstVectorRef = Eigen::Ref<const VectorX>;
+/// A vector argument that is written.
+using VectorRef = Eigen::Ref<VectorX>;
 
 /// Rigid motion; `base_T_tool` maps tool coordinates to base coordinates.
 template <class Scalar>

@@ -269,7 +269,7 @@ int work(bench::Program& program, int argc, char** argv) {
   constexpr vn::Index few = 100;
   std::vector<vn::JointRows<6>> blocks;
   for (vn::Index first = 0; first < many.rows(); first += few) blocks.emplace_back(many.middleRows(first, few));
-  program.measure("10,000 jacobians", "vernier", [=, at = vn::PosesAndJacobians<6>()](std::size_t) mutable {
+  program.measure("10,000 jacobians", "vernier", [=, at = vn::PosesAndJacobians()](std::size_t) mutable {
     for (const auto& block : blocks) {
       at = vn::poses_and_jacobians(arm, block, std::move(at));
       benchmark::DoNotOptimize(at.jacobians.data());
@@ -294,7 +294,7 @@ int work(bench::Program& program, int argc, char** argv) {
     }
     return frame;
   });
-  program.measure("10,000 parameter jacobians", "vernier", [=, at = vn::PosesAndJacobians<30>()](std::size_t) mutable {
+  program.measure("10,000 parameter jacobians", "vernier", [=, at = vn::PosesAndJacobians()](std::size_t) mutable {
     for (const auto& block : blocks) {
       at = vn::poses_and_parameter_jacobians(arm, block, std::move(at));
       benchmark::DoNotOptimize(at.jacobians.data());

@@ -1,4 +1,5 @@
-// Your own search: a recipe with start(), step() and done() on a state kept outside. Tuned takes it like Pso.
+// Your own search: a recipe with start(), step(), done() and next_evaluations() on a state kept outside. Tuned accepts
+// it like Pso.
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,7 @@ struct EvolutionStrategy {
     ++s.generation;
   }
   bool done(const State& s) const { return s.generation >= generations; }
+  vn::Index next_evaluations(const State&) const { return children; }  // of the next step, for budgets of evaluations
 
  private:
   // Children around the parent, one a column, kept in the box; true when the best of them replaced it.

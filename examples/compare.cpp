@@ -20,6 +20,7 @@
 #include "figures.hpp"
 #include "progress.hpp"
 #include "vernier/core/argsort.hpp"
+#include "vernier/evaluation/quantile.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 
 namespace {
@@ -113,15 +114,6 @@ vn::VectorX values(const std::vector<const Outcome*>& outcomes, const Of& of) {
   return out;
 }
 
-double quantile(vn::VectorX values, double share) {
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<vn::Index>(at);
-  const vn::Index above = std::min(below + 1, values.size() - 1);
-  if (values(below) == values(above)) return values(below);
-  return values(below) + (at - static_cast<double>(below)) * (values(above) - values(below));
-}
-
 /// A method's line in a table.
 struct Row {
   std::size_t method;
@@ -137,8 +129,8 @@ std::vector<Row> ranked(const Grid& grid, const Plan& plan, std::size_t problem,
   for (std::size_t m = 0; m < plan.methods.size(); ++m) {
     const auto outcomes = grid.of(problem, m, poses);
     const vn::VectorX mean = values(outcomes, [](const Outcome& o) { return o.mean; });
-    const auto median_of = [&](const auto& of) { return quantile(values(outcomes, of), 0.5); };
-    rows.push_back({m, mean, quantile(mean, 0.5), quantile(mean, 0.25), quantile(mean, 0.75),
+    const auto median_of = [&](const auto& of) { return vn::quantile(values(outcomes, of), 0.5); };
+    rows.push_back({m, mean, vn::quantile(mean, 0.5), vn::quantile(mean, 0.25), vn::quantile(mean, 0.75),
                     median_of([](const Outcome& o) { return o.p95; }),
                     median_of([](const Outcome& o) { return o.max; }),
                     median_of([](const Outcome& o) { return o.seconds; }), 1,
@@ -161,7 +153,7 @@ void print_table(const Grid& grid, const Plan& plan, std::size_t problem, vn::In
   const auto before = grid.of(problem, 0, poses);
   fmt::print("{}, {} to learn from, {} seed{}; without learning {:.4g} mm\n", plan.problems[problem].name,
              poses_words(poses), plan.seeds.size(), plan.seeds.size() == 1 ? "" : "s",
-             quantile(values(before, [](const Outcome& o) { return o.before; }), 0.5));
+             vn::quantile(values(before, [](const Outcome& o) { return o.before; }), 0.5));
   fmt::print("  {:<34}{:>10}  {:<20}{:>9}{:>9}{:>9}{:>9}\n", "mean error [mm]", "median", "quartiles", "p95", "max",
              "seconds", "p");
   bool first = true;
@@ -254,7 +246,7 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       Series curve{.name = method, .x = {}, .y = {}};
       for (const vn::Index poses : plan.poses) {
         const auto outcomes = grid.of(p, m, poses);
-        const auto median = [&](const auto& of) { return quantile(values(outcomes, of), 0.5); };
+        const auto median = [&](const auto& of) { return vn::quantile(values(outcomes, of), 0.5); };
         const double error = median([](const Outcome& o) { return o.mean; });
         if (!std::isfinite(error)) continue;
         curve.x.push_back(median([](const Outcome& o) { return o.learned_from; }));

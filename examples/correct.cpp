@@ -10,8 +10,8 @@
 
 #include "cli.hpp"
 #include "dispatch.hpp"
-#include "joint_units.hpp"
 #include "json_file.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/io/model_file.hpp"
 
 namespace {
@@ -47,16 +47,15 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
   const vn::CalibratedRobot<N> robot = vn::load_calibrated_robot<N>(model);
   vn::Dataset<N> data;
   if (poses) {
-    data = vn::read_dataset<N>(targets);
+    data = vn::read_dataset<N>(targets, robot.nominal().joint_types());
     if (N >= 6 && !data.has_orientations())
       throw vn::DataError(targets.string() + ": no columns rx_rad, ry_rad, rz_rad; a pose of an arm of " +
                           std::to_string(N) + " joints has an orientation");
   } else {
-    vn::JointRows<N> joints = vn::read_joints<N>(targets);
+    vn::JointRows<N> joints = vn::read_joints<N>(targets, robot.nominal().joint_types());
     const Index n = joints.rows();
     data = vn::Dataset<N>(std::move(joints), vn::PointRows::Zero(n, 3));
   }
-  support::require_joint_units(targets, robot.nominal());
 
   CorrectionReport report{robot.name()};
   std::string text;

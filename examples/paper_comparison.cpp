@@ -157,7 +157,7 @@ class Experiment {
           .particles = particles, .iterations = scaled(iterations, settings_.budget), .positions = settings_.positions};
     };
     const auto tuned = [&](int nodes, const auto& algorithm) {
-      return vn::Tuned{vn::Elm{.hidden_nodes = nodes}, algorithm, vn::Stop{}, settings_.search_samples};
+      return vn::Tuned{vn::Elm{.hidden_nodes = nodes}, algorithm, vn::StoppingCriteria{}, settings_.search_samples};
     };
     joint_space(1, tuned(58, ga(100, 350)), scaled(350, settings_.budget));
     joint_space(2, tuned(68, pso(40, 300)), scaled(300, settings_.budget));

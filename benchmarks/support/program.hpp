@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/evaluation/quantile.hpp"
+
 namespace bench {
 
 /// Median and quartiles of the repetitions of one benchmark, time of one call [ns].
@@ -49,13 +51,8 @@ class Reporter : public benchmark::BenchmarkReporter {
         times.push_back((wall ? run.real_accumulated_time : run.cpu_accumulated_time) /
                         static_cast<double>(run.iterations) * 1e9);
     if (times.empty()) return;
-    std::sort(times.begin(), times.end());
-    const auto quantile = [&](double share) {
-      const double at = share * static_cast<double>(times.size() - 1);
-      const auto below = static_cast<std::size_t>(at);
-      const std::size_t above = std::min(below + 1, times.size() - 1);
-      return times[below] + (at - static_cast<double>(below)) * (times[above] - times[below]);
-    };
+    const Eigen::Map<const vernier::VectorX> all(times.data(), static_cast<vernier::Index>(times.size()));
+    const auto quantile = [&](double probability) { return vernier::quantile(all, probability); };
     const Timing timing{quantile(0.25), quantile(0.5), quantile(0.75), wall};
     timings_.insert_or_assign(runs.front().run_name.function_name, timing);
   }

@@ -10,7 +10,6 @@
 
 #include "calibration_stages.hpp"
 #include "dispatch.hpp"
-#include "joint_units.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/evaluation/statistics.hpp"
@@ -68,15 +67,19 @@ std::string hold_out_words(const CalibrationSettings& settings) {
   return {};
 }
 
-/// What every station learns from and is judged by.
+/// Training and test poses of every station.
 template <int N>
 struct Stations {
   std::vector<vernier::Dataset<N>> train{}, test{};
 
   Stations(const vernier::DhChain<N>& chain, const CalibrationSettings& settings, std::string& words) {
+    const auto read = [&](const auto& path) {
+      const auto data = vernier::read_dataset<N>(path, chain.joint_types());
+      return settings.positions_only ? data.without_orientations() : data;
+    };
     words = settings.test.empty() ? hold_out_words(settings) : "the rows of ";
     for (std::size_t s = 0; s < settings.data.size(); ++s) {
-      vernier::Dataset<N> data = read_poses(settings.data[s], chain, settings.positions_only);
+      vernier::Dataset<N> data = read(settings.data[s]);
       if (settings.test.empty()) {
         if (data.size() < 2)
           throw CalibrationFailure(settings.data[s].string() +
@@ -87,7 +90,7 @@ struct Stations {
       } else {
         words += (s > 0 ? ", " : "") + settings.test[s].string();
         train.push_back(std::move(data));
-        test.push_back(read_poses(settings.test[s], chain, settings.positions_only));
+        test.push_back(read(settings.test[s]));
       }
       if (settings.train_rows > 0) {
         const vernier::Index n = train.back().size();
@@ -350,7 +353,7 @@ CalibrationReport calibrate_arm(const vernier::RobotDescription& robot, const Ca
   report.train_rows = stations.rows(train);
   report.test_rows = stations.rows(test);
   std::vector<vn::Distances<N>> distances;
-  for (const auto& file : settings.distances) distances.push_back(vn::read_distances<N>(file));
+  for (const auto& file : settings.distances) distances.push_back(vn::read_distances<N>(file, arm.chain.joint_types()));
   for (const auto& data : distances) report.distances += data.size();
   const bool oriented = stations.oriented(train) && stations.oriented(test);
 

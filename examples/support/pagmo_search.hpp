@@ -93,6 +93,8 @@ struct PagmoSearch {
 
   bool done(const State& s) const { return s.generation >= generations; }
 
+  vernier::Index next_evaluations(const State&) const { return individuals; }
+
  private:
   static void take_best(State& s, const Evaluations& shared) {
     s.best = shared.best;

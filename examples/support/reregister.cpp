@@ -2,7 +2,6 @@
 
 #include "calibration.hpp"
 #include "dispatch.hpp"
-#include "joint_units.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/identification/reregister.hpp"
@@ -17,9 +16,11 @@ namespace vn = vernier;
 template <int N>
 ReregistrationReport reregister_arm(const ReregistrationSettings& settings) {
   const vn::CalibratedRobot<N> robot = vn::load_calibrated_robot<N>(settings.model);
-  const vn::Dataset<N> data = read_poses(settings.data, robot.nominal(), settings.positions_only);
-  const vn::Dataset<N> test =
-      settings.test.empty() ? data : read_poses(settings.test, robot.nominal(), settings.positions_only);
+  const auto read = [&](const auto& path) {
+    const auto poses = vn::read_dataset<N>(path, robot.nominal().joint_types());
+    return settings.positions_only ? poses.without_orientations() : poses;
+  };
+  const vn::Dataset<N> data = read(settings.data), test = settings.test.empty() ? data : read(settings.test);
   const auto found = vn::reregister(robot.model(), data, settings.options);
   if (!found.determined)
     throw CalibrationFailure(vn::message(settings.data.string(), ": ", data.size(),

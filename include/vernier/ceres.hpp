@@ -1,6 +1,9 @@
 #pragma once
 
 /// @file
-/// The solver side of Vernier: needs Ceres beside Eigen.
+/// Identification with Ceres, and the calibration pipeline, which starts with it.
 
-#include "vernier/ceres/calibrate.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/evaluate.hpp"
+#include "vernier/ceres/solver.hpp"
+#include "vernier/identification/identify.hpp"

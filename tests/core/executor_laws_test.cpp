@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <exception>
+#include <thread>
+
 #include "laws.hpp"
 
 namespace vernier::executor_laws_test {
@@ -41,13 +44,13 @@ struct Halves {
   }
 };
 
-enum class GatherFault { none, keeps_to_itself, rounds, throws_on_one, swallows_questions, asks_elsewhere };
+enum class GatherFault { none, keeps_to_itself, rounds, throws_on_one, swallows_exceptions, evaluates_elsewhere };
 
 /// Plays both of two processes one after the other: the second one's values come in a vector of their own.
 struct TwoInOne {
   GatherFault fault = GatherFault::none;
   void for_ranges(Index n, RangeFunction work) const { Halves{}.for_ranges(n, work); }
-  void fill(Eigen::Ref<VectorX> values, RangeFunction work) const {
+  void allgather(VectorRef values, RangeFunction work) const {
     const VectorX before = values;
     const Index n = values.size(), middle = (n + 1) / 2;
     std::exception_ptr failure;
@@ -60,13 +63,13 @@ struct TwoInOne {
     if (fault == GatherFault::keeps_to_itself) values.tail(n - middle) = before.tail(n - middle);
     if (fault == GatherFault::rounds)
       values.tail(n - middle) = values.tail(n - middle).cast<float>().template cast<double>();
-    if (fault == GatherFault::swallows_questions && n == 1) {
+    if (fault == GatherFault::swallows_exceptions && n == 1) {
       try {
         work(0, 1);
       } catch (const std::exception&) {  // and goes on
       }
     } else if (middle > 0) {
-      if (fault == GatherFault::asks_elsewhere) {
+      if (fault == GatherFault::evaluates_elsewhere) {
         std::exception_ptr thrown;
         std::thread([&] {
           try {
@@ -83,24 +86,24 @@ struct TwoInOne {
     if (failure) std::rethrow_exception(failure);
   }
 };
-static_assert(Executor<const Halves> && !GatheringExecutor<const Halves> && GatheringExecutor<const TwoInOne>);
+static_assert(Executor<const Halves> && !DistributedExecutor<const Halves> && DistributedExecutor<const TwoInOne>);
 
 /// Near misses of the second concept.
 struct NoRanges {
-  void fill(Eigen::Ref<VectorX> values, RangeFunction work) const;
+  void allgather(VectorRef values, RangeFunction work) const;
 };
-struct FillsNothing : Halves {
-  void fill(RangeFunction work) const;
+struct GathersNothing : Halves {
+  void allgather(RangeFunction work) const;
 };
-static_assert(!Executor<NoRanges> && !GatheringExecutor<NoRanges> && !GatheringExecutor<FillsNothing>);
+static_assert(!Executor<NoRanges> && !DistributedExecutor<NoRanges> && !DistributedExecutor<GathersNothing>);
 
 TEST(ExecutorLaws, UsersOwn) {
   const Halves halves;
   EXPECT_TRUE(no_violations(executor_violations(halves)));
   const TwoInOne two;
   EXPECT_TRUE(no_violations(executor_violations(two)));
-  EXPECT_TRUE(ExecutorRef(two).gathers());
-  EXPECT_FALSE(ExecutorRef(halves).gathers());
+  EXPECT_TRUE(ExecutorRef(two).is_distributed());
+  EXPECT_FALSE(ExecutorRef(halves).is_distributed());
 }
 
 void expect_caught(const auto& executor, const char* sentence) {
@@ -110,26 +113,27 @@ void expect_caught(const auto& executor, const char* sentence) {
 
 TEST(ExecutorLaws, CatchPlantedFaults) {
   expect_caught(Halves{Fault::forgets_the_last}, "do not cover 0..n exactly once, n = 3");
-  expect_caught(Halves{Fault::forgets_the_last}, "values are missing or wrong after fill, n = 3");
+  expect_caught(Halves{Fault::forgets_the_last}, "values are missing or wrong after allgather, n = 3");
   expect_caught(Halves{Fault::repeats_the_first}, "do not cover 0..n exactly once, n = 1");
   expect_caught(Halves{Fault::calls_for_nothing}, "an empty range or one outside 0..n, n = 0");
-  expect_caught(Halves{Fault::swallows_exceptions}, "of an exception at 5 arrived: nothing");
-  expect_caught(Halves{Fault::swallows_exceptions}, "an exception at value 0 did not arrive from fill");
-  expect_caught(TwoInOne{GatherFault::keeps_to_itself}, "values are missing or wrong after fill, n = 2");
+  expect_caught(Halves{Fault::swallows_exceptions}, "of an exception at 5 was rethrown: nothing");
+  expect_caught(Halves{Fault::swallows_exceptions}, "an exception at value 0 was not rethrown by allgather");
+  expect_caught(TwoInOne{GatherFault::keeps_to_itself}, "values are missing or wrong after allgather, n = 2");
   expect_caught(TwoInOne{GatherFault::keeps_to_itself}, "gives other bits than on one thread");
-  expect_caught(TwoInOne{GatherFault::rounds}, "values are missing or wrong after fill, n = 3");
-  expect_caught(TwoInOne{GatherFault::throws_on_one}, "an exception at value 9 did not arrive from fill");
-  expect_caught(TwoInOne{GatherFault::swallows_questions}, "the exception of a question did not arrive");
-  expect_caught(TwoInOne{GatherFault::asks_elsewhere}, "a question was asked on another thread");
+  expect_caught(TwoInOne{GatherFault::rounds}, "values are missing or wrong after allgather, n = 3");
+  expect_caught(TwoInOne{GatherFault::throws_on_one}, "an exception at value 9 was not rethrown by allgather");
+  expect_caught(TwoInOne{GatherFault::swallows_exceptions},
+                "an exception of a condition to broadcast was not rethrown");
+  expect_caught(TwoInOne{GatherFault::evaluates_elsewhere}, "a condition to broadcast was evaluated on another thread");
 }
 
 // A search over a gathering executor hands it what tells one search from another, and its observer's word is one.
-TEST(GatheringExecutors, InASearch) {
+TEST(DistributedExecutors, InASearch) {
   struct Recorder : TwoInOne {
     std::vector<VectorX>* seen;
-    void fill(Eigen::Ref<VectorX> values, RangeFunction work) const {
+    void allgather(VectorRef values, RangeFunction work) const {
       if (values.size() > 1) seen->push_back(values);
-      TwoInOne::fill(values, work);
+      TwoInOne::allgather(values, work);
     }
   };
   std::vector<VectorX> seen;

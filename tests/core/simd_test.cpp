@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "vernier/core/rng.hpp"
-#include "vernier/kinematics/constexpr_trig.hpp"
+#include "vernier/kinematics/detail/constexpr_trig.hpp"
 
 namespace vernier::simd_test {
 namespace {

@@ -92,7 +92,7 @@ TEST(JointCoverage, CoversWhatWasMeasured) {
       1, 5, -1,  //
       0.5, 5, 0;
   const auto gate = JointCoverage<3>::covering(q);
-  using Ranges = std::vector<JointCoverage<3>::Range>;
+  using Ranges = std::vector<vernier::JointRange>;
   // half a range apart: not known between; widened by half a margin, for three values say little of extremes
   EXPECT_EQ(gate.ranges[0], (Ranges{{-0.05, 0.05}, {0.45, 0.55}, {0.95, 1.05}}));
   EXPECT_EQ(gate.ranges[1], (Ranges{{5, 5}}));

@@ -7,6 +7,7 @@
 
 #include "replaced.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/io.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"

@@ -11,6 +11,7 @@
 #include "complaint.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/l_shade.hpp"
 #include "vernier/search/log.hpp"
@@ -92,7 +93,7 @@ TEST(SearchState, EveryAlgorithmGoesOnFromAFile) {
 TEST(SearchState, PatienceAndObservers) {
   const Pso pso{.particles = 6, .iterations = 200, .positions = PositionRule::clamped};
   const auto coarse = [](const VectorX& x) { return std::floor(4 * x(0)); };
-  const Stop stop{.patience = 7};
+  const StoppingCriteria stop{.patience = 7};
   const SearchResult whole = minimize(pso, coarse, box, stop, 3);
   ASSERT_EQ(whole.status, SearchStatus::stalled);
   auto search = start_search(pso, coarse, box, 3);
@@ -107,7 +108,7 @@ TEST(SearchState, PatienceAndObservers) {
   EXPECT_EQ(result.status, SearchStatus::stalled);
   EXPECT_EQ(result.generations, whole.generations);
   EXPECT_EQ(complaint([&] { minimize(pso, coarse, Box::cube(3, 0, 1), loaded); }),
-            "minimize: a search in 4 dimensions cannot go on in a box of 3");
+            "minimize: a search in 4 dimensions cannot be resumed in a box of 3");
 }
 
 // Numbers at the ends of what doubles and integers hold.
@@ -160,24 +161,24 @@ TEST(SearchState, FilesThatAreWrongAreRefused) {
   const auto expect = [](const std::string& said, const std::string& part) {
     EXPECT_NE(said.find(part), std::string::npos) << said;
   };
-  expect(said_of("\"schema_version\": 1", "\"schema_version\": 2"), "schema_version: is one that this program");
+  expect(said_of("\"schema_version\": 1", "\"schema_version\": 2"), "schema_version: is not supported");
   expect(said_of("\"generation\": 0", "\"generation\": 0.5"), "state.generation: must be a whole number");
-  expect(said_of("\"generation\": 0", "\"generation\": -1"), "counts below zero");
+  expect(said_of("\"generation\": 0", "\"generation\": -1"), "has negative counts");
   expect(said_of("\"generation\": 0", "\"generation\": 18446744073709551615"), "too large or too small");
   expect(said_of("\"generation\"", "\"generations\""), "state.generation: is missing");
-  expect(said_of("\"generation\": 0", "\"generation\": 0, \"more\": 1"), "has members that this search does not know");
-  expect(said_of("\"rows\": 4", "\"rows\": 3"), "state.best: has values that fill no such rows");
+  expect(said_of("\"generation\": 0", "\"generation\": 0, \"more\": 1"), "has members that are not of this search");
+  expect(said_of("\"rows\": 4", "\"rows\": 3"), "state.best: has a number of values that its rows do not divide");
   expect(said_of("\"rows\": 4", "\"rows\": 2"), "state.best: must have one column");
-  expect(said_of("\"rows\": 4", "\"rows\": -4"), "state.best: has values that fill no such rows");
+  expect(said_of("\"rows\": 4", "\"rows\": -4"), "state.best: has a number of values that its rows do not divide");
   expect(said_of("\"positions\": {\n   \"rows\": 4", "\"positions\": {\n   \"rows\": 2"),
-         "state: has members of sizes that do not fit");
+         "state: has members of inconsistent sizes");
   expect(said_of("\"rng\": [", "\"rng\": [1, "), "state.rng: must be a list of 4 whole numbers");
   expect(said_of("\"evaluations\": 4", "\"evaluations\": \"4\""), "evaluations: must be a whole number");
   expect(said_of("}\n}", "}"), "JSON");
 
   // another algorithm's state, a missing file
   save_state(folder / "pso.json", start_search(Pso{.particles = 4}, objective, box, 9));
-  EXPECT_NE(complaint([] { load_state<DifferentialEvolution>(folder / "pso.json"); }).find("does not know"),
+  EXPECT_NE(complaint([] { load_state<DifferentialEvolution>(folder / "pso.json"); }).find("are not of this search"),
             std::string::npos);
   EXPECT_NE(complaint([] { load_state<CmaEs>(folder / "pso.json"); }).find("state.mean: is missing"),
             std::string::npos);

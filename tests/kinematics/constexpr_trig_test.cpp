@@ -1,6 +1,6 @@
 // Sine and cosine of constant expressions against the standard library's.
 
-#include "vernier/kinematics/constexpr_trig.hpp"
+#include "vernier/kinematics/detail/constexpr_trig.hpp"
 
 #include <gtest/gtest.h>
 

@@ -83,43 +83,22 @@ TYPED_TEST(PoseBlocks, PointsOfTheToolAreWhereThePosePutsThem) {
   }
 }
 
-/// Chain rows alone, so that the instruction set can be chosen.
-template <int N, class Rows>
-struct BySet {
-  Eigen::Matrix4d pose;
-  vn::PointRows points;
-
-  BySet(const Rows& rows, const vn::JointRows<N>& joints, vn::InstructionSet set) : points(joints.rows(), 3) {
-    const vn::JointVector<N> q = joints.row(0).transpose();
-    vn::detail::run_same_bits(
-        [&]<int W>() VERNIER_INLINED {
-          vn::detail::PoseFrame<W> one;
-          one.set_identity();
-          rows.template walk<W>(q.data(), one, [](int, vn::DhParameter, const auto&, const auto&) VERNIER_INLINED {});
-          vn::detail::store_pose<W>(pose.data(), one);
-          for (vn::Index i = 0; i < joints.rows(); i += W) {
-            vn::detail::BlockFrame<W> block;
-            block.set_identity();
-            rows.template walk_block<W>(joints.data() + i, joints.rows(), block,
-                                        [](int, vn::DhParameter, const auto&) VERNIER_INLINED {});
-            block.store_positions(&points(i, 0), joints.rows());
-          }
-        },
-        set);
-  }
-};
-
 TYPED_TEST(PoseBlocks, TheInstructionSetDoesNotChangeABit) {
   vn::Rng rng(4);
   for_all_sizes([&]<int N>(std::integral_constant<int, N>) {
     const auto arm = random_chain<N, TypeParam>(rng);
-    const vn::detail::ChainRows<N, TypeParam> rows(arm.rows());
-    const vn::JointRows<N> joints = random_joint_rows<N>(rng, 40);
-    const BySet<N, decltype(rows)> plain(rows, joints, vn::InstructionSet::baseline),
-        wide(rows, joints, vn::widest_instruction_set());
-    EXPECT_EQ(plain.pose, wide.pose);
-    EXPECT_EQ(plain.points, wide.points);
-    EXPECT_EQ(plain.points, vn::positions(arm, joints));
+    const vn::JointRows<N> joints = random_joint_rows<N>(rng, 41);
+    const vn::JointVector<N> q = joints.row(0).transpose();
+    vn::Isometry3 poses[2];
+    vn::PointRows points[2] = {vn::PointRows(41, 3), vn::PointRows(41, 3)};
+    for (const int k : {0, 1}) {
+      const auto set = k == 0 ? vn::InstructionSet::baseline : vn::widest_instruction_set();
+      vn::detail::chain_pose<TypeParam, N>(arm.view(), q.data(), poses[k].data(), set);
+      vn::detail::evaluate_chain(arm.view(), {}, joints.data(), 41, 41, {.positions = points[k].data()}, set);
+    }
+    EXPECT_EQ(poses[0].matrix(), poses[1].matrix());
+    EXPECT_EQ(points[0], points[1]);
+    EXPECT_EQ(points[0], vn::positions(arm, joints));
   });
 }
 

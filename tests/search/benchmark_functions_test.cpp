@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/l_shade.hpp"
 #include "vernier/search/minimize.hpp"

@@ -167,7 +167,7 @@ TEST(GeneticAlgorithm, TournamentsPreferTheBetter) {
 TEST(GeneticAlgorithm, RouletteTurnsInProportion) {
   VectorX fitness = VectorX::LinSpaced(21, 0, 20);
   fitness(20) = std::numeric_limits<double>::infinity();
-  const ParentChoice parent(ParentSelection::roulette, 2, fitness);
+  const ParentSelector parent(ParentSelection::roulette, 2, fitness);
   Rng rng(4);
   constexpr int draws = 100000;
   std::array<int, 21> hits{};
@@ -181,7 +181,7 @@ TEST(GeneticAlgorithm, RouletteTurnsInProportion) {
   // nothing to tell them apart: all alike
   const VectorX flat = VectorX::Constant(10, 3), lost = VectorX::Constant(10, fitness(20));
   for (const VectorX* values : {&flat, &lost}) {
-    const ParentChoice any(ParentSelection::roulette, 5, *values);
+    const ParentSelector any(ParentSelection::roulette, 5, *values);
     std::array<int, 10> counts{};
     for (int i = 0; i < draws; ++i) ++counts[static_cast<std::size_t>(any(rng))];
     for (const int count : counts) EXPECT_NEAR(count, draws / 10, 4 * std::sqrt(0.09 * draws));

@@ -6,8 +6,10 @@
 
 #include <memory>
 
+#include "complaint.hpp"
 #include "laws.hpp"
 #include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/l_shade.hpp"
 #include "vernier/search/pso.hpp"
@@ -20,6 +22,7 @@ namespace vernier::metaheuristic_laws_test {
 namespace {
 
 using testing::metaheuristic_violations;
+using vernier_test::complaint;
 using vernier_test::mentions;
 using vernier_test::no_violations;
 
@@ -143,6 +146,7 @@ enum class Fault {
   invents_best,
   takes_the_last,
   miscounts,
+  announces_too_few,
 };
 
 /// Random search, right or with one fault.
@@ -162,17 +166,18 @@ struct PlantedSearch {
     State s;
     s.rng = Rng(fault == Fault::ignores_seed ? 0 : seed);
     s.best = box.lower;
-    look(s, box, evaluate);
+    evaluate_new(s, box, evaluate);
     return s;
   }
   void step(State& s, const Box& box, Evaluate evaluate) const {
-    look(s, box, evaluate);
+    evaluate_new(s, box, evaluate);
     s.generation += fault == Fault::miscounts ? 2 : 1;
   }
   bool done(const State&) const { return false; }
+  Index next_evaluations(const State&) const { return fault == Fault::announces_too_few ? points - 1 : points; }
 
  private:
-  void look(State& s, const Box& box, Evaluate evaluate) const {
+  void evaluate_new(State& s, const Box& box, Evaluate evaluate) const {
     MatrixX population(box.dimension(), points);
     Rng& rng = fault == Fault::hides_state && s.generation > 0 ? hidden : s.rng;
     for (Index k = 0; k < points; ++k)
@@ -212,9 +217,13 @@ struct StateWithoutBest : PlantedSearch {
   State start(const Box&, std::uint64_t, Evaluate) const;
   void step(State&, const Box&, Evaluate) const;
   bool done(const State&) const;
+  Index next_evaluations(const State&) const;
 };
-static_assert(!Metaheuristic<NoState> && !Metaheuristic<StepNotConst> && !Metaheuristic<StateWithoutBest> &&
-              !Metaheuristic<int>);
+struct NoAnnouncement : PlantedSearch {
+  Index next_evaluations() const;
+};
+static_assert(!Metaheuristic<NoAnnouncement> && !Metaheuristic<NoState> && !Metaheuristic<StepNotConst> &&
+              !Metaheuristic<StateWithoutBest> && !Metaheuristic<int>);
 
 constexpr auto scalar_objective = [](const VectorX& x) { return x.sum(); };
 constexpr auto batch_objective = [](const Eigen::Ref<const MatrixX>& x, Eigen::Ref<VectorX> f) {
@@ -234,15 +243,43 @@ void expect_caught(Fault fault, const char* sentence) {
 
 TEST(MetaheuristicLaws, CatchPlantedFaults) {
   expect_caught(Fault::leaves_box, "a point outside the box was evaluated");
-  expect_caught(Fault::hides_state, "the same seed searched elsewhere");
+  expect_caught(Fault::hides_state, "the same seed made another search");
   expect_caught(Fault::hides_state, "the algorithm hides state");
-  expect_caught(Fault::hides_state, "a search that was stopped and gone on with came to another result");
+  expect_caught(Fault::hides_state, "a search that was paused and resumed came to another result");
   expect_caught(Fault::ignores_seed, "another seed made the same search");
   expect_caught(Fault::forgets_best, "the best value became worse");
   expect_caught(Fault::invents_best, "best is not the best point evaluated");
   expect_caught(Fault::takes_the_last, "best is not the best point evaluated");
   expect_caught(Fault::takes_the_last, "a value that is not finite became the best");
   expect_caught(Fault::miscounts, "step does not count its generation");
+  expect_caught(Fault::announces_too_few, "a step evaluated more points than next_evaluations announced");
+}
+
+// Where an announcement is exceeded, the budget still is not: the search ends with an exception.
+TEST(Minimize, RefusesMoreEvaluationsThanAnnounced) {
+  Index calls = 0;
+  const auto counting = [&](const VectorX& x) {
+    ++calls;
+    return x.sum();
+  };
+  const Box box = Box::cube(2, 0, 1);
+  EXPECT_NE(complaint([&] {
+              (void)minimize(PlantedSearch{.fault = Fault::announces_too_few}, counting, box, {.max_evaluations = 11});
+            }).find("more points than the 5 that next_evaluations announced"),
+            std::string::npos);
+  EXPECT_EQ(calls, 6) << "the first population only";
+}
+
+// An upper bound is enough: what a step leaves of it can be spent later.
+TEST(Minimize, AnAnnouncementMayBeAnUpperBound) {
+  struct Cautious : PlantedSearch {
+    Index next_evaluations(const State&) const { return 9; }
+  };
+  EXPECT_TRUE(no_violations(metaheuristic_violations(Cautious{}, true)));
+  const auto objective = [](const VectorX& x) { return x.sum(); };
+  // 6 at first; then 6 + 9 <= 20, 12 + 9 > 20
+  EXPECT_EQ(minimize(Cautious{}, objective, Box::cube(2, 0, 1), {.max_evaluations = 20}).evaluations, 12);
+  EXPECT_EQ(minimize(Cautious{}, objective, Box::cube(2, 0, 1), {.max_evaluations = 21}).evaluations, 18);
 }
 
 TEST(MetaheuristicLaws, NameOnlyWhatIsWrong) {
@@ -267,13 +304,14 @@ struct SharedEngine {
     *s.engine = s.rng;
   }
   bool done(const State&) const { return false; }
+  Index next_evaluations(const State&) const { return 6; }
 };
 
 TEST(MetaheuristicLaws, CatchStatesThatShareTheirEngine) {
-  EXPECT_TRUE(mentions(metaheuristic_violations(SharedEngine{}, true), "a copied state went on differently"));
+  EXPECT_TRUE(mentions(metaheuristic_violations(SharedEngine{}, true), "a copied state continued differently"));
 }
 
-/// Looks at other numbers of points with every generation, in one call or two.
+/// Evaluates another number of points with every generation, in one call or two.
 struct BreathingSearch {
   Index grow = 1, calls = 1;
   using State = PlantedSearch::State;
@@ -281,45 +319,26 @@ struct BreathingSearch {
     return PlantedSearch{}.start(box, seed, evaluate);
   }
   void step(State& s, const Box& box, Evaluate evaluate) const {
-    const Index points = grow > 0 ? 6 + grow * s.generation : std::max<Index>(1, 40 + grow * s.generation);
+    const Index n = points(s);
     for (Index call = 0; call < calls; ++call) {
-      PlantedSearch{.points = points + call}.step(s, box, evaluate);
+      PlantedSearch{.points = n + call}.step(s, box, evaluate);
       if (call > 0) --s.generation;
     }
   }
   bool done(const State&) const { return false; }
-};
+  Index next_evaluations(const State& s) const { return calls * points(s) + calls * (calls - 1) / 2; }
 
-// Populations may grow, by leaps, and shrink; their evaluations are counted as they come, and none passes the budget.
-TEST(MetaheuristicLaws, PopulationsMayChangeSize) {
-  for (const Index grow : {1, 50, -4})
-    EXPECT_TRUE(no_violations(metaheuristic_violations(BreathingSearch{.grow = grow}, true))) << grow;
-  const auto objective = [](const VectorX& x) { return x.squaredNorm(); };
-  for (const Index budget : {6, 7, 12, 18, 19, 100, 5000})
-    EXPECT_LE(
-        minimize(BreathingSearch{.grow = 10, .calls = 2}, objective, Box::cube(2, -1, 1), {.max_evaluations = budget})
-            .evaluations,
-        budget);
-}
-
-/// Keeps what refuses it further evaluations to itself, and takes the values that were not computed for good.
-struct StubbornSearch : PlantedSearch {
-  void step(State& s, const Box& box, Evaluate evaluate) const {
-    const auto unstoppable = [&](const MatrixX& population, VectorX& fitness) {
-      try {
-        evaluate(population, fitness);
-      } catch (...) {
-        fitness = VectorX::Zero(population.cols());
-      }
-    };
-    PlantedSearch::step(s, box, unstoppable);
+ private:
+  Index points(const State& s) const {
+    return grow > 0 ? 6 + grow * s.generation : std::max<Index>(1, 40 + grow * s.generation);
   }
 };
 
-// Even so no evaluation is made beyond the budget, but the generation counts.
-TEST(MetaheuristicLaws, CatchStepsThatSwallowTheEndOfTheBudget) {
-  EXPECT_TRUE(mentions(metaheuristic_violations(StubbornSearch{}, true),
-                       "another number of generations than the budget of evaluations allows"));
+// Populations may grow, by leaps, and shrink, and be evaluated in several calls.
+TEST(MetaheuristicLaws, PopulationsMayChangeSize) {
+  for (const Index grow : {1, 50, -4})
+    for (const Index calls : {1, 2})
+      EXPECT_TRUE(no_violations(metaheuristic_violations(BreathingSearch{.grow = grow, .calls = calls}, true))) << grow;
 }
 
 }  // namespace

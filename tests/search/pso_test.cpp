@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/search/bounds.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/minimize.hpp"
 

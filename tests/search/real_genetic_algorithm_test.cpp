@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "complaint.hpp"
+#include "vernier/search/detail/genetic_operators.hpp"
 
 namespace vernier::real_genetic_algorithm_test {
 namespace {
@@ -210,7 +211,7 @@ TEST(RealGeneticAlgorithm, BestOfBothByHand) {
   genes << 10, 50, 30;
   children << 41, 21, 31;
   VectorX fitness = Eigen::Vector3d(1, 5, 3);
-  keep_best_of_both(genes, fitness, children, Eigen::Vector3d(4, 2, 3));
+  detail::keep_best_of_both(genes, fitness, children, Eigen::Vector3d(4, 2, 3));
   EXPECT_EQ(fitness, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(genes, Eigen::RowVector3d(10, 21, 30));
 }

@@ -61,6 +61,7 @@ struct RandomSearch {
     ++s.generation;
   }
   bool done(const State& s) const { return s.generation >= rounds; }
+  Index next_evaluations(const State&) const { return points; }
 };
 static_assert(Metaheuristic<RandomSearch>);
 
@@ -78,7 +79,8 @@ void expect_search_pays(const R& regressor, const A& algorithm, double factor) {
     std::vector<double> best;
     const auto watch = [&](const Progress& progress) { best.push_back(progress.best); };
     const auto tuned = Tuned{regressor, algorithm}.fit(train.x, train.y, {.seed = seed, .observer = watch});
-    const auto first = Tuned{regressor, algorithm, Stop{.max_generations = 0}}.fit(train.x, train.y, {.seed = seed});
+    const auto first =
+        Tuned{regressor, algorithm, StoppingCriteria{.max_generations = 0}}.fit(train.x, train.y, {.seed = seed});
     EXPECT_LT(best.back(), factor * best.front()) << "seed " << seed;
     EXPECT_LT(error(tuned, train), error(first, train)) << "seed " << seed;
     fresh_tuned += error(tuned, fresh);
@@ -143,7 +145,7 @@ TEST(Tuned, WhereWeightsMayGo) {
 // The search sees a part of the samples, always the same for a seed; the fit has all of them.
 TEST(Tuned, ASearchByAPartOfTheSamples) {
   const auto fit = [](std::uint64_t seed, Index samples) {
-    return Tuned{elm, pso, Stop{}, samples}.fit(train.x, train.y, {.seed = seed});
+    return Tuned{elm, pso, StoppingCriteria{}, samples}.fit(train.x, train.y, {.seed = seed});
   };
   const auto found = fit(4, 60);
   EXPECT_EQ(found.theta(), fit(4, 60).theta());
@@ -173,8 +175,10 @@ TEST(Tuned, PassesWeightsOn) {
   const SearchResult found = minimize(short_pso, elm.objective(train.x, train.y, &weights), elm.box(3), {}, 4);
   EXPECT_EQ(weighted.theta(), found.best);
   EXPECT_EQ(weighted.beta(), elm.fit_at(train.x, train.y, found.best, {.weights = &weights}).beta());
-  const auto of_part = Tuned{elm, short_pso, Stop{}, 60}.fit(train.x, train.y, {.seed = 4, .weights = &weights});
-  EXPECT_NE(of_part.theta(), (Tuned{elm, short_pso, Stop{}, 60}.fit(train.x, train.y, {.seed = 4}).theta()));
+  const auto of_part =
+      Tuned{elm, short_pso, StoppingCriteria{}, 60}.fit(train.x, train.y, {.seed = 4, .weights = &weights});
+  EXPECT_NE(of_part.theta(),
+            (Tuned{elm, short_pso, StoppingCriteria{}, 60}.fit(train.x, train.y, {.seed = 4}).theta()));
   EXPECT_THROW(
       static_cast<void>(Tuned{Unweighted{elm}, short_pso}.fit(train.x, train.y, {.seed = 4, .weights = &weights})),
       std::invalid_argument);

@@ -1,4 +1,4 @@
-// Joint combinations: within their limits, evenly spread, clear of what was to be avoided.
+// Joint configurations: within their limits, evenly spread, clear of what was to be avoided.
 
 #include <gtest/gtest.h>
 
@@ -64,8 +64,8 @@ TEST(SampleJoints, ImpossibleWishesThrow) {
   limits.lower << -1, -1;
   limits.upper << 1, 1;
   expect_complaint([&] { (void)sample_joints(limits, 10, 1, [](const JointVector<2>&) { return false; }); },
-                   "fewer than one combination in a thousand");
-  expect_complaint([&] { (void)sample_joints(limits, -1, 1); }, "-1 combinations");
+                   "fewer than one configuration in a thousand");
+  expect_complaint([&] { (void)sample_joints(limits, -1, 1); }, "-1 configurations");
   expect_complaint([&] { (void)sample_joints(JointLimits<2>{}, 10, 1); }, "finite");
   JointLimits<2> upside_down = limits;
   upside_down.lower(1) = 1.5;
@@ -97,7 +97,7 @@ TEST(OperatingRegion, KeepsTheWristClearOfTheFirstAxis) {
   }
   EXPECT_GE(nearest, 0.12 - 1e-12);
   EXPECT_LT(nearest, 0.15);  // the clearance is what limits it
-  // without the clearance some combinations come nearer
+  // without the clearance some configurations come nearer
   OperatingRegion<6> free = region;
   free.wrist_clearance = 0;
   const auto anywhere = free.sample(robot.chain, 2000, 3);
@@ -122,7 +122,7 @@ TEST(OperatingRegion, HasNoSingularity) {
 TEST(OperatingRegion, AClearanceOutOfReachThrows) {
   auto region = abb_irb120_operating_region();
   region.wrist_clearance = 5;
-  expect_complaint([&] { (void)region.sample(robots::abb_irb120().chain, 3, 1); }, "one combination in a thousand");
+  expect_complaint([&] { (void)region.sample(robots::abb_irb120().chain, 3, 1); }, "one configuration in a thousand");
 }
 
 }  // namespace

@@ -11,9 +11,9 @@
 
 #include "calibration_stages.hpp"
 #include "cli.hpp"
-#include "joint_units.hpp"
 #include "learners.hpp"
 #include "robot_choice.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/simulation/error_sources.hpp"
@@ -67,6 +67,12 @@ Samples<N> simulate(const Problem& problem, const vn::NominalArm<N>& arm, Index 
   return {arm.chain, vn::measure(full, train, noise, noise_seed), vn::measure(full, test, none)};
 }
 
+/// All measured positions.
+template <int N>
+vn::Dataset<N> read_positions(const Problem& problem, const vn::NominalArm<N>& arm) {
+  return vn::read_dataset<N>(problem.data, arm.chain.joint_types()).without_orientations();
+}
+
 /// The fifth of measured poses that a seed holds out, and the others.
 template <int N>
 vn::Split<N> split(const Problem& problem, const vn::Dataset<N>& data, std::uint64_t seed) {
@@ -78,7 +84,7 @@ vn::Split<N> split(const Problem& problem, const vn::Dataset<N>& data, std::uint
 
 template <int N>
 Samples<N> measured(const Problem& problem, const vn::NominalArm<N>& arm, Index poses, std::uint64_t seed) {
-  vn::Split<N> parts = split<N>(problem, read_poses(problem.data, arm.chain, true), seed);
+  vn::Split<N> parts = split<N>(problem, read_positions(problem, arm), seed);
   if (poses > 0) {
     const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(parts.train.size());
     parts.train = parts.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
@@ -89,7 +95,7 @@ Samples<N> measured(const Problem& problem, const vn::NominalArm<N>& arm, Index 
 /// Reads measured poses, and makes sure that every split has as many as the plan asks for.
 template <int N>
 void check_poses(const Plan& plan, const Problem& problem, const vn::NominalArm<N>& arm) {
-  const vn::Dataset<N> data = read_poses(problem.data, arm.chain, true);
+  const vn::Dataset<N> data = read_positions(problem, arm);
   const Index most = *std::max_element(plan.poses.begin(), plan.poses.end());
   for (const std::uint64_t seed : plan.seeds)
     if (const Index there = split<N>(problem, data, seed).train.size(); most > there)
@@ -149,9 +155,7 @@ class Computation {
     out.p95 = statistics.p95;
     out.max = statistics.max;
     out.learned_from = static_cast<double>(samples_.train.size());
-    std::vector<double> sorted(errors.begin(), errors.end());
-    std::sort(sorted.begin(), sorted.end());
-    for (std::size_t k = 0; k <= 20; ++k) out.quantiles.push_back(sorted[k * (sorted.size() - 1) / 20]);
+    for (int k = 0; k <= 20; ++k) out.quantiles.push_back(vn::quantile(errors, k / 20.0));
     return out;
   }
 

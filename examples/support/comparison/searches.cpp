@@ -51,7 +51,7 @@ const std::vector<Named>& search_names() {
 
 vn::SearchResult run_search(const std::string& name, const AnyObjective& objective, const vn::Box& box,
                             vn::Index evaluations, std::uint64_t seed, vn::ObserverRef observer) {
-  const vn::Stop stop{.max_evaluations = evaluations};
+  const vn::StoppingCriteria stop{.max_evaluations = evaluations};
   const vn::Index generations = std::max<vn::Index>(0, evaluations / population - 1);
   const auto run = [&](const auto& algorithm) {
     return vn::minimize(algorithm, objective, box, stop, seed, {}, observer);

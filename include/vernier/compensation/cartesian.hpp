@@ -88,7 +88,7 @@ struct CartesianCompensation {
   /// @throws std::invalid_argument when model and data are more than 50 mm apart on average: they are in different
   /// frames
   template <KinematicModel Model>
-  Compensated<CartesianCorrected<Model, PredictorOf<R, Model::dof, 3>>, ReferenceOf<Model>> fit(
+  Compensated<CartesianCorrected<Model, PredictorOf<R, Model::dof, 3>>, NominalOf<Model>> fit(
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
     require(data.size() >= 1, "CartesianCompensation: no samples");
     const PointRows error = positions(model, data.joints()) - data.positions();
@@ -96,7 +96,7 @@ struct CartesianCompensation {
     require(mean < 0.05, "CartesianCompensation: model and data are ", mean * 1e3,
             " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
     return {{model, regressor.fit(data.joints(), error, options), JointCoverage<Model::dof>::covering(data.joints())},
-            reference_of(model),
+            nominal_of(model),
             correction};
   }
 };

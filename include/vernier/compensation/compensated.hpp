@@ -8,28 +8,27 @@
 
 namespace vernier {
 
-/// The arm as it is (`Best`) beside the arm as it should be (`Reference`). A kinematic model itself: that of the arm as
-/// it is.
-/// @tparam Best      the best model of the real arm; a learned one tells its `gate(q)`
-/// @tparam Reference the nominal arm, in the same base and tool frames
-template <KinematicModel Best, KinematicModel Reference>
+/// The arm as identified beside the nominal one. A kinematic model itself: that of the identified arm.
+/// @tparam Arm     the best model of the real arm; a learned one has a `gate(q)`
+/// @tparam Nominal the nominal arm, in the same base and tool frames
+template <KinematicModel Arm, KinematicModel Nominal>
 class Compensated {
-  static_assert(Best::dof == Reference::dof);
+  static_assert(Arm::dof == Nominal::dof);
 
  public:
   /// Number of joints.
-  static constexpr int dof = Best::dof;
+  static constexpr int dof = Arm::dof;
 
   /// Joins the parts; throws `std::invalid_argument` on an unusable option.
-  Compensated(const Best& best, const Reference& reference, const CorrectionOptions& options = {})
-      : best_(best), reference_(reference), options_(options) {
+  Compensated(const Arm& identified, const Nominal& nominal, const CorrectionOptions& options = {})
+      : identified_(identified), nominal_(nominal), options_(options) {
     options.template validate<dof>();
   }
 
   /// The best model of the arm.
-  const Best& best() const { return best_; }
-  /// The arm as it should be, in the same frames.
-  const Reference& reference() const { return reference_; }
+  const Arm& identified() const { return identified_; }
+  /// The nominal arm in the same frames.
+  const Nominal& nominal() const { return nominal_; }
   /// How commands are corrected.
   const CorrectionOptions& options() const { return options_; }
 
@@ -41,22 +40,22 @@ class Compensated {
   }
 
   /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept { return best_.pose(q); }
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return identified_.pose(q); }
   /// Tool position [m], base frame.
-  Vector3 position(const JointVector<dof>& q) const noexcept { return best_.position(q); }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return identified_.position(q); }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
-  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return best_.jacobian(q); }
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return identified_.jacobian(q); }
   /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    return best_.pose_and_jacobian(q);
+    return identified_.pose_and_jacobian(q);
   }
 
   /// The pose the arm takes when commanded q.
   Isometry3 predict(const JointVector<dof>& q) const noexcept { return pose(q); }
 
-  /// The command that brings the arm where the reference is at q. Stays on the branch of q; the best iterate is kept.
+  /// The command that brings the arm where the nominal one is at q. Stays on the branch of q; the best iterate is kept.
   [[nodiscard]] Correction<dof> correct(const JointVector<dof>& q) const noexcept {
-    return correct(reference_.pose(q), q);
+    return correct(nominal_.pose(q), q);
   }
 
   /// The command that brings the arm to a pose.
@@ -71,24 +70,23 @@ class Compensated {
     options.moving_joints = options_.moving_joints == 0 ? dof : options_.moving_joints;
     const bool full =
         options_.target == CorrectionTarget::pose || (options_.target == CorrectionTarget::automatic && dof >= 6);
-    const auto evaluate = [this](const JointVector<dof>& q) { return best_.pose_and_jacobian(q); };
-    const IkResult<dof> found = detail::damped_inverse_kinematics<dof>(evaluate, target, full, seed, options);
+    const IkResult<dof> found = detail::inverse_kinematics(identified_, target, full, seed, options);
     Correction<dof> out{found.joints, found.status, found.position_error, 1};
-    if constexpr (requires { best_.gate(found.joints); }) out.gate = best_.gate(found.joints);
+    if constexpr (requires { identified_.gate(found.joints); }) out.gate = identified_.gate(found.joints);
     return out;
   }
 
  private:
-  Best best_;
-  Reference reference_;
+  Arm identified_;
+  Nominal nominal_;
   CorrectionOptions options_;
   JointLimits<dof> limits_{};
 };
 
-/// Corrects commands on a model that knows its reference, e.g. an identified one.
+/// Corrects commands on a model that keeps its nominal arm, e.g. an identified one.
 template <KinematicModel Model>
-Compensated<Model, ReferenceOf<Model>> compensate(const Model& model, const CorrectionOptions& options = {}) {
-  return {model, reference_of(model), options};
+Compensated<Model, NominalOf<Model>> compensate(const Model& model, const CorrectionOptions& options = {}) {
+  return {model, nominal_of(model), options};
 }
 
 }  // namespace vernier

@@ -152,7 +152,7 @@ struct JointCompensation {
   /// @throws std::invalid_argument for positions alone, where nothing could be labelled, or for data in other frames
   /// (50 mm)
   template <KinematicModel Model>
-  Compensated<JointCorrected<Model, PredictorOf<R, Model::dof, Model::dof>>, ReferenceOf<Model>> fit(
+  Compensated<JointCorrected<Model, PredictorOf<R, Model::dof, Model::dof>>, NominalOf<Model>> fit(
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
     require(data.size() >= 1, "JointCompensation: no samples");
     const double mean = (positions(model, data.joints()) - data.positions()).rowwise().norm().mean();
@@ -162,7 +162,7 @@ struct JointCompensation {
     require(labels.joints.rows() >= 1, "JointCompensation: inverse kinematics failed for all ", data.size(), " poses");
     return {{model, regressor.fit(labels.joints, labels.errors, options),
              JointCoverage<Model::dof>::covering(labels.joints)},
-            reference_of(model),
+            nominal_of(model),
             correction};
   }
 

@@ -8,12 +8,13 @@
 ///
 ///     VERNIER_API Isometry3 register_points(const PointRows& from, const PointRows& to);  // in frames.hpp
 ///     VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) { ... }  // in frames.ipp
+/// `VERNIER_TEMPLATE_API` stands before a function template of which the library has instances.
 ///
-/// Header-only, both make it a function template with a default argument: callers notice nothing, and a compiler pays for
-/// a definition only where it is called. With `VERNIER_COMPILED`, which `vernier::compiled` sets, it is a function of the
-/// library whose linker symbol carries the alignment of Eigen's types. So a translation unit compiled with another
-/// alignment (`-march=native`) does not link: `undefined reference to ...[abi:eigen_align_32_32]`. The symbols of the two
-/// modes differ, so translation units of both may be linked into one program.
+/// Header-only, the first two make a function template with a default argument: callers notice nothing, and a compiler
+/// pays for a definition only where it is called. With `VERNIER_COMPILED`, which `vernier::compiled` sets, it is a
+/// function of the library whose linker symbol carries the alignment of Eigen's types. So a translation unit compiled
+/// with another alignment (`-march=native`) does not link: `undefined reference to ...[abi:eigen_align_32_32]`. The
+/// symbols of the two modes differ, so translation units of both may be linked into one program.
 
 #include <Eigen/Core>
 
@@ -21,11 +22,17 @@
 #define VERNIER_HEADER_ONLY 0
 #define VERNIER_DETAIL_TEXT(dynamic, fixed) "eigen_align_" #dynamic "_" #fixed
 #define VERNIER_DETAIL_ALIGNMENT(dynamic, fixed) VERNIER_DETAIL_TEXT(dynamic, fixed)
-#define VERNIER_API \
-  [[gnu::abi_tag(VERNIER_DETAIL_ALIGNMENT(EIGEN_MAX_ALIGN_BYTES, EIGEN_MAX_STATIC_ALIGN_BYTES))]]
+#define VERNIER_API [[gnu::abi_tag(VERNIER_DETAIL_ALIGNMENT(EIGEN_MAX_ALIGN_BYTES, EIGEN_MAX_STATIC_ALIGN_BYTES))]]
 #define VERNIER_IMPL
+#define VERNIER_TEMPLATE_API VERNIER_API
 #else
 #define VERNIER_HEADER_ONLY 1
 #define VERNIER_API template <class VernierHeaderOnly = void>
 #define VERNIER_IMPL template <class VernierHeaderOnly>
+#define VERNIER_TEMPLATE_API
 #endif
+
+/// Calls `macro(argument, N)` for the numbers of joints of which the library has instances.
+#define VERNIER_FOR_JOINTS(macro, argument)                                                                         \
+  macro(argument, 1) macro(argument, 2) macro(argument, 3) macro(argument, 4) macro(argument, 5) macro(argument, 6) \
+      macro(argument, 7) macro(argument, 8) macro(argument, 9)

@@ -1,23 +1,20 @@
 #pragma once
 
 /// @file
-/// Places of values in rising order.
+/// Sorting by index.
 
-#include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "vernier/core/types.hpp"
 
 namespace vernier {
 
-/// Indices of values in rising order, equal values in the order they have. Values must be comparable: none may be NaN.
-inline std::vector<Index> argsort(const Eigen::Ref<const VectorX>& values) {
-  std::vector<Index> order(static_cast<std::size_t>(values.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(),
-            [&](Index a, Index b) { return values(a) != values(b) ? values(a) < values(b) : a < b; });
-  return order;
-}
+/// Indices of values in ascending order; equal values keep their order. Values must be comparable: none may be NaN.
+/// @complexity O(n log n)
+VERNIER_API std::vector<Index> argsort(const ConstVectorRef& values);
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/core/argsort.ipp"
+#endif

@@ -1,50 +1,79 @@
 #pragma once
 
 /// @file
-/// Checks at the public doors: misuse throws, with the numbers in the message.
+/// Checks of arguments: misuse throws, with the numbers in the message.
 
-#include <charconv>
-#include <concepts>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
+#include "vernier/core/api.hpp"
+
 namespace vernier {
 
 namespace detail {
 
-/// Text of one part of a message; numbers in their shortest exact form.
-template <class T>
-std::string text(const T& part) {
-  if constexpr (std::is_same_v<T, bool>) {
-    return part ? "true" : "false";
-  } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, char>) {
-    char buffer[64];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, part).ptr;
-    return {buffer, end};
-  } else if constexpr (std::is_same_v<T, char>) {
-    return std::string(1, part);
-  } else {
-    return std::string(std::string_view(part));
+/// One part of a message: a number, a truth value or a text, which must outlive it.
+struct MessagePart {
+  /// What it is.
+  enum class Kind : unsigned char { text, character, integer, natural, real, single } kind = Kind::text;
+  /// Its value; which one says `kind`.
+  union {
+    std::string_view text{};
+    char character;
+    long long integer;
+    unsigned long long natural;
+    double real;
+    float single;
+  };
+
+  template <class T>
+  explicit MessagePart(const T& part) {
+    if constexpr (std::is_same_v<T, bool>) {
+      text = part ? "true" : "false";
+    } else if constexpr (std::is_same_v<T, char>) {
+      kind = Kind::character;
+      character = part;
+    } else if constexpr (std::is_same_v<T, float>) {
+      kind = Kind::single;
+      single = part;
+    } else if constexpr (std::is_floating_point_v<T>) {
+      kind = Kind::real;
+      real = static_cast<double>(part);
+    } else if constexpr (std::is_signed_v<T>) {
+      kind = Kind::integer;
+      integer = part;
+    } else if constexpr (std::is_unsigned_v<T>) {
+      kind = Kind::natural;
+      natural = part;
+    } else {
+      text = part;
+    }
   }
-}
+};
+
+VERNIER_API std::string join(std::initializer_list<MessagePart> parts);
+VERNIER_API [[noreturn]] void throw_invalid_argument(std::initializer_list<MessagePart> parts);
 
 }  // namespace detail
 
 /// The parts joined into one string; numbers in their shortest exact form.
 template <class... Parts>
 std::string message(const Parts&... parts) {
-  std::string out;
-  ((out += detail::text(parts)), ...);
-  return out;
+  return detail::join({detail::MessagePart(parts)...});
 }
 
 /// Throws `std::invalid_argument` with the joined parts unless `condition` holds.
 template <class... Parts>
 void require(bool condition, const Parts&... parts) {
   if (!condition) [[unlikely]]
-    throw std::invalid_argument(message(parts...));
+    detail::throw_invalid_argument({detail::MessagePart(parts)...});
 }
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/core/check.ipp"
+#endif

@@ -1,15 +1,11 @@
 #pragma once
 
 /// @file
-/// Who evaluates independent pieces of work: this thread, several, or several processes. The results do not depend on
-/// it.
+/// Parallel evaluation of independent pieces of work: on the calling thread, on several threads or in several
+/// processes. The results do not depend on which.
 
-#include <algorithm>
 #include <concepts>
-#include <exception>
-#include <mutex>
-#include <thread>
-#include <vector>
+#include <type_traits>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/function_ref.hpp"
@@ -27,15 +23,15 @@ concept Executor = requires(E& executor, Index n, RangeFunction work) {
   executor.for_ranges(n, work);
 };
 
-/// An `Executor` whose workers do not all share the caller's memory and may therefore, where it is told what is
-/// written, share more out. `fill(values, work)`: `work(begin, end)` writes values(begin) to values(end - 1) and
-/// nothing else; its calls cover 0..values.size() *somewhere*, and when `fill` returns all values are *everywhere*. An
-/// exception anywhere is thrown everywhere. What `values` hold before is the same everywhere, or the workers are not at
-/// the same work, which an executor may check. `for_ranges` covers its range in every process, as for any other
-/// executor.
+/// An `Executor` over several processes, which do not share memory: every process makes the same calls, and
+/// `allgather(values, work)` distributes the work over them. `work(begin, end)` writes values(begin) to values(end - 1)
+/// and nothing else; its calls cover 0..values.size() over all processes together, and when `allgather` returns, every
+/// process has all values. An exception in one process is thrown in all. On entry `values` are the same in every
+/// process that runs the same computation; an executor may check that. `for_ranges` covers its range in every process,
+/// as for any other executor.
 template <class E>
-concept GatheringExecutor = Executor<E> && requires(E& executor, Eigen::Ref<VectorX> values, RangeFunction work) {
-  executor.fill(values, work);
+concept DistributedExecutor = Executor<E> && requires(E& executor, VectorRef values, RangeFunction work) {
+  executor.allgather(values, work);
 };
 
 /// Everything on the calling thread.
@@ -46,7 +42,7 @@ struct SequentialExecutor {
   }
 };
 
-/// One contiguous range per thread; the calling thread takes the first.
+/// One contiguous range per thread; the calling thread computes the first.
 class ThreadExecutor {
  public:
   /// @param threads at least 1
@@ -54,31 +50,11 @@ class ThreadExecutor {
     require(threads >= 1, "ThreadExecutor: threads is ", threads, ", must be at least 1");
   }
 
-  /// Number of threads, the calling one included.
+  /// Number of threads, including the calling one.
   int threads() const { return threads_; }
 
-  /// See `Executor`.
-  void for_ranges(Index n, RangeFunction work) const {
-    const Index parts = std::min<Index>(threads_, n);
-    if (parts <= 1) return SequentialExecutor{}.for_ranges(n, work);
-    std::exception_ptr failure;
-    std::mutex guard;
-    const auto run = [&](Index part) {
-      try {
-        work(n * part / parts, n * (part + 1) / parts);
-      } catch (...) {
-        const std::scoped_lock lock(guard);
-        if (!failure) failure = std::current_exception();
-      }
-    };
-    {
-      std::vector<std::jthread> workers;
-      workers.reserve(static_cast<std::size_t>(parts - 1));
-      for (Index part = 1; part < parts; ++part) workers.emplace_back(run, part);
-      run(0);
-    }
-    if (failure) std::rethrow_exception(failure);
-  }
+  /// See `Executor`. Starts its threads anew with every call.
+  VERNIER_API void for_ranges(Index n, RangeFunction work) const;
 
  private:
   int threads_;
@@ -94,44 +70,36 @@ class ExecutorRef {
     requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>)
   ExecutorRef(E& executor)  // NOLINT(google-explicit-constructor)
       : object_(const_cast<void*>(static_cast<const void*>(&executor))),
-        call_([](void* object, Index n, RangeFunction work) { static_cast<E*>(object)->for_ranges(n, work); }) {
-    if constexpr (GatheringExecutor<E>)
-      fill_ = [](void* object, Eigen::Ref<VectorX> values, RangeFunction work) {
-        static_cast<E*>(object)->fill(values, work);
+        for_ranges_([](void* object, Index n, RangeFunction work) { static_cast<E*>(object)->for_ranges(n, work); }) {
+    if constexpr (DistributedExecutor<E>)
+      allgather_ = [](void* object, VectorRef values, RangeFunction work) {
+        static_cast<E*>(object)->allgather(values, work);
       };
   }
 
   /// See `Executor`.
   void for_ranges(Index n, RangeFunction work) const {
-    call_ != nullptr ? call_(object_, n, work) : SequentialExecutor{}.for_ranges(n, work);
+    for_ranges_ != nullptr ? for_ranges_(object_, n, work) : SequentialExecutor{}.for_ranges(n, work);
   }
 
-  /// Whether it refers to a `GatheringExecutor`.
-  bool gathers() const { return fill_ != nullptr; }
+  /// Whether it refers to a `DistributedExecutor`.
+  bool is_distributed() const { return allgather_ != nullptr; }
 
-  /// See `GatheringExecutor`; `for_ranges` where the executor is none.
-  void fill(Eigen::Ref<VectorX> values, RangeFunction work) const {
-    fill_ != nullptr ? fill_(object_, values, work) : for_ranges(values.size(), work);
-  }
+  /// See `DistributedExecutor`; `for_ranges` where the executor is none.
+  VERNIER_API void allgather(VectorRef values, RangeFunction work) const;
 
-  /// The answer to a question that is asked once: on the calling thread, and over several processes in the first one
-  /// alone, whose answer is everybody's. What might differ between processes (a clock, a person) is decided so.
-  bool decide(FunctionRef<bool()> question) const {
-    if (fill_ == nullptr) return question();
-    VectorX answer = VectorX::Zero(1);
-    fill(answer, [&](Index, Index) { answer(0) = question() ? 1 : 0; });
-    return answer(0) != 0;
-  }
+  /// The value of `condition`, evaluated once, on the calling thread: over several processes in the first one, whose
+  /// value all others receive. For what may differ between processes (a clock, a user's input).
+  VERNIER_API bool broadcast(FunctionRef<bool()> condition) const;
 
  private:
   void* object_ = nullptr;
-  void (*call_)(void*, Index, RangeFunction) = nullptr;
-  void (*fill_)(void*, Eigen::Ref<VectorX>, RangeFunction) = nullptr;
+  void (*for_ranges_)(void*, Index, RangeFunction) = nullptr;
+  void (*allgather_)(void*, VectorRef, RangeFunction) = nullptr;
 };
 
-static_assert(Executor<SequentialExecutor> && Executor<ThreadExecutor> && Executor<const ExecutorRef>);
-static_assert(!GatheringExecutor<SequentialExecutor> && !GatheringExecutor<ThreadExecutor> &&
-              GatheringExecutor<const ExecutorRef>);
-static_assert(!Executor<int>);
-
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/core/executor.ipp"
+#endif

@@ -3,7 +3,6 @@
 /// @file
 /// A non-owning reference to a callable, so that options stay plain concrete types.
 
-#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -17,7 +16,7 @@ void* erase(F& f) {
   if constexpr (std::is_function_v<F>) {
     return reinterpret_cast<void*>(&f);
   } else {
-    return const_cast<void*>(static_cast<const void*>(std::addressof(f)));
+    return const_cast<void*>(static_cast<const void*>(__builtin_addressof(f)));
   }
 }
 

@@ -14,7 +14,7 @@
 
 namespace vernier {
 
-/// xoshiro256++ with distributions of our own; a value type, copied with its state.
+/// xoshiro256++, seeded by SplitMix64, with distributions of our own; a value type, copied with its state.
 /// Satisfies `std::uniform_random_bit_generator`.
 /// @cite Blackman and Vigna 2021
 class Rng {
@@ -33,9 +33,9 @@ class Rng {
     }
   }
 
-  /// Least value of a call.
+  /// Smallest value of a call.
   static constexpr result_type min() { return 0; }
-  /// Greatest value of a call.
+  /// Largest value of a call.
   static constexpr result_type max() { return ~result_type{0}; }
 
   /// The next 64 bits.
@@ -64,16 +64,21 @@ class Rng {
       if (const std::uint64_t r = (*this)(); r >= threshold) return r % n;
   }
 
-  /// Standard normal, by Marsaglia's polar method. The second value of a pair is dropped, so the state is the engine's
-  /// alone.
-  double normal() {
+  /// Two independent standard normal numbers, by Marsaglia's polar method.
+  /// @cite Marsaglia and Bray 1964
+  std::array<double, 2> normal_pair() {
     for (;;) {
       const double u = uniform(-1, 1);
       const double v = uniform(-1, 1);
       const double s = u * u + v * v;
-      if (s > 0 && s < 1) return u * std::sqrt(-2 * std::log(s) / s);
+      if (!(s > 0 && s < 1)) continue;
+      const double scale = std::sqrt(-2 * std::log(s) / s);
+      return {u * scale, v * scale};
     }
   }
+
+  /// Standard normal: the first of `normal_pair`. The second is dropped, so that the generator's state is all there is.
+  double normal() { return normal_pair()[0]; }
 
   /// -1 or +1 with equal probability.
   constexpr double sign() { return ((*this)() >> 63) != 0 ? 1.0 : -1.0; }

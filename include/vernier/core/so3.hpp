@@ -1,14 +1,25 @@
 #pragma once
 
 /// @file
-/// Rotations: exponential and logarithm, exact at identity and near pi, in any scalar (dual numbers included).
+/// Rotations: exponential and logarithm, exact at the identity and near pi, in any scalar (dual numbers included).
 
 #include <cmath>
-#include <limits>
+#include <type_traits>
 
 #include "vernier/core/types.hpp"
 
 namespace vernier {
+
+namespace detail {
+
+template <class S>
+Eigen::Matrix<S, 3, 3> generic_exp_so3(const Eigen::Matrix<S, 3, 1>& r);
+template <class S>
+Eigen::Matrix<S, 3, 1> generic_log_so3(const Eigen::Matrix<S, 3, 3>& m);
+VERNIER_API Matrix3 double_exp_so3(const Vector3& r);
+VERNIER_API Vector3 double_log_so3(const Matrix3& m);
+
+}  // namespace detail
 
 /// The matrix of the cross product, `skew(a) b = a x b`.
 template <class Derived>
@@ -24,6 +35,42 @@ Eigen::Matrix<typename Derived::Scalar, 3, 3> skew(const Eigen::MatrixBase<Deriv
 template <class Derived>
 Eigen::Matrix<typename Derived::Scalar, 3, 3> exp_so3(const Eigen::MatrixBase<Derived>& r) {
   using S = typename Derived::Scalar;
+  if constexpr (std::is_same_v<S, double>) {
+    return detail::double_exp_so3(r.derived());
+  } else {
+    return detail::generic_exp_so3<S>(r.derived());
+  }
+}
+
+/// Rotation vector [rad] of a rotation matrix, angle in [0, pi]; exact at the identity (value and derivative) and near
+/// pi. Through the unit quaternion with the largest component, so that no step loses digits.
+/// @cite Sola 2018
+template <class Derived>
+Eigen::Matrix<typename Derived::Scalar, 3, 1> log_so3(const Eigen::MatrixBase<Derived>& rotation) {
+  using S = typename Derived::Scalar;
+  if constexpr (std::is_same_v<S, double>) {
+    return detail::double_log_so3(rotation.derived());
+  } else {
+    return detail::generic_log_so3<S>(rotation.derived());
+  }
+}
+
+/// Left Jacobian of SO(3): `exp(r + dr) ~ exp(Jl(r) dr) exp(r)`, so it maps the rate of a rotation vector to
+/// the angular velocity in the outer frame.
+/// @cite Sola 2018
+VERNIER_API Matrix3 left_jacobian_so3(const Vector3& r);
+
+/// Inverse of `left_jacobian_so3`; finite for angles below 2 pi.
+/// @cite Sola 2018
+VERNIER_API Matrix3 left_jacobian_inverse_so3(const Vector3& r);
+
+/// The twist that takes `from` to `to`, in the base frame: `[p_to - p_from; Log(R_to R_from')]`, m and rad.
+VERNIER_API Vector6 pose_difference(const Isometry3& to, const Isometry3& from);
+
+namespace detail {
+
+template <class S>
+Eigen::Matrix<S, 3, 3> generic_exp_so3(const Eigen::Matrix<S, 3, 1>& r) {
   using std::cos;
   using std::sin;
   using std::sqrt;
@@ -45,15 +92,10 @@ Eigen::Matrix<typename Derived::Scalar, 3, 3> exp_so3(const Eigen::MatrixBase<De
   return rotation;
 }
 
-/// Rotation vector [rad] of a rotation matrix, angle in [0, pi]; exact at identity (value and derivative) and near pi.
-/// Through the unit quaternion with the largest component, so that no step loses digits.
-/// @cite Sola 2018
-template <class Derived>
-Eigen::Matrix<typename Derived::Scalar, 3, 1> log_so3(const Eigen::MatrixBase<Derived>& rotation) {
-  using S = typename Derived::Scalar;
+template <class S>
+Eigen::Matrix<S, 3, 1> generic_log_so3(const Eigen::Matrix<S, 3, 3>& m) {
   using std::atan2;
   using std::sqrt;
-  const Eigen::Matrix<S, 3, 3> m = rotation;
   const S trace = m.trace();
   S w;
   Eigen::Matrix<S, 3, 1> v;
@@ -82,44 +124,10 @@ Eigen::Matrix<typename Derived::Scalar, 3, 1> log_so3(const Eigen::MatrixBase<De
   return v * (S(2) * atan2(n, w) / n);
 }
 
-/// Left Jacobian of SO(3): `exp(r + dr) ~ exp(Jl(r) dr) exp(r)`, so it maps the rate of a rotation vector to
-/// the angular velocity in the outer frame.
-/// @cite Sola 2018
-inline Matrix3 left_jacobian_so3(const Vector3& r) {
-  const double angle2 = r.squaredNorm();
-  double b, c;  // (1 - cos t)/t^2 and (t - sin t)/t^3
-  if (angle2 < 1e-4) {
-    b = 0.5 - angle2 / 24 + angle2 * angle2 / 720;
-    c = 1.0 / 6 - angle2 / 120 + angle2 * angle2 / 5040;
-  } else {
-    const double angle = std::sqrt(angle2), half_sine = std::sin(angle / 2);
-    b = 2 * half_sine * half_sine / angle2;
-    c = (angle - std::sin(angle)) / (angle2 * angle);
-  }
-  const Matrix3 k = skew(r);
-  return Matrix3::Identity() + b * k + c * (k * k);
-}
-
-/// Inverse of `left_jacobian_so3`; finite for angles below 2 pi.
-inline Matrix3 left_jacobian_inverse_so3(const Vector3& r) {
-  const double angle2 = r.squaredNorm();
-  double c;
-  if (angle2 < 1e-4) {
-    c = 1.0 / 12 + angle2 / 720 + angle2 * angle2 / 30240;
-  } else {
-    const double half = std::sqrt(angle2) / 2;
-    c = (1 - half * std::cos(half) / std::sin(half)) / angle2;
-  }
-  const Matrix3 k = skew(r);
-  return Matrix3::Identity() - 0.5 * k + c * (k * k);
-}
-
-/// The twist that takes `from` to `to`, in the base frame: `[p_to - p_from; Log(R_to R_from')]`, m and rad.
-inline Vector6 pose_difference(const Isometry3& to, const Isometry3& from) {
-  Vector6 e;
-  e.head<3>() = to.translation() - from.translation();
-  e.tail<3>() = log_so3(to.linear() * from.linear().transpose());
-  return e;
-}
+}  // namespace detail
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/core/so3.ipp"
+#endif

@@ -24,13 +24,13 @@ using MatrixX = Eigen::MatrixXd;
 /// Any length.
 using VectorX = Eigen::VectorXd;
 
-/// A matrix argument that is read: a matrix, or columns and rows of one, without a copy.
+/// Read-only matrix argument: a matrix, or columns and rows of one, without a copy.
 using ConstMatrixRef = Eigen::Ref<const MatrixX>;
-/// A matrix argument that is written.
+/// Writable matrix argument.
 using MatrixRef = Eigen::Ref<MatrixX>;
-/// A vector argument that is read.
+/// Read-only vector argument.
 using ConstVectorRef = Eigen::Ref<const VectorX>;
-/// A vector argument that is written.
+/// Writable vector argument.
 using VectorRef = Eigen::Ref<VectorX>;
 
 /// Rigid motion; `base_T_tool` maps tool coordinates to base coordinates.
@@ -38,6 +38,9 @@ template <class Scalar>
 using IsometryOf = Eigen::Transform<Scalar, 3, Eigen::Isometry>;
 /// Rigid motion in double precision.
 using Isometry3 = IsometryOf<double>;
+
+/// Type of a joint, by what its value is: an angle or a displacement.
+enum class JointType { revolute, prismatic };
 
 /// Joint values of one configuration: rad (revolute) or m (prismatic).
 template <int N>
@@ -57,10 +60,5 @@ using Jacobian = Eigen::Matrix<double, 6, N>;
 /// Jacobian with respect to P model parameters, 6 x P, same rows as `Jacobian`.
 template <int P>
 using ParameterJacobian = Eigen::Matrix<double, 6, P>;
-
-/// 6 x P Jacobians of n configurations, n x 6P: each row is one of them, column by column, so that an entry of all n
-/// lies side by side. `rows.row(i).reshaped(6, P)` is the Jacobian of configuration i.
-template <int P>
-using JacobianRows = Eigen::Matrix<double, Eigen::Dynamic, 6 * P>;
 
 }  // namespace vernier

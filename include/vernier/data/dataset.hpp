@@ -1,15 +1,26 @@
 #pragma once
 
 /// @file
-/// Measured poses: what the joints were, and where the tool was seen.
+/// Measured poses: joint values and measured positions, with or without orientations.
 
 #include <span>
+#include <utility>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
+
+namespace detail {
+
+/// Whether a row has finite values only.
+VERNIER_API bool finite_row(const ConstMatrixRef& values, Index row);
+VERNIER_API void check_samples(const ConstMatrixRef& joints, const PointRows& positions, const PointRows& orientations);
+/// Copies the named rows, in the given order, into a matrix of that many rows.
+VERNIER_API void copy_rows(const ConstMatrixRef& from, std::span<const Index> indices, MatrixRef to);
+
+}  // namespace detail
 
 /// n samples of an N-joint arm: joints [rad, m], measured tool positions [m] and, where measured, orientations.
 /// All values are finite. Samples keep the order in which they were measured.
@@ -24,14 +35,7 @@ class Dataset {
   /// @throws std::invalid_argument when the numbers of rows differ or a value is not finite, naming the row
   Dataset(JointRows<N> joints, PointRows positions, PointRows orientations = PointRows(0, 3))
       : joints_(std::move(joints)), positions_(std::move(positions)), orientations_(std::move(orientations)) {
-    require(joints_.rows() == positions_.rows(), "Dataset: ", joints_.rows(), " rows of joints, but ",
-            positions_.rows(), " rows of positions");
-    require(orientations_.rows() == 0 || orientations_.rows() == joints_.rows(), "Dataset: ", joints_.rows(),
-            " rows of joints, but ", orientations_.rows(), " rows of orientations");
-    for (Index i = 0; i < size(); ++i)
-      require(joints_.row(i).allFinite() && positions_.row(i).allFinite() &&
-                  (!has_orientations() || orientations_.row(i).allFinite()),
-              "Dataset: row ", i, " has a value that is not finite");
+    detail::check_samples(joints_, positions_, orientations_);
   }
 
   /// Number of samples.
@@ -43,16 +47,15 @@ class Dataset {
   const JointRows<N>& joints() const { return joints_; }
   /// Measured positions [m].
   const PointRows& positions() const { return positions_; }
-  const PointRows& orientations() const {
-    return orientations_;
-  }  ///< rotation vectors [rad], 0 x 3 where there are none
+  /// Measured rotation vectors [rad], 0 x 3 where only positions were measured.
+  const PointRows& orientations() const { return orientations_; }
 
-  /// Joint values [rad, m].
+  /// Joint values of sample i [rad, m].
   JointVector<N> joints(Index i) const { return joints_.row(i).transpose(); }
   /// Measured position of sample i [m].
   Vector3 position(Index i) const { return positions_.row(i).transpose(); }
   /// Measured orientation; only where `has_orientations()`.
-  Matrix3 orientation(Index i) const { return exp_so3(orientations_.row(i).transpose()); }
+  Matrix3 orientation(Index i) const { return exp_so3(Vector3(orientations_.row(i).transpose())); }
   /// Measured pose; only where `has_orientations()`.
   Isometry3 pose(Index i) const {
     Isometry3 pose = Isometry3::Identity();
@@ -69,13 +72,16 @@ class Dataset {
     out.joints_.resize(n, N);
     out.positions_.resize(n, 3);
     out.orientations_.resize(has_orientations() ? n : 0, 3);
-    for (Index i = 0; i < n; ++i) {
-      const Index from = indices[static_cast<std::size_t>(i)];
-      require(from >= 0 && from < size(), "Dataset::rows: row ", from, " of ", size());
-      out.joints_.row(i) = joints_.row(from);
-      out.positions_.row(i) = positions_.row(from);
-      if (has_orientations()) out.orientations_.row(i) = orientations_.row(from);
-    }
+    detail::copy_rows(joints_, indices, out.joints_);
+    detail::copy_rows(positions_, indices, out.positions_);
+    if (has_orientations()) detail::copy_rows(orientations_, indices, out.orientations_);
+    return out;
+  }
+
+  /// The same samples with positions only.
+  Dataset without_orientations() const {
+    Dataset out = *this;
+    out.orientations_.resize(0, 3);
     return out;
   }
 
@@ -85,3 +91,7 @@ class Dataset {
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/data/dataset.ipp"
+#endif

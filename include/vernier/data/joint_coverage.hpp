@@ -1,93 +1,84 @@
 #pragma once
 
 /// @file
-/// Where the joints were when the arm was measured, and so how far what was learned from it may be trusted.
+/// The joint ranges covered by measurements, which bound where a model learned from them is valid.
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
+#include <span>
 #include <vector>
 
 #include "vernier/core/types.hpp"
 
 namespace vernier {
 
-/// The measured ranges of each joint, as a gate: 1 where every joint lies within one of its ranges, falling smoothly
-/// (cubic) to 0 where one joint is `margin` away from all of its own. A joint without ranges is not looked at.
+/// A closed range of joint values [rad, m].
+struct JointRange {
+  double lower;  ///< minimum
+  double upper;  ///< maximum
+
+  /// Equal at both ends.
+  bool operator==(const JointRange&) const = default;
+};
+
+namespace detail {
+
+/// Ranges of the measured values of one joint, and the margin.
+VERNIER_API std::vector<JointRange> covered_ranges(const ConstVectorRef& values, double& margin);
+
+/// A gate's value and slope.
+struct GateFactor {
+  double value, slope;
+};
+VERNIER_API GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, double q) noexcept;
+
+}  // namespace detail
+
+/// The measured ranges of each joint, as a gate: 1 where every joint lies within one of its ranges, decreasing smoothly
+/// (cubic) to 0 where one joint is `margin` away from all of its own. A joint without ranges has no effect.
 template <int N>
 struct JointCoverage {
-  /// A closed range of joint values [rad, m].
-  struct Range {
-    double lower;  ///< least
-    double upper;  ///< greatest
+  std::array<std::vector<JointRange>, N> ranges{};      ///< ascending, more than two margins apart
+  JointVector<N> margin = JointVector<N>::Constant(1);  ///< width of the transition [rad, m], > 0
 
-    /// Equal at both ends.
-    bool operator==(const Range&) const = default;
-  };
-
-  std::array<std::vector<Range>, N> ranges{};           ///< ascending, more than two margins apart
-  JointVector<N> margin = JointVector<N>::Constant(1);  ///< width of the fall [rad, m], > 0
-
-  /// The ranges of n measured joints. The margin is a tenth of a joint's whole range, at least 0.02; values closer than
-  /// two margins belong to one range; every range is widened by 3/n of the whole (the extremes of n random values fall
-  /// short by 1/n on average), at most half a margin, and what then comes closer than two margins is one range too.
+  /// The ranges of n measured joints. The margin is a tenth of a joint's total range, at least 0.02; values closer than
+  /// two margins belong to one range; every range is widened by 3/n of the total (the extremes of n random values fall
+  /// short by 1/n on average), at most half a margin, and ranges then closer than two margins are merged.
   static JointCoverage covering(const JointRows<N>& joints) {
     JointCoverage coverage;
     if (joints.rows() == 0) return coverage;
-    for (int i = 0; i < N; ++i) {
-      std::vector<double> values(joints.col(i).begin(), joints.col(i).end());
-      std::sort(values.begin(), values.end());
-      const double whole = values.back() - values.front(), margin = std::max(0.02, 0.1 * whole);
-      auto& ranges = coverage.ranges[static_cast<std::size_t>(i)];
-      const double wider = std::min(3 * whole / static_cast<double>(values.size()), 0.5 * margin);
-      for (const double value : values) {
-        if (ranges.empty() || value - wider - ranges.back().upper > 2 * margin)
-          ranges.push_back({value - wider, value + wider});
-        ranges.back().upper = value + wider;
-      }
-      coverage.margin(i) = margin;
-    }
+    for (int i = 0; i < N; ++i)
+      coverage.ranges[static_cast<std::size_t>(i)] = detail::covered_ranges(joints.col(i), coverage.margin(i));
     return coverage;
   }
 
-  /// The factor at q; no allocation.
+  /// The gate at q; no allocation.
   double operator()(const JointVector<N>& q) const noexcept {
     double product = 1;
     for (int i = 0; i < N; ++i) product *= factor(i, q(i)).value;
     return product;
   }
 
-  /// Its derivative with respect to q.
+  /// Its derivative with respect to q; no allocation.
   Eigen::Matrix<double, 1, N> derivative(const JointVector<N>& q) const noexcept {
+    std::array<detail::GateFactor, N> factors;
+    for (int i = 0; i < N; ++i) factors[static_cast<std::size_t>(i)] = factor(i, q(i));
     Eigen::Matrix<double, 1, N> out;
     for (int j = 0; j < N; ++j) {
-      out(j) = factor(j, q(j)).slope;
-      for (int i = 0; i < N && out(j) != 0; ++i)
-        if (i != j) out(j) *= factor(i, q(i)).value;
+      out(j) = factors[static_cast<std::size_t>(j)].slope;
+      for (int i = 0; i < N; ++i)
+        if (i != j) out(j) *= factors[static_cast<std::size_t>(i)].value;
     }
     return out;
   }
 
  private:
-  struct Factor {
-    double value, slope;
-  };
-
-  Factor factor(int i, double q) const noexcept {
-    const auto& own = ranges[static_cast<std::size_t>(i)];
-    if (own.empty()) return {1, 0};
-    double nearest = std::numeric_limits<double>::infinity();  // signed distance: above 0 beyond an upper end
-    for (const Range& range : own) {
-      const double beyond = q > range.upper ? q - range.upper : std::min(0.0, q - range.lower);
-      if (!(std::abs(beyond) >= std::abs(nearest))) nearest = beyond;
-    }
-    const double outside = std::abs(nearest) / margin(i);
-    if (outside <= 0) return {1, 0};
-    if (!(outside < 1)) return {0, 0};
-    return {1 - outside * outside * (3 - 2 * outside),
-            -6 * outside * (1 - outside) * (nearest > 0 ? 1 : -1) / margin(i)};
+  detail::GateFactor factor(int i, double q) const noexcept {
+    return detail::gate_factor(ranges[static_cast<std::size_t>(i)], margin(i), q);
   }
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/data/joint_coverage.ipp"
+#endif

@@ -3,13 +3,14 @@
 /// @file
 /// Position and orientation errors of many poses, and their statistics.
 
-#include <algorithm>
-#include <cmath>
+#include <concepts>
+#include <span>
 #include <vector>
 
-#include "vernier/compensation/concepts.hpp"
-#include "vernier/core/so3.hpp"
+#include "vernier/core/check.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/evaluation/quantile.hpp"
+#include "vernier/kinematics/concepts.hpp"
 
 namespace vernier {
 
@@ -17,56 +18,55 @@ namespace vernier {
 struct ErrorStatistics {
   double mean = 0;    ///< arithmetic mean
   double rms = 0;     ///< root mean square
-  double max = 0;     ///< greatest
-  double min = 0;     ///< least
-  double median = 0;  ///< middle
-  double p95 = 0;     ///< 95th percentile
+  double max = 0;     ///< maximum
+  double min = 0;     ///< minimum
+  double median = 0;  ///< `quantile` at 0.5
+  double p95 = 0;     ///< `quantile` at 0.95
   /// Number of errors.
   Index n = 0;
 
-  /// Of non-negative errors. Quantiles interpolate linearly between order statistics.
-  /// @throws std::invalid_argument for no errors at all
-  static ErrorStatistics of(const Eigen::Ref<const VectorX>& errors) {
-    require(errors.size() >= 1, "ErrorStatistics: no errors");
-    std::vector<double> sorted(errors.begin(), errors.end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto quantile = [&](double share) {
-      const double at = share * static_cast<double>(sorted.size() - 1);
-      const auto low = static_cast<std::size_t>(at);
-      const std::size_t high = std::min(low + 1, sorted.size() - 1);
-      return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
-    };
-    return {errors.mean(), std::sqrt(errors.squaredNorm() / static_cast<double>(errors.size())),
-            sorted.back(), sorted.front(),
-            quantile(0.5), quantile(0.95),
-            errors.size()};
-  }
+  /// Of non-negative errors.
+  /// @throws std::invalid_argument without errors
+  VERNIER_API static ErrorStatistics of(const ConstVectorRef& errors);
+};
+
+/// A model of the pose of an arm at joints q: `pose(q)` of a kinematic model, or `predict(q)` of a compensator.
+template <class M>
+concept PosePredictor = KinematicModel<M> || requires(const M& model, const JointVector<M::dof>& q) {
+  { model.predict(q) } -> std::same_as<Isometry3>;
+};
+
+/// Errors of an arm sent to commands, one row per target.
+struct PositioningErrors {
+  VectorX position;  ///< [m]
+  VectorX rotation;  ///< [rad]
 };
 
 namespace detail {
 
-template <class M>
-Isometry3 predicted_pose(const M& model, const JointVector<M::dof>& q) {
-  if constexpr (KinematicModel<M>) {
-    return model.pose(q);
-  } else {
-    return model.predict(q);
+template <PosePredictor M>
+std::vector<Isometry3> predicted_poses(const M& model, const JointRows<M::dof>& joints) {
+  std::vector<Isometry3> poses(static_cast<std::size_t>(joints.rows()));
+  for (Index i = 0; i < joints.rows(); ++i) {
+    const JointVector<M::dof> q = joints.row(i).transpose();
+    if constexpr (KinematicModel<M>)
+      poses[static_cast<std::size_t>(i)] = model.pose(q);
+    else
+      poses[static_cast<std::size_t>(i)] = model.predict(q);
   }
+  return poses;
 }
 
-}  // namespace detail
+VERNIER_API VectorX position_errors_of(std::span<const Isometry3> predicted, const PointRows& positions);
+VERNIER_API VectorX rotation_errors_of(std::span<const Isometry3> predicted, const PointRows& orientations);
+VERNIER_API PositioningErrors pose_errors(std::span<const Isometry3> desired, std::span<const Isometry3> reached);
 
-/// A kinematic model or a compensator: what says where an arm goes.
-template <class M>
-concept PosePredictor = KinematicModel<M> || Compensator<M>;
+}  // namespace detail
 
 /// `|p_measured - p_predicted|` of every sample [m].
 template <PosePredictor M>
 VectorX position_errors(const M& model, const Dataset<M::dof>& data) {
-  VectorX errors(data.size());
-  for (Index i = 0; i < data.size(); ++i)
-    errors(i) = (data.position(i) - detail::predicted_pose(model, data.joints(i)).translation()).norm();
-  return errors;
+  return detail::position_errors_of(detail::predicted_poses(model, data.joints()), data.positions());
 }
 
 /// Angle between measured and predicted orientation of every sample [rad].
@@ -74,47 +74,33 @@ VectorX position_errors(const M& model, const Dataset<M::dof>& data) {
 template <PosePredictor M>
 VectorX rotation_errors(const M& model, const Dataset<M::dof>& data) {
   require(data.has_orientations(), "rotation_errors: the data have positions only");
-  VectorX errors(data.size());
-  for (Index i = 0; i < data.size(); ++i)
-    errors(i) =
-        log_so3(data.orientation(i) * detail::predicted_pose(model, data.joints(i)).linear().transpose()).norm();
-  return errors;
+  return detail::rotation_errors_of(detail::predicted_poses(model, data.joints()), data.orientations());
 }
 
-/// How well a model predicts measured positions [m].
+/// Statistics of `position_errors` [m].
 template <PosePredictor M>
 ErrorStatistics prediction_error(const M& model, const Dataset<M::dof>& data) {
   return ErrorStatistics::of(position_errors(model, data));
 }
 
-/// Where an arm ends up when commanded, beside where it should be: one row a target.
-struct PositioningErrors {
-  VectorX position;  ///< [m]
-  VectorX rotation;  ///< [rad]
-};
-
-/// Sends the actual arm to commands and compares with the reference at the target joints.
+/// Errors of the poses that an arm reaches when sent to commands, with respect to a reference at the target joints.
 /// @param actual    the arm that moves
-/// @param reference where it should go
+/// @param reference model of the desired poses
 /// @param commands  n x N joints sent to the arm
-/// @param targets   n x N joints at which the reference stands where the arm should go
+/// @param targets   n x N joints at which the reference has the desired poses
 template <KinematicModel Actual, KinematicModel Reference>
 PositioningErrors positioning_errors(const Actual& actual, const Reference& reference,
                                      const JointRows<Actual::dof>& commands, const JointRows<Actual::dof>& targets) {
   require(commands.rows() == targets.rows(), "positioning_errors: ", commands.rows(), " commands for ", targets.rows(),
           " targets");
-  PositioningErrors errors{VectorX(targets.rows()), VectorX(targets.rows())};
-  for (Index i = 0; i < targets.rows(); ++i) {
-    const Vector6 e =
-        pose_difference(reference.pose(targets.row(i).transpose()), actual.pose(commands.row(i).transpose()));
-    errors.position(i) = e.head<3>().norm();
-    errors.rotation(i) = e.tail<3>().norm();
-  }
-  return errors;
+  return detail::pose_errors(detail::predicted_poses(reference, targets), detail::predicted_poses(actual, commands));
 }
 
 /// The corrected commands of many targets, n x N.
-template <Compensator C>
+/// @param compensator a `Compensator`
+/// @param targets     n x N joints
+template <class C>
+  requires requires(const C& compensator, const JointVector<C::dof>& q) { compensator.correct(q).command; }
 JointRows<C::dof> corrected_commands(const C& compensator, const JointRows<C::dof>& targets) {
   JointRows<C::dof> out(targets.rows(), C::dof);
   for (Index i = 0; i < targets.rows(); ++i)
@@ -123,3 +109,7 @@ JointRows<C::dof> corrected_commands(const C& compensator, const JointRows<C::do
 }
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/evaluation/statistics.ipp"
+#endif

@@ -1,13 +1,13 @@
 #pragma once
 
 /// @file
-/// An identified arm beside its nominal one, both standing in the identified frames.
+/// An identified arm beside its nominal one, both in the identified frames.
 
 #include "vernier/kinematics/framed.hpp"
 
 namespace vernier {
 
-/// The arm as identified; it knows the nominal arm in the same base and tool frames, so that commands can be corrected
+/// The arm as identified. It keeps the nominal arm in the same base and tool frames, so that commands can be corrected
 /// towards it.
 template <KinematicModel Model>
 class Calibrated {
@@ -15,26 +15,27 @@ class Calibrated {
   /// Number of joints.
   static constexpr int dof = Model::dof;
 
-  /// @param actual  the identified chain in the identified frames
-  /// @param nominal the chain as designed
-  Calibrated(const Framed<Model>& actual, const Model& nominal) : actual_(actual), reference_(actual.around(nominal)) {}
+  /// @param identified the identified chain in the identified frames
+  /// @param nominal    the chain as designed
+  Calibrated(const Framed<Model>& identified, const Model& nominal)
+      : identified_(identified), nominal_(identified.around(nominal)) {}
 
-  const Framed<Model>& actual() const { return actual_; }        ///< identified chain and frames
-  const Framed<Model>& reference() const { return reference_; }  ///< nominal chain, identified frames
+  const Framed<Model>& identified() const { return identified_; }  ///< identified chain and frames
+  const Framed<Model>& nominal() const { return nominal_; }        ///< nominal chain, identified frames
 
   /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept { return actual_.pose(q); }
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return identified_.pose(q); }
   /// Tool position [m], base frame.
-  Vector3 position(const JointVector<dof>& q) const noexcept { return actual_.position(q); }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return identified_.position(q); }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
-  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return actual_.jacobian(q); }
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return identified_.jacobian(q); }
   /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    return actual_.pose_and_jacobian(q);
+    return identified_.pose_and_jacobian(q);
   }
 
  private:
-  Framed<Model> actual_, reference_;
+  Framed<Model> identified_, nominal_;
 };
 
 }  // namespace vernier

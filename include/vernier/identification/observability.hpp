@@ -3,13 +3,8 @@
 /// @file
 /// How well poses determine parameters: the five observability indices, strong correlations, and poses that would help.
 
-#include <Eigen/Cholesky>
-#include <algorithm>
-#include <cmath>
-#include <string>
 #include <vector>
 
-#include "vernier/core/check.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -26,17 +21,10 @@ struct Observability {
 
   /// @param singular_values L >= 1 values, largest first
   /// @param poses           m >= 1
-  static Observability of(const VectorX& singular_values, Index poses) {
-    require(singular_values.size() >= 1 && poses >= 1, "Observability: ", singular_values.size(),
-            " singular values of ", poses, " poses");
-    const double largest = singular_values(0), least = singular_values(singular_values.size() - 1);
-    if (!(least > 0)) return {};
-    return {std::exp(singular_values.array().log().mean()) / std::sqrt(static_cast<double>(poses)), least / largest,
-            least, least * least / largest, 1 / singular_values.cwiseInverse().sum()};
-  }
+  VERNIER_API static Observability of(const VectorX& singular_values, Index poses);
 };
 
-/// Two unknowns that the data hardly tell apart.
+/// Two unknowns that the data hardly distinguish.
 struct Correlation {
   Index first;   ///< position in the covariance
   Index second;  ///< position in the covariance, greater than `first`
@@ -44,19 +32,9 @@ struct Correlation {
 };
 
 /// Pairs whose correlation is at least `limit` in size, strongest first.
-/// @param covariance symmetric, positive diagonal; pairs with a zero diagonal are passed over
+/// @param covariance symmetric, positive diagonal; pairs with a zero diagonal are skipped
 /// @param limit      in (0, 1]
-inline std::vector<Correlation> strong_correlations(const MatrixX& covariance, double limit = 0.95) {
-  std::vector<Correlation> out;
-  for (Index j = 0; j < covariance.cols(); ++j)
-    for (Index i = 0; i < j; ++i) {
-      const double scale = std::sqrt(covariance(i, i) * covariance(j, j));
-      if (scale > 0 && std::abs(covariance(i, j)) >= limit * scale) out.push_back({i, j, covariance(i, j) / scale});
-    }
-  std::sort(out.begin(), out.end(),
-            [](const Correlation& a, const Correlation& b) { return std::abs(a.value) > std::abs(b.value); });
-  return out;
-}
+VERNIER_API std::vector<Correlation> strong_correlations(const MatrixX& covariance, double limit = 0.95);
 
 /// Candidate poses that would determine one unknown best.
 struct HelpfulPoses {
@@ -64,38 +42,18 @@ struct HelpfulPoses {
   std::vector<double> variances;  ///< of the unknown once each and those before it are measured
 };
 
-/// Which of some candidate poses would determine one unknown best, greedily: the pose that lowers its variance most,
+/// Which of some candidate poses would determine one unknown best, greedily: the pose that reduces its variance most,
 /// then the next one given that.
-/// @param covariance of the unknowns as they stand
+/// @param covariance of the unknowns at present
 /// @param candidates whitened rows of each candidate, rows x unknowns
 /// @param unknown    position in the covariance
-/// @param count      how many poses to name
+/// @param count      number of poses
 /// @complexity       O(count * candidates * unknowns^2)
-template <class Rows>
-HelpfulPoses helpful_poses(MatrixX covariance, const std::vector<Rows>& candidates, Index unknown, int count) {
-  require(unknown >= 0 && unknown < covariance.cols(), "helpful_poses: unknown ", unknown, " of ", covariance.cols());
-  HelpfulPoses out;
-  for (int k = 0; k < count; ++k) {
-    double best = 0;
-    Index at = -1;
-    for (Index c = 0; c < static_cast<Index>(candidates.size()); ++c) {
-      const Rows& rows = candidates[static_cast<std::size_t>(c)];
-      const MatrixX cross = rows * covariance;
-      const Eigen::LLT<MatrixX> inner(MatrixX::Identity(rows.rows(), rows.rows()) + cross * rows.transpose());
-      const double gain = inner.matrixL().solve(cross.col(unknown)).squaredNorm();
-      if (gain <= best) continue;
-      best = gain;
-      at = c;
-    }
-    if (at < 0) break;
-    const Rows& rows = candidates[static_cast<std::size_t>(at)];
-    const MatrixX cross = rows * covariance;
-    const MatrixX inner = MatrixX::Identity(rows.rows(), rows.rows()) + cross * rows.transpose();
-    covariance -= cross.transpose() * inner.llt().solve(cross);
-    out.poses.push_back(at);
-    out.variances.push_back(covariance(unknown, unknown));
-  }
-  return out;
-}
+VERNIER_API HelpfulPoses helpful_poses(MatrixX covariance, const std::vector<MatrixX>& candidates, Index unknown,
+                                       int count);
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/observability.ipp"
+#endif

@@ -3,41 +3,53 @@
 /// @file
 /// Poses of one arm measured from several places.
 
-#include <span>
 #include <vector>
 
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/ranges.hpp"
 
 namespace vernier {
 
-/// All stations as one set of poses in the frame of the first, as far as what is known of their bases goes.
-/// @param stations         one set of poses a place; a single one is given back as it is
-/// @param bases            base frame of the arm as seen from each station; not looked at for a single one
+namespace detail {
+
+/// Writes rows of measured poses, moved, from row `first` on.
+VERNIER_API void move_poses(const Isometry3& motion, const PointRows& positions, const PointRows& orientations,
+                            Index first, PointRows& moved_positions, PointRows& moved_orientations);
+
+}  // namespace detail
+
+/// All stations as one set of poses in the frame of the first, given the bases.
+/// @param stations         one set of poses a place; a single one is returned as it is
+/// @param bases            base frame of the arm as seen from each station; unused for a single one
 /// @param use_orientations whether orientations are kept, where every station has them
-template <int N>
-Dataset<N> in_one_frame(std::span<const Dataset<N>> stations, const std::vector<Isometry3>& bases,
-                        bool use_orientations = true) {
-  require(!stations.empty(), "in_one_frame: no stations");
-  if (stations.size() == 1) return stations.front();
-  require(bases.size() == stations.size(), "in_one_frame: ", bases.size(), " bases for ", stations.size(), " stations");
+/// @throws std::invalid_argument for no stations, or another number of bases
+template <int N, RangeOf<Dataset<N>> Stations>
+Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& bases, bool use_orientations = true) {
+  require(std::size(stations) > 0, "in_one_frame: no stations");
+  if (std::size(stations) == 1) return *std::begin(stations);
+  require(bases.size() == std::size(stations), "in_one_frame: ", bases.size(), " bases for ", std::size(stations),
+          " stations");
   Index rows = 0;
   bool oriented = use_orientations;
-  for (const auto& data : stations) {
+  for (const Dataset<N>& data : stations) {
     rows += data.size();
     oriented = oriented && data.has_orientations();
   }
   JointRows<N> joints(rows, N);
   PointRows positions(rows, 3), orientations(oriented ? rows : 0, 3);
   Index at = 0;
-  for (std::size_t s = 0; s < stations.size(); ++s) {
-    const Isometry3 move = bases.front() * bases[s].inverse();
-    for (Index i = 0; i < stations[s].size(); ++i, ++at) {
-      joints.row(at) = stations[s].joints(i).transpose();
-      positions.row(at) = (move * stations[s].position(i)).transpose();
-      if (oriented) orientations.row(at) = log_so3(move.linear() * stations[s].orientation(i)).transpose();
-    }
+  for (std::size_t s = 0; s < bases.size(); ++s) {
+    const Dataset<N>& data = std::data(stations)[s];
+    joints.middleRows(at, data.size()) = data.joints();
+    detail::move_poses(bases.front() * bases[s].inverse(), data.positions(), data.orientations(), at, positions,
+                       orientations);
+    at += data.size();
   }
   return {joints, positions, orientations};
 }
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/stations.ipp"
+#endif

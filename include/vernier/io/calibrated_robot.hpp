@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
-#include "vernier/identification/error_model.hpp"
-#include "vernier/kinematics/dh_chain.hpp"
+#include "vernier/error_model/error_model.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 #include "vernier/regression/elm_predictor.hpp"
 
@@ -19,42 +19,42 @@ namespace vernier {
 /// Where a calibration comes from.
 struct Provenance {
   std::string data_file{};           ///< name of the file of measured poses; of several, joined by commas
-  Index rows = 0;                    ///< measured poses it was fitted to
-  std::string date{};                ///< as the caller gives it
-  std::string joints = "commanded";  ///< which joint values the data hold: commanded, or encoder
-  std::string measured = "poses";    ///< what the sensor saw: poses, or positions
-  double position_sigma = 0;         ///< of a visit, per component, as found in the data [m]; 0: not known
+  Index rows = 0;                    ///< number of poses it was fitted to
+  std::string date{};                ///< as given by the caller
+  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
+  std::string measured = "poses";    ///< what was measured: poses, or positions
+  double position_sigma = 0;         ///< of a visit, per component, as estimated from the data [m]; 0: unknown
 
   /// Equal in every entry.
   bool operator==(const Provenance&) const = default;
 };
 
 /// A nominal chain, its error model in base and tool frames, its limits, and optionally a learned position error on
-/// top. A kinematic model (of the arm as it is) and a compensator. Frames are kept by their six values, so that what is
-/// loaded from a file is bit for bit what was saved.
-template <int N>
+/// top. A kinematic model (of the identified arm) and a compensator. Frames are kept by their six values, so that what
+/// is loaded from a file is bit for bit what was saved.
+template <int N, class Convention = StandardDh>
 class CalibratedRobot {
  public:
   /// Number of joints.
   static constexpr int dof = N;
   /// The kind of chain.
-  using Chain = DhChain<N>;
-  /// The arm as it is beside the nominal one.
+  using Chain = DhChain<N, Convention>;
+  /// The identified arm beside the nominal one.
   using Model = ErrorModel<Chain>;
   /// The learned position error.
   using Learned = ElmPredictor<N, 3>;
-  /// The identified arm with what was learned.
+  /// The error model with the learned position error.
   using Corrected = CartesianCorrected<Model, Learned>;
 
   /// @param name       of the arm
-  /// @param model      the arm as it is; it knows the nominal one
-  /// @param limits     commands stay within them
+  /// @param model      the error model, which keeps the nominal arm
+  /// @param limits     of the commands
   /// @param provenance where the calibration comes from
   /// @throws std::invalid_argument when the two chains have joints of different types
   CalibratedRobot(std::string name, const Model& model, const JointLimits<N>& limits, Provenance provenance)
       : name_(std::move(name)), limits_(limits), provenance_(std::move(provenance)), model_(by_values(model)) {
     for (int i = 0; i < N; ++i)
-      require(nominal().row(i).joint == identified().row(i).joint, "CalibratedRobot: joint ", i + 1,
+      require(nominal().chain().row(i).joint == identified().chain().row(i).joint, "CalibratedRobot: joint ", i + 1,
               " is of another type in the identified chain than in the nominal one");
   }
 
@@ -65,11 +65,11 @@ class CalibratedRobot {
     return out;
   }
 
-  /// The same arm with another model, standing elsewhere perhaps: what was learned in its base frame turns with it.
+  /// The same arm with another model, in other frames perhaps: what was learned in its base frame rotates with it.
   CalibratedRobot with_model(const Model& model, Provenance provenance) const {
     CalibratedRobot out(name_, model, limits_, std::move(provenance));
     if (!corrected_) return out;
-    const Matrix3 turn = out.model_.arm().base().linear() * model_.arm().base().linear().transpose();
+    const Matrix3 turn = out.identified().base().linear() * identified().base().linear().transpose();
     const Learned& learned = corrected_->learned();
     return out.with_learned({learned.layer(), learned.scaling(), learned.theta(), learned.beta() * turn.transpose(),
                              turn * learned.offset()},
@@ -78,12 +78,12 @@ class CalibratedRobot {
 
   /// Its name.
   const std::string& name() const { return name_; }
-  /// The chain as designed.
-  const Chain& nominal() const { return model_.reference().model(); }
-  /// The chain as identified, without joint errors.
-  const Chain& identified() const { return model_.arm().model().chain(); }
-  const Model& model() const { return model_; }                          ///< the arm as it is, nothing learned on top
-  const Framed<Chain>& reference() const { return model_.reference(); }  ///< nominal chain, identified frames
+  /// The identified chain with its joint errors, in the identified frames, where the joints were measured.
+  const auto& identified() const { return model_.identified(); }
+  /// The nominal chain in the identified frames.
+  const Framed<Chain>& nominal() const { return model_.nominal(); }
+  /// The error model, without learned position error.
+  const Model& model() const { return model_; }
   /// Joint limits.
   const JointLimits<N>& limits() const { return limits_; }
   /// Where the calibration comes from.
@@ -91,7 +91,7 @@ class CalibratedRobot {
   /// The learned stage; null where there is none.
   const Corrected* learned() const { return corrected_ ? &*corrected_ : nullptr; }
 
-  /// The pose of the arm as it is.
+  /// The pose of the identified arm.
   Isometry3 pose(const JointVector<N>& q) const noexcept { return corrected_ ? corrected_->pose(q) : model_.pose(q); }
   /// Tool position [m], base frame.
   Vector3 position(const JointVector<N>& q) const noexcept {
@@ -103,7 +103,7 @@ class CalibratedRobot {
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     return corrected_ ? corrected_->pose_and_jacobian(q) : model_.pose_and_jacobian(q);
   }
-  /// Share of what was learned over the joints that holds at q; 1 where nothing was.
+  /// Share of what was learned over the joints that is used at q; 1 where nothing was.
   double gate(const JointVector<N>& q) const noexcept {
     return corrected_ ? std::min(corrected_->gate(q), model_.gate(q)) : model_.gate(q);
   }
@@ -112,15 +112,15 @@ class CalibratedRobot {
   Isometry3 predict(const JointVector<N>& q) const noexcept { return pose(q); }
   /// The command that brings the arm where the nominal one would be at q.
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return compensated().correct(q); }
-  /// The command that brings the arm to a pose in the frame of the measurements; joints near the answer choose the
-  /// branch.
+  /// The command that brings the arm to a pose in the frame of the measurements.
+  /// @param seed joints near the solution; they choose the branch
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed) const noexcept {
     return compensated().correct(target, seed);
   }
 
  private:
   /// This arm by reference: one inverse kinematics serves it with and without a learned part.
-  struct AsItIs {
+  struct Reference {
     static constexpr int dof = N;
     const CalibratedRobot* robot;
 
@@ -131,17 +131,18 @@ class CalibratedRobot {
     double gate(const JointVector<N>& q) const noexcept { return robot->gate(q); }
   };
 
-  Compensated<AsItIs, Framed<Chain>> compensated() const {
-    return Compensated<AsItIs, Framed<Chain>>({this}, reference()).within(limits_);
+  Compensated<Reference, Framed<Chain>> compensated() const {
+    return Compensated<Reference, Framed<Chain>>({this}, nominal()).within(limits_);
   }
 
   static typename Model::Arm by_values(const typename Model::Arm& arm) {
-    return typename Model::Arm(arm.model(), FrameParameters(arm.base_values()), FrameParameters(arm.tool_values()));
+    return typename Model::Arm(arm.model(), FrameParameters(arm.base_frame().values()),
+                               FrameParameters(arm.tool_frame().values()));
   }
   static Model by_values(const Model& model) {
-    const Chain& nominal = model.reference().model();
-    if (model.fallback() == nullptr) return {nominal, by_values(model.arm())};
-    return {nominal, by_values(model.arm()), by_values(*model.fallback()), *model.coverage()};
+    const Chain& chain = model.nominal().model();
+    if (model.fallback() == nullptr) return {chain, by_values(model.identified())};
+    return {chain, by_values(model.identified()), by_values(*model.fallback()), *model.coverage()};
   }
 
   std::string name_;
@@ -150,5 +151,27 @@ class CalibratedRobot {
   Model model_;
   std::optional<Corrected> corrected_{};
 };
+
+/// What a saved calibration is described by beside its model.
+template <int N>
+struct RobotInfo {
+  std::string name = "robot";        ///< of the arm
+  JointLimits<N> limits{};           ///< of the commands
+  std::string data_file{};           ///< name of the file of measured poses
+  std::string date{};                ///< of the calibration
+  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
+};
+
+/// The arm of a calibration, with what was learned on top: as seen from its first station.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
+                                                const RobotInfo<N>& info = {}) {
+  const CalibratedRobot<N, Convention> robot(
+      info.name, calibration.model(), info.limits,
+      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
+       calibration.errors.position_sigma});
+  if (!calibration.remainder || calibration.remainder->empty()) return robot;
+  return robot.with_learned(calibration.remainder->predictor, calibration.remainder->coverage);
+}
 
 }  // namespace vernier

@@ -1,15 +1,15 @@
 #pragma once
 
 /// @file
-/// Searches as JSON files, to be gone on with in another process: the same bits as without the pause.
+/// Ongoing searches as JSON files, resumed in another process with the bits of an uninterrupted search.
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -27,7 +27,7 @@ inline constexpr int search_schema = 1;
 using RngWords = std::array<std::uint64_t, 4>;
 static_assert(std::is_trivially_copyable_v<Rng> && sizeof(Rng) == sizeof(RngWords));
 
-/// A number, exactly; JSON has none that are not finite, so those are texts.
+/// A number, exactly; values that are not finite, which JSON does not have, as texts.
 template <class T>
 nlohmann::ordered_json exact_number(T value) {
   if constexpr (std::floating_point<T>) {
@@ -58,7 +58,7 @@ nlohmann::ordered_json state_to_json(const S& state) {
   return out;
 }
 
-/// Reads the members of a state, and refuses what does not fit.
+/// Reads the members of a state and checks their types and sizes.
 class StateReader {
  public:
   /// @param file its name in messages
@@ -75,8 +75,8 @@ class StateReader {
       value(json.at(name), here, member);
       ++members;
     });
-    if (json.size() != members) fail(place, "has members that this search does not know");
-    if (!state.consistent()) fail(place, "has members of sizes that do not fit together");
+    if (json.size() != members) fail(place, "has members that are not of this search");
+    if (!state.consistent()) fail(place, "has members of inconsistent sizes");
   }
 
   /// One member.
@@ -128,7 +128,8 @@ class StateReader {
     const auto size = static_cast<Index>(values.size());
     Index rows = 0;
     value(json.at("rows"), place + ".rows", rows);
-    if (rows < 0 || (rows == 0 ? size != 0 : size % rows != 0)) fail(place, "has values that fill no such rows");
+    if (rows < 0 || (rows == 0 ? size != 0 : size % rows != 0))
+      fail(place, "has a number of values that its rows do not divide");
     if constexpr (Matrix::ColsAtCompileTime == 1) {
       if (rows != size) fail(place, "must have one column");
     }
@@ -141,10 +142,10 @@ class StateReader {
 
 }  // namespace detail
 
-/// Writes a search to a file, whole or not at all: every number exactly. An observer may call it.
+/// Writes a search to a file, atomically and every number exactly. An observer may call it.
 /// @throws std::runtime_error where the file cannot be written
 template <ListedState S>
-void save_state(const std::filesystem::path& path, const OngoingSearch<S>& search) {
+void save_state(const std::string& path, const OngoingSearch<S>& search) {
   const nlohmann::ordered_json document{{"schema_version", detail::search_schema},
                                         {"evaluations", search.evaluations},
                                         {"improved_at", search.improved_at},
@@ -152,25 +153,25 @@ void save_state(const std::filesystem::path& path, const OngoingSearch<S>& searc
   write_file(path, document.dump(1) + "\n");
 }
 
-/// Reads a search that `save_state` wrote: `load_state<Pso>(path)`. Its algorithm, objective and box are for the caller
-/// to keep; another algorithm's state is refused where its members differ.
-/// @throws DataError naming the file and what is wrong in it
+/// Reads a search that `save_state` wrote: `load_state<Pso>(path)`. The caller keeps its algorithm, objective and box;
+/// a state of another algorithm is refused where its members differ.
+/// @throws DataError naming the file and the member
 template <Metaheuristic A>
-OngoingSearch<typename A::State> load_state(const std::filesystem::path& path) {
+OngoingSearch<typename A::State> load_state(const std::string& path) {
   const nlohmann::json document = read_json(path);
-  const detail::StateReader reader(path.string());
+  const detail::StateReader reader(path);
   const auto member = [&](const char* name, auto& out) {
     if (!document.is_object() || !document.contains(name)) reader.fail(name, "is missing");
     reader.value(document.at(name), name, out);
   };
   int schema = 0;
   member("schema_version", schema);
-  if (schema != detail::search_schema) reader.fail("schema_version", "is one that this program cannot read");
+  if (schema != detail::search_schema) reader.fail("schema_version", "is not supported by this program");
   OngoingSearch<typename A::State> search;
   member("evaluations", search.evaluations);
   member("improved_at", search.improved_at);
   member("state", search.state);
-  if (search.evaluations < 0 || search.state.generation < 0) reader.fail("state", "counts below zero");
+  if (search.evaluations < 0 || search.state.generation < 0) reader.fail("state", "has negative counts");
   return search;
 }
 

@@ -27,29 +27,30 @@ struct PoseAndParameterJacobian {
   ParameterJacobian<P> jacobian;  ///< 6 x P, rows as in `Jacobian`
 };
 
-/// Poses and their derivatives at n configurations.
-template <int P>
+/// Poses and their derivatives with respect to P values at n configurations.
 struct PosesAndJacobians {
   std::vector<Isometry3> poses;  ///< base_T_tool
-  JacobianRows<P> jacobians;     ///< n x 6P
+  MatrixX jacobians;  ///< n x 6P: row i is the 6 x P Jacobian of configuration i, column by column, so that an entry of
+                      ///< all n is contiguous. `jacobians.row(i).reshaped(6, P)` is that Jacobian.
 
-  /// Room for n configurations.
-  void resize(Index n) {
+  /// Allocates for n configurations.
+  void resize(Index n, Index columns) {
     poses.resize(static_cast<std::size_t>(n));
-    jacobians.resize(n, 6 * P);
+    jacobians.resize(n, 6 * columns);
   }
 };
 
 namespace detail {
 
-/// Fills a block with what `evaluate(q)` says of each configuration.
-template <int N, int P, class Evaluate>
-PosesAndJacobians<P> one_by_one(const JointRows<N>& joints, PosesAndJacobians<P> out, const Evaluate& evaluate) {
-  out.resize(joints.rows());
+/// Evaluates configurations one at a time by `evaluate(q)`, which yields a pose and a 6 x P Jacobian.
+template <int N, class Evaluate>
+PosesAndJacobians evaluate_rows(const JointRows<N>& joints, Index columns, PosesAndJacobians out,
+                                const Evaluate& evaluate) {
+  out.resize(joints.rows(), columns);
   for (Index i = 0; i < joints.rows(); ++i) {
     const auto at = evaluate(JointVector<N>(joints.row(i).transpose()));
     out.poses[static_cast<std::size_t>(i)] = at.pose;
-    out.jacobians.row(i) = at.jacobian.reshaped().transpose();
+    for (Index k = 0; k < 6 * columns; ++k) out.jacobians(i, k) = at.jacobian.data()[k];
   }
   return out;
 }
@@ -135,40 +136,40 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
 /// @param joints n x N
 /// @param out    storage to be used again
 template <KinematicModel M>
-PosesAndJacobians<M::dof> poses_and_jacobians(const M& model, const JointRows<M::dof>& joints,
-                                              PosesAndJacobians<M::dof> out = {}) {
+PosesAndJacobians poses_and_jacobians(const M& model, const JointRows<M::dof>& joints, PosesAndJacobians out = {}) {
   if constexpr (requires { model.poses_and_jacobians(joints, std::move(out)); }) {
     return model.poses_and_jacobians(joints, std::move(out));
   } else {
-    return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return model.pose_and_jacobian(q); });
+    return detail::evaluate_rows(joints, M::dof, std::move(out),
+                                 [&](const auto& q) { return model.pose_and_jacobian(q); });
   }
 }
 
 /// Poses and parameter Jacobians of n configurations, as above.
 template <ParametricModel M>
-PosesAndJacobians<M::num_parameters> poses_and_parameter_jacobians(const M& model, const JointRows<M::dof>& joints,
-                                                                   PosesAndJacobians<M::num_parameters> out = {}) {
+PosesAndJacobians poses_and_parameter_jacobians(const M& model, const JointRows<M::dof>& joints,
+                                                PosesAndJacobians out = {}) {
   if constexpr (requires { model.poses_and_parameter_jacobians(joints, std::move(out)); }) {
     return model.poses_and_parameter_jacobians(joints, std::move(out));
   } else {
-    return detail::one_by_one(joints, std::move(out),
-                              [&](const auto& q) { return pose_and_parameter_jacobian(model, q); });
+    return detail::evaluate_rows(joints, M::num_parameters, std::move(out),
+                                 [&](const auto& q) { return pose_and_parameter_jacobian(model, q); });
   }
 }
 
-/// The arm that a model corrects towards: its `reference()` where it has one (an identified model knows the nominal
-/// chain in the identified frames), else the model itself (a nominal chain).
+/// The nominal arm of a model, towards which commands are corrected: its `nominal()` where it has one (an identified
+/// model keeps the nominal chain in the identified frames), else the model itself (a nominal chain).
 template <KinematicModel M>
-decltype(auto) reference_of(const M& model) {
-  if constexpr (requires { model.reference(); }) {
-    return model.reference();
+decltype(auto) nominal_of(const M& model) {
+  if constexpr (requires { model.nominal(); }) {
+    return model.nominal();
   } else {
     return (model);
   }
 }
 
-/// Type of `reference_of(model)`, by value.
+/// Type of `nominal_of(model)`, by value.
 template <KinematicModel M>
-using ReferenceOf = std::remove_cvref_t<decltype(reference_of(std::declval<const M&>()))>;
+using NominalOf = std::remove_cvref_t<decltype(nominal_of(std::declval<const M&>()))>;
 
 }  // namespace vernier

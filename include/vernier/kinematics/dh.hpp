@@ -9,8 +9,8 @@
 
 namespace vernier {
 
-/// What a joint value adds to: the angle theta or the offset d of its row.
-enum class JointType { revolute, prismatic };
+/// Maximum number of joints of a chain.
+inline constexpr int max_joints = 64;
 
 /// One link: lengths in m, angles in rad. `beta` is Hayati's rotation about y for (nearly) parallel axes, zero
 /// otherwise.
@@ -21,7 +21,7 @@ struct DhRow {
   double d = 0;      ///< link offset [m]
   double theta = 0;  ///< joint angle at zero [rad]
   double beta = 0;   ///< Hayati's twist about y [rad]
-  /// What its joint value adds to.
+  /// Whether the joint value is added to theta (revolute) or to d (prismatic).
   JointType joint = JointType::revolute;
 
   /// Equal in every value.
@@ -47,6 +47,8 @@ struct DhTable {
 
 /// `T = Rz(theta) Tz(d) Tx(a) Rx(alpha) Ry(beta)`: the classical convention.
 struct StandardDh {
+  /// Whether it is Craig's convention.
+  static constexpr bool modified = false;
   /// The elementary motions of a row, from base to tool.
   static constexpr std::array<DhParameter, 5> order{DhParameter::theta, DhParameter::d, DhParameter::a,
                                                     DhParameter::alpha, DhParameter::beta};
@@ -55,6 +57,8 @@ struct StandardDh {
 /// `T = Rx(alpha) Tx(a) Ry(beta) Rz(theta) Tz(d)`: Craig's convention.
 /// @cite Craig 2005
 struct ModifiedDh {
+  /// Whether it is Craig's convention.
+  static constexpr bool modified = true;
   /// The elementary motions of a row, from base to tool.
   static constexpr std::array<DhParameter, 5> order{DhParameter::alpha, DhParameter::a, DhParameter::beta,
                                                     DhParameter::theta, DhParameter::d};

@@ -1,75 +1,79 @@
 #pragma once
 
 /// @file
-/// A model standing somewhere, with something in its hand: base and tool frames around any kinematic model.
+/// Base and tool frames around any kinematic model.
 
 #include <string>
 #include <vector>
 
-#include "vernier/core/so3.hpp"
 #include "vernier/kinematics/concepts.hpp"
-#include "vernier/kinematics/moving_frame.hpp"
+#include "vernier/kinematics/detail/chain_blocks.hpp"
+#include "vernier/kinematics/frame_parameters.hpp"
 
 namespace vernier {
 
-/// A frame as six parameters beside its matrix: x, y, z [m], rotation vector rx, ry, rz [rad].
-class FrameParameters {
- public:
-  FrameParameters() : FrameParameters(Isometry3::Identity()) {}
-  /// From a matrix or from its six values.
-  FrameParameters(const Isometry3& frame) : frame_(frame) {  // NOLINT(google-explicit-constructor)
-    values_ << frame.translation(), log_so3(frame.linear());
-    rate_ = left_jacobian_so3(values_.tail<3>());
-  }
-  /// From a matrix or from its six values.
-  explicit FrameParameters(const Vector6& values)
-      : values_(values), frame_(isometry<double>(values)), rate_(left_jacobian_so3(values.tail<3>())) {}
+namespace detail {
 
-  /// x, y, z [m], rx, ry, rz [rad].
-  const Vector6& values() const { return values_; }
-  /// As a matrix.
-  const Isometry3& isometry() const { return frame_; }
+/// Moves Jacobian columns from a model's end to a point `lever` away from it (in the model's base) and rotates them
+/// into the outer base.
+VERNIER_API void move_columns(const Isometry3& base, const Vector3& lever, const double* inner, Index columns,
+                              double* out) noexcept;
 
-  /// What a rate of the rotation vector is as an angular velocity, outside the frame.
-  const Matrix3& rate() const { return rate_; }
+/// Writes the columns of base and tool parameters, six in front of those of the model and six behind.
+/// @param tool_point the pose at the tool point, oriented as the model's end, in the outer base
+/// @param jacobian   6 x (columns + 12)
+VERNIER_API void frame_columns(const FrameParameters& base, const FrameParameters& tool, const Isometry3& tool_point,
+                               Index columns, double* jacobian) noexcept;
 
-  /// The frame of six values, in any scalar.
-  template <class S>
-  static IsometryOf<S> isometry(const Eigen::Matrix<S, 6, 1>& values) {
-    IsometryOf<S> frame = IsometryOf<S>::Identity();
-    frame.translation() = values.template head<3>();
-    frame.linear() = exp_so3(values.template tail<3>());
-    return frame;
-  }
+/// Names and kinds of the parameters of a model between base and tool frames.
+VERNIER_API std::vector<std::string> framed_names(std::vector<std::string> model);
+VERNIER_API std::vector<ParameterKind> framed_kinds(const std::vector<ParameterKind>& model);
 
- private:
-  Vector6 values_;
-  Isometry3 frame_;
-  Matrix3 rate_;
-};
+}  // namespace detail
 
 /// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
 template <KinematicModel Model>
 class Framed {
+  static constexpr bool of_chain = requires(const Model& m) { m.view(); };
+
+  static constexpr int model_parameters() {
+    if constexpr (requires { Model::num_parameters; }) {
+      return Model::num_parameters;
+    } else {
+      return 0;
+    }
+  }
+
  public:
   /// Number of joints.
   static constexpr int dof = Model::dof;
+  /// Number of parameters.
+  static constexpr int num_parameters = 12 + model_parameters();
+  /// All parameters [m, rad].
+  using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
   /// A model between a base and a tool frame; both default to identity.
   explicit Framed(const Model& model, const FrameParameters& base = {}, const FrameParameters& tool = {})
       : model_(model), base_(base), tool_(tool) {}
 
-  /// The model it stands on.
+  /// The model between the frames.
   const Model& model() const { return model_; }
+  /// The Denavit-Hartenberg chain inside.
+  const auto& chain() const {
+    if constexpr (requires { model_.chain(); }) {
+      return model_.chain();
+    } else {
+      return model_;
+    }
+  }
   /// Base frame, base_T_model.
   const Isometry3& base() const { return base_.isometry(); }
   /// Tool frame, flange_T_tool.
   const Isometry3& tool() const { return tool_.isometry(); }
-
-  /// Base frame by its six values.
-  const Vector6& base_values() const { return base_.values(); }
-  /// Tool frame by its six values.
-  const Vector6& tool_values() const { return tool_.values(); }
+  /// Base frame with its six values.
+  const FrameParameters& base_frame() const { return base_; }
+  /// Tool frame with its six values.
+  const FrameParameters& tool_frame() const { return tool_; }
 
   /// The same frames around another model.
   template <KinematicModel Other>
@@ -83,17 +87,42 @@ class Framed {
   Vector3 position(const JointVector<dof>& q) const noexcept {
     return base() * (model_.pose(q) * tool().translation());
   }
-  /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n joint combinations; equal to those one by
-  /// one to 1e-14.
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    if constexpr (requires { model_.pose_and_jacobian(q, base(), tool().translation()); }) {
+      PoseAndJacobian<dof> out = model_.pose_and_jacobian(q, base(), tool().translation());
+      out.pose.linear() *= tool().linear();
+      return out;
+    } else {
+      const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
+      PoseAndJacobian<dof> out;
+      detail::move_columns(base(), lever(inner.pose), inner.jacobian.data(), dof, out.jacobian.data());
+      out.pose = base() * inner.pose * tool();
+      return out;
+    }
+  }
+
+  /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n configurations; equal to those one by one
+  /// to 1e-14.
   PointRows positions(const JointRows<dof>& joints, const Vector3& point = Vector3::Zero()) const requires
       requires(const Model& m) {
     m.positions(joints, point);
   }
   {
-    const PointRows inner = model_.positions(joints, tool() * point);
-    return inner.lazyProduct(base().linear().transpose()).rowwise() + base().translation().transpose();
+    if constexpr (of_chain) {
+      const Vector3 at_flange = tool() * point;
+      PointRows out(joints.rows(), 3);
+      evaluate(joints, {.base = base().data(), .point = at_flange.data()}, {.positions = out.data()});
+      return out;
+    } else {
+      PointRows out = model_.positions(joints, tool() * point);
+      for (Index i = 0; i < out.rows(); ++i) out.row(i) = (base() * Vector3(out.row(i).transpose())).transpose();
+      return out;
+    }
   }
-  /// base_T_tool at n joint combinations.
+  /// base_T_tool at n configurations.
   std::vector<Isometry3> poses(const JointRows<dof>& joints) const requires requires(const Model& m) {
     m.poses(joints);
   }
@@ -102,49 +131,15 @@ class Framed {
     for (Isometry3& pose : out) pose = base() * pose * tool();
     return out;
   }
-  /// Geometric Jacobian, 6 x N, see `Jacobian`.
-  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
-
-  /// Both in one pass.
-  [[gnu::noinline]] PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    if constexpr (requires { model_.pose_and_jacobian(q, base(), tool().translation()); }) {
-      PoseAndJacobian<dof> out = model_.pose_and_jacobian(q, base(), tool().translation());
-      out.pose.linear() *= tool().linear();
-      return out;
-    } else {
-      const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
-      return {base() * inner.pose * tool(), at_tool(inner.jacobian, inner.pose)};
-    }
-  }
-
- private:
-  /// Moves Jacobian columns from the model's end to the tool point and turns them into the outer base.
-  template <int P>
-  Eigen::Matrix<double, 6, P> at_tool(const Eigen::Matrix<double, 6, P>& inner,
-                                      const Isometry3& flange) const noexcept {
-    const Vector3 lever = flange.linear() * tool().translation();
-    Eigen::Matrix<double, 6, P> out;
-    for (int k = 0; k < P; ++k) {
-      const Vector3 omega = inner.col(k).template tail<3>();
-      out.col(k).template head<3>() = base().linear() * (inner.col(k).template head<3>() + omega.cross(lever));
-      out.col(k).template tail<3>() = base().linear() * omega;
-    }
+  /// Poses and Jacobians at n configurations; equal to those one by one to 1e-14.
+  /// @param joints n x N
+  /// @param out    storage to be reused
+  PosesAndJacobians poses_and_jacobians(const JointRows<dof>& joints,
+                                        PosesAndJacobians out = {}) const requires of_chain {
+    out.resize(joints.rows(), dof);
+    evaluate(joints, frames(), {.poses = out.poses.data(), .joints = out.jacobians.data()});
     return out;
   }
-
-  static constexpr int model_parameters() {
-    if constexpr (requires { Model::num_parameters; }) {
-      return Model::num_parameters;
-    } else {
-      return 0;
-    }
-  }
-
- public:
-  /// Number of parameters.
-  static constexpr int num_parameters = 12 + model_parameters();
-  /// All parameters [m, rad].
-  using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
   /// Their values [m, rad].
   Parameters parameters() const requires ParametricModel<Model> {
@@ -152,7 +147,6 @@ class Framed {
     p << base_.values(), model_.parameters(), tool_.values();
     return p;
   }
-
   /// A frame whose six values do not change keeps its matrix bit for bit.
   Framed with_parameters(const Parameters& p) const requires ParametricModel<Model> {
     const auto frame = [](const FrameParameters& old, const Vector6& values) {
@@ -161,111 +155,43 @@ class Framed {
     return Framed(model_.with_parameters(p.template segment<Model::num_parameters>(6)),
                   frame(base_, p.template head<6>()), frame(tool_, p.template tail<6>()));
   }
-
   /// Their names, in the order of `parameters`.
   static std::vector<std::string> parameter_names() requires ParametricModel<Model> {
-    std::vector<std::string> names;
-    for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(std::string("base_") + axis);
-    for (auto& name : Model::parameter_names()) names.push_back(std::move(name));
-    for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) names.push_back(std::string("tool_") + axis);
-    return names;
+    return detail::framed_names(Model::parameter_names());
   }
-
   /// What each of them measures.
   static std::vector<ParameterKind> parameter_kinds() requires ParametricModel<Model> {
-    std::vector<ParameterKind> frame(6, ParameterKind::length), kinds;
-    std::fill(frame.begin() + 3, frame.end(), ParameterKind::angle);
-    kinds = frame;
-    for (const ParameterKind kind : Model::parameter_kinds()) kinds.push_back(kind);
-    kinds.insert(kinds.end(), frame.begin(), frame.end());
-    return kinds;
+    return detail::framed_kinds(Model::parameter_kinds());
   }
-
   /// Derivative of the pose with respect to the parameters, 6 x P.
   ParameterJacobian<num_parameters> parameter_jacobian(const JointVector<dof>& q) const noexcept requires
       ParametricModel<Model> {
     return pose_and_parameter_jacobian(q).jacobian;
   }
-
   /// Both in one pass.
-  [[gnu::noinline]] PoseAndParameterJacobian<num_parameters> pose_and_parameter_jacobian(
+  PoseAndParameterJacobian<num_parameters> pose_and_parameter_jacobian(
       const JointVector<dof>& q) const noexcept requires ParametricModel<Model> {
-    constexpr int tool_column = 6 + Model::num_parameters;
     PoseAndParameterJacobian<num_parameters> out;
-    out.jacobian.setZero();
-    auto inner = out.jacobian.template middleCols<Model::num_parameters>(6);
-    if constexpr (requires { model_.pose_and_parameter_jacobian(q, base(), tool().translation()); }) {
-      const auto at = model_.pose_and_parameter_jacobian(q, base(), tool().translation());
-      out.pose = at.pose;
-      inner = at.jacobian;
+    if constexpr (of_chain) {
+      detail::chain_parameter_jacobian(model_.view(), {base().data(), tool_.values().data()}, q.data(), out.pose.data(),
+                                       out.jacobian.data() + 36);
     } else {
       const Isometry3 flange = model_.pose(q);
+      const auto inner = model_.parameter_jacobian(q);
+      detail::move_columns(base(), lever(flange), inner.data(), Model::num_parameters, out.jacobian.data() + 36);
       out.pose = base() * flange * Eigen::Translation3d(tool().translation());
-      inner = at_tool(model_.parameter_jacobian(q), flange);
     }
-    const Matrix3 rotation = out.pose.linear();
-    const Vector3 arm = out.pose.translation() - base().translation();  // base origin to tool point
-    out.jacobian.template block<3, 3>(0, 0).setIdentity();
-    out.jacobian.template block<3, 3>(0, 3) = -skew(arm) * base_.rate();
-    out.jacobian.template block<3, 3>(3, 3) = base_.rate();
-    out.jacobian.template block<3, 3>(0, tool_column) = rotation;
-    out.jacobian.template block<3, 3>(3, tool_column + 3) = rotation * tool_.rate();
-    out.pose.linear() = rotation * tool().linear();
+    detail::frame_columns(base_, tool_, out.pose, Model::num_parameters, out.jacobian.data());
+    out.pose.linear() *= tool().linear();
     return out;
   }
-
-  /// Poses and Jacobians at n joint combinations, several at a time; equal to those one by one to 1e-14.
+  /// Poses and parameter Jacobians at n configurations; equal to those one by one to 1e-14.
   /// @param joints n x N
-  /// @param out    storage to be used again
-  PosesAndJacobians<dof> poses_and_jacobians(const JointRows<dof>& joints,
-                                             PosesAndJacobians<dof> out = {}) const requires requires {
-    Model::block;
-  }
-  {
-    if (joints.rows() < Model::block)
-      return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_jacobian(q); });
-    const Matrix3 turn = tool().linear();
-    model_.visit_motions(joints, {base().data(), tool_.values().data()}, out,
-                         [&](const auto& columns, const auto& motions, auto& frame) VERNIER_INLINED {
-                           for (int i = 0; i < dof; ++i) columns.write_joint(i, model_.row(i).joint, motions);
-                           frame.rotate(turn.data());
-                         });
-    return out;
-  }
-
-  /// Poses and parameter Jacobians at n joint combinations, several at a time; equal to those one by one to 1e-14.
-  /// @param joints n x N
-  /// @param out    storage to be used again
-  PosesAndJacobians<num_parameters> poses_and_parameter_jacobians(
-      const JointRows<dof>& joints, PosesAndJacobians<num_parameters> out = {}) const requires requires {
-    Model::block;
-  }
-  {
-    if (joints.rows() < Model::block)
-      return detail::one_by_one(joints, std::move(out), [&](const auto& q) { return pose_and_parameter_jacobian(q); });
-    const Matrix3 axes = Matrix3::Identity(), turn = tool().linear();
-    const Matrix3 base_rate = base_.rate(), tool_rate = tool_.rate();
-    const Vector3 standing = base().translation();
-    model_.visit_motions(joints, {base().data(), tool_.values().data()}, out,
-                         [&](const auto& columns, const auto& motions, auto& frame) VERNIER_INLINED {
-                           constexpr int tool_column = 6 + Model::num_parameters;
-                           detail::BlockMotion<std::decay_t<decltype(frame)>::width> m;
-                           columns.write_parameters(6, motions);
-                           for (int k = 0; k < 3; ++k) {
-                             m.set_constant(axes.col(k).data(), standing.data());
-                             columns.write(k, false, m);
-                             m.set_constant(base_rate.col(k).data(), standing.data());
-                             columns.write(3 + k, true, m);
-                           }
-                           m.set(frame.x, frame.p), columns.write(tool_column, false, m);
-                           m.set(frame.y, frame.p), columns.write(tool_column + 1, false, m);
-                           m.set(frame.z, frame.p), columns.write(tool_column + 2, false, m);
-                           for (int k = 0; k < 3; ++k) {
-                             frame.direction(tool_rate.col(k).data(), m.axis);
-                             columns.write(tool_column + 3 + k, true, m);
-                           }
-                           frame.rotate(turn.data());
-                         });
+  /// @param out    storage to be reused
+  PosesAndJacobians poses_and_parameter_jacobians(const JointRows<dof>& joints,
+                                                  PosesAndJacobians out = {}) const requires of_chain {
+    out.resize(joints.rows(), num_parameters);
+    evaluate(joints, frames(), {.poses = out.poses.data(), .parameters = out.jacobians.data()});
     return out;
   }
 
@@ -279,8 +205,25 @@ class Framed {
   }
 
  private:
+  /// From the model's end to the tool point, in the model's base.
+  Vector3 lever(const Isometry3& flange) const noexcept { return flange.linear() * tool().translation(); }
+
+  detail::ChainFrames frames() const {
+    return {base().data(), tool_.values().data(), tool().data(), base_.rotation_vector_jacobian().data(),
+            tool_.rotation_vector_jacobian().data()};
+  }
+
+  void evaluate(const JointRows<dof>& joints, const detail::ChainFrames& frames,
+                const detail::BlockResults& results) const {
+    detail::evaluate_chain(model_.view(), frames, joints.data(), joints.rows(), joints.rows(), results);
+  }
+
   Model model_;
   FrameParameters base_, tool_;
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/kinematics/framed.ipp"
+#endif

@@ -1,10 +1,10 @@
 #pragma once
 
 /// @file
-/// A population shared out over MPI ranks: every rank runs the same search and evaluates its part of each population.
+/// Populations distributed over MPI ranks: every rank runs the same search and evaluates its part of each population.
 
 /// @cond
-// The C++ bindings, which MPI itself has dropped, are not wanted: they bring warnings and a library of their own.
+// Without the C++ bindings, which MPI itself has removed: they cause warnings and need a library of their own.
 #ifndef OMPI_SKIP_MPICXX
 #define OMPI_SKIP_MPICXX 1
 #endif
@@ -28,7 +28,7 @@ namespace vernier {
 
 namespace detail {
 
-/// Turns an error code of MPI into an exception. By MPI's default an error ends all ranks before this is asked.
+/// Turns an error code of MPI into an exception. By MPI's default an error aborts all ranks before it is returned.
 inline void check_mpi(int code, const char* call) {
   if (code == MPI_SUCCESS) return;
   char text[MPI_MAX_ERROR_STRING] = "";
@@ -39,34 +39,34 @@ inline void check_mpi(int code, const char* call) {
 
 }  // namespace detail
 
-/// A `GatheringExecutor` over the ranks of an MPI communicator. In a search every rank evaluates its own columns of a
-/// population, on the threads of an executor of its own if it has one, and all fitness is gathered on every rank.
+/// A `DistributedExecutor` over the ranks of an MPI communicator. In a search every rank evaluates its own columns of a
+/// population, on the threads of a local executor if it has one, and all fitness values are gathered on every rank.
 ///
 ///     int level = 0;
 ///     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
 ///     {
-///       const vernier::ThreadExecutor threads(4);                       // in each rank; may be left out
+///       const vernier::ThreadExecutor threads(4);                       // in each rank; optional
 ///       const vernier::MpiExecutor ranks(MPI_COMM_WORLD, threads);
-///       const auto predictor = recipe.fit(X, Y, {.seed = 1, .executor = ranks});   // on every rank, and the same
+///       const auto predictor = recipe.fit(X, Y, {.seed = 1, .executor = ranks});   // on every rank, with equal data
 ///       if (ranks.rank() == 0) save(predictor);
 ///     }
 ///     MPI_Finalize();
 ///
-/// - Every rank makes the same calls with the same data and seed. Then every rank gets the same result: the same bits
-///   as without MPI, for any number of ranks (of processors alike: another instruction set rounds otherwise).
-/// - Progress is observed on rank 0 alone, and what it decides holds for all.
-/// - An exception of the objective or of the observer on one rank becomes one on all: the rank itself throws what was
-///   thrown, the others std::runtime_error with its text and the number of the (first such) rank. Whoever leaves on one
-///   rank in another way, before or between searches, must end the program (MPI_Abort), or the others wait for it.
-/// - Ranks whose populations differ (by another seed, say) throw std::invalid_argument, all of them. Other data on some
-///   rank are not noticed.
+/// - Every rank makes the same calls with the same data and seed. Then every rank has the same result: the same bits
+///   as without MPI, for any number of ranks (on equal processors: another instruction set rounds differently).
+/// - The observer is called on rank 0 only, and its decision holds for all.
+/// - An exception of the objective or of the observer on one rank is thrown on all: the rank itself rethrows it, the
+///   others throw std::runtime_error with its text and the number of the (first such) rank. A rank that stops in any
+///   other way, before or between searches, must end the program (MPI_Abort), or the others wait for it.
+/// - Ranks whose populations differ (for instance by another seed) throw std::invalid_argument, all of them. Different
+///   data are not detected.
 ///
 /// `for_ranges` works on the whole range in every rank. Not to be used from several threads at once.
-/// @complexity two collective calls a population; each rank sends eight bytes a particle of its own
+/// @complexity two collective calls per population; each rank sends eight bytes per particle of its own
 class MpiExecutor {
  public:
-  /// Ranks that work on the calling thread. Collective: all ranks of the communicator make one together. The
-  /// communicator is duplicated, so that messages cannot be taken for the program's own.
+  /// Ranks that compute on the calling thread. Collective: all ranks of the communicator construct one together. The
+  /// communicator is duplicated, so that messages cannot be confused with the program's own.
   /// @throws std::invalid_argument before MPI_Init, after MPI_Finalize and on MPI_COMM_NULL
   explicit MpiExecutor(MPI_Comm communicator = MPI_COMM_WORLD) {
     int started = 0, ended = 0;
@@ -80,9 +80,10 @@ class MpiExecutor {
     detail::check_mpi(MPI_Comm_size(communicator_, &ranks_), "MPI_Comm_size");
   }
 
-  /// @param communicator who shares the work
-  /// @param local        who does a rank's part of it; must outlive this
-  /// @throws std::invalid_argument also where MPI was not told of threads (MPI_Init_thread, MPI_THREAD_FUNNELED)
+  /// @param communicator the ranks the work is distributed over
+  /// @param local        executor of a rank's part of it; must outlive this
+  /// @throws std::invalid_argument also where MPI was initialised without thread support (MPI_Init_thread,
+  /// MPI_THREAD_FUNNELED)
   MpiExecutor(MPI_Comm communicator, ExecutorRef local) : MpiExecutor(communicator) {
     int level = MPI_THREAD_SINGLE;
     detail::check_mpi(MPI_Query_thread(&level), "MPI_Query_thread");
@@ -107,8 +108,8 @@ class MpiExecutor {
   /// See `Executor`: the whole range, in every rank.
   void for_ranges(Index n, RangeFunction work) const { local_.for_ranges(n, work); }
 
-  /// See `GatheringExecutor`. Collective.
-  void fill(Eigen::Ref<VectorX> values, RangeFunction work) const {
+  /// See `DistributedExecutor`. Collective.
+  void allgather(VectorRef values, RangeFunction work) const {
     const Index n = values.size(), begin = first(rank_, n), end = first(rank_ + 1, n);
     const long long before = fingerprint(values);
     std::exception_ptr failure;
@@ -123,38 +124,38 @@ class MpiExecutor {
       failure = std::current_exception();
       text = "an exception of unknown type";
     }
-    // Nobody leaves before all have met: the first rank that failed, and the least and the greatest fingerprint.
+    // All ranks meet here, also those that failed: the first of these, the smallest and the largest fingerprint.
     long long agreed[3] = {failure ? rank_ : ranks_, before, -before};
     detail::check_mpi(MPI_Allreduce(MPI_IN_PLACE, agreed, 3, MPI_LONG_LONG, MPI_MIN, communicator_), "MPI_Allreduce");
     if (agreed[0] < ranks_) fail(static_cast<int>(agreed[0]), text, failure);
-    require(
-        agreed[1] == -agreed[2], "MpiExecutor: rank ", rank_, " of ", ranks_, ", which has ", n,
-        " values to fill, is not at the same work as the others: every rank needs the same seed, options and calls");
+    require(agreed[1] == -agreed[2], "MpiExecutor: rank ", rank_, " of ", ranks_, ", which has ", n,
+            " values to gather, runs another computation than the others: every rank needs the same seed, options and "
+            "calls");
     gather(values);
   }
 
  private:
-  /// Where a rank's share of n values begins. Rank 0 gets the first of the greater shares, so a single value is its.
+  /// First of a rank's share of n values. Rank 0 has the first of the larger shares, so a single value is its own.
   Index first(int rank, Index n) const { return (n * rank + ranks_ - 1) / ranks_; }
 
-  /// FNV-1a of the values' bits and number, not negative.
-  static long long fingerprint(const Eigen::Ref<const VectorX>& values) {
+  /// FNV-1a hash of the values' bits and number, not negative: detects ranks that run different searches.
+  static long long fingerprint(const ConstVectorRef& values) {
     auto hash = (14695981039346656037u ^ static_cast<std::uint64_t>(values.size())) * 1099511628211u;
     for (const double value : values) hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
     return static_cast<long long>(hash >> 1);
   }
 
-  /// Throws on every rank; `text` matters on the culprit alone.
-  [[noreturn]] void fail(int culprit, std::string text, const std::exception_ptr& own) const {
+  /// Throws on every rank; `text` is used on the failed one only.
+  [[noreturn]] void fail(int failed, std::string text, const std::exception_ptr& own) const {
     int length = static_cast<int>(text.size());
-    detail::check_mpi(MPI_Bcast(&length, 1, MPI_INT, culprit, communicator_), "MPI_Bcast");
+    detail::check_mpi(MPI_Bcast(&length, 1, MPI_INT, failed, communicator_), "MPI_Bcast");
     text.resize(static_cast<std::size_t>(length));
-    detail::check_mpi(MPI_Bcast(text.data(), length, MPI_CHAR, culprit, communicator_), "MPI_Bcast");
+    detail::check_mpi(MPI_Bcast(text.data(), length, MPI_CHAR, failed, communicator_), "MPI_Bcast");
     if (own) std::rethrow_exception(own);
-    throw std::runtime_error(message("MpiExecutor: rank ", culprit, ": ", text));
+    throw std::runtime_error(message("MpiExecutor: rank ", failed, ": ", text));
   }
 
-  void gather(Eigen::Ref<VectorX> values) const {
+  void gather(VectorRef values) const {
     std::vector<int> counts, starts;
     for (int rank = 0; rank < ranks_; ++rank) {
       starts.push_back(static_cast<int>(first(rank, values.size())));
@@ -170,6 +171,6 @@ class MpiExecutor {
   int rank_ = 0, ranks_ = 1;
 };
 
-static_assert(GatheringExecutor<const MpiExecutor>);
+static_assert(DistributedExecutor<const MpiExecutor>);
 
 }  // namespace vernier

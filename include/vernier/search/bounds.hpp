@@ -1,14 +1,14 @@
 #pragma once
 
 /// @file
-/// What becomes of a coordinate that leaves its interval.
+/// Bound handling: where a coordinate goes that left its interval.
 
 #include <algorithm>
 #include <cmath>
 
 namespace vernier {
 
-/// The mirror image of x in [lower, upper], both ends being mirrors; x itself where it lies between them.
+/// x reflected at the bounds, as often as needed, into [lower, upper]; x itself where it lies between them.
 inline double reflected(double x, double lower, double upper) {
   if (x >= lower && x <= upper) return x;
   const double width = upper - lower;
@@ -16,10 +16,16 @@ inline double reflected(double x, double lower, double upper) {
   return std::clamp(lower + (at > width ? 2 * width - at : at), lower, upper);
 }
 
-/// x, or where it left [lower, upper] the middle between the bound it passed and `inside`.
+/// x, or where it left [lower, upper] the midpoint between the bound it violates and `inside`.
 /// @cite Zhang and Sanderson 2009
 inline double halfway(double x, double inside, double lower, double upper) {
   return x < lower ? lower + (inside - lower) / 2 : x > upper ? upper + (inside - upper) / 2 : x;
 }
+
+/// What happens to a trial's coordinate that leaves the box.
+enum class TrialRule {
+  halfway,  ///< put halfway between the target individual and the bound
+  redrawn,  ///< drawn anew, uniformly in its interval: prevents premature convergence
+};
 
 }  // namespace vernier

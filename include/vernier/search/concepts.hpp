@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Recipes that search a box for the least value of an objective, one generation at a time.
+/// Concepts of population-based searches that minimize an objective over a box, one generation at a time.
 
 #include <concepts>
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace vernier {
 
-/// Evaluates a population, dimension x particles, into one value a particle. Values that are not finite arrive as
+/// Evaluates a population, dimension x particles, into one value per particle. Values that are not finite arrive as
 /// +infinity.
 using Evaluate = FunctionRef<void(const MatrixX& population, VectorX& fitness)>;
 
-/// What every search state shows: the best point seen, its value, and how many generations were stepped.
+/// What every search state has: the best point evaluated so far, its value, and the number of generations stepped.
 template <class S>
 concept SearchState = std::copyable<S> && requires(const S& state) {
   { state.best } -> std::convertible_to<const VectorX&>;
@@ -31,22 +31,24 @@ concept SearchState = std::copyable<S> && requires(const S& state) {
 /// - `start(box, seed, evaluate)`: the first population, evaluated
 /// - `step(state, box, evaluate)`: one generation, in place; depends on the state alone, so N steps equal a run of N
 /// - `done(state)`: whether the algorithm's own schedule has ended
+/// - `next_evaluations(state)`: number of points that the next step evaluates, or an upper bound; only where the
+///   schedule has not ended. A step that would exceed the budget of evaluations is not made.
 ///
 /// All randomness comes from the seed through the state. `evaluate` is called with whole populations, which may change
-/// size; it may throw to end a search, which a step lets pass.
+/// size; it may throw to end a search, and a step lets the exception pass.
 template <class A>
 concept Metaheuristic = std::copyable<A> && SearchState<typename A::State> &&
     requires(const A& algorithm, typename A::State& state, const Box& box, std::uint64_t seed, Evaluate evaluate) {
   { algorithm.start(box, seed, evaluate) } -> std::same_as<typename A::State>;
   { algorithm.step(state, box, evaluate) } -> std::same_as<void>;
   { algorithm.done(std::as_const(state)) } -> std::same_as<bool>;
+  { algorithm.next_evaluations(std::as_const(state)) } -> std::convertible_to<Index>;
 };
 
-/// An objective of whole populations: `f(population, fitness)`, dimension x particles into one value a particle.
+/// An objective of whole populations: `f(population, fitness)`, dimension x particles into one value per particle.
 /// Columns are independent: it may be called from several threads at once with parts of a population.
 template <class F>
-concept BatchObjective = requires(const F& f, const Eigen::Ref<const MatrixX>& population,
-                                  Eigen::Ref<VectorX> fitness) {
+concept BatchObjective = requires(const F& f, const ConstMatrixRef& population, VectorRef fitness) {
   f(population, fitness);
 };
 

@@ -1,10 +1,9 @@
 #pragma once
 
 /// @file
-/// The one loop around every metaheuristic: budget, stopping, observers, executor; and going on where one stopped.
+/// The loop of every metaheuristic: budget, stopping criteria, observer, executor; and resuming.
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -13,162 +12,146 @@
 
 namespace vernier {
 
-/// When a search ends before its algorithm's own schedule.
-struct Stop {
-  /// A generation that would pass it is not evaluated; the first population always is.
+/// Stopping criteria beside the algorithm's own schedule.
+struct StoppingCriteria {
+  /// Generations that would exceed it are not stepped; the first population is always evaluated.
   Index max_evaluations = std::numeric_limits<Index>::max();
   Index max_generations = std::numeric_limits<Index>::max();  ///< generations after the first population
-  double target = -std::numeric_limits<double>::infinity();   ///< enough is enough
+  double target = -std::numeric_limits<double>::infinity();   ///< objective value that suffices
   Index patience = std::numeric_limits<Index>::max();         ///< generations without any improvement
+
+  /// @throws std::invalid_argument naming the value
+  VERNIER_API void validate() const;
 };
 
 /// Why a search ended.
 enum class SearchStatus {
-  schedule_ended,    ///< the algorithm's own number of generations
+  schedule_ended,    ///< the algorithm's own schedule
   budget_spent,      ///< `max_evaluations` or `max_generations`
   target_reached,    ///< `target`
   stalled,           ///< `patience`
-  observer_stopped,  ///< an observer asked for it
+  observer_stopped,  ///< the observer returned false
 };
 
-/// What a search found.
+/// Result of a search.
 struct SearchResult {
   VectorX best;         ///< best point evaluated
   double best_fitness;  ///< its value; infinity if none was finite
-  Index evaluations;    ///< objective values computed
+  Index evaluations;    ///< number of objective values computed
   Index generations;    ///< steps after the first population
-  /// How it ended.
+  /// Why it ended.
   SearchStatus status;
 };
 
-/// A search between two generations, and all it takes to go on with it.
+/// A search between two generations, with all that is needed to resume it.
 template <SearchState S>
 struct OngoingSearch {
   S state;                ///< of the algorithm
-  Index evaluations = 0;  ///< objective values computed
+  Index evaluations = 0;  ///< number of objective values computed
   Index improved_at = 0;  ///< generation of the last improvement
 };
 
 namespace detail {
 
-/// Ends a step that would pass the budget.
-struct BudgetSpent {};
+/// An objective of either kind; the other reference is empty.
+struct ObjectiveRef {
+  FunctionRef<void(const ConstMatrixRef&, VectorRef)> batch;
+  FunctionRef<double(const VectorX&)> scalar;
 
-/// An objective, evaluated by an executor and counted.
-template <Objective F>
-class CountedObjective {
- public:
-  CountedObjective(const F& objective, ExecutorRef executor, Index& evaluations, Index limit)
-      : objective_(objective), executor_(executor), evaluations_(evaluations), limit_(limit) {}
-
-  void operator()(const MatrixX& population, VectorX& fitness) const {
-    if (population.cols() > limit_ - evaluations_) throw BudgetSpent{};
-    fitness.resize(population.cols());
-    if (executor_.gathers()) fitness = population.row(0).transpose();  // by which processes know each other's search
-    executor_.fill(fitness, [&](Index begin, Index end) {
-      if constexpr (BatchObjective<F>) {
-        objective_(population.middleCols(begin, end - begin), fitness.segment(begin, end - begin));
-      } else {
-        VectorX x(population.rows());
-        for (Index k = begin; k < end; ++k) {
-          std::copy_n(population.col(k).data(), x.size(), x.data());
-          fitness(k) = objective_(x);
-        }
-      }
-    });
-    for (auto& value : fitness)
-      if (!std::isfinite(value)) value = std::numeric_limits<double>::infinity();
-    evaluations_ += population.cols();
+  template <Objective F>
+  explicit ObjectiveRef(const F& objective) {
+    if constexpr (BatchObjective<F>)
+      batch = objective;
+    else
+      scalar = objective;
   }
 
- private:
-  const F& objective_;
-  ExecutorRef executor_;
-  Index& evaluations_;
-  Index limit_;
+  /// Evaluates a population; values that are not finite become +infinity.
+  VERNIER_API void evaluate(ExecutorRef executor, const MatrixX& population, VectorX& fitness) const;
 };
+
+/// What the loop needs to know between two steps.
+struct SearchSnapshot {
+  double best_fitness;
+  Index generation;
+  bool done;
+  Index next_evaluations;
+};
+
+/// The loop, without the types of algorithm and objective.
+VERNIER_API SearchStatus run_search(FunctionRef<SearchSnapshot()> snapshot, FunctionRef<void(Evaluate)> step,
+                                    Index& evaluations, Index& improved_at, const ObjectiveRef& objective,
+                                    const StoppingCriteria& stop, ExecutorRef executor, ObserverRef observer);
+
+VERNIER_API void check_resumable(Index dimension, const Box& box);
 
 }  // namespace detail
 
-/// The first population of a search, evaluated, to go on with.
-/// @throws std::invalid_argument on an unusable box or option
+/// The first population of a search, evaluated; `minimize` continues from it.
+/// @throws std::invalid_argument on an invalid box or option
 template <Metaheuristic A, Objective F>
 OngoingSearch<typename A::State> start_search(const A& algorithm, const F& objective, const Box& box,
                                               std::uint64_t seed = 0, ExecutorRef executor = {}) {
   box.validate();
   Index evaluations = 0;
-  const detail::CountedObjective<F> counted(objective, executor, evaluations, std::numeric_limits<Index>::max());
-  auto state = algorithm.start(box, seed, counted);
+  const detail::ObjectiveRef reference(objective);
+  auto state = algorithm.start(box, seed, [&](const MatrixX& population, VectorX& fitness) {
+    reference.evaluate(executor, population, fitness);
+    evaluations += population.cols();
+  });
   return {std::move(state), evaluations, 0};
 }
 
-/// Goes on with a search, in place: stopped anywhere and gone on with, it comes to the bits of one that was never
-/// stopped. `max_evaluations`, `max_generations` and `patience` count from the search's very beginning.
-/// @param algorithm the one it was started with, as are objective and box: they are for the caller to keep
+/// Resumes a search, in place: paused anywhere and resumed, it comes to the bits of one that was never paused.
+/// `max_evaluations`, `max_generations` and `patience` count from the very beginning of the search.
+/// @param algorithm the one it was started with, as objective and box: the caller keeps them
 /// @param objective as below
 /// @param box       bounds
-/// @param search    from `start_search`, from this function or from a file. An observer may save it whenever it is
-/// called. After an exception of the objective it is lost.
-/// @param stop      budget and stopping
-/// @param executor  who evaluates a population
-/// @param observer  sees the generation it goes on from, too
-/// @throws std::invalid_argument on an unusable box or option, or a search of another dimension
+/// @param search    from `start_search`, from this function or from a file. The observer may save it at every call.
+/// After an exception of the objective it must not be resumed.
+/// @param stop      budget and stopping criteria
+/// @param executor  evaluates the populations
+/// @param observer  is called for the generation it resumes from, too
+/// @throws std::invalid_argument on an invalid box or option, a search of another dimension, or an algorithm that
+/// evaluates more than it announced
 template <Metaheuristic A, Objective F>
 SearchResult minimize(const A& algorithm, const F& objective, const Box& box, OngoingSearch<typename A::State>& search,
-                      const Stop& stop = {}, ExecutorRef executor = {}, ObserverRef observer = {}) {
-  box.validate();
-  require(stop.max_evaluations >= 1, "minimize: max_evaluations is ", stop.max_evaluations, ", must be at least 1");
-  require(stop.patience >= 1, "minimize: patience is ", stop.patience, ", must be at least 1");
-  require(search.state.best.size() == box.dimension(), "minimize: a search in ", search.state.best.size(),
-          " dimensions cannot go on in a box of ", box.dimension());
-  auto& [state, evaluations, improved_at] = search;
-  const detail::CountedObjective<F> counted(objective, executor, search.evaluations, stop.max_evaluations);
-  const bool limited = stop.max_evaluations != std::numeric_limits<Index>::max();
-  typename A::State before = state;
-  for (;;) {
-    const auto result = [&search](SearchStatus status) {
-      return SearchResult{search.state.best, search.state.best_fitness, search.evaluations, search.state.generation,
-                          status};
-    };
-    const Progress progress{state.generation, evaluations, state.best_fitness};
-    if (!executor.decide([&] { return observer(progress); })) return result(SearchStatus::observer_stopped);
-    if (state.best_fitness <= stop.target) return result(SearchStatus::target_reached);
-    if (algorithm.done(state)) return result(SearchStatus::schedule_ended);
-    if (state.generation >= stop.max_generations || evaluations >= stop.max_evaluations)
-      return result(SearchStatus::budget_spent);
-    if (state.generation - improved_at >= stop.patience) return result(SearchStatus::stalled);
-    // How large a population will be only the step knows: one that would pass the budget is undone.
-    if (limited) before = state;
-    const double best = state.best_fitness;
-    try {
-      algorithm.step(state, box, counted);
-    } catch (const detail::BudgetSpent&) {
-      state = std::move(before);
-      return result(SearchStatus::budget_spent);
-    }
-    if (state.best_fitness < best) improved_at = state.generation;
-  }
+                      const StoppingCriteria& stop = {}, ExecutorRef executor = {}, ObserverRef observer = {}) {
+  auto& state = search.state;
+  detail::check_resumable(static_cast<const VectorX&>(state.best).size(), box);
+  const auto snapshot = [&]() -> detail::SearchSnapshot {
+    const bool done = algorithm.done(state);
+    return {static_cast<double>(state.best_fitness), static_cast<Index>(state.generation), done,
+            done ? Index{0} : static_cast<Index>(algorithm.next_evaluations(state))};
+  };
+  const auto step = [&](Evaluate evaluate) { algorithm.step(state, box, evaluate); };
+  const SearchStatus status = detail::run_search(snapshot, step, search.evaluations, search.improved_at,
+                                                 detail::ObjectiveRef(objective), stop, executor, observer);
+  return {state.best, state.best_fitness, search.evaluations, static_cast<Index>(state.generation), status};
 }
 
-/// Searches a box for the least value of an objective.
+/// Searches a box for the minimum of an objective.
 /// @param algorithm any `Metaheuristic`
 /// @param objective scalar `double f(x)` or batch `f(population, fitness)`; a value that is not finite counts as the
 /// worst
-/// @param box       bounds; what an algorithm does with them it says itself
-/// @param stop      budget and stopping; by default the algorithm's schedule alone
+/// @param box       bounds; whether points outside may be evaluated depends on the algorithm
+/// @param stop      budget and stopping criteria; by default the algorithm's schedule alone
 /// @param seed      same seed, same bits, whatever the executor
-/// @param executor  who evaluates a population; a batch objective gets one part a thread. A `GatheringExecutor` may
-/// share it out over processes that all run this same search: fitness is all they have to exchange.
-/// @param observer  sees every generation, the first population as generation 0; over several processes the first one's
-/// is asked, for all of them
-/// @throws std::invalid_argument on an unusable box or option
+/// @param executor  evaluates the populations; a batch objective gets one part per thread. A `DistributedExecutor` may
+/// distribute them over processes that all run this same search: they exchange fitness values only.
+/// @param observer  called for every generation, with the first population as generation 0; over several processes
+/// in the first one only, and its decision holds for all
+/// @throws std::invalid_argument on an invalid box or option
 template <Metaheuristic A, Objective F>
-SearchResult minimize(const A& algorithm, const F& objective, const Box& box, const Stop& stop = {},
+SearchResult minimize(const A& algorithm, const F& objective, const Box& box, const StoppingCriteria& stop = {},
                       std::uint64_t seed = 0, ExecutorRef executor = {}, ObserverRef observer = {}) {
-  require(stop.max_evaluations >= 1, "minimize: max_evaluations is ", stop.max_evaluations, ", must be at least 1");
-  require(stop.patience >= 1, "minimize: patience is ", stop.patience, ", must be at least 1");
+  stop.validate();
   auto search = start_search(algorithm, objective, box, seed, executor);
   return minimize(algorithm, objective, box, search, stop, executor, observer);
 }
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/search/minimize.ipp"
+#endif

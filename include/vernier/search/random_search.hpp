@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Points drawn at random: the baseline every search has to better.
+/// Random search: the baseline every search has to improve on.
 
 #include "vernier/search/state.hpp"
 
@@ -9,41 +9,30 @@ namespace vernier {
 
 /// Draws points uniformly from the box and keeps the best.
 struct RandomSearch {
-  int individuals = 50;     ///< points a generation, at least 1
+  int individuals = 50;     ///< points per generation, at least 1
   Index generations = 300;  ///< after the first population
 
   /// Between two generations.
   struct State : CommonState {
-    /// Whether the sizes of the members agree.
+    /// Always: there are no members of its own.
     bool consistent() const { return true; }
   };
 
   /// The first points.
-  State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
-    require(individuals >= 1, "RandomSearch: individuals is ", individuals, ", must be at least 1");
-    require(generations >= 0, "RandomSearch: generations is ", generations, ", must not be negative");
-    State s;
-    s.rng = Rng(seed);
-    look(s, box, evaluate);
-    return s;
-  }
+  VERNIER_API State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const;
 
-  /// As many others.
-  void step(State& s, const Box& box, Evaluate evaluate) const {
-    look(s, box, evaluate);
-    ++s.generation;
-  }
+  /// As many new points.
+  VERNIER_API void step(State& s, const Box& box, Evaluate evaluate) const;
 
   /// Whether all generations of the schedule were stepped.
   bool done(const State& s) const { return s.generation >= generations; }
 
- private:
-  void look(State& s, const Box& box, Evaluate evaluate) const {
-    const MatrixX points = uniform_points(box, individuals, s.rng);
-    VectorX fitness;
-    evaluate(points, fitness);
-    s.keep_best(points, fitness);
-  }
+  /// Points per generation.
+  Index next_evaluations(const State&) const { return individuals; }
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/search/random_search.ipp"
+#endif

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What the states of all searches have in common.
+/// Common parts of the states of all searches.
 
 #include <concepts>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace vernier {
 
-/// The part of a state that every search of ours has. States derive from it and list all their members with
+/// The part of a state that all searches of this library have. States derive from it and list all their members with
 /// `each_member(state, visit)`, `visit(name, member)`: what is saved and loaded.
 struct CommonState {
   VectorX best;  ///< best point evaluated
@@ -23,15 +23,9 @@ struct CommonState {
   /// Source of all randomness.
   Rng rng{};
 
-  /// Remembers the best of a population that was just evaluated, where it is better than what was known; the very first
-  /// always is.
-  void keep_best(const MatrixX& population, const VectorX& fitness) {
-    Index leader = 0;
-    const double value = fitness.minCoeff(&leader);
-    if (!(value < best_fitness) && best.size() > 0) return;
-    best_fitness = value;
-    best = population.col(leader);
-  }
+  /// Updates the best point from a population just evaluated, where that has a better one; from the very first
+  /// population always.
+  VERNIER_API void keep_best(const MatrixX& population, const VectorX& fitness);
 
   /// Lists the members.
   template <class Self, class Visit>
@@ -43,26 +37,16 @@ struct CommonState {
   }
 };
 
-/// Points drawn uniformly from a box, one a column, coordinate by coordinate.
-inline MatrixX uniform_points(const Box& box, Index count, Rng& rng) {
-  MatrixX points(box.dimension(), count);
-  for (Index k = 0; k < count; ++k)
-    for (Index d = 0; d < points.rows(); ++d) points(d, k) = rng.uniform(box.lower(d), box.upper(d));
-  return points;
-}
+/// Points drawn uniformly from a box, one per column, coordinate by coordinate.
+VERNIER_API MatrixX uniform_points(const Box& box, Index count, Rng& rng);
 
 /// A population of points between two generations.
 struct PointPopulation : CommonState {
   MatrixX positions;  ///< dimension x individuals
-  VectorX fitness;    ///< one value an individual
+  VectorX fitness;    ///< one value per individual
 
-  /// So many individuals uniform in the box, evaluated.
-  void draw(const Box& box, Index individuals, std::uint64_t seed, Evaluate evaluate) {
-    rng = Rng(seed);
-    positions = uniform_points(box, individuals, rng);
-    evaluate(positions, fitness);
-    keep_best(positions, fitness);
-  }
+  /// Individuals drawn uniformly from the box, evaluated.
+  VERNIER_API void initialise(const Box& box, Index individuals, std::uint64_t seed, Evaluate evaluate);
 
   /// Lists the members.
   template <class Self, class Visit>
@@ -72,14 +56,14 @@ struct PointPopulation : CommonState {
     visit("fitness", s.fitness);
   }
 
-  /// Whether the sizes of the members agree, and there are as many individuals as an algorithm needs.
-  bool consistent(Index least) const {
-    return positions.cols() >= least && positions.rows() == best.size() && fitness.size() == positions.cols();
+  /// Whether the sizes of the members agree, and there are at least `min_individuals`.
+  bool consistent(Index min_individuals) const {
+    return positions.cols() >= min_individuals && positions.rows() == best.size() && fitness.size() == positions.cols();
   }
 };
 
-/// A state whose members can be listed, so that it can be saved; `consistent()` says whether their sizes agree, which
-/// is what a file is asked.
+/// A state that lists its members, so that it can be saved; `consistent()` checks that their sizes agree, after they
+/// were loaded.
 template <class S>
 concept ListedState = SearchState<S> && std::default_initializable<S> && requires(S& state, const S& saved) {
   S::each_member(state, [](const char*, auto&) {});
@@ -88,3 +72,7 @@ concept ListedState = SearchState<S> && std::default_initializable<S> && require
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/search/state.ipp"
+#endif

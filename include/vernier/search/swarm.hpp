@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What all particle swarms share: where particles are, how fast, and what they remember.
+/// The state of particle swarms: positions, velocities and each particle's best.
 
 #include "vernier/search/state.hpp"
 
@@ -15,33 +15,13 @@ struct Swarm : CommonState {
   MatrixX best_positions;  ///< best of each particle
   VectorX best_values;     ///< their fitness
 
-  /// Positions uniform in the box, velocities as `velocity(d, x)` draws them at coordinate x of dimension d; evaluated.
-  template <class Velocity>
-  void place(const Box& box, Index particles, Velocity&& velocity, Evaluate evaluate) {
-    positions.resize(box.dimension(), particles);
-    velocities.resize(box.dimension(), particles);
-    for (Index k = 0; k < particles; ++k)
-      for (Index d = 0; d < box.dimension(); ++d) {
-        positions(d, k) = rng.uniform(box.lower(d), box.upper(d));
-        velocities(d, k) = velocity(d, positions(d, k));
-      }
-    evaluate(positions, fitness);
-    best_positions = positions;
-    best_values = fitness;
-    keep_best(positions, fitness);
-  }
+  /// Positions drawn uniformly from the box, evaluated; velocities from `velocity(d, x)`, called for each coordinate x
+  /// in dimension d.
+  VERNIER_API void initialise(const Box& box, Index particles, FunctionRef<double(Index, double)> velocity,
+                              Evaluate evaluate);
 
-  /// Evaluates all positions and remembers what is better; a generation is over.
-  void look(Evaluate evaluate) {
-    evaluate(positions, fitness);
-    for (Index k = 0; k < positions.cols(); ++k) {
-      if (!(fitness(k) < best_values(k))) continue;
-      best_values(k) = fitness(k);
-      best_positions.col(k) = positions.col(k);
-    }
-    keep_best(positions, fitness);
-    ++generation;
-  }
+  /// Evaluates all positions and updates each particle's best; ends a generation.
+  VERNIER_API void evaluate_and_update(Evaluate evaluate);
 
   /// Lists the members.
   template <class Self, class Visit>
@@ -55,12 +35,11 @@ struct Swarm : CommonState {
   }
 
   /// Whether the sizes of the members agree.
-  bool consistent() const {
-    const Index n = best.size(), particles = positions.cols();
-    return particles >= 1 && positions.rows() == n && velocities.rows() == n && velocities.cols() == particles &&
-           best_positions.rows() == n && best_positions.cols() == particles && fitness.size() == particles &&
-           best_values.size() == particles;
-  }
+  VERNIER_API bool consistent() const;
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/search/swarm.ipp"
+#endif

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Joins the two worlds: a regressor whose inner weights a metaheuristic finds. PSO-ELM is `Tuned{Elm{}, Pso{}}`.
+/// Hybrids: a regressor whose inner parameters a metaheuristic optimizes. PSO-ELM is `Tuned{Elm{}, Pso{}}`.
 
 #include <utility>
 #include <vector>
@@ -12,11 +12,11 @@
 
 namespace vernier {
 
-/// A recipe whose inner parameters can be searched for.
+/// A recipe whose inner parameters can be optimized.
 ///
-/// - `dimension(inputs)`, `box(inputs)`: of the vector a search moves
-/// - `objective(X, Y)`: an `Objective` of such vectors
-/// - `fit_at(X, Y, theta)`: the predictor at one of them
+/// - `dimension(inputs)`, `box(inputs)`: of the parameter vector theta
+/// - `objective(X, Y)`: an `Objective` of theta
+/// - `fit_at(X, Y, theta)`: the predictor at theta
 template <class R>
 concept TunableRegressor = std::copyable<R> &&
     requires(const R& regressor, const Eigen::Matrix<double, Eigen::Dynamic, 6>& x,
@@ -27,21 +27,22 @@ concept TunableRegressor = std::copyable<R> &&
   { regressor.fit_at(x, y, theta) } -> Predictor;
 };
 
-/// A regressor that is fitted at the best inner parameters a search finds.
+/// A regressor fitted at the best inner parameters a search finds.
 /// `const Tuned pso_elm{Elm{.hidden_nodes = 65}, Pso{.particles = 50, .iterations = 300}};`
 /// @cite Feng, Dong, Jin
 template <TunableRegressor R, Metaheuristic A>
 struct Tuned {
-  /// What is fitted.
+  /// The regressor fitted.
   R regressor;
-  /// What searches.
+  /// The search.
   A algorithm;
-  Stop stop{};               ///< beside the algorithm's own schedule
-  Index search_samples = 0;  ///< the search judges by so many samples, drawn from the seed; the fit has all. 0: by all
+  StoppingCriteria stop{};  ///< beside the algorithm's own schedule
+  Index search_samples =
+      0;  ///< number of samples, drawn at random, that the search evaluates; the fit uses all. 0: all
 
-  /// The search, then the fit at what it found. The observer of the options sees every generation, then the steps of
-  /// the fit where that has some. `objective` may take sample weights as a third argument, `fit_at` the options as a
-  /// fourth.
+  /// The search, then the fit at its best point. The observer of the options is called for every generation, then for
+  /// the steps of the fit if it has any. `objective` may have sample weights as a third parameter, `fit_at` the options
+  /// as a fourth.
   template <class X, class Y>
   auto fit(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
            const FitOptions& options = {}) const
@@ -78,7 +79,7 @@ struct Tuned {
     }
   }
 
-  /// By rows drawn without replacement.
+  /// On rows drawn without replacement.
   template <class X, class Y>
   SearchResult search_part(const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
                            const FitOptions& options) const {
@@ -97,9 +98,9 @@ template <class R, class A>
 Tuned(R, A) -> Tuned<R, A>;
 /// Deduction guide, for compilers that have none for aggregates.
 template <class R, class A>
-Tuned(R, A, Stop) -> Tuned<R, A>;
+Tuned(R, A, StoppingCriteria) -> Tuned<R, A>;
 /// Deduction guide, for compilers that have none for aggregates.
 template <class R, class A>
-Tuned(R, A, Stop, Index) -> Tuned<R, A>;
+Tuned(R, A, StoppingCriteria, Index) -> Tuned<R, A>;
 
 }  // namespace vernier

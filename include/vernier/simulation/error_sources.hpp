@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
+#include "vernier/core/rng.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 
 namespace vernier {
 
-/// Sizes of joint errors. Each coefficient is normal with the standard deviation given here; 0 leaves its source out.
+/// Standard deviations of joint errors, whose coefficients are drawn from normal distributions; 0 leaves a source out.
 /// The defaults add up to a few tenths of a milliradian, as those of a small industrial arm do.
 struct JointErrorSizes {
   double gear_ratio = 1e-4;  ///< [rad/rad]
@@ -31,65 +30,23 @@ struct JointErrorSizes {
   Vector3 down = -Vector3::UnitZ();  ///< direction of gravity in the base frame of the chain; a unit vector
 };
 
-/// Joint errors of random size. Sources and joints are drawn independently, and so are harmonics in ascending order:
+namespace detail {
+
+VERNIER_API JointErrors draw_joint_errors(const ChainTable& chain, const JointErrorSizes& sizes, std::uint64_t seed);
+
+}  // namespace detail
+
+/// Joint errors drawn at random. Sources and joints are drawn independently, and so are harmonics in ascending order:
 /// switching one off, or adding harmonics, leaves all others as they were. The arm is then
 /// `Framed(WithJointErrors<Chain>(chain, errors), base, tool)`.
-/// @param chain torques of gravity are taken from it
-/// @param sizes how large the errors are
+/// @param chain whose links give the torques of gravity
+/// @param sizes standard deviations
 /// @param seed  same seed, same errors
 /// @throws std::invalid_argument on a size that is negative or not finite, or harmonics outside 0 .. 500
-template <class Chain>
-JointErrors<Chain> draw_joint_errors(const Chain& chain, const JointErrorSizes& sizes = {}, std::uint64_t seed = 0) {
-  constexpr int N = Chain::dof;
-  for (const auto& [value, name] :
-       std::initializer_list<std::pair<double, const char*>>{{sizes.gear_ratio, "gear_ratio"},
-                                                             {sizes.coupling, "coupling"},
-                                                             {sizes.compliance, "compliance"},
-                                                             {sizes.harmonic, "harmonic"},
-                                                             {sizes.decay, "decay"},
-                                                             {sizes.ripple, "ripple"}})
-    require(value >= 0 && std::isfinite(value), "JointErrorSizes: ", name, " is ", value,
-            ", must be 0 or more and finite");
-  require(sizes.harmonics >= 0 && sizes.harmonics <= 500, "JointErrorSizes: harmonics is ", sizes.harmonics,
-          ", must lie in 0..500");
-  require(sizes.ripple == 0 || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
-          "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (",
-          sizes.harmonics, ") and in 1..500");
-
-  JointTerms<Chain> terms;
-  terms.gear_ratio = sizes.gear_ratio > 0;
-  terms.coupling = sizes.coupling > 0;
-  if (sizes.compliance > 0) terms.gravity.emplace(chain, sizes.down);
-  const int low = sizes.harmonic > 0 ? sizes.harmonics : 0;
-  for (int i = 0; i < N; ++i)
-    if (chain.row(i).joint == JointType::revolute)
-      terms.transmission[static_cast<std::size_t>(i)] = Fourier{sizes.ripple > 0 ? sizes.ripple_harmonic : low};
-
-  VectorX coefficients = VectorX::Zero(terms.size());
-  Index at = 0;
-  const auto draw = [&](Rng& rng, Index n, double size) {
-    for (const Index end = at + n; at < end; ++at) coefficients(at) = size * rng.normal();
-  };
-  std::uint64_t stream = 0;  // every source and joint has its own
-  Rng gear(child_seed(seed, stream++)), coupling(child_seed(seed, stream++)), compliance(child_seed(seed, stream++));
-  if (terms.gear_ratio) draw(gear, N, sizes.gear_ratio);
-  if (terms.coupling) draw(coupling, N - 1, sizes.coupling);
-  if (terms.gravity) {
-    const Index begin = at;
-    draw(compliance, GravityCompliance<Chain>::size, sizes.compliance);
-    coefficients.segment(begin, at - begin) = coefficients.segment(begin, at - begin).cwiseAbs().eval();
-  }
-  for (int i = 0; i < N; ++i) {
-    Rng low_stream(child_seed(seed, stream++)), ripple_stream(child_seed(seed, stream++));
-    const Index end = terms.transmission_begin(i + 1);
-    if (at == end) continue;
-    for (int k = 1; k <= low; ++k) draw(low_stream, 2, sizes.harmonic / std::pow(k, sizes.decay));
-    if (sizes.ripple > 0) {
-      at = end - 2;
-      draw(ripple_stream, 2, sizes.ripple);
-    }
-  }
-  return {std::move(terms), std::move(coefficients)};
+template <int N, class Convention>
+JointErrors draw_joint_errors(const DhChain<N, Convention>& chain, const JointErrorSizes& sizes = {},
+                              std::uint64_t seed = 0) {
+  return detail::draw_joint_errors(detail::ChainTable(chain.view()), sizes, seed);
 }
 
 /// From which side each joint comes when the rows are visited in order, n x N: +1 rising, -1 falling. A joint that
@@ -169,3 +126,7 @@ WithOutliers<N> with_outliers(const Dataset<N>& data, double share, double size,
 }
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/simulation/error_sources.ipp"
+#endif

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What every `Executor` must do, as a list of violations.
+/// The laws of `Executor`, checked at run time: a list of violations.
 
 #include <algorithm>
 #include <atomic>
@@ -24,7 +24,7 @@ namespace vernier::testing {
 
 namespace detail {
 
-/// Checks one executor. Whatever it finds, it makes the same calls, so that processes stay together.
+/// Checks one executor. It makes the same calls whatever it finds, so that processes stay synchronised.
 template <Executor E>
 class ExecutorCheck {
  public:
@@ -34,9 +34,9 @@ class ExecutorCheck {
     try {
       coverage();
       range_exceptions();
-      filling();
-      fill_exceptions();
-      decisions();
+      gathering();
+      gather_exceptions();
+      broadcasts();
       searches();
     } catch (const std::exception& error) {
       violations_.push_back(message("executor: threw on good work: ", error.what()));
@@ -56,7 +56,7 @@ class ExecutorCheck {
       executor_.for_ranges(n, [&](Index begin, Index end) {
         ++running;
         if (begin < 0 || begin >= end || end > n) ++unusable;
-        // The last to be done is slow: who does not wait for it is found out.
+        // The last range is slow, which detects an executor that does not wait for it.
         if (end == n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         for (Index i = std::max<Index>(begin, 0); i < std::min(end, n); ++i) ++seen[static_cast<std::size_t>(i)];
         --running;
@@ -85,57 +85,57 @@ class ExecutorCheck {
       } catch (...) {
         caught = "something else";
       }
-      expect(caught == "culprit", message("of an exception at ", culprit, " arrived: ", caught));
-      expect(running == 0, message("an exception at ", culprit, " arrived while others still worked"));
+      expect(caught == "culprit", message("of an exception at ", culprit, " was rethrown: ", caught));
+      expect(running == 0, message("an exception at ", culprit, " was rethrown while others still worked"));
     }
   }
 
-  void filling() {
+  void gathering() {
     for (const Index n : {0, 1, 2, 3, 10, 101}) {
       VectorX values = VectorX::Zero(n), right(n);
       const auto value = [](Index i) { return 1 / (static_cast<double>(i) + 3); };
       for (Index i = 0; i < n; ++i) right(i) = value(i);
-      reference_.fill(values, [&](Index begin, Index end) {
+      reference_.allgather(values, [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) values(i) = value(i);
       });
-      expect(same_bits(values, right), message("values are missing or wrong after fill, n = ", n));
+      expect(same_bits(values, right), message("values are missing or wrong after allgather, n = ", n));
     }
   }
 
-  void fill_exceptions() {
+  void gather_exceptions() {
     for (const Index culprit : {0, 5, 9}) {
       bool caught = false;
       VectorX values = VectorX::Zero(10);
       try {
-        reference_.fill(values, [&](Index begin, Index end) {
+        reference_.allgather(values, [&](Index begin, Index end) {
           if (begin <= culprit && culprit < end) throw std::out_of_range("culprit");
         });
       } catch (const std::exception&) {
         caught = true;
       }
-      expect(caught, message("an exception at value ", culprit, " did not arrive from fill"));
+      expect(caught, message("an exception at value ", culprit, " was not rethrown by allgather"));
     }
-    filling();  // and nothing is left of it
+    gathering();  // and still works
   }
 
-  void decisions() {
+  void broadcasts() {
     const auto caller = std::this_thread::get_id();
     bool elsewhere = false;
-    for (const bool answer : {true, false}) {
-      const bool decided = reference_.decide([&] {
+    for (const bool value : {true, false}) {
+      const bool received = reference_.broadcast([&] {
         elsewhere = elsewhere || std::this_thread::get_id() != caller;
-        return answer;
+        return value;
       });
-      expect(decided == answer, message("a question answered ", answer, " was decided ", decided));
+      expect(received == value, message("a broadcast of ", value, " returned ", received));
     }
-    expect(!elsewhere, "a question was asked on another thread");
+    expect(!elsewhere, "a condition to broadcast was evaluated on another thread");
     bool caught = false;
     try {
-      static_cast<void>(reference_.decide([]() -> bool { throw std::out_of_range("question"); }));
+      static_cast<void>(reference_.broadcast([]() -> bool { throw std::out_of_range("condition"); }));
     } catch (const std::exception&) {
       caught = true;
     }
-    expect(caught, "the exception of a question did not arrive");
+    expect(caught, "an exception of a condition to broadcast was not rethrown");
   }
 
   void searches() {
@@ -158,7 +158,7 @@ class ExecutorCheck {
     const SearchResult stopped =
         minimize(pso, scalar, box, {}, 4, reference_, [](const Progress& progress) { return progress.generation < 4; });
     expect(stopped.generations == 4 && stopped.status == SearchStatus::observer_stopped,
-           "an observer's stop was not heard");
+           "an observer's stop had no effect");
   }
 
   E& executor_;
@@ -168,15 +168,15 @@ class ExecutorCheck {
 
 }  // namespace detail
 
-/// Runs an executor through the laws of `Executor` and, where it is one, of `GatheringExecutor`:
+/// Runs an executor through the laws of `Executor` and, where it is one, of `DistributedExecutor`:
 ///
 /// - ranges are not empty and cover 0..n exactly once, and all work is done when the call returns;
-/// - an exception arrives when nothing works any more, and the executor goes on being of use;
-/// - filled values are the right ones and all there, here and (where this is run in several processes) everywhere;
-/// - a question is asked on the calling thread, and its answer is heard;
+/// - an exception is rethrown after all work has ended, and the executor can still be used;
+/// - gathered values are complete and correct, in this and (where this is run in several) in all processes;
+/// - a condition to broadcast is evaluated on the calling thread, and its value returned;
 /// - searches give the same bits as on one thread.
-/// @param executor all processes that share its work must call this together
-/// @return one sentence a violation; empty when all laws hold
+/// @param executor all processes it distributes work over must call this together
+/// @return one sentence per violation; empty when all laws hold
 template <Executor E>
 std::vector<std::string> executor_violations(E& executor) {
   return detail::ExecutorCheck<E>(executor).run();

@@ -1,9 +1,8 @@
 #pragma once
 
 /// @file
-/// What every `Metaheuristic` must do, as a list of violations.
+/// The laws of `Metaheuristic`, checked at run time: a list of violations.
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <exception>
@@ -45,12 +44,13 @@ class MetaheuristicCheck {
     try {
       repeatability();
       best_point();
+      if (!announcements()) return std::move(violations_);  // minimize would throw
       through_minimize();
       budgets();
-      going_on();
-      unusable_values();
+      resuming();
+      values_not_finite();
     } catch (const std::exception& error) {
-      violations_.push_back(message("metaheuristic: threw on a good problem: ", error.what()));
+      violations_.push_back(message("metaheuristic: threw on a valid problem: ", error.what()));
     }
     return std::move(violations_);
   }
@@ -63,18 +63,18 @@ class MetaheuristicCheck {
     if (!holds) violations_.push_back(message("metaheuristic: ", law));
   }
 
-  /// A bowl in coordinates of the box whose bottom lies in a corner region: two coordinates just outside.
+  /// A quadratic function in coordinates of the unit box, its minimum just outside in two of them.
   double bowl(const Eigen::Ref<const VectorX>& x) const {
     const VectorX bottom = (VectorX(4) << 0.3, 1.1, -0.1, 0.6).finished();
     return ((x - box_.lower).cwiseQuotient(box_.upper - box_.lower) - bottom).squaredNorm() + 0.25;
   }
 
-  /// The bowl as an objective.
-  auto whole() const {
+  /// The same as an objective.
+  auto bowl_objective() const {
     return [this](const VectorX& x) { return bowl(x); };
   }
 
-  /// Evaluates the bowl and writes down what was asked.
+  /// Evaluates the function and records populations and values.
   auto recorder(SearchRecord& record) const {
     return [this, &record](const MatrixX& population, VectorX& fitness) {
       fitness.resize(population.cols());
@@ -100,11 +100,11 @@ class MetaheuristicCheck {
     SearchRecord first, again, other, left, right;
     const State alone = search(1, first);
     const State repeated = search(1, again);
-    expect(first == again && same_bits(alone.best, repeated.best), "the same seed searched elsewhere");
+    expect(first == again && same_bits(alone.best, repeated.best), "the same seed made another search");
     search(2, other);
     expect(!(first == other), "another seed made the same search");
 
-    // Two searches of one algorithm, a step each in turn.
+    // Two searches of one algorithm, stepped alternately.
     const auto record_left = recorder(left), record_right = recorder(right);
     State a = algorithm_.start(box_, 1, record_left), b = algorithm_.start(box_, 2, record_right);
     expect(a.generation == 0, "the first population is not generation 0");
@@ -112,9 +112,10 @@ class MetaheuristicCheck {
       algorithm_.step(a, box_, record_left);
       algorithm_.step(b, box_, record_right);
     }
-    expect(left == first && right == other, "searches in turn disturb each other: the algorithm hides state");
+    expect(left == first && right == other,
+           "searches stepped alternately disturb each other: the algorithm hides state");
 
-    // A copied state goes on as the original, also in a copy of the algorithm.
+    // A copied state continues as the original, also with a copy of the algorithm.
     SearchRecord of_original, of_copy;
     const A same_algorithm = algorithm_;
     State original = algorithm_.start(box_, 3, recorder(of_original));
@@ -125,10 +126,10 @@ class MetaheuristicCheck {
     for (int i = 0; i < 3 && !algorithm_.done(original); ++i) algorithm_.step(original, box_, recorder(of_original));
     for (int i = 0; i < 3 && !same_algorithm.done(copy); ++i) same_algorithm.step(copy, box_, recorder(of_copy));
     expect(of_original == of_copy && same_bits(original.best, copy.best),
-           "a copied state went on differently from the original");
+           "a copied state continued differently from the original");
   }
 
-  /// Whether the state's best is a point evaluated so far, with its value, and none evaluated was better.
+  /// Whether the state's best is the best point evaluated so far, with its value.
   bool best_was_evaluated(const State& state, const SearchRecord& record) const {
     bool found = false;
     for (std::size_t i = 0; i < record.populations.size(); ++i)
@@ -166,8 +167,8 @@ class MetaheuristicCheck {
   void through_minimize() {
     SearchRecord record;
     const State stepped = search(5, record);
-    Index asked = 0;
-    for (const VectorX& values : record.values) asked += values.size();
+    Index evaluations = 0;
+    for (const VectorX& values : record.values) evaluations += values.size();
     std::atomic<Index> calls = 0;
     const auto objective = [&](const VectorX& x) {
       ++calls;
@@ -178,12 +179,12 @@ class MetaheuristicCheck {
     };
     const auto equal = [&](const SearchResult& result) {
       return same_bits(result.best, stepped.best) && result.best_fitness == stepped.best_fitness &&
-             result.generations == stepped.generation && result.evaluations == asked;
+             result.generations == stepped.generation && result.evaluations == evaluations;
     };
-    const Stop stop{.max_generations = generations};
+    const StoppingCriteria stop{.max_generations = generations};
     const SearchResult result = minimize(algorithm_, objective, box_, stop, 5);
     expect(equal(result), "N steps differ from a run of N through minimize");
-    expect(result.evaluations == calls, "minimize counts other evaluations than were made");
+    expect(result.evaluations == calls, "minimize counts another number of evaluations than were made");
     for (const int threads : {1, 2}) {
       const ThreadExecutor executor(threads);
       expect(equal(minimize(algorithm_, objective, box_, stop, 5, executor)) &&
@@ -192,52 +193,76 @@ class MetaheuristicCheck {
     }
   }
 
-  /// Every budget, whatever size populations have, ends the search before the generation that would pass it.
+  /// No step evaluates more than announced.
+  bool announcements() {
+    Index made = 0;
+    const auto counting = [&](const MatrixX& population, VectorX& fitness) {
+      SearchRecord ignored;
+      recorder(ignored)(population, fitness);
+      made += population.cols();
+    };
+    State state = algorithm_.start(box_, 5, counting);
+    spent_ = {made};
+    bool honest = true;
+    while (state.generation < generations && !algorithm_.done(state)) {
+      announced_.push_back(made + static_cast<Index>(algorithm_.next_evaluations(state)));
+      algorithm_.step(state, box_, counting);
+      honest = honest && made <= announced_.back();
+      spent_.push_back(made);
+    }
+    expect(honest, "a step evaluated more points than next_evaluations announced");
+    return honest;
+  }
+
+  /// Every budget ends the search before the generation that would exceed it.
   void budgets() {
-    std::vector<Index> spent;
-    const auto watch = [&](const Progress& progress) { spent.push_back(progress.evaluations); };
-    minimize(algorithm_, whole(), box_, Stop{.max_generations = generations}, 5, {}, watch);
     bool kept = true, exhausted = true;
-    for (const Index at : spent)
+    for (const Index at : spent_)
       for (const Index budget : {at - 1, at, at + 1}) {
-        if (budget < spent.front()) continue;
+        if (budget < spent_.front()) continue;
         std::atomic<Index> calls = 0;
         const auto objective = [&](const VectorX& x) {
           ++calls;
           return bowl(x);
         };
         const SearchResult limited =
-            minimize(algorithm_, objective, box_, Stop{.max_evaluations = budget, .max_generations = generations}, 5);
+            minimize(algorithm_, objective, box_,
+                     StoppingCriteria{.max_evaluations = budget, .max_generations = generations}, 5);
         kept = kept && limited.evaluations <= budget && calls == limited.evaluations;
-        const auto affordable = std::count_if(spent.begin(), spent.end(), [&](Index s) { return s <= budget; });
-        exhausted = exhausted && limited.generations == affordable - 1;
+        Index affordable = 0;
+        for (const Index needed : announced_) {
+          if (needed > budget) break;
+          ++affordable;
+        }
+        exhausted = exhausted && limited.generations == affordable;
       }
-    expect(kept, "the budget of evaluations was passed");
+    expect(kept, "the budget of evaluations was exceeded");
     expect(exhausted, "another number of generations than the budget of evaluations allows");
   }
 
-  /// A search that is stopped and gone on with, also after a generation that was too dear, is one that never stopped.
-  void going_on() {
+  /// A search that is paused and resumed, also before a generation that exceeds the budget, is one that never paused.
+  void resuming() {
     std::vector<Index> spent;
     const auto watch = [&](const Progress& progress) { spent.push_back(progress.evaluations); };
-    const Stop last{.max_generations = generations};
-    const SearchResult right = minimize(algorithm_, whole(), box_, last, 6, {}, watch);
+    const StoppingCriteria last{.max_generations = generations};
+    const SearchResult right = minimize(algorithm_, bowl_objective(), box_, last, 6, {}, watch);
     for (std::size_t g = 0; g + 1 < spent.size(); ++g)
-      for (const Stop& pause : {Stop{.max_generations = static_cast<Index>(g)},
-                                Stop{.max_evaluations = spent[g] + 1, .max_generations = generations}}) {
-        auto search = start_search(algorithm_, whole(), box_, 6);
-        minimize(algorithm_, whole(), box_, search, pause);
+      for (const StoppingCriteria& pause :
+           {StoppingCriteria{.max_generations = static_cast<Index>(g)},
+            StoppingCriteria{.max_evaluations = spent[g] + 1, .max_generations = generations}}) {
+        auto search = start_search(algorithm_, bowl_objective(), box_, 6);
+        minimize(algorithm_, bowl_objective(), box_, search, pause);
         auto copy = search;
-        const SearchResult found = minimize(algorithm_, whole(), box_, copy, last);
+        const SearchResult found = minimize(algorithm_, bowl_objective(), box_, copy, last);
         if (same_bits(found.best, right.best) && found.best_fitness == right.best_fitness &&
             found.evaluations == right.evaluations && found.generations == right.generations)
           continue;
-        return expect(false, "a search that was stopped and gone on with came to another result");
+        return expect(false, "a search that was paused and resumed came to another result");
       }
   }
 
-  /// Values that are not finite arrive as +infinity, which is never the best once something finite was evaluated.
-  void unusable_values() {
+  /// Values that are not finite arrive as +infinity, which is never the best once a finite value was evaluated.
+  void values_not_finite() {
     bool finite_seen = false;
     const auto objective = [&](const VectorX& x) {
       const double at = (x(0) - box_.lower(0)) / (box_.upper(0) - box_.lower(0));
@@ -247,19 +272,20 @@ class MetaheuristicCheck {
       finite_seen = true;
       return bowl(x);
     };
-    // A small population may lie in the unusable half altogether; not so in every one of eight searches.
+    // A small population may lie in that half altogether, but not in every one of eight searches.
     bool sound = true, found = false;
     for (std::uint64_t seed = 10; seed < 18; ++seed) {
       finite_seen = false;
-      const SearchResult result = minimize(algorithm_, objective, box_, Stop{.max_generations = generations}, seed);
+      const SearchResult result =
+          minimize(algorithm_, objective, box_, StoppingCriteria{.max_generations = generations}, seed);
       found = found || finite_seen;
       sound = sound && (finite_seen ? objective(result.best) == result.best_fitness
                                     : result.best_fitness == std::numeric_limits<double>::infinity());
     }
     expect(sound, "a value that is not finite became the best");
-    expect(found, "with values that are not finite in half of the box nothing was found in the other");
+    expect(found, "with values that are not finite in half of the box the other half was never found");
     const auto never = [](const VectorX&) { return std::numeric_limits<double>::quiet_NaN(); };
-    const SearchResult none = minimize(algorithm_, never, box_, Stop{.max_generations = generations}, 1);
+    const SearchResult none = minimize(algorithm_, never, box_, StoppingCriteria{.max_generations = generations}, 1);
     expect(none.best_fitness == std::numeric_limits<double>::infinity() && none.best.size() == box_.dimension() &&
                none.best.allFinite(),
            "where no value is finite the best is not a point with the value infinity");
@@ -268,24 +294,25 @@ class MetaheuristicCheck {
   const A& algorithm_;
   bool keeps_box_;
   Box box_;
+  std::vector<Index> spent_, announced_;  // evaluations after each generation, and at most after its next one
   std::vector<std::string> violations_;
 };
 
 }  // namespace detail
 
-/// Runs an algorithm through the laws of `Metaheuristic`, on a bowl whose bottom lies outside the box:
+/// Checks the laws of `Metaheuristic` on a quadratic function whose minimum lies outside the box:
 ///
-/// - the same seed gives the same bits, another seed another search, also when two searches are stepped in turn;
-/// - a copied state goes on as the original; N steps equal a run of N through `minimize`;
-/// - the best value never becomes worse, and best is the best of what was evaluated;
-/// - nothing outside the box is evaluated, where the algorithm says so;
-/// - 1 and 2 threads give the same bits, and evaluations are counted as they are made;
-/// - no budget of evaluations is passed, and none left that a generation could have had;
-/// - a search that is stopped and gone on with comes to the same bits;
+/// - the same seed gives the same bits, another seed another search, also when two searches are stepped alternately;
+/// - a copied state continues as the original; N steps equal a run of N through `minimize`;
+/// - the best value never becomes worse, and best is the best of the points evaluated;
+/// - nothing outside the box is evaluated, where `keeps_box`;
+/// - 1 and 2 threads give the same bits, and `minimize` counts the evaluations made;
+/// - no step evaluates more points than announced, and no budget of evaluations is exceeded;
+/// - a search that is paused and resumed comes to the same bits;
 /// - a value that is not finite is never the best.
-/// @param algorithm its schedule should allow a few generations
+/// @param algorithm its schedule should have at least a few generations
 /// @param keeps_box whether nothing outside the box may be evaluated
-/// @return one sentence a violation; empty when all laws hold
+/// @return one sentence per violation; empty when all laws hold
 template <Metaheuristic A>
 std::vector<std::string> metaheuristic_violations(const A& algorithm, bool keeps_box) {
   return detail::MetaheuristicCheck<A>(algorithm, keeps_box).run();

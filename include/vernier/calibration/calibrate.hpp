@@ -1,0 +1,179 @@
+#pragma once
+
+/// @file
+/// The calibration pipeline: from measurements to everything known of a real arm. It starts with `identify`, so it
+/// needs the component `ceres`: include vernier/ceres.hpp.
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vernier/calibration/calibration.hpp"
+#include "vernier/calibration/detail/plausibility.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/identification/identify.hpp"
+#include "vernier/identification/stations.hpp"
+#include "vernier/regression/ridge_elm.hpp"
+#include "vernier/search/pso.hpp"
+#include "vernier/search/tuned.hpp"
+
+namespace vernier {
+
+/// How the position error that a model leaves is learned: a ridge ELM whose hidden weights a particle swarm optimises
+/// by leave-one-out error, the mean alone among the candidates.
+struct RemainderOptions {
+  bool on_geometry = false;    ///< also on geometry alone: the classical alternative to an error model
+  bool on_error_model = true;  ///< on the error model
+  int hidden_nodes = 30;       ///< number of hidden nodes
+  int particles = 20;          ///< of the swarm
+  int iterations = 20;         ///< of the swarm; more bring nothing that held-out poses would show
+
+  /// The recipe.
+  Tuned<RidgeElm, Pso> recipe() const {
+    return {RidgeElm{.hidden_nodes = hidden_nodes},
+            Pso{.particles = particles, .iterations = iterations, .positions = PositionRule::clamped}};
+  }
+};
+
+/// Options of `calibrate`.
+struct CalibrateOptions {
+  IdentifyOptions geometry{.frames = Frames::base_and_tool};  ///< of the geometric identification
+  ErrorModelOptions errors{};                                 ///< of the joint errors
+  SensorModel sensors{};                                      ///< of all measurements, for every step
+  RemainderOptions remainder{};                               ///< of what is learned on top
+  bool refuse_implausible = true;    ///< throw for data that do not fit the arm, or do not support a calibration
+  std::string arm_name = "the arm";  ///< how messages name the arm
+  std::vector<std::string> station_names{};   ///< how messages name the stations; by default "station 1", ...
+  std::vector<std::string> distance_names{};  ///< how messages name the sets of distances; "distances 1", ...
+};
+
+namespace detail {
+
+/// A given name, or `what` and a number.
+inline std::string name_of(const std::vector<std::string>& names, std::size_t k, const char* what) {
+  return k < names.size() ? names[k] : message(what, ' ', k + 1);
+}
+
+/// Poses of all stations of one arm, as seen from the first.
+template <class Chain>
+Dataset<Chain::dof> seen_from_first(const std::vector<ErrorModel<Chain>>& models,
+                                    std::span<const Dataset<Chain::dof>> stations) {
+  std::vector<Isometry3> bases;
+  for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
+  return in_one_frame<Chain::dof>(stations, bases, false);
+}
+
+/// Learns what the models of some stations leave, in the frame of the first.
+template <class Chain>
+LearnedRemainder<Chain::dof> learn_remainder(const std::vector<ErrorModel<Chain>>& models,
+                                             std::span<const Dataset<Chain::dof>> stations,
+                                             const RemainderOptions& options, const FitOptions& fit) {
+  const auto hybrid =
+      CartesianCompensation{options.recipe()}.fit(models.front(), seen_from_first<Chain>(models, stations), fit);
+  return {hybrid.identified().learned(), hybrid.identified().coverage()};
+}
+
+}  // namespace detail
+
+/// Calibrates an arm: registers every station, identifies geometry and frames, fits geometry, frames and joint errors
+/// together, and learns the remainder. Whatever leave-one-out errors do not support is left out.
+/// @param arm       the arm as designed; its frames are where base and tool are assumed, and stay where they are known
+/// @param stations  measured poses, one set a place of the sensor; may be empty
+/// @param distances measured distances, one set a fixed point; in the error model beside poses, in both steps without
+/// @param options   of all steps
+/// @param fit       seed, executor and observer of what is learned
+/// @param search    of priors, see `fit_error_model`
+/// @throws std::invalid_argument on an unusable option or no measurements
+/// @throws CalibrationFailure for data that do not fit the arm or do not support a calibration, with the reason, unless
+///         `refuse_implausible` is off
+template <NominalArm Arm, RangeOf<Dataset<Arm::dof>> Stations, RangeOf<Distances<Arm::dof>> Wires>
+Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, const Wires& distances,
+                                    const CalibrateOptions& options = {}, const FitOptions& fit = {},
+                                    PriorSearch search = {}) {
+  using Chain = ChainOf<Arm>;
+  constexpr int N = Chain::dof;
+  const Framed<Chain> nominal = in_frames(arm);
+  const std::span<const Dataset<N>> poses(std::data(stations), std::size(stations));
+  const std::span<const Distances<N>> wires(std::data(distances), std::size(distances));
+  require(poses.size() + wires.size() > 0, "calibrate: no measurements");
+
+  IdentifyOptions frames_alone = options.geometry;
+  frames_alone.geometry = false;
+  std::vector<Calibrated<Chain>> frames;
+  std::vector<Isometry3> bases;
+  for (std::size_t s = 0; s < poses.size(); ++s) {
+    const auto registered = identify(nominal, poses[s], frames_alone, options.sensors);
+    if (options.refuse_implausible) {
+      detail::require_plausible(ArmGeometry(nominal), detail::station_of(poses[s], options.sensors),
+                                registered.rms_after, options.arm_name,
+                                detail::name_of(options.station_names, s, "station"));
+      detail::require_usable(registered, "registering the frames");
+    }
+    frames.push_back(registered.model);
+    bases.push_back(registered.model.identified().base());
+  }
+  for (std::size_t d = 0; d < wires.size() && !frames.empty() && options.refuse_implausible; ++d)
+    detail::require_plausible_distances(ArmGeometry(frames.front().identified()),
+                                        detail::station_of(wires[d], options.sensors),
+                                        detail::name_of(options.distance_names, d, "distances"));
+
+  const auto began = std::chrono::steady_clock::now();
+  Identified<Chain> geometry = poses.empty()
+                                   ? identify(nominal, wires.front(), options.geometry, options.sensors)
+                                   : identify(nominal, in_one_frame<N>(poses, bases, options.sensors.use_orientations),
+                                              options.geometry, options.sensors);
+  if (options.refuse_implausible) detail::require_usable(geometry, "identifying the geometry");
+  FittedErrorModel<Chain> errors = fit_error_model(geometry, poses, wires, options.errors, options.sensors, search);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+
+  Calibration<Chain> out{std::move(frames), std::move(geometry), std::move(errors)};
+  out.fit_seconds = seconds.count();
+  out.sensors = options.sensors;
+  if (!poses.empty() && options.remainder.on_geometry)
+    out.geometry_remainder = detail::learn_remainder<Chain>(out.errors.geometry, poses, options.remainder, fit);
+  if (!poses.empty() && options.remainder.on_error_model)
+    out.remainder = detail::learn_remainder<Chain>(out.errors.models, poses, options.remainder, fit);
+
+  std::vector<double> residuals;
+  out.oriented = options.sensors.use_orientations && !poses.empty();
+  for (std::size_t s = 0; s < poses.size(); ++s) {
+    out.poses += poses[s].size();
+    out.oriented = out.oriented && poses[s].has_orientations();
+    const VectorX e = position_errors(out.errors.models[s], poses[s]);
+    residuals.insert(residuals.end(), e.begin(), e.end());
+  }
+  for (const auto& data : wires) out.distances += data.size();
+  JointRows<N> measured(out.poses + out.distances, N);
+  Index at = 0;
+  const auto append = [&](const auto& data) {
+    measured.middleRows(at, data.size()) = data.joints();
+    at += data.size();
+  };
+  for (const auto& data : poses) append(data);
+  for (const auto& data : wires) append(data);
+  out.coverage = JointCoverage<N>::covering(measured);
+  if (!residuals.empty()) {
+    const Eigen::Map<const VectorX> e(residuals.data(), static_cast<Index>(residuals.size()));
+    out.median_error = ErrorStatistics::of(e).median;
+    out.outliers = (e.array() > 8 * out.median_error).count();
+  }
+  return out;
+}
+
+/// The same from poses alone.
+template <NominalArm Arm, RangeOf<Dataset<Arm::dof>> Stations>
+Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, const CalibrateOptions& options = {},
+                                    const FitOptions& fit = {}, PriorSearch search = {}) {
+  return calibrate(arm, stations, std::span<const Distances<Arm::dof>>(), options, fit, search);
+}
+
+/// The same from one station.
+template <NominalArm Arm>
+Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Dataset<Arm::dof>& data, const CalibrateOptions& options = {},
+                                    const FitOptions& fit = {}, PriorSearch search = {}) {
+  return calibrate(arm, std::span<const Dataset<Arm::dof>>(&data, 1), options, fit, search);
+}
+
+}  // namespace vernier

@@ -1,0 +1,16 @@
+#pragma once
+
+/// @file
+/// Data that do not support a calibration.
+
+#include <stdexcept>
+
+namespace vernier {
+
+/// A calibration that must not be used; the message says why, and what to do, in one line.
+class CalibrationFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace vernier

@@ -1,0 +1,82 @@
+#pragma once
+
+/// @file
+/// The assessment of a calibration on held-out poses, whatever the arm: figures, tables and sentences are made of it.
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "vernier/error_model/error_model_estimate.hpp"
+#include "vernier/identification/identification_report.hpp"
+#include "vernier/least_squares/loss.hpp"
+
+namespace vernier {
+
+/// Errors of held-out poses after a stage of the pipeline.
+struct StageErrors {
+  std::string key;    ///< `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `jointwise_pso_elm`
+  std::string title;  ///< for tables
+  VectorX position;   ///< [m]
+  VectorX rotation;   ///< [rad]; empty where orientations are not used
+};
+
+/// One joint.
+struct JointReport {
+  bool revolute = true;                                      ///< its angles are in rad, else in m
+  std::vector<double> held_out{};                            ///< joint values of the held-out poses [rad, m]
+  std::vector<std::pair<double, double>> measured_ranges{};  ///< [rad, m]
+  std::vector<double> angle{};                               ///< over the measured ranges [rad, m]
+  VectorX transmission;      ///< what the transmission adds there, mean subtracted [rad]
+  VectorX transmission_std;  ///< its standard deviation [rad]
+};
+
+/// A weakly determined parameter, and poses that would determine it.
+struct PoseAdvice {
+  std::string parameter;         ///< its name
+  ParameterKind kind;            ///< length [m] or angle [rad]
+  double std_now = 0;            ///< its standard deviation
+  double std_then = 0;           ///< the same after the poses were measured
+  std::vector<VectorX> poses{};  ///< joint values of helpful poses [rad, m]
+};
+
+/// A calibration, assessed.
+struct CalibrationReport {
+  IdentificationReport identification;  ///< of the geometry
+  std::vector<BlockChoice> blocks{};    ///< decisions on the joint errors
+  Index train_poses = 0;                ///< poses it was fitted to
+  Index distances = 0;                  ///< distances it was fitted to
+  std::vector<StageErrors> stages{};    ///< of the held-out poses, in order
+  std::vector<JointReport> joints{};    ///< one a joint
+  std::vector<PoseAdvice> advice{};     ///< for the first weakly determined parameters
+  VectorX gates;                        ///< share of the joint-wise terms at each held-out pose
+  double max_degradation = 0;     ///< largest excess of the joint-wise error over that of geometry, inside the measured
+                                  ///< joint ranges [m]
+  double ellipsoid_coverage = 0;  ///< share of held-out poses within their predicted 95 % ellipsoid
+  bool oriented = false;          ///< whether orientations are used
+  bool converged = true;          ///< whether the error model converged
+  bool learned = false;           ///< whether a remainder was learned on the error model
+  Index outliers = 0;             ///< training poses whose error exceeds eight times the median
+  double median_error = 0;        ///< median position error of the training poses [m]
+  Loss loss = Loss::huber;        ///< of the fit
+  double fit_seconds = 0;         ///< time from poses to error model
+
+  /// Number of held-out poses.
+  Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }
+  /// Number of held-out poses outside the measured joint ranges.
+  VERNIER_API Index extrapolated() const;
+  /// The errors of a stage.
+  /// @throws std::invalid_argument for a key that is not there
+  VERNIER_API const StageErrors& stage(std::string_view key) const;
+  /// What else a user should know, a sentence each.
+  VERNIER_API std::vector<std::string> remarks() const;
+  /// What the calibration is good for, where, and what would improve it, a sentence each.
+  VERNIER_API std::vector<std::string> verdict() const;
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/calibration_report.ipp"
+#endif

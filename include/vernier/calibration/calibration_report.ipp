@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "vernier/calibration/calibration_report.hpp"
+#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/check.hpp"
+#include "vernier/evaluation/statistics.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL Index CalibrationReport::extrapolated() const { return (gates.array() < 1).count(); }
+
+VERNIER_IMPL const StageErrors& CalibrationReport::stage(std::string_view key) const {
+  for (const StageErrors& s : stages)
+    if (s.key == key) return s;
+  throw std::invalid_argument(message("CalibrationReport: no stage is called '", key, "'"));
+}
+
+VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
+  using detail::brief;
+  std::vector<std::string> out;
+  if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
+  if (!learned && !stages.empty() && stages.back().key == "jointwise_pso_elm")
+    out.push_back("The PSO-ELM found nothing to learn in what the joint-wise model leaves.");
+  if (outliers > 0 && median_error > 1e-6)
+    out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
+                          brief(median_error * 1e3), " mm: outliers?",
+                          loss == Loss::squared ? " A robust loss reduces their weight."
+                                                : " The loss reduces their weight in the fit; check them."));
+  return out;
+}
+
+namespace detail {
+
+/// Accuracy inside the measured joint ranges.
+VERNIER_API void describe_accuracy(const CalibrationReport& report, std::vector<std::string>& out) {
+  const VectorX& last = report.stages.back().position;
+  std::vector<double> inside;
+  for (Index i = 0; i < last.size(); ++i)
+    if (report.gates(i) == 1) inside.push_back(last(i) * 1e3);
+  if (!inside.empty()) {
+    const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
+    out.push_back(
+        message("Accurate to ", brief(e.mean), " mm mean, ", brief(e.p95), " mm (95 %), ", brief(e.max),
+                " mm maximum, inside the measured joint ranges: ", e.n, " of ", last.size(),
+                " held-out poses. None of them is worse than with geometry alone",
+                report.max_degradation > 0 ? " by more than " + brief(report.max_degradation * 1e3) + " mm." : "."));
+  }
+  if (const Index outside = report.extrapolated(); outside > 0)
+    out.push_back(message(outside,
+                          " held-out poses lie outside those ranges; there the learned functions of the joints "
+                          "fade out."));
+}
+
+/// Measured joint ranges, in degrees or millimetres.
+VERNIER_API std::string describe_ranges(const std::vector<JointReport>& joints) {
+  std::string out;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double unit = joints[j].revolute ? 180 / std::numbers::pi : 1e3;
+    out += message(j > 0 ? "; " : "", 'q', j + 1);
+    const auto& ranges = joints[j].measured_ranges;
+    for (std::size_t k = 0; k < ranges.size() && k < 4; ++k)
+      out += message(k > 0 ? "," : "", ' ', std::llround(ranges[k].first * unit), "..",
+                     std::llround(ranges[k].second * unit));
+    if (ranges.size() > 4) out += message(", and ", ranges.size() - 4, " more");
+  }
+  return "Measured joint ranges [deg, mm]: " + out + ".";
+}
+
+/// A decision on a block of joint errors.
+VERNIER_API std::string describe_block(const BlockChoice& block) {
+  static const std::map<std::string_view, std::pair<const char*, const char*>> texts{
+      {"elastic", {"Gravity compliance helps ", "Gravity compliance alone does not help "}},
+      {"jointwise",
+       {"Joint-wise terms help ",
+        "Joint-wise terms are left out: this robot's errors are not functions of single joints "}},
+      {"elastic_with_jointwise",
+       {"Beside joint-wise terms gravity compliance is kept ",
+        "Beside joint-wise terms gravity compliance is left out "}},
+      {"gears", {"Gear ratios and coupling help ", "Gear ratios and coupling do not help "}},
+      {"tuned_priors", {"Optimised priors help ", "Optimised priors are left out: they do not help "}}};
+  const auto& [helps, does_not] = texts.at(block.name);
+  return message(block.used ? helps : does_not, "(leave-one-pose-out error: ", brief(block.without * 1e3),
+                 " mm without, ", brief(block.with * 1e3), " mm with).");
+}
+
+/// Poses that would determine a parameter.
+VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vector<JointReport>& joints,
+                                        bool oriented) {
+  const bool length = advice.kind == ParameterKind::length;
+  std::string out = message(advice.parameter, " is weakly determined (standard deviation ", brief(advice.std_now * 1e3),
+                            length ? " mm" : " mrad", ')');
+  if (advice.std_then > 0.9 * advice.std_now)
+    return out + (oriented
+                      ? "; more poses would not determine it: fix it, or measure with another tool."
+                      : "; more positions would not determine it: measure orientations, or with the tool point off "
+                        "the last axis, or fix it.");
+  out += ": add poses like ";
+  for (std::size_t k = 0; k < advice.poses.size(); ++k) {
+    out += k > 0 ? ", (" : "(";
+    for (Index i = 0; i < advice.poses[k].size(); ++i)
+      out += message(i > 0 ? ", " : "",
+                     std::llround(advice.poses[k](i) *
+                                  (joints[static_cast<std::size_t>(i)].revolute ? 180 / std::numbers::pi : 1e3)));
+    out += ")";
+  }
+  return out + message("; ", advice.poses.size(), " of them reduce it to ", brief(advice.std_then * 1e3), ".");
+}
+
+}  // namespace detail
+
+VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
+  std::vector<std::string> out;
+  detail::describe_accuracy(*this, out);
+  out.push_back(detail::describe_ranges(joints));
+  for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
+  for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, joints, oriented));
+  if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size())
+    out.push_back(message(weak - advice.size(), advice.empty() ? "" : " more",
+                          " parameters are weakly determined and regularised around nominal."));
+  return out;
+}
+
+}  // namespace vernier

@@ -1,0 +1,136 @@
+#pragma once
+
+/// @file
+/// Assessment of a calibration on held-out poses.
+
+#include <span>
+#include <vector>
+
+#include "vernier/calibration/calibration.hpp"
+#include "vernier/calibration/calibration_report.hpp"
+#include "vernier/calibration/pose_advice.hpp"
+#include "vernier/data/ranges.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/identification/stations.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// Whether an error lies within the 95 % ellipsoid of a covariance.
+VERNIER_API bool within_ellipsoid(const Vector3& error, const Matrix3& covariance);
+
+/// Sampled transmission of a joint over its measured ranges.
+VERNIER_API void sample_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out);
+
+/// A vector of one value a pose of all stations, one station after the other.
+template <int N, class F>
+VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
+  Index rows = 0;
+  for (const auto& data : stations) rows += data.size();
+  VectorX out(rows);
+  Index at = 0;
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    out.segment(at, stations[s].size()) = values(s, stations[s]);
+    at += stations[s].size();
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Errors of held-out poses after every stage of a calibration, and what follows from them.
+/// @param calibration from poses, one set a station
+/// @param held_out    poses that it was not fitted to, as many sets in the same order
+/// @param limits      of the joints, for advice on poses
+/// @throws std::invalid_argument for another number of stations, or no poses
+template <class Chain, RangeOf<Dataset<Chain::dof>> Stations>
+CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations& held_out,
+                           const JointLimits<Chain::dof>& limits = {}) {
+  constexpr int N = Chain::dof;
+  const std::span<const Dataset<N>> test(std::data(held_out), std::size(held_out));
+  require(test.size() == calibration.frames.size() && !test.empty(), "evaluate: ", test.size(),
+          " sets of held-out poses for ", calibration.frames.size(), " stations");
+  const FittedErrorModel<Chain>& errors = calibration.errors;
+  CalibrationReport out;
+  out.identification = calibration.geometry;
+  out.blocks = errors.blocks;
+  out.train_poses = calibration.poses;
+  out.distances = calibration.distances;
+  out.oriented = calibration.oriented;
+  for (const auto& data : test) out.oriented = out.oriented && data.has_orientations();
+  out.converged = errors.converged;
+  out.outliers = calibration.outliers;
+  out.median_error = calibration.median_error;
+  out.loss = calibration.sensors.loss;
+  out.fit_seconds = calibration.fit_seconds;
+
+  const auto assess = [&](const char* key, const char* title, const auto& models) {
+    StageErrors stage{key, title, {}, {}};
+    stage.position = detail::over_stations<N>(
+        test, [&](std::size_t s, const auto& data) { return position_errors(models[s], data); });
+    if (out.oriented)
+      stage.rotation = detail::over_stations<N>(
+          test, [&](std::size_t s, const auto& data) { return rotation_errors(models[s], data); });
+    out.stages.push_back(std::move(stage));
+  };
+  const auto assess_learned = [&](const char* key, const char* title, const auto& models, const auto& remainder) {
+    if (!remainder) return;
+    std::vector<Isometry3> bases;
+    for (const auto& model : models) bases.push_back(model.identified().base());
+    bases.resize(test.size());
+    const CartesianCorrected hybrid(models.front(), remainder->predictor, remainder->coverage);
+    out.stages.push_back(
+        {key, title, position_errors(hybrid, in_one_frame<N>(test, bases, false)), out.stages.back().rotation});
+  };
+  assess("frames", "frames", calibration.frames);
+  assess("geometry", "geometry", errors.geometry);
+  assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder);
+  assess("elastic", "elastic", errors.elastic);
+  assess("jointwise", "joint-wise", errors.models);
+  assess_learned("jointwise_pso_elm", "joint-wise + PSO-ELM", errors.models, calibration.remainder);
+  out.learned = calibration.remainder && !calibration.remainder->empty();
+
+  out.gates = detail::over_stations<N>(test, [&](std::size_t, const Dataset<N>& data) {
+    VectorX gates(data.size());
+    for (Index i = 0; i < data.size(); ++i) gates(i) = calibration.coverage(data.joints(i));
+    return gates;
+  });
+  out.ellipsoid_coverage = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
+                             VectorX within(data.size());
+                             for (Index i = 0; i < data.size(); ++i) {
+                               const PredictedPose p = errors.predicted(data.joints(i), static_cast<int>(s));
+                               within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
+                                                                    p.covariance.template topLeftCorner<3, 3>());
+                             }
+                             return within;
+                           }).mean();
+  const VectorX &geometry = out.stage("geometry").position, &jointwise = out.stage("jointwise").position;
+  for (Index i = 0; i < out.gates.size(); ++i)
+    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, jointwise(i) - geometry(i));
+  for (int j = 0; j < N; ++j) {
+    JointReport joint;
+    joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;
+    for (const auto& data : test)
+      joint.held_out.insert(joint.held_out.end(), data.joints().col(j).begin(), data.joints().col(j).end());
+    for (const auto& range : calibration.coverage.ranges[static_cast<std::size_t>(j)])
+      joint.measured_ranges.emplace_back(range.lower, range.upper);
+    detail::sample_transmission(errors, j, joint);
+    out.joints.push_back(std::move(joint));
+  }
+  out.advice = pose_advice(errors, out.identification, limits, calibration.sensors, out.oriented);
+  return out;
+}
+
+/// The same for one station.
+template <class Chain>
+CalibrationReport evaluate(const Calibration<Chain>& calibration, const Dataset<Chain::dof>& held_out,
+                           const JointLimits<Chain::dof>& limits = {}) {
+  return evaluate(calibration, std::span<const Dataset<Chain::dof>>(&held_out, 1), limits);
+}
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/evaluate.ipp"
+#endif

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/LU>
+
+#include "vernier/calibration/evaluate.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL bool within_ellipsoid(const Vector3& error, const Matrix3& covariance) {
+  return error.dot(covariance.inverse() * error) <= 7.8147;  // 95 % of chi squared with 3 degrees of freedom
+}
+
+VERNIER_IMPL void sample_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {
+  for (const auto& [lower, upper] : out.measured_ranges)
+    for (int k = 0; k <= 360; ++k) out.angle.push_back(lower + (upper - lower) * k / 360);
+  if (out.angle.empty()) return;
+  JointFunction f = estimate.transmission(joint, out.angle);
+  out.transmission = std::move(f.value);
+  out.transmission_std = std::move(f.std);
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+/// @file
+/// Poses that would determine weakly determined parameters.
+
+#include <vector>
+
+#include "vernier/calibration/calibration_report.hpp"
+#include "vernier/error_model/fitted_error_model.hpp"
+#include "vernier/identification/sensor_model.hpp"
+#include "vernier/kinematics/joint_limits.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// See `vernier::pose_advice`.
+/// @param lower,upper joint limits, one a joint
+VERNIER_API std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estimate,
+                                                const IdentificationReport& identification, const VectorX& lower,
+                                                const VectorX& upper, const SensorModel& sensors, bool oriented,
+                                                std::size_t max_parameters, int poses);
+
+}  // namespace detail
+
+/// For weakly determined parameters, which of 200 random poses within joint limits would determine them best.
+/// @param fitted         an error model
+/// @param identification of the same arm: names the weak parameters
+/// @param limits         of the joints; half a turn to either side (0.5 m) where there are none
+/// @param sensors        that would measure
+/// @param oriented       whether orientations would be measured too
+/// @param max_parameters how many parameters
+/// @param poses          how many poses for each
+template <class Chain>
+std::vector<PoseAdvice> pose_advice(const FittedErrorModel<Chain>& fitted, const IdentificationReport& identification,
+                                    const JointLimits<Chain::dof>& limits, const SensorModel& sensors, bool oriented,
+                                    std::size_t max_parameters = 3, int poses = 3) {
+  return detail::pose_advice(fitted, identification, limits.lower, limits.upper, sensors, oriented, max_parameters,
+                             poses);
+}
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/pose_advice.ipp"
+#endif

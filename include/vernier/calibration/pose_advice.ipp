@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "vernier/calibration/pose_advice.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/identification/observability.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estimate,
+                                                 const IdentificationReport& identification, const VectorX& lower,
+                                                 const VectorX& upper, const SensorModel& sensors, bool oriented,
+                                                 std::size_t max_parameters, int poses) {
+  std::vector<PoseAdvice> out;
+  const std::vector<std::string> weak = identification.names(ParameterState::weak);
+  if (weak.empty()) return out;
+  constexpr Index candidates = 200;
+  const ArmGeometry& arm = estimate.arm.geometry(0);
+  Rng rng(1);
+  MatrixX joints(candidates, arm.joints());
+  for (Index c = 0; c < candidates; ++c)
+    for (int i = 0; i < arm.joints(); ++i) {
+      const double widest = arm.chain().revolute(i) ? std::numbers::pi : 0.5;
+      joints(c, i) = rng.uniform(std::max(lower(i), -widest), std::min(upper(i), widest));
+    }
+  std::vector<RowBlock> blocks(candidates);
+  estimate.arm.linearise(0, joints, blocks.data());
+  std::vector<MatrixX> rows;
+  for (const RowBlock& block : blocks) {
+    rows.push_back(block.dense.topRows(oriented ? 6 : 3));
+    rows.back().topRows(3) /= sensors.position_sigma;
+    if (oriented) rows.back().bottomRows(3) /= sensors.orientation_sigma;
+  }
+  const Index dense = estimate.arm.num_dense();
+  const std::vector<std::string> names = estimate.arm.names();
+  const VectorX scales = estimate.arm.scales();
+  for (const std::string& name : weak) {
+    const Index at = std::find(names.begin(), names.end(), name) - names.begin();
+    if (at >= dense || out.size() == max_parameters) continue;
+    const HelpfulPoses helpful = helpful_poses(estimate.covariance.topLeftCorner(dense, dense), rows, at, poses);
+    if (helpful.poses.empty()) continue;
+    const Index parameter = estimate.arm.geometric()[static_cast<std::size_t>(at)].parameter;
+    PoseAdvice advice{name,
+                      identification.parameters[static_cast<std::size_t>(parameter)].kind,
+                      std::sqrt(estimate.covariance(at, at)) * scales(at),
+                      std::sqrt(helpful.variances.back()) * scales(at),
+                      {}};
+    for (const Index pose : helpful.poses) advice.poses.push_back(joints.row(pose).transpose());
+    out.push_back(std::move(advice));
+  }
+  return out;
+}
+
+}  // namespace vernier::detail

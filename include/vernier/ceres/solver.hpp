@@ -1,0 +1,10 @@
+#pragma once
+
+/// @file
+/// The solver of `identify`, by Ceres.
+
+#include "vernier/identification/detail/identification.hpp"
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/ceres/solver.ipp"
+#endif

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "vernier/core/so3.hpp"
+
+#include <cmath>
+
+namespace vernier {
+
+namespace detail {
+
+VERNIER_IMPL Matrix3 double_exp_so3(const Vector3& r) { return generic_exp_so3(r); }
+
+VERNIER_IMPL Vector3 double_log_so3(const Matrix3& m) { return generic_log_so3(m); }
+
+}  // namespace detail
+
+VERNIER_IMPL Matrix3 left_jacobian_so3(const Vector3& r) {
+  const double angle2 = r.squaredNorm();
+  double b, c;  // (1 - cos t)/t^2 and (t - sin t)/t^3
+  if (angle2 < 1e-4) {
+    b = 0.5 - angle2 / 24 + angle2 * angle2 / 720;
+    c = 1.0 / 6 - angle2 / 120 + angle2 * angle2 / 5040;
+  } else {
+    const double angle = std::sqrt(angle2), half_sine = std::sin(angle / 2);
+    b = 2 * half_sine * half_sine / angle2;
+    c = (angle - std::sin(angle)) / (angle2 * angle);
+  }
+  const Matrix3 k = skew(r);
+  return Matrix3::Identity() + b * k + c * (k * k);
+}
+
+VERNIER_IMPL Matrix3 left_jacobian_inverse_so3(const Vector3& r) {
+  const double angle2 = r.squaredNorm();
+  double c;
+  if (angle2 < 1e-4) {
+    c = 1.0 / 12 + angle2 / 720 + angle2 * angle2 / 30240;
+  } else {
+    const double half = std::sqrt(angle2) / 2;
+    c = (1 - half * std::cos(half) / std::sin(half)) / angle2;
+  }
+  const Matrix3 k = skew(r);
+  return Matrix3::Identity() - 0.5 * k + c * (k * k);
+}
+
+VERNIER_IMPL Vector6 pose_difference(const Isometry3& to, const Isometry3& from) {
+  Vector6 e;
+  e.head<3>() = to.translation() - from.translation();
+  e.tail<3>() = log_so3(to.linear() * from.linear().transpose());
+  return e;
+}
+
+}  // namespace vernier

@@ -1,0 +1,217 @@
+#pragma once
+
+#include "vernier/data/csv.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace vernier::detail {
+
+/// A column found by its stem, with the unit in its name.
+struct CsvColumn {
+  std::string name;  ///< as in the header
+  std::size_t index;
+  double factor;  ///< to m or rad
+};
+
+/// The lines of a file, its numbers by column name. Quotes are not part of the format.
+class CsvTable {
+ public:
+  explicit CsvTable(const std::string& path) : file_(path) {
+    try {
+      content_ = read_file(path);
+    } catch (const std::invalid_argument& e) {
+      throw DataError(e.what());
+    }
+    std::string_view rest = content_;
+    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+    std::size_t number = 0;
+    while (!rest.empty()) {
+      const std::size_t end = rest.find_first_of("\n");
+      std::string_view line = rest.substr(0, end);
+      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+      ++number;
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+      if (line.find('\0') != std::string_view::npos)
+        throw DataError(message(file_, ", line ", number, ": binary data, not text"));
+      if (header_.empty()) {
+        header_ = cells(line);
+        header_line_ = number;
+      } else {
+        lines_.push_back({number, line});
+      }
+    }
+    if (header_.empty()) throw DataError(message(file_, ": empty, a header line with column names is missing"));
+  }
+
+  /// Throws a DataError about the header.
+  template <class... Parts>
+  [[noreturn]] void fail_in_header(const Parts&... parts) const {
+    throw DataError(message(file_, ", line ", header_line_, ": ", parts...));
+  }
+  /// Throws a DataError about a value.
+  template <class... Parts>
+  [[noreturn]] void fail_in_row(Index row, const CsvColumn& column, const Parts&... parts) const {
+    throw DataError(message(file_, ", line ", lines_[static_cast<std::size_t>(row)].number, ", column ", column.name,
+                            ": ", parts...));
+  }
+
+  /// The column `stem` + `_unit`; empty where there is none.
+  std::optional<CsvColumn> find(std::string_view stem, bool length) const {
+    constexpr std::array<std::pair<std::string_view, double>, 3> lengths{{{"_mm", 1e-3}, {"_m", 1.0}, {"_um", 1e-6}}};
+    constexpr std::array<std::pair<std::string_view, double>, 3> angles{
+        {{"_rad", 1.0}, {"_deg", std::numbers::pi / 180}, {"_mrad", 1e-3}}};
+    std::optional<CsvColumn> found;
+    for (const auto& [unit, factor] : length ? lengths : angles)
+      for (std::size_t i = 0; i < header_.size(); ++i) {
+        if (header_[i].size() != stem.size() + unit.size() || !header_[i].starts_with(stem) ||
+            !header_[i].ends_with(unit))
+          continue;
+        if (found) fail_in_header("columns ", found->name, " and ", header_[i], " both give ", stem);
+        found = CsvColumn{std::string(header_[i]), i, factor};
+      }
+    return found;
+  }
+
+  /// As `find`, but its absence is an error that lists the columns present.
+  CsvColumn require_column(std::string_view stem, bool length) const {
+    if (auto column = find(stem, length)) return *column;
+    std::string present;
+    for (std::size_t i = 0; i < header_.size() && i < 12; ++i) present += (i ? ", " : "") + printable(header_[i]);
+    if (header_.size() > 12) present += ", ...";
+    throw DataError(message(file_, ": no column ", stem, length ? "_mm or " : "_rad or ", stem, length ? "_m" : "_deg",
+                            " in the header (", present, ")"));
+  }
+
+  /// All values of some columns, rows x columns, in m and rad; at least one row.
+  MatrixX numbers(const std::vector<CsvColumn>& columns) const {
+    if (lines_.empty()) throw DataError(message(file_, ": a header, but no rows of data"));
+    MatrixX out(static_cast<Index>(lines_.size()), static_cast<Index>(columns.size()));
+    for (std::size_t row = 0; row < lines_.size(); ++row) {
+      const auto& [number, line] = lines_[row];
+      const auto fields = cells(line);
+      if (fields.size() != header_.size())
+        throw DataError(
+            message(file_, ", line ", number, ": ", fields.size(), " values, the header has ", header_.size()));
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        out(static_cast<Index>(row), static_cast<Index>(k)) =
+            value(fields[columns[k].index], number, columns[k].name) * columns[k].factor;
+    }
+    return out;
+  }
+
+ private:
+  static std::vector<std::string_view> cells(std::string_view line) {
+    std::vector<std::string_view> out;
+    for (;;) {
+      const std::size_t comma = line.find(',');
+      std::string_view cell = line.substr(0, comma);
+      const std::size_t first = cell.find_first_not_of(" \t"), last = cell.find_last_not_of(" \t");
+      out.push_back(first == std::string_view::npos ? std::string_view{} : cell.substr(first, last - first + 1));
+      if (comma == std::string_view::npos) return out;
+      line.remove_prefix(comma + 1);
+    }
+  }
+
+  static std::string printable(std::string_view cell) {
+    std::string out;
+    for (const char c : cell.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
+    return out + (cell.size() > 40 ? "..." : "");
+  }
+
+  double value(std::string_view cell, std::size_t line, const std::string& column) const {
+    const auto where = [&] { return message(file_, ", line ", line, ", column ", column, ": "); };
+    if (cell.empty()) throw DataError(where() + "no value");
+    std::string_view digits = cell;
+    if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
+    double out = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
+    if (error == std::errc::result_out_of_range) throw DataError(where() + "'" + printable(cell) + "' is out of range");
+    if (error != std::errc{} || end != digits.data() + digits.size())
+      throw DataError(where() + "'" + printable(cell) + "' is not a number");
+    if (!std::isfinite(out)) throw DataError(where() + "'" + printable(cell) + "' is not finite");
+    if (std::abs(out) > 1e9) throw DataError(where() + "'" + printable(cell) + "' is beyond any joint or length (1e9)");
+    return out;
+  }
+
+  struct Line {
+    std::size_t number;
+    std::string_view text;
+  };
+  std::string file_, content_;
+  std::vector<std::string_view> header_;
+  std::size_t header_line_ = 0;  // counted from 1
+  std::vector<Line> lines_;
+};
+
+/// Columns q1 .. qN: angles, or lengths for prismatic joints. Refuses a file with more joints, and units that do not
+/// fit the types of joints, where these are given.
+VERNIER_API std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types) {
+  require(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
+          " types of joints for ", joints, " joints");
+  std::vector<CsvColumn> columns;
+  for (int i = 1; i <= joints; ++i) {
+    const std::string stem = message("q", i);
+    const auto length = table.find(stem, true), angle = table.find(stem, false);
+    if (length && angle) table.fail_in_header("columns ", length->name, " and ", angle->name, " both give ", stem);
+    columns.push_back(length ? *length : table.require_column(stem, false));
+    if (types.empty()) continue;
+    const bool prismatic = types[static_cast<std::size_t>(i - 1)] == JointType::prismatic;
+    if (prismatic != length.has_value())
+      table.fail_in_header("column ", columns.back().name, ", but joint ", i,
+                           prismatic ? " is prismatic: a length is needed" : " is revolute: an angle is needed");
+  }
+  const std::string surplus = message("q", joints + 1);
+  for (const bool length : {false, true})
+    if (const auto next = table.find(surplus, length))
+      table.fail_in_header("column ", next->name, ", but the robot has ", joints, " joints");
+  return columns;
+}
+
+VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types) {
+  const CsvTable table(path);
+  return table.numbers(joint_columns(table, joints, types));
+}
+
+VERNIER_IMPL MatrixX read_pose_columns(const std::string& path, int joints, std::span<const JointType> types) {
+  const CsvTable table(path);
+  std::vector<CsvColumn> columns = joint_columns(table, joints, types);
+  for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, true));
+  if (table.find("rx", false) || table.find("ry", false) || table.find("rz", false))
+    for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.require_column(axis, false));
+  return table.numbers(columns);
+}
+
+VERNIER_IMPL MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types) {
+  const CsvTable table(path);
+  std::vector<CsvColumn> columns = joint_columns(table, joints, types);
+  columns.push_back(table.require_column("distance", true));
+  MatrixX values = table.numbers(columns);
+  for (Index i = 0; i < values.rows(); ++i)
+    if (!(values(i, joints) > 0)) table.fail_in_row(i, columns.back(), "a distance must be positive");
+  return values;
+}
+
+VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
+                                   const PointRows& orientations) {
+  const bool oriented = orientations.rows() > 0;
+  std::string out;
+  for (Index j = 1; j <= joints.cols(); ++j) out += message("q", j, "_rad,");
+  out += oriented ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
+  for (Index i = 0; i < joints.rows(); ++i) {
+    for (Index j = 0; j < joints.cols(); ++j) out += message(joints(i, j), ',');
+    for (Index j = 0; j < 3; ++j) out += message(positions(i, j) * 1e3, j < 2 || oriented ? ',' : '\n');
+    if (oriented)
+      for (Index j = 0; j < 3; ++j) out += message(orientations(i, j), j < 2 ? ',' : '\n');
+  }
+  return out;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "vernier/data/split.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vernier/core/argsort.hpp"
+#include "vernier/core/rng.hpp"
+
+namespace vernier::detail {
+
+/// Number of rows held out of n; at least one on each side.
+VERNIER_API Index num_test_rows(const char* caller, Index n, double fraction) {
+  require(fraction > 0 && fraction < 1, caller, ": test_fraction is ", fraction, ", must lie strictly between 0 and 1");
+  require(n >= 2, caller, ": ", n, " rows cannot be split, at least 2 are needed");
+  return std::clamp<Index>(static_cast<Index>(std::llround(fraction * static_cast<double>(n))), 1, n - 1);
+}
+
+/// The first rows of an order as test rows, the others as training rows.
+VERNIER_API SplitRows split_order(std::vector<Index> order, Index tests) {
+  std::sort(order.begin(), order.begin() + tests);
+  std::sort(order.begin() + tests, order.end());
+  return {{order.begin() + tests, order.end()}, {order.begin(), order.begin() + tests}};
+}
+
+VERNIER_IMPL SplitRows random_rows(Index n, const SplitOptions& options) {
+  const Index tests = num_test_rows("split", n, options.test_fraction);
+  return split_order(Rng(options.seed).permutation(n), tests);
+}
+
+VERNIER_IMPL SplitRows every_kth_row(Index n, Index k) {
+  require(k >= 2, "split_every: k is ", k, ", must be at least 2");
+  require(n >= 2, "split_every: ", n, " rows cannot be split, at least 2 are needed");
+  SplitRows out;
+  for (Index i = 0; i < n; ++i) (i % k == 0 ? out.test : out.train).push_back(i);
+  return out;
+}
+
+VERNIER_IMPL SplitRows region_rows(const PointRows& positions, const RegionOptions& options) {
+  const Index n = positions.rows(), tests = num_test_rows("split_region", n, options.test_fraction);
+  const int axis = static_cast<int>(options.face) / 2;
+  const double sign = static_cast<int>(options.face) % 2 == 0 ? 1 : -1;
+  return split_order(argsort(sign * positions.col(axis)), tests);
+}
+
+VERNIER_IMPL SplitRows last_rows(Index n, double test_fraction) {
+  const Index tests = num_test_rows("split_time", n, test_fraction);
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.rbegin(), order.rend(), Index{0});
+  return split_order(std::move(order), tests);
+}
+
+}  // namespace vernier::detail

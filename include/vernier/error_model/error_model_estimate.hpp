@@ -1,0 +1,65 @@
+#pragma once
+
+/// @file
+/// What a fit of an error model estimated, whatever the arm: unknowns, their covariance, and what was decided on the
+/// way.
+
+#include <string>
+#include <vector>
+
+#include "vernier/identification/arm_parameterisation.hpp"
+
+namespace vernier {
+
+/// Decision on a block of joint errors by leave-one-pose-out errors.
+struct BlockChoice {
+  std::string name;    ///< `elastic` (gravity), `jointwise` (transmission); where that is in, `elastic_with_jointwise`
+                       ///< (decided again) and `gears` (gear ratios, coupling)
+  double without = 0;  ///< mean leave-one-pose-out error without the block [m]
+  double with = 0;     ///< with it, as it was fitted [m]; the smallest of all trials where it was not used
+  bool used = false;   ///< whether it is in the model
+  double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t)
+};
+
+/// What a transmission adds over some angles beyond its mean, which is the joint's zero; one value an angle [rad].
+struct JointFunction {
+  VectorX value;  ///< mean subtracted
+  VectorX std;    ///< standard deviations of that
+};
+
+/// A fitted error model without its typed arms.
+struct ErrorModelEstimate {
+  bool converged = false;             ///< whether every solve converged
+  std::vector<BlockChoice> blocks{};  ///< decisions, in order
+  double position_sigma = 0;  ///< of a visit, per component: sensor, and what the model lacks [m]; of a distance where
+                              ///< nothing else was measured
+  double joint_sigma = 0;     ///< of a visit, repeatability of the joints [rad]
+  double orientation_sigma = 0;  ///< of a visit, per component [rad]; 0 for positions alone
+  double fallback_error = 0;     ///< mean leave-one-pose-out position error without transmissions [m]
+  ArmParameterisation arm;       ///< the unknowns and their estimates
+  MatrixX covariance{};          ///< of all unknowns, in units of their scales
+
+  /// See `JointFunction`.
+  /// @param joint  from 0
+  /// @param angles n >= 1 values [rad]
+  VERNIER_API JointFunction transmission(int joint, const std::vector<double>& angles) const;
+
+  /// Covariance of the modelled pose at q, by the estimated unknowns alone. Position [m^2], then orientation [rad^2], base
+  /// frame.
+  /// @param q one value a joint
+  /// @complexity O(unknowns^2); allocates
+  VERNIER_API Matrix6 model_covariance(const ConstVectorRef& q, int station = 0) const;
+
+  /// Covariance of one visit at q: of parameters, joint-wise coefficients and repeatability. Position [m^2], then
+  /// orientation [rad^2], base frame.
+  /// @param q    one value a joint
+  /// @param gate share of the transmission terms in the prediction, in [0, 1]
+  /// @complexity O(unknowns^2); allocates
+  VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0) const;
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/error_model/error_model_estimate.ipp"
+#endif

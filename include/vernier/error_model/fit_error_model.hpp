@@ -1,0 +1,102 @@
+#pragma once
+
+/// @file
+/// Fits geometry, frames and joint errors together, to poses and distances measured from one place or several.
+
+#include <span>
+#include <vector>
+
+#include "vernier/data/ranges.hpp"
+#include "vernier/error_model/error_model_options.hpp"
+#include "vernier/error_model/fitted_error_model.hpp"
+#include "vernier/error_model/prior_objective.hpp"
+#include "vernier/identification/detail/station.hpp"
+#include "vernier/identification/fitted_arm.hpp"
+#include "vernier/identification/identified.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// Where a fit starts, and what it is fitted to.
+struct ErrorModelInput {
+  const IdentificationReport& identification;
+  ArmGeometry identified;  ///< seen from the first station
+  ChainTable nominal;      ///< for the torques of gravity
+  std::vector<Station> poses;
+  std::vector<Station> distances;
+};
+
+/// A fitted error model without its type; a vector has one arm a station.
+struct ErrorModelOutput {
+  ErrorModelEstimate estimate;
+  std::vector<FittedArm> geometry, elastic, all;
+  bool jointwise = false;  ///< whether `all` has transmission terms
+  MatrixX joints;          ///< of all samples
+};
+
+/// See `vernier::fit_error_model`.
+VERNIER_API ErrorModelOutput fit_error_model(const ErrorModelInput& input, const ErrorModelOptions& options,
+                                             const SensorModel& sensors, PriorSearch search);
+
+}  // namespace detail
+
+/// Geometry, frames and joint errors of an arm in one regularised least-squares problem, solved on its normal
+/// equations. Blocks of joint errors that leave-one-pose-out errors do not support are omitted.
+/// @param start     an identified arm; its estimated parameters are estimated again, its weak ones keep their priors
+/// @param stations  measured poses, one set a place of the sensor: the chain is shared, every base its own
+/// @param distances measured distances, one set a fixed point, which need not be known; either of the two may be empty
+/// @param options   which joint errors there may be, their expected sizes
+/// @param sensors   accuracy of the measurements, and the loss
+/// @param search    optimises the priors of the joint errors, e.g. a metaheuristic; by default they follow the
+///                  one-standard-error rule
+/// @throws std::invalid_argument on an unusable option or no measurements
+/// @complexity O(n u^2 / 6) an iteration for n poses and u unknowns, memory O(u^2)
+template <int N, class Convention, RangeOf<Dataset<N>> Stations, RangeOf<Distances<N>> Wires>
+FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
+                                                         const Stations& stations, const Wires& distances,
+                                                         const ErrorModelOptions& options = {},
+                                                         const SensorModel& sensors = {}, PriorSearch search = {}) {
+  using Chain = DhChain<N, Convention>;
+  const Chain& nominal = start.model.nominal().model();
+  detail::ErrorModelInput input{
+      start, ArmGeometry(start.model.identified()), detail::ChainTable(nominal.view()), {}, {}};
+  for (const Dataset<N>& data : stations) input.poses.push_back(detail::station_of(data, sensors));
+  for (const Distances<N>& data : distances) input.distances.push_back(detail::station_of(data, sensors));
+  detail::ErrorModelOutput found = detail::fit_error_model(input, options, sensors, search);
+
+  FittedErrorModel<Chain> out(std::move(found.estimate));
+  const auto coverage = JointCoverage<N>::covering(found.joints);
+  for (std::size_t s = 0; s < found.all.size(); ++s) {
+    out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
+    out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});
+    if (found.jointwise)
+      out.models.push_back({nominal, found.all[s].typed(nominal), out.elastic.back().identified(), coverage});
+    else
+      out.models.push_back(out.elastic.back());
+  }
+  return out;
+}
+
+/// The same from poses alone.
+template <int N, class Convention, RangeOf<Dataset<N>> Stations>
+FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
+                                                         const Stations& stations,
+                                                         const ErrorModelOptions& options = {},
+                                                         const SensorModel& sensors = {}, PriorSearch search = {}) {
+  return fit_error_model(start, stations, std::span<const Distances<N>>(), options, sensors, search);
+}
+
+/// The same from one station.
+template <int N, class Convention>
+FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
+                                                         const Dataset<N>& data, const ErrorModelOptions& options = {},
+                                                         const SensorModel& sensors = {}, PriorSearch search = {}) {
+  return fit_error_model(start, std::span<const Dataset<N>>(&data, 1), options, sensors, search);
+}
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/error_model/fit_error_model.ipp"
+#endif

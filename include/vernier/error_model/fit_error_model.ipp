@@ -1,0 +1,265 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/error_model/detail/visit_noise.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/identification/frames.hpp"
+#include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
+
+namespace vernier::detail {
+
+/// The identified arm in every station's own base; that of distances has its origin at their fixed point.
+VERNIER_API std::vector<ArmGeometry> starting_arms(const ErrorModelInput& input) {
+  for (const Station& data : input.poses) require(data.size() >= 1, "fit_error_model: a station without poses");
+  for (const Station& data : input.distances) require(data.size() >= 1, "fit_error_model: a station without distances");
+  if (input.poses.size() + input.distances.size() == 1) return {input.identified};
+  const ArmGeometry unregistered = input.identified.with_frames({}, input.identified.tool());
+  std::vector<ArmGeometry> out;
+  for (const Station& data : input.poses)
+    out.push_back(input.identified.with_frames(
+        FrameParameters(register_points(unregistered.positions(data.joints()), *data.positions)),
+        input.identified.tool()));
+  for (const Station& data : input.distances) {
+    Isometry3 base = Isometry3::Identity();
+    base.translation() = -trilaterate(unregistered.positions(data.joints()), *data.lengths);
+    out.push_back(input.identified.with_frames(FrameParameters(base), input.identified.tool()));
+  }
+  return out;
+}
+
+/// What is estimated: what the identification estimated, frames once a station.
+VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInput& input,
+                                                             const ErrorModelOptions& options) {
+  const std::size_t of_poses = input.poses.size(), stations = of_poses + input.distances.size();
+  const Index chain_end = 6 + 5 * input.identified.joints();
+  std::vector<GeometricUnknown> out;
+  for (const Index k : input.identification.free) {
+    const ParameterEstimate& p = input.identification.parameters[static_cast<std::size_t>(k)];
+    const bool of_chain = k >= 6 && k < chain_end;
+    // thirty expected sizes do not affect what is determined
+    const double deviation = std::isfinite(p.prior_std) ? p.prior_std / p.scale : 30;
+    const double precision = of_chain ? 1 / (deviation * deviation) : 0;
+    const bool own = stations > 1 && (k < 6 || (options.tool_per_station && k >= chain_end));  // a base, or a tool
+    if (!own) {
+      out.push_back({k, -1, p.scale, precision});
+      continue;
+    }
+    const auto last = k < 6 ? of_poses : stations;
+    for (std::size_t s = 0; s < last; ++s) out.push_back({k, static_cast<int>(s), p.scale, precision});
+  }
+  // a fixed point has a position, but no orientation
+  for (std::size_t s = of_poses; s < stations && stations > 1; ++s)
+    for (Index k = 0; k < 3; ++k)
+      out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
+  return out;
+}
+
+VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input) {
+  std::vector<Station> out = input.poses;
+  out.insert(out.end(), input.distances.begin(), input.distances.end());
+  return out;
+}
+
+/// The steps of `fit_error_model`.
+class ErrorModelFit {
+ public:
+  VERNIER_API ErrorModelFit(const ErrorModelInput& input, const ErrorModelOptions& options, const SensorModel& sensors)
+      : input_(input),
+        options_(options),
+        problem_(ArmParameterisation(starting_arms(input), geometric_unknowns(input, options)), joined_stations(input),
+                 sensors.loss),
+        stride_(std::max<Index>(1, problem_.num_validation_blocks() / options.num_validation_poses)) {}
+
+  VERNIER_API ErrorModelOutput run(PriorSearch search) {
+    ErrorModelOutput out{ErrorModelEstimate{.arm = problem_.arm}, {}, {}, {}, false, {}};
+    ErrorModelEstimate& estimate = out.estimate;
+    estimate.converged = problem_.solve();
+    out.geometry = arms();
+
+    JointTerms elastic(input_.nominal.joints());
+    if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
+    if (elastic.size() > 0) add(estimate, "elastic", elastic);
+    out.elastic = arms();
+
+    JointTerms all = elastic;
+    for (int j = 0; j < all.joints; ++j)
+      if (input_.nominal.revolute(j)) all.transmission[static_cast<std::size_t>(j)] = Fourier{options_.harmonics};
+    out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all);
+    if (out.jointwise) {
+      estimate.fallback_error = estimate.blocks.back().without;
+      if (elastic.size() > 0) {  // deflection is clearer once the transmissions are modelled
+        estimate.blocks.push_back(choose("elastic_with_jointwise", 0, elastic.size()));
+        estimate.converged = problem_.solve() && estimate.converged;
+      }
+      // linear in the joints, so they extrapolate far beyond the measured ranges: only beside terms that do not
+      all.gear_ratio = options_.gear_ratio;
+      all.coupling = options_.coupling;
+      if (all.gear_ratio || all.coupling) add(estimate, "gears", all);
+      if (search) estimate.converged = tune(estimate, search) && estimate.converged;
+    }
+    out.all = arms();
+    out.joints = problem_.joints();
+    estimate.arm = problem_.arm;
+    assess(estimate);
+    return out;
+  }
+
+ private:
+  VERNIER_API std::vector<FittedArm> arms() const {
+    std::vector<FittedArm> out;
+    for (int s = 0; s < problem_.arm.stations(); ++s)
+      out.push_back({problem_.arm.geometry(s), problem_.arm.joint_errors()});
+    return out;
+  }
+
+  /// Expected sizes of the coefficients of some terms.
+  VERNIER_API VectorX prior_stds(const JointTerms& terms) const {
+    VectorX out(terms.size());
+    for (const JointTermBlock& block : terms.blocks())
+      for (Index k = 0; k < block.count; ++k) {
+        double& std = out(block.begin + k);
+        switch (block.kind) {
+          case JointTermBlock::Kind::gear_ratio: std = options_.gear_ratio_prior_std; break;
+          case JointTermBlock::Kind::coupling: std = options_.coupling_prior_std; break;
+          case JointTermBlock::Kind::gravity: std = options_.compliance_prior_std; break;
+          case JointTermBlock::Kind::transmission:
+            std = options_.transmission_prior_std * Fourier::relative_amplitude(k);
+            break;
+        }
+      }
+    return out;
+  }
+
+  /// Replaces the terms by more, if leave-one-pose-out errors support the additional ones.
+  /// @return whether they do
+  VERNIER_API bool add(ErrorModelEstimate& estimate, const char* name, const JointTerms& terms) {
+    const ArmParameterisation before = problem_.arm;
+    const VectorX old_precisions = before.precisions().tail(before.terms().size());
+    VectorX precisions = VectorX::Ones(terms.size());
+    Index first = terms.size(), count = 0;  // of the additional coefficients, which are contiguous
+    for (const JointTermBlock& now : terms.blocks()) {
+      bool known = false;
+      for (const JointTermBlock& old : before.terms().blocks()) {
+        if (old.kind != now.kind || old.joint != now.joint) continue;
+        precisions.segment(now.begin, now.count) = old_precisions.segment(old.begin, old.count);
+        known = true;
+      }
+      if (known) continue;
+      first = std::min(first, now.begin);
+      count += now.count;
+    }
+    problem_.arm.set_terms(terms, prior_stds(terms), precisions);
+    estimate.blocks.push_back(choose(name, first, count));
+    if (!estimate.blocks.back().used) {
+      problem_.arm = before;
+      return false;
+    }
+    estimate.converged = problem_.solve() && estimate.converged;
+    return true;
+  }
+
+  /// Chooses the prior of coefficients first .. first + count - 1 by leave-one-pose-out errors.
+  VERNIER_API BlockChoice choose(const char* name, Index first, Index count) {
+    VectorX precisions = problem_.arm.precisions();
+    const Index at = static_cast<Index>(problem_.arm.geometric().size()) + first;
+    const BlockSystem system = problem_.system();
+    const PriorChoice choice =
+        choose_prior(system, NormalEquations(system), precisions, problem_.arm.steps(), at, count, stride_);
+    precisions.segment(at, count).setConstant(choice.precision);
+    problem_.arm.set_precisions(precisions.tail(problem_.arm.terms().size()));
+    const bool used = choice.precision < suppressing_precision;
+    return {name, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
+  }
+
+  /// Priors of the joint errors by a search over leave-one-pose-out errors; kept where those are smaller than before.
+  VERNIER_API bool tune(ErrorModelEstimate& estimate, PriorSearch search) {
+    VectorX amplitudes(problem_.arm.size() - problem_.arm.num_dense());
+    const Index dense_terms = problem_.arm.terms().num_dense_terms();
+    for (const JointTermBlock& block : problem_.arm.terms().blocks())
+      for (Index k = 0; block.joint >= 0 && k < block.count; ++k)
+        amplitudes(block.begin - dense_terms + k) = Fourier::relative_amplitude(k);
+    const BlockSystem system = problem_.system();
+    const NormalEquations normal(system);
+    const VectorX before = problem_.arm.precisions();
+    const PriorObjective objective(system, normal, before, problem_.arm.steps(), dense_terms, amplitudes, stride_);
+    const VectorX after = objective.precisions(search(objective, objective.box()));
+    const double without = objective.error(before), with = objective.error(after);
+    estimate.blocks.push_back({"tuned_priors", without, with, with < without, 1});
+    problem_.arm.set_precisions((with < without ? after : before).tail(problem_.arm.terms().size()));
+    return problem_.solve();
+  }
+
+  /// Covariance of the unknowns, and the noise of a visit.
+  VERNIER_API void assess(ErrorModelEstimate& estimate) const {
+    const BlockSystem system = problem_.system();
+    const NormalEquations normal(system);
+    const VectorX precisions = problem_.arm.precisions();
+    const FactorisedEquations solved(normal, precisions, problem_.arm.steps());
+    const Index p = system.unknowns();
+    estimate.covariance = solved.inverse();
+    const double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
+    const double values = static_cast<double>(problem_.measured_values());
+    const double freedom = std::max(1.0, values - explained);
+    estimate.covariance *= normal.cost / freedom;
+
+    // leave-one-pose-out errors contain the noise of a visit and the uncertainty of the unknowns
+    Rows6 all(6, p);
+    MatrixX half, effect;
+    double rotation_sum = 0, rotation_values = 0, distance_sum = 0;
+    std::vector<LeftOutVisit> visits;
+    const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, stride_);
+    visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
+      const Station& station = problem_.station_of(b);
+      if (station.oriented()) {
+        const Vector6 residual = rows.unwhiten * rows.residual;
+        rotation_sum += residual.tail<3>().squaredNorm() * station.orientation_sigma * station.orientation_sigma;
+        rotation_values += 3;
+      }
+      if (b % stride_ != 0 || b >= system.validation_blocks) return;
+      const Vector3 error = errors.col(b / stride_);
+      if (station.lengths != nullptr) {
+        distance_sum += error.squaredNorm();
+        return;
+      }
+      rows.expand(system.group_sizes, all);
+      const MatrixX position = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(all);
+      const MatrixX joint = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(rows.factor);
+      half.setZero(3, p);
+      effect.setZero(3, 3);
+      add_product(half, position, estimate.covariance);
+      add_product(effect, half, position.transpose());
+      visits.push_back({error, effect, joint.lazyProduct(joint.transpose())});
+    });
+    if (rotation_values > 0) estimate.orientation_sigma = std::sqrt(rotation_sum / rotation_values * values / freedom);
+    if (visits.empty()) {
+      estimate.position_sigma = std::sqrt(distance_sum / static_cast<double>(errors.cols()));
+      return;
+    }
+    const VisitNoise noise = visit_noise(visits);
+    estimate.position_sigma = noise.position;
+    estimate.joint_sigma = noise.joint;
+    estimate.covariance *= noise.model;
+  }
+
+  const ErrorModelInput& input_;
+  const ErrorModelOptions& options_;
+  CalibrationProblem problem_;
+  Index stride_;
+};
+
+VERNIER_IMPL ErrorModelOutput fit_error_model(const ErrorModelInput& input, const ErrorModelOptions& options,
+                                              const SensorModel& sensors, PriorSearch search) {
+  options.validate();
+  sensors.validate();
+  require(input.poses.size() + input.distances.size() > 0, "fit_error_model: no stations");
+  return ErrorModelFit(input, options, sensors).run(search);
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,28 @@
+#pragma once
+
+/// @file
+/// Sample quantiles.
+
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+/// Sample quantile by linear interpolation between order statistics (Hyndman and Fan's type 7, the default of R and
+/// NumPy): 0 is the minimum, 0.5 the median, 1 the maximum.
+/// @throws std::invalid_argument without values, for a value that is not a number or `probability` outside [0, 1]
+/// @complexity O(n log n)
+/// @cite Hyndman and Fan 1996
+VERNIER_API double quantile(const ConstVectorRef& values, double probability);
+
+namespace detail {
+
+/// The same of values in ascending order.
+VERNIER_API double quantile_of_sorted(const ConstVectorRef& values, double probability);
+
+}  // namespace detail
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/evaluation/quantile.ipp"
+#endif

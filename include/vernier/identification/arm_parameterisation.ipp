@@ -1,0 +1,146 @@
+#pragma once
+
+#include <algorithm>
+
+#include "vernier/core/check.hpp"
+#include "vernier/identification/arm_parameterisation.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL ArmParameterisation::ArmParameterisation(std::vector<ArmGeometry> arms,
+                                                      std::vector<GeometricUnknown> unknowns)
+    : arms_(std::move(arms)), unknowns_(std::move(unknowns)) {
+  require(!arms_.empty(), "ArmParameterisation: no stations");
+  for (const auto& arm : arms_) start_.push_back(arm.parameters());
+  errors_ = JointErrors(JointTerms(arms_.front().joints()), VectorX());
+}
+
+VERNIER_IMPL void ArmParameterisation::set_terms(JointTerms terms, VectorX scales, VectorX precisions) {
+  VectorX coefficients = VectorX::Zero(terms.size());
+  for (const JointTermBlock& now : terms.blocks())
+    for (const JointTermBlock& before : errors_.terms().blocks())
+      if (before.kind == now.kind && before.joint == now.joint)
+        coefficients.segment(now.begin, std::min(now.count, before.count)) =
+            errors_.coefficients().segment(before.begin, std::min(now.count, before.count));
+  errors_ = JointErrors(std::move(terms), std::move(coefficients));
+  coefficient_scales_ = std::move(scales);
+  coefficient_precisions_ = std::move(precisions);
+}
+
+VERNIER_IMPL std::vector<Index> ArmParameterisation::group_sizes() const {
+  std::vector<Index> out;
+  for (const Fourier& fourier : terms().transmission) out.push_back(fourier.size());
+  return out;
+}
+
+template <class F>
+VectorX ArmParameterisation::joined(const F& of_unknown, const VectorX& of_coefficients) const {
+  VectorX out(size());
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) out(static_cast<Index>(k)) = of_unknown(unknowns_[k]);
+  for (Index k = 0; k < of_coefficients.size(); ++k) out(static_cast<Index>(unknowns_.size()) + k) = of_coefficients(k);
+  return out;
+}
+
+VERNIER_IMPL VectorX ArmParameterisation::scales() const {
+  return joined([](const GeometricUnknown& u) { return u.scale; }, coefficient_scales_);
+}
+
+VERNIER_IMPL VectorX ArmParameterisation::precisions() const {
+  return joined([](const GeometricUnknown& u) { return u.precision; }, coefficient_precisions_);
+}
+
+VERNIER_IMPL VectorX ArmParameterisation::steps() const {
+  std::vector<VectorX> now;
+  for (const ArmGeometry& arm : arms_) now.push_back(arm.parameters());
+  return joined(
+      [&](const GeometricUnknown& u) {
+        const auto s = static_cast<std::size_t>(std::max(0, u.station));
+        return (now[s](u.parameter) - start_[s](u.parameter)) / u.scale;
+      },
+      errors_.empty() ? VectorX() : VectorX(errors_.coefficients().cwiseQuotient(coefficient_scales_)));
+}
+
+VERNIER_IMPL void ArmParameterisation::move(const VectorX& steps) {
+  for (int s = 0; s < stations(); ++s) {
+    ArmGeometry& arm = arms_[static_cast<std::size_t>(s)];
+    VectorX p = arm.parameters();
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (unknowns_[k].station < 0 || unknowns_[k].station == s)
+        p(unknowns_[k].parameter) += unknowns_[k].scale * steps(static_cast<Index>(k));
+    arm = arm.with_parameters(p);
+  }
+  if (!errors_.empty())
+    errors_ =
+        JointErrors(terms(), errors_.coefficients() + coefficient_scales_.cwiseProduct(steps.tail(terms().size())));
+}
+
+VERNIER_IMPL std::vector<std::string> ArmParameterisation::names() const {
+  const auto of_arm = geometry(0).parameter_names();
+  std::vector<std::string> out;
+  for (const auto& u : unknowns_)
+    out.push_back(of_arm[static_cast<std::size_t>(u.parameter)] +
+                  (u.station > 0 ? message('@', u.station + 1) : std::string()));
+  for (auto& name : terms().names()) out.push_back(std::move(name));
+  return out;
+}
+
+VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, const ConstMatrixRef& joints) const {
+  return errors_.empty() ? geometry(station).poses(joints) : geometry(station).poses(errors_.effective_rows(joints));
+}
+
+VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
+                                                                   RowBlock* out) const {
+  const ArmGeometry& arm = geometry(station);
+  const int n = arm.joints();
+  const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
+  PosesAndJacobians at;
+  if (errors_.empty())
+    arm.poses_and_parameter_jacobians(joints, at);
+  else
+    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints), at);
+  const Index count = joints.rows();
+  VectorX q(n);
+  MatrixX basis(n, few);
+  for (Index i = 0; i < count; ++i) {
+    RowBlock& rows = out[i];
+    // entry r of column k of configuration i
+    const auto copy = [&](Index k, double scale, double* column) {
+      const double* entry = at.jacobians.data() + 6 * k * count + i;
+      for (int r = 0; r < 6; ++r) column[r] = entry[r * count] * scale;
+    };
+    rows.factor.resize(6, n);
+    for (int j = 0; j < n; ++j)  // a joint adds to a parameter of its row
+      copy(6 + 5 * j + static_cast<int>(arm.chain().revolute(j) ? DhParameter::theta : DhParameter::d), 1,
+           rows.factor.col(j).data());
+    rows.dense.resize(6, num_dense());
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      double* column = rows.dense.col(static_cast<Index>(k)).data();
+      if (unknowns_[k].station < 0 || unknowns_[k].station == station)
+        copy(unknowns_[k].parameter, unknowns_[k].scale, column);
+      else
+        std::fill_n(column, 6, 0.0);
+    }
+    q = joints.row(i).transpose();
+    if (few > 0) {
+      terms().dense_basis(q.data(), basis);
+      for (Index k = 0; k < few; ++k)
+        rows.dense.col(of_geometry + k) = rows.factor.lazyProduct(basis.col(k) * coefficient_scales_(k));
+    }
+    transmission_values(q.data(), rows.functions);
+    rows.local = {};
+  }
+  return std::move(at.poses);
+}
+
+VERNIER_IMPL void ArmParameterisation::transmission_values(const double* q, VectorX& out) const {
+  out.resize(terms().size() - terms().num_dense_terms());
+  Index at = 0;
+  for (std::size_t j = 0; j < terms().transmission.size(); ++j) {
+    const Fourier& fourier = terms().transmission[j];
+    fourier.values(q[j], out.data() + at);
+    at += fourier.size();
+  }
+  for (Index k = 0; k < out.size(); ++k) out(k) *= coefficient_scales_(coefficient_scales_.size() - out.size() + k);
+}
+
+}  // namespace vernier

@@ -1,0 +1,84 @@
+#pragma once
+
+/// @file
+/// The unknowns of an arm and the measurements that determine them, as one least-squares problem: the one place where a
+/// measurement meets a model.
+
+#include <array>
+#include <vector>
+
+#include "vernier/identification/arm_parameterisation.hpp"
+#include "vernier/identification/detail/station.hpp"
+
+namespace vernier::detail {
+
+/// Residuals of all rows that were measured, and their Jacobian.
+struct StackedRows {
+  VectorX residuals;
+  MatrixX jacobian;                  ///< rows x unknowns; empty where it was not asked for
+  std::vector<Index> block;          ///< of each row
+  std::vector<bool> of_orientation;  ///< of each row
+};
+
+/// A parameterisation of an arm, and stations of measurements.
+class CalibrationProblem {
+ public:
+  /// @param stations those of poses first
+  VERNIER_API CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss);
+
+  ArmParameterisation arm;  ///< at its present values
+
+  Loss loss() const { return loss_; }
+  Index num_blocks() const { return static_cast<Index>(blocks_.size()); }
+  /// The first blocks, on which models are validated: positions where there are any, else distances.
+  Index num_validation_blocks() const { return validation_blocks_; }
+  const Station& station_of(Index block) const { return stations_[static_cast<std::size_t>(at(block).station)]; }
+  int station_index(Index block) const { return at(block).station; }
+  /// Measured values: three a position, six a pose, one a distance.
+  VERNIER_API Index measured_values() const;
+  /// Joint values of all samples, blocks x joints.
+  VERNIER_API MatrixX joints() const;
+
+  /// The problem as rows; refers to this.
+  VERNIER_API BlockSystem system() const;
+  /// Evaluates blocks first .. first + count - 1: residuals and columns divided by the sensors' sigmas and weighted by
+  /// the loss. Errors of joint readings are unknowns of each pose with a prior, eliminated here in closed form.
+  VERNIER_API void operator()(Index first, Index count, RowBlock* out) const;
+  /// All rows at once.
+  VERNIER_API StackedRows stacked(bool with_jacobian) const;
+  /// Weighted sum of squares, of residuals and priors.
+  VERNIER_API double cost() const;
+
+  /// Weights of the loss from the present residuals.
+  VERNIER_API void reweight();
+  /// All weights one.
+  VERNIER_API void reset_weights();
+  /// Thresholds of the loss at the present residuals, of unit weights: of positions, orientations, distances; 0 where
+  /// there are none.
+  VERNIER_API std::array<double, 3> thresholds() const;
+
+  /// Iterates Gauss-Newton steps, damped where they do not lower the cost; a robust loss is reweighted on the way.
+  /// @return whether the iteration converged
+  VERNIER_API bool solve(int max_iterations = 20);
+
+ private:
+  struct Block {
+    int station;
+    Index row;
+    std::array<double, 2> weight;  ///< in [0, 1]: of position or distance, of orientation
+  };
+  const Block& at(Index block) const { return blocks_[static_cast<std::size_t>(block)]; }
+  /// Norms of whitened residuals, blocks x 2: of positions or distances, of orientations.
+  VERNIER_API MatrixX residual_norms() const;
+
+  std::vector<Station> stations_;
+  std::vector<Block> blocks_;
+  Index validation_blocks_ = 0;
+  Loss loss_;
+};
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/detail/calibration_problem.ipp"
+#endif

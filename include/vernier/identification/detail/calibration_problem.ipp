@@ -1,0 +1,223 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/normal_equations.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss)
+    : arm(std::move(start)), stations_(std::move(stations)), loss_(loss) {
+  for (std::size_t s = 0; s < stations_.size(); ++s)
+    for (Index i = 0; i < stations_[s].size(); ++i) blocks_.push_back({static_cast<int>(s), i, {1, 1}});
+  for (const Station& station : stations_)
+    if (station.lengths == nullptr) validation_blocks_ += station.size();
+  if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
+}
+
+VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
+  return {num_blocks(), num_validation_blocks(), arm.num_dense(), arm.group_sizes(), *this};
+}
+
+VERNIER_IMPL Index CalibrationProblem::measured_values() const {
+  Index sum = 0;
+  for (const auto& station : stations_) sum += station.values() * station.size();
+  return sum;
+}
+
+VERNIER_IMPL MatrixX CalibrationProblem::joints() const {
+  MatrixX out(num_blocks(), arm.geometry(0).joints());
+  Index at = 0;
+  for (const Station& station : stations_) {
+    out.middleRows(at, station.size()) = station.joints();
+    at += station.size();
+  }
+  return out;
+}
+
+/// Residual of a sample, not whitened: model minus measured; and what maps rates of the model to rates of the residual.
+/// @param along of a distance, the direction from the fixed point to the tool point
+VERNIER_API Vector6 measured_residual(const Station& station, Index row, const Isometry3& modelled, Vector3& along,
+                                      Matrix3& rotation_rate) {
+  Vector6 out = Vector6::Zero();
+  if (station.lengths != nullptr) {
+    along = modelled.translation().normalized();
+    out(0) = modelled.translation().norm() - (*station.lengths)(row);
+  } else {
+    out.head<3>() = modelled.translation() - station.position(row);
+  }
+  if (station.oriented()) {
+    const Vector3 rotation =
+        log_so3(modelled.linear() * station.orientations[static_cast<std::size_t>(row)].transpose());
+    out.tail<3>() = rotation;
+    rotation_rate = left_jacobian_inverse_so3(rotation);
+  }
+  return out;
+}
+
+/// Scales rows by the sensor's precision; of a distance the position rows are projected to the line of sight first.
+VERNIER_API void whiten_rows(const Station& station, const Vector3& along, double position, const Matrix3& orientation,
+                             Rows6& rows) {
+  for (Index k = 0; k < rows.cols(); ++k) {
+    const Vector3 linear = rows.col(k).head<3>(), angular = rows.col(k).tail<3>();
+    rows.col(k).setZero();
+    if (station.lengths != nullptr)
+      rows(0, k) = position * along.dot(linear);
+    else
+      rows.col(k).head<3>() = position * linear;
+    if (station.oriented()) rows.col(k).tail<3>() = orientation * angular;
+  }
+}
+
+VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBlock* out) const {
+  for (Index done = 0; done < count;) {  // stretches of one station
+    const Block& begin = at(first + done);
+    const Station& station = stations_[static_cast<std::size_t>(begin.station)];
+    const Index stretch = std::min(count - done, station.size() - begin.row);
+    const std::vector<Isometry3> poses =
+        arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch), out + done);
+    for (Index i = 0; i < stretch; ++i) {
+      const Block& block = at(first + done + i);
+      RowBlock& rows = out[done + i];
+      Vector3 along = Vector3::Zero();
+      Matrix3 rate = Matrix3::Zero();
+      rows.residual = measured_residual(station, block.row, poses[static_cast<std::size_t>(i)], along, rate);
+      const double position = std::sqrt(block.weight[0]) / station.position_sigma;
+      const double orientation = station.oriented() ? std::sqrt(block.weight[1]) / station.orientation_sigma : 0;
+      rows.position_sigma = 1 / position;
+      rows.residual.head<3>() *= position;
+      rows.residual.tail<3>() *= orientation;
+      whiten_rows(station, along, position, orientation * rate, rows.dense);
+      whiten_rows(station, along, position, orientation * rate, rows.factor);
+      rows.unwhiten.setIdentity();
+      if (station.joint_sigma <= 0) continue;
+      // the residual's covariance with the joint readings eliminated: I + noise noise'
+      const Rows6 noise = station.joint_sigma * rows.factor;
+      MatrixX covariance = MatrixX::Identity(6, 6), residual = rows.residual;
+      covariance += noise.lazyProduct(noise.transpose());
+      cholesky(covariance);
+      rows.unwhiten = covariance.triangularView<Eigen::Lower>();
+      solve_lower(covariance, residual);
+      rows.residual = residual;
+      MatrixX columns = rows.dense;
+      solve_lower(covariance, columns);
+      rows.dense = columns;
+      columns = rows.factor;
+      solve_lower(covariance, columns);
+      rows.factor = columns;
+    }
+    done += stretch;
+  }
+}
+
+VERNIER_IMPL StackedRows CalibrationProblem::stacked(bool with_jacobian) const {
+  StackedRows out;
+  const Index values = measured_values(), unknowns = arm.size();
+  out.residuals.resize(values);
+  if (with_jacobian) out.jacobian.resize(values, unknowns);
+  out.block.reserve(static_cast<std::size_t>(values));
+  Rows6 expanded(6, unknowns);
+  Index row = 0;
+  visit_blocks(system(), 0, 1, num_blocks(), [&](Index b, const RowBlock& rows) {
+    const Index count = station_of(b).values();
+    if (with_jacobian) rows.expand(arm.group_sizes(), expanded);
+    for (Index r = 0; r < count; ++r, ++row) {
+      out.residuals(row) = rows.residual(r);
+      for (Index k = 0; with_jacobian && k < unknowns; ++k) out.jacobian(row, k) = expanded(r, k);
+      out.block.push_back(b);
+      out.of_orientation.push_back(r >= 3);
+    }
+  });
+  return out;
+}
+
+VERNIER_IMPL double CalibrationProblem::cost() const {
+  double sum = 0;
+  Index b = 0;
+  for (std::size_t s = 0; s < stations_.size(); ++s) {
+    const Station& station = stations_[s];
+    if (station.joint_sigma > 0) {  // whitening needs the Jacobian
+      visit_blocks(system(), b, 1, station.size(),
+                   [&](Index, const RowBlock& rows) { sum += rows.residual.squaredNorm(); });
+      b += station.size();
+      continue;
+    }
+    const std::vector<Isometry3> poses = arm.poses(static_cast<int>(s), station.joints());
+    for (Index i = 0; i < station.size(); ++i, ++b) {
+      Vector3 along = Vector3::Zero();
+      Matrix3 rate = Matrix3::Zero();
+      const Vector6 residual = measured_residual(station, i, poses[static_cast<std::size_t>(i)], along, rate);
+      sum +=
+          at(b).weight[0] * residual.head<3>().squaredNorm() / (station.position_sigma * station.position_sigma) +
+          at(b).weight[1] * residual.tail<3>().squaredNorm() / (station.orientation_sigma * station.orientation_sigma);
+    }
+  }
+  const VectorX steps = arm.steps();
+  return sum + arm.precisions().dot(steps.cwiseAbs2());
+}
+
+VERNIER_IMPL MatrixX CalibrationProblem::residual_norms() const {
+  MatrixX norms(num_blocks(), 2);
+  visit_blocks(system(), 0, 1, num_blocks(), [&](Index b, const RowBlock& rows) {
+    norms(b, 0) = rows.residual.head<3>().norm();
+    norms(b, 1) = rows.residual.tail<3>().norm();
+  });
+  return norms;
+}
+
+VERNIER_IMPL void CalibrationProblem::reset_weights() {
+  for (Block& block : blocks_) block.weight = {1, 1};
+}
+
+/// Thresholds of norms of residuals: of positions, orientations, distances.
+VERNIER_API std::array<double, 3> loss_thresholds(const CalibrationProblem& problem, const MatrixX& norms) {
+  std::array<std::vector<double>, 3> kinds;
+  for (Index b = 0; b < problem.num_blocks(); ++b) {
+    const Station& station = problem.station_of(b);
+    kinds[station.lengths != nullptr ? 2 : 0].push_back(norms(b, 0));
+    if (station.oriented()) kinds[1].push_back(norms(b, 1));
+  }
+  return {robust_threshold(std::move(kinds[0]), 3), robust_threshold(std::move(kinds[1]), 3),
+          robust_threshold(std::move(kinds[2]), 1)};
+}
+
+VERNIER_IMPL std::array<double, 3> CalibrationProblem::thresholds() const {
+  return loss_thresholds(*this, residual_norms());
+}
+
+VERNIER_IMPL void CalibrationProblem::reweight() {
+  reset_weights();
+  const MatrixX norms = residual_norms();
+  const std::array<double, 3> thresholds = loss_thresholds(*this, norms);
+  for (Index b = 0; b < num_blocks(); ++b) {
+    Block& block = blocks_[static_cast<std::size_t>(b)];
+    const Station& station = station_of(b);
+    const double position = thresholds[station.lengths != nullptr ? 2 : 0];
+    if (position > 0) block.weight[0] = robust_weight(loss_, norms(b, 0), position);
+    if (station.oriented() && thresholds[1] > 0) block.weight[1] = robust_weight(loss_, norms(b, 1), thresholds[1]);
+  }
+}
+
+VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    if (loss_ != Loss::squared) reweight();
+    const VectorX steps = arm.steps(), precisions = arm.precisions();
+    const NormalEquations normal(system());
+    const FactorisedEquations solved(normal, precisions, steps);
+    if (!solved.usable()) return false;
+    arm.move(solved.step());
+    // converged when steps vanish, or change no more than digits of the cost
+    const double gain = -solved.step().dot(normal.gradient + precisions.cwiseProduct(steps));
+    if (solved.step().cwiseAbs().maxCoeff() < 1e-6 || gain < (loss_ == Loss::squared ? 1e-9 : 1e-5) * normal.cost)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,308 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/identification/detail/identification.hpp"
+#include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/identification/frames.hpp"
+#include "vernier/identification/identifiable_parameters.hpp"
+#include "vernier/least_squares/estimate_covariance.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
+
+namespace vernier::detail {
+
+/// `IdentifiableParameters` by parameter.
+struct ParameterSelection {
+  struct Dependent {
+    Index parameter;
+    std::vector<Index> absorbed_by;
+  };
+  std::vector<Index> base;
+  std::vector<Dependent> dependent;
+
+  VERNIER_API ParameterSelection(const std::vector<Index>& candidates, const MatrixX& jacobian) {
+    const IdentifiableParameters columns(jacobian);
+    const auto parameters = [&](const std::vector<Index>& which) {
+      std::vector<Index> out;
+      for (const Index k : which) out.push_back(candidates[static_cast<std::size_t>(k)]);
+      return out;
+    };
+    base = parameters(columns.base);
+    for (const auto& d : columns.dependent)
+      dependent.push_back({candidates[static_cast<std::size_t>(d.column)], parameters(d.absorbed_by)});
+  }
+};
+
+/// The steps of `identify_geometry`.
+class IdentificationRun {
+ public:
+  VERNIER_API IdentificationRun(const ArmGeometry& nominal, const Station& data, const IdentifyOptions& options,
+                                const SensorModel& sensors, GeometrySolver solver)
+      : options_(options),
+        solver_(solver),
+        plan_(nominal, options),
+        start_(starting_frames(nominal, data, options.base_free(), options.tool_free())),
+        problem_(ArmParameterisation({start_}, {}), {data}, sensors.loss) {}
+
+  VERNIER_API IdentifiedGeometry run() {
+    // Frames alone first: a good start, and a fair figure of the nominal arm.
+    estimate(select(plan_.frames).base);
+    solve();
+    const ArmGeometry registered = problem_.arm.geometry(0);
+
+    // Then all independent parameters. What is dependent exactly at nominal may not be so at the solution.
+    std::vector<Index> order = plan_.candidates;
+    ParameterSelection columns = select(order);
+    for (int round = 0; round < 3; ++round) {
+      estimate(columns.base);
+      solve();
+      order = columns.base;
+      for (const auto& d : columns.dependent) order.push_back(d.parameter);
+      ParameterSelection again = select(order);
+      if (again.base.size() <= columns.base.size()) break;
+      columns = again;
+    }
+    estimate(columns.base);
+    regularise_weak();
+
+    const ArmGeometry identified = problem_.arm.geometry(0);
+    const StackedRows rows = problem_.stacked(true);
+    const EstimateCovariance covariance(rows.jacobian, row_variance(rows), problem_.arm.precisions(),
+                                        VectorX::Constant(problem_.arm.size(), prior_scale_ * prior_scale_));
+    IdentifiedGeometry out{identified, {}};
+    IdentificationReport& report = out.report;
+    report.message = summary_.message;
+    report.rms_before = position_rms(registered);
+    report.rms_after = position_rms(identified);
+    report.rotation_rms_after = rotation_rms(identified);
+    report.free = columns.base;
+    report.rank = covariance.rank;
+    report.condition = covariance.condition;
+    report.iterations = iterations_;
+    if (covariance.singular_values.size() > 0)
+      report.observability = Observability::of(covariance.singular_values, data().size());
+    describe_parameters(report, identified, covariance);
+    if (!columns.dependent.empty()) explain(report, registered, columns);
+    const auto estimated = static_cast<Index>(report.free.size());
+    if (problem_.measured_values() <= estimated) report.status = IdentifyStatus::underdetermined;
+    if (report.status == IdentifyStatus::underdetermined)
+      report.message =
+          message(data().size(), " poses give ", problem_.measured_values(), " measured values, which determine only ",
+                  estimated, " of the ", static_cast<Index>(plan_.candidates.size()), " parameters to be estimated");
+    if (!summary_.converged) {
+      report.status = IdentifyStatus::not_converged;
+      report.message = summary_.message;
+    }
+    return out;
+  }
+
+ private:
+  const Station& data() const { return problem_.station_of(0); }
+  std::size_t num_free() const { return problem_.arm.geometric().size(); }
+
+  /// Names the parameters to be estimated; present values stay, priors go.
+  VERNIER_API void estimate(const std::vector<Index>& parameters) {
+    std::vector<GeometricUnknown> unknowns;
+    for (const Index k : parameters) unknowns.push_back({k, -1, plan_.scales(k), 0});
+    problem_.arm.set_geometric(std::move(unknowns));
+    weak_.assign(parameters.size(), false);
+  }
+
+  VERNIER_API void solve() {
+    if (num_free() == 0) return;
+    summary_ = solver_(problem_, options_.max_iterations);
+    iterations_ += summary_.iterations;
+  }
+
+  /// Separates independent from dependent candidates at the present values.
+  VERNIER_API ParameterSelection select(const std::vector<Index>& candidates) {
+    estimate(candidates);
+    return ParameterSelection(candidates, problem_.stacked(true).jacobian);
+  }
+
+  /// Variance of whitened rows, one factor a sensor, from residuals; the sensors' own where there is no redundancy.
+  VERNIER_API VectorX row_variance(const StackedRows& rows) const {
+    const Index n = rows.residuals.size();
+    VectorX out = VectorX::Ones(n);
+    const double degrees = static_cast<double>(n) - static_cast<double>(num_free());
+    if (degrees < 1) return out;
+    for (const bool orientation : {false, true}) {
+      double square_sum = 0, count = 0;
+      std::vector<double> squares(static_cast<std::size_t>(data().size()), 0.0);
+      for (Index i = 0; i < n; ++i) {
+        if (rows.of_orientation[static_cast<std::size_t>(i)] != orientation) continue;
+        const double square = rows.residuals(i) * rows.residuals(i);
+        square_sum += square;
+        ++count;
+        squares[static_cast<std::size_t>(rows.block[static_cast<std::size_t>(i)])] += square;
+      }
+      if (count == 0) continue;
+      double variance = square_sum / count;
+      if (problem_.loss() != Loss::squared) {
+        for (double& square : squares) square = std::sqrt(square);
+        const double sigma = robust_sigma(std::move(squares), data().lengths != nullptr ? 1 : 3);
+        variance = sigma * sigma;
+      }
+      for (Index i = 0; i < n; ++i)
+        if (rows.of_orientation[static_cast<std::size_t>(i)] == orientation)
+          out(i) = variance * static_cast<double>(n) / degrees;
+    }
+    return out;
+  }
+
+  /// Gives chain parameters whose standard deviation exceeds their expected size a prior, and solves again. How wide
+  /// the prior is, 1, 3 or 10 sizes, is decided by leave-one-pose-out errors.
+  VERNIER_API void regularise_weak() {
+    if (!options_.priors || num_free() == 0) return;
+    const std::vector<GeometricUnknown> unknowns = problem_.arm.geometric();
+    const StackedRows rows = problem_.stacked(true);
+    const VectorX variance = row_variance(rows), none = VectorX::Zero(problem_.arm.size());
+    const EstimateCovariance free(rows.jacobian, variance, none, none);
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
+      const auto i = static_cast<Index>(k);
+      weak_[k] = plan_.in_chain(unknowns[k].parameter) && !(free.covariance.size() > 0 && free.covariance(i, i) <= 1);
+    }
+    if (std::find(weak_.begin(), weak_.end(), true) == weak_.end()) return;
+
+    struct Candidate {
+      double prior_scale;
+      ArmParameterisation arm;
+      SolverSummary summary;
+    };
+    std::vector<Candidate> candidates;
+    std::vector<PriorTrial> trials;
+    const ArmParameterisation start = problem_.arm;
+    for (const double prior_scale : {10.0, 3.0, 1.0}) {
+      problem_.arm = start;
+      std::vector<GeometricUnknown> regularised = unknowns;
+      for (std::size_t k = 0; k < unknowns.size(); ++k)
+        if (weak_[k]) regularised[k].precision = std::max(variance(0), 1e-12) / (prior_scale * prior_scale);
+      problem_.arm.set_geometric(std::move(regularised));
+      solve();
+      if (problem_.loss() != Loss::squared) problem_.reweight();
+      const BlockSystem system = problem_.system();
+      const NormalEquations normal(system);
+      const FactorisedEquations solved(normal, problem_.arm.precisions(), problem_.arm.steps());
+      trials.push_back(
+          {1 / (prior_scale * prior_scale), leave_one_out_errors(system, solved, 1).colwise().norm().transpose()});
+      problem_.reset_weights();
+      candidates.push_back({prior_scale, problem_.arm, summary_});
+    }
+    const Candidate& chosen = candidates[one_standard_error_rule(trials)];
+    prior_scale_ = chosen.prior_scale;
+    problem_.arm = chosen.arm;
+    summary_ = chosen.summary;
+  }
+
+  /// Of positions, or of distances [m].
+  VERNIER_API double position_rms(const ArmGeometry& arm) const {
+    const PointRows points = arm.positions(data().joints());
+    double sum = 0;
+    for (Index i = 0; i < points.rows(); ++i)
+      sum += data().lengths != nullptr ? std::pow(points.row(i).norm() - (*data().lengths)(i), 2)
+                                       : (points.row(i).transpose() - data().position(i)).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(points.rows()));
+  }
+
+  /// 0 where orientations are not used [rad].
+  VERNIER_API double rotation_rms(const ArmGeometry& arm) const {
+    if (!data().oriented()) return 0;
+    const std::vector<Isometry3> poses = arm.poses(data().joints());
+    double sum = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      sum += log_so3(poses[i].linear() * data().orientations[i].transpose()).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(poses.size()));
+  }
+
+  VERNIER_API void describe_parameters(IdentificationReport& report, const ArmGeometry& identified,
+                                       const EstimateCovariance& covariance) const {
+    const VectorX before = start_.parameters(), now = identified.parameters();
+    for (Index k = 0; k < before.size(); ++k)
+      report.parameters.push_back({plan_.names[static_cast<std::size_t>(k)],
+                                   plan_.kinds[static_cast<std::size_t>(k)],
+                                   before(k),
+                                   now(k),
+                                   0,
+                                   ParameterState::fixed,
+                                   {},
+                                   plan_.scales(k)});
+    const VectorX scales = problem_.arm.scales();
+    if (covariance.covariance.size() > 0)
+      report.covariance = scales.asDiagonal() * covariance.covariance * scales.asDiagonal();
+    for (std::size_t k = 0; k < report.free.size(); ++k) {
+      ParameterEstimate& p = report.parameters[static_cast<std::size_t>(report.free[k])];
+      p.state = weak_[k] ? ParameterState::weak : ParameterState::identified;
+      if (weak_[k]) p.prior_std = prior_scale_ * p.scale;
+      const auto i = static_cast<Index>(k);
+      if (report.covariance.size() > 0) p.std = std::sqrt(report.covariance(i, i));
+    }
+  }
+
+  /// Why parameters are dependent: by the structure of arm and sensor, so at random poses too, or for want of poses.
+  VERNIER_API void explain(IdentificationReport& report, const ArmGeometry& arm, const ParameterSelection& columns) {
+    Rng rng(0);
+    MatrixX joints(100, arm.joints());
+    for (Index k = 0; k < joints.size(); ++k) joints.data()[k] = rng.uniform(-3, 3);
+    Station ideal{.joint_values = joints.data(),
+                  .samples = joints.rows(),
+                  .dof = arm.joints(),
+                  .position_sigma = data().position_sigma,
+                  .orientation_sigma = data().orientation_sigma};
+    const PointRows points = arm.positions(joints);
+    const VectorX lengths = points.rowwise().norm();
+    if (data().lengths != nullptr)
+      ideal.lengths = &lengths;
+    else
+      ideal.positions = &points;
+    if (data().oriented())
+      for (const Isometry3& pose : arm.poses(joints)) ideal.orientations.push_back(pose.linear());
+    std::vector<GeometricUnknown> unknowns;
+    for (const Index k : plan_.candidates) unknowns.push_back({k, -1, plan_.scales(k), 0});
+    const CalibrationProblem random_poses(ArmParameterisation({arm}, std::move(unknowns)), {ideal}, Loss::squared);
+    const ParameterSelection structure(plan_.candidates, random_poses.stacked(true).jacobian);
+
+    for (const auto& d : columns.dependent) {
+      ParameterEstimate& p = report.parameters[static_cast<std::size_t>(d.parameter)];
+      p.state = ParameterState::not_identifiable;
+      const auto structural = std::find_if(structure.dependent.begin(), structure.dependent.end(),
+                                           [&](const auto& s) { return s.parameter == d.parameter; });
+      const bool always = structural != structure.dependent.end();
+      if (!always) report.status = IdentifyStatus::underdetermined;
+      const auto& others = always ? structural->absorbed_by : d.absorbed_by;
+      if (others.empty()) {
+        p.remark = always ? "no effect on what was measured" : "no effect at these poses";
+        continue;
+      }
+      p.remark = always ? "absorbed by " : "at these poses indistinguishable from ";
+      for (std::size_t j = 0; j < others.size() && j < 4; ++j)
+        p.remark += (j > 0 ? ", " : "") + plan_.names[static_cast<std::size_t>(others[j])];
+      if (others.size() > 4) p.remark += ", ...";
+    }
+  }
+
+  const IdentifyOptions& options_;
+  GeometrySolver solver_;
+  IdentificationPlan plan_;
+  ArmGeometry start_;
+  CalibrationProblem problem_;
+  std::vector<bool> weak_;  // of the estimated parameters
+  double prior_scale_ = 1;  // standard deviations of the priors of weak parameters, in expected sizes
+  int iterations_ = 0;
+  SolverSummary summary_{true, 0, "nothing to estimate"};
+};
+
+VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const Station& data,
+                                                  const IdentifyOptions& options, const SensorModel& sensors,
+                                                  GeometrySolver solver) {
+  require(data.size() >= 1, "identify: no samples");
+  sensors.validate();
+  return IdentificationRun(nominal, data, options, sensors, solver).run();
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,68 @@
+#pragma once
+
+/// @file
+/// Measurements from one place, whatever the number of joints.
+
+#include <vector>
+
+#include "vernier/data/dataset.hpp"
+#include "vernier/data/distances.hpp"
+#include "vernier/identification/sensor_model.hpp"
+
+namespace vernier::detail {
+
+/// What was measured from one place, poses or distances, and how well. Refers to the measurements.
+struct Station {
+  const double* joint_values;            ///< n x dof, by columns
+  Index samples;                         ///< n
+  int dof;                               ///< number of joints
+  const PointRows* positions = nullptr;  ///< n, or null for distances
+  const VectorX* lengths = nullptr;      ///< n distances, or null
+  std::vector<Matrix3> orientations{};   ///< n, or empty where they are not used
+  double position_sigma = 1;             ///< of a position, per component, or of a distance [m]
+  double orientation_sigma = 1;          ///< [rad]
+  double joint_sigma = 0;                ///< of the joint readings [rad, m]; 0: exact
+
+  /// Number of samples.
+  Index size() const { return samples; }
+  /// Joint values [rad, m], n x dof.
+  Eigen::Map<const MatrixX> joints() const { return {joint_values, samples, dof}; }
+  bool oriented() const { return !orientations.empty(); }
+  /// Measured values of a sample.
+  Index values() const { return positions == nullptr ? 1 : oriented() ? 6 : 3; }
+  Vector3 position(Index i) const { return positions->row(i).transpose(); }
+};
+
+/// Rotation matrices of rotation vectors.
+VERNIER_API std::vector<Matrix3> rotations(const PointRows& rotation_vectors);
+
+/// Measured poses as a station.
+template <int N>
+Station station_of(const Dataset<N>& data, const SensorModel& sensors) {
+  Station out{.joint_values = data.joints().data(),
+              .samples = data.size(),
+              .dof = N,
+              .positions = &data.positions(),
+              .position_sigma = sensors.position_sigma,
+              .orientation_sigma = sensors.orientation_sigma,
+              .joint_sigma = sensors.joint_sigma};
+  if (sensors.use_orientations && data.has_orientations()) out.orientations = rotations(data.orientations());
+  return out;
+}
+
+/// Measured distances as a station whose base frame has the fixed point as its origin.
+template <int N>
+Station station_of(const Distances<N>& data, const SensorModel& sensors) {
+  return {.joint_values = data.joints().data(),
+          .samples = data.size(),
+          .dof = N,
+          .lengths = &data.lengths(),
+          .position_sigma = sensors.distance_sigma,
+          .joint_sigma = sensors.joint_sigma};
+}
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/detail/station.ipp"
+#endif

@@ -1,0 +1,42 @@
+#pragma once
+
+/// @file
+/// Identification of an arm's geometry and frames by nonlinear least squares in Ceres, which the component `ceres` brings:
+/// include vernier/ceres.hpp.
+
+#include <concepts>
+
+#include "vernier/identification/detail/identification.hpp"
+#include "vernier/identification/identified.hpp"
+
+namespace vernier {
+
+/// Identifies the geometry of an arm and its base and tool frames from measurements (Levenberg-Marquardt in Ceres).
+///
+/// Parameters that are linearly dependent on others in these measurements keep their values and are named; weakly
+/// determined ones get a prior of physical size, so that they stay plausible; an underdetermined problem is reported as
+/// such.
+///
+/// From distances to one fixed point the base frame has its origin at that point; its orientation, which distances do
+/// not determine, is that of the start, and errors are those of distances.
+/// @param nominal the arm as designed; its frames are known, or the start where they are to be identified
+/// @param data    n >= 1 samples, a `Dataset` or `Distances`; joints in rad (or m), positions in m. Not kept.
+/// @param options which parameters are estimated, with which priors
+/// @param sensors accuracy of the measurements, and the loss; plain least squares by default
+/// @return        model, status, rms before and after [m], rank, condition, covariance (empty where rank deficient)
+/// @throws std::invalid_argument on no data or an unusable option, never for poor data
+/// @complexity    O(n * free^2) per iteration; allocates
+/// @cite          Hayati and Mirmirani 1985; Everett, Driels and Mooring 1987; Schroer 1997
+template <NominalArm Arm, class Data>
+Identified<ChainOf<Arm>> identify(const Arm& nominal, const Data& data, const IdentifyOptions& options = {},
+                                  const SensorModel& sensors = {.loss = Loss::squared}) {
+  static_assert(std::same_as<Data, Dataset<Arm::dof>> || std::same_as<Data, Distances<Arm::dof>>,
+                "identify: data of another number of joints");
+  const Framed<ChainOf<Arm>> arm = in_frames(nominal);
+  const detail::CeresSolver solver;
+  const detail::IdentifiedGeometry found = detail::identify_geometry(
+      ArmGeometry(arm), detail::station_of(data, sensors), options, sensors, solver);
+  return {found.report, {found.arm.framed(arm.model()), arm.model()}};
+}
+
+}  // namespace vernier

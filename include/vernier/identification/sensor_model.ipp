@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/identification/sensor_model.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL void SensorModel::validate() const {
+  for (const auto& [name, value] : {std::pair{"position_sigma", position_sigma},
+                                    {"orientation_sigma", orientation_sigma},
+                                    {"distance_sigma", distance_sigma}})
+    require(value > 0 && std::isfinite(value), "SensorModel: ", name, " is ", value, ", must be positive");
+  require(joint_sigma >= 0 && std::isfinite(joint_sigma), "SensorModel: joint_sigma is ", joint_sigma,
+          ", must not be negative");
+}
+
+}  // namespace vernier

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/io/report_json.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL nlohmann::ordered_json stages_to_json(const std::vector<StageErrors>& stages) {
+  nlohmann::ordered_json out;
+  for (const StageErrors& stage : stages) {
+    const auto e = ErrorStatistics::of(stage.position * 1e3);
+    out[stage.key] = {{"mean_mm", e.mean}, {"rms_mm", e.rms}, {"max_mm", e.max}, {"min_mm", e.min}, {"p95_mm", e.p95}};
+    if (stage.rotation.size() > 0) out[stage.key]["mean_mrad"] = stage.rotation.mean() * 1e3;
+  }
+  return out;
+}
+
+VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, const std::string& robot) {
+  using Json = nlohmann::ordered_json;
+  const IdentificationReport& identification = report.identification;
+  Json parameters = Json::array(), blocks = Json::array();
+  for (const BlockChoice& block : report.blocks)
+    blocks.push_back({{"name", block.name},
+                      {"used", block.used},
+                      {"left_out_without_mm", block.without * 1e3},
+                      {"left_out_with_mm", block.with * 1e3},
+                      {"tightness", block.used ? Json(block.precision) : Json()}});
+  for (const ParameterEstimate& p : identification.parameters)
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.kind == ParameterKind::length ? "mm" : "mrad"},
+                          {"nominal", p.nominal * 1e3},
+                          {"identified", p.identified * 1e3},
+                          {"std", p.std * 1e3}});
+  const Observability& o = identification.observability;
+  return {{"robot", robot},
+          {"train_rows", report.train_poses},
+          {"test_rows", report.test_poses()},
+          {"stages", stages_to_json(report.stages)},
+          {"blocks", blocks},
+          {"parameters", parameters},
+          {"identifiability",
+           {{"rank", identification.rank},
+            {"free", identification.free.size()},
+            {"condition", identification.condition},
+            {"weak", identification.names(ParameterState::weak)},
+            {"strongly_correlated", identification.strongly_correlated()},
+            {"observability", {{"O1", o.o1}, {"O2", o.o2}, {"O3", o.o3}, {"O4", o.o4}, {"O5", o.o5}}}}},
+          {"gated_rows", report.extrapolated()},
+          {"worst_harm_beside_geometry_mm", report.max_degradation * 1e3},
+          {"within_95_percent_ellipsoids", report.ellipsoid_coverage},
+          {"verdict", report.verdict()}};
+}
+
+}  // namespace vernier

@@ -1,0 +1,113 @@
+#pragma once
+
+/// @file
+/// The geometry of an arm, base and tool frames included, with its number of joints known at run time.
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "vernier/kinematics/detail/chain_table.hpp"
+#include "vernier/kinematics/dh_chain.hpp"
+#include "vernier/kinematics/framed.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+template <class Arm>
+struct ChainOfArm {};
+template <int N, class Convention>
+struct ChainOfArm<DhChain<N, Convention>> {
+  using type = DhChain<N, Convention>;
+};
+template <int N, class Convention>
+struct ChainOfArm<Framed<DhChain<N, Convention>>> {
+  using type = DhChain<N, Convention>;
+};
+
+}  // namespace detail
+
+/// The chain of a nominal arm: of a `DhChain`, or of one between known base and tool frames.
+template <class Arm>
+using ChainOf = typename detail::ChainOfArm<Arm>::type;
+
+/// A nominal arm: a `DhChain`, or one between known (or guessed) base and tool frames.
+template <class Arm>
+concept NominalArm = requires {
+  typename ChainOf<Arm>;
+};
+
+/// A nominal arm between frames, identity where it has none.
+template <NominalArm Arm>
+Framed<ChainOf<Arm>> in_frames(const Arm& arm) {
+  return Framed<ChainOf<Arm>>(arm);
+}
+
+/// What `Framed<DhChain<N, Convention>>` is for a number of joints known at compile time: what identification computes
+/// with, so that it is compiled once for all arms. Parameters: 6 of the base, 5 a joint (a, alpha, d, theta, beta), 6
+/// of the tool.
+class ArmGeometry {
+ public:
+  /// A chain between frames.
+  template <int N, class Convention>
+  explicit ArmGeometry(const Framed<DhChain<N, Convention>>& arm)
+      : ArmGeometry(detail::ChainTable(arm.model().view()), arm.base_frame(), arm.tool_frame()) {}
+  /// @param chain its rows
+  ArmGeometry(detail::ChainTable chain, const FrameParameters& base, const FrameParameters& tool)
+      : chain_(std::move(chain)), base_(base), tool_(tool) {}
+
+  /// The same with the number of joints and the convention known at compile time: those of a chain.
+  /// @throws std::invalid_argument where they are others
+  template <int N, class Convention>
+  Framed<DhChain<N, Convention>> framed(const DhChain<N, Convention>&) const {
+    require(joints() == N && chain_.modified() == Convention::modified, "ArmGeometry: an arm of ", joints(),
+            " joints in the ", chain_.modified() ? "modified" : "standard", " convention, expected ", N, " in the ",
+            Convention::modified ? "modified" : "standard", " one");
+    std::array<DhRow, N> rows;
+    std::copy(chain_.rows().begin(), chain_.rows().end(), rows.begin());
+    return Framed<DhChain<N, Convention>>(DhChain<N, Convention>::from_rows(rows), base_, tool_);
+  }
+
+  /// Number of joints.
+  int joints() const { return chain_.joints(); }
+  /// Number of parameters.
+  Index num_parameters() const { return 12 + 5 * joints(); }
+  /// The chain between the frames.
+  const detail::ChainTable& chain() const { return chain_; }
+  /// Base frame with its six values.
+  const FrameParameters& base() const { return base_; }
+  /// Tool frame with its six values.
+  const FrameParameters& tool() const { return tool_; }
+  /// The same chain between other frames.
+  ArmGeometry with_frames(const FrameParameters& base, const FrameParameters& tool) const {
+    return {chain_, base, tool};
+  }
+
+  /// Values of the parameters [m, rad].
+  VERNIER_API VectorX parameters() const;
+  /// A frame whose six values do not change keeps its matrix bit for bit.
+  VERNIER_API ArmGeometry with_parameters(const ConstVectorRef& values) const;
+  /// Names of the parameters.
+  VERNIER_API std::vector<std::string> parameter_names() const;
+  /// What each parameter measures.
+  VERNIER_API std::vector<ParameterKind> parameter_kinds() const;
+
+  /// Tool positions [m] at n configurations, n x joints.
+  VERNIER_API PointRows positions(const ConstMatrixRef& joints) const;
+  /// base_T_tool at n configurations.
+  VERNIER_API std::vector<Isometry3> poses(const ConstMatrixRef& joints) const;
+  /// Poses and parameter Jacobians at n configurations.
+  VERNIER_API void poses_and_parameter_jacobians(const ConstMatrixRef& joints, PosesAndJacobians& out) const;
+
+ private:
+  detail::ChainTable chain_;
+  FrameParameters base_, tool_;
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/kinematics/arm_geometry.ipp"
+#endif

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <utility>
+
+#include "vernier/kinematics/arm_geometry.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL VectorX ArmGeometry::parameters() const {
+  VectorX out(num_parameters());
+  out.head<6>() = base_.values();
+  for (int i = 0; i < joints(); ++i) {
+    const DhRow& row = chain_.rows()[static_cast<std::size_t>(i)];
+    out.segment<5>(6 + 5 * i) << row.a, row.alpha, row.d, row.theta, row.beta;
+  }
+  out.tail<6>() = tool_.values();
+  return out;
+}
+
+VERNIER_IMPL ArmGeometry ArmGeometry::with_parameters(const ConstVectorRef& values) const {
+  require(values.size() == num_parameters(), "ArmGeometry: ", values.size(), " parameters, expected ",
+          num_parameters());
+  const auto frame = [](const FrameParameters& old, const Vector6& now) {
+    return now == old.values() ? old : FrameParameters(now);
+  };
+  std::vector<DhRow> rows = chain_.rows();
+  for (int i = 0; i < joints(); ++i) {
+    const double* p = values.data() + 6 + 5 * i;
+    DhRow& row = rows[static_cast<std::size_t>(i)];
+    row = {p[0], p[1], p[2], p[3], p[4], row.joint};
+  }
+  return {detail::ChainTable(std::move(rows), chain_.modified()), frame(base_, values.head<6>()),
+          frame(tool_, values.tail<6>())};
+}
+
+VERNIER_IMPL std::vector<std::string> ArmGeometry::parameter_names() const {
+  return detail::framed_names(detail::chain_parameter_names(joints()));
+}
+
+VERNIER_IMPL std::vector<ParameterKind> ArmGeometry::parameter_kinds() const {
+  return detail::framed_kinds(detail::chain_parameter_kinds(joints()));
+}
+
+VERNIER_IMPL PointRows ArmGeometry::positions(const ConstMatrixRef& joints) const {
+  PointRows out(joints.rows(), 3);
+  const Vector3 point = tool_.isometry().translation();
+  detail::evaluate_chain(chain_.view(), {.base = base_.isometry().data(), .point = point.data()}, joints.data(),
+                         joints.rows(), joints.outerStride(), {.positions = out.data()});
+  return out;
+}
+
+VERNIER_IMPL std::vector<Isometry3> ArmGeometry::poses(const ConstMatrixRef& joints) const {
+  std::vector<Isometry3> out(static_cast<std::size_t>(joints.rows()));
+  detail::evaluate_chain(
+      chain_.view(), {.base = base_.isometry().data(), .point = tool_.values().data(), .tool = tool_.isometry().data()},
+      joints.data(), joints.rows(), joints.outerStride(), {.poses = out.data()});
+  return out;
+}
+
+VERNIER_IMPL void ArmGeometry::poses_and_parameter_jacobians(const ConstMatrixRef& joints,
+                                                             PosesAndJacobians& out) const {
+  out.resize(joints.rows(), num_parameters());
+  detail::evaluate_chain(chain_.view(),
+                         {base_.isometry().data(), tool_.values().data(), tool_.isometry().data(),
+                          base_.rotation_vector_jacobian().data(), tool_.rotation_vector_jacobian().data()},
+                         joints.data(), joints.rows(), joints.outerStride(),
+                         {.poses = out.poses.data(), .parameters = out.jacobians.data()});
+}
+
+}  // namespace vernier

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/inverse_kinematics.hpp"
+
+namespace vernier::detail {
+
+/// Joints in the course of an inverse kinematics, and the model there. Entries beyond the number of joints are unused.
+struct IkIterate {
+  double q[max_joints];
+  double jacobian[6 * max_joints];  ///< rows weighted
+  Vector6 error;                    ///< rows weighted
+  double position_error, rotation_error;
+  double cost;  ///< squared norm of the weighted error
+};
+
+/// Solves `a x = b` for a symmetric positive definite matrix of a few rows, its lower triangle; LDL' in place, then b
+/// is x. For so few rows Eigen's run-time-sized decompositions cost twice as much.
+inline void solve_few(double* a, double* b, int n) noexcept {
+  for (int j = 0; j < n; ++j) {
+    double* const column = a + j * n;
+    for (int k = 0; k < j; ++k) {
+      const double* const before = a + k * n;
+      const double factor = before[j] * before[k];  // before[k]: pivot k
+      for (int i = j; i < n; ++i) column[i] -= factor * before[i];
+    }
+    const double inverse = 1 / column[j];
+    for (int i = j + 1; i < n; ++i) column[i] *= inverse;
+    for (int i = j + 1; i < n; ++i) b[i] -= column[i] * b[j];
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    const double* const column = a + j * n;
+    double sum = b[j] / column[j];
+    for (int i = j + 1; i < n; ++i) sum -= column[i] * b[i];
+    b[j] = sum;
+  }
+}
+
+inline double dot6(const double* a, const double* b) noexcept {
+  return ((a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])) + (a[4] * b[4] + a[5] * b[5]);
+}
+
+/// Starts at `next.q`; the iterates change places, the better one is `*best`.
+VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* best, IkIterate* next,
+                                           double* joints) noexcept {
+  const int n = problem.joints, moving = std::clamp(problem.moving_joints, 1, n);
+  double normal[max_joints * max_joints], damped[max_joints * max_joints], gradient[max_joints], step[max_joints];
+  const double rotation_weight = problem.oriented ? problem.rotation_length : 0;
+
+  const auto evaluate = [&](IkIterate& it) {
+    Isometry3 pose;
+    problem.model(it.q, pose, it.jacobian);
+    const Vector3 position = problem.target.translation() - pose.translation();
+    Vector3 rotation = Vector3::Zero();
+    if (problem.oriented) rotation = log_so3(problem.target.linear() * pose.linear().transpose());
+    it.position_error = position.norm();
+    it.rotation_error = rotation.norm();
+    it.error << position, rotation_weight * rotation;
+    it.cost = it.error.squaredNorm();
+    for (int i = 0; i < n; ++i)
+      for (int k = 3; k < 6; ++k) it.jacobian[6 * i + k] *= rotation_weight;
+  };
+  const auto converged = [&] {
+    return best->position_error <= problem.position_tolerance && best->rotation_error <= problem.rotation_tolerance;
+  };
+  int iterations = 1;
+  const auto finish = [&](IkStatus status) {
+    std::copy_n(best->q, n, joints);
+    return IkOutcome{status, best->position_error, best->rotation_error, iterations};
+  };
+
+  std::swap(best, next);
+  for (int i = 0; i < moving; ++i) best->q[i] = std::min(std::max(best->q[i], problem.lower[i]), problem.upper[i]);
+  evaluate(*best);
+  double damping = 1e-3;  // in units of the cost
+  if (!std::isfinite(best->cost)) return finish(IkStatus::stalled);
+  while (!converged()) {
+    double trace = 0;
+    for (int j = 0; j < n; ++j) {
+      const double* const of_j = best->jacobian + 6 * j;
+      for (int i = j; i < n; ++i) normal[j * n + i] = dot6(best->jacobian + 6 * i, of_j);
+      gradient[j] = dot6(of_j, best->error.data());
+      trace += normal[j * n + j];
+    }
+    const double scale = std::max(trace, 1e-12);
+    double gradient_square = 0;
+    for (int i = 0; i < n; ++i) {
+      const bool held = i >= moving || (best->q[i] <= problem.lower[i] && gradient[i] < 0) ||
+                        (best->q[i] >= problem.upper[i] && gradient[i] > 0);
+      if (held) {
+        gradient[i] = 0;
+        for (int k = 0; k < i; ++k) normal[k * n + i] = 0;
+        for (int k = i + 1; k < n; ++k) normal[i * n + k] = 0;
+        normal[i * n + i] = 1;
+      }
+      gradient_square += gradient[i] * gradient[i];
+    }
+    // Nothing to gain in any direction; and no motion below 10 rad (or m) would remove the error to first order, or it
+    // is only the slow way out of a singularity.
+    if (std::sqrt(gradient_square) <= std::min(1e-3 * std::sqrt(scale * best->cost), 0.1 * best->cost))
+      return finish(IkStatus::unreachable);
+    for (;;) {
+      if (iterations >= problem.max_iterations || damping > 1e12) return finish(IkStatus::stalled);
+      std::copy_n(normal, n * n, damped);
+      for (int i = 0; i < n; ++i) damped[i * n + i] += damping * best->cost + 1e-14 * scale;
+      std::copy_n(gradient, n, step);
+      solve_few(damped, step, n);
+      double square = 0;
+      for (int i = 0; i < n; ++i) square += step[i] * step[i];
+      const double shorten =
+          std::min(1.0, 1.5 / std::sqrt(square));  // rad (or m): no needless turns near a singularity
+      for (int i = 0; i < n; ++i)
+        next->q[i] = i < moving ? std::min(std::max(best->q[i] + shorten * step[i], problem.lower[i]), problem.upper[i])
+                                : best->q[i];
+      evaluate(*next);
+      ++iterations;
+      if (next->cost < best->cost) {  // false for NaN too
+        std::swap(best, next);
+        damping = std::max(damping / 8, 1e-9);
+        break;
+      }
+      damping = std::max(damping * 8, 1e-9);
+    }
+  }
+  return finish(IkStatus::converged);
+}
+
+VERNIER_IMPL IkOutcome solve_inverse_kinematics(const IkProblem& problem, double* joints) noexcept {
+  const int n = problem.joints, moving = std::clamp(problem.moving_joints, 1, n);
+  IkIterate one, other;
+  std::copy_n(problem.seed, n, one.q);
+  IkOutcome best = damped_least_squares(problem, &other, &one, joints);
+  const auto error = [&](const IkOutcome& r) {
+    return std::hypot(r.position_error, problem.rotation_length * r.rotation_error);
+  };
+  Rng rng;
+  for (int k = 0; k < problem.restarts && best.status != IkStatus::converged; ++k) {
+    std::copy_n(problem.seed, n, one.q);
+    for (int i = 0; i < moving; ++i) {
+      const bool bounded = std::isfinite(problem.upper[i] - problem.lower[i]);
+      one.q[i] = bounded ? rng.uniform(problem.lower[i], problem.upper[i])
+                         : problem.seed[i] + rng.uniform(-3.14159265358979323846, 3.14159265358979323846);
+    }
+    double found[max_joints];
+    IkOutcome again = damped_least_squares(problem, &other, &one, found);
+    const int spent = best.iterations + again.iterations;
+    if (again.status == IkStatus::converged || error(again) < error(best)) {
+      best = again;
+      std::copy_n(found, n, joints);
+    }
+    best.iterations = spent;
+  }
+  return best;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,95 @@
+#pragma once
+
+/// @file
+/// Normal equations of a least-squares problem in blocks, dense with a sparse part for local states; Gauss-Newton steps
+/// and leave-one-block-out errors.
+///
+/// A factored unknown acts through one vector of its group: its columns are `factor_j h_k`. So the rows of a block
+/// enter the sums as one row weighted by `factor_i' factor_j`: a sixth of the work, and memory that does not grow with
+/// the number of blocks. Local states are eliminated by a Schur complement; what remains is dense.
+
+#include <utility>
+#include <vector>
+
+#include "vernier/least_squares/row_block.hpp"
+#include "vernier/least_squares/sparse_solve.hpp"
+
+namespace vernier {
+
+/// A Gaussian prior that couples two local states (or one with itself): adds `z_first' precision z_second`, and its
+/// transpose where they differ, to the exponent's quadratic form.
+struct LocalPrior {
+  Index first;        ///< a state
+  Index second;       ///< a state, at most `first`
+  MatrixX precision;  ///< local_size x local_size
+};
+
+/// J'J and J'r of all blocks, priors apart.
+struct NormalEquations {
+  MatrixX matrix;               ///< of dense and factored unknowns, both triangles
+  VectorX gradient;             ///< of dense and factored unknowns
+  double cost = 0;              ///< r'r
+  MatrixX coupling;             ///< local unknowns x the others
+  VectorX local_gradient;       ///< of local unknowns
+  SparseSymmetric local;        ///< of local unknowns
+  SparseSymmetric local_prior;  ///< precisions of local unknowns, same pattern
+
+  /// Sums over all blocks.
+  /// @complexity O(blocks u^2 / 6) for u unknowns, memory O(u^2)
+  VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {});
+};
+
+/// Normal equations with priors, factorised. Unknowns that nothing determines stay at their values.
+class FactorisedEquations {
+ public:
+  /// @param normal      must not change meanwhile
+  /// @param precisions  of independent priors of dense and factored unknowns
+  /// @param steps       present values, relative to the means of the priors
+  /// @param local_steps present values of local unknowns, likewise
+  /// @param solve       for the local unknowns
+  VERNIER_API FactorisedEquations(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
+                                  const VectorX& local_steps = {}, SparseSolve solve = eigen_sparse_solver);
+
+  /// Whether there is a solution.
+  bool usable() const { return usable_; }
+  /// Gauss-Newton step of dense and factored unknowns.
+  const VectorX& step() const { return step_; }
+  /// Gauss-Newton step of local unknowns.
+  const VectorX& local_step() const { return local_step_; }
+  /// log determinant of the whole matrix.
+  VERNIER_API double log_determinant() const;
+  /// Inverse of the matrix with local unknowns eliminated: the covariance of dense and factored unknowns.
+  VERNIER_API MatrixX inverse() const;
+  /// Multiplies by the inverse of the Cholesky factor of that matrix, in place.
+  VERNIER_API void apply_inverse_factor(MatrixRef columns) const;
+
+  /// Rows of a block with local states eliminated.
+  /// @param rows 6 x unknowns, as expanded; then less what local states explain
+  VERNIER_API void eliminate_local(const RowBlock& block, Eigen::Ref<Rows6> rows) const;
+  /// Covariances of the rows of blocks by local states alone: 6 x 6 of each block, side by side.
+  VERNIER_API MatrixX local_gains(const std::vector<RowBlock>& blocks) const;
+
+ private:
+  const NormalEquations& normal_;
+  SparseSolve solve_;
+  MatrixX factor_;      // lower triangle
+  MatrixX eliminated_;  // inverse of the local part times the coupling
+  VectorX step_, local_step_;
+  SparseSymmetric local_;  // with priors
+  double local_log_determinant_ = 0;
+  bool usable_ = false;
+};
+
+/// Position errors of blocks left out one at a time, in closed form: `e_b = (I - H_bb)^-1 r_b`, at the solution of the
+/// linearised problem with given priors.
+/// @param stride every stride-th of the validation blocks is left out
+/// @return       3 x ceil(validation_blocks / stride) [m]; infinite where there is no solution
+/// @cite Allen 1974
+VERNIER_API Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
+                                                  Index stride);
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/least_squares/normal_equations.ipp"
+#endif

@@ -1,0 +1,274 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/normal_equations.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// A symmetric matrix of blocks, by its pairs of states.
+class PairBlocks {
+ public:
+  using Pair = std::pair<Index, Index>;  // (column state, row state), row at or below column
+
+  PairBlocks(std::vector<Pair> pairs, Index block_size) : pairs_(std::move(pairs)), size_(block_size) {
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    values_.assign(pairs_.size() * static_cast<std::size_t>(size_ * size_), 0.0);
+  }
+
+  static Pair pair(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+  /// The block of rows of the later state and columns of the earlier one.
+  Eigen::Map<MatrixX> block(const Pair& pair) {
+    const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), pair) - pairs_.begin();
+    return {values_.data() + at * size_ * size_, size_, size_};
+  }
+
+  /// By columns, the same entries for any values.
+  SparseSymmetric compressed(Index states) const {
+    SparseSymmetric out;
+    out.size = states * size_;
+    std::size_t next = 0;
+    for (Index state = 0; state < states; ++state) {
+      std::size_t end = next;
+      while (end < pairs_.size() && pairs_[end].first == state) ++end;
+      for (Index column = 0; column < size_; ++column) {
+        out.starts.push_back(static_cast<int>(out.rows.size()));
+        for (std::size_t k = next; k < end; ++k)
+          for (Index row = pairs_[k].second == state ? column : 0; row < size_; ++row) {
+            out.rows.push_back(static_cast<int>(pairs_[k].second * size_ + row));
+            out.values.push_back(
+                values_[k * static_cast<std::size_t>(size_ * size_) + static_cast<std::size_t>(column * size_ + row)]);
+          }
+      }
+      next = end;
+    }
+    out.starts.push_back(static_cast<int>(out.rows.size()));
+    return out;
+  }
+
+ private:
+  std::vector<Pair> pairs_;
+  Index size_;
+  std::vector<double> values_;
+};
+
+/// The local part of the normal equations.
+VERNIER_API void add_local(const BlockSystem& system, const std::vector<LocalPrior>& priors, NormalEquations& out) {
+  const Index k = system.local_size;
+  std::vector<PairBlocks::Pair> pairs;
+  for (Index s = 0; s < system.local_states; ++s) pairs.push_back({s, s});
+  visit_blocks(system, 0, 1, system.blocks, [&](Index, const RowBlock& rows) {
+    const Index a = rows.local[0].state, b = rows.local[1].state;
+    require(a != b || a < 0, "NormalEquations: a block depends twice on local state ", a);
+    if (a >= 0 && b >= 0) pairs.push_back(PairBlocks::pair(a, b));
+  });
+  for (const LocalPrior& prior : priors) pairs.push_back(PairBlocks::pair(prior.first, prior.second));
+  PairBlocks sums(pairs, k), prior_sums(pairs, k);
+  out.coupling.setZero(system.local_unknowns(), system.unknowns());
+  out.local_gradient.setZero(system.local_unknowns());
+  Rows6 expanded(6, system.unknowns());
+  visit_blocks(system, 0, 1, system.blocks, [&](Index, const RowBlock& rows) {
+    if (rows.local[0].state < 0 && rows.local[1].state < 0) return;
+    rows.expand(system.group_sizes, expanded);
+    for (const RowBlock::Local& a : rows.local) {
+      if (a.state < 0) continue;
+      add_transposed_product(out.coupling.middleRows(a.state * k, k), a.columns, expanded);
+      out.local_gradient.segment(a.state * k, k) += a.columns.transpose().lazyProduct(rows.residual);
+      for (const RowBlock::Local& b : rows.local)
+        if (b.state >= 0 && b.state <= a.state)
+          sums.block({b.state, a.state}) += a.columns.transpose().lazyProduct(b.columns);
+    }
+  });
+  for (const LocalPrior& prior : priors)
+    prior_sums.block(PairBlocks::pair(prior.first, prior.second)) += prior.precision;
+  out.local = sums.compressed(system.local_states);
+  out.local_prior = prior_sums.compressed(system.local_states);
+}
+
+/// `matrix x`, from its lower triangle.
+VERNIER_API VectorX multiply(const SparseSymmetric& matrix, const VectorX& x) {
+  VectorX out = VectorX::Zero(matrix.size);
+  for (Index j = 0; j < matrix.size; ++j)
+    for (int at = matrix.starts[static_cast<std::size_t>(j)]; at < matrix.starts[static_cast<std::size_t>(j + 1)];
+         ++at) {
+      const Index i = matrix.rows[static_cast<std::size_t>(at)];
+      const double value = matrix.values[static_cast<std::size_t>(at)];
+      out(i) += value * x(j);
+      if (i != j) out(j) += value * x(i);
+    }
+  return out;
+}
+
+}  // namespace detail
+
+VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors)
+    : matrix(MatrixX::Zero(system.unknowns(), system.unknowns())), gradient(VectorX::Zero(system.unknowns())) {
+  constexpr Index chunk = 256;
+  const Index all = system.unknowns(), d = system.dense, groups = system.groups();
+  MatrixX dense(6 * chunk, d), h(chunk, all - d), mixed(chunk, d * groups), scaled, product;
+  MatrixX factor_residual(chunk, groups), factor_product(chunk, groups * groups);  // f_j' r and f_i' f_j of each block
+  VectorX residuals(6 * chunk);
+  for (Index first = 0; first < system.blocks; first += chunk) {
+    const Index n = std::min(chunk, system.blocks - first);
+    detail::visit_blocks(system, first, 1, n, [&](Index b, const RowBlock& rows) {
+      if (d > 0) dense.middleRows(6 * b, 6) = rows.dense;
+      residuals.segment(6 * b, 6) = rows.residual;
+      if (all == d) return;
+      h.row(b) = rows.functions.transpose();
+      product = rows.factor.transpose().lazyProduct(rows.factor);
+      factor_product.row(b) = product.reshaped().transpose();
+      if (d > 0) {
+        product = rows.dense.transpose().lazyProduct(rows.factor);
+        mixed.row(b) = product.reshaped().transpose();
+      }
+      factor_residual.row(b) = rows.residual.transpose().lazyProduct(rows.factor);
+    });
+    const auto dense_rows = dense.topRows(6 * n);
+    detail::add_transposed_product(matrix.topLeftCorner(d, d), dense_rows, dense_rows);
+    detail::add_transposed_product(gradient.head(d), dense_rows, residuals.head(6 * n));
+    cost += residuals.head(6 * n).squaredNorm();
+    Index to_j = 0;
+    for (Index j = 0; j < groups && all > d; ++j) {
+      const Index count_j = system.group_sizes[static_cast<std::size_t>(j)];
+      const auto h_j = h.block(0, to_j, n, count_j);
+      detail::add_transposed_product(gradient.segment(d + to_j, count_j), h_j, factor_residual.col(j).head(n));
+      detail::add_transposed_product(matrix.block(0, d + to_j, d, count_j), mixed.block(0, j * d, n, d), h_j);
+      Index to_i = 0;
+      for (Index i = 0; i <= j; ++i) {
+        const Index count_i = system.group_sizes[static_cast<std::size_t>(i)];
+        scaled = factor_product.col(i + groups * j).head(n).asDiagonal() * h_j;
+        detail::add_transposed_product(matrix.block(d + to_i, d + to_j, count_i, count_j), h.block(0, to_i, n, count_i),
+                                       scaled);
+        to_i += count_i;
+      }
+      to_j += count_j;
+    }
+  }
+  matrix.triangularView<Eigen::StrictlyLower>() = matrix.transpose();
+  if (system.local_states > 0) detail::add_local(system, local_priors, *this);
+}
+
+VERNIER_IMPL FactorisedEquations::FactorisedEquations(const NormalEquations& normal, const VectorX& precisions,
+                                                      const VectorX& steps, const VectorX& local_steps,
+                                                      SparseSolve solve)
+    : normal_(normal), solve_(solve) {
+  factor_ = normal.matrix;
+  VectorX right = normal.gradient + precisions.cwiseProduct(steps);
+  factor_.diagonal() += precisions;
+  factor_.diagonal().array() += 1e-12 * normal.matrix.diagonal().maxCoeff();  // of the data alone: priors may be huge
+  VectorX local_right;
+  if (normal.local.size > 0) {
+    local_ = normal.local;
+    for (std::size_t k = 0; k < local_.values.size(); ++k) local_.values[k] += normal.local_prior.values[k];
+    MatrixX solution(normal.local.size, 1 + normal.coupling.cols());
+    solution.col(0) = normal.local_gradient;
+    if (local_steps.size() > 0) solution.col(0) += detail::multiply(normal.local_prior, local_steps);
+    solution.rightCols(normal.coupling.cols()) = normal.coupling;
+    const SparseOutcome outcome = solve(local_, solution);
+    if (!outcome.solved) return;
+    local_log_determinant_ = outcome.log_determinant;
+    local_right = solution.col(0);
+    eliminated_ = solution.rightCols(normal.coupling.cols());
+    detail::add_transposed_product(factor_, normal.coupling, eliminated_, -1);
+    detail::add_transposed_product(right, normal.coupling, local_right, -1);
+  }
+  if (!detail::cholesky(factor_)) return;
+  step_ = -right;
+  detail::solve_lower(factor_, step_);
+  detail::solve_lower_transposed(factor_, step_);
+  usable_ = step_.allFinite();
+  if (normal.local.size == 0) return;
+  local_step_ = -local_right;
+  detail::add_product(local_step_, eliminated_, step_, -1);
+}
+
+VERNIER_IMPL double FactorisedEquations::log_determinant() const {
+  return 2 * factor_.diagonal().array().log().sum() + local_log_determinant_;
+}
+
+VERNIER_IMPL MatrixX FactorisedEquations::inverse() const { return detail::inverse_from_cholesky(factor_); }
+
+VERNIER_IMPL void FactorisedEquations::apply_inverse_factor(MatrixRef columns) const {
+  detail::solve_lower(factor_, columns);
+}
+
+VERNIER_IMPL void FactorisedEquations::eliminate_local(const RowBlock& block, Eigen::Ref<Rows6> rows) const {
+  for (const RowBlock::Local& local : block.local) {
+    if (local.state < 0) continue;
+    const Index k = local.columns.cols();
+    rows -= local.columns.lazyProduct(eliminated_.middleRows(local.state * k, k));
+  }
+}
+
+VERNIER_IMPL MatrixX FactorisedEquations::local_gains(const std::vector<RowBlock>& blocks) const {
+  MatrixX out = MatrixX::Zero(6, 6 * static_cast<Index>(blocks.size()));
+  if (normal_.local.size == 0) return out;
+  MatrixX columns = MatrixX::Zero(normal_.local.size, out.cols());
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (const RowBlock::Local& local : blocks[b].local)
+      if (local.state >= 0)
+        columns.block(local.state * local.columns.cols(), 6 * static_cast<Index>(b), local.columns.cols(), 6) =
+            local.columns.transpose();
+  solve_(local_, columns);
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (const RowBlock::Local& local : blocks[b].local)
+      if (local.state >= 0)
+        out.middleCols(6 * static_cast<Index>(b), 6) += local.columns.lazyProduct(
+            columns.block(local.state * local.columns.cols(), 6 * static_cast<Index>(b), local.columns.cols(), 6));
+  return out;
+}
+
+VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
+                                                   Index stride) {
+  Eigen::Matrix3Xd out(3, (system.validation_blocks + stride - 1) / stride);
+  if (!solved.usable()) {
+    out.setConstant(std::numeric_limits<double>::infinity());
+    return out;
+  }
+  constexpr Index batch = 32;
+  const bool local = system.local_states > 0;
+  std::vector<RowBlock> kept;
+  Rows6 expanded(6, system.unknowns());
+  MatrixX columns(system.unknowns(), 6 * batch), residuals(6, batch), unwhiten(6, 6 * batch), gains, rest;
+  VectorX sigmas(batch);
+  for (Index first = 0; first < out.cols(); first += batch) {
+    const Index n = std::min(batch, out.cols() - first);
+    kept.clear();
+    detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
+      rows.expand(system.group_sizes, expanded);
+      residuals.col(b) = rows.residual + expanded.lazyProduct(solved.step());
+      if (local) {
+        for (const RowBlock::Local& part : rows.local)
+          if (part.state >= 0)
+            residuals.col(b) += part.columns.lazyProduct(
+                solved.local_step().segment(part.state * system.local_size, system.local_size));
+        solved.eliminate_local(rows, expanded);
+        kept.push_back(rows);
+      }
+      columns.middleCols(6 * b, 6) = expanded.transpose();
+      unwhiten.middleCols(6 * b, 6) = rows.unwhiten;
+      sigmas(b) = rows.position_sigma;
+    });
+    solved.apply_inverse_factor(columns.leftCols(6 * n));
+    if (local) gains = solved.local_gains(kept);
+    for (Index b = 0; b < n; ++b) {
+      const auto z = columns.middleCols(6 * b, 6);
+      rest.setIdentity(6, 6);
+      detail::add_transposed_product(rest, z, z, -1);
+      if (local) rest -= gains.middleCols(6 * b, 6);
+      detail::solve_general(rest, residuals.col(b));
+      out.col(first + b) = sigmas(b) * unwhiten.block(0, 6 * b, 3, 6).lazyProduct(residuals.col(b));
+    }
+  }
+  return out;
+}
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+#pragma once
+
+/// @file
+/// The scale of a prior, chosen by leave-one-block-out errors with the one-standard-error rule.
+
+#include <vector>
+
+#include "vernier/least_squares/normal_equations.hpp"
+
+namespace vernier {
+
+/// Errors of validation blocks under one of several candidate priors.
+struct PriorTrial {
+  double precision;  ///< of the prior, relative to its expected scale; larger is tighter
+  VectorX errors;    ///< one a validation block
+};
+
+/// The one-standard-error rule: of trials in order of precision, the index of the tightest whose mean error exceeds the
+/// smallest one by no more than a standard error of the paired differences. The last trial where errors are not finite.
+/// @param trials at least one
+/// @cite Breiman 1984; Hastie 2009
+VERNIER_API std::size_t one_standard_error_rule(const std::vector<PriorTrial>& trials);
+
+/// Outcome of `choose_prior`.
+struct PriorChoice {
+  double precision;         ///< relative, see `PriorTrial`
+  double chosen_error;      ///< mean leave-one-out error with it [m]
+  double smallest_error;    ///< smallest mean leave-one-out error of all trials [m]
+  double suppressed_error;  ///< mean leave-one-out error with the unknowns suppressed [m]
+};
+
+/// A relative precision that suppresses unknowns.
+inline constexpr double suppressing_precision = 1e12;
+
+/// Tries priors for unknowns `first .. first + count`, from looser than expected to suppression, at the linearised
+/// problem, and applies the one-standard-error rule.
+/// @param precisions of all priors
+/// @param steps      present values of the unknowns
+/// @param stride     every stride-th validation block is left out
+VERNIER_API PriorChoice choose_prior(const BlockSystem& system, const NormalEquations& normal, VectorX precisions,
+                                     const VectorX& steps, Index first, Index count, Index stride);
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/least_squares/prior_choice.ipp"
+#endif

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "vernier/core/check.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& trials) {
+  require(!trials.empty(), "one_standard_error_rule: no trials");
+  const auto best = std::min_element(trials.begin(), trials.end(), [](const PriorTrial& a, const PriorTrial& b) {
+    return a.errors.mean() < b.errors.mean();
+  });
+  for (std::size_t k = trials.size(); k-- > 0;) {
+    const VectorX excess = trials[k].errors - best->errors;
+    const double n = static_cast<double>(excess.size()), mean = excess.mean();
+    if (mean <= std::sqrt((excess.array() - mean).square().sum() / std::max(1.0, n * (n - 1)))) return k;
+  }
+  return trials.size() - 1;  // errors that are not finite compare with nothing
+}
+
+VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEquations& normal, VectorX precisions,
+                                      const VectorX& steps, Index first, Index count, Index stride) {
+  std::vector<PriorTrial> trials;
+  for (const double precision : {0.3, 1.0, 3.0, 10.0, 100.0, 1e4, suppressing_precision}) {
+    precisions.segment(first, count).setConstant(precision);
+    const FactorisedEquations solved(normal, precisions, steps);
+    trials.push_back({precision, leave_one_out_errors(system, solved, stride).colwise().norm().transpose()});
+  }
+  double smallest = trials.front().errors.mean();
+  for (const PriorTrial& trial : trials) smallest = std::min(smallest, trial.errors.mean());
+  const PriorTrial& chosen = trials[one_standard_error_rule(trials)];
+  return {chosen.precision, chosen.errors.mean(), smallest, trials.back().errors.mean()};
+}
+
+}  // namespace vernier

@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// Small changes of base, joint zeros and tool of a fitted arm, and what they do to a pose.
+
+#include "vernier/core/types.hpp"
+#include "vernier/least_squares/row_block.hpp"
+
+namespace vernier::detail {
+
+/// How an arm was moved.
+struct FrameMotion {
+  Isometry3 base = Isometry3::Identity();  ///< applied in front
+  VectorX offsets;                         ///< added to the joint values
+  Isometry3 tool = Isometry3::Identity();  ///< applied behind
+};
+
+/// Which changes are estimated: of the base (a twist in the outer frame), of the joint zeros, of the tool (a twist in
+/// its own frame).
+struct FrameUpdate {
+  bool base, offsets, tool;
+  int joints;
+
+  Index size() const { return (base ? 6 : 0) + (offsets ? joints : 0) + (tool ? 6 : 0); }
+  /// First column of the joint zeros.
+  Index offsets_begin() const { return base ? 6 : 0; }
+  /// Effect of unit changes on a pose, 6 x size.
+  /// @param jacobian 6 x joints
+  VERNIER_API Rows6 columns(const Isometry3& pose, const double* jacobian) const;
+  /// A motion followed by a change.
+  VERNIER_API FrameMotion apply(const FrameMotion& before, const VectorX& change) const;
+  /// A motion by a change alone.
+  VERNIER_API FrameMotion motion(const VectorX& change) const;
+};
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/registration/frame_update.ipp"
+#endif

@@ -1,0 +1,169 @@
+#pragma once
+
+#include "vernier/search/cma_es.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "vernier/core/argsort.hpp"
+#include "vernier/search/bounds.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
+    : weights(individuals), mu(individuals / 2) {
+  const auto n = static_cast<double>(dimension);
+  for (Index i = 0; i < individuals; ++i)
+    weights(i) = std::log((static_cast<double>(individuals) + 1) / 2) - std::log(static_cast<double>(i + 1));
+  const auto effective = [](const auto& w) { return w.sum() * w.sum() / w.squaredNorm(); };
+  auto better = weights.head(mu);
+  auto worse = weights.tail(individuals - mu);
+  mu_eff = effective(better);
+  c_c = (4 + mu_eff / n) / (n + 4 + 2 * mu_eff / n);
+  c_1 = 2 / ((n + 1.3) * (n + 1.3) + mu_eff);
+  c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((n + 2) * (n + 2) + mu_eff));
+  c_sigma = (mu_eff + 2) / (n + mu_eff + 5);
+  d_sigma = 1 + 2 * std::max(0.0, std::sqrt((mu_eff - 1) / (n + 1)) - 1) + c_sigma;
+  expected_norm = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n));
+  better /= better.sum();
+  if (const double sum = -worse.sum(); sum > 0) {
+    const double of_worse = effective(worse);
+    worse *=
+        std::max(0.0, std::min({1 + c_1 / c_mu, 1 + 2 * of_worse / (of_worse + 2), (1 - c_1 - c_mu) / (n * c_mu)})) /
+        sum;
+  }
+}
+
+VERNIER_IMPL bool CmaEs::State::consistent() const {
+  const Index n = best.size();
+  const auto square = [n](const MatrixX& m) { return m.rows() == n && m.cols() == n; };
+  return square(covariance) && square(basis) && mean.size() == n && scales.size() == n && path_c.size() == n &&
+         path_sigma.size() == n && individuals >= 2;
+}
+
+VERNIER_IMPL CmaEs::State CmaEs::start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
+  validate();
+  State s;
+  s.rng = Rng(seed);
+  s.mean.resize(box.dimension());
+  begin_run(s);
+  sample_and_update(s, box, evaluate);
+  return s;
+}
+
+VERNIER_IMPL void CmaEs::step(State& s, const Box& box, Evaluate evaluate) const {
+  if (s.converged) {
+    ++s.run;
+    begin_run(s);
+  }
+  sample_and_update(s, box, evaluate);
+  ++s.generation;
+}
+
+VERNIER_IMPL Index CmaEs::population_size(Index dimension, Index run) const {
+  const auto first =
+      individuals > 0 ? static_cast<double>(individuals) : 4 + std::floor(3 * std::log(static_cast<double>(dimension)));
+  return std::lround(first * std::pow(growth, static_cast<double>(run)));
+}
+
+VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<Index>& order) {
+  const Index n = s.mean.size(), lambda = z.cols();
+  const CmaEsConstants c(n, lambda);
+  MatrixX sorted(n, lambda);
+  for (Index i = 0; i < lambda; ++i) sorted.col(i) = z.col(order[static_cast<std::size_t>(i)]);
+  const VectorX z_mean = sorted.leftCols(c.mu) * c.weights.head(c.mu);
+  const VectorX y_mean = s.basis * s.scales.cwiseProduct(z_mean);
+  s.mean += s.sigma * y_mean;
+  ++s.updates;
+
+  s.path_sigma = (1 - c.c_sigma) * s.path_sigma +
+                 std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * (s.basis * z_mean);  // C^-1/2 y = B z
+  const double length = s.path_sigma.norm();
+  const double settled = std::sqrt(1 - std::pow(1 - c.c_sigma, 2.0 * static_cast<double>(s.updates)));
+  const bool moderate = length / settled < (1.4 + 2 / (static_cast<double>(n) + 1)) * c.expected_norm;
+  s.path_c *= 1 - c.c_c;
+  if (moderate) s.path_c += std::sqrt(c.c_c * (2 - c.c_c) * c.mu_eff) * y_mean;
+
+  VectorX weights = c.weights;  // worse points count by direction, not by length: C stays positive definite
+  for (Index i = c.mu; i < lambda; ++i)
+    weights(i) *= static_cast<double>(n) / std::max(sorted.col(i).squaredNorm(), 1e-300);
+  const MatrixX y = s.basis * (s.scales.asDiagonal() * sorted);
+  s.covariance *= 1 - c.c_1 - c.c_mu * c.weights.sum() + (moderate ? 0 : c.c_1 * c.c_c * (2 - c.c_c));
+  s.covariance.noalias() += c.c_1 * (s.path_c * s.path_c.transpose());
+  s.covariance.noalias() += (y * (c.c_mu * weights).asDiagonal()) * y.transpose();
+  s.sigma *= std::exp(std::min(1.0, c.c_sigma / c.d_sigma * (length / c.expected_norm - 1)));
+
+  if (static_cast<double>(s.updates - s.decomposed) > 1 / ((c.c_1 + c.c_mu) * static_cast<double>(n) * 10)) {
+    const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(s.covariance);
+    const VectorX& values = eigen.eigenvalues();
+    if (eigen.info() != Eigen::Success || !(values(0) > 1e-14 * values(n - 1))) {
+      s.converged = true;
+      return;
+    }
+    s.basis = eigen.eigenvectors();
+    s.scales = values.cwiseSqrt();
+    s.decomposed = s.updates;
+  }
+}
+
+VERNIER_IMPL void CmaEs::begin_run(State& s) const {
+  const Index n = s.mean.size();
+  s.individuals = population_size(n, s.run);
+  for (auto& coordinate : s.mean) coordinate = s.rng.uniform();
+  s.sigma = sigma;
+  s.covariance = s.basis = MatrixX::Identity(n, n);
+  s.scales = VectorX::Ones(n);
+  s.path_c = s.path_sigma = VectorX::Zero(n);
+  s.history.resize(0);
+  s.updates = s.decomposed = 0;
+  s.converged = false;
+}
+
+VERNIER_IMPL void CmaEs::sample_and_update(State& s, const Box& box, Evaluate evaluate) const {
+  const Index n = s.mean.size(), lambda = s.individuals;
+  MatrixX z(n, lambda);
+  for (Index i = 0; i + 1 < z.size(); i += 2) {
+    const auto pair = s.rng.normal_pair();
+    std::copy(pair.begin(), pair.end(), z.data() + i);
+  }
+  if (z.size() % 2 != 0) z.data()[z.size() - 1] = s.rng.normal();
+  MatrixX points = s.basis * (s.scales.asDiagonal() * z);
+  for (Index k = 0; k < lambda; ++k)
+    for (Index d = 0; d < n; ++d) {
+      const double at = reflected(s.mean(d) + s.sigma * points(d, k), 0, 1);
+      points(d, k) = std::clamp(box.lower(d) + (box.upper(d) - box.lower(d)) * at, box.lower(d), box.upper(d));
+    }
+  VectorX fitness;
+  evaluate(points, fitness);
+  s.keep_best(points, fitness);
+  const auto order = argsort(fitness);
+  update(s, z, order);
+  check_convergence(s, fitness(order.front()), fitness(order.back()));
+}
+
+VERNIER_IMPL void CmaEs::check_convergence(State& s, double best, double worst) const {
+  const Index n = s.mean.size(), length = 10 + (30 * n + s.individuals - 1) / s.individuals;
+  if (s.history.size() == length) std::copy(s.history.begin() + 1, s.history.end(), s.history.begin());
+  if (s.history.size() < length) s.history.conservativeResize(s.history.size() + 1);
+  s.history(s.history.size() - 1) = best;
+  const auto within = [&](double a, double b) { return a == b || std::abs(a - b) <= tolerance_f; };
+  const bool flat =
+      s.history.size() == length && within(s.history.minCoeff(), s.history.maxCoeff()) && within(best, worst);
+  const double spread =
+      s.sigma * std::max(s.path_c.cwiseAbs().maxCoeff(), std::sqrt(s.covariance.diagonal().maxCoeff()));
+  s.converged = s.converged || flat || !(spread >= tolerance_x) || !(spread < 1e6);
+}
+
+VERNIER_IMPL void CmaEs::validate() const {
+  require(individuals == 0 || individuals >= 2, "CmaEs: individuals is ", individuals, ", must be 0 or at least 2");
+  require(generations >= 0, "CmaEs: generations is ", generations, ", must not be negative");
+  require(sigma > 0 && sigma <= 100, "CmaEs: sigma is ", sigma, ", must lie in (0, 100]");
+  require(restarts >= 0 && restarts <= 30, "CmaEs: restarts is ", restarts, ", must lie in 0..30");
+  require(growth >= 1 && growth <= 10, "CmaEs: growth is ", growth, ", must lie in [1, 10]");
+  require(tolerance_x >= 0 && tolerance_f >= 0, "CmaEs: tolerance_x ", tolerance_x, " and tolerance_f ", tolerance_f,
+          " must not be negative");
+}
+
+}  // namespace vernier

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "vernier/search/log.hpp"
+
+#include <chrono>
+#include <limits>
+
+namespace vernier {
+
+namespace detail {
+
+/// Seconds on a monotonic clock.
+VERNIER_API double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace detail
+
+VERNIER_IMPL SearchLog::SearchLog(ObserverRef next) : next_(next), started_(detail::steady_seconds()) {}
+
+VERNIER_IMPL bool SearchLog::operator()(const Progress& progress) {
+  if (entries_.empty() || entries_.back().generation != progress.generation)
+    entries_.push_back({progress.generation, progress.evaluations, progress.best, detail::steady_seconds() - started_});
+  return next_(progress);
+}
+
+VERNIER_IMPL double SearchLog::best_after(Index evaluations) const {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Entry& entry : entries_)
+    if (entry.evaluations <= evaluations) best = entry.best;
+  return best;
+}
+
+VERNIER_IMPL Index SearchLog::evaluations_to(double target) const {
+  for (const Entry& entry : entries_)
+    if (entry.best <= target) return entry.evaluations;
+  return -1;
+}
+
+}  // namespace vernier

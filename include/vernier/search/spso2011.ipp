@@ -1,0 +1,70 @@
+#pragma once
+
+#include "vernier/search/spso2011.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL bool Spso2011::State::consistent() const {
+  return Swarm::consistent() && (links.size() == 0 || (links.cols() == positions.cols() && links.minCoeff() >= 0 &&
+                                                       links.maxCoeff() < positions.cols()));
+}
+
+VERNIER_IMPL Spso2011::State Spso2011::start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
+  validate();
+  State s;
+  s.rng = Rng(seed);
+  const auto velocity = [&](Index d, double x) { return s.rng.uniform(box.lower(d) - x, box.upper(d) - x); };
+  s.initialise(box, particles, velocity, evaluate);
+  return s;
+}
+
+VERNIER_IMPL void Spso2011::step(State& s, const Box& box, Evaluate evaluate) const {
+  const Index dimension = s.positions.rows(), n = s.positions.cols();
+  if (s.links.size() == 0) {
+    s.links.resize(informed, n);
+    for (auto& link : s.links.reshaped()) link = static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(n)));
+  }
+  const auto leaders = best_informants(s.best_values, s.links);
+  VectorX direction(dimension), centre(dimension);
+  for (Index k = 0; k < n; ++k) {
+    auto x = s.positions.col(k);
+    auto v = s.velocities.col(k);
+    const Index leader = leaders[static_cast<std::size_t>(k)];
+    centre = (acceleration / (leader == k ? 2 : 3)) * (s.best_positions.col(k) - x);  // relative to x
+    if (leader != k) centre += (acceleration / 3) * (s.best_positions.col(leader) - x);
+    for (Index d = 0; d < dimension; ++d) direction(d) = s.rng.normal();
+    const double length = direction.norm(), radius = s.rng.uniform() * centre.norm();
+    v = inertia * v + centre;
+    if (length > 0) v += (radius / length) * direction;
+    x += v;
+    for (Index d = 0; d < dimension; ++d) {
+      if (x(d) >= box.lower(d) && x(d) <= box.upper(d)) continue;
+      x(d) = x(d) < box.lower(d) ? box.lower(d) : box.upper(d);
+      v(d) *= -0.5;
+    }
+  }
+  const double before = s.best_fitness;
+  s.evaluate_and_update(evaluate);
+  if (!(s.best_fitness < before)) s.links.resize(0, 0);
+}
+
+VERNIER_IMPL std::vector<Index> Spso2011::best_informants(const VectorX& values, const Links& links) {
+  std::vector<Index> leaders(static_cast<std::size_t>(values.size()));
+  for (Index k = 0; k < values.size(); ++k) leaders[static_cast<std::size_t>(k)] = k;
+  for (Index k = 0; k < links.cols(); ++k)
+    for (Index i = 0; i < links.rows(); ++i) {
+      Index& leader = leaders[static_cast<std::size_t>(links(i, k))];
+      if (values(k) < values(leader)) leader = k;
+    }
+  return leaders;
+}
+
+VERNIER_IMPL void Spso2011::validate() const {
+  require(particles >= 1, "Spso2011: particles is ", particles, ", must be at least 1");
+  require(iterations >= 0, "Spso2011: iterations is ", iterations, ", must not be negative");
+  require(informed >= 1, "Spso2011: informed is ", informed, ", must be at least 1");
+  require(inertia >= 0 && inertia <= 1 && acceleration >= 0 && acceleration <= 10, "Spso2011: inertia ", inertia,
+          " must lie in [0, 1] and acceleration ", acceleration, " in [0, 10]");
+}
+
+}  // namespace vernier

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <initializer_list>
+#include <utility>
+
+#include "vernier/simulation/error_sources.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointErrorSizes& sizes, std::uint64_t seed) {
+  const int n = chain.joints();
+  for (const auto& [value, name] :
+       std::initializer_list<std::pair<double, const char*>>{{sizes.gear_ratio, "gear_ratio"},
+                                                             {sizes.coupling, "coupling"},
+                                                             {sizes.compliance, "compliance"},
+                                                             {sizes.harmonic, "harmonic"},
+                                                             {sizes.decay, "decay"},
+                                                             {sizes.ripple, "ripple"}})
+    require(value >= 0 && std::isfinite(value), "JointErrorSizes: ", name, " is ", value,
+            ", must be 0 or more and finite");
+  require(sizes.harmonics >= 0 && sizes.harmonics <= 500, "JointErrorSizes: harmonics is ", sizes.harmonics,
+          ", must lie in 0..500");
+  require(sizes.ripple == 0 || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
+          "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (",
+          sizes.harmonics, ") and in 1..500");
+
+  JointTerms terms(n);
+  terms.gear_ratio = sizes.gear_ratio > 0;
+  terms.coupling = sizes.coupling > 0;
+  if (sizes.compliance > 0) terms.gravity.emplace(chain, sizes.down);
+  const int low = sizes.harmonic > 0 ? sizes.harmonics : 0;
+  for (int i = 0; i < n; ++i)
+    if (chain.revolute(i))
+      terms.transmission[static_cast<std::size_t>(i)] = Fourier{sizes.ripple > 0 ? sizes.ripple_harmonic : low};
+
+  VectorX coefficients = VectorX::Zero(terms.size());
+  Index at = 0;
+  const auto draw = [&](Rng& rng, Index count, double size) {
+    for (const Index end = at + count; at < end; ++at) coefficients(at) = size * rng.normal();
+  };
+  std::uint64_t stream = 0;  // every source and joint has its own
+  Rng gear(child_seed(seed, stream++)), coupling(child_seed(seed, stream++)), compliance(child_seed(seed, stream++));
+  if (terms.gear_ratio) draw(gear, n, sizes.gear_ratio);
+  if (terms.coupling) draw(coupling, n - 1, sizes.coupling);
+  if (terms.gravity) {
+    const Index begin = at;
+    draw(compliance, terms.gravity->size(), sizes.compliance);
+    coefficients.segment(begin, at - begin) = coefficients.segment(begin, at - begin).cwiseAbs().eval();
+  }
+  for (int i = 0; i < n; ++i) {
+    Rng low_stream(child_seed(seed, stream++)), ripple_stream(child_seed(seed, stream++));
+    const Index end = terms.transmission_begin(i + 1);
+    if (at == end) continue;
+    for (int k = 1; k <= low; ++k) draw(low_stream, 2, sizes.harmonic / std::pow(k, sizes.decay));
+    if (sizes.ripple > 0) {
+      at = end - 2;
+      draw(ripple_stream, 2, sizes.ripple);
+    }
+  }
+  return {std::move(terms), std::move(coefficients)};
+}
+
+}  // namespace vernier::detail

@@ -90,8 +90,8 @@ ModelData model_data(const CalibratedRobot<N, Convention>& robot) {
 
 /// A calibrated arm as JSON; lengths in m, angles in rad, as the keys state. Callers include <nlohmann/json.hpp>.
 /// @throws std::invalid_argument on a value that is not finite
-template <int N, class Convention>
-nlohmann::ordered_json to_json(const CalibratedRobot<N, Convention>& robot) {
+template <int N, class Convention, class Json = nlohmann::ordered_json>
+Json to_json(const CalibratedRobot<N, Convention>& robot) {
   return detail::model_to_json(detail::model_data(robot));
 }
 

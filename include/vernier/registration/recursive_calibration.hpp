@@ -35,7 +35,7 @@ VERNIER_API VectorX initial_std(const FrameUpdate& update, const ReregisterOptio
                                 const std::array<double, 2>& sizes);
 
 /// Whitened rows and residual of one measured pose, its orientation where `oriented`.
-VERNIER_API void whitened_rows(const FrameUpdate& update, const ReregisterOptions& options, const Isometry3& modelled,
+VERNIER_API void whitened_rows(const FrameUpdate& update, const SensorModel& sensors, const Isometry3& modelled,
                                const double* jacobian, const Isometry3& measured, bool oriented, MatrixX& rows,
                                VectorX& residual);
 
@@ -50,13 +50,15 @@ class RecursiveCalibration {
   static constexpr int N = Chain::dof;
 
   /// @param model      where to start
-  /// @param options    what drifts, and how well it is measured
+  /// @param options    what drifts
+  /// @param sensors    accuracy of the measurements
   /// @param forgetting weight of a pose after the next one, in (0, 1]: 0.98 remembers about 50 poses
   /// @param sizes      initial standard deviations: of lengths (first) and angles (second) [m, rad]
-  RecursiveCalibration(const ErrorModel<Chain>& model, const ReregisterOptions& options, double forgetting = 0.98,
+  RecursiveCalibration(const ErrorModel<Chain>& model, const ReregisterOptions& options,
+                       const SensorModel& sensors = {}, double forgetting = 0.98,
                        std::array<double, 2> sizes = {1e-3, 1e-3})
       : model_(model),
-        options_(options),
+        sensors_(sensors),
         update_{options.base, options.offsets, options.tool, N},
         estimator_(detail::initial_std(update_, options, sizes), forgetting) {}
 
@@ -79,13 +81,13 @@ class RecursiveCalibration {
     const PoseAndJacobian<N> at = model_.pose_and_jacobian(q);
     MatrixX rows;
     VectorX residual;
-    detail::whitened_rows(update_, options_, at.pose, at.jacobian.data(), measured, oriented, rows, residual);
+    detail::whitened_rows(update_, sensors_, at.pose, at.jacobian.data(), measured, oriented, rows, residual);
     const detail::FrameMotion by = update_.motion(estimator_.update(rows, residual));
     model_ = model_.moved(by.base, JointVector<N>(by.offsets), by.tool);
   }
 
   ErrorModel<Chain> model_;
-  ReregisterOptions options_;
+  SensorModel sensors_;
   detail::FrameUpdate update_;
   detail::RecursiveEstimator estimator_;
 };

@@ -49,18 +49,18 @@ VERNIER_IMPL VectorX initial_std(const FrameUpdate& update, const ReregisterOpti
   return out;
 }
 
-VERNIER_IMPL void whitened_rows(const FrameUpdate& update, const ReregisterOptions& options, const Isometry3& modelled,
+VERNIER_IMPL void whitened_rows(const FrameUpdate& update, const SensorModel& sensors, const Isometry3& modelled,
                                 const double* jacobian, const Isometry3& measured, bool oriented, MatrixX& rows,
                                 VectorX& residual) {
   Vector6 difference = pose_difference(measured, modelled);
-  difference.head<3>() /= options.position_sigma;
-  difference.tail<3>() /= options.orientation_sigma;
+  difference.head<3>() /= sensors.position_sigma;
+  difference.tail<3>() /= sensors.orientation_sigma;
   const Rows6 columns = update.columns(modelled, jacobian);
   const Index used = oriented ? 6 : 3;
   residual = difference.head(used);
   rows = columns.topRows(used);
-  rows.topRows(3) /= options.position_sigma;
-  if (oriented) rows.bottomRows(3) /= options.orientation_sigma;
+  rows.topRows(3) /= sensors.position_sigma;
+  if (oriented) rows.bottomRows(3) /= sensors.orientation_sigma;
 }
 
 }  // namespace vernier::detail

@@ -9,19 +9,17 @@
 
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/identification/detail/station.hpp"
+#include "vernier/identification/sensor_model.hpp"
 #include "vernier/registration/frame_update.hpp"
 
 namespace vernier {
 
-/// What is estimated again, and how well it is measured.
+/// What is estimated again.
 struct ReregisterOptions {
-  bool base = true;                   ///< the arm, or the sensor, was moved
-  bool tool = false;                  ///< another tool, or the same remounted
-  bool offsets = false;               ///< joint zeros
-  double position_sigma = 0.03e-3;    ///< of the sensor, per component [m]
-  double orientation_sigma = 0.1e-3;  ///< of the sensor, per component [rad]
-  double offset_prior_std = 1e-3;     ///< expected change of a joint zero [rad, m]: a prior, so that few poses suffice
-  bool use_orientations = true;       ///< whether measured orientations are used
+  bool base = true;                ///< the arm, or the sensor, was moved
+  bool tool = false;               ///< another tool, or the same remounted
+  bool offsets = false;            ///< joint zeros
+  double offset_prior_std = 1e-3;  ///< expected change of a joint zero [rad, m]: a prior, so that few poses suffice
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;
@@ -49,7 +47,7 @@ using MovedPoses = FunctionRef<void(const FrameMotion& motion, std::vector<Isome
 
 /// Estimates how an arm was moved.
 VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
-                                   ReregistrationReport& report);
+                                   const SensorModel& sensors, ReregistrationReport& report);
 
 }  // namespace detail
 
@@ -57,10 +55,11 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& da
 /// @param model   as fitted, wherever it stood then
 /// @param data    n >= 1 poses from where it stands now
 /// @param options what is estimated
+/// @param sensors their accuracy; residuals are weighted by squares, whatever its loss
 /// @throws std::invalid_argument on no data or an unusable option
 template <class Chain>
 Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
-                               const ReregisterOptions& options = {}) {
+                               const ReregisterOptions& options = {}, const SensorModel& sensors = {}) {
   constexpr int N = Chain::dof;
   const auto moved = [&](const detail::FrameMotion& by) {
     return model.moved(by.base, JointVector<N>(by.offsets), by.tool);
@@ -75,11 +74,9 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }
   };
-  const SensorModel sensors{.position_sigma = options.position_sigma,
-                            .orientation_sigma = options.orientation_sigma,
-                            .use_orientations = options.use_orientations};
   ReregistrationReport report;
-  const detail::FrameMotion found = detail::reregister(evaluate, detail::station_of(data, sensors), options, report);
+  const detail::FrameMotion found =
+      detail::reregister(evaluate, detail::station_of(data, sensors), options, sensors, report);
   return {std::move(report), moved(found)};
 }
 

@@ -13,9 +13,7 @@ namespace vernier {
 
 VERNIER_IMPL void ReregisterOptions::validate() const {
   require(base || tool || offsets, "ReregisterOptions: nothing is to be estimated");
-  require(position_sigma > 0 && orientation_sigma > 0 && offset_prior_std > 0, "ReregisterOptions: position_sigma ",
-          position_sigma, ", orientation_sigma ", orientation_sigma, " and offset_prior_std ", offset_prior_std,
-          " must be positive");
+  require(offset_prior_std > 0, "ReregisterOptions: offset_prior_std ", offset_prior_std, " must be positive");
 }
 
 namespace detail {
@@ -56,8 +54,9 @@ VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const 
 }
 
 VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
-                                    ReregistrationReport& report) {
+                                    const SensorModel& sensors, ReregistrationReport& report) {
   options.validate();
+  sensors.validate();
   require(data.size() >= 1, "reregister: no samples");
   const int joints = data.dof;
   const FrameUpdate update{options.base, options.offsets, options.tool, joints};
@@ -85,14 +84,14 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
       const Index i = first + b;
       const Isometry3& pose = poses[static_cast<std::size_t>(i)];
       out[b].residual.setZero();
-      out[b].residual.head<3>() = (pose.translation() - data.position(i)) / options.position_sigma;
+      out[b].residual.head<3>() = (pose.translation() - data.position(i)) / sensors.position_sigma;
       out[b].dense = update.columns(pose, jacobians.data() + 6 * joints * i);
-      out[b].dense.topRows<3>() /= options.position_sigma;
+      out[b].dense.topRows<3>() /= sensors.position_sigma;
       if (data.oriented()) {
         out[b].residual.tail<3>() =
             log_so3(pose.linear() * data.orientations[static_cast<std::size_t>(i)].transpose()) /
-            options.orientation_sigma;
-        out[b].dense.bottomRows<3>() /= options.orientation_sigma;
+            sensors.orientation_sigma;
+        out[b].dense.bottomRows<3>() /= sensors.orientation_sigma;
       } else {
         out[b].dense.bottomRows<3>().setZero();
       }

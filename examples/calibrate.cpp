@@ -1,26 +1,237 @@
-// Measured poses in; a calibrated model and an honest held-out report out.
+// Measured poses in; a calibrated model and its errors at held-out poses out.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <map>
-#include <numbers>
 
-#include "calibration.hpp"
-#include "calibration_stages.hpp"
+#include "calibration_figures.hpp"
 #include "cli.hpp"
-#include "figures.hpp"
+#include "dispatch.hpp"
 #include "json_file.hpp"
 #include "progress.hpp"
 #include "robot_choice.hpp"
+#include "vernier/ceres.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/split.hpp"
 #include "vernier/evaluation/statistics.hpp"
+#include "vernier/io.hpp"
+#include "vernier/registration/reregister.hpp"
+#include "vernier/search/genetic_algorithm.hpp"
 
 namespace {
 
-using support::CalibrationReport;
-using support::StageErrors;
-using vernier::ErrorStatistics;
+namespace vn = vernier;
+using Paths = std::vector<std::string>;
+
+constexpr vn::Index prior_generations = 15;
+
+struct Options {
+  std::string robot, model, save, date, split, priors = "default", loss = "huber", free;
+  Paths data, test, distances;
+  vn::Index test_every = 5, train_rows = 0;
+  double test_fraction = 0.2, distance_sigma_mm = 0.03;
+  bool positions_only = false;
+  vn::CalibrateOptions calibrate{};
+};
+
+/// Rows of a file to learn from and to hold out, the rule for it in words.
+template <int N>
+vn::Split<N> hold_out(const vn::Dataset<N>& data, const Options& o, std::uint64_t seed, std::string& rule) {
+  using vn::Face;
+  const bool far = seed % 2 == 1;
+  rule = fmt::format("{:.3g} % of the rows, ", o.test_fraction * 100);
+  const auto region = [&](Face face, const char* which) {
+    rule += which;
+    return vn::split_region(data, {.test_fraction = o.test_fraction, .face = face});
+  };
+  if (o.split == "region-x") return far ? region(Face::x_high, "largest x") : region(Face::x_low, "smallest x");
+  if (o.split == "region-z") return far ? region(Face::z_high, "largest z") : region(Face::z_low, "smallest z");
+  if (o.split == "time") {
+    rule += "the last ones";
+    return vn::split_time(data, o.test_fraction);
+  }
+  if (o.split == "random") {
+    rule += fmt::format("at random, seed {}", seed);
+    return vn::split(data, {.test_fraction = o.test_fraction, .seed = seed});
+  }
+  rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every);
+  return vn::split_every(data, o.test_every);
+}
+
+/// Training and held-out poses of station s.
+template <int N>
+vn::Split<N> read_station(const Options& o, std::size_t s, const auto& types, std::uint64_t seed, std::string& rule) {
+  vn::Split<N> out{vn::read_dataset<N>(o.data[s], types), {}};
+  if (!o.test.empty()) {
+    rule += (s == 0 ? "the rows of " : ", ") + o.test[s];
+    out.test = vn::read_dataset<N>(o.test[s], types);
+  } else {
+    if (out.train.size() < 2)
+      throw vn::CalibrationFailure(o.data[s] + ": a single row; a calibration needs many poses, and held-out ones");
+    out = hold_out(vn::Dataset<N>(out.train), o, seed, rule);
+  }
+  const vn::Index n = out.train.size();
+  if (o.train_rows > n)
+    throw vn::CalibrationFailure(
+        fmt::format("{}: --train asks for {} rows, there are {} to learn from", o.data[s], o.train_rows, n));
+  if (o.train_rows > 0) out.train = vn::random_subset(out.train, o.train_rows, seed);
+  return out;
+}
+
+vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& box, bool genetic,
+                          const vn::FitOptions& fit) {
+  const auto best = [&](const auto& algorithm) {
+    return vn::minimize(algorithm, objective, box, {}, fit.seed, fit.executor, fit.observer).best;
+  };
+  if (genetic) return best(vn::GeneticAlgorithm{.individuals = 20, .generations = prior_generations});
+  return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
+}
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+template <int N>
+vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, const Options& o,
+                                    const vn::FitOptions& fit, std::string& rule) {
+  const vn::DescribedRobot<N> robot = description.arm<N>();
+  const auto types = robot.arm.chain().joint_types();
+  std::vector<vn::Dataset<N>> train, test;
+  std::string names;
+  for (std::size_t s = 0; s < o.data.size(); ++s) {
+    vn::Split<N> station = read_station<N>(o, s, types, fit.seed, rule);
+    train.push_back(std::move(station.train));
+    test.push_back(std::move(station.test));
+    names += (s > 0 ? "," : "") + file_name(o.data[s]);
+  }
+  std::vector<vn::Distances<N>> distances;
+  for (const std::string& file : o.distances) distances.push_back(vn::read_distances<N>(file, types));
+  const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
+    return search_priors(objective, box, o.priors == "ga", fit);
+  };
+  const auto calibration = vn::calibrate(robot.arm, train, distances, o.calibrate, fit,
+                                         o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search));
+  const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
+  if (!o.save.empty())
+    vn::save(o.save, calibration, {.name = robot.name, .limits = robot.limits, .data_file = names, .date = o.date});
+  return report;
+}
+
+int run_calibration(support::Program& program, Options& o) {
+  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  o.calibrate.arm_name = robot.name;
+  o.calibrate.station_names = o.data;
+  o.calibrate.distance_names = o.distances;
+  o.calibrate.remainder.on_geometry = true;
+  const int swarms = 2 * (o.calibrate.remainder.iterations + 1);
+  support::ProgressBar progress("searching", swarms + (o.priors == "default" ? 0 : prior_generations + 1));
+  vn::Index generations = 0;
+  const auto count = [&](const vn::Progress&) { progress.update(++generations); };
+  const vn::ThreadExecutor executor(program.common().threads);
+  const vn::FitOptions fit{.seed = program.common().seed, .executor = executor, .observer = count};
+  std::string rule;
+  const vn::CalibrationReport report =
+      support::dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, o, fit, rule); });
+  progress.finish();
+
+  fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
+             robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
+  if (o.data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", o.data.size(), o.data.size());
+  fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), rule);
+  if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
+  fmt::print("\nErrors of the {} held-out poses [mm]\n\n", report.test_poses());
+  support::print_stages(report.stages);
+  fmt::print("\n{}", report.identification.summary());
+  for (const auto& remark : report.remarks()) fmt::print("{}\n", remark);
+  fmt::print("\nVerdict\n");
+  for (const auto& line : report.verdict()) fmt::print("- {}\n", line);
+  if (!program.common().json.empty()) support::write_json(program.common().json, vn::to_json(report, robot.name));
+  const std::filesystem::path folder = program.output_folder();
+  support::draw_calibration(folder, robot.name, report);
+  fmt::print("\nFrom poses to error model in {:.1f} s. Figures: {}\n", report.fit_seconds, folder.string());
+  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
+  return 0;
+}
+
+template <int N>
+int reregister_arm(support::Program& program, const Options& o, const vn::ReregisterOptions& free) {
+  const vn::CalibratedRobot<N> robot = vn::load<N>(o.model);
+  const auto types = robot.nominal().chain().joint_types();
+  const auto data = vn::read_dataset<N>(o.data.front(), types);
+  const auto test = o.test.empty() ? data : vn::read_dataset<N>(o.test.front(), types);
+  const auto found = vn::reregister(robot.model(), data, free, o.calibrate.sensors);
+  if (!found.determined)
+    throw vn::CalibrationFailure(
+        fmt::format("{}: {} poses do not determine what may move; measure more, with the "
+                    "joints moved widely, or free less",
+                    o.data.front(), data.size()));
+  if (!found.converged || found.rms_after > 0.02)
+    throw vn::CalibrationFailure(
+        fmt::format("{}: the model of {} misses by {:.1f} mm (rms) in any base frame: wrong "
+                    "robot, units or columns?",
+                    o.data.front(), robot.name(), found.rms_after * 1e3));
+  vn::Provenance from = robot.provenance();
+  from.data_file += "," + file_name(o.data.front());
+  from.date = o.date;
+  const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
+
+  const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;
+  const auto stage = [&](const char* key, const char* title, const auto& model) {
+    return vn::StageErrors{key, title, vn::position_errors(model, test),
+                           oriented ? vn::rotation_errors(model, test) : vn::VectorX()};
+  };
+  const std::vector stages{stage("as_fitted", "as fitted", robot), stage("reregistered", "re-registered", moved)};
+  fmt::print("{}: {} registered again from {} poses, everything else kept\n", robot.name(), o.free, data.size());
+  fmt::print("\nErrors of {} [mm]\n\n", o.test.empty() ? "those same poses (--test FILE names held-out ones)"
+                                                       : fmt::format("{} held-out poses", test.size()));
+  support::print_stages(stages);
+  fmt::print("\n");
+  const auto change = [](const char* what, bool freed, const vn::Isometry3& motion) {
+    const vn::Vector6 by = vn::FrameParameters(motion).values();
+    if (freed)
+      fmt::print("{} moved by ({:.3f}, {:.3f}, {:.3f}) mm, turned by ({:.3f}, {:.3f}, {:.3f}) mrad\n", what,
+                 by[0] * 1e3, by[1] * 1e3, by[2] * 1e3, by[3] * 1e3, by[4] * 1e3, by[5] * 1e3);
+    return std::vector<double>(by.begin(), by.end());
+  };
+  const auto base = change("Base", free.base, moved.identified().base() * robot.identified().base().inverse());
+  const auto tool = change("Tool", free.tool, robot.identified().tool().inverse() * moved.identified().tool());
+  std::vector<double> offsets;
+  for (int i = 0; i < N; ++i) {
+    const vn::DhRow &now = moved.identified().chain().row(i), &before = robot.identified().chain().row(i);
+    const bool revolute = now.joint == vn::JointType::revolute;
+    offsets.push_back(revolute ? now.theta - before.theta : now.d - before.d);
+    if (free.offsets)
+      fmt::print("Zero of joint {}: {:+.4f} {}\n", i + 1, offsets.back() * 1e3, revolute ? "mrad" : "mm");
+  }
+  if (!program.common().json.empty())
+    support::write_json(program.common().json, {{"robot", robot.name()},
+                                                {"train_rows", data.size()},
+                                                {"test_rows", test.size()},
+                                                {"held_out", !o.test.empty()},
+                                                {"stages", vn::stages_to_json(stages)},
+                                                {"base_change_m_rad", base},
+                                                {"tool_change_m_rad", tool},
+                                                {"offsets_rad", offsets}});
+  if (!o.save.empty()) vn::save(o.save, moved);
+  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
+  return 0;
+}
+
+int run_reregistration(support::Program& program, const Options& o) {
+  vn::ReregisterOptions free{.base = false};
+  for (std::size_t at = 0; at <= o.free.size();) {
+    const std::size_t comma = std::min(o.free.find(',', at), o.free.size());
+    const std::string part = o.free.substr(at, comma - at);
+    at = comma + 1;
+    if (part != "base" && part != "tool" && part != "offsets")
+      throw support::UsageError("--free takes base, tool, offsets, joined by commas; not '" +
+                                vn::detail::quotable(part) + "'");
+    (part == "base" ? free.base : part == "tool" ? free.tool : free.offsets) = true;
+  }
+  return support::dispatch_dof(vn::saved_arm(o.model).dof,
+                               [&](auto n) { return reregister_arm<n()>(program, o, free); });
+}
 
 std::string today() {
   const std::time_t now = std::time(nullptr);
@@ -29,346 +240,87 @@ std::string today() {
   return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
 }
 
-void print_table(const std::vector<StageErrors>& stages) {
-  fmt::print("{:<22}{:>9}{:>9}{:>9}{:>9}{:>9}{}\n", "stage", "mean", "rms", "max", "min", "p95",
-             stages.front().rotation.size() > 0 ? "  mean [mrad]" : "");
-  for (const StageErrors& stage : stages) {
-    const auto e = ErrorStatistics::of(stage.position * 1e3);
-    fmt::print("{:<22}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}", stage.title, e.mean, e.rms, e.max, e.min, e.p95);
-    if (stage.rotation.size() > 0) fmt::print("{:>13.4f}", stage.rotation.mean() * 1e3);
-    fmt::print("\n");
-  }
-}
-
-support::Json stages_json(const std::vector<StageErrors>& of) {
-  support::Json stages;
-  for (const StageErrors& stage : of) {
-    const auto e = ErrorStatistics::of(stage.position * 1e3);
-    stages[stage.key] = {
-        {"mean_mm", e.mean}, {"rms_mm", e.rms}, {"max_mm", e.max}, {"min_mm", e.min}, {"p95_mm", e.p95}};
-    if (stage.rotation.size() > 0) stages[stage.key]["mean_mrad"] = stage.rotation.mean() * 1e3;
-  }
-  return stages;
-}
-
-support::Json to_json(const vernier::RobotDescription& robot, const CalibrationReport& report) {
-  support::Json parameters = support::Json::array(), blocks = support::Json::array();
-  for (const auto& b : report.blocks)
-    blocks.push_back({{"name", b.name},
-                      {"used", b.used},
-                      {"left_out_without_mm", b.without * 1e3},
-                      {"left_out_with_mm", b.with * 1e3},
-                      {"tightness", b.used ? support::Json(b.tightness) : support::Json()}});
-  for (const auto& p : report.parameters)
-    parameters.push_back({{"name", p.name},
-                          {"unit", p.kind == vernier::ParameterKind::length ? "mm" : "mrad"},
-                          {"nominal", p.nominal * 1e3},
-                          {"identified", p.identified * 1e3},
-                          {"std", p.std * 1e3}});
-  return {{"robot", robot.name},
-          {"train_rows", report.train_rows},
-          {"test_rows", report.test_rows},
-          {"stages", stages_json(report.stages)},
-          {"blocks", blocks},
-          {"parameters", parameters},
-          {"identifiability",
-           {{"rank", report.rank},
-            {"free", report.free},
-            {"condition", report.condition},
-            {"weak", report.weak},
-            {"strongly_correlated", report.correlated},
-            {"observability",
-             {{"O1", report.observability.o1},
-              {"O2", report.observability.o2},
-              {"O3", report.observability.o3},
-              {"O4", report.observability.o4},
-              {"O5", report.observability.o5}}}}},
-          {"gated_rows", report.gated},
-          {"worst_harm_beside_geometry_mm", report.worst_harm * 1e3},
-          {"within_95_percent_ellipsoids", report.within_ellipsoids},
-          {"verdict", report.verdict}};
-}
-
-void draw(const std::filesystem::path& folder, const std::string& robot, const CalibrationReport& report) {
-  std::vector<std::string> titles;
-  support::Series mean{"mean", {}, {}, support::Style::lines, 1}, p95{"95 %", {}, {}, support::Style::lines, 2};
-  std::vector<support::Sample> samples;
-  std::vector<support::Series> poses;
-  for (const StageErrors& stage : report.stages) {
-    const vernier::VectorX mm = stage.position * 1e3;
-    const auto e = ErrorStatistics::of(mm);
-    const std::size_t plus = stage.title.find(" + ");  // short, for it stands beside the stage it builds on
-    titles.push_back(plus == std::string::npos ? stage.title : stage.title.substr(plus + 1));
-    mean.y.push_back(e.mean);
-    p95.y.push_back(e.p95);
-    samples.push_back({stage.title, {mm.begin(), mm.end()}});
-    if (stage.key != "frames" && stage.key != "geometry" && stage.key != "jointwise") continue;
-    support::Series series{stage.key == "frames" ? "before: links nominal" : "after: " + stage.title,
-                           {},
-                           {mm.begin(), mm.end()},
-                           support::Style::points};
-    for (std::size_t i = 0; i < series.y.size(); ++i) series.x.push_back(static_cast<double>(i));
-    poses.push_back(std::move(series));
-  }
-  for (std::size_t i = 0; i < titles.size(); ++i) {
-    mean.x.push_back(static_cast<double>(i));
-    p95.x.push_back(static_cast<double>(i));
-  }
-  support::bars_svg(folder / "stages.svg", robot + ": held-out position error of each stage", "position error [mm]",
-                    titles, {mean, p95});
-  support::plot_svg(folder / "distribution.svg", robot + ": held-out poses within an error", "position error [mm]",
-                    "share of poses [%]", support::cumulative(samples));
-  support::plot_svg(folder / "poses.svg", robot + ": each held-out pose, before and after", "held-out pose",
-                    "position error [mm]", poses);
-}
-
-/// Errors along each joint before and after, what each transmission adds, and the measured ranges.
-void draw_joints(const std::filesystem::path& folder, const std::string& robot, const CalibrationReport& report) {
-  using support::Series;
-  using support::Style;
-  constexpr double degree = 180 / std::numbers::pi;
-  const auto scaled = [](std::vector<double> values, double by) {
-    for (double& v : values) v *= by;
-    return values;
-  };
-  std::vector<Series> ranges;
-  for (std::size_t j = 0; j < report.joints.size(); ++j) {
-    const support::JointPicture& joint = report.joints[j];
-    const std::string name = fmt::format("joint {}", j + 1), x_label = name + " [deg]";
-    const std::vector<double> angle = scaled(joint.angle, degree), at = scaled(joint.at, degree);
-    support::plot_svg(folder / fmt::format("errors_along_joint_{}.svg", j + 1),
-                      fmt::format("{}: held-out errors along {}", robot, name), x_label, "position error [mm]",
-                      {{"geometry", angle, scaled(joint.before, 1e3), Style::points},
-                       {"joint-wise", angle, scaled(joint.after, 1e3), Style::points}});
-    if (std::any_of(joint.std.begin(), joint.std.end(), [](double s) { return s > 0; })) {
-      Series upper{"95 % band", at, {}, Style::dashed, 1}, lower{"", at, {}, Style::dashed, 1};
-      for (std::size_t k = 0; k < at.size(); ++k) {
-        upper.y.push_back((joint.value[k] + 1.96 * joint.std[k]) * 1e3);
-        lower.y.push_back((joint.value[k] - 1.96 * joint.std[k]) * 1e3);
-      }
-      support::plot_svg(folder / fmt::format("transmission_{}.svg", j + 1),
-                        fmt::format("{}: what {} adds to its angle, mean taken off", robot, name), x_label,
-                        "joint error [mrad]",
-                        {{"joint error", at, scaled(joint.value, 1e3), Style::lines, 2}, upper, lower});
-    }
-    for (std::size_t k = 0; k < joint.measured_ranges.size(); ++k)
-      ranges.push_back({k == 0 ? name : "",
-                        {joint.measured_ranges[k].first * degree, joint.measured_ranges[k].second * degree},
-                        {static_cast<double>(j + 1), static_cast<double>(j + 1)},
-                        Style::lines,
-                        static_cast<int>(j) % support::palette_size});
-  }
-  const double count = static_cast<double>(report.joints.size());
-  support::plot_svg(folder / "joint_ranges.svg", robot + ": measured joint ranges", "joint value [deg]", "joint",
-                    ranges, {.y_range = std::pair{0.0, count + 1}});
-}
-
-int run_reregistration(support::Program& program, support::ReregistrationSettings settings, const std::string& free) {
-  settings.options.base = settings.options.tool = settings.options.offsets = false;
-  for (std::size_t at = 0; at <= free.size();) {
-    const std::size_t comma = std::min(free.find(',', at), free.size());
-    const std::string part = free.substr(at, comma - at);
-    at = comma + 1;
-    if (part == "base")
-      settings.options.base = true;
-    else if (part == "tool")
-      settings.options.tool = true;
-    else if (part == "offsets")
-      settings.options.offsets = true;
-    else
-      throw support::UsageError("--free takes base, tool, offsets, joined by commas; not '" +
-                                vernier::detail::quotable(part) + "'");
-  }
-  const support::ReregistrationReport report = support::reregister(settings);
-  fmt::print("{}: {} registered again from {} poses, everything else kept\n", report.robot, free, report.train_rows);
-  fmt::print("\nErrors of {} [mm]\n\n", report.held_out ? fmt::format("{} held-out poses", report.test_rows)
-                                                        : "those same poses (--test FILE judges by others)");
-  print_table(report.stages);
-  const auto change = [](const char* what, const std::array<double, 6>& by) {
-    fmt::print("{} moved by ({:.3f}, {:.3f}, {:.3f}) mm, turned by ({:.3f}, {:.3f}, {:.3f}) mrad\n", what, by[0] * 1e3,
-               by[1] * 1e3, by[2] * 1e3, by[3] * 1e3, by[4] * 1e3, by[5] * 1e3);
-  };
-  fmt::print("\n");
-  if (settings.options.base) change("Base", report.base_change);
-  if (settings.options.tool) change("Tool", report.tool_change);
-  if (settings.options.offsets)
-    for (std::size_t i = 0; i < report.offsets.size(); ++i)
-      fmt::print("Zero of joint {}: {:+.4f} mrad (mm)\n", i + 1, report.offsets[i] * 1e3);
-  if (!program.common().json.empty())
-    support::write_json(program.common().json, {{"robot", report.robot},
-                                                {"train_rows", report.train_rows},
-                                                {"test_rows", report.test_rows},
-                                                {"held_out", report.held_out},
-                                                {"stages", stages_json(report.stages)},
-                                                {"base_change_m_rad", report.base_change},
-                                                {"tool_change_m_rad", report.tool_change},
-                                                {"offsets_rad", report.offsets}});
-  if (!settings.save.empty()) fmt::print("Calibrated model: {}\n", settings.save.string());
-  return 0;
-}
-
 int run(support::Program& program) {
-  support::CalibrationSettings settings;
-  std::string robot_name, model, free, loss = "huber", split, priors = "default";
-  double distance_sigma_mm = 0.03;
-  std::vector<std::string> data, test, distances;
-  std::string save;
-  settings.date = today();
+  const std::map<std::string, vn::Loss> losses{
+      {"squared", vn::Loss::squared}, {"huber", vn::Loss::huber}, {"cauchy", vn::Loss::cauchy}};
+  Options o;
+  o.date = today();
   CLI::App& app = program.app();
-  auto* robot_option =
-      app.add_option("--robot", robot_name,
-                     "name in the catalogue (abb_irb120, ur10, ur5, barrett_wam, puma560), or a JSON file")
-          ->type_name("NAME|FILE");
-  app.add_option(
-         "--data", data,
-         "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad; one file for each place "
-         "of the sensor")
-      ->required()
-      ->type_name("FILE...");
-  auto* distances_option =
-      app.add_option("--distances", distances,
-                     "measured distances from a fixed point (draw-wire, ball-bar), to learn from beside the poses: "
-                     "q1_rad.., distance_mm; one file for each fixed point")
-          ->type_name("FILE...")
-          ->always_capture_default(false);
-  app.add_option("--distance-sigma", distance_sigma_mm, "standard deviation of a distance [mm]; of poses it is 0.03 mm")
+  const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
+    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
+  };
+  auto* robot =
+      option("--robot", o.robot, "name in the catalogue (abb_irb120, ur10, ur5, barrett_wam, puma560), or a JSON file",
+             "NAME|FILE");
+  option("--data", o.data,
+         "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad; one file a sensor station",
+         "FILE...")
+      ->required();
+  auto* distances = option("--distances", o.distances,
+                           "measured distances from a fixed point (draw-wire, ball-bar), used beside the poses: "
+                           "q1_rad.., distance_mm; one file a fixed point",
+                           "FILE...");
+  app.add_option("--distance-sigma", o.distance_sigma_mm,
+                 "standard deviation of a distance [mm]; of positions it is 0.03 mm")
       ->type_name("MM")
       ->check(CLI::Range(1e-6, 1e3).description(""));
-  auto* test_option = app.add_option("--test", test, "measured poses to judge by, as many files as --data")
-                          ->type_name("FILE...")
-                          ->always_capture_default(false);
-  auto* every_option = app.add_option("--test-every", settings.test_every, "hold out every K-th row of the data")
-                           ->type_name("K")
-                           ->check(CLI::Range(2, 1000000).description(""));
-  auto* split_option = app.add_option("--split", split,
-                                      "hold out a share of the rows: random, region-x or region-z (the far end for odd "
-                                      "seeds, the near one for even), time (the last rows)")
-                           ->type_name("HOW")
-                           ->check(CLI::IsMember({"random", "region-x", "region-z", "time"}).description(""))
-                           ->default_str("");
-  auto* fraction_option =
-      app.add_option("--test-fraction", settings.test_fraction, "that share; at random where --split is not given")
+  auto* test = option("--test", o.test, "held-out measured poses, as many files as --data", "FILE...");
+  auto* every = app.add_option("--test-every", o.test_every, "hold out every K-th row of the data")
+                    ->type_name("K")
+                    ->check(CLI::Range(2, 1000000).description(""));
+  auto* split = option("--split", o.split,
+                       "hold out a fraction of the rows: random, region-x or region-z (largest values for odd seeds, "
+                       "smallest for even), time (the last rows)",
+                       "HOW")
+                    ->check(CLI::IsMember({"random", "region-x", "region-z", "time"}).description(""));
+  auto* fraction =
+      app.add_option("--test-fraction", o.test_fraction, "that fraction; random where --split is not given")
           ->type_name("F")
           ->check(CLI::Range(0.001, 0.999).description(""));
-  test_option->excludes(every_option)->excludes(fraction_option)->excludes(split_option);
-  every_option->excludes(fraction_option)->excludes(split_option);
-  auto* train_option =
-      app.add_option("--train", settings.train_rows, "learn from the first N rows of a seeded shuffle of the others")
-          ->type_name("N")
-          ->check(CLI::Range(1, 100000000).description(""))
-          ->default_str("");
-  app.add_option("--save", save, "write the calibrated model to this file, for correct")
-      ->type_name("FILE")
-      ->always_capture_default(false);
-  app.add_option("--loss", loss, "squared, or huber or cauchy, which survive some wrong measurements")
+  test->excludes(every)->excludes(fraction)->excludes(split);
+  every->excludes(fraction)->excludes(split);
+  auto* train = option("--train", o.train_rows, "learn from the first N rows of a seeded shuffle of the others", "N")
+                    ->check(CLI::Range(1, 100000000).description(""));
+  option("--save", o.save, "write the calibrated model to this file, for correct", "FILE");
+  app.add_option("--loss", o.loss, "squared, or huber or cauchy, which tolerate outliers")
       ->type_name("LOSS")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}).description(""));
-  app.add_option("--fix", settings.fixed, "parameters that stay nominal, by name (d1, theta6, tool_z, ...)")
-      ->type_name("NAME...")
-      ->default_str("");
-  app.add_option("--harmonics", settings.harmonics, "joint-wise Fourier terms up to this harmonic; 0 for none")
+  option("--fix", o.calibrate.geometry.fixed, "parameters that stay nominal, by name (d1, theta6, tool_z, ...)",
+         "NAME...");
+  app.add_option("--harmonics", o.calibrate.errors.harmonics, "joint-wise Fourier terms up to this harmonic; 0: none")
       ->type_name("K")
       ->check(CLI::Range(0, 500).description(""));
-  app.add_option("--joint-nodes", settings.joint_nodes,
-                 "joint-wise hidden nodes, so many a joint, in place of Fourier terms")
-      ->type_name("H")
-      ->check(CLI::Range(1, 1000).description(""))
-      ->default_str("");
-  app.add_option("--priors", priors,
-                 "of the joint errors: the default rule, or tuned by pso or ga on poses left out (takes a minute)")
+  app.add_option("--priors", o.priors,
+                 "of the joint errors: the default rule, or optimised by pso or ga on left-out poses (takes a minute)")
       ->type_name("HOW")
       ->check(CLI::IsMember({"default", "pso", "ga"}).description(""));
-  app.add_flag("--own-tools", settings.own_tools, "every file of --data has its own tool, not just its own base");
-  app.add_flag("--positions-only", settings.positions_only, "ignore measured orientations");
-  app.add_option("--date", settings.date, "date kept in the model")->type_name("DATE");
-  auto* model_option =
-      app.add_option("--model", model, "a calibrated model: registered again from the data, the rest is kept")
-          ->type_name("FILE")
-          ->always_capture_default(false);
-  auto* free_option = app.add_option("--free", free, "with --model: what may move, base, tool and offsets, by commas")
-                          ->type_name("WHAT")
-                          ->always_capture_default(false);
-  model_option->excludes(distances_option)
-      ->excludes(robot_option)
-      ->excludes(every_option)
-      ->excludes(split_option)
-      ->excludes(train_option);
-  model_option->needs(free_option);
-  free_option->needs(model_option);
+  app.add_flag("--own-tools", o.calibrate.errors.tool_per_station,
+               "every file of --data has its own tool, not only its own base");
+  app.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
+  app.add_option("--date", o.date, "date written into the model")->type_name("DATE");
+  auto* model =
+      option("--model", o.model, "a calibrated model: registered again from the data, the rest is kept", "FILE");
+  auto* free = option("--free", o.free, "with --model: what may move: base, tool, offsets, joined by commas", "WHAT");
+  model->excludes(distances)->excludes(robot)->excludes(every)->excludes(split)->excludes(train)->needs(free);
+  free->needs(model);
   program.parse("calibrate_out");
 
-  if (settings.date.size() > 40 ||
-      std::any_of(settings.date.begin(), settings.date.end(), [](char c) { return c < ' '; }))
+  if (o.date.size() > 40 || std::any_of(o.date.begin(), o.date.end(), [](char c) { return c < ' '; }))
     throw support::UsageError("--date takes up to 40 plain characters");
-  if (!test.empty() && test.size() != data.size())
-    throw support::UsageError(fmt::format("{} files of --test for {} of --data", test.size(), data.size()));
-  if (!save.empty()) support::require_writable(save);
-  if (*model_option) {
-    if (data.size() != 1) throw support::UsageError("--model takes one file of --data");
-    support::ReregistrationSettings again;
-    again.model = model;
-    again.data = data.front();
-    if (!test.empty()) again.test = test.front();
-    again.positions_only = settings.positions_only;
-    again.save = save;
-    again.date = settings.date;
-    return run_reregistration(program, again, free);
+  if (!o.test.empty() && o.test.size() != o.data.size())
+    throw support::UsageError(fmt::format("{} files of --test for {} of --data", o.test.size(), o.data.size()));
+  if (!o.save.empty()) support::require_writable(o.save);
+  if (*fraction && o.split.empty()) o.split = "random";
+  vn::SensorModel& sensors = o.calibrate.sensors;
+  sensors.loss = losses.at(o.loss);
+  sensors.distance_sigma = o.distance_sigma_mm * 1e-3;
+  sensors.use_orientations = !o.positions_only;
+  if (*model) {
+    if (o.data.size() != 1) throw support::UsageError("--model takes one file of --data");
+    return run_reregistration(program, o);
   }
-  if (!*robot_option) throw support::UsageError("--robot is required (or --model, to register a fitted arm again)");
-
-  const vernier::RobotDescription robot = support::choose_robot(robot_name);
-  settings.data = {data.begin(), data.end()};
-  settings.test = {test.begin(), test.end()};
-  settings.distances = {distances.begin(), distances.end()};
-  settings.distance_sigma = distance_sigma_mm * 1e-3;
-  settings.priors = priors == "pso"  ? support::PriorTuning::pso
-                    : priors == "ga" ? support::PriorTuning::ga
-                                     : support::PriorTuning::none;
-  settings.save = save;
-  settings.loss =
-      std::map<std::string, vernier::Loss>{
-          {"squared", vernier::Loss::squared}, {"huber", vernier::Loss::huber}, {"cauchy", vernier::Loss::cauchy}}
-          .at(loss);
-  using support::HoldOut;
-  if (*split_option)
-    settings.hold_out = std::map<std::string, HoldOut>{
-        {"random", HoldOut::random},
-        {"region-x", HoldOut::region_x},
-        {"region-z", HoldOut::region_z},
-        {"time",
-         HoldOut::time}}.at(split);
-  else if (*fraction_option)
-    settings.hold_out = HoldOut::random;
-  settings.seed = program.common().seed;
-  settings.threads = program.common().threads;
-  // one bar for all searches, one after the other
-  const bool tuned = settings.priors != support::PriorTuning::none;
-  support::ProgressBar progress("searching",
-                                2 * (support::swarm_generations + 1) + (tuned ? support::prior_generations + 1 : 0));
-  vernier::Index searched = 0;
-  const auto count = [&](const vernier::Progress&) { progress.update(++searched); };
-  settings.observer = count;
-  const CalibrationReport report = support::calibrate(robot, settings);
-  progress.finish();
-
-  fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
-             robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
-  if (data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", data.size(), data.size());
-  fmt::print("{} poses to learn from, {} held out: {}\n", report.train_rows, report.test_rows, report.split);
-  if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
-  fmt::print("\nErrors of the {} held-out poses [mm]\n\n", report.test_rows);
-  print_table(report.stages);
-  fmt::print("\n{}", report.summary);
-  for (const auto& remark : report.remarks) fmt::print("{}\n", remark);
-  fmt::print("\nVerdict\n");
-  for (const auto& line : report.verdict) fmt::print("- {}\n", line);
-  if (!program.common().json.empty()) support::write_json(program.common().json, to_json(robot, report));
-  const std::filesystem::path folder = program.output_folder();
-  draw(folder, robot.name, report);
-  draw_joints(folder, robot.name, report);
-  fmt::print("\nFrom poses to error model in {:.1f} s. Figures: {}\n", report.fit_seconds, folder.string());
-  if (!save.empty()) fmt::print("Calibrated model: {}\n", save);
-  return 0;
+  if (!*robot) throw support::UsageError("--robot is required (or --model, to register a fitted arm again)");
+  return run_calibration(program, o);
 }
 
 }  // namespace
@@ -376,7 +328,7 @@ int run(support::Program& program) {
 int main(int argc, char** argv) {
   return support::run_program("calibrate",
                               "Measured poses in; base and tool frames, the arm's geometry, gravity compliance, "
-                              "functions of single joints and a "
-                              "PSO-ELM on what is left; errors of held-out poses after each, and a verdict.",
+                              "functions of single joints and a PSO-ELM on the remainder; errors at held-out poses "
+                              "after each, and a verdict.",
                               argc, argv, run);
 }

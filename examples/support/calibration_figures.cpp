@@ -1,0 +1,100 @@
+#include "calibration_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "figures.hpp"
+#include "vernier/evaluation/statistics.hpp"
+
+namespace support {
+
+namespace {
+
+using vernier::ErrorStatistics;
+using vernier::StageErrors;
+
+std::vector<double> scaled(const auto& values, double by) {
+  std::vector<double> out(values.begin(), values.end());
+  for (double& v : out) v *= by;
+  return out;
+}
+
+std::vector<double> counted(std::size_t n) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < n; ++i) out.push_back(static_cast<double>(i));
+  return out;
+}
+
+void draw_stages(const std::filesystem::path& folder, const std::string& robot,
+                 const std::vector<StageErrors>& stages) {
+  std::vector<std::string> titles;
+  Series mean{"mean", counted(stages.size()), {}, Style::lines, 1}, p95{"95 %", mean.x, {}, Style::lines, 2};
+  std::vector<Sample> samples;
+  std::vector<Series> poses;
+  for (const StageErrors& stage : stages) {
+    const std::vector<double> mm = scaled(stage.position, 1e3);
+    const auto e = ErrorStatistics::of(stage.position * 1e3);
+    const std::size_t plus = stage.title.find(" + ");  // short, for it stands beside the stage it builds on
+    titles.push_back(plus == std::string::npos ? stage.title : stage.title.substr(plus + 1));
+    mean.y.push_back(e.mean);
+    p95.y.push_back(e.p95);
+    samples.push_back({stage.title, mm});
+    if (stage.key == "frames" || stage.key == "geometry" || stage.key == "jointwise")
+      poses.push_back({stage.key == "frames" ? "before: nominal links" : "after: " + stage.title, counted(mm.size()),
+                       mm, Style::points});
+  }
+  bars_svg(folder / "stages.svg", robot + ": held-out position error of each stage", "position error [mm]", titles,
+           {mean, p95});
+  plot_svg(folder / "distribution.svg", robot + ": cumulative distribution of held-out errors", "position error [mm]",
+           "share of poses [%]", cumulative(samples));
+  plot_svg(folder / "poses.svg", robot + ": each held-out pose, before and after", "held-out pose",
+           "position error [mm]", poses);
+}
+
+}  // namespace
+
+void print_stages(const std::vector<StageErrors>& stages) {
+  fmt::print("{:<22}{:>9}{:>9}{:>9}{:>9}{:>9}{}\n", "stage", "mean", "rms", "max", "min", "p95",
+             stages.front().rotation.size() > 0 ? "  mean [mrad]" : "");
+  for (const StageErrors& stage : stages) {
+    const auto e = ErrorStatistics::of(stage.position * 1e3);
+    fmt::print("{:<22}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}", stage.title, e.mean, e.rms, e.max, e.min, e.p95);
+    if (stage.rotation.size() > 0) fmt::print("{:>13.4f}", stage.rotation.mean() * 1e3);
+    fmt::print("\n");
+  }
+}
+
+void draw_calibration(const std::filesystem::path& folder, const std::string& robot,
+                      const vernier::CalibrationReport& report) {
+  draw_stages(folder, robot, report.stages);
+  std::vector<Series> ranges;
+  for (std::size_t j = 0; j < report.joints.size(); ++j) {
+    const vernier::JointReport& joint = report.joints[j];
+    const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;
+    const std::string name = fmt::format("joint {}", j + 1), x_label = name + (joint.revolute ? " [deg]" : " [mm]");
+    const std::vector<double> held_out = scaled(joint.held_out, unit), angle = scaled(joint.angle, unit);
+    plot_svg(folder / fmt::format("errors_along_joint_{}.svg", j + 1),
+             fmt::format("{}: held-out errors along {}", robot, name), x_label, "position error [mm]",
+             {{"geometry", held_out, scaled(report.stage("geometry").position, 1e3), Style::points},
+              {"joint-wise", held_out, scaled(report.stage("jointwise").position, 1e3), Style::points}});
+    const vernier::VectorX margin = 1.96 * joint.transmission_std;
+    if ((margin.array() > 0).any())
+      plot_svg(folder / fmt::format("transmission_{}.svg", j + 1),
+               fmt::format("{}: transmission error of {}, mean subtracted", robot, name), x_label, "joint error [mrad]",
+               {{"joint error", angle, scaled(joint.transmission, 1e3), Style::lines, 2},
+                {"95 % band", angle, scaled(vernier::VectorX(joint.transmission + margin), 1e3), Style::dashed, 1},
+                {"", angle, scaled(vernier::VectorX(joint.transmission - margin), 1e3), Style::dashed, 1}});
+    const double row = static_cast<double>(j + 1);
+    for (std::size_t k = 0; k < joint.measured_ranges.size(); ++k)
+      ranges.push_back({k == 0 ? name : "",
+                        {joint.measured_ranges[k].first * unit, joint.measured_ranges[k].second * unit},
+                        {row, row},
+                        Style::lines,
+                        static_cast<int>(j) % palette_size});
+  }
+  plot_svg(folder / "joint_ranges.svg", robot + ": measured joint ranges", "joint value [deg, mm]", "joint", ranges,
+           {.y_range = std::pair{0.0, static_cast<double>(report.joints.size() + 1)}});
+}
+
+}  // namespace support

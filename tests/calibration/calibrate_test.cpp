@@ -1,11 +1,12 @@
 // Calibration end to end: where the truth is known, and on measured robots where VERNIER_DATA_DIR names them.
 
-#include "vernier/ceres/calibrate.hpp"
+#include "vernier/calibration/calibrate.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "vernier/ceres/solver.hpp"
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
@@ -47,6 +48,9 @@ JointRows<6> joints(Index n, std::uint64_t seed) { return sample_joints(measured
 
 constexpr MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.1e-3};
 
+/// Nothing is learned on top of geometry and joint errors.
+const CalibrateOptions models_alone{.remainder = {.on_error_model = false}};
+
 double mean_error(const ErrorModel<Chain>& model, const Actual& actual, std::uint64_t seed = 99) {
   return prediction_error(model, measure(actual, joints(300, seed))).mean;
 }
@@ -54,7 +58,7 @@ double mean_error(const ErrorModel<Chain>& model, const Actual& actual, std::uin
 TEST(Calibrate, FindsEverySourceItContains) {
   const Actual actual = actual_arm(frame(2, -1, 0.5, 0.1, -0.2, 1.5), {});  // gear ratios and coupling as well
   for (const auto& [poses, limit] : {std::pair<Index, double>{100, 0.06e-3}, {1000, 0.02e-3}}) {
-    const auto found = calibrate(robot.chain, measure(actual, joints(poses, 1), noise, 2));
+    const auto found = calibrate(robot.chain, measure(actual, joints(poses, 1), noise, 2), models_alone);
     EXPECT_TRUE(found.geometry.converged());
     EXPECT_TRUE(found.errors.converged);
     const double geometry = mean_error(found.errors.geometry[0], actual), all = mean_error(found.model(), actual);
@@ -66,9 +70,7 @@ TEST(Calibrate, FindsEverySourceItContains) {
     for (Index i = 0; i < fresh.rows(); ++i) {
       const JointVector<6> q = fresh.row(i).transpose();
       if (found.model().gate(q) < 1) continue;
-      detail::PoseRows at;
-      const MatrixX rows = found.errors.design.rows(0, q, at).topRows<3>();
-      predicted += (rows * found.errors.covariance * rows.transpose()).trace();
+      predicted += found.errors.model_covariance(q).topLeftCorner<3, 3>().trace();
       happened += (found.model().position(q) - actual.position(q)).squaredNorm();
     }
     EXPECT_LT(std::sqrt(happened / predicted), 1.5) << poses;
@@ -78,7 +80,7 @@ TEST(Calibrate, FindsEverySourceItContains) {
 
 TEST(Calibrate, EllipsoidsHoldWhatTheySay) {
   const Actual actual = actual_arm();
-  const auto found = calibrate(robot.chain, measure(actual, joints(300, 1), noise, 2));
+  const auto found = calibrate(robot.chain, measure(actual, joints(300, 1), noise, 2), models_alone);
   EXPECT_NEAR(std::hypot(found.errors.position_sigma, 0.5 * found.errors.joint_sigma), 0.03e-3, 0.01e-3);
   const auto fresh = measure(actual, joints(600, 3), noise, 4);
   Index within = 0;
@@ -98,7 +100,7 @@ TEST(Calibrate, WhatIsNotThereIsLeftOut) {
   const Actual rigid = actual_arm(frame(1, 0, 0, 0, 0, 1), none);
   int used = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto found = calibrate(robot.chain, measure(rigid, joints(100, seed), noise, seed));
+    const auto found = calibrate(robot.chain, measure(rigid, joints(100, seed), noise, seed), models_alone);
     bool jointwise = false;
     for (const BlockChoice& block : found.errors.blocks) {
       jointwise = jointwise || (block.used && block.name == "jointwise");
@@ -117,9 +119,9 @@ TEST(Calibrate, SeveralStationsShareTheArm) {
   std::vector<Dataset<6>> stations;
   for (std::size_t s = 0; s < 3; ++s)
     stations.push_back(measure(actual_arm(bases[s]), joints(60, 10 + s), noise, 20 + s));
-  const auto found = calibrate(robot.chain, std::span<const Dataset<6>>(stations));
+  const auto found = calibrate(robot.chain, stations, models_alone);
   ASSERT_EQ(found.errors.models.size(), 3u);
-  const auto alone = calibrate(robot.chain, stations[1]);
+  const auto alone = calibrate(robot.chain, stations[1], models_alone);
   double together = 0, single = 0;
   for (std::size_t s = 0; s < 3; ++s) {
     const double error = mean_error(found.errors.models[s], actual_arm(bases[s]));
@@ -130,21 +132,22 @@ TEST(Calibrate, SeveralStationsShareTheArm) {
   EXPECT_LT(together, 0.8 * single);  // three times the poses
   // one arm: chain and joint errors agree to the bit
   for (std::size_t s = 1; s < 3; ++s)
-    EXPECT_TRUE(found.errors.models[s].arm().model().chain() == found.errors.models[0].arm().model().chain());
+    EXPECT_TRUE(found.errors.models[s].identified().model().chain() ==
+                found.errors.models[0].identified().model().chain());
 }
 
 TEST(Calibrate, OnePoseInTwentyOffByFiveMillimetres) {
   const Actual actual = actual_arm();
   const auto clean = measure(actual, joints(300, 1), noise, 2);
   const auto dirty = with_outliers(clean, 0.05, 5e-3, 6).data;
-  const double without = mean_error(calibrate(robot.chain, clean).model(), actual);
-  const double with = mean_error(calibrate(robot.chain, dirty).model(), actual);
+  const double without = mean_error(calibrate(robot.chain, clean, models_alone).model(), actual);
+  const double with = mean_error(calibrate(robot.chain, dirty, models_alone).model(), actual);
   EXPECT_LT(with, 1.5 * without);
 }
 
 TEST(Calibrate, FallsBackOutsideTheMeasuredRanges) {
   const Actual actual = actual_arm();
-  const auto found = calibrate(robot.chain, measure(actual, joints(200, 1), noise, 2));
+  const auto found = calibrate(robot.chain, measure(actual, joints(200, 1), noise, 2), models_alone);
   ASSERT_NE(found.model().fallback(), nullptr);
   JointVector<6> q = joints(1, 5).row(0).transpose();
   q(2) = -1.5;
@@ -156,12 +159,12 @@ TEST(Calibrate, FallsBackOutsideTheMeasuredRanges) {
 
 TEST(Calibrate, CorrectedCommandsReachTheNominalPose) {
   const Actual actual = actual_arm();
-  const auto found = calibrate(robot.chain, measure(actual, joints(400, 1), noise, 2));
+  const auto found = calibrate(robot.chain, measure(actual, joints(400, 1), noise, 2), models_alone);
   const auto corrected = compensate(found.model());
   const JointRows<6> targets = joints(100, 8);
-  const PositioningErrors before = positioning_errors(actual, found.model().reference(), targets, targets);
+  const PositioningErrors before = positioning_errors(actual, found.model().nominal(), targets, targets);
   const PositioningErrors after =
-      positioning_errors(actual, found.model().reference(), corrected_commands(corrected, targets), targets);
+      positioning_errors(actual, found.model().nominal(), corrected_commands(corrected, targets), targets);
   EXPECT_LT(after.position.mean(), 0.05 * before.position.mean());
   EXPECT_LT(after.position.mean(), 0.05e-3);
 }
@@ -173,11 +176,12 @@ TEST(Calibrate, UnmodelledSourcesOneByOne) {
   rippled.ripple_harmonic = 101;
   const Actual actual = actual_arm(), ripple = actual_arm(frame(2, -1, 0.5, 0.1, -0.2, 1.5), rippled);
   const auto q = joints(300, 1);
-  const double plain = mean_error(calibrate(robot.chain, measure(actual, q, noise, 2)).model(), actual);
-  const double with_ripple = mean_error(calibrate(robot.chain, measure(ripple, q, noise, 2)).model(), ripple);
+  const double plain = mean_error(calibrate(robot.chain, measure(actual, q, noise, 2), models_alone).model(), actual);
+  const double with_ripple =
+      mean_error(calibrate(robot.chain, measure(ripple, q, noise, 2), models_alone).model(), ripple);
   const auto late =
       measure_with_backlash(actual, q, JointVector<6>::Constant(0.02e-3), approach_directions(q), noise, 2);
-  const double with_backlash = mean_error(calibrate(robot.chain, late).model(), actual);
+  const double with_backlash = mean_error(calibrate(robot.chain, late, models_alone).model(), actual);
   RecordProperty("mean_um_plain", std::to_string(plain * 1e6));
   RecordProperty("mean_um_ripple", std::to_string(with_ripple * 1e6));
   RecordProperty("mean_um_backlash", std::to_string(with_backlash * 1e6));
@@ -187,16 +191,16 @@ TEST(Calibrate, UnmodelledSourcesOneByOne) {
 
 TEST(Calibrate, MisuseThrows) {
   const auto data = measure(actual_arm(), joints(20, 1));
-  EXPECT_THROW((void)calibrate(robot.chain, std::span<const Dataset<6>>{}), std::invalid_argument);
-  const auto refuses = [&](ErrorModelOptions errors) {
-    EXPECT_THROW((void)calibrate(robot.chain, data, {.errors = errors}), std::invalid_argument);
+  EXPECT_THROW((void)calibrate(robot.chain, std::vector<Dataset<6>>{}, models_alone), std::invalid_argument);
+  const auto refuses = [&](const CalibrateOptions& options) {
+    EXPECT_THROW((void)calibrate(robot.chain, data, options), std::invalid_argument);
   };
-  refuses({.harmonics = -1});
-  refuses({.down = {0, 0, -2}});
-  refuses({.position_sigma = 0});
-  refuses({.joint_sigma = -1});
-  refuses({.transmission_size = -1});
-  refuses({.left_out = 0});
+  refuses({.errors = {.harmonics = -1}});
+  refuses({.errors = {.down = {0, 0, -2}}});
+  refuses({.errors = {.transmission_prior_std = -1}});
+  refuses({.errors = {.num_validation_poses = 0}});
+  refuses({.sensors = {.position_sigma = 0}});
+  refuses({.sensors = {.joint_sigma = -1}});
 }
 
 /// Held-out mean errors in mm of elastic and joint-wise model, and the worst joint-wise error where it holds.
@@ -211,7 +215,7 @@ Measured measured(const DhChain<N>& chain, const char* file, Index train_rows = 
     const auto order = Rng(seed).permutation(train.size());
     train = train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(train_rows)));
   }
-  const auto found = calibrate(chain, train);
+  const auto found = calibrate(chain, train, models_alone);
   Measured out{prediction_error(found.errors.elastic[0], rows.test).mean * 1e3,
                prediction_error(found.model(), rows.test).mean * 1e3, 0, 0};
   const VectorX errors = position_errors(found.model(), rows.test) * 1e3;

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "complaint.hpp"
-#include "vernier/ceres/calibrate.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/ceres/solver.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
@@ -19,6 +20,8 @@ using Actual = Framed<WithJointErrors<Chain>>;
 const Robot<6> robot = robots::ur10();
 const Isometry3 tool = FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry();
 const Vector3 anchor(0.9, -1.2, 0.3);
+const std::vector<Dataset<6>> no_poses{};
+const RemainderOptions nothing{.on_error_model = false};
 
 JointRows<6> joints(Index n, std::uint64_t seed) {
   JointLimits<6> ranges;
@@ -37,13 +40,14 @@ Actual actual_arm(double harmonic, double compliance) {
       Isometry3::Identity(), tool);
 }
 
-IdentifyOptions roughly_known_tool() {
-  IdentifyOptions out{.frames = Frames::base_and_tool};
+/// The nominal arm, its tool off by millimetres.
+Framed<Chain> with_rough_tool() {
   Isometry3 rough = tool;
   rough.translation() += Vector3(3e-3, -2e-3, 4e-3);
-  out.tool_start = rough;
-  return out;
+  return Framed<Chain>(robot.chain, {}, rough);
 }
+
+constexpr Frames both = Frames::base_and_tool;
 
 template <class Model>
 double rms_of_distances(const Model& model, const Distances<6>& data) {
@@ -51,53 +55,16 @@ double rms_of_distances(const Model& model, const Distances<6>& data) {
                    static_cast<double>(data.size()));
 }
 
-TEST(Trilaterate, FindsThePoint) {
-  Rng rng(1);
-  PointRows points(20, 3);
-  for (auto& x : points.reshaped()) x = rng.uniform(-1, 1);
-  const Vector3 from(3, -2, 0.5);
-  const VectorX distances = (points.rowwise() - from.transpose()).rowwise().norm();
-  EXPECT_LT((trilaterate(points, distances) - from).norm(), 1e-12);
-  points.col(2).setZero();  // on a plane: the point's mirror image is as good, so it is put between the two
-  const VectorX flat = (points.rowwise() - from.transpose()).rowwise().norm();
-  EXPECT_LT((trilaterate(points, flat) - Vector3(3, -2, 0)).norm(), 1e-12);
-  EXPECT_NE(complaint([&] { (void)trilaterate(points, VectorX::Ones(3)); }).find("20 points, 3 distances"),
-            std::string::npos);
-}
-
-TEST(Distances, LinearisationEqualsCentralDifferences) {
-  const Framed<Chain> arm(robot.chain, FrameParameters(Vector6{1, -2, 0.4, 0.1, 0.2, -0.5}).isometry(), tool);
-  const auto data = measure_distances(arm, Vector3::Zero(), joints(53, 1), 1e-2, 3);
-  std::vector<Index> free;
-  for (Index k = 0; k < arm.parameters().size(); ++k) free.push_back(k);
-  const VectorX sizes = VectorX::Constant(arm.parameters().size(), 1e-3);
-  const auto at = [&](const auto& model, bool with_jacobian) {
-    detail::Linearisation out;
-    out.evaluate(model, data, false, 1e-4, 1, free, sizes, with_jacobian);
-    return out;
-  };
-  const auto exact = at(arm, true);
-  for (const Index k : free) {
-    auto p = arm.parameters();
-    p(k) += 1e-6;
-    const VectorX up = at(arm.with_parameters(p), false).residuals;
-    p(k) -= 2e-6;
-    const VectorX down = at(arm.with_parameters(p), false).residuals;
-    EXPECT_LT((exact.jacobian.col(k) - (up - down) / 2e-6 * 1e-3).cwiseAbs().maxCoeff(), 1e-6) << k;
-  }
-}
-
 TEST(Distances, AloneIdentifyGeometryExactly) {
   const Actual actual = actual_arm(0, 0);
-  IdentifyOptions options = roughly_known_tool();
-  options.priors = false;
-  const auto found = identify(robot.chain, measure_distances(actual, anchor, joints(300, 1)), options);
+  const auto found =
+      identify(with_rough_tool(), measure_distances(actual, anchor, joints(300, 1)), {.frames = both, .priors = false});
   EXPECT_TRUE(found.converged()) << found.summary();
   EXPECT_LT(rms_of_distances(found.model, measure_distances(actual, anchor, joints(100, 2))), 1e-9);
   EXPECT_GT(found.rms_before, 1e-4);
   EXPECT_LT(found.rms_after, 1e-9);
   // the fixed point lies where it was put, as far as the arm's own zero of joint 1 and foot of axis 1 are known
-  const Vector3 there = found.model.actual().base().inverse() * Vector3::Zero();
+  const Vector3 there = found.model.identified().base().inverse() * Vector3::Zero();
   EXPECT_LT((there - anchor).norm(), 0.02);
   // and which way the sensor looks has no meaning
   for (const Index k : {3, 4, 5})
@@ -107,8 +74,7 @@ TEST(Distances, AloneIdentifyGeometryExactly) {
 TEST(Distances, AloneFindJointErrors) {
   const Actual actual = actual_arm(0.3e-3, 1e-3);
   const std::vector<Distances<6>> wire{measure_distances(actual, anchor, joints(600, 1), 0.02e-3, 2)};
-  const auto found = calibrate(robot.chain, std::span<const Dataset<6>>{}, std::span<const Distances<6>>(wire),
-                               {.geometry = roughly_known_tool(), .errors = {.harmonics = 30}});
+  const auto found = calibrate(with_rough_tool(), no_poses, wire, {.errors = {.harmonics = 30}});
   const auto fresh = measure_distances(actual, anchor, joints(300, 3));
   const double geometry = rms_of_distances(found.errors.geometry[0], fresh);
   const double all = rms_of_distances(found.model(), fresh);
@@ -128,8 +94,8 @@ struct Mixed {
   }
   double error(const std::vector<Distances<6>>& distances, double sigma) const {
     const auto found =
-        calibrate(robot.chain, std::span<const Dataset<6>>(poses), std::span<const Distances<6>>(distances),
-                  {.errors = {.harmonics = 15, .distance_sigma = sigma}});
+        calibrate(robot.chain, poses, distances,
+                  {.errors = {.harmonics = 15}, .sensors = {.distance_sigma = sigma}, .remainder = nothing});
     EXPECT_EQ(found.errors.models.size(), 1 + distances.size());
     return prediction_error(found.model(), measure(actual, joints(300, 7))).mean;
   }
@@ -157,11 +123,10 @@ TEST(Distances, OneInTwentyOffByFiveMillimetres) {
 TEST(Distances, EveryWireFindsItsFixedPoint) {
   const Mixed mixed;
   const auto wires = mixed.wires(0.03e-3);
-  const auto found = calibrate(robot.chain, std::span<const Dataset<6>>(mixed.poses),
-                               std::span<const Distances<6>>(wires), {.errors = {.harmonics = 15}});
+  const auto found = calibrate(robot.chain, mixed.poses, wires, {.errors = {.harmonics = 15}, .remainder = nothing});
   // in the frame of the positions, which is the arm's own here
   const auto fixed_point = [&](std::size_t s) {
-    return Vector3(found.errors.models[0].arm().base() * found.errors.models[s].arm().base().inverse() *
+    return Vector3(found.errors.models[0].identified().base() * found.errors.models[s].identified().base().inverse() *
                    Vector3::Zero());
   };
   EXPECT_LT((fixed_point(1) - anchor).norm(), 0.2e-3);
@@ -183,8 +148,7 @@ TEST(Distances, MisuseThrows) {
   EXPECT_NE(complaint([&] { (void)one.rows(std::array<Index, 1>{1}); }).find("row 1 of 1"), std::string::npos);
   EXPECT_NE(complaint([] { (void)identify(robot.chain, Distances<6>()); }).find("no samples"), std::string::npos);
   const std::vector<Distances<6>> empty(1);
-  EXPECT_THROW((void)calibrate(robot.chain, std::span<const Dataset<6>>{}, std::span<const Distances<6>>(empty)),
-               std::invalid_argument);
+  EXPECT_THROW((void)calibrate(robot.chain, no_poses, empty), std::invalid_argument);
 }
 
 }  // namespace

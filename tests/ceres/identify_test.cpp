@@ -1,9 +1,10 @@
-#include "vernier/ceres/identify.hpp"
+#include "vernier/identification/identify.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "vernier/ceres/solver.hpp"
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/core/literals.hpp"
 #include "vernier/data/csv.hpp"
@@ -101,7 +102,7 @@ TEST(Identify, FixedParametersKeepTheirValuesBitForBit) {
   const auto found =
       identify(nominal, measure(actual, sample(60, 1)), {.frames = Frames::tool, .fixed = {"a2", "theta3", "tool_z"}});
   const auto before = Framed(nominal).parameters();
-  const auto after = found.model.actual().parameters();
+  const auto after = found.model.identified().parameters();
   const auto names = Framed<DhChain<6>>::parameter_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == "tool_z") continue;  // holds its start, which is that of the frames
@@ -110,7 +111,7 @@ TEST(Identify, FixedParametersKeepTheirValuesBitForBit) {
     if (!held) continue;
     EXPECT_EQ(before(static_cast<Index>(k)), after(static_cast<Index>(k))) << names[k];
   }
-  EXPECT_TRUE(found.model.actual().base().matrix() == Isometry3::Identity().matrix());
+  EXPECT_TRUE(found.model.identified().base().matrix() == Isometry3::Identity().matrix());
 }
 
 TEST(Identify, DeviationsAreWhatTheScatterOverSeedsShows) {
@@ -140,7 +141,7 @@ TEST(Identify, RobustLossSurvivesOutliers) {
   const Dataset<6> spoiled(clean.joints(), positions);
   const auto plain = identify(nominal, spoiled, {.frames = Frames::base_and_tool});
   for (const Loss loss : {Loss::huber, Loss::cauchy}) {
-    const auto robust = identify(nominal, spoiled, {.frames = Frames::base_and_tool, .loss = loss});
+    const auto robust = identify(nominal, spoiled, {.frames = Frames::base_and_tool}, {.loss = loss});
     EXPECT_LT(fresh_error(robust.model, actual), 0.035_mm);
     EXPECT_LT(fresh_error(robust.model, actual), 0.2 * fresh_error(plain.model, actual));
   }
@@ -196,7 +197,7 @@ TEST(Identify, SaysWhatCannotBeToldApart) {
 TEST(Identify, MisuseThrowsWithTheValue) {
   const auto data = measure(nominal, sample(10, 1));
   EXPECT_THROW((void)identify(nominal, Dataset<6>()), std::invalid_argument);
-  EXPECT_THROW((void)identify(nominal, data, {.position_sigma = -1}), std::invalid_argument);
+  EXPECT_THROW((void)identify(nominal, data, {}, {.position_sigma = -1}), std::invalid_argument);
   try {
     (void)identify(nominal, data, {.fixed = {"a9"}});
     FAIL();
@@ -210,7 +211,7 @@ TEST(Identify, SameBitsTwice) {
   const auto data = measure(actual, sample(50, 1), {.position = 0.03_mm, .orientation = 0.1_mrad}, 1);
   const auto a = identify(nominal, data, {.frames = Frames::base_and_tool});
   const auto b = identify(nominal, data, {.frames = Frames::base_and_tool});
-  EXPECT_TRUE(a.model.actual().parameters() == b.model.actual().parameters());
+  EXPECT_TRUE(a.model.identified().parameters() == b.model.identified().parameters());
 }
 
 /// Held-out mean of the measured robots, row i held out when i % 5 == 0 [mm].

@@ -112,7 +112,7 @@ TEST(Contract, CompilesAndDoesWhatItSays) {
   EXPECT_TRUE(identified.converged()) << identified.summary();
 
   // The command brings the actual arm to where the nominal one, in the identified frames, would be.
-  const vn::Vector3 wanted = identified.model.reference().position(target);
+  const vn::Vector3 wanted = identified.model.nominal().position(target);
   EXPECT_GT((ActualArm{}.position(target) - wanted).norm(), 0.5e-3);
   EXPECT_LT((ActualArm{}.position(command) - wanted).norm(), 0.15e-3);
 

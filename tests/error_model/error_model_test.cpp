@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 #include <vernier/compensation/compensated.hpp>
-#include <vernier/identification/error_model.hpp>
+#include <vernier/error_model/error_model.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/testing/kinematic_laws.hpp>
 
@@ -27,7 +27,7 @@ static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<6>>>);
 static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<1, vn::ModifiedDh>>>);
 static_assert(vn::KinematicModel<vn::ErrorModel<vn::DhChain<7, vn::ModifiedDh>>>);
 static_assert(!vn::ParametricModel<vn::ErrorModel<vn::DhChain<6>>>);
-static_assert(std::is_same_v<vn::ReferenceOf<vn::ErrorModel<vn::DhChain<6>>>, vn::Framed<vn::DhChain<6>>>);
+static_assert(std::is_same_v<vn::NominalOf<vn::ErrorModel<vn::DhChain<6>>>, vn::Framed<vn::DhChain<6>>>);
 
 /// Two ranges a joint: [-1.5, -0.5] and [0.5, 1.5], margin 0.3.
 template <int N>
@@ -86,17 +86,16 @@ Chain nearby(const Chain& chain, double error, vn::Rng& rng) {
 /// @param error of chain and joints [m, rad]
 template <class Chain>
 vn::ErrorModel<Chain> random_model(const Chain& nominal, double error, vn::Rng& rng) {
-  const auto joint_errors = [&](const vn::JointTerms<Chain>& terms) {
+  const auto joint_errors = [&](const vn::JointTerms& terms) {
     VectorX beta(terms.size());
     for (double& x : beta) x = error * rng.normal();
-    return vn::JointErrors<Chain>(terms, beta);
+    return vn::JointErrors(terms, beta);
   };
-  vn::JointTerms<Chain> few;
+  vn::JointTerms few(Chain::dof);
   few.gear_ratio = few.coupling = true;
   few.gravity.emplace(nominal);
-  vn::JointTerms<Chain> all = few;
-  all.transmission.fill(vn::Fourier{3});
-  all.transmission[0] = vn::JointNodes::spread(6, -1.5, 1.5);
+  vn::JointTerms all = few;
+  all.transmission.assign(Chain::dof, vn::Fourier{3});
   using Arm = typename vn::ErrorModel<Chain>::Arm;
   const vn::FrameParameters base = random_frame(rng), tool = random_frame(rng);
   const auto moved = [&](const vn::FrameParameters& frame) {
@@ -118,9 +117,9 @@ TEST(ErrorModel, IsItsArmWhereMeasured) {
   for (int i = 0; i < 50; ++i) {
     const auto q = joints_in<6>(Zone::inside, rng);
     EXPECT_EQ(model.gate(q), 1);
-    EXPECT_EQ(model.pose(q).matrix(), model.arm().pose(q).matrix());
-    EXPECT_EQ(model.position(q), model.arm().position(q));
-    EXPECT_EQ(model.jacobian(q), model.arm().jacobian(q));
+    EXPECT_EQ(model.pose(q).matrix(), model.identified().pose(q).matrix());
+    EXPECT_EQ(model.position(q), model.identified().position(q));
+    EXPECT_EQ(model.jacobian(q), model.identified().jacobian(q));
     EXPECT_GT((model.position(q) - model.fallback()->position(q)).norm(), 1e-3);
   }
 }
@@ -146,7 +145,7 @@ TEST(ErrorModel, GoesStraightFromOneToTheOtherBetween) {
     EXPECT_EQ(gate, (*model.coverage())(q));
     ASSERT_GT(gate, 0);
     ASSERT_LT(gate, 1);
-    const vn::Isometry3 pose = model.pose(q), near = model.arm().pose(q), far = model.fallback()->pose(q);
+    const vn::Isometry3 pose = model.pose(q), near = model.identified().pose(q), far = model.fallback()->pose(q);
     EXPECT_LE((pose.translation() - gate * near.translation() - (1 - gate) * far.translation()).norm(), 1e-14);
     // about the axis that turns one into the other, by the gate's share of the angle
     const vn::Vector3 whole = vn::log_so3(near.linear() * far.linear().transpose());
@@ -195,7 +194,7 @@ TEST(ErrorModel, IsSmoothAtTheBorders) {
 
 TEST(ErrorModel, WithoutCoverageHoldsEverywhere) {
   vn::Rng rng(5);
-  const auto arm = random_model(nominal, 0.05, rng).arm();
+  const auto arm = random_model(nominal, 0.05, rng).identified();
   const vn::ErrorModel<vn::DhChain<6>> model(nominal, arm);
   EXPECT_EQ(model.fallback(), nullptr);
   EXPECT_EQ(model.coverage(), nullptr);
@@ -212,12 +211,12 @@ TEST(ErrorModel, KnowsTheNominalArmInItsFrames) {
   vn::Rng rng(6);
   const auto model = random_model(nominal, 0.05, rng);
   const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
-  EXPECT_EQ(model.reference().model(), nominal);
-  EXPECT_EQ(model.reference().base().matrix(), model.arm().base().matrix());
-  EXPECT_EQ(model.reference().tool().matrix(), model.arm().tool().matrix());
-  EXPECT_EQ(&vn::reference_of(model), &model.reference());
-  const vn::Isometry3 by_hand = model.arm().base() * nominal.pose(q) * model.arm().tool();
-  EXPECT_LE((model.reference().pose(q).matrix() - by_hand.matrix()).norm(), 1e-14);
+  EXPECT_EQ(model.nominal().model(), nominal);
+  EXPECT_EQ(model.nominal().base().matrix(), model.identified().base().matrix());
+  EXPECT_EQ(model.nominal().tool().matrix(), model.identified().tool().matrix());
+  EXPECT_EQ(&vn::nominal_of(model), &model.nominal());
+  const vn::Isometry3 by_hand = model.identified().base() * nominal.pose(q) * model.identified().tool();
+  EXPECT_LE((model.nominal().pose(q).matrix() - by_hand.matrix()).norm(), 1e-14);
 }
 
 TEST(ErrorModel, CorrectsToItsReference) {
@@ -229,11 +228,11 @@ TEST(ErrorModel, CorrectsToItsReference) {
       vn::JointVector<6> q;
       do {  // clear of singularities, where a real arm need not reach where the nominal one does
         q = joints_in<6>(zone, rng);
-      } while (model.reference().jacobian(q).jacobiSvd().singularValues()(5) < 0.05);
+      } while (model.nominal().jacobian(q).jacobiSvd().singularValues()(5) < 0.05);
       const auto correction = compensated.correct(q);
       ASSERT_EQ(correction.status, vn::IkStatus::converged);
       EXPECT_EQ(correction.gate, model.gate(correction.command));
-      const vn::Isometry3 wanted = model.reference().pose(q), reached = model.pose(correction.command);
+      const vn::Isometry3 wanted = model.nominal().pose(q), reached = model.pose(correction.command);
       EXPECT_LE((reached.translation() - wanted.translation()).norm(), 1e-8);
       EXPECT_LE(vn::log_so3(reached.linear() * wanted.linear().transpose()).norm(), 1e-8);
       EXPECT_GT((model.position(q) - wanted.translation()).norm(), 1e-4);  // there was something to correct

@@ -74,7 +74,7 @@ TEST(InOneFrame, EmptyStationsAddNothing) {
 }
 
 TEST(InOneFrame, MisuseThrows) {
-  EXPECT_NE(complaint([] { in_one_frame<6>({}, {}); }).find("no stations"), std::string::npos);
+  EXPECT_NE(complaint([] { in_one_frame<6>(std::vector<Data>{}, {}); }).find("no stations"), std::string::npos);
   const std::vector<Data> stations{seen_from(0, 5, 1), seen_from(1, 6, 2)};
   EXPECT_NE(complaint([&] { in_one_frame<6>(stations, bases); }).find("3 bases for 2 stations"), std::string::npos);
   EXPECT_NE(complaint([&] { in_one_frame<6>(stations, {}); }).find("0 bases for 2 stations"), std::string::npos);

@@ -7,6 +7,7 @@
 
 #include "replaced.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/core/rng.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -220,13 +221,12 @@ CalibratedRobot<6> model() {
   const auto robot = robots::abb_irb120();
   const JointRows<6> joints = sample_joints(robot.limits, 30, 5);
   using Model = CalibratedRobot<6>::Model;
-  JointTerms<DhChain<6>> terms;
+  JointTerms terms(6);
   terms.gear_ratio = true;
   terms.gravity.emplace(robot.chain);
   terms.transmission[0] = terms.transmission[2] = Fourier{2};
-  terms.transmission[4] = JointNodes::spread(3, -1, 1);
-  const Model::Arm arm({with_geometric_errors(robot.chain, {}, 3),
-                        JointErrors<DhChain<6>>(terms, VectorX::Constant(terms.size(), 1e-4))});
+  const Model::Arm arm(
+      {with_geometric_errors(robot.chain, {}, 3), JointErrors(terms, VectorX::Constant(terms.size(), 1e-4))});
   const CalibratedRobot<6> plain("an arm",
                                  Model(robot.chain, arm, Model::Arm(robot.chain), JointCoverage<6>::covering(joints)),
                                  robot.limits, {"poses.csv", 30, "2024-05-01", "commanded"});
@@ -238,8 +238,8 @@ CalibratedRobot<6> model() {
 
 TEST(BadInput, ModelFiles) {
   Reader reader("model.json", [](const auto& path) {
-    if (calibrated_robot_dof(path) != 6) throw DataError(path.string() + ": joints: not 6");
-    (void)load_calibrated_robot<6>(path);
+    if (saved_arm(path).dof != 6) throw DataError(path.string() + ": joints: not 6");
+    (void)load<6>(path);
   });
   const Json valid = to_json(model());
   expect_refused_when_damaged(reader, valid, {"written_by"}, {"name", "data_file", "date"},
@@ -250,7 +250,8 @@ TEST(BadInput, ModelFiles) {
     return damaged.dump();
   };
   reader.expect_refused(with("/schema_version", 1), "an old version");
-  reader.expect_refused(with("/schema_version", 3), "a new version");
+  reader.expect_refused(with("/schema_version", 4), "a new version");
+  reader.expect_refused(with("/convention", "modified"), "a chain of the other convention");
   reader.expect_refused(with("/provenance/rows", -1), "fewer than no rows");
   reader.expect_refused(with("/provenance/rows", 1.5), "half a row");
   reader.expect_refused(with("/learned/hidden_nodes", 0), "no nodes");
@@ -282,11 +283,9 @@ TEST(BadInput, MissingFilesAndFolders) {
   const auto missing = folder / "missing";
   EXPECT_EQ(complaint([&] { (void)read_dataset<6>(missing); }), missing.string() + ": No such file or directory");
   EXPECT_EQ(complaint([&] { (void)load_robot(missing); }), missing.string() + ": No such file or directory");
-  EXPECT_EQ(complaint([&] { (void)load_calibrated_robot<6>(missing); }),
-            missing.string() + ": No such file or directory");
+  EXPECT_EQ(complaint([&] { (void)load<6>(missing); }), missing.string() + ": No such file or directory");
   EXPECT_EQ(complaint([&] { (void)load_robot(folder.path()); }), folder.path().string() + ": is a folder, not a file");
-  EXPECT_EQ(complaint([&] { (void)load_calibrated_robot<6>(folder.path()); }),
-            folder.path().string() + ": is a folder, not a file");
+  EXPECT_EQ(complaint([&] { (void)load<6>(folder.path()); }), folder.path().string() + ": is a folder, not a file");
 }
 
 }  // namespace

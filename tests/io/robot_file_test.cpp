@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "temporary_folder.hpp"
+#include "vernier/core/atomic_file.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 
 namespace vernier::robot_file_test {
@@ -38,11 +41,12 @@ const std::string irb120 = R"({"name": "my irb120", "convention": "standard", "j
 TEST_F(RobotFile, ATableInAFileEqualsTheCatalogue) {
   const RobotDescription robot = load(irb120);
   ASSERT_EQ(robot.dof(), 6);
-  const NominalArm<6> arm = robot.arm<6>();
-  EXPECT_EQ(arm.name, "my irb120");
-  EXPECT_TRUE(arm.chain == robots::abb_irb120().chain);  // bit for bit: units are converted as the literals do
-  EXPECT_NEAR(arm.limits.upper(2), 70 * 3.14159265358979 / 180, 1e-12);
-  EXPECT_EQ(arm.limits.upper(5), std::numeric_limits<double>::infinity());
+  const DescribedRobot<6> described = robot.arm<6>();
+  EXPECT_EQ(described.name, "my irb120");
+  EXPECT_TRUE(described.arm.model() ==
+              robots::abb_irb120().chain);  // bit for bit: units are converted as the literals do
+  EXPECT_NEAR(described.limits.upper(2), 70 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_EQ(described.limits.upper(5), std::numeric_limits<double>::infinity());
   EXPECT_THROW(robot.arm<7>(), std::invalid_argument);
 }
 
@@ -53,29 +57,28 @@ TEST_F(RobotFile, TheModifiedConventionGivesTheSamePoses) {
     {"type": "prismatic", "a_mm": 431.8, "alpha_deg": 0, "d_mm": 150.05, "theta_deg": 0, "beta_deg": -2, "lower_mm": -100, "upper_mm": 300},
     {"a_mm": 20.3, "alpha_deg": -90, "d_mm": 431.8, "theta_deg": 0}]})");
   EXPECT_TRUE(robot.modified);
-  const NominalArm<4> arm = robot.arm<4>();
+  const DescribedRobot<4> described = robot.arm<4>();
   std::array<DhRow, 4> rows{};
   std::copy(robot.rows.begin(), robot.rows.end(), rows.begin());
   const auto modified = DhChain<4, ModifiedDh>::from_rows(rows);
-  EXPECT_EQ(arm.limits.lower(2), -0.1);
-  const Framed<DhChain<4>> standard(arm.chain, arm.base);
+  EXPECT_EQ(described.limits.lower(2), -0.1);
   Rng rng(1);
   for (int k = 0; k < 50; ++k) {
     JointVector<4> q;
     for (auto& value : q) value = rng.uniform(-3, 3);
-    EXPECT_LT((standard.pose(q).matrix() - modified.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14 * 10);
+    EXPECT_LT((described.arm.pose(q).matrix() - modified.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14 * 10);
   }
 }
 
 TEST_F(RobotFile, TheCatalogueSurvivesTheDescription) {
-  const auto arm = RobotDescription::of(robots::puma560_modified()).arm<6>();
+  const Framed<DhChain<6>> arm = RobotDescription::of(robots::puma560_modified()).arm<6>().arm;
   const auto standard = robots::puma560();
   const JointRows<6> samples = sample_joints(standard.limits, 50, 4);
   for (Index i = 0; i < samples.rows(); ++i) {
     const JointVector<6> q = samples.row(i).transpose();
-    EXPECT_LT((arm.base * arm.chain.pose(q).matrix() - standard.chain.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT((arm.pose(q).matrix() - standard.chain.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14);
   }
-  EXPECT_TRUE(RobotDescription::of(robots::barrett_wam()).arm<7>().chain == robots::barrett_wam().chain);
+  EXPECT_TRUE(RobotDescription::of(robots::barrett_wam()).arm<7>().arm.model() == robots::barrett_wam().chain);
 }
 
 TEST_F(RobotFile, ComplaintsNameFileAndKey) {

@@ -77,16 +77,16 @@ TEST(KinematicModel, PosesAndPositionsOfRowsAreThoseOfEachRow) {
   EXPECT_EQ(vn::positions(arm, vn::JointRows<7>(0, 7)).rows(), 0);
 }
 
-struct KnowsItsReference : Turntable {
-  vn::DhChain<1> reference() const { return vn::DhChain<1>::from_rows({vn::DhRow{.a = 2}}); }
+struct KnowsItsNominal : Turntable {
+  vn::DhChain<1> nominal() const { return vn::DhChain<1>::from_rows({vn::DhRow{.a = 2}}); }
 };
 
-TEST(KinematicModel, ReferenceIsItsOwnOrTheModelItself) {
-  static_assert(std::is_same_v<vn::ReferenceOf<Turntable>, Turntable>);
-  static_assert(std::is_same_v<vn::ReferenceOf<KnowsItsReference>, vn::DhChain<1>>);
+TEST(KinematicModel, NominalIsItsOwnOrTheModelItself) {
+  static_assert(std::is_same_v<vn::NominalOf<Turntable>, Turntable>);
+  static_assert(std::is_same_v<vn::NominalOf<KnowsItsNominal>, vn::DhChain<1>>);
   const Turntable table;
-  EXPECT_EQ(&vn::reference_of(table), &table);
-  EXPECT_EQ(vn::reference_of(KnowsItsReference{}).row(0).a, 2);
+  EXPECT_EQ(&vn::nominal_of(table), &table);
+  EXPECT_EQ(vn::nominal_of(KnowsItsNominal{}).row(0).a, 2);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A fitted arm that was moved, re-mounted or drifts.
 
-#include "vernier/identification/reregister.hpp"
+#include "vernier/registration/reregister.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 
 #include "complaint.hpp"
-#include "vernier/identification/online_update.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 
@@ -27,6 +27,7 @@ const Robot<6> robot = robots::abb_irb120();
 Isometry3 frame(const Vector6& values) { return FrameParameters(values).isometry(); }
 Vector6 values(const Isometry3& frame) { return FrameParameters(frame).values(); }
 
+const SensorModel sensors{};
 const Isometry3 still = Isometry3::Identity();
 const Isometry3 elsewhere = frame(Vector6{2, -3, 1.5, 1.2, -1.2, 1.06});  // turned by 2 rad
 const Isometry3 other_tool = frame(Vector6{0.03, -0.02, 0.05, 0.3, -0.2, 0.25});
@@ -76,15 +77,15 @@ Model changed(const Model& model, const VectorX& by) {
 /// Zeros of a model's joints.
 Joints zeros(const Model& model) {
   Joints out;
-  for (int i = 0; i < 6; ++i) out(i) = model.arm().model().chain().row(i).theta;
+  for (int i = 0; i < 6; ++i) out(i) = model.identified().model().chain().row(i).theta;
   return out;
 }
 
 /// What takes one model to the other: base twist, zeros, tool twist.
 VectorX change(const Model& from, const Model& to) {
   VectorX out(18);
-  out << values(to.arm().base() * from.arm().base().inverse()), zeros(to) - zeros(from),
-      values(from.arm().tool().inverse() * to.arm().tool());
+  out << values(to.identified().base() * from.identified().base().inverse()), zeros(to) - zeros(from),
+      values(from.identified().tool().inverse() * to.identified().tool());
   return out;
 }
 
@@ -123,7 +124,7 @@ TEST(Reregister, FindsABaseFromSixPositions) {
   expect_found(reregister(model, measure(truth, samples(6, 4), {.with_orientations = false})), truth);
   // orientations that are not to be used may be anything
   const auto wrong = measure(truth, samples(6, 4), {.orientation = 1}, 5);
-  expect_found(reregister(model, wrong, {.use_orientations = false}), truth);
+  expect_found(reregister(model, wrong, {}, {.use_orientations = false}), truth);
   EXPECT_GT(reregister(model, wrong).rms_after, 1e-3);
 }
 
@@ -165,7 +166,7 @@ TEST(Reregister, FindsZerosInNoise) {
 TEST(Reregister, FewPosesLeaveZerosToTheirPrior) {
   const Model model = fitted();
   const auto data = measure(model.moved(still, Joints::Constant(0.1e-3), still), samples(1, 11));
-  const auto found = reregister(model, data, {.base = false, .offsets = true, .use_orientations = false});
+  const auto found = reregister(model, data, {.base = false, .offsets = true}, {.use_orientations = false});
   EXPECT_TRUE(found.determined);  // three values for six zeros
   EXPECT_GT(found.change_std.maxCoeff(), 0.5e-3);
   EXPECT_LE(found.change_std.maxCoeff(), 1e-3 * (1 + 1e-9));
@@ -173,17 +174,17 @@ TEST(Reregister, FewPosesLeaveZerosToTheirPrior) {
 
 TEST(Reregister, PriorsPullZerosAsMuchAsPosesDo) {
   const Model model = rigid();
-  const ReregisterOptions options{.base = false, .offsets = true, .offset_size = 0.1e-3};
+  const ReregisterOptions options{.base = false, .offsets = true, .offset_prior_std = 0.1e-3};
   const auto data = measure(model.moved(still, Joints::Constant(0.5e-3), still), samples(2, 26),
                             {.position = 0.1e-3, .with_orientations = false}, 27);
   const auto found = reregister(model, data, options);
   ASSERT_TRUE(found.converged);
-  const Joints pull = (zeros(found.model) - zeros(model)) / (options.offset_size * options.offset_size);
+  const Joints pull = (zeros(found.model) - zeros(model)) / (options.offset_prior_std * options.offset_prior_std);
   Joints push = Joints::Zero();
   for (Index i = 0; i < 2; ++i)
     push += effect_of_changes(found.model, data.joints(i)).block<3, 6>(0, 6).transpose() *
             (data.position(i) - found.model.position(data.joints(i))) /
-            (options.position_sigma * options.position_sigma);
+            (sensors.position_sigma * sensors.position_sigma);
   EXPECT_GT(pull.norm(), 1e3);
   EXPECT_LT((push - pull).norm(), 1e-6 * pull.norm());
 }
@@ -231,27 +232,27 @@ TEST(Reregister, KeepsTheBitsOfWhatMayNotMove) {
   for (int mask = 1; mask < 8; ++mask) {
     const ReregisterOptions options{.base = (mask & 1) != 0, .tool = (mask & 2) != 0, .offsets = (mask & 4) != 0};
     const Model found = reregister(model, data, options).model;
-    expect_kept(model.arm(), found.arm(), options);
+    expect_kept(model.identified(), found.identified(), options);
     expect_kept(*model.fallback(), *found.fallback(), options);
-    EXPECT_EQ(found.nominal(), model.nominal());
+    EXPECT_EQ(found.nominal().model(), model.nominal().model());
     EXPECT_EQ(found.coverage()->ranges, model.coverage()->ranges);
     EXPECT_EQ(found.coverage()->margin, model.coverage()->margin);
     // the nominal arm stands where the actual one does
-    EXPECT_EQ(found.reference().base().matrix(), found.arm().base().matrix());
-    EXPECT_EQ(found.reference().tool().matrix(), found.arm().tool().matrix());
+    EXPECT_EQ(found.nominal().base().matrix(), found.identified().base().matrix());
+    EXPECT_EQ(found.nominal().tool().matrix(), found.identified().tool().matrix());
   }
 }
 
 TEST(Reregister, DeviationsAreThoseOfTheScatter) {
   const Model model = fitted();
   const ReregisterOptions options{.tool = true, .offsets = true};
-  const MeasurementNoise noise{.position = options.position_sigma, .orientation = options.orientation_sigma};
+  const MeasurementNoise noise{.position = sensors.position_sigma, .orientation = sensors.orientation_sigma};
   VectorX squares = VectorX::Zero(18), std;
   constexpr int seeds = 60;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     // zeros come from their prior: it resolves joint 1 against the base and joint 6 against the tool
     Rng rng(100 + seed);
-    const Model truth = model.moved(elsewhere, random_zeros(rng, options.offset_size), other_tool);
+    const Model truth = model.moved(elsewhere, random_zeros(rng, options.offset_prior_std), other_tool);
     const auto found = reregister(model, measure(truth, samples(20, 17), noise, seed), options);
     ASSERT_TRUE(found.determined && found.converged);
     squares += change(truth, found.model).cwiseAbs2();
@@ -267,23 +268,27 @@ TEST(Reregister, DeviationsAreThoseOfTheScatter) {
 TEST(Reregister, MisuseThrows) {
   const Model model = rigid();
   const auto data = measure(model, samples(3, 18));
-  const auto with = [&](const ReregisterOptions& o) { return complaint([&] { reregister(model, data, o); }); };
+  const auto with = [&](const ReregisterOptions& o, const SensorModel& s = {}) {
+    return complaint([&] { reregister(model, data, o, s); });
+  };
   EXPECT_TRUE(mentions(complaint([&] { reregister(model, Dataset<6>()); }), "no samples"));
-  EXPECT_TRUE(mentions(with({.base = false}), "nothing may move"));
-  EXPECT_TRUE(mentions(with({.position_sigma = -0.25}), "position_sigma -0.25"));
-  EXPECT_TRUE(mentions(with({.orientation_sigma = 0}), "orientation_sigma 0"));
-  EXPECT_TRUE(mentions(with({.offset_size = -2}), "offset_size -2"));
-  EXPECT_TRUE(mentions(with({.position_sigma = std::numeric_limits<double>::quiet_NaN()}), "position_sigma nan"));
+  EXPECT_TRUE(mentions(with({.base = false}), "nothing is to be estimated"));
+  EXPECT_TRUE(mentions(with({}, {.position_sigma = -0.25}), "position_sigma is -0.25"));
+  EXPECT_TRUE(mentions(with({}, {.orientation_sigma = 0}), "orientation_sigma is 0"));
+  EXPECT_TRUE(mentions(with({.offset_prior_std = -2}), "offset_prior_std -2"));
+  EXPECT_TRUE(
+      mentions(with({}, {.position_sigma = std::numeric_limits<double>::quiet_NaN()}), "position_sigma is nan"));
 }
 
-TEST(Adjustment, EffectsAreCentralDifferences) {
-  const detail::Adjustment<6> all{true, true, true};
+TEST(FrameUpdateWhiteBox, ColumnsAreCentralDifferences) {
+  const detail::FrameUpdate all{true, true, true, 6};
+  const auto columns = [&](const PoseAndJacobian<6>& at) { return all.columns(at.pose, at.jacobian.data()); };
   const JointRows<6> joints = samples(20, 19);
   const Model exact = rigid(), model = fitted();
   for (Index i = 0; i < 20; ++i) {
     const Joints q = joints.row(i).transpose();
-    EXPECT_LT((all.effect(exact.pose_and_jacobian(q)) - effect_of_changes(exact, q)).norm(), 1e-8);
-    const MatrixX apart = all.effect(model.pose_and_jacobian(q)) - effect_of_changes(model, q);
+    EXPECT_LT((columns(exact.pose_and_jacobian(q)) - effect_of_changes(exact, q)).norm(), 1e-8);
+    const MatrixX apart = columns(model.pose_and_jacobian(q)) - effect_of_changes(model, q);
     EXPECT_LT(apart.leftCols(6).norm(), 1e-8);
     EXPECT_LT(apart.rightCols(6).norm(), 1e-6);  // between arm and fallback, but for their difference
     // a zero comes after the joint errors, a joint before: their slopes lie between
@@ -291,13 +296,13 @@ TEST(Adjustment, EffectsAreCentralDifferences) {
   }
 }
 
-TEST(OnlineUpdate, FollowsADriftingBase) {
+TEST(RecursiveCalibration, FollowsADriftingBase) {
   // Forgetting f weighs a pose that is k old by f^k: their mean age is f / (1 - f) = 19 poses, so a base that drifts by
   // 1 um a pose is believed to stand 19 um behind. Poses differ in what they tell, so ages differ by direction: by
   // less than a third.
   constexpr double drift = 1e-6, forgetting = 0.95, lag = drift * forgetting / (1 - forgetting);
   const Model model = fitted();
-  OnlineUpdate<Chain> poses(model, {}, forgetting), positions(model, {}, forgetting);
+  RecursiveCalibration<Chain> poses(model, {}, {}, forgetting), positions(model, {}, {}, forgetting);
   const JointRows<6> joints = samples(400, 20);
   double mean = 0, worst_pose = 0, worst_position = 0;
   for (Index i = 0; i < 400; ++i) {
@@ -318,20 +323,17 @@ TEST(OnlineUpdate, FollowsADriftingBase) {
   EXPECT_LT(worst_position, 1.3 * lag);
 }
 
-TEST(OnlineUpdate, WithoutForgettingIsLeastSquares) {
+TEST(RecursiveCalibration, WithoutForgettingIsLeastSquares) {
   // changes so small that the arm is linear in them, sensors as good
   constexpr double size = 2e-8;
-  const ReregisterOptions options{.tool = true,
-                                  .offsets = true,
-                                  .position_sigma = 0.1 * size,
-                                  .orientation_sigma = 0.3 * size,
-                                  .offset_size = size};
+  const ReregisterOptions options{.tool = true, .offsets = true, .offset_prior_std = size};
+  const SensorModel precise{.position_sigma = 0.1 * size, .orientation_sigma = 0.3 * size};
   const Model model = rigid();
   Rng rng(21);
   VectorX injected(18);
   for (double& x : injected) x = size * rng.normal();
   const Model truth = changed(model, injected);
-  const MeasurementNoise noise{.position = options.position_sigma, .orientation = options.orientation_sigma};
+  const MeasurementNoise noise{.position = precise.position_sigma, .orientation = precise.orientation_sigma};
   const auto data = measure(truth, samples(30, 22), noise, 23);
 
   VectorX precisions(18);
@@ -340,9 +342,9 @@ TEST(OnlineUpdate, WithoutForgettingIsLeastSquares) {
   precisions = precisions.cwiseAbs2().cwiseInverse().eval();
   MatrixX information = precisions.asDiagonal();
   VectorX gradient = VectorX::Zero(18);
-  OnlineUpdate<Chain> online(model, options, 1, {4 * size, 2 * size});
+  RecursiveCalibration<Chain> online(model, options, precise, 1, {4 * size, 2 * size});
   Vector6 weights;
-  weights << Vector3::Constant(1 / options.position_sigma), Vector3::Constant(1 / options.orientation_sigma);
+  weights << Vector3::Constant(1 / precise.position_sigma), Vector3::Constant(1 / precise.orientation_sigma);
   for (Index i = 0; i < data.size(); ++i) {
     const bool oriented = i % 3 != 0;  // both kinds of update
     const Index rows = oriented ? 6 : 3;
@@ -363,10 +365,10 @@ TEST(OnlineUpdate, WithoutForgettingIsLeastSquares) {
   EXPECT_LT((online.covariance() - covariance).norm(), 1e-6 * covariance.norm());
 }
 
-TEST(OnlineUpdate, ForgetsNoMoreThanItKnewAtTheStart) {
+TEST(RecursiveCalibration, ForgetsNoMoreThanItKnewAtTheStart) {
   const Model model = fitted();
   const Joints q = samples(1, 24).row(0).transpose();
-  OnlineUpdate<Chain> online(model, {.tool = true, .offsets = true}, 0.98);
+  RecursiveCalibration<Chain> online(model, {.tool = true, .offsets = true}, {}, 0.98);
   const VectorX start = online.covariance().diagonal();
   const Vector3 position = model.position(q);
   Rng rng(25);
@@ -384,9 +386,9 @@ TEST(OnlineUpdate, ForgetsNoMoreThanItKnewAtTheStart) {
   EXPECT_GT((online.covariance().diagonal().array() / start.array()).maxCoeff(), 0.5);
 }
 
-TEST(OnlineUpdate, DoesNotWanderWhereNothingIsExcited) {
+TEST(RecursiveCalibration, DoesNotWanderWhereNothingIsExcited) {
   const Model model = rigid();
-  OnlineUpdate<Chain> online(model, {.base = true, .tool = true, .offsets = true}, 0.98);
+  RecursiveCalibration<Chain> online(model, {.base = true, .tool = true, .offsets = true}, {}, 0.98);
   const JointRows<6> q = samples(50, 3);
   Rng rng(4);
   for (int i = 0; i < 2000; ++i) {  // an arm that stands still, seen with noise
@@ -417,18 +419,17 @@ TEST(Reregister, FindsAToolTurnedByAnyAngle) {
     }
 }
 
-TEST(OnlineUpdate, MisuseThrows) {
+TEST(RecursiveCalibration, MisuseThrows) {
   const Model model = rigid();
   const auto with = [&](const ReregisterOptions& o, double forgetting, std::array<double, 2> sizes) {
-    return complaint([&] { OnlineUpdate<Chain>(model, o, forgetting, sizes); });
+    return complaint([&] { RecursiveCalibration<Chain>(model, o, {}, forgetting, sizes); });
   };
   EXPECT_TRUE(mentions(with({}, 0, {1, 1}), "forgetting is 0,"));
   EXPECT_TRUE(mentions(with({}, 1.5, {1, 1}), "forgetting is 1.5"));
   EXPECT_TRUE(mentions(with({}, std::numeric_limits<double>::quiet_NaN(), {1, 1}), "forgetting is nan"));
-  EXPECT_TRUE(mentions(with({}, 1, {0, 1}), "sizes"));
-  EXPECT_TRUE(mentions(with({}, 1, {1, -1}), "sizes"));
-  EXPECT_TRUE(mentions(with({.base = false}, 1, {1, 1}), "nothing may move"));
-  EXPECT_TRUE(mentions(with({.position_sigma = -0.25}, 1, {1, 1}), "position_sigma -0.25"));
+  EXPECT_TRUE(mentions(with({}, 1, {0, 1}), "initial standard deviations"));
+  EXPECT_TRUE(mentions(with({}, 1, {1, -1}), "initial standard deviations"));
+  EXPECT_TRUE(mentions(with({.base = false}, 1, {1, 1}), "nothing is to be estimated"));
   EXPECT_EQ(with({}, 1, {1, 1}), "");
 }
 

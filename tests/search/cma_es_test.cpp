@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "complaint.hpp"
 #include "vernier/search/minimize.hpp"
 

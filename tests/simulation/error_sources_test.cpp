@@ -27,7 +27,7 @@ const Chain nominal = robots::abb_irb120().chain;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The coefficient of a name.
-double coefficient(const JointErrors<Chain>& errors, const std::string& name) {
+double coefficient(const JointErrors& errors, const std::string& name) {
   const auto names = errors.terms().names();
   const auto at = std::find(names.begin(), names.end(), name);
   EXPECT_NE(at, names.end()) << name;
@@ -127,8 +127,8 @@ TEST(DrawJointErrors, MoreHarmonicsKeepTheFormer) {
 TEST(DrawJointErrors, PrismaticJointsHaveNoHarmonics) {
   const DhChain<2> arm({{.a = 0.3}, {.alpha = 1, .joint = JointType::prismatic}});
   const auto errors = draw_joint_errors(arm, {.ripple = 1e-5});
-  EXPECT_EQ(size_of(errors.terms().transmission[0]), 200);
-  EXPECT_EQ(size_of(errors.terms().transmission[1]), 0);
+  EXPECT_EQ(errors.terms().transmission[0].size(), 200);
+  EXPECT_EQ(errors.terms().transmission[1].size(), 0);
   EXPECT_EQ(errors.coefficients().size(), 2 + 1 + 3 + 200);
 }
 

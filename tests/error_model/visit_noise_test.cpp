@@ -1,0 +1,67 @@
+// The noise of a visit, from errors of poses left out.
+
+#include "vernier/error_model/detail/visit_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vernier/core/rng.hpp"
+
+namespace vernier::visit_noise_test {
+namespace {
+
+template <class M>
+void fill(Rng& rng, M&& m, double size = 1) {
+  for (Index j = 0; j < m.cols(); ++j)
+    for (Index i = 0; i < m.rows(); ++i) m(i, j) = size * rng.normal();
+}
+
+VectorX random_vector(Rng& rng, Index n, double size = 1) {
+  VectorX out(n);
+  fill(rng, out, size);
+  return out;
+}
+
+/// Visits whose joints and position are off by normal errors.
+std::vector<detail::LeftOutVisit> visits(double position, double joint, double model, std::uint64_t seed) {
+  Rng rng(seed);
+  std::vector<detail::LeftOutVisit> out;
+  for (int i = 0; i < 2000; ++i) {
+    Eigen::Matrix<double, 3, 6> jacobian;
+    fill(rng, jacobian, 0.4);
+    Matrix3 root;
+    fill(rng, root, model);
+    out.push_back(
+        {jacobian * random_vector(rng, 6, joint) + root * random_vector(rng, 3) + random_vector(rng, 3, position),
+         root * root.transpose(), jacobian * jacobian.transpose()});
+  }
+  return out;
+}
+
+TEST(VisitNoiseWhiteBox, TellsSpaceFromJoints) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const detail::VisitNoise noise = detail::visit_noise(visits(30e-6, 40e-6, 15e-6, seed));
+    EXPECT_NEAR(noise.position, 30e-6, 3e-6) << seed;
+    EXPECT_NEAR(noise.joint, 40e-6, 4e-6) << seed;
+  }
+}
+
+TEST(VisitNoiseWhiteBox, FindsOneAlone) {
+  const detail::VisitNoise space = detail::visit_noise(visits(30e-6, 0, 0, 4));
+  EXPECT_NEAR(space.position, 30e-6, 3e-6);
+  EXPECT_LT(space.joint, 10e-6);  // in space: below 10 um of 30
+  const detail::VisitNoise joints = detail::visit_noise(visits(0, 40e-6, 0, 5));
+  EXPECT_LT(joints.position, 4e-6);
+  EXPECT_NEAR(joints.joint, 40e-6, 4e-6);
+}
+
+TEST(VisitNoiseWhiteBox, NoneInNothing) {
+  const detail::LeftOutVisit exact{Vector3::Zero(), Matrix3::Zero(), Matrix3::Identity()};
+  for (const std::size_t n : {0, 2}) {
+    const detail::VisitNoise none = detail::visit_noise(std::vector<detail::LeftOutVisit>(n, exact));
+    EXPECT_EQ(none.position, 0);
+    EXPECT_EQ(none.joint, 0);
+  }
+}
+
+}  // namespace
+}  // namespace vernier::visit_noise_test

@@ -1,0 +1,231 @@
+// The rows of a calibration problem: residuals, their derivatives, and joint readings that are not exact.
+
+#include "vernier/identification/detail/calibration_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "random_blocks.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+// SuiteSparse where the build has it, else Eigen's own
+#if __has_include(<cholmod.h>)
+#include <Eigen/CholmodSupport>
+namespace {
+using SparseSolver = Eigen::CholmodDecomposition<Eigen::SparseMatrix<double>, Eigen::Lower>;
+}
+#else
+#include <Eigen/SparseCholesky>
+namespace {
+using SparseSolver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>;
+}
+#endif
+
+namespace vernier::calibration_problem_test {
+namespace {
+
+using vernier_test::random_vector;
+using Chain = DhChain<6>;
+using Problem = detail::CalibrationProblem;
+
+/// An arm with every kind of joint error, measured from two places of which only the first sees orientations.
+struct Measured {
+  Robot<6> robot = robots::abb_irb120();
+  Dataset<6> first, second;
+
+  explicit Measured(Index poses) {
+    const Chain actual = with_geometric_errors(robot.chain, {}, 12);
+    // orientations are far off: so is the derivative of the logarithm from the identity
+    first = measure(Framed<Chain>(actual, start_base(0), tool), sample_joints(robot.limits, poses, 13),
+                    {.position = 1e-3, .orientation = 0.3}, 14);
+    second = measure(Framed<Chain>(actual, start_base(1), tool), sample_joints(robot.limits, poses / 2, 15),
+                     {.position = 1e-3, .with_orientations = false}, 16);
+  }
+
+  FrameParameters tool{Vector6{0.02, -0.1, 0.15, 0.3, -0.2, 0.5}};
+  static FrameParameters start_base(int station) {
+    return FrameParameters(station == 0 ? Vector6{0.5, -1, 0.2, 0.3, -0.8, 1.5} : Vector6{-2, 0.3, 1, -1.1, 0.2, 0.7});
+  }
+
+  /// Chain, tool and both bases free, and every joint error; away from where it started.
+  /// @param size of the units
+  Problem problem(double joint_sigma, double size) const {
+    std::vector<GeometricUnknown> unknowns;
+    for (int k = 0; k < 6; ++k)
+      for (const int station : {0, 1}) unknowns.push_back({k, station, size, 0.5});
+    for (Index k = 6; k < Framed<Chain>::num_parameters; ++k)
+      unknowns.push_back({k, -1, size * (1 + 0.1 * static_cast<double>(k)), 2});
+    ArmParameterisation arm({ArmGeometry(Framed<Chain>(robot.chain, start_base(0), tool)),
+                             ArmGeometry(Framed<Chain>(robot.chain, start_base(1), tool))},
+                            unknowns);
+    JointTerms terms(6);
+    terms.gear_ratio = terms.coupling = true;
+    terms.gravity.emplace(robot.chain, Vector3(0.6, 0, -0.8));
+    terms.transmission = {Fourier{3}, Fourier{2}, Fourier{0}, Fourier{1}, Fourier{2}, Fourier{12}};
+    Rng rng(17);
+    const VectorX sizes = size * (VectorX::Ones(terms.size()) + random_vector(rng, terms.size()).cwiseAbs());
+    arm.set_terms(terms, sizes, VectorX::Constant(terms.size(), 3));
+    arm.move(random_vector(rng, arm.size(), 1e-3 / size));
+    const SensorModel of_first{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3, .joint_sigma = joint_sigma};
+    const SensorModel of_second{.position_sigma = 0.05e-3, .joint_sigma = joint_sigma};
+    return {
+        std::move(arm), {detail::station_of(first, of_first), detail::station_of(second, of_second)}, Loss::squared};
+  }
+};
+
+Rows6 expanded(const Problem& problem, Index block, RowBlock& rows) {
+  problem(block, 1, &rows);
+  Rows6 out(6, problem.arm.size());
+  rows.expand(problem.arm.group_sizes(), out);
+  return out;
+}
+
+TEST(CalibrationProblemWhiteBox, ResidualIsModelMinusMeasuredInSigmas) {
+  const Measured measured(8);
+  const Problem problem = measured.problem(0, 1e-3);
+  ASSERT_EQ(problem.num_blocks(), 12);
+  EXPECT_EQ(problem.measured_values(), 8 * 6 + 4 * 3);
+  RowBlock rows;
+  for (Index b = 0; b < 12; ++b) {
+    problem(b, 1, &rows);
+    const bool first = b < 8;
+    const Dataset<6>& data = first ? measured.first : measured.second;
+    const Index i = first ? b : b - 8;
+    const Isometry3 pose = problem.arm.poses(first ? 0 : 1, data.joints(i).transpose()).front();
+    const double sigma = first ? 0.03e-3 : 0.05e-3;
+    EXPECT_LT((rows.residual.head<3>() - (pose.translation() - data.position(i)) / sigma).norm(), 1e-9);
+    EXPECT_DOUBLE_EQ(rows.position_sigma, sigma);
+    EXPECT_EQ(rows.unwhiten, Matrix6::Identity());
+    if (first)
+      EXPECT_LT((rows.residual.tail<3>() - pose_difference(pose, data.pose(i)).tail<3>() / 0.1e-3).norm(), 1e-9);
+    else
+      EXPECT_TRUE(rows.residual.tail<3>().isZero(0) && rows.dense.bottomRows<3>().isZero(0) &&
+                  rows.factor.bottomRows<3>().isZero(0));
+  }
+}
+
+TEST(CalibrationProblemWhiteBox, RowsAreCentralDifferences) {
+  const Measured measured(8);
+  const Problem problem = measured.problem(0, 1e-3);
+  const Index size = problem.arm.size();
+  ASSERT_EQ(size, 12 + 36 + 6 + 5 + 21 + 6 + 4 + 0 + 2 + 4 + 24);
+  constexpr double step = 0.03;  // of a size: rounding and curvature both stay below 1e-8
+  std::vector<Rows6> analytic, numeric(12, Rows6(6, size));
+  RowBlock rows;
+  for (Index b = 0; b < 12; ++b) analytic.push_back(expanded(problem, b, rows));
+  for (Index k = 0; k < size; ++k) {
+    Problem above = problem, below = problem;
+    above.arm.move(step * VectorX::Unit(size, k));
+    below.arm.move(-step * VectorX::Unit(size, k));
+    for (std::size_t b = 0; b < 12; ++b) {
+      above(static_cast<Index>(b), 1, &rows);
+      const Vector6 high = rows.residual;
+      below(static_cast<Index>(b), 1, &rows);
+      numeric[b].col(k) = (high - rows.residual) / (2 * step);
+    }
+  }
+  const auto names = problem.arm.names();
+  for (std::size_t b = 0; b < 12; ++b)
+    for (Index k = 0; k < size; ++k)
+      for (const int part : {0, 3}) {
+        const Vector3 a = analytic[b].col(k).segment<3>(part), n = numeric[b].col(k).segment<3>(part);
+        EXPECT_LT((a - n).norm(), 1e-7 * (1 + n.norm())) << "pose " << b << ", " << names[static_cast<std::size_t>(k)];
+      }
+  // every geometric unknown is seen, those of a station's base from there alone
+  for (Index k = 0; k < 48; ++k) {
+    double first = 0, second = 0;
+    for (std::size_t b = 0; b < 12; ++b) (b < 8 ? first : second) += analytic[b].col(k).norm();
+    EXPECT_EQ(first > 0, k >= 12 || k % 2 == 0) << k;
+    EXPECT_EQ(second > 0, k >= 12 ? k < 45 : k % 2 == 1) << k;  // positions do not see how the tool is turned
+  }
+}
+
+TEST(CalibrationProblemWhiteBox, JointNoiseWhitensWhatItAdds) {
+  const Measured measured(8);
+  constexpr double sigma = 0.2e-3;
+  const Problem exact = measured.problem(0, 1e-3), noisy = measured.problem(sigma, 1e-3);
+  RowBlock a, b;
+  for (Index i = 0; i < exact.num_blocks(); ++i) {
+    exact(i, 1, &a);
+    noisy(i, 1, &b);
+    const Matrix6 covariance = Matrix6::Identity() + sigma * sigma * a.factor * a.factor.transpose();
+    EXPECT_LT((b.unwhiten * b.unwhiten.transpose() - covariance).norm(), 1e-12 * covariance.norm());
+    EXPECT_LT((b.unwhiten * b.residual - a.residual).norm(), 1e-12 * a.residual.norm());
+    EXPECT_LT((b.unwhiten * b.dense - a.dense).norm(), 1e-12 * a.dense.norm());
+    EXPECT_LT((b.unwhiten * b.factor - a.factor).norm(), 1e-12 * a.factor.norm());
+    EXPECT_EQ(b.functions, a.functions);
+    EXPECT_EQ(b.position_sigma, a.position_sigma);
+  }
+}
+
+TEST(CalibrationProblemWhiteBox, ErrorsInVariablesAreThoseOfTheFullSparseSystem) {
+  const Measured measured(30);
+  constexpr double sigma = 0.2e-3;  // moves a pose by as much as the sensor errs, and more
+  const Problem exact = measured.problem(0, 0.1e-3), noisy = measured.problem(sigma, 0.1e-3);
+  const Index p = exact.arm.size(), n = exact.num_blocks(), all = p + 6 * n;
+  const VectorX steps = noisy.arm.steps();
+  VectorX precisions = noisy.arm.precisions();
+  const NormalEquations normal(noisy.system()), of_exact(exact.system());
+  const FactorisedEquations reduced(normal, precisions, steps);
+  ASSERT_TRUE(reduced.usable());
+  const FactorisedEquations without(of_exact, precisions, steps);
+  ASSERT_GT((reduced.step() - without.step()).norm(), 0.1 * without.step().norm());  // joint noise matters here
+
+  // unknowns: those of the arm, then six joint errors a pose in units of sigma
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](Index row, Index column, const MatrixX& block) {
+    for (Index j = 0; j < block.cols(); ++j)
+      for (Index i = 0; i < block.rows(); ++i)
+        if (row + i >= column + j)
+          entries.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), block(i, j));
+  };
+  VectorX gradient = VectorX::Zero(all);
+  gradient.head(p) = precisions.cwiseProduct(steps);
+  const double ridge = 1e-12 * normal.matrix.diagonal().maxCoeff();  // as in the reduced system
+  add(0, 0, MatrixX((precisions.array() + ridge).matrix().asDiagonal()));
+  RowBlock rows;
+  for (Index b = 0; b < n; ++b) {
+    const MatrixX own = expanded(exact, b, rows), joint = sigma * rows.factor;
+    const Index at = p + 6 * b;
+    add(0, 0, own.transpose() * own);
+    add(at, 0, joint.transpose() * own);
+    add(at, at, MatrixX::Identity(6, 6) + joint.transpose() * joint);
+    gradient.head(p) += own.transpose() * rows.residual;
+    gradient.segment(at, 6) = joint.transpose() * rows.residual;
+  }
+  Eigen::SparseMatrix<double> matrix(static_cast<int>(all), static_cast<int>(all));
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const SparseSolver solver(matrix);
+  ASSERT_EQ(solver.info(), Eigen::Success);
+  const VectorX step = -VectorX(solver.solve(gradient)).head(p);
+  EXPECT_LT((reduced.step() - step).norm(), 1e-8 * step.norm());
+}
+
+TEST(CalibrationProblemWhiteBox, DistancesAreAlongTheLineOfSight) {
+  const Robot<6> robot = robots::ur10();
+  const Framed<Chain> arm(robot.chain, FrameParameters(Vector6{1, -2, 0.4, 0.1, 0.2, -0.5}),
+                          FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}));
+  const auto data = measure_distances(arm, Vector3::Zero(), sample_joints(robot.limits, 53, 1), 1e-2, 3);
+  const auto problem_of = [&](const Framed<Chain>& at) {
+    std::vector<GeometricUnknown> unknowns;
+    for (Index k = 0; k < arm.parameters().size(); ++k) unknowns.push_back({k, -1, 1e-3, 0});
+    return Problem(ArmParameterisation({ArmGeometry(at)}, unknowns),
+                   {detail::station_of(data, {.distance_sigma = 1e-4})}, Loss::squared);
+  };
+  const detail::StackedRows exact = problem_of(arm).stacked(true);
+  ASSERT_EQ(exact.residuals.size(), 53);
+  for (Index k = 0; k < arm.parameters().size(); ++k) {
+    auto p = arm.parameters();
+    p(k) += 1e-6;
+    const VectorX up = problem_of(arm.with_parameters(p)).stacked(false).residuals;
+    p(k) -= 2e-6;
+    const VectorX down = problem_of(arm.with_parameters(p)).stacked(false).residuals;
+    EXPECT_LT((exact.jacobian.col(k) - (up - down) / 2e-6 * 1e-3).cwiseAbs().maxCoeff(), 1e-6) << k;
+  }
+}
+
+}  // namespace
+}  // namespace vernier::calibration_problem_test

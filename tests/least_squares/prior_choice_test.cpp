@@ -1,0 +1,84 @@
+// The scale of a prior by leave-one-block-out errors.
+
+#include "vernier/least_squares/prior_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "random_blocks.hpp"
+
+namespace vernier::prior_choice_test {
+namespace {
+
+using vernier_test::fill;
+using vernier_test::left_out_by_force;
+using vernier_test::random_vector;
+using vernier_test::RandomBlocks;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+PriorChoice chosen(const RandomBlocks& poses) {
+  return poses.with_system([&](const BlockSystem& s) {
+    return choose_prior(s, NormalEquations(s), VectorX::Constant(15, 1e-3), VectorX::Zero(15), 5, 10, 1);
+  });
+}
+
+TEST(ChoosePrior, LeavesNothingOfNoise) {
+  int nothing = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const PriorChoice choice = chosen(RandomBlocks(40, 100 + seed));
+    nothing += choice.precision == suppressing_precision;
+    EXPECT_LE(choice.smallest_error, choice.chosen_error);
+    EXPECT_LE(choice.smallest_error, choice.suppressed_error);
+  }
+  EXPECT_GE(nothing, 30);
+}
+
+TEST(ChoosePrior, KeepsASignal) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    RandomBlocks poses(40, 200 + seed);
+    Rng rng(seed);
+    VectorX truth = random_vector(rng, 15);  // of the expected sizes, three times the noise in every row
+    for (Index b = 0; b < 40; ++b) poses.rows[static_cast<std::size_t>(b)].residual -= poses.expanded(b) * truth;
+    const PriorChoice choice = chosen(poses);
+    EXPECT_LE(choice.precision, 10);
+    EXPECT_LT(choice.chosen_error, 0.6 * choice.suppressed_error);
+    EXPECT_LE(choice.smallest_error, choice.chosen_error);
+  }
+}
+
+TEST(ChoosePrior, ReportsTheErrorsOfItsChoice) {
+  RandomBlocks poses(40, 300);
+  Rng rng(1);
+  const VectorX truth = random_vector(rng, 15);
+  for (Index b = 0; b < 40; ++b) poses.rows[static_cast<std::size_t>(b)].residual -= poses.expanded(b) * truth;
+  const PriorChoice choice = chosen(poses);
+  const auto mean_with = [&](double tightness) {
+    VectorX precisions = VectorX::Constant(15, 1e-3);
+    precisions.tail(10).setConstant(tightness);
+    double sum = 0;
+    for (Index b = 0; b < 40; ++b) sum += left_out_by_force(poses, precisions, VectorX::Zero(15), b).norm();
+    return sum / 40;
+  };
+  EXPECT_NEAR(choice.chosen_error, mean_with(choice.precision), 1e-9 * choice.chosen_error);
+  EXPECT_NEAR(choice.suppressed_error, mean_with(1e20),
+              1e-6 * choice.suppressed_error);  // nothing left is nearly none at all
+}
+
+TEST(ChoosePrior, SurvivesRowsThatAreNotFinite) {
+  for (const double bad : {nan, infinity, -infinity})
+    for (const int part : {0, 1, 2, 3}) {
+      RandomBlocks poses(15, 10);
+      RowBlock& p = poses.rows[6];
+      if (part == 0) p.residual(1) = bad;
+      if (part == 1) p.dense(2, 3) = bad;
+      if (part == 2) p.factor(0, 2) = bad;
+      if (part == 3) p.functions(0) = bad;
+      EXPECT_EQ(chosen(poses).precision, suppressing_precision) << bad << " in part " << part;
+    }
+}
+
+}  // namespace
+}  // namespace vernier::prior_choice_test

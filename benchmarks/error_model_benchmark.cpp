@@ -3,10 +3,10 @@
 #include <sys/resource.h>
 
 #include <chrono>
-#include <span>
 
 #include "program.hpp"
-#include "vernier/ceres/calibrate.hpp"
+#include "vernier/ceres.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -34,6 +34,9 @@ vn::Dataset<6> measured(vn::Index n, const vn::Vector6& base, std::uint64_t seed
       vn::sample_joints(region, n, seed), {.position = 0.03e-3, .orientation = 0.1e-3}, seed);
 }
 
+/// Nothing learned on top of the error model.
+const vn::CalibrateOptions model_alone{.remainder = {.on_error_model = false}};
+
 double peak_megabytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -42,7 +45,7 @@ double peak_megabytes() {
 
 void whole(const char* what, const std::vector<vn::Dataset<6>>& stations) {
   const auto began = std::chrono::steady_clock::now();
-  const auto found = vn::calibrate(vn::robots::ur10().chain, std::span<const vn::Dataset<6>>(stations));
+  const auto found = vn::calibrate(vn::robots::ur10().chain, stations, model_alone);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
   std::printf("%-40s %8.2f s %10.0f MB at the peak so far %s\n", what, seconds.count(), peak_megabytes(),
               found.errors.converged ? "" : "(NOT CONVERGED)");
@@ -52,22 +55,17 @@ int work(bench::Program& program, int argc, char** argv) {
   const vn::Vector6 here{2, 1, 0, 0, 0, 1};
   const vn::Dataset<6> data = measured(2218, here, 1);
   const Chain nominal = vn::robots::ur10().chain;
-  const auto found = vn::calibrate(nominal, data);
-  const auto& design = found.errors.design;
-  const vn::detail::ErrorModelProblem<Chain> problem(design, {{&data, nullptr, true, 0.03e-3, 0.1e-3}},
-                                                     vn::Loss::squared);
-  const auto ours = [&](std::size_t) {
-    return problem.with_system(
-        [](const vn::detail::PoseSystem& s) { return vn::detail::PoseNormalEquations(s).matrix; });
-  };
+  const vn::ArmParameterisation arm = vn::calibrate(nominal, data, model_alone).errors.arm;
+  const vn::detail::CalibrationProblem problem(arm, {vn::detail::station_of(data, {})}, vn::Loss::squared);
+  const vn::BlockSystem system = problem.system();
+  const auto ours = [&](std::size_t) { return vn::NormalEquations(system).matrix; };
   const auto dense = [&](std::size_t) {
-    vn::MatrixX rows(6 * data.size(), design.size());
-    vn::detail::PoseRows pose;
-    vn::detail::Rows6 expanded(6, design.size());
-    const auto functions_of = design.functions_of();
+    vn::MatrixX rows(6 * data.size(), arm.size());
+    vn::RowBlock pose;
+    vn::Rows6 expanded(6, arm.size());
     for (vn::Index i = 0; i < data.size(); ++i) {
-      problem.rows_of(i, pose);
-      pose.expand(functions_of, expanded);
+      problem(i, 1, &pose);
+      pose.expand(system.group_sizes, expanded);
       rows.middleRows(6 * i, 6) = expanded;
     }
     vn::MatrixX gram = vn::MatrixX::Zero(rows.cols(), rows.cols());
@@ -81,7 +79,7 @@ int work(bench::Program& program, int argc, char** argv) {
   program.measure("normal equations", "dense rows, Eigen", dense);
   if (const int status = program.run(argc, argv); status != 0) return status;
 
-  std::printf("\n%ld unknowns; one run each, search for priors included\n", static_cast<long>(design.size()));
+  std::printf("\n%ld unknowns; one run each, search for priors included\n", static_cast<long>(arm.size()));
   whole("1,000 poses", {measured(1000, here, 2)});
   whole("2,218 poses", {data});
   whole("15,000 poses in three stations", {measured(5000, here, 3), measured(5000, {-2, 1, 0.5, 0, 0.1, 2}, 4),

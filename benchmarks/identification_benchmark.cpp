@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "program.hpp"
-#include "vernier/ceres/identify.hpp"
+#include "vernier/ceres.hpp"
+#include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -83,12 +85,11 @@ struct DualResult {
 
 DualResult identify_with_dual_numbers(const Chain& nominal, const vn::Dataset<6>& data,
                                       const vn::IdentifyOptions& options, const Free& free, const Step& sizes) {
-  const vn::Isometry3 identity = vn::Isometry3::Identity();
-  const Steps steps{vn::starting_frames(nominal, data, identity, identity, true, true), free, sizes};
+  const Steps steps{vn::starting_frames(nominal, data, true, true), free, sizes};
   Step at = Step::Zero();
   ceres::Problem problem;
   for (vn::Index i = 0; i < data.size(); ++i)
-    problem.AddResidualBlock(dual_cost(steps, data, i, options.position_sigma).release(), nullptr, at.data());
+    problem.AddResidualBlock(dual_cost(steps, data, i, vn::SensorModel{}.position_sigma).release(), nullptr, at.data());
   ceres::Solver::Options solver;  // as Vernier sets it
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.max_iterations;
@@ -124,7 +125,7 @@ int work(bench::Program& program, int argc, char** argv) {
   if (ours.free.size() != free_parameters)
     throw std::runtime_error("identify moves " + std::to_string(ours.free.size()) +
                              " parameters, this program expects " + std::to_string(free_parameters));
-  const vn::VectorX all_sizes = vn::detail::IdentificationPlan<6, vn::StandardDh>(nominal, options).sizes;
+  const vn::VectorX all_sizes = vn::detail::IdentificationPlan(vn::ArmGeometry(vn::in_frames(nominal)), options).scales;
   Free free{};
   Step sizes;
   for (int k = 0; k < free_parameters; ++k) {
@@ -143,7 +144,7 @@ int work(bench::Program& program, int argc, char** argv) {
                   [=](std::size_t) { return identify_with_dual_numbers(nominal, data, options, free, sizes); });
   program.measure("identify", "vernier, priors", [=](std::size_t) { return vn::identify(nominal, data, defaults); });
 
-  const Arm arm = ours.model.actual();
+  const Arm arm = ours.model.identified();
   program.measure("200 pose jacobians", "vernier", [=](std::size_t) {
     double sum = 0;
     for (vn::Index i = 0; i < data.size(); ++i) {
@@ -182,9 +183,9 @@ int work(bench::Program& program, int argc, char** argv) {
     std::printf("%-22s %12d %18.6f %18.6f\n", who, iterations, rms(model, data) * 1e3,
                 fresh_error(vn::positions(model, fresh)));
   };
-  line("vernier (all solves)", ours.iterations, ours.model.actual());
+  line("vernier (all solves)", ours.iterations, ours.model.identified());
   line("Ceres, dual numbers", theirs.iterations, theirs.arm);
-  line("vernier, priors", restrained.iterations, restrained.model.actual());
+  line("vernier, priors", restrained.iterations, restrained.model.identified());
   return 0;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "program.hpp"
+#include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 #include "vernier/kinematics/robots.hpp"

@@ -20,6 +20,7 @@
 #include "program.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/l_shade.hpp"
 #include "vernier/search/minimize.hpp"
 #include "vernier/search/pso.hpp"

@@ -1,7 +1,7 @@
 // Find out how the real arm differs from its drawing: classical identification with Ceres.
 
 #include <cstdio>
-#include <vernier/ceres/identify.hpp>
+#include <vernier/ceres.hpp>
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/evaluation/statistics.hpp>
 #include <vernier/kinematics/robots.hpp>
@@ -30,7 +30,7 @@ int main() {
   std::printf("%s\n", identified.summary().c_str());
 
   std::printf("Mean error on 500 fresh poses: frames alone %.3f mm, with geometry %.4f mm\n\n",
-              vn::prediction_error(identified.model.reference(), test).mean * 1e3,
+              vn::prediction_error(identified.model.nominal(), test).mean * 1e3,
               vn::prediction_error(identified.model, test).mean * 1e3);
 
   // Some of the parameters: as drawn, as built, and as found with its standard deviation.
@@ -45,7 +45,7 @@ int main() {
   // The identified model is a kinematic model like any other, so commands can be corrected with it.
   const auto compensated = vn::compensate(identified.model);
   const vn::JointVector<6> target = test.joints(0), command = compensated.correct(target).command;
-  const vn::Vector3 wanted = compensated.reference().position(target);
+  const vn::Vector3 wanted = compensated.nominal().position(target);
   std::printf("\none target: %.3f mm off as commanded, %.4f mm corrected\n",
               (actual.position(target) - wanted).norm() * 1e3, (actual.position(command) - wanted).norm() * 1e3);
 }

@@ -44,15 +44,15 @@ template <int N>
 CorrectionReport correct_arm(const std::filesystem::path& model, const std::filesystem::path& targets, bool poses,
                              const std::filesystem::path& out) {
   using vn::Index;
-  const vn::CalibratedRobot<N> robot = vn::load_calibrated_robot<N>(model);
+  const vn::CalibratedRobot<N> robot = vn::load<N>(model);
   vn::Dataset<N> data;
   if (poses) {
-    data = vn::read_dataset<N>(targets, robot.nominal().joint_types());
+    data = vn::read_dataset<N>(targets, robot.nominal().chain().joint_types());
     if (N >= 6 && !data.has_orientations())
       throw vn::DataError(targets.string() + ": no columns rx_rad, ry_rad, rz_rad; a pose of an arm of " +
                           std::to_string(N) + " joints has an orientation");
   } else {
-    vn::JointRows<N> joints = vn::read_joints<N>(targets, robot.nominal().joint_types());
+    vn::JointRows<N> joints = vn::read_joints<N>(targets, robot.nominal().chain().joint_types());
     const Index n = joints.rows();
     data = vn::Dataset<N>(std::move(joints), vn::PointRows::Zero(n, 3));
   }
@@ -60,11 +60,11 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
   CorrectionReport report{robot.name()};
   std::string text;
   for (int j = 0; j < N; ++j)
-    text += vn::message("q", j + 1, robot.nominal().row(j).joint == vn::JointType::revolute ? "_rad," : "_m,");
+    text += vn::message("q", j + 1, robot.nominal().chain().row(j).joint == vn::JointType::revolute ? "_rad," : "_m,");
   text += "status,predicted_error_mm,gate\n";
   for (Index i = 0; i < data.size(); ++i) {
     const vn::JointVector<N> q = data.joints(i);
-    vn::Isometry3 target = robot.reference().pose(q);
+    vn::Isometry3 target = robot.nominal().pose(q);
     if (poses) {
       target.translation() = data.position(i);
       if (data.has_orientations()) target.linear() = data.orientation(i);
@@ -97,7 +97,7 @@ int run(support::Program& program) {
   support::require_writable(out);
 
   const CorrectionReport report = support::dispatch_dof(
-      vn::calibrated_robot_dof(model), [&](auto n) { return correct_arm<n()>(model, targets, poses, out); });
+      vn::saved_arm(model).dof, [&](auto n) { return correct_arm<n()>(model, targets, poses, out); });
   const auto n = report.errors.size(), missed = report.missed.size();
   const double largest = *std::max_element(report.errors.begin(), report.errors.end()) * 1e3;
   const double mean = std::accumulate(report.errors.begin(), report.errors.end(), 0.0) / static_cast<double>(n) * 1e3;

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "calibration_stages.hpp"
 #include "cli.hpp"
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "progress.hpp"
+#include "vernier/ceres.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/joint_space.hpp"
 #include "vernier/core/argsort.hpp"
@@ -211,7 +211,7 @@ class Experiment {
 
   void identification(std::size_t method) {
     const auto identified = learn(method, 0, [&](const vn::FitOptions&) {
-      return support::identify_arm<6>(nominal_, measured_, {.frames = vn::Frames::none});
+      return vn::identify(nominal_, measured_, {.frames = vn::Frames::none});
     });
     if (!identified.converged()) run_.identification_remark = identified.message;
     judge(method, vn::compensate(identified.model, paper_correction));

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cli.hpp"
+#include "vernier/io/json.hpp"
 
 namespace support {
 

@@ -8,6 +8,7 @@
 #include "replaced.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/io.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -35,7 +36,7 @@ class BadInputToPrograms : public testing::Test {
     const auto data = measure(actual, joints, {.position = 3e-5, .with_orientations = false}, 4);
     write_dataset(folder_ / "poses.csv", data);
     text_ = read_file(folder_ / "poses.csv");
-    save_calibrated_robot(folder_ / "model.json", model());
+    save(folder_ / "model.json", model());
   }
 
   std::vector<std::string> files() const {

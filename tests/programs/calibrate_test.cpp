@@ -9,6 +9,7 @@
 #include "replaced.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -101,7 +102,7 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   EXPECT_EQ(a2.at("name"), "a2");
   EXPECT_EQ(a2.at("unit"), "mm");
   EXPECT_NEAR(a2.at("nominal"), 270, 1e-9);
-  EXPECT_NEAR(a2.at("identified"), actual_arm().model().row(1).a * 1e3, 0.1);
+  EXPECT_NEAR(a2.at("identified"), actual_arm().chain().row(1).a * 1e3, 0.1);
   const Json& known = c.json.at("identifiability");
   EXPECT_EQ(keys(known),
             (std::vector<std::string>{"rank", "free", "condition", "weak", "strongly_correlated", "observability"}));
@@ -121,7 +122,7 @@ TEST(Calibrate, HeldOutErrorsFallToTheNoise) {
 TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
   const Calibration& c = calibration();
   for (const char* words : {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry",
-                            "geometry + PSO-ELM", "joint-wise", "[mrad]", "Converged: ", "Verdict", "Good to ",
+                            "geometry + PSO-ELM", "joint-wise", "[mrad]", "Converged: ", "Verdict", "Accurate to ",
                             "Measured joint ranges", "Figures: figures", "model.json"})
     EXPECT_NE(c.command.output.find(words), std::string::npos) << words << " is not in\n" << c.command.output;
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;  // the figures need it, the rest does not
@@ -132,11 +133,11 @@ TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
 }
 
 TEST(Calibrate, TheSavedModelPredictsFreshPoses) {
-  const auto model = load_calibrated_robot<6>(calibration().folder / "model.json");
+  const auto model = load<6>(calibration().folder / "model.json");
   const Provenance& from = model.provenance();
   EXPECT_EQ(from, (Provenance{"poses.csv", 120, "2024-05-01", "commanded", "poses", from.position_sigma}));
   EXPECT_NEAR(from.position_sigma, 0.03e-3, 0.01e-3);
-  EXPECT_TRUE(model.nominal() == robots::abb_irb120().chain);
+  EXPECT_TRUE(model.nominal().chain() == robots::abb_irb120().chain);
   const auto fresh = measure(actual_arm(), measured(200, 99).joints());
   EXPECT_LT(prediction_error(model, fresh).mean, 0.04e-3);
   EXPECT_LT(rotation_errors(model, fresh).mean(), 0.1e-3);
@@ -150,9 +151,9 @@ TEST(Calibrate, CorrectBringsTheActualArmWithinTheNoise) {
       run(c.folder, "correct", "--model model.json --targets targets.csv --out commands.csv --json correct.json");
   ASSERT_EQ(corrected.exit_code, 0) << corrected.errors;
   const JointRows<6> commands = read_joints<6>(c.folder / "commands.csv");
-  const auto model = load_calibrated_robot<6>(c.folder / "model.json");
-  const auto before = positioning_errors(actual_arm(), model.reference(), targets, targets);
-  const auto after = positioning_errors(actual_arm(), model.reference(), commands, targets);
+  const auto model = load<6>(c.folder / "model.json");
+  const auto before = positioning_errors(actual_arm(), model.nominal(), targets, targets);
+  const auto after = positioning_errors(actual_arm(), model.nominal(), commands, targets);
   EXPECT_GT(before.position.mean(), 0.5e-3);
   EXPECT_LT(after.position.mean(), 0.04e-3);
   EXPECT_LT(after.position.maxCoeff(), 0.15e-3);
@@ -182,7 +183,7 @@ TEST(Calibrate, TestFileFixedParametersAndRobustLoss) {
   const std::string arguments = "--robot abb_irb120 --data train.csv --test test.csv --json r.json --threads 1 ";
   const CommandResult plain = run(folder, "calibrate", arguments + "--loss squared");
   ASSERT_EQ(plain.exit_code, 0) << plain.errors;
-  EXPECT_NE(plain.output.find("--loss huber"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("A robust loss (huber)"), std::string::npos) << plain.output;
   const double squared = Json::parse(read_file(folder / "r.json")).at("stages").at("geometry").at("mean_mm");
 
   const CommandResult robust = run(folder, "calibrate", arguments + "--loss cauchy --fix d4 theta3");
@@ -247,8 +248,8 @@ TEST(Calibrate, ARobotFromAFileWithAPrismaticJointInTheModifiedConvention) {
   EXPECT_EQ(report.at("test_rows"), 50);
   EXPECT_GT(report.at("stages").at("frames").at("mean_mm"), 0.3);
   EXPECT_LT(report.at("stages").at("geometry").at("mean_mm"), 0.05);
-  const auto model = load_calibrated_robot<6>(folder / "m.json");
-  EXPECT_EQ(model.nominal().row(2).joint, JointType::prismatic);
+  const auto model = load<6>(folder / "m.json");
+  EXPECT_EQ(model.nominal().chain().row(2).joint, JointType::prismatic);
   EXPECT_EQ(model.limits().upper(2), 0.7);
 }
 
@@ -291,8 +292,8 @@ TEST(Calibrate, TwoStationsThenARemountedArm) {
   EXPECT_GT(again.at("stages").at("as_fitted").at("mean_mm"), 1000);
   EXPECT_LT(again.at("stages").at("reregistered").at("mean_mm"), 0.12);
   EXPECT_LT(again.at("stages").at("reregistered").at("mean_mrad"), 0.4);
-  const auto model = load_calibrated_robot<6>(folder / "moved.json");
-  EXPECT_LT((model.reference().base().translation() - elsewhere.head<3>()).norm(), 2e-3);
+  const auto model = load<6>(folder / "moved.json");
+  EXPECT_LT((model.nominal().base().translation() - elsewhere.head<3>()).norm(), 2e-3);
 }
 
 TEST(Calibrate, DistancesBesidePosesAndTunedPriors) {

@@ -8,6 +8,7 @@
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -22,8 +23,8 @@ using testing_support::CommandResult;
 class Correct : public testing::Test {
  protected:
   Correct() {
-    save_calibrated_robot(folder_ / "model.json", robot_);
-    targets_ = abb_irb120_operating_region().sample(robot_.nominal(), 30, 12);
+    save(folder_ / "model.json", robot_);
+    targets_ = abb_irb120_operating_region().sample(robot_.nominal().chain(), 30, 12);
   }
 
   CommandResult correct(const std::string& arguments) {
@@ -55,15 +56,15 @@ TEST_F(Correct, TheActualArmGoesWhereTheNominalOneWould) {
   EXPECT_NE(done.output.find("30 of 30 targets corrected"), std::string::npos) << done.output;
   EXPECT_EQ(lines("commands.csv").at(0), "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,status,predicted_error_mm,gate");
   const auto commands = read_joints<6>(folder_ / "commands.csv");
-  const auto after = positioning_errors(actual_, robot_.reference(), commands, targets_);
+  const auto after = positioning_errors(actual_, robot_.nominal(), commands, targets_);
   EXPECT_LT(after.position.maxCoeff(), 1e-6);
   EXPECT_LT(after.rotation.maxCoeff(), 1e-6);
-  EXPECT_GT(positioning_errors(actual_, robot_.reference(), targets_, targets_).position.minCoeff(), 1e-4);
+  EXPECT_GT(positioning_errors(actual_, robot_.nominal(), targets_, targets_).position.minCoeff(), 1e-4);
 }
 
 TEST_F(Correct, PosesAsTargetsGiveTheSameCommands) {
   write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
-  write_dataset(folder_ / "poses.csv", measure(robot_.reference(), targets_));
+  write_dataset(folder_ / "poses.csv", measure(robot_.nominal(), targets_));
   ASSERT_EQ(correct("--targets targets.csv --out a.csv").exit_code, 0);
   ASSERT_EQ(correct("--targets poses.csv --poses --out b.csv").exit_code, 0);
   EXPECT_LT((read_joints<6>(folder_ / "a.csv") - read_joints<6>(folder_ / "b.csv")).cwiseAbs().maxCoeff(), 1e-9);

@@ -186,8 +186,7 @@ TEST(PaperComparison, WritesPosesForCalibration) {
   ASSERT_TRUE(data.has_orientations());
   const auto chain = vernier::robots::abb_irb120().chain;
   EXPECT_GT(vernier::prediction_error(chain, data).mean, 1) << "the tracker stands elsewhere";
-  const auto none = vernier::Isometry3::Identity();
-  const auto arm = vernier::starting_frames(chain, data, none, none, true, true);
+  const auto arm = vernier::starting_frames(chain, data, true, true);
   const double registered = vernier::prediction_error(arm, data).mean;
   EXPECT_LT(registered, 5e-3) << "once frames are registered, the arm's own errors are left";
   EXPECT_GT(registered, 0.1e-3);

@@ -9,12 +9,13 @@
 #include <map>
 #include <span>
 
-#include "calibration_stages.hpp"
 #include "cli.hpp"
 #include "learners.hpp"
 #include "robot_choice.hpp"
+#include "vernier/ceres.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -48,29 +49,30 @@ struct Samples {
 };
 
 template <int N>
-Samples<N> simulate(const Problem& problem, const vn::NominalArm<N>& arm, Index poses, std::uint64_t seed) {
+Samples<N> simulate(const Problem& problem, const vn::DescribedRobot<N>& robot, Index poses, std::uint64_t seed) {
+  const vn::DhChain<N>& nominal = robot.arm.chain();
   const auto sample = [&](Index n, std::uint64_t stream) -> vn::JointRows<N> {
     if constexpr (N == 6)
       if (problem.region == "operating")
-        return vn::abb_irb120_operating_region().sample(arm.chain, n, vn::child_seed(seed, stream));
-    return vn::sample_joints(arm.limits, n, vn::child_seed(seed, stream));
+        return vn::abb_irb120_operating_region().sample(nominal, n, vn::child_seed(seed, stream));
+    return vn::sample_joints(robot.limits, n, vn::child_seed(seed, stream));
   };
   const vn::JointRows<N> train = sample(poses, train_stream), test = sample(1000, test_stream);
-  const vn::DhChain<N> actual = vn::with_geometric_errors(arm.chain, {}, seed);
+  const vn::DhChain<N> actual = vn::with_geometric_errors(nominal, {}, seed);
   const vn::MeasurementNoise noise{.position = problem.noise_mm * 1e-3, .with_orientations = false};
   const std::uint64_t noise_seed = vn::child_seed(seed, noise_stream);
   const vn::MeasurementNoise none{.with_orientations = false};
   if (problem.errors == "geometric")
-    return {arm.chain, vn::measure(actual, train, noise, noise_seed), vn::measure(actual, test, none)};
+    return {nominal, vn::measure(actual, train, noise, noise_seed), vn::measure(actual, test, none)};
   const vn::WithJointErrors<vn::DhChain<N>> full(actual,
                                                  vn::draw_joint_errors(actual, {}, vn::child_seed(seed, error_stream)));
-  return {arm.chain, vn::measure(full, train, noise, noise_seed), vn::measure(full, test, none)};
+  return {nominal, vn::measure(full, train, noise, noise_seed), vn::measure(full, test, none)};
 }
 
 /// All measured positions.
 template <int N>
-vn::Dataset<N> read_positions(const Problem& problem, const vn::NominalArm<N>& arm) {
-  return vn::read_dataset<N>(problem.data, arm.chain.joint_types()).without_orientations();
+vn::Dataset<N> read_positions(const Problem& problem, const vn::DescribedRobot<N>& robot) {
+  return vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types()).without_orientations();
 }
 
 /// The fifth of measured poses that a seed holds out, and the others.
@@ -83,19 +85,19 @@ vn::Split<N> split(const Problem& problem, const vn::Dataset<N>& data, std::uint
 }
 
 template <int N>
-Samples<N> measured(const Problem& problem, const vn::NominalArm<N>& arm, Index poses, std::uint64_t seed) {
-  vn::Split<N> parts = split<N>(problem, read_positions(problem, arm), seed);
+Samples<N> measured(const Problem& problem, const vn::DescribedRobot<N>& robot, Index poses, std::uint64_t seed) {
+  vn::Split<N> parts = split<N>(problem, read_positions(problem, robot), seed);
   if (poses > 0) {
     const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(parts.train.size());
     parts.train = parts.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
   }
-  return {arm.chain, parts.train, parts.test, true};
+  return {robot.arm.chain(), parts.train, parts.test, true};
 }
 
 /// Reads measured poses, and makes sure that every split has as many as the plan asks for.
 template <int N>
-void check_poses(const Plan& plan, const Problem& problem, const vn::NominalArm<N>& arm) {
-  const vn::Dataset<N> data = read_positions(problem, arm);
+void check_poses(const Plan& plan, const Problem& problem, const vn::DescribedRobot<N>& robot) {
+  const vn::Dataset<N> data = read_positions(problem, robot);
   const Index most = *std::max_element(plan.poses.begin(), plan.poses.end());
   for (const std::uint64_t seed : plan.seeds)
     if (const Index there = split<N>(problem, data, seed).train.size(); most > there)
@@ -127,14 +129,14 @@ std::string fingerprint(const std::filesystem::path& path) {
 template <int N>
 class Computation {
  public:
-  Computation(const Plan& plan, const Cell& cell, const vn::NominalArm<N>& arm, vn::ObserverRef observer)
+  Computation(const Plan& plan, const Cell& cell, const vn::DescribedRobot<N>& robot, vn::ObserverRef observer)
       : plan_(plan),
         method_(plan.methods[cell.method]),
         seed_(cell.seed),
         observer_(observer),
         samples_(plan.problems[cell.problem].measured()
-                     ? measured(plan.problems[cell.problem], arm, cell.poses, cell.seed)
-                     : simulate(plan.problems[cell.problem], arm, cell.poses, cell.seed)) {}
+                     ? measured(plan.problems[cell.problem], robot, cell.poses, cell.seed)
+                     : simulate(plan.problems[cell.problem], robot, cell.poses, cell.seed)) {}
 
   Outcome run() const {
     Outcome out;
@@ -165,9 +167,8 @@ class Computation {
   Identified identify(bool geometry) const {
     vn::IdentifyOptions options;
     options.frames = samples_.framed ? vn::Frames::base_and_tool : vn::Frames::none;
-    options.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared;
     options.geometry = geometry;
-    return identify_arm<N>(samples_.nominal, samples_.train, options);
+    return vn::identify(samples_.nominal, samples_.train, options, sensors_);
   }
 
   vn::VectorX errors_after(const Identified& registered, Convergence& record) const {
@@ -177,11 +178,8 @@ class Computation {
       return alone ? vn::position_errors(model, samples_.test) : errors_after_learning(model, record);
     };
     if (base == "geometry") return errors(identify(true).model);
-    if (base == "jointwise") {
-      vn::ErrorModelOptions options;
-      options.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared;
-      return errors(fit_errors<N>(identify(true), std::span(&samples_.train, 1), {}, options, {}).models.front());
-    }
+    if (base == "jointwise")
+      return errors(vn::fit_error_model(identify(true), samples_.train, vn::ErrorModelOptions{}, sensors_).model());
     return errors(registered.model);
   }
 
@@ -200,6 +198,7 @@ class Computation {
   std::uint64_t seed_;
   vn::ObserverRef observer_;
   Samples<N> samples_;
+  vn::SensorModel sensors_{.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared};
 };
 
 /// What decides the outcome of a cell.
@@ -341,13 +340,13 @@ void Plan::prepare() {
     p.fingerprint.clear();
     for (const std::filesystem::path& file : {std::filesystem::path(p.robot), p.data})
       if (std::filesystem::is_regular_file(file)) p.fingerprint += fingerprint(file);
-    if (p.measured()) with_arm(choose_robot(p.robot), [&](const auto& arm) { check_poses(*this, p, arm); });
+    if (p.measured()) with_arm(choose_robot(p.robot), [&](const auto& robot) { check_poses(*this, p, robot); });
   }
 }
 
 Outcome compute(const Plan& plan, const Cell& cell, vn::ObserverRef observer) {
   return with_arm(choose_robot(plan.problems[cell.problem].robot),
-                  [&]<int N>(const vn::NominalArm<N>& arm) { return Computation<N>(plan, cell, arm, observer).run(); });
+                  [&]<int N>(const vn::DescribedRobot<N>& robot) { return Computation<N>(plan, cell, robot, observer).run(); });
 }
 
 Results::Results(const std::filesystem::path& path) : path_(path) {

@@ -28,7 +28,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   if (outliers > 0 && median_error > 1e-6)
     out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
                           brief(median_error * 1e3), " mm: outliers?",
-                          loss == Loss::squared ? " A robust loss reduces their weight."
+                          loss == Loss::squared ? " A robust loss (huber) reduces their weight."
                                                 : " The loss reduces their weight in the fit; check them."));
   return out;
 }

@@ -42,6 +42,7 @@ VERNIER_API SplitRows random_rows(Index n, const SplitOptions& options);
 VERNIER_API SplitRows every_kth_row(Index n, Index k);
 VERNIER_API SplitRows region_rows(const PointRows& positions, const RegionOptions& options);
 VERNIER_API SplitRows last_rows(Index n, double test_fraction);
+VERNIER_API std::vector<Index> first_random_rows(Index size, Index n, std::uint64_t seed);
 
 template <int N>
 Split<N> split_at(const Dataset<N>& data, const SplitRows& rows) {
@@ -76,6 +77,13 @@ Split<N> split_region(const Dataset<N>& data, const RegionOptions& options = {})
 template <int N>
 Split<N> split_time(const Dataset<N>& data, double test_fraction = 0.2) {
   return detail::split_at(data, detail::last_rows(data.size(), test_fraction));
+}
+
+/// The first n samples of a seeded shuffle, in its order: of one seed, fewer samples are always among more.
+/// @throws std::invalid_argument unless n is in [1, data.size()]
+template <int N>
+Dataset<N> random_subset(const Dataset<N>& data, Index n, std::uint64_t seed) {
+  return data.rows(detail::first_random_rows(data.size(), n, seed));
 }
 
 }  // namespace vernier

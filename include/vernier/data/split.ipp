@@ -52,4 +52,11 @@ VERNIER_IMPL SplitRows last_rows(Index n, double test_fraction) {
   return split_order(std::move(order), tests);
 }
 
+VERNIER_IMPL std::vector<Index> first_random_rows(Index size, Index n, std::uint64_t seed) {
+  require(n >= 1 && n <= size, "random_subset: ", n, " rows of ", size);
+  std::vector<Index> order = Rng(seed).permutation(size);
+  order.resize(static_cast<std::size_t>(n));
+  return order;
+}
+
 }  // namespace vernier::detail

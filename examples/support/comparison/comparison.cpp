@@ -345,8 +345,9 @@ void Plan::prepare() {
 }
 
 Outcome compute(const Plan& plan, const Cell& cell, vn::ObserverRef observer) {
-  return with_arm(choose_robot(plan.problems[cell.problem].robot),
-                  [&]<int N>(const vn::DescribedRobot<N>& robot) { return Computation<N>(plan, cell, robot, observer).run(); });
+  return with_arm(choose_robot(plan.problems[cell.problem].robot), [&]<int N>(const vn::DescribedRobot<N>& robot) {
+    return Computation<N>(plan, cell, robot, observer).run();
+  });
 }
 
 Results::Results(const std::filesystem::path& path) : path_(path) {

@@ -8,11 +8,7 @@
 #include "vernier/core/check.hpp"
 
 /// Expands `macro(N)` for every number of joints that the programs serve.
-#ifdef VERNIER_FEW_DOF  // the tests' build: minutes less
-#define VERNIER_FOR_ALL_DOF(macro) macro(6) macro(7)
-#else
 #define VERNIER_FOR_ALL_DOF(macro) macro(3) macro(4) macro(5) macro(6) macro(7) macro(8) macro(9)
-#endif
 
 namespace support {
 

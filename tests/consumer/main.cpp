@@ -1,14 +1,18 @@
-// What a user's program sees of Vernier: the headers, the namespace, the version, and the libraries of what it asked
-// for.
+// What a user's program sees of Vernier: the headers, the namespace, the version, the libraries of what it asked for,
+// and functions that are compiled here (header-only) or come from the library.
 
 #include <vernier/core/literals.hpp>
 #include <vernier/core/version.hpp>
-#include <vernier/kinematics/dh_chain.hpp>
+#include <vernier/identification/frames.hpp>
+#include <vernier/kinematics/inverse_kinematics.hpp>
+#include <vernier/kinematics/robots.hpp>
 #ifdef CONSUMER_IO
-#include <vernier/io/json.hpp>
+#include <vernier/io/robot_file.hpp>
 #endif
 #ifdef CONSUMER_CERES
-#include <vernier/ceres/problem.hpp>
+#include <vernier/ceres/solver.hpp>
+#include <vernier/identification/identify.hpp>
+#include <vernier/simulation/virtual_robot.hpp>
 #endif
 #ifdef CONSUMER_TBB
 #include <vernier/tbb.hpp>
@@ -25,8 +29,18 @@
 #include <cstdio>
 #include <stdexcept>
 
+#ifdef VERNIER_COMPILED
+#define CONSUMER_MODE "compiled"
+#else
+#define CONSUMER_MODE "header-only"
+#endif
+
 namespace vn = vernier;
 using namespace vernier::literals;
+
+#ifdef CONSUMER_MIXED
+double reach_by_library();  // in the other translation unit, which uses vernier::compiled
+#endif
 
 int main() {
   constexpr vn::DhChain<2> arm{{{
@@ -37,11 +51,22 @@ int main() {
   q.setZero();
   const double reach = arm.position(q).norm();
   bool right = std::abs(reach - 0.5) < 1e-12;
+  vn::PointRows points(3, 3), shifted(3, 3);
+  points << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  shifted = points.rowwise() + Eigen::RowVector3d(1, 2, 3);
+  right = right && (vn::register_points(points, shifted).translation() - vn::Vector3(1, 2, 3)).norm() < 1e-12;
+#ifdef CONSUMER_MIXED
+  right = right && reach_by_library() == reach;
+#endif
 #ifdef CONSUMER_IO
-  right = right && nlohmann::json{{"reach_m", reach}}.size() == 1;
+  right = right && vn::RobotDescription::of(vn::robots::ur10()).dof() == 6;
 #endif
 #ifdef CONSUMER_CERES
-  right = right && ceres::Problem{}.NumParameters() == 0;
+  const auto chain = vn::robots::abb_irb120().chain;
+  vn::JointRows<6> joints = vn::JointRows<6>::Zero(40, 6);
+  for (vn::Index i = 0; i < joints.size(); ++i) joints.data()[i] = std::sin(static_cast<double>(i * i));
+  const auto found = vn::identify(chain, vn::measure(vn::with_geometric_errors(chain, {}, 1), joints));
+  right = right && found.rms_after < 1e-9 && found.rms_before > 1e-4;
 #endif
 #ifdef CONSUMER_TBB
   std::atomic<long> done = 0;
@@ -55,7 +80,7 @@ int main() {
   } catch (const std::invalid_argument&) {
   }
 #endif
-  std::printf("vernier %d.%d.%d: a reach of %.1f mm\n", VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR,
-              VERNIER_VERSION_PATCH, reach * 1e3);
+  std::printf("%-11s vernier %d.%d.%d: a reach of %.1f mm\n", CONSUMER_MODE, VERNIER_VERSION_MAJOR,
+              VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH, reach * 1e3);
   return right ? 0 : 1;
 }

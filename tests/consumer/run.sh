@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with
-# io, with what runs in parallel, and with everything.
+# Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, with what runs in parallel,
+# and with everything; header-only, with the compiled libraries, and both in one program.
 # usage: tests/consumer/run.sh [BUILD FOLDER]
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -24,15 +24,15 @@ quietly() {
   }
 }
 
-# consume PROJECT COMPONENTS [CMAKE ARG...]
+# consume PROJECT MODE COMPONENTS [CMAKE ARG...]
 consume() {
-  local project=$1 components=$2
-  local folder="$build/$project-${components//;/-}"
+  local project=$1 mode=$2 components=$3
+  local folder="$build/$project-$mode-${components//;/-}"
   quietly "$build/configure.log" cmake -S "$here/$project" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
-    "-DCONSUMER_COMPONENTS=$components" "-DCMAKE_PREFIX_PATH=$build/prefix" "${@:3}"
+    "-DCONSUMER_COMPONENTS=$components" -DCONSUMER_MODE="$mode" "-DCMAKE_PREFIX_PATH=$build/prefix" "${@:4}"
   quietly "$build/build.log" cmake --build "$folder"
   [[ ! -e $folder/vernier/examples && ! -e $folder/vernier/tests ]] || fail "$project builds our tests or programs"
-  printf '%-14s %-17s ' "$project" "${components:-bare}"
+  printf "%-14s %-17s " "$project" "${components:-bare}"
   "$folder/consumer"
 }
 
@@ -57,17 +57,42 @@ no_ceres=-DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON
 no_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
 no_parallel=(-DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON)
 
-# Installed by a build that knows none of them: the package is the same.
-quietly "$build/install.log" cmake -S "$root" -B "$build/package" -G Ninja "-DCMAKE_INSTALL_PREFIX=$build/prefix" \
-  -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF $no_ceres $no_json "${no_parallel[@]}"
-quietly "$build/install.log" cmake --install "$build/package"
+# install PREFIX CMAKE ARG...
+install() {
+  quietly "$build/install.log" cmake -S "$root" -B "$build/package" -G Ninja "-DCMAKE_INSTALL_PREFIX=$build/$1" \
+    -DCMAKE_BUILD_TYPE=Debug -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF \
+    "${@:2}"
+  quietly "$build/install.log" cmake --build "$build/package"
+  quietly "$build/install.log" cmake --install "$build/package"
+  rm -rf "$build/package"
+}
 
+# The headers are installed by a build that knows none of the libraries: the package is the same, but for what is
+# compiled.
+install bare -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_parallel[@]}"
+install prefix
+
+bare=("-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_parallel[@]}")
 for project in in_tree fetch_content installed; do
-  consume $project "" $no_ceres $no_json "${no_parallel[@]}"
-  consume $project "io;ceres;tbb;mpi"
+  consume $project header_only "" "${bare[@]}"
 done
-consume installed io $no_ceres "${no_parallel[@]}"
-consume installed "tbb;mpi" $no_ceres $no_json
+consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
+consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json
+consume installed header_only "io;ceres;tbb;mpi"
+consume installed compiled "io;ceres;tbb;mpi"
+consume in_tree compiled "" $no_ceres $no_json "${no_parallel[@]}"
+consume installed mixed ""
+
+# A program whose Eigen types have another alignment than the library's does not link.
+folder="$build/aligned"
+quietly "$build/configure.log" cmake -S "$here/installed" -B "$folder" -G Ninja -DCMAKE_CXX_FLAGS=-mavx \
+  -DCONSUMER_MODE=compiled "-DCMAKE_PREFIX_PATH=$build/prefix"
+! cmake --build "$folder" >"$build/aligned.log" 2>&1 || fail "a program with another alignment links"
+grep -q 'undefined reference to .*eigen_align_32' "$build/aligned.log" || {
+  cat "$build/aligned.log" >&2
+  fail "a program with another alignment fails otherwise than by linking"
+}
+printf '%-14s %-17s %s\n' installed refused "another alignment of Eigen's types"
 
 refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
 refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres

@@ -1,4 +1,4 @@
-# The headers, the compiled libraries, and a package for find_package(vernier [COMPONENTS io ceres tbb mpi]).
+# The headers, the compiled libraries, and a package for find_package(vernier [COMPONENTS io ceres cholmod tbb mpi]).
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -42,5 +42,6 @@ endif()
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/vernierConfigVersion.cmake"
                                  COMPATIBILITY SameMinorVersion ${independent})
 install(FILES "${PROJECT_BINARY_DIR}/vernierConfig.cmake" "${PROJECT_BINARY_DIR}/vernierConfigVersion.cmake"
+        cmake/FindCHOLMOD.cmake
         DESTINATION "${vernier_package_dir}")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -1,10 +1,10 @@
-# vernier::vernier (Eigen and threads), header-only; vernier::io, ::ceres, ::tbb and ::mpi add a library each. INTERFACE
+# vernier::vernier (Eigen and threads), header-only; vernier::io, ::ceres, ::cholmod, ::tbb and ::mpi add a library each. INTERFACE
 # targets without a flag: they ask for C++20 and nothing else.
 #
-# vernier::compiled is the same with the definitions of the .ipp files in a static library, and vernier::compiled_io and
-# ::compiled_ceres are likewise. Where Vernier is embedded they are built only if something links them.
+# vernier::compiled is the same with the definitions of the .ipp files in a static library, and vernier::compiled_io,
+# ::compiled_ceres and ::compiled_cholmod are likewise. Where Vernier is embedded they are built only if something links them.
 
-set(vernier_components io ceres tbb mpi)
+set(vernier_components io ceres cholmod tbb mpi)
 list(JOIN vernier_components "|" vernier_component_regex)
 
 file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp"
@@ -93,5 +93,6 @@ endfunction()
 vernier_add_component(vernier HEADERS ${vernier_headers} LINK Eigen3::Eigen Threads::Threads)
 vernier_add_component(io HEADERS ${vernier_io_headers} LINK vernier::vernier nlohmann_json::nlohmann_json)
 vernier_add_component(ceres HEADERS ${vernier_ceres_headers} LINK vernier::vernier Ceres::ceres)
+vernier_add_component(cholmod HEADERS ${vernier_cholmod_headers} LINK vernier::vernier CHOLMOD::CHOLMOD)
 vernier_add_component(tbb HEADERS ${vernier_tbb_headers} LINK vernier::vernier TBB::tbb)
 vernier_add_component(mpi HEADERS ${vernier_mpi_headers} LINK vernier::vernier MPI::MPI_CXX)

@@ -14,6 +14,9 @@
 #include <vernier/identification/identify.hpp>
 #include <vernier/simulation/virtual_robot.hpp>
 #endif
+#ifdef CONSUMER_CHOLMOD
+#include <vernier/cholmod.hpp>
+#endif
 #ifdef CONSUMER_TBB
 #include <vernier/tbb.hpp>
 #endif
@@ -67,6 +70,10 @@ int main() {
   for (vn::Index i = 0; i < joints.size(); ++i) joints.data()[i] = std::sin(static_cast<double>(i * i));
   const auto found = vn::identify(chain, vn::measure(vn::with_geometric_errors(chain, {}, 1), joints));
   right = right && found.rms_after < 1e-9 && found.rms_before > 1e-4;
+#endif
+#ifdef CONSUMER_CHOLMOD
+  vn::MatrixX one = vn::MatrixX::Constant(1, 1, 6);
+  right = right && vn::CholmodSolver{}({1, {0, 1}, {0}, {2}}, one).solved && one(0, 0) == 3;
 #endif
 #ifdef CONSUMER_TBB
   std::atomic<long> done = 0;

@@ -78,8 +78,8 @@ for project in in_tree fetch_content installed; do
 done
 consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
 consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json
-consume installed header_only "io;ceres;tbb;mpi"
-consume installed compiled "io;ceres;tbb;mpi"
+consume installed header_only "io;ceres;cholmod;tbb;mpi"
+consume installed compiled "io;ceres;cholmod;tbb;mpi"
 consume in_tree compiled "" $no_ceres $no_json "${no_parallel[@]}"
 consume installed mixed ""
 

@@ -1,0 +1,6 @@
+#pragma once
+
+/// @file
+/// Sparse solves by SuiteSparse's CHOLMOD, beside Eigen.
+
+#include "vernier/cholmod/solver.hpp"

@@ -1,10 +1,6 @@
 // Least squares with many local unknowns: the Schur complement against sparse Cholesky factorisations of everything.
 
 #include <Eigen/SparseCholesky>
-#ifdef VERNIER_HAS_CHOLMOD
-#include <Eigen/CholmodSupport>
-#endif
-
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -13,6 +9,11 @@
 #include "program.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
+#ifdef VERNIER_HAS_CHOLMOD
+#include <Eigen/CholmodSupport>
+
+#include "vernier/cholmod.hpp"
+#endif
 
 namespace {
 
@@ -30,7 +31,8 @@ constexpr const char* about =
                      sparse J in Eigen
   step               from the normal equations to the Gauss-Newton step of all unknowns: FactorisedEquations, which
                      eliminates the local ones, against one SimplicialLLT (and a supernodal factorisation by CHOLMOD,
-                     where that is installed) of the whole matrix, its ordering included
+                     where that is installed) of the whole matrix, its ordering included. "vernier, CHOLMOD" has
+                     CholmodSolver for the local unknowns.
 
 All steps are compared before anything is timed.)";
 
@@ -118,8 +120,9 @@ struct Drift {
   }
 };
 
-vn::VectorX schur_step(const vn::NormalEquations& normal, const Drift& drift) {
-  const vn::FactorisedEquations solved(normal, drift.precisions, vn::VectorX::Zero(dense));
+vn::VectorX schur_step(const vn::NormalEquations& normal, const Drift& drift,
+                       vn::SparseSolve solve = vn::eigen_sparse_solver) {
+  const vn::FactorisedEquations solved(normal, drift.precisions, vn::VectorX::Zero(dense), {}, solve);
   if (!solved.usable()) throw std::runtime_error("the Schur complement has no solution");
   return (vn::VectorX(drift.unknowns()) << solved.local_step(), solved.step()).finished();
 }
@@ -152,6 +155,10 @@ void measure(bench::Program& program, Index knots, const std::string& size) {
   program.measure("step, " + size, "SimplicialLLT, Eigen",
                   [=](std::size_t) { return sparse_step<Eigen::SimplicialLLT<Sparse>>(*matrix, gradient); });
 #ifdef VERNIER_HAS_CHOLMOD
+  static const vn::CholmodSolver cholmod;
+  agree("steps with CHOLMOD inside", schur_step(*normal, *drift, cholmod));
+  program.measure("step, " + size, "vernier, CHOLMOD",
+                  [=](std::size_t) { return schur_step(*normal, *drift, cholmod); });
   agree("steps by CHOLMOD", sparse_step<Eigen::CholmodSupernodalLLT<Sparse>>(*matrix, gradient));
   program.measure("step, " + size, "CHOLMOD, supernodal",
                   [=](std::size_t) { return sparse_step<Eigen::CholmodSupernodalLLT<Sparse>>(*matrix, gradient); });

@@ -186,5 +186,27 @@ TEST(Rng, ChildSeedsDiffer) {
   static_assert(vn::child_seed(1, 2) == vn::child_seed(1, 2));
 }
 
+// Streams of one seed share no number, not even shifted, and do not correlate.
+TEST(Rng, ChildStreamsAreIndependent) {
+  constexpr int streams = 20, draws = 500;
+  std::set<std::uint64_t> numbers;
+  std::vector<std::vector<double>> uniforms;
+  for (std::uint64_t stream = 0; stream < streams; ++stream) {
+    vn::Rng rng(vn::child_seed(7, stream)), again = rng;
+    uniforms.emplace_back();
+    for (int k = 0; k < draws; ++k) {
+      numbers.insert(rng());
+      uniforms.back().push_back(again.uniform() - 0.5);
+    }
+  }
+  EXPECT_EQ(numbers.size(), static_cast<std::size_t>(streams * draws));
+  for (std::size_t a = 0; a < streams; ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      double sum = 0;
+      for (std::size_t k = 0; k < draws; ++k) sum += 12 * uniforms[a][k] * uniforms[b][k];
+      EXPECT_LT(std::abs(sum) / std::sqrt(draws), 5) << a << ", " << b;  // five standard deviations
+    }
+}
+
 }  // namespace
 }  // namespace rng_test

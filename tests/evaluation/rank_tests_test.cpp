@@ -71,6 +71,22 @@ TEST(SignedRank, PublishedFigures) {
   EXPECT_EQ(signed_rank_test(maize, VectorX::Zero(15)).p_value, 0.041259765625);
 }
 
+// Three ties among five: ranks 1 3 3 3 5, variance 6/12 (6 - 24/20) = 2.4 about 3; without the correction it were 3.
+TEST(RankSum, TiesNarrowTheDistribution) {
+  const RankTest tied = rank_sum_test(of({1, 2, 2}), of({2, 3}));
+  EXPECT_EQ(tied.statistic, 1);
+  EXPECT_FALSE(tied.exact);
+  EXPECT_NEAR(tied.p_value, std::erfc(1.5 / std::sqrt(2 * 2.4)), 1e-15);
+}
+
+// Ranks 2 2 -2 4 of sizes 1 1 1 2: sum 8 about 5, variance 180/24 - 24/48 = 7.
+TEST(SignedRank, TiesNarrowTheDistribution) {
+  const RankTest tied = signed_rank_test(of({1, 1, -1, 2}), VectorX::Zero(4));
+  EXPECT_EQ(tied.statistic, 8);
+  EXPECT_FALSE(tied.exact);
+  EXPECT_NEAR(tied.p_value, std::erfc(2.5 / std::sqrt(2 * 7.0)), 1e-15);
+}
+
 /// Share of all ways to deal n + m ranks whose U is as far from its mean as the given one, or farther.
 double dealt(Index n, Index m, double u) {
   const double mean = static_cast<double>(n * m) / 2;

@@ -4,25 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <Eigen/SparseCholesky>
 
 #include "random_blocks.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
-
-// SuiteSparse where the build has it, else Eigen's own
-#if __has_include(<cholmod.h>)
-#include <Eigen/CholmodSupport>
-namespace {
-using SparseSolver = Eigen::CholmodDecomposition<Eigen::SparseMatrix<double>, Eigen::Lower>;
-}
-#else
-#include <Eigen/SparseCholesky>
-namespace {
-using SparseSolver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>;
-}
-#endif
 
 namespace vernier::calibration_problem_test {
 namespace {
@@ -198,7 +185,7 @@ TEST(CalibrationProblemWhiteBox, ErrorsInVariablesAreThoseOfTheFullSparseSystem)
   }
   Eigen::SparseMatrix<double> matrix(static_cast<int>(all), static_cast<int>(all));
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const SparseSolver solver(matrix);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
   ASSERT_EQ(solver.info(), Eigen::Success);
   const VectorX step = -VectorX(solver.solve(gradient)).head(p);
   EXPECT_LT((reduced.step() - step).norm(), 1e-8 * step.norm());

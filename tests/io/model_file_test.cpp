@@ -106,6 +106,34 @@ TEST_F(ModelFile, PrismaticJointsAndOpenLimitsSurvive) {
   EXPECT_EQ(loaded.provenance(), Provenance{});
 }
 
+TEST_F(ModelFile, LimitsOfOneSideSurvive) {
+  const DhChain<3> chain{{{{.a = 0.3}, {.a = 0.25}, {.alpha = 3.1, .joint = JointType::prismatic}}}};
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  JointLimits<3> limits;
+  limits.lower(0) = -1.5;   // no upper
+  limits.upper(1) = -0.25;  // no lower
+  limits.upper(2) = 0.15;
+  save(folder_ / "m.json",
+       CalibratedRobot<3>("one-sided", {chain, CalibratedRobot<3>::Model::Arm(chain)}, limits, Provenance{}));
+  const JointLimits<3> loaded = load<3>(folder_ / "m.json").limits();
+  EXPECT_EQ(loaded.lower, JointVector<3>(-1.5, -infinity, -infinity));
+  EXPECT_EQ(loaded.upper, JointVector<3>(infinity, -0.25, 0.15));
+}
+
+TEST_F(ModelFile, TheConventionIsPartOfTheFile) {
+  const auto robot = robots::puma560_modified();
+  using Saved = CalibratedRobot<6, ModifiedDh>;
+  const Saved saved("puma", {robot.chain, Saved::Model::Arm(with_geometric_errors(robot.chain, {}, 3))}, robot.limits,
+                    Provenance{});
+  save(folder_ / "m.json", saved);
+  EXPECT_EQ(saved_arm(folder_ / "m.json").dof, 6);
+  EXPECT_TRUE(saved_arm(folder_ / "m.json").modified);
+  const auto loaded = load<6, ModifiedDh>(folder_ / "m.json");
+  EXPECT_TRUE(loaded.identified().chain() == saved.identified().chain());
+  EXPECT_TRUE(loaded.nominal().model() == robot.chain);
+  EXPECT_THROW((void)load<6>(folder_ / "m.json"), DataError);
+}
+
 TEST_F(ModelFile, CorrectsTowardsTheNominalArmInTheIdentifiedFrames) {
   const auto robot = example(true);
   const OperatingRegion<6> region = abb_irb120_operating_region();

@@ -50,6 +50,22 @@ TEST_F(RobotFile, ATableInAFileEqualsTheCatalogue) {
   EXPECT_THROW(robot.arm<7>(), std::invalid_argument);
 }
 
+TEST_F(RobotFile, LimitsOfOneSide) {
+  const auto limits = load(R"({"name": "p", "convention": "standard", "joints": [
+    {"a_mm": 10, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "lower_deg": -90},
+    {"a_mm": 10, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "upper_rad": 0.5},
+    {"type": "prismatic", "a_mm": 0, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "upper_mm": 300}]})")
+                          .arm<3>()
+                          .limits;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(limits.lower(0), -3.14159265358979 / 2, 1e-12);
+  EXPECT_EQ(limits.upper(0), infinity);
+  EXPECT_EQ(limits.lower(1), -infinity);
+  EXPECT_EQ(limits.upper(1), 0.5);
+  EXPECT_EQ(limits.lower(2), -infinity);
+  EXPECT_EQ(limits.upper(2), 0.3);
+}
+
 TEST_F(RobotFile, TheModifiedConventionGivesTheSamePoses) {
   const RobotDescription robot = load(R"({"name": "p", "convention": "modified", "joints": [
     {"a_mm": 10, "alpha_deg": 20, "d_mm": 5, "theta_deg": 3, "beta_deg": 1},

@@ -325,6 +325,45 @@ TEST(InverseKinematics, RestartsReachWhatOneStartMisses) {
   EXPECT_LE(weighted_error(all), weighted_error(first));
 }
 
+/// A planar arm that notes where it was evaluated.
+struct Noting {
+  static constexpr int dof = 2;
+  vn::DhChain<2> chain;
+  std::vector<vn::JointVector<2>>* visited;
+  vn::Isometry3 pose(const vn::JointVector<2>& q) const noexcept { return chain.pose(q); }
+  vn::Vector3 position(const vn::JointVector<2>& q) const noexcept { return chain.position(q); }
+  vn::Jacobian<2> jacobian(const vn::JointVector<2>& q) const noexcept { return chain.jacobian(q); }
+  vn::PoseAndJacobian<2> pose_and_jacobian(const vn::JointVector<2>& q) const noexcept {
+    visited->push_back(q);
+    return chain.pose_and_jacobian(q);
+  }
+};
+
+// One evaluation a start shows where the starts lie: half a turn to either side of the seed where a joint has no
+// limits, or one alone, and within the limits where it has both.
+TEST(InverseKinematics, RestartsLieAboutTheSeedOrWithinTheLimits) {
+  std::vector<vn::JointVector<2>> visited;
+  const Noting arm{planar, &visited};
+  const vn::JointVector<2> seed(20, 0.5);
+  vn::IkOptions<2> options{.max_iterations = 1, .restarts = 200};
+  options.limits.upper(0) = 30;  // one side alone
+  options.limits.lower(1) = 0.2;
+  options.limits.upper(1) = 0.6;
+  EXPECT_NE(inverse_kinematics(arm, vn::Vector3(9, 0, 0), seed, options).status, vn::IkStatus::converged);
+  ASSERT_EQ(visited.size(), 201u);
+  EXPECT_EQ(visited[0], seed);
+  double least = 100, most = -100;
+  for (std::size_t k = 1; k < visited.size(); ++k) {
+    EXPECT_LE(std::abs(visited[k](0) - seed(0)), pi);
+    EXPECT_GE(visited[k](1), 0.2);
+    EXPECT_LE(visited[k](1), 0.6);
+    least = std::min(least, visited[k](0));
+    most = std::max(most, visited[k](0));
+  }
+  EXPECT_LT(least, seed(0) - 0.9 * pi);  // of 200 uniform draws some reach the last twentieth on either side
+  EXPECT_GT(most, seed(0) + 0.9 * pi);
+}
+
 TEST(InverseKinematics, WhatIsNotANumberStallsAtTheSeed) {
   const vn::JointVector<2> seed(0.1, 0.2);
   const auto result = inverse_kinematics(planar, vn::Vector3(std::nan(""), 0, 0), seed);

@@ -5,6 +5,7 @@
 #include "allocation_counter.hpp"
 #include "random_chains.hpp"
 #include "turntable.hpp"
+#include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 
@@ -62,7 +63,7 @@ TYPED_TEST(JacobianBlocks, OfFramesToo) {
   vn::Vector6 base, tool;
   base << 1, 2, 3, 0.1, -0.2, 3.0;
   tool << 0.1, 0, 0.2, 0, 1, 0;
-  for (const vn::Index n : {2, 4, 23}) {
+  for (const vn::Index n : {1, 2, 3, 4, 5, 23}) {
     const vn::Framed model(random_chain<6, TypeParam>(rng), vn::FrameParameters(base), vn::FrameParameters(tool));
     const vn::JointRows<6> joints = random_joint_rows<6>(rng, n);
     const auto all = vn::poses_and_parameter_jacobians(model, joints);
@@ -70,6 +71,28 @@ TYPED_TEST(JacobianBlocks, OfFramesToo) {
     EXPECT_LE(difference(vn::poses_and_jacobians(model, joints), joints,
                          [&](const auto& q) { return model.pose_and_jacobian(q); }),
               2e-14);
+  }
+}
+
+// Fewer configurations than a vector register holds: the tool point must not be left out.
+TEST(ArmGeometry, AFewConfigurationsAreThoseOneByOne) {
+  const vn::Framed arm(vn::robots::ur10().chain, vn::FrameParameters(vn::Vector6{1, 2, 3, 0.1, -0.2, 3.0}),
+                       vn::FrameParameters(vn::Vector6{0.1, -0.3, 0.2, 0, 1, 0}));
+  const vn::ArmGeometry geometry(arm);
+  vn::Rng rng(5);
+  for (const vn::Index n : {1, 2, 3, 4, 5}) {
+    const vn::JointRows<6> joints = random_joint_rows<6>(rng, n);
+    vn::PosesAndJacobians all;
+    geometry.poses_and_parameter_jacobians(joints, all);
+    EXPECT_LE(difference(all, joints, [&](const auto& q) { return arm.pose_and_parameter_jacobian(q); }), 2e-14) << n;
+    const vn::PointRows points = geometry.positions(joints), of_frames = arm.positions(joints);
+    const std::vector<vn::Isometry3> poses = geometry.poses(joints);
+    for (vn::Index i = 0; i < n; ++i) {
+      const vn::Isometry3 pose = arm.pose(joints.row(i).transpose());
+      EXPECT_LE((points.row(i).transpose() - pose.translation()).norm(), 1e-14) << n;
+      EXPECT_LE((of_frames.row(i).transpose() - pose.translation()).norm(), 1e-14) << n;
+      EXPECT_LE((poses[static_cast<std::size_t>(i)].matrix() - pose.matrix()).norm(), 1e-14) << n;
+    }
   }
 }
 

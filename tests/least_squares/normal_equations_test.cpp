@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <limits>
 
 #include "random_blocks.hpp"
@@ -124,7 +125,7 @@ TEST(LeaveOneOutErrors, AreInfiniteWhereNothingCouldBeSolved) {
   EXPECT_TRUE((errors.array() == infinity).all());
 }
 
-TEST(LeaveOneOutErrors, OfThoseJudgedAlone) {
+TEST(LeaveOneOutErrors, OfValidationBlocksAlone) {
   const RandomBlocks blocks(20, 5, false);
   const NormalEquations normal = blocks.normal();
   const FactorisedEquations solved(normal, VectorX::Ones(15), VectorX::Zero(15));
@@ -134,6 +135,112 @@ TEST(LeaveOneOutErrors, OfThoseJudgedAlone) {
     const Eigen::Matrix3Xd some = leave_one_out_errors(system, solved, 2);
     ASSERT_EQ(some.cols(), 4);
     EXPECT_EQ(some, all.leftCols(4));
+  });
+}
+
+/// Blocks that depend on local states, and their priors, as one dense problem: dense and factored unknowns, then the
+/// states.
+struct RandomStates {
+  static constexpr Index states = 4, size = 2, unknowns = 15;
+  RandomBlocks blocks;
+  std::vector<LocalPrior> priors;
+  VectorX precisions, steps, local_steps;
+
+  explicit RandomStates(Index n) : blocks(n, 31, false) {
+    Rng rng(32);
+    for (Index b = 0; b < n; ++b) {
+      RowBlock& rows = blocks.rows[static_cast<std::size_t>(b)];
+      for (const Index k : {0, 1}) {  // of none, one or two states, in either order
+        if ((b + k) % 3 == 0) continue;
+        RowBlock::Local& local = rows.local[static_cast<std::size_t>(k)];
+        local.state = (b + 3 * k) % states;
+        local.columns.resize(6, size);
+        fill(rng, local.columns);
+      }
+    }
+    for (Index s = 0; s < states; ++s) priors.push_back({s, s, 20 * MatrixX::Identity(size, size)});
+    for (Index s = 0; s + 1 < states; ++s) {
+      MatrixX coupling(size, size);  // not symmetric
+      fill(rng, coupling, 2);
+      priors.push_back({s + 1, s, coupling});
+    }
+    precisions = VectorX::Constant(unknowns, 0.5) + random_vector(rng, unknowns).cwiseAbs2();
+    steps = random_vector(rng, unknowns);
+    local_steps = random_vector(rng, states * size);
+  }
+
+  template <class F>
+  decltype(auto) with_system(F&& f) const {
+    return blocks.with_system([&](BlockSystem system) {
+      system.local_states = states;
+      system.local_size = size;
+      return f(system);
+    });
+  }
+  MatrixX row(Index b) const {
+    MatrixX out = MatrixX::Zero(6, unknowns + states * size);
+    out.leftCols(unknowns) = blocks.expanded(b);
+    for (const RowBlock::Local& local : blocks.row(b).local)
+      if (local.state >= 0) out.middleCols(unknowns + local.state * size, size) += local.columns;
+    return out;
+  }
+  MatrixX prior() const {
+    MatrixX out = MatrixX::Zero(unknowns + states * size, unknowns + states * size);
+    out.topLeftCorner(unknowns, unknowns) = precisions.asDiagonal();
+    for (const LocalPrior& p : priors) {
+      const Index a = unknowns + p.first * size, b = unknowns + p.second * size;
+      out.block(a, b, size, size) += p.precision;
+      if (a != b) out.block(b, a, size, size) += p.precision.transpose();
+    }
+    return out;
+  }
+  /// Matrix and gradient, one block left out where it is not negative.
+  std::pair<MatrixX, VectorX> dense(Index without) const {
+    MatrixX matrix = prior();
+    VectorX all(unknowns + states * size);
+    all << steps, local_steps;
+    VectorX gradient = matrix * all;
+    for (Index b = 0; b < blocks.size(); ++b) {
+      if (b == without) continue;
+      matrix += row(b).transpose() * row(b);
+      gradient += row(b).transpose() * blocks.row(b).residual;
+    }
+    return {matrix, gradient};
+  }
+};
+
+TEST(LocalStates, AreEliminatedExactly) {
+  const RandomStates problem(30);
+  problem.with_system([&](const BlockSystem& system) {
+    const NormalEquations normal(system, problem.priors);
+    const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+    ASSERT_TRUE(solved.usable());
+    const auto [matrix, gradient] = problem.dense(-1);
+    const Eigen::LLT<MatrixX> whole(matrix);
+    ASSERT_EQ(whole.info(), Eigen::Success);
+    const VectorX step = -whole.solve(gradient);
+    EXPECT_LT((solved.step() - step.head(15)).norm(), 1e-9 * step.norm());
+    EXPECT_LT((solved.local_step() - step.tail(8)).norm(), 1e-9 * step.norm());
+    const MatrixX covariance = matrix.inverse().topLeftCorner(15, 15);
+    EXPECT_LT((solved.inverse() - covariance).norm(), 1e-9 * covariance.norm());
+    const double log_determinant = 2 * MatrixX(whole.matrixL()).diagonal().array().log().sum();
+    EXPECT_NEAR(solved.log_determinant(), log_determinant, 1e-9 * std::abs(log_determinant));
+  });
+}
+
+TEST(LocalStates, LeaveOneOutErrorsAreThoseOfSolvingWithoutTheBlock) {
+  const RandomStates problem(40);
+  problem.with_system([&](const BlockSystem& system) {
+    const NormalEquations normal(system, problem.priors);
+    const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+    const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
+    for (Index b = 0; b < 40; ++b) {
+      const auto [matrix, gradient] = problem.dense(b);
+      const RowBlock& rows = problem.blocks.row(b);
+      const VectorX residual = rows.residual - problem.row(b) * Eigen::LLT<MatrixX>(matrix).solve(gradient);
+      const Vector3 wanted = rows.position_sigma * (rows.unwhiten * residual).head<3>();
+      EXPECT_LT((errors.col(b) - wanted).norm(), 1e-9 * wanted.norm()) << b;
+    }
   });
 }
 

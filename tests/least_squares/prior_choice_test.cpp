@@ -19,6 +19,50 @@ using vernier_test::RandomBlocks;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// Trials in order of precision.
+std::vector<PriorTrial> trials(const std::vector<std::vector<double>>& errors) {
+  std::vector<PriorTrial> out;
+  double precision = 1;
+  for (const auto& of_trial : errors) {
+    out.push_back({precision, Eigen::Map<const VectorX>(of_trial.data(), static_cast<Index>(of_trial.size()))});
+    precision *= 10;
+  }
+  return out;
+}
+
+// Two blocks, excess (0.5, 0): mean 0.25, standard error sqrt(0.125 / (2 * 1)) = 0.25, all exact in binary.
+TEST(OneStandardErrorRule, ExactlyOneStandardErrorIsStillAllowed) {
+  EXPECT_EQ(one_standard_error_rule(trials({{1, 1}, {1.5, 1}})), 1u);
+  EXPECT_EQ(one_standard_error_rule(trials({{1, 1}, {1.5, 1.0625}})), 0u);
+}
+
+// Four blocks, excess (0.2, 0, 0.2, 0): mean 0.1; standard error 0.058, standard deviation 0.115.
+TEST(OneStandardErrorRule, IsOfTheMeanNotOfABlock) {
+  EXPECT_EQ(one_standard_error_rule(trials({{1, 1, 1, 1}, {1.2, 1, 1.2, 1}})), 0u);
+  // excess (0.3, -0.1, 0.1, -0.1): mean 0.05, standard error 0.096
+  EXPECT_EQ(one_standard_error_rule(trials({{1, 1, 1, 1}, {1.3, 0.9, 1.1, 0.9}})), 1u);
+}
+
+// Errors differ by blocks much more than by trials: only paired differences say that the second trial is worse.
+TEST(OneStandardErrorRule, DifferencesArePaired) {
+  EXPECT_EQ(one_standard_error_rule(trials({{1, 9, 4, 20}, {1.5, 9.5, 4.5, 20.5}})), 0u);
+}
+
+TEST(OneStandardErrorRule, TakesTheTightestOfThoseAllowed) {
+  const std::vector<double> best{1, 1, 1}, allowed{1.3, 0.9, 0.9}, worse{2, 2, 2.01};
+  EXPECT_EQ(one_standard_error_rule(trials({best, allowed, allowed})), 2u);
+  EXPECT_EQ(one_standard_error_rule(trials({best, allowed, worse})), 1u);
+  EXPECT_EQ(one_standard_error_rule(trials({worse, best, worse})), 1u);
+  EXPECT_EQ(one_standard_error_rule(trials({best, worse, allowed})), 2u);
+  EXPECT_EQ(one_standard_error_rule(trials({worse})), 0u);
+}
+
+TEST(OneStandardErrorRule, WhatIsNotFiniteIsSuppressed) {
+  EXPECT_EQ(one_standard_error_rule(trials({{nan, 1}, {nan, 1}, {nan, 1}})), 2u);
+  EXPECT_EQ(one_standard_error_rule(trials({{infinity, 1}, {1, 1}})), 1u);
+  EXPECT_THROW((void)one_standard_error_rule({}), std::invalid_argument);
+}
+
 PriorChoice chosen(const RandomBlocks& poses) {
   return poses.with_system([&](const BlockSystem& s) {
     return choose_prior(s, NormalEquations(s), VectorX::Constant(15, 1e-3), VectorX::Zero(15), 5, 10, 1);

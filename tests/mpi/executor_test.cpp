@@ -103,8 +103,8 @@ TEST(MpiExecutor, SameFitAsAlone) {
   const MpiExecutor ranks, ranks_of_threads(MPI_COMM_WORLD, local);
   for (const MpiExecutor* executor : {&ranks, &ranks_of_threads}) {
     const auto fitted = recipe.fit(arm, data, {.seed = 5, .executor = *executor});
-    EXPECT_TRUE(same_bits(fitted.best().learned().theta(), alone.best().learned().theta()));
-    EXPECT_TRUE(same_bits(fitted.best().learned().beta(), alone.best().learned().beta()));
+    EXPECT_TRUE(same_bits(fitted.identified().learned().theta(), alone.identified().learned().theta()));
+    EXPECT_TRUE(same_bits(fitted.identified().learned().beta(), alone.identified().learned().beta()));
   }
 }
 

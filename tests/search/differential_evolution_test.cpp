@@ -118,6 +118,23 @@ TEST(LShade, RemembersByHand) {
 
 // Every generation: the population of the linear schedule, an archive no larger than its share and only of points once
 // held, the best never lost; in the end exactly the evaluations of the schedule.
+TEST(LShade, ArchivesTheParentsThatLost) {
+  LShade::State s;
+  s.positions = Eigen::RowVector3d(10, 20, 30);
+  s.fitness = Eigen::Vector3d(3, 3, 3);
+  s.archive.resize(1, 0);
+  const LShade shade{.archive_rate = 1.0 / 3};                              // room for one
+  shade.replace(s, Eigen::RowVector3d(1, 2, 3), Eigen::Vector3d(2, 3, 4));  // better, as good, worse
+  EXPECT_EQ(s.positions, Eigen::RowVector3d(1, 2, 30));
+  EXPECT_EQ(s.fitness, Eigen::Vector3d(2, 3, 3));
+  ASSERT_EQ(s.archive.cols(), 1);
+  EXPECT_EQ(s.archive(0), 10);
+  shade.replace(s, Eigen::RowVector3d(5, 6, 7), Eigen::Vector3d(9, 9, 1));
+  ASSERT_EQ(s.archive.cols(), 1);
+  EXPECT_EQ(s.archive(0), 30);  // the archive was full: the new loser takes the place
+  EXPECT_EQ(s.positions, Eigen::RowVector3d(1, 2, 7));
+}
+
 TEST(LShade, ShrinksAndSpendsItsBudget) {
   for (const Index budget : {1000, 1003, 5001}) {
     const LShade shade{.max_evaluations = budget};

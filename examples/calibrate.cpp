@@ -140,12 +140,7 @@ int run_calibration(support::Program& program, Options& o) {
   if (o.data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", o.data.size(), o.data.size());
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), rule);
   if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
-  fmt::print("\nErrors of the {} held-out poses [mm]\n\n", report.test_poses());
-  support::print_stages(report.stages);
-  fmt::print("\n{}", report.identification.summary());
-  for (const auto& remark : report.remarks()) fmt::print("{}\n", remark);
-  fmt::print("\nVerdict\n");
-  for (const auto& line : report.verdict()) fmt::print("- {}\n", line);
+  fmt::print("\n{}", report.summary());
   if (!program.common().json.empty()) support::write_json(program.common().json, vn::to_json(report, robot.name));
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
@@ -163,8 +158,8 @@ int reregister_arm(support::Program& program, const Options& o, const vn::Reregi
   const auto found = vn::reregister(robot.model(), data, free, o.calibrate.sensors);
   if (!found.determined)
     throw vn::CalibrationFailure(
-        fmt::format("{}: {} poses do not determine what may move; measure more, with the "
-                    "joints moved widely, or free less",
+        fmt::format("{}: {} poses do not determine what may move; measure more, with the joints "
+                    "moved widely, or free less",
                     o.data.front(), data.size()));
   if (!found.converged || found.rms_after > 0.02)
     throw vn::CalibrationFailure(
@@ -175,46 +170,30 @@ int reregister_arm(support::Program& program, const Options& o, const vn::Reregi
   from.data_file += "," + file_name(o.data.front());
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
-
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;
   const auto stage = [&](const char* key, const char* title, const auto& model) {
     return vn::StageErrors{key, title, vn::position_errors(model, test),
                            oriented ? vn::rotation_errors(model, test) : vn::VectorX()};
   };
   const std::vector stages{stage("as_fitted", "as fitted", robot), stage("reregistered", "re-registered", moved)};
-  fmt::print("{}: {} registered again from {} poses, everything else kept\n", robot.name(), o.free, data.size());
-  fmt::print("\nErrors of {} [mm]\n\n", o.test.empty() ? "those same poses (--test FILE names held-out ones)"
-                                                       : fmt::format("{} held-out poses", test.size()));
-  support::print_stages(stages);
-  fmt::print("\n");
-  const auto change = [](const char* what, bool freed, const vn::Isometry3& motion) {
-    const vn::Vector6 by = vn::FrameParameters(motion).values();
-    if (freed)
-      fmt::print("{} moved by ({:.3f}, {:.3f}, {:.3f}) mm, turned by ({:.3f}, {:.3f}, {:.3f}) mrad\n", what,
-                 by[0] * 1e3, by[1] * 1e3, by[2] * 1e3, by[3] * 1e3, by[4] * 1e3, by[5] * 1e3);
-    return std::vector<double>(by.begin(), by.end());
-  };
-  const auto base = change("Base", free.base, moved.identified().base() * robot.identified().base().inverse());
-  const auto tool = change("Tool", free.tool, robot.identified().tool().inverse() * moved.identified().tool());
-  std::vector<double> offsets;
-  for (int i = 0; i < N; ++i) {
-    const vn::DhRow &now = moved.identified().chain().row(i), &before = robot.identified().chain().row(i);
-    const bool revolute = now.joint == vn::JointType::revolute;
-    offsets.push_back(revolute ? now.theta - before.theta : now.d - before.d);
-    if (free.offsets)
-      fmt::print("Zero of joint {}: {:+.4f} {}\n", i + 1, offsets.back() * 1e3, revolute ? "mrad" : "mm");
+  fmt::print("{}: {} registered again from {} poses, everything else kept\n\nErrors of {} [mm]\n\n{}\n{}", robot.name(),
+             o.free, data.size(),
+             o.test.empty() ? "those same poses (--test FILE names held-out ones)"
+                            : fmt::format("{} held-out poses", test.size()),
+             vn::stage_table(stages), found.summary());
+  if (!program.common().json.empty()) {
+    support::Json json{{"robot", robot.name()},
+                       {"train_rows", data.size()},
+                       {"test_rows", test.size()},
+                       {"held_out", !o.test.empty()},
+                       {"stages", vn::stages_to_json(stages)}};
+    json.update(vn::to_json(found));
+    support::write_json(program.common().json, json);
   }
-  if (!program.common().json.empty())
-    support::write_json(program.common().json, {{"robot", robot.name()},
-                                                {"train_rows", data.size()},
-                                                {"test_rows", test.size()},
-                                                {"held_out", !o.test.empty()},
-                                                {"stages", vn::stages_to_json(stages)},
-                                                {"base_change_m_rad", base},
-                                                {"tool_change_m_rad", tool},
-                                                {"offsets_rad", offsets}});
-  if (!o.save.empty()) vn::save(o.save, moved);
-  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
+  if (!o.save.empty()) {
+    vn::save(o.save, moved);
+    fmt::print("Calibrated model: {}\n", o.save);
+  }
   return 0;
 }
 

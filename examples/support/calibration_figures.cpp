@@ -54,17 +54,6 @@ void draw_stages(const std::filesystem::path& folder, const std::string& robot,
 
 }  // namespace
 
-void print_stages(const std::vector<StageErrors>& stages) {
-  fmt::print("{:<22}{:>9}{:>9}{:>9}{:>9}{:>9}{}\n", "stage", "mean", "rms", "max", "min", "p95",
-             stages.front().rotation.size() > 0 ? "  mean [mrad]" : "");
-  for (const StageErrors& stage : stages) {
-    const auto e = ErrorStatistics::of(stage.position * 1e3);
-    fmt::print("{:<22}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}{:>9.4f}", stage.title, e.mean, e.rms, e.max, e.min, e.p95);
-    if (stage.rotation.size() > 0) fmt::print("{:>13.4f}", stage.rotation.mean() * 1e3);
-    fmt::print("\n");
-  }
-}
-
 void draw_calibration(const std::filesystem::path& folder, const std::string& robot,
                       const vernier::CalibrationReport& report) {
   draw_stages(folder, robot, report.stages);

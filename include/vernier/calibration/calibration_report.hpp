@@ -22,6 +22,9 @@ struct StageErrors {
   VectorX rotation;   ///< [rad]; empty where orientations are not used
 };
 
+/// A table of the position errors [mm] of stages, and of their mean orientation errors [mrad] where used.
+VERNIER_API std::string stage_table(const std::vector<StageErrors>& stages);
+
 /// One joint.
 struct JointReport {
   bool revolute = true;                                      ///< its angles are in rad, else in m
@@ -73,6 +76,8 @@ struct CalibrationReport {
   VERNIER_API std::vector<std::string> remarks() const;
   /// What the calibration is good for, where, and what would improve it, a sentence each.
   VERNIER_API std::vector<std::string> verdict() const;
+  /// All of it as text: the table of stages, the identification, remarks and verdict.
+  VERNIER_API std::string summary() const;
 };
 
 }  // namespace vernier

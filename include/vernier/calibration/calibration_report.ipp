@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
 
@@ -10,6 +11,25 @@
 #include "vernier/evaluation/statistics.hpp"
 
 namespace vernier {
+
+VERNIER_IMPL std::string stage_table(const std::vector<StageErrors>& stages) {
+  const bool oriented = !stages.empty() && stages.front().rotation.size() > 0;
+  std::string out = "stage                      mean      rms      max      min      p95";
+  out += oriented ? "  mean [mrad]\n" : "\n";
+  char line[160];
+  for (const StageErrors& stage : stages) {
+    const auto e = ErrorStatistics::of(stage.position * 1e3);
+    std::snprintf(line, sizeof line, "%-22s%9.4f%9.4f%9.4f%9.4f%9.4f", stage.title.c_str(), e.mean, e.rms, e.max, e.min,
+                  e.p95);
+    out += line;
+    if (stage.rotation.size() > 0) {
+      std::snprintf(line, sizeof line, "%13.4f", stage.rotation.mean() * 1e3);
+      out += line;
+    }
+    out += "\n";
+  }
+  return out;
+}
 
 VERNIER_IMPL Index CalibrationReport::extrapolated() const { return (gates.array() < 1).count(); }
 
@@ -121,6 +141,15 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size())
     out.push_back(message(weak - advice.size(), advice.empty() ? "" : " more",
                           " parameters are weakly determined and regularised around nominal."));
+  return out;
+}
+
+VERNIER_IMPL std::string CalibrationReport::summary() const {
+  std::string out = message("Errors of the ", test_poses(), " held-out poses [mm]\n\n", stage_table(stages), "\n",
+                            identification.summary());
+  for (const std::string& line : remarks()) out += line + "\n";
+  out += "\nVerdict\n";
+  for (const std::string& line : verdict()) out += "- " + line + "\n";
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/calibration/calibration_report.hpp"
+#include "vernier/registration/reregister.hpp"
 
 namespace vernier {
 
@@ -19,6 +20,10 @@ VERNIER_API nlohmann::ordered_json stages_to_json(const std::vector<StageErrors>
 /// Callers include <nlohmann/json.hpp>.
 /// @param robot its name
 VERNIER_API nlohmann::ordered_json to_json(const CalibrationReport& report, const std::string& robot);
+
+/// A re-registration: `base_change_m_rad` and `tool_change_m_rad` (translation and rotation vector), `offsets_rad`.
+/// Callers include <nlohmann/json.hpp>.
+VERNIER_API nlohmann::ordered_json to_json(const ReregistrationReport& report);
 
 }  // namespace vernier
 

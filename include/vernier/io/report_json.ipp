@@ -53,4 +53,11 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"verdict", report.verdict()}};
 }
 
+VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) {
+  const auto values = [](const auto& vector) { return std::vector<double>(vector.begin(), vector.end()); };
+  return {{"base_change_m_rad", values(FrameParameters(report.motion.base).values())},
+          {"tool_change_m_rad", values(FrameParameters(report.motion.tool).values())},
+          {"offsets_rad", values(report.motion.offsets)}};
+}
+
 }  // namespace vernier

@@ -6,14 +6,16 @@
 #include "vernier/core/types.hpp"
 #include "vernier/least_squares/row_block.hpp"
 
-namespace vernier::detail {
+namespace vernier {
 
 /// How an arm was moved.
 struct FrameMotion {
-  Isometry3 base = Isometry3::Identity();  ///< applied in front
-  VectorX offsets;                         ///< added to the joint values
-  Isometry3 tool = Isometry3::Identity();  ///< applied behind
+  Isometry3 base = Isometry3::Identity();  ///< applied before the base frame: new base = motion * old base
+  VectorX offsets{};                       ///< added to the joint zeros [rad, m]
+  Isometry3 tool = Isometry3::Identity();  ///< applied after the tool frame: new tool = old tool * motion
 };
+
+namespace detail {
 
 /// Which changes are estimated: of the base (a twist in the outer frame), of the joint zeros, of the tool (a twist in
 /// its own frame).
@@ -33,7 +35,8 @@ struct FrameUpdate {
   VERNIER_API FrameMotion motion(const VectorX& change) const;
 };
 
-}  // namespace vernier::detail
+}  // namespace detail
+}  // namespace vernier
 
 #if VERNIER_HEADER_ONLY
 #include "vernier/registration/frame_update.ipp"

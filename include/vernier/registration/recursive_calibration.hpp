@@ -82,7 +82,7 @@ class RecursiveCalibration {
     MatrixX rows;
     VectorX residual;
     detail::whitened_rows(update_, sensors_, at.pose, at.jacobian.data(), measured, oriented, rows, residual);
-    const detail::FrameMotion by = update_.motion(estimator_.update(rows, residual));
+    const FrameMotion by = update_.motion(estimator_.update(rows, residual));
     model_ = model_.moved(by.base, JointVector<N>(by.offsets), by.tool);
   }
 

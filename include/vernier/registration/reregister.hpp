@@ -5,6 +5,7 @@
 /// again, everything else is kept.
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "vernier/error_model/error_model.hpp"
@@ -27,11 +28,17 @@ struct ReregisterOptions {
 
 /// Outcome of a re-registration, whatever the arm.
 struct ReregistrationReport {
-  bool determined = false;  ///< whether the poses determine everything that is estimated
-  bool converged = false;   ///< whether the iteration converged
-  double rms_before = 0;    ///< position error with the frames of before [m]
-  double rms_after = 0;     ///< position error with the new ones [m]
-  VectorX change_std{};     ///< standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated
+  bool determined = false;               ///< whether the poses determine everything that is estimated
+  bool converged = false;                ///< whether the iteration converged
+  double rms_before = 0;                 ///< position error with the frames of before [m]
+  double rms_after = 0;                  ///< position error with the new ones [m]
+  FrameMotion motion{};                  ///< how the arm was moved
+  ReregisterOptions estimated{};         ///< what was estimated
+  std::vector<JointType> joint_types{};  ///< of the arm
+  VectorX change_std{};  ///< standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated
+
+  /// What was estimated and how it changed, a line each [mm, mrad].
+  VERNIER_API std::string summary() const;
 };
 
 /// A re-registered arm.
@@ -61,10 +68,10 @@ template <class Chain>
 Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
                                const ReregisterOptions& options = {}, const SensorModel& sensors = {}) {
   constexpr int N = Chain::dof;
-  const auto moved = [&](const detail::FrameMotion& by) {
+  const auto moved = [&](const FrameMotion& by) {
     return model.moved(by.base, JointVector<N>(by.offsets), by.tool);
   };
-  const auto evaluate = [&](const detail::FrameMotion& motion, std::vector<Isometry3>& poses, MatrixX& jacobians) {
+  const auto evaluate = [&](const FrameMotion& motion, std::vector<Isometry3>& poses, MatrixX& jacobians) {
     const ErrorModel<Chain> now = moved(motion);
     poses.resize(static_cast<std::size_t>(data.size()));
     jacobians.resize(6, N * data.size());
@@ -74,9 +81,11 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }
   };
+  const auto types = model.nominal().chain().joint_types();
   ReregistrationReport report;
-  const detail::FrameMotion found =
+  const FrameMotion found =
       detail::reregister(evaluate, detail::station_of(data, sensors), options, sensors, report);
+  report.joint_types = {types.begin(), types.end()};
   return {std::move(report), moved(found)};
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/frames.hpp"
+#include "vernier/kinematics/frame_parameters.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
 #include "vernier/registration/reregister.hpp"
 
@@ -14,6 +16,26 @@ namespace vernier {
 VERNIER_IMPL void ReregisterOptions::validate() const {
   require(base || tool || offsets, "ReregisterOptions: nothing is to be estimated");
   require(offset_prior_std > 0, "ReregisterOptions: offset_prior_std ", offset_prior_std, " must be positive");
+}
+
+VERNIER_IMPL std::string ReregistrationReport::summary() const {
+  std::string out;
+  char line[160];
+  const auto frame = [&](const char* name, const Isometry3& by) {
+    const Vector6 v = 1e3 * FrameParameters(by).values();
+    std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm, turned by (%.3f, %.3f, %.3f) mrad\n", name,
+                  v(0), v(1), v(2), v(3), v(4), v(5));
+    out += line;
+  };
+  if (estimated.base) frame("Base", motion.base);
+  if (estimated.tool) frame("Tool", motion.tool);
+  for (Index i = 0; estimated.offsets && i < motion.offsets.size(); ++i) {
+    const bool revolute = joint_types[static_cast<std::size_t>(i)] == JointType::revolute;
+    std::snprintf(line, sizeof line, "Zero of joint %d moved by %+.4f %s\n", static_cast<int>(i + 1),
+                  motion.offsets(i) * 1e3, revolute ? "mrad" : "mm");
+    out += line;
+  }
+  return out;
 }
 
 namespace detail {
@@ -119,6 +141,8 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
     report.change_std = solved.inverse().diagonal().cwiseSqrt();
   }
   report.rms_after = rms();
+  report.motion = motion;
+  report.estimated = options;
   return motion;
 }
 

@@ -124,7 +124,7 @@ __attribute__((target("avx512f,avx512dq,fma"))) void multiply_add_avx512(double*
 __attribute__((target("avx2,fma"))) void multiply_add_avx2(double* s, vn::Index n) { multiply_add<4>(s, n); }
 #endif
 
-/// Operations of so many rounds; two a multiply-add.
+/// Operations of a number of rounds; two a multiply-add.
 double run_multiply_add(vn::Index rounds) {
   double sums[8] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5};
   int width = 2;

@@ -37,7 +37,7 @@ using Chain = vn::DhChain<6>;
 using Arm = vn::Framed<Chain>;
 using Joints = vn::JointVector<6>;
 
-constexpr int free_parameters = 27;  // that this arm's tool positions tell apart, frames included; checked below
+constexpr int free_parameters = 27;  // identifiable from this arm's tool positions, frames included; checked below
 using Free = std::array<vn::Index, free_parameters>;
 using Step = Eigen::Matrix<double, free_parameters, 1>;
 

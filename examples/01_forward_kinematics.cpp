@@ -26,8 +26,8 @@ int main() {
   std::printf("tool position         [%8.3f %8.3f %8.3f] mm\n", p.x(), p.y(), p.z());
   std::printf("tool rotation vector  [%8.3f %8.3f %8.3f] deg\n\n", r.x(), r.y(), r.z());
 
-  // The Jacobian says how the tool moves when a joint does: linear rows first, then angular.
-  // It also says what an error of a joint costs: here 1 mrad each.
+  // The Jacobian maps joint rates to the velocity of the tool: linear rows first, then angular.
+  // It also propagates joint errors: here 1 mrad each.
   const vn::Jacobian<6> jacobian = arm.jacobian(q);
   for (int j = 0; j < 6; ++j)
     std::printf("joint %d off by 1 mrad moves the tool by %.3f mm\n", j + 1, jacobian.col(j).head<3>().norm());

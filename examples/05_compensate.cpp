@@ -1,4 +1,4 @@
-// Send the robot where it is told: learn its position errors, then correct the commands.
+// Learn the position errors of a robot, then correct its commands.
 
 #include <cstdio>
 #include <vernier/compensation/cartesian.hpp>
@@ -29,7 +29,7 @@ int main() {
   std::printf("one target: the command moves the joints by up to %.2f mrad\n",
               (correction.command - target).cwiseAbs().maxCoeff() * 1e3);
 
-  // The judge is the actual arm: send it there and see where it ends up.
+  // Evaluated on the actual arm, sent to the corrected commands.
   const auto report = [&](const char* what, const vn::JointRows<6>& commands) {
     const auto errors = vn::positioning_errors(actual, nominal, commands, targets);
     const auto mm = vn::ErrorStatistics::of(errors.position * 1e3),

@@ -20,7 +20,7 @@ int main() {
   tool.translation() << 5_mm, -3_mm, 109_mm;
   const vn::Framed actual(vn::with_geometric_errors(nominal, {}, /*seed=*/1), base, tool);
 
-  // 100 positions from a tracker with 0.03 mm noise, and fresh ones without to judge by.
+  // 100 positions from a tracker with 0.03 mm noise, and held-out ones without noise.
   const auto region = vn::abb_irb120_operating_region();
   const auto train =
       vn::measure(actual, region.sample(nominal, 100, 1), {.position = 0.03_mm, .with_orientations = false});

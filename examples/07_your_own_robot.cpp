@@ -41,7 +41,7 @@ int main() {
   limits.lower << -2, 0.3, 0, -3;
   limits.upper << 2, 2.3, 0.2, 3;
 
-  // The laws check what types cannot say, such as that the Jacobian is the derivative of the pose.
+  // The laws check what types cannot express, such as that the Jacobian is the derivative of the pose.
   const auto violations = vn::testing::kinematic_model_violations(nominal, vn::sample_joints(limits, 100, 1));
   for (const auto& violation : violations) std::printf("broken law: %s\n", violation.c_str());
   if (!violations.empty()) return 1;

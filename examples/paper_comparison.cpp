@@ -1,6 +1,6 @@
 /// @file
 /// Repeats the experiment of Feng, Dong and Jin on a simulated ABB IRB 120: four learned compensations and the
-/// classical identification, judged by sending the actual arm to the corrected joints.
+/// classical identification, evaluated by sending the actual arm to the corrected joints.
 
 #include <fmt/format.h>
 
@@ -56,7 +56,7 @@ constexpr std::array<Method, 8> methods{{
     {"cartesian_var_pro_elm_sin_cos", "  on sines and cosines", {}},
     {"identification", "identification", {}},
 }};
-constexpr std::size_t trained = 5, identified_method = 7;  // the two from `trained` on are asked for
+constexpr std::size_t trained = 5, identified_method = 7;  // the two from `trained` on are optional
 
 /// The methods of a comparison, in order.
 std::vector<std::size_t> methods_of(bool var_pro) {
@@ -83,7 +83,7 @@ struct Settings {
   std::string poses_file;
 };
 
-/// Best fitness after so many evaluations.
+/// Best fitness after a number of evaluations.
 struct Convergence {
   std::vector<double> evaluations, best;
 };
@@ -137,7 +137,7 @@ class Experiment {
     run_.ran = methods_of(settings.var_pro);
     const Joints all =
         sample(robot, settings.region, settings.train + settings.test, vn::child_seed(seed, joints_stream));
-    train_ = all.topRows(settings.train);  // the rows are independent draws: the first so many are a random choice
+    train_ = all.topRows(settings.train);  // the rows are independent draws: the first ones are a random choice
     targets_ = {all.bottomRows(settings.test),
                 sample(robot, settings.region, settings.fresh, vn::child_seed(seed, fresh_stream))};
     measured_ = vn::measure(actual_, train_, {.position = settings.noise, .with_orientations = false},

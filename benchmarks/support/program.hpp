@@ -67,7 +67,7 @@ class Reporter : public benchmark::BenchmarkReporter {
 /// topic, the run ends with the ratio of each of them to it.
 class Program {
  public:
-  /// @param about what `--help` says before the options
+  /// @param about the text of `--help` before the options
   explicit Program(std::string about) : about_(std::move(about)) {}
 
   /// Adds a benchmark: `call(i)` with i = 0, 1, ... is timed, and what it returns is kept from being optimised away.
@@ -83,7 +83,7 @@ class Program {
   }
 
   /// Runs everything, prints the ratios.
-  /// @param repetitions of each, unless the command line says another number
+  /// @param repetitions of each, unless the command line gives another number
   /// @return 0, or 2 for wrong usage
   int run(int argc, char** argv, int repetitions = 9) {
     // Defaults come first, so that the user's own options win.
@@ -101,7 +101,7 @@ class Program {
     return 0;
   }
 
-  /// Prints the help where it is asked for.
+  /// Prints the help where the command line requests it.
   bool wants_help(int argc, char** argv) const {
     for (int i = 1; i < argc; ++i) {
       if (std::strcmp(argv[i], "--help") != 0 && std::strcmp(argv[i], "-h") != 0) continue;

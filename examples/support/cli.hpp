@@ -70,7 +70,7 @@ class Program {
 /// @throws std::runtime_error naming the file and the reason
 void require_writable(const std::filesystem::path& path);
 
-/// Runs a program's body and says what went wrong in one line on standard error.
+/// Runs a program's body and reports a failure in one line on standard error.
 /// @return the body's value; 0 after help; 2 for wrong usage; 1 for any other failure
 int run_program(const char* name, const char* description, int argc, const char* const* argv,
                 const std::function<int(Program&)>& body);

@@ -62,7 +62,7 @@ struct PagmoSearch {
     pagmo::population population{};
   };
 
-  /// An algorithm that is told to evaluate a generation as a whole.
+  /// An algorithm, set to evaluate a generation as a whole.
   template <class Algorithm>
   static pagmo::algorithm whole_generations(Algorithm algorithm) {
     algorithm.set_bfe(pagmo::bfe(pagmo::member_bfe()));

@@ -12,14 +12,14 @@
 
 namespace support {
 
-/// One line that shows how far something has come and how long it will take; silent where nobody looks at it. Takes
+/// One line that shows how far something has come and how long it will take; silent where the stream is no terminal. Takes
 /// itself away at the end. Serves as an observer: `ProgressBar bar("joint PSO-ELM", 300); options.observer = bar;`
 class ProgressBar {
  public:
   /// @param label what is going on
-  /// @param total steps (generations) it will take; 0 where nobody knows
+  /// @param total steps (generations) it will take; 0 where unknown
   ProgressBar(std::string label, vernier::Index total);
-  /// The same on another stream, shown or not as told.
+  /// The same on another stream, shown or not.
   ProgressBar(std::string label, vernier::Index total, std::FILE* stream, bool shown);
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;

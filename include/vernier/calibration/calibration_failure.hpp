@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// A calibration that must not be used; the message says why, and what to do, in one line.
+/// A calibration that must not be used; the message names the reason and the remedy in one line.
 class CalibrationFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -43,7 +43,7 @@ enum class CorrectionTarget {
 struct CorrectionOptions {
   /// What a correction aims at.
   CorrectionTarget target = CorrectionTarget::automatic;
-  int moving_joints = 0;             ///< only the first so many joints are corrected; 0: all (the paper moves 3)
+  int moving_joints = 0;             ///< number of leading joints that are corrected; 0: all (the paper moves 3)
   double position_tolerance = 1e-6;  ///< the paper's epsilon [m]
   double rotation_tolerance = 1e-6;  ///< [rad]
   int max_iterations = 30;           ///< evaluations of the model

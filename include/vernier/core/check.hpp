@@ -19,7 +19,7 @@ namespace detail {
 struct MessagePart {
   /// What it is.
   enum class Kind : unsigned char { text, character, integer, natural, real, single } kind = Kind::text;
-  /// Its value; which one says `kind`.
+  /// Its value, of the type that `kind` names.
   union {
     std::string_view text{};
     char character;

@@ -19,7 +19,7 @@ struct Progress {
   double best = 0;        ///< best objective value so far
 };
 
-/// Refers to a callable `void(const Progress&)` or `bool(const Progress&)` that outlives it; `false` asks to stop.
+/// Refers to a callable `void(const Progress&)` or `bool(const Progress&)` that outlives it; `false` requests a stop.
 class ObserverRef {
  public:
   ObserverRef() = default;
@@ -38,7 +38,7 @@ class ObserverRef {
           }
         }) {}
 
-  /// Reports; false when the observer asks to stop.
+  /// Reports; false when the observer requests a stop.
   bool operator()(const Progress& progress) const { return call_ == nullptr || call_(object_, progress); }
 
  private:

@@ -38,7 +38,7 @@ VERNIER_API double ties(const VectorX& ranks) {
   return sum;
 }
 
-/// Two-sided p of a whole-numbered statistic whose values 0, 1, ... arise in so many ways.
+/// Two-sided p of a whole-numbered statistic, given the number of ways in which its values 0, 1, ... arise.
 VERNIER_API double two_sided(const std::vector<double>& ways, double statistic) {
   const auto at = ways.begin() + static_cast<std::ptrdiff_t>(std::lround(statistic));
   const double below = std::accumulate(ways.begin(), at + 1, 0.0), above = std::accumulate(at, ways.end(), 0.0);

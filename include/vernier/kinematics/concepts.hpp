@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What the whole house builds on: a thing that says where its tool is. Nominal chains, identified chains, chains with
+/// The concepts of kinematics: a model that maps joints to the pose of its tool. Nominal chains, identified chains, chains with
 /// frames, simulated arms and models with a learned correction are all kinematic models.
 
 #include <concepts>
@@ -64,7 +64,7 @@ PosesAndJacobians evaluate_rows(const JointRows<N>& joints, Index columns, Poses
 /// - `jacobian(q)`: 6 x N as in `Jacobian`; the exact derivative of `pose`
 /// - `pose_and_jacobian(q)`: both; the primitive that solvers call
 ///
-/// `testing::kinematic_model_violations` checks what the types cannot say.
+/// `testing::kinematic_model_violations` checks what types cannot express.
 template <class M>
 concept KinematicModel = requires(const M& model, const JointVector<M::dof>& q) {
   requires M::dof >= 1;
@@ -111,7 +111,7 @@ PoseAndParameterJacobian<M::num_parameters> pose_and_parameter_jacobian(const M&
   }
 }
 
-/// Tool positions of n configurations, n x 3 [m]. A model that has `positions(joints)` itself is asked for them.
+/// Tool positions of n configurations, n x 3 [m]. Calls the model's own `positions(joints)` where it has one.
 template <KinematicModel M>
 PointRows positions(const M& model, const JointRows<M::dof>& joints) {
   if constexpr (requires { model.positions(joints); }) return model.positions(joints);
@@ -120,7 +120,7 @@ PointRows positions(const M& model, const JointRows<M::dof>& joints) {
   return out;
 }
 
-/// Poses of n configurations. A model that has `poses(joints)` itself is asked for them.
+/// Poses of n configurations. Calls the model's own `poses(joints)` where it has one.
 template <KinematicModel M>
 std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
   if constexpr (requires { model.poses(joints); }) return model.poses(joints);
@@ -130,8 +130,8 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
   return out;
 }
 
-/// Poses and Jacobians of n configurations. A model that has `poses_and_jacobians(joints, out)` itself is asked for
-/// them.
+/// Poses and Jacobians of n configurations. Calls the model's own `poses_and_jacobians(joints, out)` where it has
+/// one.
 /// @param model  any kinematic model
 /// @param joints n x N
 /// @param out    storage to be used again

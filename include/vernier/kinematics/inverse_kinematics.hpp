@@ -31,7 +31,7 @@ struct IkOptions {
   int restarts = 0;                  ///< further starts where one does not converge: drawn within the limits, half a
                                      ///< turn (pi m) to either side of the seed where there are none; always the
                                      ///< same ones. The solution may then lie on another branch than the seed.
-  int moving_joints = N;             ///< only the first so many joints move, 1..N
+  int moving_joints = N;             ///< number of leading joints that move, 1..N
 };
 
 /// The best joints found.
@@ -40,7 +40,7 @@ struct IkResult {
   JointVector<N> joints;      ///< within the limits, whatever the status
   IkStatus status;            ///< see `IkStatus`
   double position_error = 0;  ///< what is left [m]
-  double rotation_error = 0;  ///< what is left [rad]; 0 where only a position was asked for
+  double rotation_error = 0;  ///< remaining [rad]; 0 where the target is a position
   int iterations = 0;         ///< evaluations of the model
 };
 
@@ -94,7 +94,7 @@ IkResult<M::dof> inverse_kinematics(const M& model, const Isometry3& target, boo
 
 }  // namespace detail
 
-/// Joints that bring the tool to a full pose, on the branch of the seed and near to it unless restarts are asked for.
+/// Joints that bring the tool to a full pose, on the branch of the seed and near to it unless `restarts` is set.
 /// Does not allocate.
 /// @param model   any kinematic model
 /// @param target  base_T_tool

@@ -15,7 +15,7 @@ namespace vernier::detail {
 /// Residuals of all rows that were measured, and their Jacobian.
 struct StackedRows {
   VectorX residuals;
-  MatrixX jacobian;                  ///< rows x unknowns; empty where it was not asked for
+  MatrixX jacobian;                  ///< rows x unknowns; empty where it is not needed
   std::vector<Index> block;          ///< of each row
   std::vector<bool> of_orientation;  ///< of each row
 };

@@ -19,7 +19,7 @@ struct ChainFrames {
   Placement placement() const { return {base, point}; }
 };
 
-/// Where results of n configurations go; null for what is not asked for.
+/// Where results of n configurations go; null for what is not wanted.
 struct BlockResults {
   double* positions = nullptr;   ///< n x 3
   Isometry3* poses = nullptr;    ///< n

@@ -74,7 +74,7 @@ void expect_close(const std::vector<double>& angles, double tolerance) {
   }
 }
 
-TEST(VectorSinCos, EqualTheLibraryFunctionsOverManyRanges) {
+TEST(VectorSinCosWhiteBox, EqualTheLibraryFunctionsOverManyRanges) {
   Rng rng(1);
   for (const double range : {1e-300, 1e-12, 1e-4, pi / 4, pi, 2 * pi, 100.0, 1e4, 1e5}) {
     std::vector<double> angles(48000);
@@ -83,7 +83,7 @@ TEST(VectorSinCos, EqualTheLibraryFunctionsOverManyRanges) {
   }
 }
 
-TEST(VectorSinCos, EqualTheLibraryFunctionsAroundMultiplesOfAnEighthTurn) {
+TEST(VectorSinCosWhiteBox, EqualTheLibraryFunctionsAroundMultiplesOfAnEighthTurn) {
   std::vector<double> angles;
   for (int k = -100000; k <= 100000; k += k > -200 && k < 200 ? 1 : 7) {
     const double angle = k * (pi / 4);
@@ -93,7 +93,7 @@ TEST(VectorSinCos, EqualTheLibraryFunctionsAroundMultiplesOfAnEighthTurn) {
   expect_close(angles, 3e-16);
 }
 
-TEST(VectorSinCos, AnglesNearZeroAndPiKeepTheirDigits) {
+TEST(VectorSinCosWhiteBox, AnglesNearZeroAndPiKeepTheirDigits) {
   std::vector<double> angles;
   for (double x = 1e-300; x < 0.5; x *= 3) angles.insert(angles.end(), {x, -x, pi + x, pi - x});
   for (const SinCosRows& rows : sincos_by_all(angles)) {
@@ -104,7 +104,7 @@ TEST(VectorSinCos, AnglesNearZeroAndPiKeepTheirDigits) {
   }
 }
 
-TEST(VectorSinCos, EqualThoseOfConstantExpressions) {
+TEST(VectorSinCosWhiteBox, EqualThoseOfConstantExpressions) {
   Rng rng(2);
   std::vector<double> angles(12000);
   for (double& x : angles) x = rng.uniform(-20, 20);
@@ -117,7 +117,7 @@ TEST(VectorSinCos, EqualThoseOfConstantExpressions) {
   }
 }
 
-TEST(VectorSinCos, BeyondTheRangeOfTheReductionTheLibraryIsAsked) {
+TEST(VectorSinCosWhiteBox, BeyondTheRangeOfTheReductionTheLibraryIsAsked) {
   Rng rng(3);
   std::vector<double> angles;
   for (int i = 0; i < 1200; ++i) angles.push_back(rng.sign() * std::pow(10.0, rng.uniform(5.0001, 308)));
@@ -130,7 +130,7 @@ TEST(VectorSinCos, BeyondTheRangeOfTheReductionTheLibraryIsAsked) {
   }
 }
 
-TEST(VectorSinCos, ALaneIsNotDisturbedByItsNeighbours) {
+TEST(VectorSinCosWhiteBox, ALaneIsNotDisturbedByItsNeighbours) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   std::vector<double> calm(24), disturbed;
   for (std::size_t i = 0; i < calm.size(); ++i) calm[i] = 0.3 * static_cast<double>(i) - 2;
@@ -178,7 +178,7 @@ std::vector<std::vector<double>> exponentials_by_all(std::vector<double> x) {
   return all;
 }
 
-TEST(VectorExponential, EqualsTheLibraryFunctionOverManyRanges) {
+TEST(VectorExponentialWhiteBox, EqualsTheLibraryFunctionOverManyRanges) {
   Rng rng(4);
   for (const double range : {1e-300, 1e-12, 1e-4, 0.35, 1.0, 30.0, 708.0}) {
     std::vector<double> x(48000);
@@ -189,7 +189,7 @@ TEST(VectorExponential, EqualsTheLibraryFunctionOverManyRanges) {
   }
 }
 
-TEST(VectorExponential, IsExactAtZeroAndHeldBeyondItsRange) {
+TEST(VectorExponentialWhiteBox, IsExactAtZeroAndHeldBeyondItsRange) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> x{0,     -0.0, 708,  -708, std::nextafter(708, 709), -1e300, infinity, -infinity,
                               1e300, -709, -745, 709};

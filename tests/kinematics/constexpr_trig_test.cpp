@@ -39,12 +39,12 @@ void expect_close(double angle) {
   EXPECT_LE(ulps(cosine, std::cos(angle)), 2) << "cos " << angle;
 }
 
-TEST(ConstexprSinCos, WithinTwoUlpsForAnglesOfATable) {
+TEST(ConstexprSinCosWhiteBox, WithinTwoUlpsForAnglesOfATable) {
   constexpr int n = 100000;
   for (int i = -n; i <= n; ++i) expect_close(2 * std::numbers::pi * i / n);
 }
 
-TEST(ConstexprSinCos, WithinTwoUlpsAtMultiplesOfAQuarterTurn) {
+TEST(ConstexprSinCosWhiteBox, WithinTwoUlpsAtMultiplesOfAQuarterTurn) {
   for (int k = -40000; k <= 40000; ++k) {
     const double angle = k * (std::numbers::pi / 2);
     expect_close(angle);
@@ -53,7 +53,7 @@ TEST(ConstexprSinCos, WithinTwoUlpsAtMultiplesOfAQuarterTurn) {
   }
 }
 
-TEST(ConstexprSinCos, WithinTwoUlpsForSmallAndLargeAngles) {
+TEST(ConstexprSinCosWhiteBox, WithinTwoUlpsForSmallAndLargeAngles) {
   vernier::Rng rng(1);
   for (int i = 0; i < 200000; ++i) {
     expect_close(rng.sign() * std::pow(10.0, rng.uniform(-300, 0)));

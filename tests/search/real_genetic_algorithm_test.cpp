@@ -206,7 +206,7 @@ TEST(RealGeneticAlgorithm, ElitesSurvive) {
 }
 
 // Values 1 5 3 and 4 2 3: the best three are 1, 2 and the old 3.
-TEST(RealGeneticAlgorithm, BestOfBothByHand) {
+TEST(RealGeneticAlgorithmWhiteBox, BestOfBothByHand) {
   MatrixX genes(1, 3), children(1, 3);
   genes << 10, 50, 30;
   children << 41, 21, 31;

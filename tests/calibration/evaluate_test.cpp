@@ -1,0 +1,170 @@
+// Assessment on held-out poses, and data that support no calibration.
+
+#include "vernier/calibration/evaluate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "complaint.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/ceres/solver.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::evaluate_test {
+namespace {
+
+using vernier_test::complaint;
+using Chain = DhChain<6>;
+
+const Robot<6> robot = robots::ur10();
+constexpr MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.1e-3};
+
+JointRows<6> joints(Index n, std::uint64_t seed, double reach = 1) {
+  JointLimits<6> ranges;
+  ranges.lower = JointVector<6>(-2.5 * reach, -2.6, 0.3, -2.5, -2, -2.5);
+  ranges.upper = JointVector<6>(2.5 * reach, -0.6, 2.4, 2.5, 2, 2.5);
+  return sample_joints(ranges, n, seed);
+}
+
+Framed<WithJointErrors<Chain>> actual_arm() {
+  const Chain off =
+      with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
+  return Framed<WithJointErrors<Chain>>({off, draw_joint_errors(robot.chain, {.gear_ratio = 0, .coupling = 0}, 5)},
+                                        FrameParameters(Vector6{2, -1, 0.5, 0.1, -0.2, 1.5}),
+                                        FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}));
+}
+
+/// A small search: what is learned matters little here.
+const CalibrateOptions quick{
+    .errors = {.harmonics = 5},
+    .remainder = {.on_geometry = true, .hidden_nodes = 5, .particles = 4, .iterations = 3},
+};
+
+TEST(Evaluate, FiguresAreThoseOfTheModels) {
+  const auto actual = actual_arm();
+  const auto found = calibrate(robot.chain, measure(actual, joints(200, 1), noise, 2), quick);
+  // joint 1 reaches farther than it was measured in some of the held-out poses
+  const auto fresh = measure(actual, joints(100, 3, 1.15), noise, 4);
+  const CalibrationReport report = evaluate(found, fresh, robot.limits);
+
+  std::vector<std::string> keys;
+  for (const StageErrors& stage : report.stages) keys.push_back(stage.key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"frames", "geometry", "geometry_pso_elm", "elastic", "jointwise",
+                                            "jointwise_pso_elm"}));
+  EXPECT_EQ(report.stage("frames").position, position_errors(found.frames[0], fresh));
+  EXPECT_EQ(report.stage("geometry").position, position_errors(found.errors.geometry[0], fresh));
+  EXPECT_EQ(report.stage("jointwise").position, position_errors(found.model(), fresh));
+  EXPECT_EQ(report.stage("jointwise").rotation, rotation_errors(found.model(), fresh));
+  EXPECT_LT(report.stage("geometry").position.mean(), 0.5 * report.stage("frames").position.mean());
+  EXPECT_LT(report.stage("jointwise").position.mean(), 0.5 * report.stage("geometry").position.mean());
+  EXPECT_NE(complaint([&] { (void)report.stage("paint"); }).find("no stage is called 'paint'"), std::string::npos);
+
+  EXPECT_EQ(report.train_poses, 200);
+  EXPECT_EQ(report.test_poses(), 100);
+  EXPECT_TRUE(report.oriented);
+  Index outside = 0, within = 0;
+  double degradation = 0;
+  for (Index i = 0; i < 100; ++i) {
+    const double gate = found.coverage(fresh.joints(i));
+    EXPECT_EQ(report.gates(i), gate);
+    outside += gate < 1;
+    if (gate == 1)
+      degradation = std::max(degradation, report.stage("jointwise").position(i) - report.stage("geometry").position(i));
+    const PredictedPose predicted = found.errors.predicted(fresh.joints(i));
+    const Vector3 error = predicted.pose.translation() - fresh.position(i);
+    within += error.dot(Matrix3(predicted.covariance.topLeftCorner<3, 3>()).inverse() * error) <= 7.8147;
+  }
+  EXPECT_EQ(report.extrapolated(), outside);
+  EXPECT_GT(outside, 0);
+  EXPECT_LT(outside, 50);
+  EXPECT_EQ(report.max_degradation, degradation);
+  EXPECT_DOUBLE_EQ(report.ellipsoid_coverage, static_cast<double>(within) / 100);
+  EXPECT_GT(report.ellipsoid_coverage, 0.85);
+
+  ASSERT_EQ(report.joints.size(), 6u);
+  EXPECT_EQ(report.joints[2].held_out.size(), 100u);
+  EXPECT_EQ(report.joints[2].transmission.size(), static_cast<Index>(report.joints[2].angle.size()));
+}
+
+TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
+  const auto actual = actual_arm();
+  CalibrateOptions options = quick;
+  options.remainder = {.on_error_model = false};
+  const auto found = calibrate(robot.chain, measure(actual, joints(150, 1), noise, 2), options);
+  const auto fresh = measure(actual, joints(60, 3, 1.15), noise, 4);
+  const CalibrationReport report = evaluate(found, fresh);
+  std::vector<double> inside;
+  for (Index i = 0; i < 60; ++i)
+    if (report.gates(i) == 1) inside.push_back(report.stage("jointwise").position(i) * 1e3);
+  const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
+  char figures[160];
+  std::snprintf(figures, sizeof figures, "Accurate to %.3g mm mean, %.3g mm (95 %%), %.3g mm maximum", e.mean, e.p95,
+                e.max);
+  const std::vector<std::string> verdict = report.verdict();
+  ASSERT_GE(verdict.size(), 3u);
+  EXPECT_EQ(verdict[0].find(figures), 0u) << verdict[0] << "\n" << figures;
+  EXPECT_NE(verdict[0].find(message(e.n, " of 60 held-out poses")), std::string::npos) << verdict[0];
+  EXPECT_EQ(verdict[1].find(message(60 - e.n, " held-out poses lie outside")), 0u) << verdict[1];
+  EXPECT_EQ(verdict[2].find("Measured joint ranges [deg, mm]: q1 -14"), 0u) << verdict[2];
+}
+
+TEST(Evaluate, EveryStationNeedsItsHeldOutPoses) {
+  const auto actual = actual_arm();
+  CalibrateOptions options = quick;
+  options.errors.harmonics = 0;
+  options.remainder = {.on_error_model = false};
+  const auto found = calibrate(robot.chain, measure(actual, joints(60, 1), noise, 2), options);
+  const auto fresh = measure(actual, joints(10, 3), noise, 4);
+  EXPECT_NE(complaint([&] {
+              (void)evaluate(found, std::vector<Dataset<6>>{fresh, fresh});
+            }).find("2 sets of held-out poses for 1 stations"),
+            std::string::npos);
+  EXPECT_THROW((void)evaluate(found, std::vector<Dataset<6>>{}), std::invalid_argument);
+}
+
+/// What a calibration is refused with; empty where it is not.
+template <class Data>
+std::string refusal(const Data& data, const CalibrateOptions& options) {
+  try {
+    (void)calibrate(robot.chain, data, options);
+  } catch (const CalibrationFailure& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(CalibrationFailure, SaysWhatIsWrongWithTheData) {
+  CalibrateOptions options{.errors = {.harmonics = 0},
+                           .remainder = {.on_error_model = false},
+                           .arm_name = "UR10",
+                           .station_names = {"poses.csv"}};
+  const auto data = measure(actual_arm(), joints(60, 1), noise, 2);
+  EXPECT_EQ(refusal(data, options), "");
+  const auto expect = [&](const Dataset<6>& wrong, const std::string& reason) {
+    const std::string line = refusal(wrong, options);
+    EXPECT_EQ(line.find("poses.csv: with registered frames the model of UR10 is off by"), 0u) << line;
+    EXPECT_NE(line.find(reason), std::string::npos) << line;
+  };
+  expect({data.joints() * 180 / std::numbers::pi, data.positions()}, "looks like degrees in a _rad column");
+  expect({data.joints() * std::numbers::pi / 180, data.positions()}, "radians in a _deg column?");
+  expect({data.joints(), data.positions() * 1e3}, "x, y, z in mm called _m?");
+  expect({data.joints(), data.positions() * 1e-3}, "x, y, z in m called _mm?");
+  const auto other = robots::ur5().chain;
+  expect(measure(other, joints(60, 1), {.with_orientations = false}), "wrong robot, units or columns?");
+  EXPECT_NE(refusal(data.rows(std::array<Index, 2>{0, 1}), options).find("underdetermined"), std::string::npos);
+
+  options.refuse_implausible = false;
+  EXPECT_EQ(refusal(measure(other, joints(60, 1), {.with_orientations = false}), options), "");
+}
+
+}  // namespace
+}  // namespace vernier::evaluate_test

@@ -1,0 +1,215 @@
+// A fit of an error model: priors on the right coefficients, and the covariance that it reports, without Ceres.
+
+#include "vernier/error_model/fit_error_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "gauss_newton.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::fit_error_model_test {
+namespace {
+
+using vernier_test::identify_by_gauss_newton;
+using Chain = DhChain<6>;
+using Actual = Framed<WithJointErrors<Chain>>;
+
+const Robot<6> robot = robots::abb_irb120();
+const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
+const SensorModel squared{.loss = Loss::squared};
+const Framed<Chain> nominal(robot.chain, base, tool);
+const ErrorModelOptions few_harmonics{.harmonics = 2, .num_validation_poses = 60};
+
+Actual actual_arm(const JointErrorSizes& sizes) {
+  return Actual({with_geometric_errors(robot.chain, {}, 4), draw_joint_errors(robot.chain, sizes, 5)}, base, tool);
+}
+
+Dataset<6> measured(const Actual& actual, Index poses, std::uint64_t seed) {
+  return measure(actual, abb_irb120_operating_region().sample(robot.chain, poses, seed),
+                 {.position = 0.03e-3, .orientation = 0.1e-3}, seed);
+}
+
+FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ErrorModelOptions& options = few_harmonics) {
+  const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
+  EXPECT_TRUE(start.converged()) << start.message;
+  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+}
+
+/// What a coefficient belongs to, by its name.
+std::string kind_of(const std::string& name) {
+  for (const char* kind : {"gear", "coupling", "sag", "cos", "sin"})
+    if (name.starts_with(kind)) return kind;
+  return "geometry";
+}
+
+// Gears come in front of the coefficients that are there already: every prior must stay with its own.
+TEST(FitErrorModel, PriorsStayWithTheirCoefficientsWhenGearsAreAdded) {
+  const Dataset<6> data = measured(
+      actual_arm({.gear_ratio = 1e-3, .coupling = 1e-3, .compliance = 0, .harmonic = 3e-3, .harmonics = 2}), 120, 1);
+  const auto found = fitted(data);
+  std::map<std::string, BlockChoice> blocks;
+  for (const BlockChoice& block : found.blocks) blocks[block.name] = block;
+  ASSERT_TRUE(blocks.contains("jointwise") && blocks["jointwise"].used);
+  ASSERT_TRUE(blocks.contains("gears") && blocks["gears"].used);
+  ASSERT_TRUE(blocks.contains("elastic_with_jointwise"));
+  std::map<std::string, double> wanted{{"gear", blocks["gears"].precision},
+                                       {"coupling", blocks["gears"].precision},
+                                       {"sag", blocks["elastic_with_jointwise"].precision},
+                                       {"cos", blocks["jointwise"].precision},
+                                       {"sin", blocks["jointwise"].precision}};
+  ASSERT_NE(wanted["sag"], wanted["gear"]);
+  ASSERT_NE(wanted["sag"], wanted["cos"]);
+  const std::vector<std::string> names = found.arm.names();
+  const VectorX precisions = found.arm.precisions();
+  ASSERT_EQ(static_cast<Index>(names.size()), precisions.size());
+  std::map<std::string, int> count;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string kind = kind_of(names[k]);
+    ++count[kind];
+    if (wanted.contains(kind)) {
+      EXPECT_EQ(precisions(static_cast<Index>(k)), wanted[kind]) << names[k];
+    }
+  }
+  EXPECT_EQ(count["gear"], 6);
+  EXPECT_EQ(count["coupling"], 5);
+  EXPECT_EQ(count["sag"], 21);
+  EXPECT_EQ(count["cos"] + count["sin"], 24);
+}
+
+/// Estimates against the truth, in reported standard deviations; each of those must be below `largest_std`.
+void expect_found(const FittedErrorModel<Chain>& found, const Actual& actual, const std::vector<std::string>& which,
+                  double largest_std) {
+  const JointErrors& truth = actual.model().joint_errors();
+  const std::vector<std::string> names = found.arm.names(), true_names = truth.terms().names();
+  const VectorX steps = found.arm.steps(), scales = found.arm.scales();
+  for (const std::string& name : which) {
+    const Index k = std::find(names.begin(), names.end(), name) - names.begin();
+    ASSERT_LT(k, steps.size()) << name;
+    const double wanted =
+        truth.coefficients()(std::find(true_names.begin(), true_names.end(), name) - true_names.begin());
+    const double std = std::sqrt(found.covariance(k, k)) * scales(k);
+    EXPECT_LT(std::abs(steps(k) * scales(k) - wanted), 4 * std) << name;
+    EXPECT_LT(std, largest_std) << name;
+    EXPECT_GT(std::abs(wanted), 4 * largest_std) << name;  // else zero would do
+  }
+}
+
+// Coefficients are in units of their own expected sizes. Second harmonics of joints that turn widely act like nothing
+// else; joint 2 follows joint 1 by 0.6 mrad/rad, and joint 6 has a gear error of 0.2.
+TEST(FitErrorModel, FindsTheCoefficientsWithinTheirDeviations) {
+  const auto measured_widely = [](const Actual& actual) {
+    return measure(actual, sample_joints(robot.limits, 150, 2), {.position = 0.03e-3, .orientation = 0.1e-3}, 2);
+  };
+  const Actual rippled =
+      actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0.5e-3, .harmonics = 2});
+  ErrorModelOptions transmissions = few_harmonics;
+  transmissions.compliance = transmissions.gear_ratio = transmissions.coupling = false;
+  expect_found(fitted(measured_widely(rippled), transmissions), rippled, {"cos2_2", "cos3_2", "sin3_2", "sin4_2"},
+               0.04e-3);
+  const Actual geared =
+      actual_arm({.gear_ratio = 0.2e-3, .coupling = 0.2e-3, .compliance = 0, .harmonic = 0.5e-3, .harmonics = 2});
+  expect_found(fitted(measured_widely(geared)), geared, {"coupling2", "gear6"}, 0.01e-3);
+}
+
+/// The covariance at the solution, before the noise of visits is known: (J'J + priors)^-1 times the weighted squares
+/// over the values that the unknowns leave free.
+MatrixX expected_covariance(const ErrorModelEstimate& estimate, std::vector<detail::Station> stations) {
+  const detail::CalibrationProblem problem(estimate.arm, std::move(stations), Loss::squared);
+  const detail::StackedRows rows = problem.stacked(true);
+  const VectorX precisions = estimate.arm.precisions();
+  const MatrixX information = rows.jacobian.transpose() * rows.jacobian;
+  const MatrixX inverse = (information + MatrixX(precisions.asDiagonal())).inverse();
+  const double explained = (inverse * information).trace();  // effective number of parameters
+  return inverse * rows.residuals.squaredNorm() / (static_cast<double>(rows.residuals.size()) - explained);
+}
+
+/// Largest difference relative to the deviations.
+double difference(const MatrixX& a, const MatrixX& b) {
+  const VectorX std = b.diagonal().cwiseSqrt();
+  return ((a - b).array() / (std * std.transpose()).array()).abs().maxCoeff();
+}
+
+// Few poses: of 90 values about 60 are left free.
+TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
+  const Dataset<6> data = measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0}), 15, 3);
+  const auto found = fitted(data, {.compliance = false, .harmonics = 0});
+  const MatrixX plain = expected_covariance(found, {detail::station_of(data, squared)});
+  ASSERT_EQ(found.covariance.rows(), plain.rows());
+  // the noise of visits may support a smaller one, by one of a few factors
+  const double factor = found.covariance(0, 0) / plain(0, 0);
+  double nearest = 0;
+  for (const double allowed : {1.0, 0.7, 0.5, 0.35, 0.25})
+    if (std::abs(factor - allowed) < std::abs(factor - nearest)) nearest = allowed;
+  EXPECT_NEAR(factor, nearest, 1e-6);
+  EXPECT_LT(difference(found.covariance, nearest * plain), 1e-6);
+}
+
+TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
+  const Actual actual = actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0});
+  const Actual in_its_base(actual.model(), {}, tool);
+  const auto data = measure_distances(in_its_base, Vector3(0.9, -1.2, 0.3),
+                                      abb_irb120_operating_region().sample(robot.chain, 60, 4), 0.03e-3, 4);
+  const auto start =
+      identify_by_gauss_newton(Framed<Chain>(robot.chain, {}, tool), data, {.frames = Frames::base_and_tool}, squared);
+  const auto found = fit_error_model(start, std::vector<Dataset<6>>{}, std::vector<Distances<6>>{data},
+                                     {.compliance = false, .harmonics = 0}, squared);
+  ASSERT_TRUE(found.converged);
+  EXPECT_LT(difference(found.covariance, expected_covariance(found, {detail::station_of(data, squared)})), 1e-6);
+  EXPECT_GT(found.position_sigma, 0.02e-3);
+  EXPECT_LT(found.position_sigma, 0.08e-3);
+}
+
+/// Base x and y in units of 1 and 2 mm, standard deviations 0.1 and 0.2 units, correlation 0.5; joints that do not
+/// repeat.
+TEST(ErrorModelEstimate, CovariancesByHand) {
+  const ArmGeometry arm(nominal);
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({arm}, {{0, -1, 1e-3, 0}, {1, -1, 2e-3, 0}})};
+  estimate.covariance = (Eigen::Matrix2d() << 0.01, 0.01, 0.01, 0.04).finished();
+  estimate.position_sigma = 0.3e-3;
+  estimate.joint_sigma = 0.1e-3;
+  estimate.orientation_sigma = 0.2e-3;
+  estimate.fallback_error = 0.8e-3;
+  const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
+  Matrix6 model = Matrix6::Zero();
+  model.topLeftCorner<2, 2>() << 0.01e-6, 0.02e-6, 0.02e-6, 0.16e-6;
+  EXPECT_LT((estimate.model_covariance(q) - model).norm(), 1e-18);
+  const Jacobian<6> jacobian = nominal.jacobian(q);
+  Matrix6 visit = model + 1e-8 * jacobian * jacobian.transpose();
+  visit.diagonal().head<3>().array() += 9e-8 + 0.25e-6 * 0.25;  // half of 0.8 mm / 1.6, squared
+  visit.diagonal().tail<3>().array() += 4e-8;
+  EXPECT_LT((estimate.visit_covariance(q, 0.5) - visit).norm(), 1e-12 * visit.norm());
+  visit.diagonal().head<3>().array() -= 0.25e-6 * 0.25;
+  EXPECT_LT((estimate.visit_covariance(q, 1) - visit).norm(), 1e-12 * visit.norm());
+}
+
+// a cos q + b sin q at 0 and pi: a and -a, mean 0; its variance is that of a.
+TEST(ErrorModelEstimate, TransmissionByHand) {
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
+  JointTerms terms(6);
+  terms.transmission[1] = Fourier{1};
+  terms.transmission[2] = Fourier{1};
+  estimate.arm.set_terms(terms, Eigen::Vector4d(1e-3, 2e-3, 3e-3, 4e-3), Eigen::Vector4d::Ones());
+  VectorX steps(5);
+  steps << 0, 1, 2, 5, 7;
+  estimate.arm.move(steps);
+  estimate.covariance = VectorX::LinSpaced(5, 1, 5).cwiseAbs2().asDiagonal();
+  const JointFunction f = estimate.transmission(2, {0, std::numbers::pi});
+  EXPECT_LT((f.value - Eigen::Vector2d(15e-3, -15e-3)).norm(), 1e-15);
+  EXPECT_LT((f.std - Eigen::Vector2d(12e-3, 12e-3)).norm(), 1e-15);  // 4 units of 3 mrad
+  const JointFunction mean = estimate.transmission(2, {0, 0});
+  EXPECT_LT(mean.value.norm() + mean.std.norm(), 1e-15);
+  EXPECT_EQ(estimate.transmission(0, {0, 1}).value, Eigen::Vector2d::Zero());
+}
+
+}  // namespace
+}  // namespace vernier::fit_error_model_test

@@ -1,0 +1,226 @@
+// The blocks of code of docs/guide.md, in the order of the page. What a block takes for granted stands before it; the
+// checks behind it are about what it made. Only the block on MPI is compiled and not run here: tests/mpi runs its like.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "guide_blocks.hpp"
+#include "temporary_folder.hpp"
+#include "vernier/ceres.hpp"
+#include "vernier/compensation/cartesian.hpp"
+#include "vernier/core/atomic_file.hpp"
+#include "vernier/core/literals.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/split.hpp"
+#include "vernier/io/model_file.hpp"
+#include "vernier/io/robot_file.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/registration/recursive_calibration.hpp"
+#include "vernier/regression/elm.hpp"
+#include "vernier/regression/var_pro_elm.hpp"
+#include "vernier/search/tuned.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+#ifdef VERNIER_DOCS_MPI
+#include "vernier/mpi.hpp"
+#endif
+
+namespace vernier::guide_test {
+namespace {
+
+static_assert(guide_blocks == 17, "a block of docs/guide.md without a test");
+
+using namespace vernier::literals;
+using Chain = DhChain<6>;
+
+const Chain arm = robots::ur10().chain;
+
+JointLimits<6> working_range() {
+  JointLimits<6> out;
+  out.lower = JointVector<6>(-2.5, -2.6, 0.3, -2.5, -2, -2.5);
+  out.upper = JointVector<6>(2.5, -0.6, 2.4, 2.5, 2, 2.5);
+  return out;
+}
+
+Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
+  return FrameParameters(Vector6{x, y, z, rx, ry, rz}).isometry();
+}
+
+const JointLimits<6> limits = working_range();
+const Isometry3 base = frame(2, -1, 0.5, 0.1, -0.2, 1.5), tool = frame(0.02, 0.03, 0.11, 0, 0.1, 0);
+const JointVector<6> q(0.3, -1.4, 1.2, 0.4, -0.7, 0.2);
+
+/// The real arm: off in its links by tenths of a millimetre and milliradians, with three harmonics in each joint.
+Framed<WithJointErrors<Chain>> real_arm(const Isometry3& at = base) {
+  const Chain off = with_geometric_errors(arm, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
+  return Framed(WithJointErrors<Chain>(off, draw_joint_errors(arm, {.gear_ratio = 0, .coupling = 0}, 5)), at, tool);
+}
+
+Dataset<6> measured(const Framed<WithJointErrors<Chain>>& real, Index poses, std::uint64_t seed) {
+  return measure(real, sample_joints(limits, poses, seed), {.position = 0.03e-3, .orientation = 0.1e-3}, seed);
+}
+
+/// Mean position error of a model at poses that no fit has seen [m].
+template <class Model>
+double error(const Model& model, const Isometry3& at = base) {
+  return prediction_error(model, measure(real_arm(at), sample_joints(limits, 200, 99))).mean;
+}
+
+/// A test runs in a folder of its own.
+class Guide : public ::testing::Test {
+ protected:
+  Guide() { std::filesystem::current_path(folder_.path()); }
+  ~Guide() override { std::filesystem::current_path(before_); }
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+  testing_support::TemporaryFolder folder_{"guide"};
+};
+
+TEST_F(Guide, CalibratesSavesAndCorrects) {
+  const Dataset<6> data = measured(real_arm(), 200, 1);
+  ::testing::internal::CaptureStdout();
+#include "guide_1.inc"
+  EXPECT_GT(::testing::internal::GetCapturedStdout().size(), 100u);
+  EXPECT_EQ(report.test_poses(), 40);
+  EXPECT_EQ(report.train_poses, 160);
+  const double geometry = report.stage("geometry").position.mean(),
+               jointwise = report.stage("jointwise").position.mean();
+  EXPECT_LT(jointwise, 0.1e-3);
+  EXPECT_LT(jointwise, 0.6 * geometry);
+
+  {
+    ::testing::internal::CaptureStdout();
+#include "guide_2.inc"
+    EXPECT_NE(::testing::internal::GetCapturedStdout().find("jointwise: "), std::string::npos);
+    EXPECT_LT(error(model), 0.1e-3);
+    EXPECT_EQ(predicted.gate, 1);
+    const double sigma = std::sqrt(predicted.covariance.topLeftCorner<3, 3>().trace());
+    EXPECT_LT((predicted.pose.translation() - real_arm().position(q)).norm(), 4 * sigma);
+    EXPECT_LT(sigma, 0.2e-3);
+  }
+  {
+#include "guide_9.inc"
+    EXPECT_LT(error(tuned.model()), 0.1e-3);
+  }
+  {
+#include "guide_10.inc"
+    EXPECT_EQ(saved.name(), "cell 3");
+    EXPECT_EQ(saved.limits().upper, limits.upper);
+    EXPECT_EQ(saved.model().position(q), calibration.model().position(q));
+    const Vector3 desired = saved.nominal().position(q);
+    EXPECT_LT((real_arm().position(correction.command) - desired).norm(), 0.15e-3);
+    EXPECT_GT((real_arm().position(q) - desired).norm(), 0.5e-3);
+  }
+  {
+#include "guide_11.inc"
+    EXPECT_LT((real_arm().position(command) - compensator.nominal().position(q)).norm(), 0.15e-3);
+  }
+  {
+    const Isometry3 elsewhere = frame(-1, 2, 0.3, 0, 0.1, -0.4) * base;
+    const Dataset<6> six_poses = measured(real_arm(elsewhere), 6, 7);
+    const SensorModel sensors{};
+    ::testing::internal::CaptureStdout();
+#include "guide_7.inc"
+    EXPECT_EQ(::testing::internal::GetCapturedStdout().rfind("Base moved by (", 0), 0u);
+    EXPECT_TRUE(moved.determined);
+    EXPECT_GT(moved.rms_before, 1);
+    EXPECT_LT(error(moved.model, elsewhere), 0.15e-3);
+    EXPECT_EQ(load<6>("moved.json").position(q), robot.with_model(moved.model, robot.provenance()).position(q));
+
+    const Isometry3 drifted = frame(0.4e-3, -0.3e-3, 0.2e-3, 0, 0, 0) * base;
+    const Dataset<6> drifting = measured(real_arm(drifted), 100, 8);
+#include "guide_8.inc"
+    EXPECT_GT(error(robot.model(), drifted), 0.4e-3);
+    EXPECT_LT(error(now, drifted), 0.15e-3);
+  }
+}
+
+TEST_F(Guide, SensorsAndKnownFrames) {
+  const Dataset<6> data = measured(real_arm(), 120, 1);
+#include "guide_3.inc"
+  EXPECT_FALSE(by_tracker.oriented);
+  EXPECT_EQ(by_tracker.sensors.position_sigma, 0.015e-3);
+  EXPECT_LT(error(by_tracker.model()), 0.15e-3);
+#include "guide_4.inc"
+  EXPECT_EQ(with_free_tool.model().identified().base().matrix(), base.matrix());  // known: kept bit for bit
+  EXPECT_NE(with_free_tool.model().identified().tool().matrix(), tool.matrix());
+  EXPECT_LT(error(with_free_tool.model()), 0.15e-3);
+}
+
+TEST_F(Guide, SeveralStations) {
+  const Isometry3 other = frame(-3, 0.5, 0, 0, 0, -2.5);
+  const Dataset<6> monday = measured(real_arm(), 60, 1), tuesday = measured(real_arm(other), 60, 2);
+#include "guide_5.inc"
+  EXPECT_LT(error(of_both.model()), 0.15e-3);
+  EXPECT_LT(error(on_tuesday, other), 0.15e-3);
+}
+
+TEST_F(Guide, Distances) {
+  const Dataset<6> data = measured(real_arm(), 60, 1);
+  const JointRows<6> joints = sample_joints(limits, 300, 3);
+  const auto wire = measure_distances(real_arm(), {1, -1, 0.2}, joints, 0.1e-3, 4);
+  std::string text = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,distance_mm\n";
+  for (Index i = 0; i < wire.size(); ++i) {
+    for (int j = 0; j < 6; ++j) text += message(joints(i, j), ',');
+    text += message(wire.length(i) * 1e3, '\n');
+  }
+  write_file("wire.csv", text);
+#include "guide_6.inc"
+  EXPECT_EQ(with_poses.distances, 300);
+  EXPECT_LT(error(with_poses.model()), 0.2e-3);
+  EXPECT_EQ(alone.poses, 0);
+  const auto fresh = measure_distances(real_arm(), {1, -1, 0.2}, sample_joints(limits, 100, 5));
+  for (Index i = 0; i < fresh.size(); ++i)
+    EXPECT_NEAR(alone.model().position(fresh.joints(i)).norm(), fresh.length(i), 0.8e-3) << i;
+}
+
+TEST_F(Guide, DescribesARobot) {
+#include "guide_12.inc"
+  const JointVector<3> zero = JointVector<3>::Zero();
+  EXPECT_NEAR((gantry.position(zero) - Vector3(0.025 + 0.455, 0.01, 0.4)).norm(), 0, 1e-12);
+  EXPECT_EQ(gantry.row(2).joint, JointType::prismatic);
+
+  std::string text = R"({"name": "mine", "convention": "standard", "joints": [)";
+  for (int i = 0; i < 6; ++i)
+    text += message(i > 0 ? ", " : "", R"({"a_m": )", arm.row(i).a, R"(, "alpha_rad": )", arm.row(i).alpha,
+                    R"(, "d_m": )", arm.row(i).d, R"(, "theta_rad": )", arm.row(i).theta, "}");
+  write_file("my_arm.json", text + "]}");
+  const Dataset<6> data = measured(real_arm(), 60, 1);
+#include "guide_13.inc"
+  EXPECT_EQ(described.name, "mine");
+  EXPECT_LT((described.arm.position(q) - arm.position(q)).norm(), 1e-4);  // numbers of six digits
+  EXPECT_LT(error(identified.model), 0.5 * error(identified.model.nominal()));
+}
+
+TEST_F(Guide, Learns) {
+  const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);
+  const double nominal = prediction_error(arm, data).mean;
+#include "guide_14.inc"
+  EXPECT_LT(prediction_error(learned, data).mean, 0.2 * nominal);
+#include "guide_15.inc"
+  EXPECT_LT(prediction_error(trained, data).mean, 0.2 * nominal);
+}
+
+const CartesianCompensation compensation{Tuned{Elm{.hidden_nodes = 20}, Pso{.particles = 10, .iterations = 5}}};
+
+TEST_F(Guide, ThreadsChangeNothing) {
+  const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);
+  ::testing::internal::CaptureStdout();
+#include "guide_16.inc"
+  const std::string seen = ::testing::internal::GetCapturedStdout();
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), '\n'), 6);  // the first population and five iterations
+  EXPECT_EQ(in_parallel.position(q), compensation.fit(arm, data, {.seed = 1}).position(q));
+}
+
+#ifdef VERNIER_DOCS_MPI
+[[maybe_unused]] void over_several_machines(int argc, char** argv, const Dataset<6>& data, const Dataset<6>& test) {
+#include "guide_17.inc"
+}
+#endif
+
+}  // namespace
+}  // namespace vernier::guide_test

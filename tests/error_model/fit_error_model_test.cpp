@@ -12,6 +12,7 @@
 #include <string>
 
 #include "gauss_newton.hpp"
+#include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
 #include "vernier/simulation/error_sources.hpp"
@@ -139,19 +140,40 @@ double difference(const MatrixX& a, const MatrixX& b) {
   return ((a - b).array() / (std * std.transpose()).array()).abs().maxCoeff();
 }
 
-// Few poses: of 90 values about 60 are left free.
+/// The factor on the covariance that leave-one-pose-out errors support.
+double supported_factor(const ErrorModelEstimate& estimate, const MatrixX& covariance, const Dataset<6>& data) {
+  const detail::CalibrationProblem problem(estimate.arm, {detail::station_of(data, squared)}, Loss::squared);
+  const BlockSystem system = problem.system();
+  const NormalEquations normal(system);
+  const FactorisedEquations solved(normal, estimate.arm.precisions(), estimate.arm.steps());
+  const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
+  std::vector<detail::LeftOutVisit> visits;
+  std::vector<RowBlock> blocks(static_cast<std::size_t>(data.size()));
+  estimate.arm.linearise(0, data.joints(), blocks.data());
+  Rows6 all(6, estimate.arm.size());
+  for (Index b = 0; b < data.size(); ++b) {
+    const RowBlock& rows = blocks[static_cast<std::size_t>(b)];
+    rows.expand(estimate.arm.group_sizes(), all);
+    const MatrixX position = all.topRows<3>(), joint = rows.factor.topRows<3>();
+    visits.push_back({errors.col(b), position * covariance * position.transpose(), joint * joint.transpose()});
+  }
+  return detail::visit_noise(visits).model;
+}
+
+// Few poses: of 90 values about 60 are left free. Then the noise of visits scales what remains.
 TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
-  const Dataset<6> data = measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0}), 15, 3);
-  const auto found = fitted(data, {.compliance = false, .harmonics = 0});
-  const MatrixX plain = expected_covariance(found, {detail::station_of(data, squared)});
-  ASSERT_EQ(found.covariance.rows(), plain.rows());
-  // the noise of visits may support a smaller one, by one of a few factors
-  const double factor = found.covariance(0, 0) / plain(0, 0);
-  double nearest = 0;
-  for (const double allowed : {1.0, 0.7, 0.5, 0.35, 0.25})
-    if (std::abs(factor - allowed) < std::abs(factor - nearest)) nearest = allowed;
-  EXPECT_NEAR(factor, nearest, 1e-6);
-  EXPECT_LT(difference(found.covariance, nearest * plain), 1e-6);
+  bool scaled = false;
+  for (const std::uint64_t seed : {3, 4, 5, 6, 7, 8}) {
+    const Dataset<6> data =
+        measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0}), 15, seed);
+    const auto found = fitted(data, {.compliance = false, .harmonics = 0});
+    const MatrixX plain = expected_covariance(found, {detail::station_of(data, squared)});
+    ASSERT_EQ(found.covariance.rows(), plain.rows());
+    const double factor = supported_factor(found, plain, data);
+    scaled = scaled || factor < 1;
+    EXPECT_LT(difference(found.covariance, factor * plain), 1e-6) << seed;
+  }
+  EXPECT_TRUE(scaled);
 }
 
 TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {

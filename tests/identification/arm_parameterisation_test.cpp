@@ -1,0 +1,79 @@
+// The unknowns of an arm: what stays when terms or parameters are added.
+
+#include "vernier/identification/arm_parameterisation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vernier/core/rng.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vernier::arm_parameterisation_test {
+namespace {
+
+using Chain = DhChain<6>;
+
+const Robot<6> robot = robots::abb_irb120();
+
+VectorX random_vector(Rng& rng, Index n) {
+  VectorX out(n);
+  for (double& x : out) x = rng.normal();
+  return out;
+}
+
+ArmParameterisation example() {
+  const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
+  return ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))},
+                             {{0, -1, 1e-3, 0}, {9, -1, 1e-2, 1}, {38, -1, 2e-3, 4}});
+}
+
+/// Values by name [m, rad].
+double value(const ArmParameterisation& arm, const std::string& name) {
+  const auto names = arm.names();
+  const Index k = std::find(names.begin(), names.end(), name) - names.begin();
+  return arm.steps()(k) * arm.scales()(k);
+}
+
+// Gears stand in front of gravity, which stands in front of the transmissions: all indices change.
+TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
+  Rng rng(1);
+  ArmParameterisation arm = example();
+  JointTerms few(6);
+  few.gravity.emplace(robot.chain);
+  few.transmission[1] = Fourier{2};
+  few.transmission[4] = Fourier{3};
+  arm.set_terms(few, VectorX::LinSpaced(few.size(), 1e-4, 2e-4), VectorX::Ones(few.size()));
+  arm.move(random_vector(rng, arm.size()));
+  MatrixX joints(1, 6);
+  joints << 0.1, -0.5, 0.3, 0.7, -0.4, 1;
+  const Isometry3 before = arm.poses(0, joints).front();
+  ArmParameterisation more = arm;
+  JointTerms all = few;
+  all.gear_ratio = all.coupling = true;
+  all.transmission[0] = Fourier{1};
+  all.transmission[4] = Fourier{5};  // longer: what was there comes first
+  more.set_terms(all, VectorX::LinSpaced(all.size(), 3e-4, 5e-4), VectorX::Ones(all.size()));
+  EXPECT_EQ(more.size(), arm.size() + 6 + 5 + 2 + 4);
+  for (const std::string& name : arm.names()) EXPECT_NEAR(value(more, name), value(arm, name), 1e-16) << name;
+  for (const char* added : {"gear3", "coupling2", "cos1_1", "sin5_4"}) EXPECT_EQ(value(more, added), 0) << added;
+  EXPECT_LT((more.poses(0, joints).front().matrix() - before.matrix()).norm(), 1e-15);
+}
+
+TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
+  Rng rng(2);
+  ArmParameterisation arm = example();
+  JointTerms terms(6);
+  terms.transmission[2] = Fourier{2};
+  arm.set_terms(terms, VectorX::Constant(4, 1e-4), VectorX::Constant(4, 7));
+  EXPECT_TRUE(arm.steps().isZero(0));
+  const VectorX first = random_vector(rng, 7), second = random_vector(rng, 7);
+  arm.move(first);
+  arm.move(second);
+  EXPECT_LT((arm.steps() - first - second).norm(), 1e-12);
+  EXPECT_EQ(arm.precisions(), (VectorX(7) << 0, 1, 4, 7, 7, 7, 7).finished());
+  EXPECT_EQ(arm.scales(), (VectorX(7) << 1e-3, 1e-2, 2e-3, 1e-4, 1e-4, 1e-4, 1e-4).finished());
+  arm.set_geometric({{38, -1, 2e-3, 4}});  // values stay
+  EXPECT_NEAR(arm.steps()(0), first(2) + second(2), 1e-12);
+}
+
+}  // namespace
+}  // namespace vernier::arm_parameterisation_test

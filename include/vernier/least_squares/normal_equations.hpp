@@ -47,8 +47,11 @@ class FactorisedEquations {
   /// @param steps       present values, relative to the means of the priors
   /// @param local_steps present values of local unknowns, likewise
   /// @param solve       for the local unknowns
+  /// @param damping     of the step, a share of the diagonal of dense and factored unknowns; 0 where the inverse is to
+  ///                    be a covariance
   VERNIER_API FactorisedEquations(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
-                                  const VectorX& local_steps = {}, SparseSolve solve = eigen_sparse_solver);
+                                  const VectorX& local_steps = {}, SparseSolve solve = eigen_sparse_solver,
+                                  double damping = 0);
 
   /// Whether there is a solution.
   bool usable() const { return usable_; }

@@ -158,11 +158,11 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
 
 VERNIER_IMPL FactorisedEquations::FactorisedEquations(const NormalEquations& normal, const VectorX& precisions,
                                                       const VectorX& steps, const VectorX& local_steps,
-                                                      SparseSolve solve)
+                                                      SparseSolve solve, double damping)
     : normal_(normal), solve_(solve) {
   factor_ = normal.matrix;
   VectorX right = normal.gradient + precisions.cwiseProduct(steps);
-  factor_.diagonal() += precisions;
+  factor_.diagonal() += precisions + damping * (normal.matrix.diagonal() + precisions);
   factor_.diagonal().array() += 1e-12 * normal.matrix.diagonal().maxCoeff();  // of the data alone: priors may be huge
   VectorX local_right;
   if (normal.local.size > 0) {

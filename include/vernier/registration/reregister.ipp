@@ -1,13 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
+#include "vernier/least_squares/marquardt_damping.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
 #include "vernier/registration/reregister.hpp"
 
@@ -124,21 +127,39 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
   if (options.offsets)
     precisions.segment(update.offsets_begin(), joints)
         .setConstant(1 / (options.offset_prior_std * options.offset_prior_std));
+  MarquardtDamping damping;
+  FrameMotion accepted = motion;
+  VectorX accepted_total = total;
+  double reached = std::numeric_limits<double>::infinity(), predicted = 0;
   for (int iteration = 0; iteration < 50 && !report.converged; ++iteration) {
     const NormalEquations normal(system);
+    const double sum = normal.cost + precisions.dot(total.cwiseAbs2());
+    if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
+      damping.reject();
+      motion = accepted;
+      total = accepted_total;
+      evaluate(motion, poses, jacobians);
+      continue;
+    }
+    if (iteration > 0 && damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
+    accepted = motion;
+    accepted_total = total;
+    reached = sum;
     MatrixX information = normal.matrix;
     information.diagonal() += precisions;
     // eigenvalues are squares of singular values
     const VectorX spectrum = right_singular(information).values;
     report.determined = spectrum(spectrum.size() - 1) > 1e-14 * spectrum(0);
     if (!report.determined) break;
-    const FactorisedEquations solved(normal, precisions, total);
+    const FactorisedEquations solved(normal, precisions, total, {}, eigen_sparse_solver, damping.value());
     if (!solved.usable()) break;
+    const VectorX slope = normal.gradient + precisions.cwiseProduct(total);
+    predicted = damping.value() * solved.step().cwiseAbs2().dot(information.diagonal()) - solved.step().dot(slope);
     total += solved.step();
     motion = update.apply(motion, solved.step());
     evaluate(motion, poses, jacobians);
     report.converged = solved.step().cwiseAbs().maxCoeff() < 1e-10;
-    report.change_std = solved.inverse().diagonal().cwiseSqrt();
+    report.change_std = FactorisedEquations(normal, precisions, accepted_total).inverse().diagonal().cwiseSqrt();
   }
   report.rms_after = rms();
   report.motion = motion;

@@ -50,14 +50,15 @@ class CalibrationProblem {
   VERNIER_API double cost() const;
 
   /// Weights of the loss from the present residuals.
-  VERNIER_API void reweight();
+  /// @return sums of the squared norms of residuals: with the weights of before, and with the new ones
+  VERNIER_API std::array<double, 2> reweight();
   /// All weights one.
   VERNIER_API void reset_weights();
   /// Thresholds of the loss at the present residuals, of unit weights: of positions, orientations, distances; 0 where
   /// there are none.
   VERNIER_API std::array<double, 3> thresholds() const;
 
-  /// Iterates Gauss-Newton steps, damped where they do not lower the cost; a robust loss is reweighted on the way.
+  /// Levenberg-Marquardt, undamped until a step fails; a robust loss is reweighted before every step.
   /// @return whether the iteration converged
   VERNIER_API bool solve(int max_iterations = 20);
 

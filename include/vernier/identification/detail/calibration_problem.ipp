@@ -1,13 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/marquardt_damping.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
 
 namespace vernier::detail {
@@ -191,7 +194,8 @@ VERNIER_IMPL std::array<double, 3> CalibrationProblem::thresholds() const {
   return loss_thresholds(*this, residual_norms());
 }
 
-VERNIER_IMPL void CalibrationProblem::reweight() {
+VERNIER_IMPL std::array<double, 2> CalibrationProblem::reweight() {
+  const std::vector<Block> before = blocks_;
   reset_weights();
   const MatrixX norms = residual_norms();
   const std::array<double, 3> thresholds = loss_thresholds(*this, norms);
@@ -202,19 +206,46 @@ VERNIER_IMPL void CalibrationProblem::reweight() {
     if (position > 0) block.weight[0] = robust_weight(loss_, norms(b, 0), position);
     if (station.oriented() && thresholds[1] > 0) block.weight[1] = robust_weight(loss_, norms(b, 1), thresholds[1]);
   }
+  std::array<double, 2> sums{};
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double norm = norms(static_cast<Index>(b), static_cast<Index>(k));
+      sums[0] += before[b].weight[k] * norm * norm;
+      sums[1] += blocks_[b].weight[k] * norm * norm;
+    }
+  return sums;
 }
 
 VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
+  const bool robust = loss_ != Loss::squared;
+  MarquardtDamping damping;
+  ArmParameterisation accepted = arm;
+  double reached = std::numeric_limits<double>::infinity(), predicted = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (loss_ != Loss::squared) reweight();
     const VectorX steps = arm.steps(), precisions = arm.precisions();
+    const double of_priors = precisions.dot(steps.cwiseAbs2());
+    std::array<double, 2> sums{};
+    if (robust) sums = reweight();
     const NormalEquations normal(system());
-    const FactorisedEquations solved(normal, precisions, steps);
+    if (!robust) sums = {normal.cost, normal.cost};
+    const double sum = sums[0] + of_priors;
+    if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
+      damping.reject();
+      arm = accepted;
+      if (robust) reweight();
+      continue;
+    }
+    if (iteration > 0 && damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
+    accepted = arm;
+    reached = sums[1] + of_priors;
+    const FactorisedEquations solved(normal, precisions, steps, {}, eigen_sparse_solver, damping.value());
     if (!solved.usable()) return false;
     arm.move(solved.step());
     // converged when steps vanish, or change no more than digits of the cost
     const double gain = -solved.step().dot(normal.gradient + precisions.cwiseProduct(steps));
-    if (solved.step().cwiseAbs().maxCoeff() < 1e-6 || gain < (loss_ == Loss::squared ? 1e-9 : 1e-5) * normal.cost)
+    predicted = gain + damping.value() * solved.step().cwiseAbs2().dot(normal.matrix.diagonal() + precisions);
+    if (damping.value() < 1 &&
+        (solved.step().cwiseAbs().maxCoeff() < 1e-6 || gain < (robust ? 1e-5 : 1e-9) * normal.cost))
       return true;
   }
   return false;

@@ -27,7 +27,7 @@ class CeresProblem {
     options.evaluation_callback = &evaluation_;
     ceres::Problem ceres_problem(options);
     ceres_problem.AddParameterBlock(steps_.data(), static_cast<int>(steps_.size()));
-    rows_ = problem_.stacked(true);
+    problem_.stack(true, rows_);
     if (thresholds == nullptr) {  // all in one: then linear algebra is what remains
       ceres_problem.AddResidualBlock(new Rows(*this, 0, rows_.residuals.size()), nullptr, steps_.data());
     } else {
@@ -65,7 +65,7 @@ class CeresProblem {
     void PrepareForEvaluation(bool, bool new_point) override {
       if (!new_point) return;
       problem.move_to(problem.steps_);
-      problem.rows_ = problem.problem_.stacked(true);
+      problem.problem_.stack(true, problem.rows_);
     }
     CeresProblem& problem;
   };

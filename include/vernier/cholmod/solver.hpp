@@ -10,7 +10,8 @@ namespace vernier {
 /// A `SparseSolve` by CHOLMOD's Cholesky factorisation: supernodal where that is faster, with a fill-reducing ordering.
 /// Takes the place of `EigenSparseSolver` where local unknowns are many and coupled.
 ///
-///     FactorisedEquations solved(normal, precisions, steps, local_steps, CholmodSolver{});
+///     const CholmodSolver cholmod;
+///     const FactorisedEquations solved(normal, precisions, steps, local_steps, cholmod);
 /// @cite Chen, Davis, Hager and Rajamanickam 2008
 struct CholmodSolver {
   /// See `SparseSolve`.

@@ -89,7 +89,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, cons
 }
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
-                                                                   RowBlock* out) const {
+                                                                   RowBlock* out, bool joint_noise) const {
   const ArmGeometry& arm = geometry(station);
   const int n = arm.joints();
   const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
@@ -99,6 +99,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
   else
     arm.poses_and_parameter_jacobians(errors_.effective_rows(joints), at);
   const Index count = joints.rows();
+  const bool factored = joint_noise || !errors_.empty() || terms().size() > 0;
   VectorX q(n);
   MatrixX basis(n, few);
   for (Index i = 0; i < count; ++i) {
@@ -108,8 +109,8 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
       const double* entry = at.jacobians.data() + 6 * k * count + i;
       for (int r = 0; r < 6; ++r) column[r] = entry[r * count] * scale;
     };
-    rows.factor.resize(6, n);
-    for (int j = 0; j < n; ++j)  // a joint adds to a parameter of its row
+    rows.factor.resize(6, factored ? n : 0);
+    for (int j = 0; factored && j < n; ++j)  // a joint adds to a parameter of its row
       copy(6 + 5 * j + static_cast<int>(arm.chain().revolute(j) ? DhParameter::theta : DhParameter::d), 1,
            rows.factor.col(j).data());
     rows.dense.resize(6, num_dense());
@@ -120,6 +121,9 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
       else
         std::fill_n(column, 6, 0.0);
     }
+    rows.local = {};
+    rows.functions.resize(0);
+    if (!factored) continue;
     q = joints.row(i).transpose();
     if (few > 0) {
       terms().dense_basis(q.data(), basis);
@@ -127,13 +131,13 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
         rows.dense.col(of_geometry + k) = rows.factor.lazyProduct(basis.col(k) * coefficient_scales_(k));
     }
     transmission_values(q.data(), rows.functions);
-    rows.local = {};
   }
   return std::move(at.poses);
 }
 
 VERNIER_IMPL void ArmParameterisation::transmission_values(const double* q, VectorX& out) const {
   out.resize(terms().size() - terms().num_dense_terms());
+  if (out.size() == 0) return;
   Index at = 0;
   for (std::size_t j = 0; j < terms().transmission.size(); ++j) {
     const Fourier& fourier = terms().transmission[j];

@@ -46,7 +46,7 @@ class FactorisedEquations {
   /// @param precisions  of independent priors of dense and factored unknowns
   /// @param steps       present values, relative to the means of the priors
   /// @param local_steps present values of local unknowns, likewise
-  /// @param solve       for the local unknowns
+  /// @param solve       for the local unknowns; must outlive this
   /// @param damping     of the step, a share of the diagonal of dense and factored unknowns; 0 where the inverse is to
   ///                    be a covariance
   VERNIER_API FactorisedEquations(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,

@@ -32,7 +32,7 @@ struct RowBlock {
 
   Vector6 residual;              ///< whitened
   Rows6 dense;                   ///< 6 x dense
-  Rows6 factor;                  ///< 6 x groups
+  Rows6 factor;                  ///< 6 x groups, or empty where no group has a function
   VectorX functions;             ///< of all groups, group by group
   std::array<Local, 2> local{};  ///< the local states
   Matrix6 unwhiten;              ///< takes whitened residuals to multiples of the sensor's standard deviations

@@ -8,6 +8,7 @@ VERNIER_IMPL void RowBlock::expand(const std::vector<Index>& group_sizes, Eigen:
   out.leftCols(dense.cols()) = dense;
   Index at = 0;
   for (std::size_t j = 0; j < group_sizes.size(); ++j) {
+    if (group_sizes[j] == 0) continue;
     out.middleCols(dense.cols() + at, group_sizes[j]).noalias() =
         factor.col(static_cast<Index>(j)) * functions.segment(at, group_sizes[j]).transpose();
     at += group_sizes[j];

@@ -46,6 +46,8 @@ class CalibrationProblem {
   VERNIER_API void operator()(Index first, Index count, RowBlock* out) const;
   /// All rows at once.
   VERNIER_API StackedRows stacked(bool with_jacobian) const;
+  /// The same into rows of this problem, whose memory is used again.
+  VERNIER_API void stack(bool with_jacobian, StackedRows& out) const;
   /// Weighted sum of squares, of residuals and priors.
   VERNIER_API double cost() const;
 

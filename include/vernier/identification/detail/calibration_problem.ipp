@@ -67,14 +67,21 @@ VERNIER_API Vector6 measured_residual(const Station& station, Index row, const I
 /// Scales rows by the sensor's precision; of a distance the position rows are projected to the line of sight first.
 VERNIER_API void whiten_rows(const Station& station, const Vector3& along, double position, const Matrix3& orientation,
                              Rows6& rows) {
+  const bool distance = station.lengths != nullptr, oriented = station.oriented();
   for (Index k = 0; k < rows.cols(); ++k) {
-    const Vector3 linear = rows.col(k).head<3>(), angular = rows.col(k).tail<3>();
-    rows.col(k).setZero();
-    if (station.lengths != nullptr)
-      rows(0, k) = position * along.dot(linear);
-    else
-      rows.col(k).head<3>() = position * linear;
-    if (station.oriented()) rows.col(k).tail<3>() = orientation * angular;
+    double* column = rows.col(k).data();
+    if (distance) {
+      column[0] = position * (along(0) * column[0] + along(1) * column[1] + along(2) * column[2]);
+      column[1] = column[2] = 0;
+    } else {
+      for (int r = 0; r < 3; ++r) column[r] *= position;
+    }
+    if (oriented) {
+      const Vector3 angular(column[3], column[4], column[5]);
+      Eigen::Map<Vector3>(column + 3) = orientation * angular;
+    } else {
+      column[3] = column[4] = column[5] = 0;
+    }
   }
 }
 
@@ -83,8 +90,8 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     const Block& begin = at(first + done);
     const Station& station = stations_[static_cast<std::size_t>(begin.station)];
     const Index stretch = std::min(count - done, station.size() - begin.row);
-    const std::vector<Isometry3> poses =
-        arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch), out + done);
+    const std::vector<Isometry3> poses = arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
+                                                       out + done, station.joint_sigma > 0);
     for (Index i = 0; i < stretch; ++i) {
       const Block& block = at(first + done + i);
       RowBlock& rows = out[done + i];
@@ -121,23 +128,33 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
 
 VERNIER_IMPL StackedRows CalibrationProblem::stacked(bool with_jacobian) const {
   StackedRows out;
+  stack(with_jacobian, out);
+  return out;
+}
+
+VERNIER_IMPL void CalibrationProblem::stack(bool with_jacobian, StackedRows& out) const {
   const Index values = measured_values(), unknowns = arm.size();
   out.residuals.resize(values);
   if (with_jacobian) out.jacobian.resize(values, unknowns);
-  out.block.reserve(static_cast<std::size_t>(values));
-  Rows6 expanded(6, unknowns);
+  const bool known = out.block.size() == static_cast<std::size_t>(values);  // which row is which never changes
+  if (!known) out.block.reserve(static_cast<std::size_t>(values));
+  const bool factored = arm.num_dense() < unknowns;
+  const std::vector<Index> group_sizes = arm.group_sizes();
+  Rows6 expanded(6, factored ? unknowns : 0);
   Index row = 0;
   visit_blocks(system(), 0, 1, num_blocks(), [&](Index b, const RowBlock& rows) {
     const Index count = station_of(b).values();
-    if (with_jacobian) rows.expand(arm.group_sizes(), expanded);
+    if (with_jacobian && factored) rows.expand(group_sizes, expanded);
+    const Rows6& columns = factored ? expanded : rows.dense;
+    for (Index k = 0; with_jacobian && k < unknowns; ++k)
+      std::copy_n(columns.col(k).data(), count, &out.jacobian(row, k));
     for (Index r = 0; r < count; ++r, ++row) {
       out.residuals(row) = rows.residual(r);
-      for (Index k = 0; with_jacobian && k < unknowns; ++k) out.jacobian(row, k) = expanded(r, k);
+      if (known) continue;
       out.block.push_back(b);
       out.of_orientation.push_back(r >= 3);
     }
   });
-  return out;
 }
 
 VERNIER_IMPL double CalibrationProblem::cost() const {

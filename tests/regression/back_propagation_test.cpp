@@ -13,6 +13,7 @@
 #include "regression_samples.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/testing/regressor_laws.hpp"
+#include "vernier/regression/detail/network_error.hpp"
 
 namespace vernier::back_propagation_test {
 namespace {

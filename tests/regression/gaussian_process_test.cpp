@@ -12,6 +12,8 @@
 #include "laws.hpp"
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
+#include "vernier/regression/detail/marginal_likelihood.hpp"
+#include "vernier/regression/detail/bounded_bfgs.hpp"
 
 namespace vernier::gaussian_process_test {
 namespace {

@@ -11,6 +11,8 @@
 #include "laws.hpp"
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
+#include "vernier/regression/detail/kernel_system.hpp"
+#include "vernier/regression/detail/kernel_ridge_path.hpp"
 
 namespace vernier::kernel_elm_test {
 namespace {

@@ -12,6 +12,7 @@
 #include "laws.hpp"
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
+#include "vernier/regression/detail/rank_nodes.hpp"
 
 namespace vernier::op_elm_test {
 namespace {

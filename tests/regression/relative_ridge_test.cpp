@@ -4,6 +4,7 @@
 
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/least_squares.hpp"
 
 namespace vernier::relative_ridge_test {
 namespace {

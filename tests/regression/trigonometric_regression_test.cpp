@@ -15,6 +15,7 @@
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 #include "vernier/testing/regressor_laws.hpp"
+#include "vernier/regression/detail/feature_ridge.hpp"
 
 namespace vernier::trigonometric_regression_test {
 namespace {

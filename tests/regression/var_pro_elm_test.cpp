@@ -11,6 +11,9 @@
 #include "vernier/regression/elm.hpp"
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
+#include "vernier/regression/least_squares.hpp"
+#include "vernier/regression/detail/variable_projection.hpp"
+#include "vernier/regression/detail/common_scaling.hpp"
 
 namespace vernier::var_pro_elm_test {
 namespace {

@@ -11,9 +11,9 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/network_error.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/testing/regressor_laws.hpp"
-#include "vernier/regression/detail/network_error.hpp"
 
 namespace vernier::back_propagation_test {
 namespace {

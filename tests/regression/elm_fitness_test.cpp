@@ -10,8 +10,8 @@
 #include "complaint.hpp"
 #include "regression_samples.hpp"
 #include "vernier/regression/elm.hpp"
-#include "vernier/regression/ridge_elm.hpp"
 #include "vernier/regression/least_squares.hpp"
+#include "vernier/regression/ridge_elm.hpp"
 
 namespace vernier::elm_fitness_test {
 namespace {

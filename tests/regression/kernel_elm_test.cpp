@@ -10,9 +10,9 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
-#include "vernier/testing/regressor_laws.hpp"
-#include "vernier/regression/detail/kernel_system.hpp"
 #include "vernier/regression/detail/kernel_ridge_path.hpp"
+#include "vernier/regression/detail/kernel_system.hpp"
+#include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::kernel_elm_test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "instruction_sets.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/regression/detail/leave_one_out.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/ridge_elm.hpp"
-#include "vernier/regression/detail/leave_one_out.hpp"
 
 namespace vernier::leave_one_out_test {
 namespace {

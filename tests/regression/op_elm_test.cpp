@@ -11,8 +11,8 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
-#include "vernier/testing/regressor_laws.hpp"
 #include "vernier/regression/detail/rank_nodes.hpp"
+#include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::op_elm_test {
 namespace {

@@ -12,10 +12,10 @@
 #include "laws.hpp"
 #include "regression_samples.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/regression/detail/feature_ridge.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 #include "vernier/testing/regressor_laws.hpp"
-#include "vernier/regression/detail/feature_ridge.hpp"
 
 namespace vernier::trigonometric_regression_test {
 namespace {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/common_scaling.hpp"
+#include "vernier/regression/detail/variable_projection.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/least_squares.hpp"
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
-#include "vernier/regression/least_squares.hpp"
-#include "vernier/regression/detail/variable_projection.hpp"
-#include "vernier/regression/detail/common_scaling.hpp"
 
 namespace vernier::var_pro_elm_test {
 namespace {

@@ -45,8 +45,9 @@ struct BackPropagation {
   double weight_decay = 1e-9;  ///< of all weights but biases, per sample, for targets of unit spread; in [0, 1)
   /// The algorithm.
   std::variant<LevenbergMarquardt, Adam> training = LevenbergMarquardt{};
-  double validation_share = 0;  ///< of the samples, drawn from the seed, used for validation instead of training; in [0, 1)
-  int patience = 20;            ///< epochs without a lower validation error that end the training, at least 1
+  double validation_share =
+      0;              ///< of the samples, drawn from the seed, used for validation instead of training; in [0, 1)
+  int patience = 20;  ///< epochs without a lower validation error that end the training, at least 1
 
   /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }

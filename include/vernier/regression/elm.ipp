@@ -14,8 +14,7 @@ VERNIER_IMPL void Elm::validate() const {
 
 VERNIER_IMPL detail::ElmFitness Elm::fitness(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                              const VectorX* weights) const {
-  require(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda,
-          ", must lie in (0, 1)");
+  require(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda, ", must lie in (0, 1)");
   const MatrixX mapped = layer().map(inputs);
   return {layer(), layer().scaling(mapped).apply(mapped), ColumnScaling::fit(targets, target_scaling).apply(targets),
           fitness_lambda, weights};

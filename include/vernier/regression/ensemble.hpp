@@ -109,7 +109,8 @@ struct Ensemble {
           if (!go_on) return;
         }
         const auto stream = 2 * static_cast<std::uint64_t>(k);
-        const std::vector<Index> rows = detail::draw_rows(inputs.rows(), share, replacement, child_seed(options.seed, stream));
+        const std::vector<Index> rows =
+            detail::draw_rows(inputs.rows(), share, replacement, child_seed(options.seed, stream));
         VectorX weights;
         FitOptions own{.seed = child_seed(options.seed, stream + 1)};
         if (options.weights != nullptr) {

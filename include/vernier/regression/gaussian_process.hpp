@@ -74,8 +74,8 @@ struct GaussianProcess {
   std::optional<double> noise_ratio{};  ///< noise variance divided by signal variance, positive; none: the most likely
   int starts = 3;                       ///< of the search, at least 1; the first is fixed, the others are drawn
   int iterations = 60;                  ///< of each start at most, at least 1
-  /// Largest number of samples, drawn from the seed, that length scales and ratio are chosen on, at least 2; the fit uses
-  /// all.
+  /// Largest number of samples, drawn from the seed, that length scales and ratio are chosen on, at least 2; the fit
+  /// uses all.
   Index max_hyper_samples = 300;
 
   /// @param inputs  n x inputs

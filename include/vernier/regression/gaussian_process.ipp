@@ -22,8 +22,7 @@ VERNIER_IMPL void GaussianProcess::validate(Index dimension) const {
           noise_ratio.value_or(0), ", must be positive");
   require(starts >= 1 && iterations >= 1, "GaussianProcess: starts is ", starts, ", iterations is ", iterations,
           ", both must be at least 1");
-  require(max_hyper_samples >= 2, "GaussianProcess: max_hyper_samples is ", max_hyper_samples,
-          ", must be at least 2");
+  require(max_hyper_samples >= 2, "GaussianProcess: max_hyper_samples is ", max_hyper_samples, ", must be at least 2");
 }
 
 VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
@@ -38,8 +37,7 @@ VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& 
   const detail::KernelSystem system(detail::kernel_matrix(kernel, features.values), ratio * weights.cwiseInverse(),
                                     targets);
   require(system.solved, "GaussianProcess: noise_ratio is ", ratio, ", too small for ", inputs.rows(), " samples");
-  const VectorX variance =
-      (system.square.array().max(0.0) * detail::varying_outputs(targets) / weights.sum()).matrix();
+  const VectorX variance = (system.square.array().max(0.0) * detail::varying_outputs(targets) / weights.sum()).matrix();
   return {{kernel, input_map, features.scaling, features.values, system.alpha, system.mean},
           detail::ProcessSpread(system, variance, ratio)};
 }
@@ -75,8 +73,8 @@ VERNIER_IMPL VectorX GaussianProcess::logarithms(const MatrixX& features, int di
     rows = rng.permutation(n);
     rows.resize(static_cast<std::size_t>(max_hyper_samples));
   }
-  const detail::MarginalLikelihood likelihood(kernel, features(rows, Eigen::all), dimension,
-                                              targets(rows, Eigen::all), weights(rows));
+  const detail::MarginalLikelihood likelihood(kernel, features(rows, Eigen::all), dimension, targets(rows, Eigen::all),
+                                              weights(rows));
   std::vector<detail::BoundedMinimum> found(static_cast<std::size_t>(starts));
   for (std::size_t k = 0; k < found.size(); ++k) {
     found[k].x = start;

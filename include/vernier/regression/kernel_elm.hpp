@@ -23,8 +23,8 @@ struct KernelElm {
   /// Of the kernel, in units of the features: of scaled inputs, or of sines and cosines (one is about a radian).
   std::optional<double> length_scale{};
   std::optional<double> lambda{};  ///< beside a kernel of at most 1; positive
-  /// Largest number of samples, drawn from the seed, that length scale and lambda are chosen on, at least 2; the fit uses
-  /// all.
+  /// Largest number of samples, drawn from the seed, that length scale and lambda are chosen on, at least 2; the fit
+  /// uses all.
   Index max_search_samples = 500;
 
   /// @param inputs  n x inputs

@@ -73,8 +73,7 @@ VERNIER_IMPL KernelElm::Choice KernelElm::choose(const MatrixX& features, const 
   const auto try_all = [&](const std::vector<double>& lengths) {
     std::vector<Choice> found(lengths.size());
     options.executor.for_ranges(static_cast<Index>(lengths.size()), [&](Index begin, Index end) {
-      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
-        found[k] = at(lengths[k]);
+      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) found[k] = at(lengths[k]);
     });
     for (const Choice& choice : found)
       if (choice.error < best.error) best = choice;

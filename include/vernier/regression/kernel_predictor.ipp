@@ -28,10 +28,10 @@ VERNIER_IMPL NodeSum node_sum_of(const FittedKernels& fitted, int inputs) {
               fitted.scaling.factor.size() == f,
           "KernelPredictor: ", n, " centres of ", fitted.centres.cols(), " features (expected ", f, ") and ",
           fitted.alpha.rows(), " coefficients");
-  const NodeFunction function = fitted.kernel == Kernel::squared_exponential ? NodeFunction::squared_exponential
-                                                                             : NodeFunction::matern_5_2;
-  return {function, fitted.input_map,           inputs,       fitted.scaling,
-          MatrixX(fitted.centres.transpose()), VectorX(), fitted.alpha, fitted.mean};
+  const NodeFunction function =
+      fitted.kernel == Kernel::squared_exponential ? NodeFunction::squared_exponential : NodeFunction::matern_5_2;
+  return {function,  fitted.input_map, inputs,     fitted.scaling, MatrixX(fitted.centres.transpose()),
+          VectorX(), fitted.alpha,     fitted.mean};
 }
 
 }  // namespace vernier::detail

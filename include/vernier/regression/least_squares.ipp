@@ -73,18 +73,17 @@ VERNIER_IMPL MatrixX ridge_weights(const ConstMatrixRef& gram, const ConstMatrix
 }
 
 VERNIER_IMPL double objective_from_products(const ConstMatrixRef& gram, const ConstMatrixRef& right,
-                               double target_square, const MatrixX& beta, double lambda, double trace) {
+                                            double target_square, const MatrixX& beta, double lambda, double trace) {
   if (beta.size() == 0) return -1;
   const double size = beta.squaredNorm();
   // quadratic in beta, so that an error of beta enters squared where beta is the best
   const double objective = target_square - 2 * right.transpose().cwiseProduct(beta).sum() +
-                           beta.cwiseProduct(gram.selfadjointView<Eigen::Lower>() * beta).sum() +
-                           lambda * size;
+                           beta.cwiseProduct(gram.selfadjointView<Eigen::Lower>() * beta).sum() + lambda * size;
   return objective > 1e-7 * target_square && objective > 1e-8 * trace * size ? objective : -1;
 }
 
 VERNIER_IMPL double relative_ridge_objective(const ConstMatrixRef& gram, const ConstMatrixRef& right,
-                                double target_square, double relative_lambda) {
+                                             double target_square, double relative_lambda) {
   const double trace = gram.trace(), lambda = relative_lambda * trace / static_cast<double>(gram.rows());
   return objective_from_products(gram, right, target_square, ridge_weights(gram, right, lambda), lambda, trace);
 }

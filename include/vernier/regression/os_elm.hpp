@@ -13,11 +13,11 @@ namespace vernier {
 /// (nodes + 1)^2 multiply-adds.
 ///
 /// `P = (H'W H + Lambda)^-1` is kept as B with `P = B'B` (Potter's square root), so that it stays symmetric and
-/// positive semidefinite however many updates there are, and rounding errors grow with the square root of its condition. Without
-/// forgetting, P shrinks and the output weights settle. With forgetting, P grows by 1 / mu an update in directions of
-/// the hidden layer that no sample excites any more (the ridge is forgotten, too): the samples must keep visiting the
-/// whole working range, or after some ln(1e12) / (1 - mu) updates at one place the next sample elsewhere changes the
-/// prediction without bound.
+/// positive semidefinite however many updates there are, and rounding errors grow with the square root of its
+/// condition. Without forgetting, P shrinks and the output weights settle. With forgetting, P grows by 1 / mu an update
+/// in directions of the hidden layer that no sample excites any more (the ridge is forgotten, too): the samples must
+/// keep visiting the whole working range, or after some ln(1e12) / (1 - mu) updates at one place the next sample
+/// elsewhere changes the prediction without bound.
 /// @cite Liang 2006; Potter 1963
 template <int Inputs, int Outputs>
 class OsElmPredictor : public detail::PredictorInterface<OsElmPredictor<Inputs, Outputs>, Inputs, Outputs> {
@@ -90,8 +90,9 @@ class OsElmPredictor : public detail::PredictorInterface<OsElmPredictor<Inputs, 
 };
 
 /// Online sequential ELM: hidden weights drawn from the seed, output weights by ridge regression, and a predictor with
-/// an `update`. Without forgetting the updates lead to the fit of all samples at once, in any order. So nothing may depend on the range of the first samples: inputs are not scaled (raw
-/// ones should be of size one, as radians are), targets neither, and the mean is not penalised.
+/// an `update`. Without forgetting the updates lead to the fit of all samples at once, in any order. So nothing may
+/// depend on the range of the first samples: inputs are not scaled (raw ones should be of size one, as radians are),
+/// targets neither, and the mean is not penalised.
 /// @cite Liang 2006
 struct OsElm {
   int hidden_nodes = 65;  ///< at least 1
@@ -101,8 +102,7 @@ struct OsElm {
   InputMap input_map = InputMap::sines_and_cosines;
   double weight_limit = 1;  ///< hidden weights and biases lie in [-limit, limit]
   double lambda = 1e-6;     ///< ridge of the output weights, positive
-  double forgetting =
-      1;  ///< mu in (0, 1]: an update multiplies the weight of all samples before it by mu
+  double forgetting = 1;    ///< mu in (0, 1]: an update multiplies the weight of all samples before it by mu
 
   /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, Scaling::none, weight_limit}; }

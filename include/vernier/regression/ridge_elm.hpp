@@ -9,7 +9,8 @@
 namespace vernier {
 
 /// Ridge ELM: the mean of the targets is not penalised, lambda has the least leave-one-out error, and where that is
-/// not significantly better than the mean alone, the mean is kept. Targets keep their units, so outputs weigh as they are.
+/// not significantly better than the mean alone, the mean is kept. Targets keep their units, so outputs weigh as they
+/// are.
 /// @cite Huang 2012; Allen 1974
 struct RidgeElm {
   int hidden_nodes = 65;  ///< at least 1; may exceed the number of samples

@@ -66,8 +66,7 @@ VERNIER_IMPL void TrigonometricSum::evaluate(const double* x, double* y, double*
   if (slope != nullptr) std::copy(from + outputs, from + outputs * (inputs_ + 1), slope);
 }
 
-VERNIER_IMPL void TrigonometricSum::standard_deviation(const double* x, double* out,
-                                                       double* workspace) const noexcept {
+VERNIER_IMPL void TrigonometricSum::standard_deviation(const double* x, double* out, double* workspace) const noexcept {
   const TrigonometricSpread& s = *spread_;
   trigonometric_features(x, inputs_, workspace);
   Eigen::Map<VectorX> z(workspace, s.scale.size());

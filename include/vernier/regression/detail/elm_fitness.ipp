@@ -9,8 +9,8 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL ElmFitness::ElmFitness(const HiddenLayer& layer, MatrixX features, MatrixX targets,
-                                    double relative_lambda, const VectorX* weights)
+VERNIER_IMPL ElmFitness::ElmFitness(const HiddenLayer& layer, MatrixX features, MatrixX targets, double relative_lambda,
+                                    const VectorX* weights)
     : layer_(layer),
       features_(std::move(features)),
       targets_(std::move(targets)),
@@ -30,8 +30,8 @@ VERNIER_IMPL void ElmFitness::operator()(const ConstMatrixRef& population, Vecto
     double error = -1;
     if (equations) {
       equations->form(population.col(k));
-      error = relative_ridge_objective(equations->gram(), equations->right(), equations->target_square(),
-                                       relative_lambda_);
+      error =
+          relative_ridge_objective(equations->gram(), equations->right(), equations->target_square(), relative_lambda_);
     }
     // too nearly perfect or too badly conditioned for the products
     if (!(error >= 0)) error = from_samples(population.col(k));

@@ -58,7 +58,8 @@ class FeatureRidge {
 
   VERNIER_API FeatureRidgeFit from_samples(double lambda) const;
 
-  VERNIER_API FeatureRidgeFit finish(double lambda, const MatrixX& beta, double used, const MatrixX& directions, const VectorX& gain, double rest) const;
+  VERNIER_API FeatureRidgeFit finish(double lambda, const MatrixX& beta, double used, const MatrixX& directions,
+                                     const VectorX& gain, double rest) const;
 
   VectorX weights_;
   double total_;

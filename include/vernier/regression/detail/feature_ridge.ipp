@@ -11,7 +11,8 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL FeatureRidge::FeatureRidge(const ConstMatrixRef& features, const ConstMatrixRef& targets, const VectorX* weights)
+VERNIER_IMPL FeatureRidge::FeatureRidge(const ConstMatrixRef& features, const ConstMatrixRef& targets,
+                                        const VectorX* weights)
     : weights_(weights_or_ones(weights, features.rows())), total_(weights_.sum()) {
   const VectorX root = weights_.cwiseSqrt();
   mean_features_ = (weights_.transpose() * features) / total_;
@@ -57,8 +58,7 @@ VERNIER_IMPL FeatureRidgeFit FeatureRidge::best_fit() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (features_.rows() < 2 || squares_.size() == 0) return fit(infinity);
   VectorX lambdas(candidates + 1);
-  for (Index l = 0; l < candidates; ++l)
-    lambdas(l) = largest() * least * std::pow(10.0, 0.5 * static_cast<double>(l));
+  for (Index l = 0; l < candidates; ++l) lambdas(l) = largest() * least * std::pow(10.0, 0.5 * static_cast<double>(l));
   lambdas(candidates) = infinity;
   Index best = 0;
   const double error = leave_one_out(lambdas).minCoeff(&best);
@@ -113,7 +113,8 @@ VERNIER_IMPL FeatureRidgeFit FeatureRidge::from_samples(double lambda) const {
                 VectorX::Ones(f), 0);
 }
 
-VERNIER_IMPL FeatureRidgeFit FeatureRidge::finish(double lambda, const MatrixX& beta, double used, const MatrixX& directions, const VectorX& gain, double rest) const {
+VERNIER_IMPL FeatureRidgeFit FeatureRidge::finish(double lambda, const MatrixX& beta, double used,
+                                                  const MatrixX& directions, const VectorX& gain, double rest) const {
   const VectorX noise =
       (targets_ - features_ * beta).colwise().squaredNorm().transpose() / std::max(total_ - 1 - used, 1e-12 * total_);
   return {lambda, beta, (mean_targets_ - mean_features_ * beta).transpose(), noise, directions, gain, rest};

@@ -151,20 +151,20 @@ VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
   }
   VectorX sums = VectorX::Zero(padded_lambdas), least = VectorX::Ones(padded_lambdas);
   const LeaveOneOutBlock block{.hidden = equations_.outputs(),
-       .rotation = rotation.data(),
-       .start = start.data(),
-       .shares = shares.data(),
-       .weights = weights.data(),
-       .mean = mean_target_.data(),
-       .scratch = scratch_.data(),
-       .sums = sums.data(),
-       .least = least.data(),
-       .samples = samples_,
-       .stride = equations_.stride(),
-       .nodes = h,
-       .outputs = outputs_,
-       .rotated = rotated_,
-       .lambdas = padded_lambdas};
+                               .rotation = rotation.data(),
+                               .start = start.data(),
+                               .shares = shares.data(),
+                               .weights = weights.data(),
+                               .mean = mean_target_.data(),
+                               .scratch = scratch_.data(),
+                               .sums = sums.data(),
+                               .least = least.data(),
+                               .samples = samples_,
+                               .stride = equations_.stride(),
+                               .nodes = h,
+                               .outputs = outputs_,
+                               .rotated = rotated_,
+                               .lambdas = padded_lambdas};
   run_widest([&]<int W>() VERNIER_INLINED { leave_one_out_kernel<W, block_rows<W>, block_vectors<W>>(block); }, set_);
   Index at = 0;
   const double best = sums.head(lambdas).minCoeff(&at);

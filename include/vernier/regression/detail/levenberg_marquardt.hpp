@@ -11,8 +11,8 @@ namespace vernier::detail {
 /// What is minimised. `gradient` and `curvature` are called for the weights of the last `evaluate` that was better than
 /// all before it.
 struct LeastSquaresProblem {
-  FunctionRef<double(const VectorX& theta)> evaluate;                       ///< infinity where it is not finite
-  FunctionRef<VectorX()> gradient;                                          ///< its derivative
+  FunctionRef<double(const VectorX& theta)> evaluate;                          ///< infinity where it is not finite
+  FunctionRef<VectorX()> gradient;                                             ///< its derivative
   FunctionRef<void(MatrixX& lower_triangle, ExecutorRef executor)> curvature;  ///< the Gauss-Newton matrix
 };
 
@@ -33,8 +33,8 @@ double levenberg_marquardt(Problem& problem, VectorX& theta, int iterations, dou
   const auto evaluate = [&](const VectorX& at) { return problem.evaluate(at); };
   const auto gradient = [&] { return problem.gradient(); };
   const auto curvature = [&](MatrixX& out, ExecutorRef shared) { problem.curvature(out, shared); };
-  return levenberg_marquardt(LeastSquaresProblem{evaluate, gradient, curvature}, theta, iterations, tolerance,
-                             executor, watch);
+  return levenberg_marquardt(LeastSquaresProblem{evaluate, gradient, curvature}, theta, iterations, tolerance, executor,
+                             watch);
 }
 
 }  // namespace vernier::detail

@@ -9,8 +9,7 @@
 namespace vernier::detail {
 
 VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, VectorX& theta, int iterations,
-                                        double tolerance, ExecutorRef executor,
-                                        FunctionRef<bool(double best)> watch) {
+                                        double tolerance, ExecutorRef executor, FunctionRef<bool(double best)> watch) {
   constexpr double rounding = 1e-26;  // of targets of spread 1
   double value = problem.evaluate(theta), at_check = value;
   double damping = 0.1, raise = 2;

@@ -29,7 +29,7 @@ class NetworkError {
   /// @param decay    of all weights but biases, 0 or more
   /// @param set      instructions to use; must be there
   NetworkError(const HiddenLayer& layer, MatrixX features, MatrixX targets, const VectorX& weights, double decay,
-                 InstructionSet set = widest_instruction_set())
+               InstructionSet set = widest_instruction_set())
       : layer_(layer),
         features_(std::move(features)),
         targets_(std::move(targets)),

@@ -80,7 +80,8 @@ VERNIER_IMPL double NetworkError::add_decay(VectorX* gradient) const {
   return decay_ * (hidden_weights().topRows(f).squaredNorm() + output_weights().topRows(h).squaredNorm());
 }
 
-VERNIER_IMPL double NetworkError::add(const ConstMatrixRef& x, const ConstMatrixRef& t, const ConstVectorRef& q, VectorX* gradient) {
+VERNIER_IMPL double NetworkError::add(const ConstMatrixRef& x, const ConstMatrixRef& t, const ConstVectorRef& q,
+                                      VectorX* gradient) {
   const Index f = features_.cols(), h = layer_.nodes;
   layer_.outputs(x, theta_.head(hidden()), outputs_);
   residual_.noalias() = outputs_ * output_weights().topRows(h);

@@ -11,11 +11,11 @@ namespace vernier::detail {
 /// What the kernel reads and writes: nodes, and one sample.
 struct NodeBlock {
   NodeFunction function;
-  const double* weights;   // rows of `stride`: of each feature, then biases
-  const double* features;  // of the sample
+  const double* weights;       // rows of `stride`: of each feature, then biases
+  const double* features;      // of the sample
   Index count, stride, nodes;  // of features, of a row, of nodes to evaluate, a multiple of 8
-  double* values;          // nodes
-  double* slopes;          // nodes; see `node_function`
+  double* values;              // nodes
+  double* slopes;              // nodes; see `node_function`
 };
 
 /// z becomes the value of sigmoid, tanh or sine nodes, `slope` their derivative.
@@ -192,8 +192,9 @@ VERNIER_IMPL void NodeSum::evaluate(const double* x, double* y, double* slope, d
   if (slope != nullptr) std::fill(slope, slope + outputs_ * inputs_, 0.0);
   run_widest([&]<int W>() VERNIER_INLINED {
     for (Index first = 0; first < packed_.cols(); first += most) {
-      const NodeBlock block{function_, row(0) + first,  workspace, features_, packed_.cols(),
-                            std::min(most, packed_.cols() - first), values, slopes};
+      const NodeBlock block{function_, row(0) + first, workspace,
+                            features_, packed_.cols(), std::min(most, packed_.cols() - first),
+                            values,    slopes};
       evaluate_nodes<W>(block);
       for (Index o = 0; o < outputs_; ++o) {
         const double* coefficients = row(features_ + 1 + o) + first;
@@ -216,13 +217,12 @@ VERNIER_IMPL void NodeSum::evaluate_rows(const ConstMatrixRef& x, MatrixRef y) c
   }
 }
 
-VERNIER_IMPL void NodeSum::node_values(const double* features, Index first, Index count,
-                                       double* out) const noexcept {
+VERNIER_IMPL void NodeSum::node_values(const double* features, Index first, Index count, double* out) const noexcept {
   constexpr Index most = 64;
   double slopes[most];
   for (Index begin = 0; begin < count; begin += most) {
-    const NodeBlock block{function_, row(0) + first + begin, features, features_, packed_.cols(),
-                          std::min(most, count - begin), out + begin, slopes};
+    const NodeBlock block{function_,      row(0) + first + begin,        features,    features_,
+                          packed_.cols(), std::min(most, count - begin), out + begin, slopes};
     run_widest([&]<int W>() VERNIER_INLINED { evaluate_nodes<W>(block); });
   }
 }
@@ -233,8 +233,6 @@ VERNIER_IMPL VectorX NodeSum::weights_and_biases() const {
   return MatrixX(packed_.topLeftCorner(features_ + 1, nodes_)).reshaped();
 }
 
-VERNIER_IMPL MatrixX NodeSum::coefficients() const {
-  return packed_.bottomLeftCorner(outputs_, nodes_).transpose();
-}
+VERNIER_IMPL MatrixX NodeSum::coefficients() const { return packed_.bottomLeftCorner(outputs_, nodes_).transpose(); }
 
 }  // namespace vernier::detail

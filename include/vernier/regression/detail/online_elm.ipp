@@ -10,10 +10,7 @@ namespace vernier::detail {
 
 VERNIER_IMPL OnlineElm::OnlineElm(const HiddenLayer& layer, const VectorX& theta, double lambda, double forgetting,
                                   const ConstMatrixRef& x, const ConstMatrixRef& y, const VectorX* weights)
-    : layer_(layer),
-      theta_(theta),
-      features_(layer.features(static_cast<int>(x.cols()))),
-      forgetting_(forgetting) {
+    : layer_(layer), theta_(theta), features_(layer.features(static_cast<int>(x.cols()))), forgetting_(forgetting) {
   const Index n = x.rows(), size = layer.nodes + 1;
   MatrixX stacked = MatrixX::Zero(n + layer.nodes, size), right = MatrixX::Zero(n + layer.nodes, y.cols());
   stacked.topRows(n) = hidden(x);

@@ -31,7 +31,9 @@ class VariableProjection {
   /// @param ridge    of the output weights, per sample, positive
   /// @param weights  n weights of the samples, positive; null: all the same
   /// @param set      instructions to use; must be there
-  VERNIER_API VariableProjection(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets, double ridge, const VectorX* weights = nullptr, InstructionSet set = widest_instruction_set());
+  VERNIER_API VariableProjection(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
+                                 double ridge, const VectorX* weights = nullptr,
+                                 InstructionSet set = widest_instruction_set());
 
   /// Number of hidden weights and biases.
   Index dimension() const { return nodes_ * (features_.cols() + 1); }
@@ -72,7 +74,8 @@ class VariableProjection {
   /// 24 KiB, the first-level cache.
   Index tile_samples() const { return 3072 / stride_ > 8 ? 3072 / stride_ : 8; }
 
-  VERNIER_API void add_product(const RowMatrix& left, const RowMatrix& right, const double* weights, Index rows, RowMatrix& out, bool symmetric, Index tile_rows = 0) const;
+  VERNIER_API void add_product(const RowMatrix& left, const RowMatrix& right, const double* weights, Index rows,
+                               RowMatrix& out, bool symmetric, Index tile_rows = 0) const;
 
   /// Cholesky of the products; of the samples where that fails.
   VERNIER_API void factorise(const MatrixX& gram);

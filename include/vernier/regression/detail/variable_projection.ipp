@@ -11,7 +11,9 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL VariableProjection::VariableProjection(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets, double ridge, const VectorX* weights, InstructionSet set)
+VERNIER_IMPL VariableProjection::VariableProjection(const HiddenLayer& layer, const MatrixX& features,
+                                                    const MatrixX& targets, double ridge, const VectorX* weights,
+                                                    InstructionSet set)
     : layer_(layer),
       features_(features),
       roots_(weights != nullptr ? VectorX(weights->cwiseSqrt()) : VectorX(VectorX::Ones(features.rows()))),
@@ -183,7 +185,8 @@ VERNIER_IMPL void VariableProjection::products_of_pairs(Index begin, Index end) 
   }
 }
 
-VERNIER_IMPL void VariableProjection::add_product(const RowMatrix& left, const RowMatrix& right, const double* weights, Index rows, RowMatrix& out, bool symmetric, Index tile_rows) const {
+VERNIER_IMPL void VariableProjection::add_product(const RowMatrix& left, const RowMatrix& right, const double* weights,
+                                                  Index rows, RowMatrix& out, bool symmetric, Index tile_rows) const {
   RowMatrix tile(tile_rows > 0 ? tile_rows : tile_samples(), left.cols());
   add_weighted_product(
       {left.data(), right.data(), weights, tile.data(), out.data(), rows, left.cols(), tile.rows(), symmetric}, set_);

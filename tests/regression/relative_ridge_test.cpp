@@ -113,7 +113,7 @@ TEST(RelativeRidge, ZeroLayerLeavesTheTargets) {
   const Problem p;
   const RidgeSolution solution = relative_ridge(MatrixX::Zero(250, 5), p.t, relative_lambda);
   EXPECT_EQ(solution.beta, MatrixX::Zero(5, 2));
-  EXPECT_EQ(solution.objective, p.t.squaredNorm());
+  EXPECT_DOUBLE_EQ(solution.objective, p.t.squaredNorm());
 }
 
 TEST(RelativeRidge, LayerThatIsNotFiniteIsTheWorst) {

@@ -82,7 +82,7 @@ struct CartesianCompensation {
   /// How commands are corrected.
   CorrectionOptions correction{};
 
-  /// @param model   what to improve: nominal, identified, or already compensated
+  /// @param model   nominal, identified or already compensated
   /// @param data    n >= 1 samples in the frames of the model
   /// @param options seed, executor, observer of the regressor
   /// @throws std::invalid_argument when model and data are more than 50 mm apart on average: they are in different

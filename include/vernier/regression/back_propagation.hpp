@@ -52,8 +52,9 @@ struct BackPropagation {
   /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }
 
-  /// Training from a start drawn from the seed. The observer sees the objective before the first epoch and after each:
-  /// the weighted mean squared error of what is trained on, in units of the targets' spread, and the decay.
+  /// Training from a start drawn from the seed. The observer is called with the objective before the first epoch and
+  /// after each: the weighted mean squared error of the training samples, in units of the targets' spread, and the
+  /// decay.
   /// @param inputs  n x inputs
   /// @param targets n x outputs
   /// @param options a sample of weight q counts as q samples, but that Adam's batches and the validation samples are

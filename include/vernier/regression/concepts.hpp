@@ -59,7 +59,7 @@ concept SampleOf = (Derived::ColsAtCompileTime == 1 && Derived::RowsAtCompileTim
 template <class Derived, int Inputs>
 concept SampleRowsOf = (Derived::ColsAtCompileTime == Inputs && !SampleOf<Derived, Inputs>);
 
-/// Throws `std::invalid_argument` unless samples and weights are what `fit` takes.
+/// Throws `std::invalid_argument` for unusable samples or weights.
 VERNIER_API void check_samples(const char* caller, const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                const VectorX* weights);
 

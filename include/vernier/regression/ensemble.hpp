@@ -74,19 +74,19 @@ VERNIER_API std::vector<Index> draw_rows(Index n, double share, bool replacement
 /// @cite Breiman 1996
 template <Regressor R>
 struct Ensemble {
-  /// What is fitted.
+  /// The recipe of the members.
   R regressor;
   int members = 20;  ///< at least 2
   /// Size of a member's sample, of n; in (0, 1].
   double share = 1;
-  /// Whether a member's sample may have a row more than once: the bootstrap. A leave-one-out error is then too low, as
-  /// the row that is left out is often there a second time; recipes that choose a ridge by it do better without, at a
-  /// share of 0.6. Without, and with all samples, members differ by their seeds alone.
+  /// Whether rows are drawn with replacement: the bootstrap. A leave-one-out error is then too low, as
+  /// copies of the row left out often remain; recipes that choose a ridge by it do better without replacement, at a
+  /// share of 0.6. Without replacement and at a share of 1 members differ by their seeds alone.
   bool replacement = true;
 
-  /// Weights stay with their rows, which are drawn all alike; they mean to a member what they mean to its recipe.
-  /// The observer sees how many members are there, as generations and with 0 as the best value; where it stops the fit,
-  /// the ensemble is those, and which depends on the executor.
+  /// Rows are drawn regardless of their weights, which are passed to the recipe.
+  /// The observer is called with the number of fitted members as generations and 0 as the best value; where it stops
+  /// the fit, the ensemble is those, and which depends on the executor.
   /// @param inputs  n x inputs
   /// @param targets n x outputs
   /// @param options seed, executor, observer, weights

@@ -9,10 +9,10 @@ namespace vernier {
 
 /// Optimally pruned ELM. Of `hidden_nodes` random nodes those are kept, in the order of orthogonal forward selection,
 /// that give the least leave-one-out error (PRESS) of a least-squares fit; none is a candidate. Targets keep their
-/// units, so outputs weigh as they are; the mean is free. Miche ranks by multi-response sparse regression, which lowers
-/// the error along equiangular directions; forward selection ranks by the very error that PRESS then judges, takes all
-/// outputs at once, too, and PRESS of every count falls out of it. As the ranking has seen all samples, the PRESS of
-/// what is kept flatters a little. O(n nodes^2).
+/// units, so outputs weigh as they are; the mean is not penalised. Miche ranks by multi-response sparse regression;
+/// forward selection also takes all outputs at once, lowers the error that PRESS estimates and yields PRESS of every
+/// number of nodes. As the ranking uses all samples, the PRESS of the selected nodes is slightly optimistic.
+/// O(n nodes^2).
 /// @cite Miche 2010; Chen, Cowan and Grant 1991
 struct OpElm {
   int hidden_nodes = 100;  ///< candidates, at least 1

@@ -12,9 +12,9 @@
 namespace vernier {
 
 /// Linear least squares on the 3^N products of one of (1, sin q_j, cos q_j) of every input q_j. The position of a chain
-/// of revolute joints is exactly linear in them, and so is what errors of its geometry do to it. The ridge of a feature
-/// grows with its degree, the number of angles in it: with few samples, what one or two joints explain is not left to
-/// six. The mean has none. Inputs are angles [rad].
+/// of revolute joints is exactly linear in them, and so are the effects of geometric errors. The ridge
+/// of a feature grows with its degree, the number of angles in it: with few samples, low degrees are preferred. The
+/// mean has none. Inputs are angles [rad].
 /// @complexity with f features and k = min(n, f): n f k + 9 k^3; six inputs and 5,000 samples take seconds, seven with
 /// all features minutes
 /// @cite Hoerl and Kennard 1970; Allen 1974

@@ -36,9 +36,9 @@ struct VarProElm {
   /// Domain of a search for a start.
   VERNIER_API Box box(int inputs) const;
 
-  /// What training lowers, as a function of hidden weights: `|H beta + C - T|^2 / n + ridge |beta|^2` at its minimum
-  /// over beta and C, whose rows are equal, T being the targets in units of their spread; the mean alone has 1. Its
-  /// member `gradient(theta)` is the exact gradient.
+  /// The objective of the training as a function of hidden weights: `|H beta + C - T|^2 / n + ridge |beta|^2` at its
+  /// minimum over beta and C, whose rows are equal, T being the targets in units of their spread; the mean alone has 1.
+  /// Its member `gradient(theta)` is the exact gradient.
   /// @param inputs  n x inputs
   /// @param targets n x outputs
   /// @param weights of the samples; null: all the same

@@ -41,7 +41,7 @@ struct AnyRecipe {
   AnyRecipe(const AnyRecipe&) = delete;
   AnyRecipe& operator=(const AnyRecipe&) = delete;
   virtual ~AnyRecipe() = default;
-  /// Fits; samples become what `fit` leaves of them.
+  /// Fits; `samples` are those of the call, which a wrong `fit` may have changed.
   virtual std::unique_ptr<AnyPredictor> fit(Samples& samples, const FitOptions& options) const = 0;
 };
 

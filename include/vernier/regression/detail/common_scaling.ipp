@@ -7,9 +7,11 @@
 namespace vernier::detail {
 
 VERNIER_IMPL CommonScaling::CommonScaling(const ConstMatrixRef& targets, const VectorX* weights) {
+  const double total = weights == nullptr ? static_cast<double>(targets.rows()) : weights->sum();
   const auto mean_of = [&](const ConstMatrixRef& rows) -> VectorX {
-    if (weights == nullptr) return rows.colwise().mean().transpose();
-    return rows.transpose() * *weights / weights->sum();
+    // one way of adding up, so that weights of one give the same bits as none
+    const MatrixX weighted = weights == nullptr ? MatrixX(rows) : MatrixX(weights->asDiagonal() * rows);
+    return weighted.colwise().sum().transpose() / total;
   };
   mean = mean_of(targets);
   spread = std::sqrt(mean_of((targets.rowwise() - mean.transpose()).rowwise().squaredNorm())(0));

@@ -7,7 +7,7 @@
 
 namespace vernier::detail {
 
-/// One ridge regression, and what it leaves unknown: along a direction d of features the coefficients have the variance
+/// One ridge regression and its uncertainty: along a direction d of features the coefficients have the variance
 /// `sum_k gain_k (direction_k'd)^2 + rest (|d|^2 - sum_k (direction_k'd)^2)`, in units of the variance of the noise.
 struct FeatureRidgeFit {
   double lambda;         ///< infinity: the mean alone
@@ -21,8 +21,8 @@ struct FeatureRidgeFit {
 
 /// `min sum_i q_i |y_i - c - B'z_i|^2 + lambda |B|^2`, the mean c free, as a function of lambda.
 ///
-/// What `RidgePath` is to a hidden layer, for hundreds of features: the eigenvectors of the products of features, or of
-/// samples where those are fewer (the dual form), stand for the singular vectors. Products know no singular value below
+/// The counterpart of `RidgePath` for hundreds of features: eigenvectors of the products of features, or of
+/// samples where those are fewer (the dual form), replace the singular vectors. Products know no singular value below
 /// 1e-7 of the largest; where lambda is so small that those count, a QR decomposition of the samples takes over.
 /// @complexity n f min(n, f) + 9 min(n, f)^3, then n min(n, f) for each lambda
 class FeatureRidge {

@@ -18,7 +18,7 @@ namespace vernier::detail {
 /// the nodes' Gram matrix.
 class LeaveOneOutError {
  public:
-  /// Whether there is a kernel for these nodes and so many samples.
+  /// Whether there is a kernel for these nodes and this number of samples.
   static bool supports(const HiddenLayer& layer, Index samples) {
     return NormalEquations::supports(layer.activation) && samples >= 2 * layer.nodes && samples >= 8;
   }
@@ -31,8 +31,8 @@ class LeaveOneOutError {
   LeaveOneOutError& operator=(const LeaveOneOutError&) = delete;
 
   /// Mean squared error at the best of the ridges 1, 10^-0.5, ... 10^-12 times the largest squared singular value, and
-  /// of the mean alone; as `choose_lambda` has it, to 1e-8. -1 where products do not tell it so well: where the best
-  /// ridge is below 10^-8, where the others hardly say anything of a sample, where nodes are nearly constant.
+  /// of the mean alone; equals that of `choose_lambda` to 1e-8. -1 where products are not that accurate: the best
+  /// ridge is below 10^-8, a sample has a leverage near one, or nodes are nearly constant.
   VERNIER_API double operator()(const ConstVectorRef& theta);
 
  private:

@@ -52,7 +52,7 @@ VERNIER_INLINE void row_product(const double* a, Index lda, const double* b, Ind
   while (j < cols) panel.template operator()<1>();
 }
 
-/// What the second pass reads and writes. Columns of all matrices are padded to multiples of 8.
+/// Arguments of the second pass. Columns of all matrices are padded to multiples of 8.
 struct LeaveOneOutBlock {
   const double* hidden;    // samples rows of `stride`: outputs of the nodes, then the targets
   const double* rotation;  // nodes x rotated

@@ -8,7 +8,7 @@
 
 namespace vernier::detail {
 
-/// What is minimised. `gradient` and `curvature` are called for the weights of the last `evaluate` that was better than
+/// A sum of squares. `gradient` and `curvature` are called for the weights of the last `evaluate` that was better than
 /// all before it.
 struct LeastSquaresProblem {
   FunctionRef<double(const VectorX& theta)> evaluate;                          ///< infinity where it is not finite

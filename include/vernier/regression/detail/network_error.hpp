@@ -50,8 +50,8 @@ class NetworkError {
   /// dF/dtheta.
   VERNIER_API VectorX gradient();
 
-  /// The gradient of some samples' part of F, times how often they would make up all the weight there is: what a
-  /// mini-batch says. @return their value of F
+  /// The gradient of F of a mini-batch, an unbiased estimate of that of all samples. @return the value of F of the
+  /// batch
   VERNIER_API double batch(const VectorX& theta, const std::vector<Index>& rows, VectorX& gradient);
 
   /// The Gauss-Newton approximation of d2F/dtheta2.

@@ -42,7 +42,7 @@ class NodeSum {
   /// Values of samples, one a row.
   VERNIER_API void evaluate_rows(const ConstMatrixRef& x, MatrixRef y) const;
 
-  /// Mapped and scaled features of a sample, padded by nothing.
+  /// Mapped and scaled features of a sample.
   /// @param workspace as above; the features are at its beginning
   VERNIER_API void features(const double* x, double* workspace) const noexcept;
 
@@ -54,7 +54,7 @@ class NodeSum {
   Index nodes() const { return nodes_; }
   /// Of the features.
   const ColumnScaling& scaling() const { return scaling_; }
-  /// What is added to the sum.
+  /// The constant term.
   const VectorX& offset() const { return offset_; }
   /// w, features x nodes.
   VERNIER_API MatrixX weights() const;

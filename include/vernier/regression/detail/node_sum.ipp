@@ -8,7 +8,7 @@
 
 namespace vernier::detail {
 
-/// What the kernel reads and writes: nodes, and one sample.
+/// Arguments of the kernel: nodes and one sample.
 struct NodeBlock {
   NodeFunction function;
   const double* weights;       // rows of `stride`: of each feature, then biases

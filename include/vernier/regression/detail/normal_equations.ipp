@@ -7,7 +7,7 @@
 
 namespace vernier::detail {
 
-/// What the kernel reads and writes; raw blocks, so that it is compiled once for each instruction set.
+/// Arguments of the kernel: raw blocks, so that it is compiled once for each instruction set.
 struct NormalEquationsBlock {
   const double* features;  // samples x inputs, column-major
   const double* targets;   // samples x outputs, column-major

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Products of narrow tiles, `A'B` over samples: what the normal equations of hidden layers are made of.
+/// Products of narrow tiles, `A'B` over samples, for the normal equations of hidden layers.
 ///
 /// A tile has one row a sample; rows are `stride` apart, a multiple of 8. Per sample the product costs stride^2
 /// multiply-adds on stride loaded numbers, so a block of accumulators kept in registers makes it arithmetic-bound.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/simd.hpp"
 #include "vernier/regression/input_map.hpp"
 #include "vernier/regression/trigonometric_predictor.hpp"
 
@@ -33,12 +34,41 @@ VERNIER_IMPL TrigonometricSum::TrigonometricSum(int inputs, const ConstMatrixRef
           " rows of coefficients, expected ", power_of_three(inputs));
 }
 
+/// `T_0 + sine T_1 + cosine T_2` of the thirds T of an array.
+template <int W>
+VERNIER_INLINE void sum_out(const double* thirds, double sine, double cosine, Index third, double* to) {
+  typename Simd<W>::Double one, s, c;
+  Index i = 0;
+  for (; i + W <= third; i += W) {
+    load<W>(one, thirds + i);
+    load<W>(s, thirds + third + i);
+    load<W>(c, thirds + 2 * third + i);
+    one += sine * s;
+    one += cosine * c;
+    store<W>(to + i, one);
+  }
+  for (; i < third; ++i) to[i] = thirds[i] + sine * thirds[third + i] + cosine * thirds[2 * third + i];
+}
+
+/// `cosine T_1 - sine T_2`, its derivative with respect to the angle.
+template <int W>
+VERNIER_INLINE void differentiate(const double* thirds, double sine, double cosine, Index third, double* to) {
+  typename Simd<W>::Double s, c;
+  Index i = 0;
+  for (; i + W <= third; i += W) {
+    load<W>(s, thirds + third + i);
+    load<W>(c, thirds + 2 * third + i);
+    s *= cosine;
+    s -= sine * c;
+    store<W>(to + i, s);
+  }
+  for (; i < third; ++i) to[i] = cosine * thirds[third + i] - sine * thirds[2 * third + i];
+}
+
 /// Sums out one input after the other, the first first: `T_0 + sin q T_1 + cos q T_2` of the thirds of what remains,
 /// and with `cos q T_1 - sin q T_2` the derivative with respect to it, which is then summed out in the same way.
 VERNIER_IMPL void TrigonometricSum::evaluate(const double* x, double* y, double* slope,
                                              double* workspace) const noexcept {
-  using Part = Eigen::Map<Eigen::Array<double, Eigen::Dynamic, 1>>;
-  using ConstPart = Eigen::Map<const Eigen::Array<double, Eigen::Dynamic, 1>>;
   double sine[max_trigonometric_inputs], cosine[max_trigonometric_inputs];
   sines_and_cosines_of(x, inputs_, sine, cosine);
   const Index outputs = coefficients_.cols();
@@ -46,22 +76,18 @@ VERNIER_IMPL void TrigonometricSum::evaluate(const double* x, double* y, double*
   double* const odd = workspace + 2 * (coefficients_.rows() / 3) * outputs + outputs * (inputs_ + 1);
   const double* from = coefficients_.data();
   Index rest = coefficients_.size();
-  for (Index j = 0; j < inputs_; ++j) {
-    const Index third = rest / 3;
-    double* to = j % 2 == 0 ? even : odd;
-    // the value, and derivatives with respect to the inputs before
-    const Index parts = slope != nullptr ? j + 1 : 1;
-    for (Index p = 0; p < parts; ++p) {
-      const ConstPart one(from + p * rest, third), s(one.data() + third, third), c(s.data() + third, third);
-      Part(to + p * third, third) = one + sine[j] * s + cosine[j] * c;
+  run_same_bits([&]<int W>() VERNIER_INLINED {
+    for (Index j = 0; j < inputs_; ++j) {
+      const Index third = rest / 3;
+      double* to = j % 2 == 0 ? even : odd;
+      // the value, and derivatives with respect to the inputs before
+      const Index parts = slope != nullptr ? j + 1 : 1;
+      for (Index p = 0; p < parts; ++p) sum_out<W>(from + p * rest, sine[j], cosine[j], third, to + p * third);
+      if (slope != nullptr) differentiate<W>(from, sine[j], cosine[j], third, to + parts * third);
+      from = to;
+      rest = third;
     }
-    if (slope != nullptr) {
-      const ConstPart s(from + third, third), c(s.data() + third, third);
-      Part(to + parts * third, third) = cosine[j] * s - sine[j] * c;
-    }
-    from = to;
-    rest = third;
-  }
+  });
   std::copy(from, from + outputs, y);
   if (slope != nullptr) std::copy(from + outputs, from + outputs * (inputs_ + 1), slope);
 }

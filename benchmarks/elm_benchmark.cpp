@@ -16,9 +16,10 @@
 #include "vernier/core/executor.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/tile_product.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
-#include "vernier/regression/tile_product.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 

@@ -20,7 +20,6 @@
 #include "vernier/regression/ensemble.hpp"
 #include "vernier/regression/gaussian_process.hpp"
 #include "vernier/regression/kernel_elm.hpp"
-#include "vernier/regression/on_features.hpp"
 #include "vernier/regression/op_elm.hpp"
 #include "vernier/regression/os_elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"

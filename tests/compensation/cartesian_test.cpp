@@ -106,7 +106,7 @@ TEST(CartesianCompensation, ObeysTheLawsOfModelsAndCompensators) {
     const auto around = sample_joints(wider, 300, 9);
     int falling = 0, closed = 0;
     for (Index i = 0; i < around.rows(); ++i) {
-      const double gate = fitted.best().gate(around.row(i).transpose());
+      const double gate = fitted.identified().gate(around.row(i).transpose());
       falling += gate > 0 && gate < 1;
       closed += gate == 0;
     }
@@ -123,7 +123,7 @@ TEST(CartesianCompensation, FarOutsideTheMeasuredRangesNothingIsLearned) {
   const auto fitted = CartesianCompensation{Elm{.hidden_nodes = 20}}.fit(nominal, training(actual_arm(), 100));
   JointVector<6> q = operating_targets(1, 5).row(0).transpose();
   q(0) = 2.5;  // measured: within 1.57
-  EXPECT_EQ(fitted.best().gate(q), 0);
+  EXPECT_EQ(fitted.identified().gate(q), 0);
   EXPECT_EQ(fitted.pose(q).matrix(), nominal.pose(q).matrix());
   EXPECT_EQ(fitted.jacobian(q), nominal.jacobian(q));
   const auto correction = fitted.correct(q);
@@ -138,10 +138,10 @@ TEST(CartesianCompensation, AHybridKeepsTheOriginalReference) {
   const auto known = nominal.with_parameters(p + (r - p) * (2.0 / 3));
   const Compensated geometry(known, nominal);
   const auto hybrid = CartesianCompensation{small_elm}.fit(geometry, training(actual), {.seed = 1});
-  static_assert(std::same_as<std::remove_cvref_t<decltype(hybrid.reference())>, DhChain<6>>);
-  EXPECT_TRUE(hybrid.reference() == nominal);
+  static_assert(std::same_as<std::remove_cvref_t<decltype(hybrid.nominal())>, DhChain<6>>);
+  EXPECT_TRUE(hybrid.nominal() == nominal);
   const auto again = CartesianCompensation{small_elm}.fit(hybrid, training(actual), {.seed = 2});
-  EXPECT_TRUE(again.reference() == nominal);
+  EXPECT_TRUE(again.nominal() == nominal);
 
   const auto fresh = operating_targets(200, 99);
   const auto mean = [&](const auto& compensator) {
@@ -157,7 +157,7 @@ TEST(CartesianCompensation, AHybridKeepsTheOriginalReference) {
   const auto data = measure(Framed<DhChain<6>>(actual, base), operating_targets(300, 4));
   const auto framed = CartesianCompensation{small_elm}.fit(calibrated, data);
   const JointVector<6> q = fresh.row(0).transpose();
-  EXPECT_EQ(framed.reference().pose(q).matrix(), (base * nominal.pose(q)).matrix());
+  EXPECT_EQ(framed.nominal().pose(q).matrix(), (base * nominal.pose(q)).matrix());
 }
 
 TEST(CartesianCompensation, NoPoseIsThrownAwayWithFullJointLimits) {

@@ -115,7 +115,7 @@ TEST(JointCompensation, ObeysTheLawsOfModelsAndCompensators) {
   const auto around = sample_joints(wider, 300, 9);
   int falling = 0;
   for (Index i = 0; i < around.rows(); ++i) {
-    const double gate = fitted.best().gate(around.row(i).transpose());
+    const double gate = fitted.identified().gate(around.row(i).transpose());
     falling += gate > 0 && gate < 1;
   }
   EXPECT_GT(falling, 100);
@@ -128,8 +128,8 @@ TEST(JointCompensation, AHybridKeepsTheOriginalReference) {
   const auto p = nominal.parameters(), r = actual.parameters();
   const Compensated geometry(nominal.with_parameters(p + (r - p) * (2.0 / 3)), nominal);
   const auto hybrid = JointCompensation{small_elm}.fit(geometry, training(actual), {.seed = 1});
-  static_assert(std::same_as<std::remove_cvref_t<decltype(hybrid.reference())>, DhChain<6>>);
-  EXPECT_TRUE(hybrid.reference() == nominal);
+  static_assert(std::same_as<std::remove_cvref_t<decltype(hybrid.nominal())>, DhChain<6>>);
+  EXPECT_TRUE(hybrid.nominal() == nominal);
   const auto fresh = operating_targets(200, 99);
   const auto mean = [&](const auto& compensator) {
     return positioning_errors(actual, nominal, corrected_commands(compensator, fresh), fresh).position.mean();

@@ -11,6 +11,7 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/network_error.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 

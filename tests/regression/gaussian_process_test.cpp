@@ -11,6 +11,8 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/bounded_bfgs.hpp"
+#include "vernier/regression/detail/marginal_likelihood.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::gaussian_process_test {

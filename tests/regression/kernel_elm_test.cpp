@@ -10,6 +10,8 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/kernel_ridge_path.hpp"
+#include "vernier/regression/detail/kernel_system.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::kernel_elm_test {

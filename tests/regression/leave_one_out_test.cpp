@@ -6,6 +6,7 @@
 
 #include "instruction_sets.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/regression/detail/leave_one_out.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "lstsq_cases.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/least_squares.hpp"
 
 namespace vernier::lstsq_test {
 namespace {

@@ -1,9 +1,10 @@
-#include "vernier/regression/normal_equations.hpp"
+#include "vernier/regression/detail/normal_equations.hpp"
 
 #include <gtest/gtest.h>
 
 #include "instruction_sets.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/least_squares.hpp"
 
 namespace vernier::normal_equations_test {
 namespace {

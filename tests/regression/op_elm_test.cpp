@@ -11,6 +11,7 @@
 #include "complaint.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/rank_nodes.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::op_elm_test {

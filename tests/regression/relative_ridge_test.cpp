@@ -4,6 +4,7 @@
 
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/least_squares.hpp"
 
 namespace vernier::relative_ridge_test {
 namespace {
@@ -112,7 +113,7 @@ TEST(RelativeRidge, ZeroLayerLeavesTheTargets) {
   const Problem p;
   const RidgeSolution solution = relative_ridge(MatrixX::Zero(250, 5), p.t, relative_lambda);
   EXPECT_EQ(solution.beta, MatrixX::Zero(5, 2));
-  EXPECT_EQ(solution.objective, p.t.squaredNorm());
+  EXPECT_DOUBLE_EQ(solution.objective, p.t.squaredNorm());
 }
 
 TEST(RelativeRidge, LayerThatIsNotFiniteIsTheWorst) {

@@ -1,6 +1,6 @@
 // Weighted products of tiles against Eigen, on every instruction set of this machine.
 
-#include "vernier/regression/tile_product.hpp"
+#include "vernier/regression/detail/tile_product.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,6 +12,7 @@
 #include "laws.hpp"
 #include "regression_samples.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/regression/detail/feature_ridge.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
 #include "vernier/testing/regressor_laws.hpp"

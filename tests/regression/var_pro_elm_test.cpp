@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "regression_samples.hpp"
+#include "vernier/regression/detail/common_scaling.hpp"
+#include "vernier/regression/detail/variable_projection.hpp"
 #include "vernier/regression/elm.hpp"
+#include "vernier/regression/least_squares.hpp"
 #include "vernier/search/pso.hpp"
 #include "vernier/search/tuned.hpp"
 

@@ -10,7 +10,6 @@
 #include "vernier/regression/ensemble.hpp"
 #include "vernier/regression/gaussian_process.hpp"
 #include "vernier/regression/kernel_elm.hpp"
-#include "vernier/regression/on_features.hpp"
 #include "vernier/regression/op_elm.hpp"
 #include "vernier/regression/os_elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
@@ -57,10 +56,10 @@ class Learning {
     const std::string& name = method_.learner;
     const int nodes = plan_.nodes;
     const bool until_time_is_over = plan_.seconds > 0 && method_.search.empty();
-    if (name == "elm") return of_family(vn::Elm{.hidden_nodes = nodes});
-    if (name == "ridge_elm") return of_family(vn::RidgeElm{.hidden_nodes = nodes});
+    if (name == "elm") return tunable(mapped(vn::Elm{.hidden_nodes = nodes}));
+    if (name == "ridge_elm") return tunable(mapped(vn::RidgeElm{.hidden_nodes = nodes}));
     if (name == "var_pro_elm")
-      return of_family(vn::VarProElm{.hidden_nodes = nodes, .starts = until_time_is_over ? 1000000 : 1});
+      return tunable(mapped(vn::VarProElm{.hidden_nodes = nodes, .starts = until_time_is_over ? 1000000 : 1}));
     if (name == "bp_lm") return plain(mapped(vn::BackPropagation{.hidden_nodes = nodes}));
     if (name == "bp_adam") return plain(mapped(vn::BackPropagation{.hidden_nodes = nodes, .training = vn::Adam{}}));
     if (name == "kernel_elm") return plain(mapped(vn::KernelElm{}));
@@ -77,15 +76,8 @@ class Learning {
   R mapped(R recipe) const {
     if (method_.map == "raw") recipe.input_map = vn::InputMap::raw;
     if (method_.map == "sincos") recipe.input_map = vn::InputMap::sines_and_cosines;
+    if (method_.map == "products") recipe.input_map = vn::InputMap::sine_cosine_products;
     return recipe;
-  }
-
-  /// One that a search can tune, and that may be shown products of sines and cosines.
-  template <class R>
-  LearnedErrors<N> of_family(R recipe) const {
-    if (method_.map != "products") return tunable(mapped(recipe));
-    recipe.input_map = vn::InputMap::raw;
-    return tunable(vn::OnFeatures{vn::SineCosineProducts<2>{}, recipe});
   }
 
   /// Fitted as it is, or at what a search finds.

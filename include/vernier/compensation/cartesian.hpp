@@ -12,7 +12,7 @@
 
 namespace vernier {
 
-/// A model with a learned position error taken off: `position(q) = model.position(q) - gate(q) f(q)`. Orientations are
+/// A model less a learned position error: `position(q) = model.position(q) - gate(q) f(q)`. Orientations are
 /// the model's.
 template <KinematicModel Model, Predictor Learned>
 class CartesianCorrected {
@@ -26,7 +26,7 @@ class CartesianCorrected {
   CartesianCorrected(const Model& model, const Learned& learned, const JointCoverage<dof>& gate)
       : model_(model), learned_(learned), gate_(gate) {}
 
-  /// The model it stands on.
+  /// The model that is corrected.
   const Model& model() const { return model_; }
   /// The fitted predictor.
   const Learned& learned() const { return learned_; }
@@ -77,12 +77,12 @@ class CartesianCorrected {
 /// @cite Feng, Dong, Jin
 template <Regressor R>
 struct CartesianCompensation {
-  /// What learns.
+  /// Learner of the position error.
   R regressor;
-  /// How commands are corrected with what was learned.
+  /// How commands are corrected.
   CorrectionOptions correction{};
 
-  /// @param model   what to improve: nominal, identified, or already compensated
+  /// @param model   nominal, identified or already compensated
   /// @param data    n >= 1 samples in the frames of the model
   /// @param options seed, executor, observer of the regressor
   /// @throws std::invalid_argument when model and data are more than 50 mm apart on average: they are in different
@@ -92,9 +92,7 @@ struct CartesianCompensation {
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
     require(data.size() >= 1, "CartesianCompensation: no samples");
     const PointRows error = positions(model, data.joints()) - data.positions();
-    const double mean = error.rowwise().norm().mean();
-    require(mean < 0.05, "CartesianCompensation: model and data are ", mean * 1e3,
-            " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
+    detail::require_same_frames("CartesianCompensation", error);
     return {{model, regressor.fit(data.joints(), error, options), JointCoverage<Model::dof>::covering(data.joints())},
             nominal_of(model),
             correction};

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Command correction on any model: inverse kinematics on the best model there is, started from the nominal joints.
+/// Command correction on any model: inverse kinematics on the best model of the arm, started from the nominal joints.
 
 #include "vernier/compensation/concepts.hpp"
 #include "vernier/kinematics/concepts.hpp"
@@ -22,7 +22,7 @@ class Compensated {
   /// Joins the parts; throws `std::invalid_argument` on an unusable option.
   Compensated(const Arm& identified, const Nominal& nominal, const CorrectionOptions& options = {})
       : identified_(identified), nominal_(nominal), options_(options) {
-    options.template validate<dof>();
+    options.validate(dof);
   }
 
   /// The best model of the arm.
@@ -53,14 +53,15 @@ class Compensated {
   /// The pose the arm takes when commanded q.
   Isometry3 predict(const JointVector<dof>& q) const noexcept { return pose(q); }
 
-  /// The command that brings the arm where the nominal one is at q. Stays on the branch of q; the best iterate is kept.
+  /// The command that brings the arm to the pose of the nominal one at q. Stays on the branch of q; the best iterate is
+  /// kept.
   [[nodiscard]] Correction<dof> correct(const JointVector<dof>& q) const noexcept {
     return correct(nominal_.pose(q), q);
   }
 
   /// The command that brings the arm to a pose.
   /// @param target base_T_tool in the frames of the model
-  /// @param seed   joints near the answer; they choose the branch
+  /// @param seed   joints near the solution; they choose the branch
   [[nodiscard]] Correction<dof> correct(const Isometry3& target, const JointVector<dof>& seed) const noexcept {
     IkOptions<dof> options;
     options.limits = limits_;

@@ -10,7 +10,7 @@
 
 namespace vernier {
 
-/// A corrected command, and what is known of it.
+/// A corrected command and its predicted error.
 template <int N>
 struct Correction {
   JointVector<N> command;      ///< joints to send to the arm [rad, m]
@@ -20,10 +20,10 @@ struct Correction {
       1;  ///< share of the learned correction that was used: 1 inside the measured joint ranges, 0 far outside
 };
 
-/// What knows where an arm will really go, and which joints bring it where it should. No call allocates or throws.
+/// A model of the actual poses of an arm and a correction of its commands. No call allocates or throws.
 ///
 /// - `predict(q)`: the pose the arm takes when commanded q
-/// - `correct(q)`: the command that brings it where the nominal arm would be at q
+/// - `correct(q)`: the command that brings it to the pose of the nominal arm at q
 template <class C>
 concept Compensator = requires(const C& compensator, const JointVector<C::dof>& q) {
   { compensator.predict(q) }
@@ -32,31 +32,37 @@ concept Compensator = requires(const C& compensator, const JointVector<C::dof>& 
   noexcept->std::same_as<Correction<C::dof>>;
 };
 
-/// What a correction aims at.
+/// Target of a correction.
 enum class CorrectionTarget {
   automatic,  ///< the full pose for six joints or more, else the position
   pose,       ///< position and orientation
-  position,   ///< the position alone; orientation is left to fall as it may (the paper's mode)
+  position,   ///< the position alone, the orientation is free (the paper's mode)
 };
 
 /// How commands are corrected.
 struct CorrectionOptions {
-  /// What a correction aims at.
+  /// Target of a correction.
   CorrectionTarget target = CorrectionTarget::automatic;
-  int moving_joints = 0;             ///< number of leading joints that are corrected; 0: all (the paper moves 3)
+  int moving_joints = 0;             ///< number of joints corrected, from the base; 0: all (the paper moves 3)
   double position_tolerance = 1e-6;  ///< the paper's epsilon [m]
   double rotation_tolerance = 1e-6;  ///< [rad]
   int max_iterations = 30;           ///< evaluations of the model
 
+  /// @param dof number of joints
   /// @throws std::invalid_argument naming the value
-  template <int N>
-  void validate() const {
-    require(moving_joints >= 0 && moving_joints <= N, "CorrectionOptions: moving_joints is ", moving_joints,
-            ", must lie in 0..", N);
-    require(position_tolerance > 0 && rotation_tolerance > 0, "CorrectionOptions: tolerances ", position_tolerance,
-            " m and ", rotation_tolerance, " rad must be positive");
-    require(max_iterations >= 1, "CorrectionOptions: max_iterations is ", max_iterations, ", must be at least 1");
-  }
+  VERNIER_API void validate(int dof) const;
 };
 
+namespace detail {
+
+/// Throws `std::invalid_argument` where a model and its data are more than 50 mm apart on average: their frames differ.
+/// @param error of the positions [m]
+VERNIER_API void require_same_frames(const char* caller, const PointRows& error);
+
+}  // namespace detail
+
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/compensation/concepts.ipp"
+#endif

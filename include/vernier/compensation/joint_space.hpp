@@ -23,14 +23,14 @@ class JointCorrected {
   JointCorrected(const Model& model, const Learned& learned, const JointCoverage<dof>& gate)
       : model_(model), learned_(learned), gate_(gate) {}
 
-  /// The model it stands on.
+  /// The model that is corrected.
   const Model& model() const { return model_; }
   /// The fitted predictor.
   const Learned& learned() const { return learned_; }
   /// Share of the learned correction that is used at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
 
-  /// The joints at which the model stands where the arm does.
+  /// The joints at which the model has the pose of the arm.
   JointVector<dof> effective(const JointVector<dof>& q) const noexcept { return q + gate_(q) * learned_.predict(q); }
 
   /// base_T_tool.
@@ -143,9 +143,9 @@ JointErrorLabels<Model::dof> joint_error_labels(const Model& model, const Datase
 /// @cite Feng, Dong, Jin
 template <Regressor R>
 struct JointCompensation {
-  /// What learns.
+  /// Learner of the joint errors.
   R regressor;
-  /// How commands are corrected with what was learned.
+  /// How commands are corrected.
   CorrectionOptions correction{};
 
   /// From measured full poses: the result is a kinematic model, corrected like any other.
@@ -155,9 +155,7 @@ struct JointCompensation {
   Compensated<JointCorrected<Model, PredictorOf<R, Model::dof, Model::dof>>, NominalOf<Model>> fit(
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
     require(data.size() >= 1, "JointCompensation: no samples");
-    const double mean = (positions(model, data.joints()) - data.positions()).rowwise().norm().mean();
-    require(mean < 0.05, "JointCompensation: model and data are ", mean * 1e3,
-            " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
+    detail::require_same_frames("JointCompensation", positions(model, data.joints()) - data.positions());
     const auto labels = joint_error_labels(model, data);
     require(labels.joints.rows() >= 1, "JointCompensation: inverse kinematics failed for all ", data.size(), " poses");
     return {{model, regressor.fit(labels.joints, labels.errors, options),

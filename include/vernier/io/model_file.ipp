@@ -20,7 +20,7 @@ namespace detail {
 inline constexpr int model_schema_version = 2, modified_schema_version = 3;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
 inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "tanh", "sine", "radial_basis"};
-inline constexpr std::array<std::string_view, 2> input_map_names{"raw", "sines_and_cosines"};
+inline constexpr std::array<std::string_view, 3> input_map_names{"raw", "sines_and_cosines", "sine_cosine_products"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
 inline constexpr std::array<std::string_view, 2> measured_names{"poses", "positions"};
 inline constexpr std::array<std::string_view, 3> scaling_names{"none", "min_max", "standard"};

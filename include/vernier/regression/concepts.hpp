@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Recipes that learn a map from samples, and the fitted maps they give.
+/// Recipes that learn a map from samples, and the fitted maps.
 
 #include <concepts>
 
@@ -26,7 +26,7 @@ concept Predictor = requires(const P& predictor, const Eigen::Matrix<double, P::
   noexcept->std::same_as<Eigen::Matrix<double, P::outputs, P::inputs>>;
 };
 
-/// A predictor that says how certain it is.
+/// A predictor with standard deviations.
 ///
 /// - `standard_deviation(x)`: of each predicted output, without the noise of a new measurement; does not throw
 template <class P>
@@ -36,13 +36,13 @@ concept UncertainPredictor = Predictor<P> &&
   noexcept->std::same_as<Eigen::Matrix<double, P::outputs, 1>>;
 };
 
-/// What `R::fit` gives for samples of some inputs and outputs.
+/// The type that `R::fit` returns for these numbers of inputs and outputs.
 template <class R, int Inputs, int Outputs>
 using PredictorOf = decltype(std::declval<const R&>().fit(
     std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Inputs>&>(),
     std::declval<const Eigen::Matrix<double, Eigen::Dynamic, Outputs>&>(), std::declval<const FitOptions&>()));
 
-/// A recipe: `fit(X, Y, options)` is const and gives a `Predictor` with no unfinished state. X is n x inputs, Y n x
+/// A recipe: `fit(X, Y, options)` is const and returns a fitted `Predictor`. X is n x inputs, Y n x
 /// outputs, one sample a row; the numbers of columns are compile-time constants of any size. Same seed, same bits.
 template <class R>
 concept Regressor = std::copyable<R> && Predictor<PredictorOf<R, 6, 3>> && Predictor<PredictorOf<R, 1, 1>> &&
@@ -59,39 +59,29 @@ concept SampleOf = (Derived::ColsAtCompileTime == 1 && Derived::RowsAtCompileTim
 template <class Derived, int Inputs>
 concept SampleRowsOf = (Derived::ColsAtCompileTime == Inputs && !SampleOf<Derived, Inputs>);
 
+/// Throws `std::invalid_argument` for unusable samples or weights.
+VERNIER_API void check_samples(const char* caller, const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
+                               const VectorX* weights);
+
 /// The checks every `fit` makes of its samples.
 template <class X, class Y>
-void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets) {
+void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
+                     const FitOptions& options = {}) {
   static_assert(
       X::ColsAtCompileTime != Eigen::Dynamic && Y::ColsAtCompileTime != Eigen::Dynamic,
       "the numbers of inputs and outputs are compile-time constants: pass matrices with fixed numbers of columns");
-  require(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(),
-          " rows of targets");
-  require(inputs.rows() >= 1, caller, ": no samples");
-  require(inputs.allFinite() && targets.allFinite(), caller, ": the samples have a value that is not finite");
-}
-
-/// The same, and the weights.
-template <class X, class Y>
-void require_samples(const char* caller, const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets,
-                     const FitOptions& options) {
-  require_samples(caller, inputs, targets);
-  if (options.weights == nullptr) return;
-  require(options.weights->size() == inputs.rows(), caller, ": ", options.weights->size(), " weights for ",
-          inputs.rows(), " samples");
-  require(options.weights->allFinite() && options.weights->minCoeff() > 0, caller, ": the weights go down to ",
-          options.weights->minCoeff(), ", all must be finite and positive");
+  check_samples(caller, inputs.derived(), targets.derived(), options.weights);
 }
 
 /// The weights of n samples; ones where there are none.
-inline VectorX weights_or_ones(const VectorX* weights, Index n) {
-  return weights != nullptr ? *weights : VectorX(VectorX::Ones(n));
-}
+VERNIER_API VectorX weights_or_ones(const VectorX* weights, Index n);
 
 /// For recipes that have no use for weights.
-inline void require_no_weights(const char* caller, const FitOptions& options) {
-  require(options.weights == nullptr, caller, " takes no weights");
-}
+VERNIER_API void require_no_weights(const char* caller, const FitOptions& options);
 
 }  // namespace detail
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/regression/concepts.ipp"
+#endif

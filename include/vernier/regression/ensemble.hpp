@@ -4,7 +4,6 @@
 /// Bagging: many fits of one recipe on resampled data, their mean, and their spread.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -12,66 +11,44 @@
 #include <vector>
 
 #include "vernier/core/rng.hpp"
-#include "vernier/regression/concepts.hpp"
+#include "vernier/regression/detail/predictor_interface.hpp"
 
 namespace vernier {
 
 /// Fitted members and their mean.
 template <Predictor P>
-class EnsemblePredictor {
+class EnsemblePredictor : public detail::PredictorInterface<EnsemblePredictor<P>, P::inputs, P::outputs> {
+  using Base = detail::PredictorInterface<EnsemblePredictor<P>, P::inputs, P::outputs>;
+
  public:
-  /// Number of inputs.
-  static constexpr int inputs = P::inputs;
-  /// Number of outputs.
-  static constexpr int outputs = P::outputs;
-  /// One sample.
-  using Input = Eigen::Matrix<double, inputs, 1>;
-  /// One prediction.
-  using Output = Eigen::Matrix<double, outputs, 1>;
+  using typename Base::Input;
+  using typename Base::Output;
+  using typename Base::Slope;
 
   /// @param members at least one
   explicit EnsemblePredictor(std::vector<P> members) : members_(std::move(members)) {
     require(!members_.empty(), "EnsemblePredictor: no members");
   }
 
-  /// One sample: the mean of the members' predictions.
-  template <class Derived>
-    requires detail::SampleOf<Derived, inputs> Output predict(const Eigen::MatrixBase<Derived>& x)
-  const noexcept {
-    const Input at = x;
-    Output sum = Output::Zero();
-    for (const P& member : members_) sum += member.predict(at);
-    return sum / static_cast<double>(members_.size());
+  /// The mean of the members' predictions, and where `slope` is not null that of their derivatives.
+  void evaluate(const Input& x, Output& y, Slope* slope) const noexcept {
+    const double n = static_cast<double>(members_.size());
+    y.setZero();
+    for (const P& member : members_) y += member.predict(x);
+    y /= n;
+    if (slope == nullptr) return;
+    slope->setZero();
+    for (const P& member : members_) *slope += member.derivative(x);
+    *slope /= n;
   }
 
-  /// Samples as rows, n x inputs to n x outputs.
+  /// Standard deviation of the members' predictions: the variability due to the choice of samples and the start of the
+  /// fit, without errors that all members have in common. Zero for one member.
   template <class Derived>
-    requires detail::SampleRowsOf<Derived, inputs> Eigen::Matrix<double, Eigen::Dynamic, outputs> predict(
-        const Eigen::MatrixBase<Derived>& x)
-  const {
-    Eigen::Matrix<double, Eigen::Dynamic, outputs> y(x.rows(), outputs);
-    for (Index i = 0; i < x.rows(); ++i) y.row(i) = predict(Input(x.row(i).transpose())).transpose();
-    return y;
-  }
-
-  /// d predict / d x at one sample.
-  template <class Derived>
-    requires detail::SampleOf<Derived, inputs> Eigen::Matrix<double, outputs, inputs> derivative(
-        const Eigen::MatrixBase<Derived>& x)
+    requires detail::SampleOf<Derived, P::inputs> Output standard_deviation(const Eigen::MatrixBase<Derived>& x)
   const noexcept {
     const Input at = x;
-    Eigen::Matrix<double, outputs, inputs> sum = Eigen::Matrix<double, outputs, inputs>::Zero();
-    for (const P& member : members_) sum += member.derivative(at);
-    return sum / static_cast<double>(members_.size());
-  }
-
-  /// Spread of the members' predictions: how much a prediction hangs on which samples there were and how the fit began.
-  /// It knows of no error that all members have in common. Zero for one member.
-  template <class Derived>
-    requires detail::SampleOf<Derived, inputs> Output standard_deviation(const Eigen::MatrixBase<Derived>& x)
-  const noexcept {
-    const Input at = x;
-    const Output mean = predict(at);
+    const Output mean = this->predict(at);
     Output square = Output::Zero();
     for (const P& member : members_) square += (member.predict(at) - mean).cwiseAbs2();
     return (square / static_cast<double>(std::max<std::size_t>(members_.size() - 1, 1))).cwiseSqrt();
@@ -84,25 +61,32 @@ class EnsemblePredictor {
   std::vector<P> members_;
 };
 
-/// Bagging: `members` fits of one recipe, each with a seed of its own on samples of its own. Members are fitted side by
-/// side by the executor, each by one thread.
+namespace detail {
+
+/// Rows of a resampled data set of n rows, ascending.
+VERNIER_API std::vector<Index> draw_rows(Index n, double share, bool replacement, std::uint64_t seed);
+
+}  // namespace detail
+
+/// Bagging: `members` fits of one recipe, each with a seed of its own on samples of its own. The executor fits
+/// members in parallel, each on one thread.
 /// `Ensemble{RidgeElm{}, 20}`
 /// @cite Breiman 1996
 template <Regressor R>
 struct Ensemble {
-  /// What is fitted.
+  /// The recipe of the members.
   R regressor;
   int members = 20;  ///< at least 2
   /// Size of a member's sample, of n; in (0, 1].
   double share = 1;
-  /// Whether a member's sample may have a row more than once: the bootstrap. A leave-one-out error is then too low, as
-  /// the row that is left out is often there a second time; recipes that choose a ridge by it do better without, at a
-  /// share of 0.6. Without, and with all samples, members differ by their seeds alone.
+  /// Whether rows are drawn with replacement: the bootstrap. A leave-one-out error is then too low, as
+  /// copies of the row left out often remain; recipes that choose a ridge by it do better without replacement, at a
+  /// share of 0.6. Without replacement and at a share of 1 members differ by their seeds alone.
   bool replacement = true;
 
-  /// Weights stay with their rows, which are drawn all alike; they mean to a member what they mean to its recipe.
-  /// The observer sees how many members are there, as generations and with 0 as the best value; where it stops the fit,
-  /// the ensemble is those, and which depends on the executor.
+  /// Rows are drawn regardless of their weights, which are passed to the recipe.
+  /// The observer is called with the number of fitted members as generations and 0 as the best value; where it stops
+  /// the fit, the ensemble is those, and which depends on the executor.
   /// @param inputs  n x inputs
   /// @param targets n x outputs
   /// @param options seed, executor, observer, weights
@@ -125,7 +109,8 @@ struct Ensemble {
           if (!go_on) return;
         }
         const auto stream = 2 * static_cast<std::uint64_t>(k);
-        const std::vector<Index> rows = draw(inputs.rows(), child_seed(options.seed, stream));
+        const std::vector<Index> rows =
+            detail::draw_rows(inputs.rows(), share, replacement, child_seed(options.seed, stream));
         VectorX weights;
         FitOptions own{.seed = child_seed(options.seed, stream + 1)};
         if (options.weights != nullptr) {
@@ -146,21 +131,6 @@ struct Ensemble {
       if (member) there.push_back(std::move(*member));
     return EnsemblePredictor<Member>(std::move(there));
   }
-
- private:
-  std::vector<Index> draw(Index n, std::uint64_t seed) const {
-    Rng rng(seed);
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(share * static_cast<double>(n))));
-    std::vector<Index> rows;
-    if (replacement) {
-      while (rows.size() < count) rows.push_back(static_cast<Index>(rng.below(static_cast<std::uint64_t>(n))));
-    } else {
-      rows = rng.permutation(n);
-      rows.resize(count);
-    }
-    std::sort(rows.begin(), rows.end());
-    return rows;
-  }
 };
 
 /// Deduction guide, for compilers that have none for aggregates.
@@ -177,3 +147,7 @@ template <class R>
 Ensemble(R, int, double, bool) -> Ensemble<R>;
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/regression/ensemble.ipp"
+#endif

@@ -3,13 +3,11 @@
 /// @file
 /// Regressors of any type and any numbers of inputs and outputs as one type, so that their laws are compiled once.
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "vernier/core/rng.hpp"
 #include "vernier/regression/concepts.hpp"
 
 namespace vernier::testing::detail {
@@ -18,22 +16,10 @@ namespace vernier::testing::detail {
 struct Samples {
   MatrixX x, y;
 
-  Samples(Index n, Index inputs, Index outputs, std::uint64_t seed) : x(n, inputs), y(n, outputs) {
-    Rng rng(seed);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < inputs; ++j) x(i, j) = rng.uniform(-1.5, 1.5);
-      for (Index k = 0; k < outputs; ++k) {
-        const auto output = static_cast<double>(k);
-        double value = 0.1 * (output + 1);
-        for (Index j = 0; j < inputs; ++j)
-          value += std::sin((1 + 0.3 * static_cast<double>(j)) * x(i, j) + output) * (1 + 0.2 * x(i, 0));
-        y(i, k) = 1e-3 * (output + 1) * value;
-      }
-    }
-  }
+  VERNIER_API Samples(Index n, Index inputs, Index outputs, std::uint64_t seed);
 };
 
-/// A predictor as the laws see it.
+/// A predictor of any type.
 struct AnyPredictor {
   AnyPredictor() = default;
   AnyPredictor(const AnyPredictor&) = default;
@@ -47,7 +33,7 @@ struct AnyPredictor {
   virtual void overwrite_samples() = 0;
 };
 
-/// A recipe for so many inputs and outputs, likewise.
+/// A recipe for one pair of numbers of inputs and outputs, likewise.
 struct AnyRecipe {
   Index inputs, outputs;
 
@@ -55,7 +41,7 @@ struct AnyRecipe {
   AnyRecipe(const AnyRecipe&) = delete;
   AnyRecipe& operator=(const AnyRecipe&) = delete;
   virtual ~AnyRecipe() = default;
-  /// Fits; samples become what `fit` leaves of them.
+  /// Fits; `samples` are those of the call, which a wrong `fit` may have changed.
   virtual std::unique_ptr<AnyPredictor> fit(Samples& samples, const FitOptions& options) const = 0;
 };
 
@@ -109,3 +95,7 @@ class RecipeOf final : public AnyRecipe {
 };
 
 }  // namespace vernier::testing::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/testing/any_regressor.ipp"
+#endif

@@ -122,7 +122,7 @@ std::vector<std::string> compensator_violations(const C& compensator, const Refe
 }
 
 /// The same where the compensator knows its reference; without one, the laws that need none.
-/// @param compensator the compensator; `compensator.reference()` is the arm as it should be
+/// @param compensator the compensator; `compensator.nominal()` is the arm as it should be
 /// @param samples     target joints, n x dof, n >= 1
 /// @param options     tolerances
 /// @return            one sentence per law that is broken; empty when all hold
@@ -130,8 +130,8 @@ std::vector<std::string> compensator_violations(const C& compensator, const Refe
 template <Compensator C>
 std::vector<std::string> compensator_violations(const C& compensator, const JointRows<C::dof>& samples,
                                                 const CompensatorLawOptions& options = {}) {
-  if constexpr (requires { compensator.reference(); }) {
-    return compensator_violations(compensator, compensator.reference(), samples, options);
+  if constexpr (requires { compensator.nominal(); }) {
+    return compensator_violations(compensator, compensator.nominal(), samples, options);
   } else {
     std::vector<std::string> violations;
     detail::check_compensator(compensator, samples, options, violations);

@@ -1,10 +1,7 @@
 #pragma once
 
 /// @file
-/// Products of narrow tiles, `A'B` over samples: what the normal equations of hidden layers are made of.
-///
-/// A tile has one row a sample; rows are `stride` apart, a multiple of 8. Per sample the product costs stride^2
-/// multiply-adds on stride loaded numbers, so a block of accumulators kept in registers makes it arithmetic-bound.
+/// The kernel of `tile_product.hpp`: only definitions include it.
 
 #include <algorithm>
 
@@ -57,41 +54,6 @@ VERNIER_INLINE void tile_product(const double* left, const double* right, double
       product_block<W, Rows, Vectors>(left, right, products, stride, samples, i, j);
     for (; j < stride; j += W) product_block<W, Rows, 1>(left, right, products, stride, samples, i, j);
   }
-}
-
-/// `left' diag(weights) right` over all samples.
-struct WeightedProduct {
-  const double* left;     // samples rows of `stride`
-  const double* right;    // samples rows of `stride`
-  const double* weights;  // samples
-  double* tile;           // tile_samples rows of `stride`, scratch
-  double* products;       // stride x stride, added to
-  Index samples, stride, tile_samples;
-  bool symmetric;  // left is right
-};
-
-template <int W, int Rows, int Vectors>
-VERNIER_INLINE void weighted_product_kernel(const WeightedProduct& p) {
-  for (Index begin = 0; begin < p.samples; begin += p.tile_samples) {
-    const Index samples = std::min(p.tile_samples, p.samples - begin);
-    for (Index s = 0; s < samples; ++s) {
-      const double weight = p.weights[begin + s];
-      const double* from = p.left + (begin + s) * p.stride;
-      double* to = p.tile + s * p.stride;
-      for (Index k = 0; k < p.stride; k += W) {
-        typename Simd<W>::Double v;
-        load<W>(v, from + k);
-        v *= weight;
-        store<W>(to + k, v);
-      }
-    }
-    tile_product<W, Rows, Vectors>(p.tile, p.right + begin * p.stride, p.products, p.stride, samples, p.symmetric);
-  }
-}
-
-/// Adds `left' diag(weights) right` with the instructions of `set`, which must be there.
-inline void add_weighted_product(const WeightedProduct& p, InstructionSet set) {
-  run_widest([&]<int W>() VERNIER_INLINED { weighted_product_kernel<W, block_rows<W>, block_vectors<W>>(p); }, set);
 }
 
 }  // namespace vernier::detail

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "vernier/regression/detail/levenberg_marquardt.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, VectorX& theta, int iterations,
+                                        double tolerance, ExecutorRef executor, FunctionRef<bool(double best)> watch) {
+  constexpr double rounding = 1e-26;  // of targets of spread 1
+  double value = problem.evaluate(theta), at_check = value;
+  double damping = 0.1, raise = 2;
+  int accepted = 0;
+  bool moved = true;
+  VectorX gradient, scale;
+  MatrixX curvature, damped;
+  bool go_on = watch(value) && std::isfinite(value);
+  for (int iteration = 0; go_on && iteration < iterations && value > rounding; ++iteration) {
+    if (moved) {
+      gradient = problem.gradient();
+      problem.curvature(curvature, executor);
+      if (!(curvature.diagonal().maxCoeff() > 0)) break;  // every node is saturated or unused
+      // Nodes that hardly matter at the moment must not be thrown far away.
+      scale = curvature.diagonal().cwiseMax(1e-3 * curvature.diagonal().mean());
+      moved = false;
+    }
+    damped = curvature;
+    damped.diagonal() += damping * scale;
+    const Eigen::LLT<Eigen::Ref<MatrixX>> factor(damped);  // in place
+    if (factor.info() == Eigen::Success) {
+      const VectorX step = -factor.solve(gradient);
+      const double predicted = 0.5 * (damping * step.dot(scale.cwiseProduct(step)) - gradient.dot(step));
+      if (!(predicted > 1e-15 * value)) break;  // the value cannot tell such steps apart
+      const VectorX trial = theta + step;
+      const double found = problem.evaluate(trial);
+      if (found < value) {
+        const double surplus = 2 * (value - found) / predicted - 1;
+        damping *= std::max(1.0 / 3, 1 - surplus * surplus * surplus);
+        raise = 2;
+        theta = trial;
+        value = found;
+        moved = true;
+      }
+    }
+    if (!moved) {
+      damping *= raise;
+      raise *= 2;
+    } else if (++accepted % 10 == 0) {
+      go_on = at_check - value >= tolerance * value;
+      at_check = value;
+    }
+    go_on = watch(value) && go_on;
+  }
+  return value;
+}
+
+}  // namespace vernier::detail

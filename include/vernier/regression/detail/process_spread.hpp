@@ -1,0 +1,64 @@
+#pragma once
+
+/// @file
+/// The posterior standard deviation of a Gaussian process.
+
+#include <vector>
+
+#include "vernier/regression/detail/kernel_system.hpp"
+
+namespace vernier::detail {
+
+/// The inverse of a lower triangular matrix in square tiles, those on and below the diagonal row by row.
+class LowerInverseTiles {
+ public:
+  static constexpr Index size = 64;  ///< of a tile
+
+  /// @param factor n x n, its lower triangle; n^3 / 3 multiply-adds
+  VERNIER_API explicit LowerInverseTiles(const MatrixX& factor);
+
+  /// |M k|^2 for the values k of nodes at a sample, which are evaluated tile by tile: once for each row of tiles at or
+  /// below them. Does not allocate.
+  VERNIER_API double square_of_product(const NodeSum& nodes, const double* features) const noexcept;
+
+ private:
+  static std::size_t offset(Index i, Index j) { return static_cast<std::size_t>((i * (i + 1) / 2 + j) * size * size); }
+
+  Index rows_ = 0;  // of tiles
+  std::vector<double> tiles_;
+};
+
+/// The uncertainty of a `GaussianProcessPredictor`.
+class ProcessSpread {
+ public:
+  /// @param system          the linear system of the fit
+  /// @param signal_variance one an output
+  /// @param noise_ratio     of noise to signal variance
+  VERNIER_API ProcessSpread(const KernelSystem& system, const VectorX& signal_variance, double noise_ratio);
+
+  /// Standard deviation of each output at a sample. Does not allocate.
+  /// @param kernels   of the fit
+  /// @param x         inputs
+  /// @param out       outputs
+  /// @param workspace `NodeSum::workspace(inputs)` numbers
+  VERNIER_API void standard_deviation(const NodeSum& kernels, const double* x, double* out,
+                                      double* workspace) const noexcept;
+
+  /// Standard deviation of each output's function.
+  const VectorX& signal_deviation() const { return signal_deviation_; }
+  /// Noise variance divided by signal variance.
+  double noise_ratio() const { return noise_ratio_; }
+
+ private:
+  LowerInverseTiles inverse_;
+  VectorX ones_;  // A^-1 1, padded
+  double precision_;
+  VectorX signal_deviation_;
+  double noise_ratio_;
+};
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/regression/detail/process_spread.ipp"
+#endif

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "vernier/core/simd.hpp"
+#include "vernier/regression/detail/process_spread.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
+  const Index n = factor.rows();
+  rows_ = (n + size - 1) / size;
+  tiles_.assign(static_cast<std::size_t>(rows_ * (rows_ + 1) / 2 * size * size), 0.0);
+  MatrixX columns;
+  for (Index j = 0; j < rows_; ++j) {  // a tile's columns of the inverse are zero above it
+    const Index first = j * size, rest = n - first, width = std::min(size, rest);
+    columns = MatrixX::Identity(rest, width);
+    factor.bottomRightCorner(rest, rest).triangularView<Eigen::Lower>().solveInPlace(columns);
+    for (Index i = j; i < rows_; ++i) {
+      const Index height = std::min(size, n - i * size);
+      Eigen::Map<MatrixX>(tiles_.data() + offset(i, j), size, size).topLeftCorner(height, width) =
+          columns.middleRows(i * size - first, height);
+    }
+  }
+}
+
+/// A tile of values of nodes, zero beyond the last.
+VERNIER_API void fill_tile(const NodeSum& nodes, const double* features, Index first, double* out) noexcept {
+  const Index padded = (nodes.nodes() + 7) / 8 * 8, count = std::min(LowerInverseTiles::size, padded - first);
+  nodes.node_values(features, first, count, out);
+  std::fill(out + count, out + LowerInverseTiles::size, 0.0);
+}
+
+/// product += tile k.
+inline void add_tile_product(const double* tile, const double* k, double* product) noexcept {
+  run_widest([&]<int W>() VERNIER_INLINED {
+    constexpr int vectors = 4;
+    typename Simd<W>::Double sum[vectors], part;
+    for (Index row = 0; row < LowerInverseTiles::size; row += vectors * W) {
+      VERNIER_UNROLL
+      for (int v = 0; v < vectors; ++v) load<W>(sum[v], product + row + v * W);
+      for (Index column = 0; column < LowerInverseTiles::size; ++column) {
+        VERNIER_UNROLL
+        for (int v = 0; v < vectors; ++v) {
+          load<W>(part, tile + column * LowerInverseTiles::size + row + v * W);
+          sum[v] += k[column] * part;
+        }
+      }
+      VERNIER_UNROLL
+      for (int v = 0; v < vectors; ++v) store<W>(product + row + v * W, sum[v]);
+    }
+  });
+}
+
+VERNIER_IMPL double LowerInverseTiles::square_of_product(const NodeSum& nodes, const double* features) const noexcept {
+  double k[size], total = 0;
+  for (Index i = 0; i < rows_; ++i) {
+    double product[size] = {};
+    for (Index j = 0; j <= i; ++j) {
+      fill_tile(nodes, features, j * size, k);
+      add_tile_product(tiles_.data() + offset(i, j), k, product);
+    }
+    for (const double part : product) total += part * part;
+  }
+  return total;
+}
+
+VERNIER_IMPL ProcessSpread::ProcessSpread(const KernelSystem& system, const VectorX& signal_variance,
+                                          double noise_ratio)
+    : inverse_(system.factor),
+      ones_(VectorX::Zero((system.ones.size() + LowerInverseTiles::size - 1) / LowerInverseTiles::size *
+                          LowerInverseTiles::size)),
+      precision_(system.precision),
+      signal_deviation_(signal_variance.cwiseSqrt()),
+      noise_ratio_(noise_ratio) {
+  ones_.head(system.ones.size()) = system.ones;
+}
+
+VERNIER_IMPL void ProcessSpread::standard_deviation(const NodeSum& kernels, const double* x, double* out,
+                                                    double* workspace) const noexcept {
+  constexpr Index tile = LowerInverseTiles::size;
+  kernels.features(x, workspace);
+  double k[tile], known = 0;  // 1'A^-1 k
+  for (Index first = 0; first < kernels.nodes(); first += tile) {
+    fill_tile(kernels, workspace, first, k);
+    for (Index i = 0; i < tile; ++i) known += ones_(first + i) * k[i];
+  }
+  const double explained = inverse_.square_of_product(kernels, workspace);
+  const double of_mean = (1 - known) * (1 - known) / precision_;
+  const double factor = std::sqrt(std::max(0.0, 1 - explained) + of_mean);
+  for (Index o = 0; o < signal_deviation_.size(); ++o) out[o] = signal_deviation_(o) * factor;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/regression/concepts.hpp"
+#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/var_pro_training_error.hpp"
+#include "vernier/regression/detail/variable_projection.hpp"
+#include "vernier/regression/least_squares.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL VarProTrainingError::VarProTrainingError(const HiddenLayer& layer, MatrixX features, MatrixX targets,
+                                                      double ridge, const VectorX* weights)
+    : layer_(layer), features_(std::move(features)), targets_(std::move(targets)), ridge_(ridge) {
+  if (weights != nullptr) weights_ = *weights;
+}
+
+VERNIER_IMPL void VarProTrainingError::operator()(const ConstMatrixRef& population, VectorRef fitness) const {
+  const VectorX roots = weights_or_ones(weights(), targets_.rows()).cwiseSqrt();
+  const double n = roots.squaredNorm(), target_square = (roots.asDiagonal() * targets_).squaredNorm();
+  MatrixX ones_and_targets(targets_.rows(), targets_.cols() + 1);
+  ones_and_targets << VectorX::Ones(targets_.rows()), targets_;
+  NormalEquations equations(layer_, features_, ones_and_targets, widest_instruction_set(), false,
+                            weights_ ? roots.data() : nullptr);
+  std::optional<VariableProjection> projection;
+  for (Index k = 0; k < population.cols(); ++k) {
+    double objective = -1;
+    if (NormalEquations::supports(layer_.activation)) {
+      equations.form(population.col(k));
+      const VectorX sum = equations.right().row(0).transpose();
+      MatrixX gram = equations.gram();
+      gram -= sum * sum.transpose() / n;
+      const ConstMatrixRef right = equations.right().bottomRows(targets_.cols());
+      objective = objective_from_products(gram, right, target_square, ridge_weights(gram, right, ridge_ * n),
+                                          ridge_ * n, equations.gram().trace());
+    }
+    if (!(objective >= 0)) {  // too nearly perfect or too badly conditioned for the products
+      if (!projection) projection.emplace(layer_, features_, targets_, ridge_, weights());
+      objective = projection->evaluate(population.col(k)) * n;
+    }
+    fitness(k) = objective / n;
+  }
+}
+
+VERNIER_IMPL VectorX VarProTrainingError::gradient(const ConstVectorRef& theta) const {
+  VariableProjection projection(layer_, features_, targets_, ridge_, weights());
+  require(theta.size() == projection.dimension(), "VarProElm: ", theta.size(), " hidden weights, expected ",
+          projection.dimension());
+  projection.evaluate(theta);
+  return projection.gradient();
+}
+
+}  // namespace vernier::detail

@@ -149,6 +149,9 @@ TEST_F(Guide, SensorsAndKnownFrames) {
   EXPECT_EQ(with_free_tool.model().identified().base().matrix(), base.matrix());  // known: kept bit for bit
   EXPECT_NE(with_free_tool.model().identified().tool().matrix(), tool.matrix());
   EXPECT_LT(error(with_free_tool.model()), 0.15e-3);
+  const auto all_known = calibrate(surveyed, data, {.geometry = {.frames = Frames::none}});
+  EXPECT_EQ(all_known.model().identified().tool().matrix(), tool.matrix());
+  EXPECT_LT(error(all_known.model()), 0.15e-3);
 }
 
 TEST_F(Guide, SeveralStations) {

@@ -43,11 +43,16 @@ struct LocalStates {
       rows.push_back(std::move(row));
     }
     const MatrixX walk = 3 * MatrixX::Identity(size, size);
-    priors.push_back({0, 0, walk});
+    MatrixX turn = walk;  // not symmetric
+    turn(0, 1) = 0.4;
+    priors.push_back({0, 0, 2 * walk});
     for (Index k = 0; k + 1 < states; ++k) {
-      priors.push_back({k, k, walk});
-      priors.push_back({k + 1, k, -walk});
-      priors.push_back({k + 1, k + 1, walk});
+      priors.push_back({k, k, 1.5 * walk});
+      if (k % 2 == 0)  // either order
+        priors.push_back({k + 1, k, -turn});
+      else
+        priors.push_back({k, k + 1, -turn});
+      priors.push_back({k + 1, k + 1, 1.5 * walk});
     }
     steps.resize(dense);
     local_steps.resize(states * size);

@@ -98,6 +98,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
   const std::span<const Dataset<N>> poses(std::data(stations), std::size(stations));
   const std::span<const Distances<N>> wires(std::data(distances), std::size(distances));
   require(poses.size() + wires.size() > 0, "calibrate: no measurements");
+  options.errors.validate();
+  options.sensors.validate();
 
   IdentifyOptions frames_alone = options.geometry;
   frames_alone.geometry = false;

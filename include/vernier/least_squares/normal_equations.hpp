@@ -20,7 +20,7 @@ namespace vernier {
 /// transpose where they differ, to the exponent's quadratic form.
 struct LocalPrior {
   Index first;        ///< a state
-  Index second;       ///< a state, at most `first`
+  Index second;       ///< a state
   MatrixX precision;  ///< local_size x local_size
 };
 
@@ -42,7 +42,7 @@ struct NormalEquations {
 /// Normal equations with priors, factorised. Unknowns that nothing determines stay at their values.
 class FactorisedEquations {
  public:
-  /// @param normal      must not change meanwhile
+  /// @param normal      must outlive this, unchanged
   /// @param precisions  of independent priors of dense and factored unknowns
   /// @param steps       present values, relative to the means of the priors
   /// @param local_steps present values of local unknowns, likewise
@@ -52,6 +52,9 @@ class FactorisedEquations {
   VERNIER_API FactorisedEquations(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
                                   const VectorX& local_steps = {}, SparseSolve solve = eigen_sparse_solver,
                                   double damping = 0);
+
+  FactorisedEquations(NormalEquations&&, const VectorX&, const VectorX&, const VectorX& = {},
+                      SparseSolve = eigen_sparse_solver, double = 0) = delete;
 
   /// Whether there is a solution.
   bool usable() const { return usable_; }

@@ -88,7 +88,10 @@ VERNIER_API void add_local(const BlockSystem& system, const std::vector<LocalPri
     }
   });
   for (const LocalPrior& prior : priors)
-    prior_sums.block(PairBlocks::pair(prior.first, prior.second)) += prior.precision;
+    if (prior.first >= prior.second)
+      prior_sums.block(PairBlocks::pair(prior.first, prior.second)) += prior.precision;
+    else
+      prior_sums.block(PairBlocks::pair(prior.first, prior.second)) += prior.precision.transpose();
   out.local = sums.compressed(system.local_states);
   out.local_prior = prior_sums.compressed(system.local_states);
 }

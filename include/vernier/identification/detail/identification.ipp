@@ -77,7 +77,7 @@ class IdentificationRun {
                                         VectorX::Constant(problem_.arm.size(), prior_scale_ * prior_scale_));
     IdentifiedGeometry out{identified, {}};
     IdentificationReport& report = out.report;
-    report.message = summary_.message;
+    report.message = message(summary_.message, " after ", iterations_, " iterations");
     report.rms_before = position_rms(registered);
     report.rms_after = position_rms(identified);
     report.rotation_rms_after = rotation_rms(identified);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
+#include "vernier/least_squares/marquardt_damping.hpp"
 #include "vernier/regression/detail/levenberg_marquardt.hpp"
 
 namespace vernier::detail {
@@ -12,7 +12,7 @@ VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, Vect
                                         double tolerance, ExecutorRef executor, FunctionRef<bool(double best)> watch) {
   constexpr double rounding = 1e-26;  // of targets of spread 1
   double value = problem.evaluate(theta), at_check = value;
-  double damping = 0.1, raise = 2;
+  MarquardtDamping damping(0.1);
   int accepted = 0;
   bool moved = true;
   VectorX gradient, scale;
@@ -28,26 +28,23 @@ VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, Vect
       moved = false;
     }
     damped = curvature;
-    damped.diagonal() += damping * scale;
+    damped.diagonal() += damping.value() * scale;
     const Eigen::LLT<Eigen::Ref<MatrixX>> factor(damped);  // in place
     if (factor.info() == Eigen::Success) {
       const VectorX step = -factor.solve(gradient);
-      const double predicted = 0.5 * (damping * step.dot(scale.cwiseProduct(step)) - gradient.dot(step));
+      const double predicted = 0.5 * (damping.value() * step.dot(scale.cwiseProduct(step)) - gradient.dot(step));
       if (!(predicted > 1e-15 * value)) break;  // the value cannot tell such steps apart
       const VectorX trial = theta + step;
       const double found = problem.evaluate(trial);
       if (found < value) {
-        const double surplus = 2 * (value - found) / predicted - 1;
-        damping *= std::max(1.0 / 3, 1 - surplus * surplus * surplus);
-        raise = 2;
+        damping.accept(value - found, predicted);
         theta = trial;
         value = found;
         moved = true;
       }
     }
     if (!moved) {
-      damping *= raise;
-      raise *= 2;
+      damping.reject();
     } else if (++accepted % 10 == 0) {
       go_on = at_check - value >= tolerance * value;
       at_check = value;

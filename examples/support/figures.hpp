@@ -3,8 +3,8 @@
 /// @file
 /// Figures as SVG files, drawn by gnuplot.
 ///
-/// Each function returns whether the figure is there. Where gnuplot is missing it prints a notice, once, on standard error, and
-/// the program goes on without figures.
+/// Each function returns whether the figure is there. Where gnuplot is missing it prints a notice, once, on standard
+/// error, and the program goes on without figures.
 
 #include <filesystem>
 #include <optional>
@@ -36,8 +36,8 @@ struct FigureOptions {
   int height = 540;  ///< [px]
 };
 
-/// The palette has this many colours: those of Okabe and Ito, distinguishable by colour-blind readers too. 0 is black. Lines
-/// beyond them have the same colours and other dashes.
+/// The palette has this many colours: those of Okabe and Ito, distinguishable by colour-blind readers too. 0 is black.
+/// Lines beyond them have the same colours and other dashes.
 inline constexpr int palette_size = 7;
 
 /// Draws series over x. Labels name the unit: "position error [mm]".

@@ -12,8 +12,9 @@
 
 namespace support {
 
-/// One line that shows how far something has come and how long it will take; silent where the stream is no terminal. Takes
-/// itself away at the end. Serves as an observer: `ProgressBar bar("joint PSO-ELM", 300); options.observer = bar;`
+/// One line that shows how far something has come and how long it will take; silent where the stream is no terminal.
+/// Takes itself away at the end. Serves as an observer: `ProgressBar bar("joint PSO-ELM", 300); options.observer =
+/// bar;`
 class ProgressBar {
  public:
   /// @param label what is going on

@@ -44,8 +44,8 @@ struct ErrorModelEstimate {
   /// @param angles n >= 1 values [rad]
   VERNIER_API JointFunction transmission(int joint, const std::vector<double>& angles) const;
 
-  /// Covariance of the modelled pose at q, by the estimated unknowns alone. Position [m^2], then orientation [rad^2], base
-  /// frame.
+  /// Covariance of the modelled pose at q, by the estimated unknowns alone. Position [m^2], then orientation [rad^2],
+  /// base frame.
   /// @param q one value a joint
   /// @complexity O(unknowns^2); allocates
   VERNIER_API Matrix6 model_covariance(const ConstVectorRef& q, int station = 0) const;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Identification of an arm's geometry and frames by nonlinear least squares in Ceres, which the component `ceres` brings:
-/// include vernier/ceres.hpp.
+/// Identification of an arm's geometry and frames by nonlinear least squares in Ceres, which the component `ceres`
+/// brings: include vernier/ceres.hpp.
 
 #include <concepts>
 
@@ -34,8 +34,8 @@ Identified<ChainOf<Arm>> identify(const Arm& nominal, const Data& data, const Id
                 "identify: data of another number of joints");
   const Framed<ChainOf<Arm>> arm = in_frames(nominal);
   const detail::CeresSolver solver;
-  const detail::IdentifiedGeometry found = detail::identify_geometry(
-      ArmGeometry(arm), detail::station_of(data, sensors), options, sensors, solver);
+  const detail::IdentifiedGeometry found =
+      detail::identify_geometry(ArmGeometry(arm), detail::station_of(data, sensors), options, sensors, solver);
   return {found.report, {found.arm.framed(arm.model()), arm.model()}};
 }
 

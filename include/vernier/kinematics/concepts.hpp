@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The concepts of kinematics: a model that maps joints to the pose of its tool. Nominal chains, identified chains, chains with
-/// frames, simulated arms and models with a learned correction are all kinematic models.
+/// The concepts of kinematics: a model that maps joints to the pose of its tool. Nominal chains, identified chains,
+/// chains with frames, simulated arms and models with a learned correction are all kinematic models.
 
 #include <concepts>
 #include <string>

@@ -68,9 +68,7 @@ template <class Chain>
 Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
                                const ReregisterOptions& options = {}, const SensorModel& sensors = {}) {
   constexpr int N = Chain::dof;
-  const auto moved = [&](const FrameMotion& by) {
-    return model.moved(by.base, JointVector<N>(by.offsets), by.tool);
-  };
+  const auto moved = [&](const FrameMotion& by) { return model.moved(by.base, JointVector<N>(by.offsets), by.tool); };
   const auto evaluate = [&](const FrameMotion& motion, std::vector<Isometry3>& poses, MatrixX& jacobians) {
     const ErrorModel<Chain> now = moved(motion);
     poses.resize(static_cast<std::size_t>(data.size()));
@@ -83,8 +81,7 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
   };
   const auto types = model.nominal().chain().joint_types();
   ReregistrationReport report;
-  const FrameMotion found =
-      detail::reregister(evaluate, detail::station_of(data, sensors), options, sensors, report);
+  const FrameMotion found = detail::reregister(evaluate, detail::station_of(data, sensors), options, sensors, report);
   report.joint_types = {types.begin(), types.end()};
   return {std::move(report), moved(found)};
 }

@@ -18,6 +18,8 @@
 
 #include <Eigen/Core>
 
+/// @cond
+
 #if defined(VERNIER_COMPILED)
 #define VERNIER_HEADER_ONLY 0
 #define VERNIER_DETAIL_TEXT(dynamic, fixed) "eigen_align_" #dynamic "_" #fixed
@@ -31,6 +33,8 @@
 #define VERNIER_IMPL template <class VernierHeaderOnly>
 #define VERNIER_TEMPLATE_API
 #endif
+
+/// @endcond
 
 /// Calls `macro(argument, N)` for the numbers of joints of which the library has instances.
 #define VERNIER_FOR_JOINTS(macro, argument)                                                                         \

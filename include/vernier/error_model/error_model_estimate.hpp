@@ -46,14 +46,16 @@ struct ErrorModelEstimate {
 
   /// Covariance of the modelled pose at q, by the estimated unknowns alone. Position [m^2], then orientation [rad^2],
   /// base frame.
-  /// @param q one value a joint
+  /// @param q       one value a joint
+  /// @param station from 0
   /// @complexity O(unknowns^2); allocates
   VERNIER_API Matrix6 model_covariance(const ConstVectorRef& q, int station = 0) const;
 
   /// Covariance of one visit at q: of parameters, joint-wise coefficients and repeatability. Position [m^2], then
   /// orientation [rad^2], base frame.
-  /// @param q    one value a joint
-  /// @param gate share of the transmission terms in the prediction, in [0, 1]
+  /// @param q       one value a joint
+  /// @param gate    share of the transmission terms in the prediction, in [0, 1]
+  /// @param station from 0
   /// @complexity O(unknowns^2); allocates
   VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0) const;
 };

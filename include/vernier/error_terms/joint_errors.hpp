@@ -85,6 +85,7 @@ class JointErrors {
 
   /// Effective joint values `q + dq(q)`, and their derivative `I + d dq/dq` with respect to the commanded ones. Does
   /// not allocate.
+  /// @param q          commanded joint values
   /// @param n          number of joints
   /// @param effective  n values
   /// @param derivative n x n, by columns

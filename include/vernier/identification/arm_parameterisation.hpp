@@ -33,6 +33,7 @@ class ArmParameterisation {
   void set_geometric(std::vector<GeometricUnknown> unknowns) { unknowns_ = std::move(unknowns); }
   /// Replaces the terms of joint errors. Coefficients of terms that were there before keep their values; others are
   /// zero.
+  /// @param terms      the new ones
   /// @param scales     units of the coefficients
   /// @param precisions of their zero-mean priors, in those units
   VERNIER_API void set_terms(JointTerms terms, VectorX scales, VectorX precisions);
@@ -72,6 +73,9 @@ class ArmParameterisation {
   VERNIER_API std::vector<Isometry3> poses(int station, const ConstMatrixRef& joints) const;
   /// Modelled poses, and the columns of unit steps of all unknowns, not whitened: writes `dense`, `factor` (of a unit
   /// error of each joint; empty where nothing acts through it) and `functions` of n blocks.
+  /// @param station     from 0
+  /// @param joints      n x joints [rad, m]
+  /// @param out         n blocks
   /// @param joint_noise whether the joint readings are noisy, which acts through `factor`
   VERNIER_API std::vector<Isometry3> linearise(int station, const ConstMatrixRef& joints, RowBlock* out,
                                                bool joint_noise = false) const;

@@ -113,7 +113,8 @@ class CalibratedRobot {
   /// The command that brings the arm where the nominal one would be at q.
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return compensated().correct(q); }
   /// The command that brings the arm to a pose in the frame of the measurements.
-  /// @param seed joints near the solution; they choose the branch
+  /// @param target the pose
+  /// @param seed   joints near the solution; they choose the branch
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed) const noexcept {
     return compensated().correct(target, seed);
   }

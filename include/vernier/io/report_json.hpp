@@ -18,7 +18,8 @@ VERNIER_API nlohmann::ordered_json stages_to_json(const std::vector<StageErrors>
 
 /// An assessment of a calibration: stages, decisions on joint errors, parameters [mm, mrad], identifiability, verdict.
 /// Callers include <nlohmann/json.hpp>.
-/// @param robot its name
+/// @param report the assessment
+/// @param robot  its name
 VERNIER_API nlohmann::ordered_json to_json(const CalibrationReport& report, const std::string& robot);
 
 /// A re-registration: `base_change_m_rad` and `tool_change_m_rad` (translation and rotation vector), `offsets_rad`.

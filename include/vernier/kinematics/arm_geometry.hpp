@@ -54,7 +54,8 @@ class ArmGeometry {
   template <int N, class Convention>
   explicit ArmGeometry(const Framed<DhChain<N, Convention>>& arm)
       : ArmGeometry(detail::ChainTable(arm.model().view()), arm.base_frame(), arm.tool_frame()) {}
-  /// @param chain its rows
+  /// @param chain     its rows
+  /// @param base,tool its frames
   ArmGeometry(detail::ChainTable chain, const FrameParameters& base, const FrameParameters& tool)
       : chain_(std::move(chain)), base_(base), tool_(tool) {}
 

@@ -17,12 +17,15 @@ enum class Loss {
 };
 
 /// Weight of a residual of norm r > 0, in (0, 1]: the derivative of the loss with respect to r^2.
+/// @param loss      the loss
+/// @param norm      of the residual
 /// @param threshold where the loss leaves the square, > 0
 /// @cite Huber 1964; Holland and Welsch 1977
 VERNIER_API double robust_weight(Loss loss, double norm, double threshold);
 
 /// Robust estimate of the standard deviation of the components of residuals, from the median of their norms. 0 for no
 /// residuals.
+/// @param norms     of residuals
 /// @param dimension of each residual: 1 or 3
 VERNIER_API double robust_sigma(std::vector<double> norms, int dimension);
 

@@ -70,7 +70,8 @@ class FactorisedEquations {
   VERNIER_API void apply_inverse_factor(MatrixRef columns) const;
 
   /// Rows of a block with local states eliminated.
-  /// @param rows 6 x unknowns, as expanded; then less what local states explain
+  /// @param block the block
+  /// @param rows  6 x unknowns, as expanded; then less what local states explain
   VERNIER_API void eliminate_local(const RowBlock& block, Eigen::Ref<Rows6> rows) const;
   /// Covariances of the rows of blocks by local states alone: 6 x 6 of each block, side by side.
   VERNIER_API MatrixX local_gains(const std::vector<RowBlock>& blocks) const;
@@ -88,6 +89,8 @@ class FactorisedEquations {
 
 /// Position errors of blocks left out one at a time, in closed form: `e_b = (I - H_bb)^-1 r_b`, at the solution of the
 /// linearised problem with given priors.
+/// @param system the problem
+/// @param solved its normal equations with priors
 /// @param stride every stride-th of the validation blocks is left out
 /// @return       3 x ceil(validation_blocks / stride) [m]; infinite where there is no solution
 /// @cite Allen 1974

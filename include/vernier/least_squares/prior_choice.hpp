@@ -32,11 +32,13 @@ struct PriorChoice {
 /// A relative precision that suppresses unknowns.
 inline constexpr double suppressing_precision = 1e12;
 
-/// Tries priors for unknowns `first .. first + count`, from looser than expected to suppression, at the linearised
-/// problem, and applies the one-standard-error rule.
-/// @param precisions of all priors
-/// @param steps      present values of the unknowns
-/// @param stride     every stride-th validation block is left out
+/// Tries priors for a range of unknowns, from looser than expected to suppression, at the linearised problem, and
+/// applies the one-standard-error rule.
+/// @param system,normal the problem, and its normal equations
+/// @param precisions    of all priors
+/// @param steps         present values of the unknowns
+/// @param first,count   the range
+/// @param stride        every stride-th validation block is left out
 VERNIER_API PriorChoice choose_prior(const BlockSystem& system, const NormalEquations& normal, VectorX precisions,
                                      const VectorX& steps, Index first, Index count, Index stride);
 

@@ -58,6 +58,7 @@ class ElmPredictor : public detail::PredictorInterface<ElmPredictor<Inputs, Outp
   void evaluate_rows(const ConstMatrixRef& x, MatrixRef y) const { sum_.evaluate_rows(x, y); }
 
   /// Mapped and scaled features of a sample.
+  /// @param x   the sample
   /// @param out `detail::NodeSum::workspace(Inputs)` numbers; the features are at its beginning
   void features(const Input& x, double* out) const noexcept { sum_.features(x.data(), out); }
 

@@ -160,6 +160,7 @@ VERNIER_TEMPLATE_API void chain_pose_and_jacobian(const ChainView& chain, const 
 }
 
 // For up to nine joints they are compiled once.
+/// @cond
 #define VERNIER_DETAIL_CHAIN(EXTERN, CONVENTION, N)                                                                  \
   EXTERN template void chain_pose<CONVENTION, N>(const ChainView&, const double*, double*, InstructionSet) noexcept; \
   EXTERN template void chain_pose_and_jacobian<CONVENTION, N>(const ChainView&, const Placement&, const double*,     \
@@ -167,6 +168,7 @@ VERNIER_TEMPLATE_API void chain_pose_and_jacobian(const ChainView& chain, const 
 #define VERNIER_DETAIL_CHAINS(EXTERN, N)      \
   VERNIER_DETAIL_CHAIN(EXTERN, StandardDh, N) \
   VERNIER_DETAIL_CHAIN(EXTERN, ModifiedDh, N)
+/// @endcond
 #if !VERNIER_HEADER_ONLY
 VERNIER_FOR_JOINTS(VERNIER_DETAIL_CHAINS, extern)
 #endif

@@ -22,6 +22,8 @@
 #include "vernier/compensation/joint_space.hpp"
 #include "vernier/core/argsort.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/evaluation/quantile.hpp"
+#include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
@@ -56,6 +58,12 @@ constexpr std::array<Method, 8> methods{{
     {"cartesian_var_pro_elm_sin_cos", "  on sines and cosines", {}},
     {"identification", "identification", {}},
 }};
+/// A space, and the two searches that are compared in it.
+struct Pair {
+  const char* space;
+  std::size_t ga, pso;
+};
+constexpr std::array<Pair, 2> pso_against_ga{{{"joint_space", 1, 2}, {"cartesian", 3, 4}}};
 constexpr std::size_t trained = 5, identified_method = 7;  // the two from `trained` on are optional
 
 /// The methods of a comparison, in order.
@@ -294,33 +302,39 @@ void print_tables(const Run& run) {
   if (!run.identification_remark.empty()) fmt::print("Identification: {}\n", run.identification_remark);
 }
 
-/// Reductions of the mean error over runs [%].
-struct Spread {
-  double mean = 0, sd = 0, min = 0, max = 0;
+/// Reductions of the mean error by a method, one a run [%].
+vn::VectorX reductions(const std::vector<Run>& runs, std::size_t set, std::size_t method) {
+  vn::VectorX values(static_cast<vn::Index>(runs.size()));
+  for (std::size_t r = 0; r < runs.size(); ++r) values(static_cast<vn::Index>(r)) = reduction(runs[r], set, method);
+  return values;
+}
 
-  static Spread of(const std::vector<Run>& runs, std::size_t set, std::size_t method) {
-    vn::VectorX values(static_cast<vn::Index>(runs.size()));
-    for (std::size_t r = 0; r < runs.size(); ++r) values(static_cast<vn::Index>(r)) = reduction(runs[r], set, method);
-    const double squares = (values.array() - values.mean()).square().sum();
-    return {values.mean(), runs.size() > 1 ? std::sqrt(squares / static_cast<double>(runs.size() - 1)) : 0,
-            values.minCoeff(), values.maxCoeff()};
-  }
-};
+/// Wilcoxon's signed-rank test of PSO against GA over the runs, two-sided.
+double p_value_of_pso(const std::vector<Run>& runs, std::size_t set, std::size_t ga, std::size_t pso) {
+  return vn::signed_rank_test(reductions(runs, set, pso), reductions(runs, set, ga)).p_value;
+}
 
 void print_spread(const std::vector<Run>& runs) {
-  fmt::print("\nReduction of the mean error over {} error tables and seeds [%]\n", runs.size());
+  fmt::print("\nReduction of the mean error over {} error tables and seeds [%]: median and range\n", runs.size());
   fmt::print("  {:<22}", "");
-  for (const PoseSet& set : sets) fmt::print("{:>9}{:>7}  {:<18}{:>7}", set.name, "sd", "[min, max]", "paper");
+  for (const PoseSet& set : sets) fmt::print("{:>9}  {:<18}{:>7}", set.name, "[min, max]", "paper");
   fmt::print("\n");
   for (const std::size_t m : runs.front().ran) {
     if (m == 0) continue;
     fmt::print("  {:<22}", methods[m].title);
     for (std::size_t set = 0; set < sets.size(); ++set) {
-      const Spread spread = Spread::of(runs, set, m);
+      const vn::VectorX values = reductions(runs, set, m);
       const auto paper = methods[m].paper[set];
-      fmt::print("{:>9.2f}{:>7.2f}  {:<18}{:>7}", spread.mean, spread.sd,
-                 fmt::format("[{:.2f}, {:.2f}]", spread.min, spread.max), paper ? fmt::format("{:.2f}", *paper) : "-");
+      fmt::print("{:>9.2f}  {:<18}{:>7}", vn::quantile(values, 0.5),
+                 fmt::format("[{:.2f}, {:.2f}]", values.minCoeff(), values.maxCoeff()),
+                 paper ? fmt::format("{:.2f}", *paper) : "-");
     }
+    fmt::print("\n");
+  }
+  for (const auto& [space, ga, pso] : pso_against_ga) {
+    fmt::print("  PSO against GA, {}: two-sided signed-rank p", space);
+    for (std::size_t set = 0; set < sets.size(); ++set)
+      fmt::print("{} {:.3g} ({} set)", set > 0 ? "," : "", p_value_of_pso(runs, set, ga, pso), sets[set].name);
     fmt::print("\n");
   }
 }
@@ -361,10 +375,21 @@ Json json(const vn::Robot<6>& robot, const Settings& settings, const std::vector
   for (std::size_t set = 0; set < sets.size(); ++set)
     for (const std::size_t m : runs.front().ran) {
       if (m == 0) continue;
-      const Spread spread = Spread::of(runs, set, m);
-      repeated["reduction_percent"][sets[set].name][methods[m].name] = {
-          {"mean", spread.mean}, {"sd", spread.sd}, {"min", spread.min}, {"max", spread.max}};
+      const vn::VectorX values = reductions(runs, set, m);
+      const double sd =
+          runs.size() > 1
+              ? std::sqrt((values.array() - values.mean()).square().sum() / static_cast<double>(runs.size() - 1))
+              : 0;
+      repeated["reduction_percent"][sets[set].name][methods[m].name] = {{"mean", values.mean()},
+                                                                        {"sd", sd},
+                                                                        {"median", vn::quantile(values, 0.5)},
+                                                                        {"min", values.minCoeff()},
+                                                                        {"max", values.maxCoeff()}};
     }
+  if (runs.size() > 1)
+    for (const auto& [space, ga, pso] : pso_against_ga)
+      for (std::size_t set = 0; set < sets.size(); ++set)
+        repeated["signed_rank_p_pso_against_ga"][sets[set].name][space] = p_value_of_pso(runs, set, ga, pso);
   for (const Run& run : runs) repeated["each"].push_back({{"seed", run.seed}, {"sets", sets_json(run)}});
   return document;
 }
@@ -447,7 +472,7 @@ int body(support::Program& program) {
                "1000 poses to learn from, 200 test, a quarter of the generations: under a minute");
   app.add_flag("--varpro", settings.var_pro,
                "also train the hidden layer by gradients (VarProElm); --scale-budget does not shorten it");
-  app.add_option("--runs", settings.runs, "repeat over so many error tables and seeds; mean and spread")
+  app.add_option("--runs", settings.runs, "repeat over K error tables and seeds; medians, ranges, paired tests")
       ->type_name("K")
       ->check(CLI::Range(1, 1000).description(""));
   app.add_option("--region", settings.region, "joint ranges of all poses")
@@ -470,7 +495,7 @@ int body(support::Program& program) {
       ->type_name("F")
       ->check(CLI::Range(1e-4, 100.0).description(""));
   app.add_option("--search-samples", settings.search_samples,
-                 "the searches judge by so many of the poses, the fit has all; 0: all")
+                 "poses on which the searches evaluate, the fit has all; 0: all")
       ->type_name("N")
       ->check(CLI::Range(vn::Index{0}, vn::Index{1000000}).description(""));
   app.add_option("--noise-mm", noise_mm, "standard deviation of the measured positions, per component")

@@ -96,6 +96,7 @@ TEST(PaperComparison, RunsAreSummedUp) {
       const double a = reduction(0), b = reduction(1);
       EXPECT_NEAR(spread.at("mean").get<double>(), (a + b) / 2, 1e-9);
       EXPECT_NEAR(spread.at("sd").get<double>(), std::abs(a - b) / std::sqrt(2.0), 1e-9);
+      EXPECT_NEAR(spread.at("median").get<double>(), (a + b) / 2, 1e-9);
       EXPECT_EQ(spread.at("min").get<double>(), std::min(a, b));
       EXPECT_EQ(spread.at("max").get<double>(), std::max(a, b));
     }

@@ -178,4 +178,11 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Dataset<Arm::dof>& dat
   return calibrate(arm, std::span<const Dataset<Arm::dof>>(&data, 1), options, fit, search);
 }
 
+/// The same from distances alone, one set a fixed point: frames are relative to the first fixed point.
+template <NominalArm Arm, RangeOf<Distances<Arm::dof>> Wires>
+Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Wires& distances, const CalibrateOptions& options = {},
+                                    const FitOptions& fit = {}, PriorSearch search = {}) {
+  return calibrate(arm, std::span<const Dataset<Arm::dof>>(), distances, options, fit, search);
+}
+
 }  // namespace vernier

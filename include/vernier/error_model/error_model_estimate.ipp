@@ -35,7 +35,7 @@ namespace detail {
 VERNIER_API Matrix6 pose_covariance(const ErrorModelEstimate& estimate, const ConstVectorRef& q, int station,
                                     RowBlock& rows) {
   const MatrixX joints = q.transpose();
-  estimate.arm.linearise(station, joints, &rows, true);
+  estimate.arm.linearise(station, joints, &rows);
   const Index unknowns = estimate.arm.size();
   Rows6 all(6, unknowns);
   rows.expand(estimate.arm.group_sizes(), all);

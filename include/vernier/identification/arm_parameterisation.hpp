@@ -72,13 +72,13 @@ class ArmParameterisation {
   /// Modelled poses at n configurations of a station.
   VERNIER_API std::vector<Isometry3> poses(int station, const ConstMatrixRef& joints) const;
   /// Modelled poses, and the columns of unit steps of all unknowns, not whitened: writes `dense`, `factor` (of a unit
-  /// error of each joint; empty where nothing acts through it) and `functions` of n blocks.
-  /// @param station     from 0
-  /// @param joints      n x joints [rad, m]
-  /// @param out         n blocks
-  /// @param joint_noise whether the joint readings are noisy, which acts through `factor`
+  /// error of each joint) and `functions` of n blocks.
+  /// @param station       from 0
+  /// @param joints        n x joints [rad, m]
+  /// @param out           n blocks
+  /// @param joint_columns whether to write `factor` also where no coefficient acts through it; else it is empty then
   VERNIER_API std::vector<Isometry3> linearise(int station, const ConstMatrixRef& joints, RowBlock* out,
-                                               bool joint_noise = false) const;
+                                               bool joint_columns = true) const;
   /// Values of the transmissions' functions at q, in units of scales.
   VERNIER_API void transmission_values(const double* q, VectorX& out) const;
 

@@ -89,7 +89,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, cons
 }
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
-                                                                   RowBlock* out, bool joint_noise) const {
+                                                                   RowBlock* out, bool joint_columns) const {
   const ArmGeometry& arm = geometry(station);
   const int n = arm.joints();
   const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
@@ -99,7 +99,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
   else
     arm.poses_and_parameter_jacobians(errors_.effective_rows(joints), at);
   const Index count = joints.rows();
-  const bool factored = joint_noise || !errors_.empty() || terms().size() > 0;
+  const bool factored = joint_columns || !errors_.empty() || terms().size() > 0;
   VectorX q(n);
   MatrixX basis(n, few);
   for (Index i = 0; i < count; ++i) {

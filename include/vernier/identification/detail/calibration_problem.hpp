@@ -26,7 +26,8 @@ class CalibrationProblem {
   /// @param stations those of poses first
   VERNIER_API CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss);
 
-  ArmParameterisation arm;  ///< at its present values
+  ArmParameterisation arm;    ///< at its present values
+  bool joint_columns = true;  ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }
   Index num_blocks() const { return static_cast<Index>(blocks_.size()); }

@@ -91,7 +91,7 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     const Station& station = stations_[static_cast<std::size_t>(begin.station)];
     const Index stretch = std::min(count - done, station.size() - begin.row);
     const std::vector<Isometry3> poses = arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
-                                                       out + done, station.joint_sigma > 0);
+                                                       out + done, joint_columns || station.joint_sigma > 0);
     for (Index i = 0; i < stretch; ++i) {
       const Block& block = at(first + done + i);
       RowBlock& rows = out[done + i];

@@ -48,7 +48,9 @@ class IdentificationRun {
         solver_(solver),
         plan_(nominal, options),
         start_(starting_frames(nominal, data, options.base_free(), options.tool_free())),
-        problem_(ArmParameterisation({start_}, {}), {data}, sensors.loss) {}
+        problem_(ArmParameterisation({start_}, {}), {data}, sensors.loss) {
+    problem_.joint_columns = false;
+  }
 
   VERNIER_API IdentifiedGeometry run() {
     // Frames alone first: a good start, and a fair figure of the nominal arm.

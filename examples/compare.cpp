@@ -346,8 +346,7 @@ int body(Program& program) {
       ->always_capture_default(false);
   app.add_flag("--list", listed, "all methods, and how they are written");
   app.add_option("--methods", methods, "what to compare, see --list")->type_name("M,...")->delimiter(',');
-  app.add_option("--robot", problem.robot, "an arm of the catalogue with 6 or 7 joints, or a JSON file")
-      ->type_name("R");
+  app.add_option("--robot", problem.robot, "an arm of the catalogue, or a JSON file")->type_name("R");
   app.add_option("--errors", problem.errors, "of a simulated arm; full: joint errors too")->type_name("geometric|full");
   app.add_option("--region", problem.region, "joints of simulated poses")->type_name("operating|full");
   app.add_option("--noise-mm", problem.noise_mm, "of simulated positions, per component")->type_name("S");

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "cli.hpp"
+#include "dispatch.hpp"
 #include "learners.hpp"
 #include "robot_choice.hpp"
 #include "vernier/ceres.hpp"
@@ -105,17 +106,10 @@ void check_poses(const Plan& plan, const Problem& problem, const vn::DescribedRo
           vn::message(problem.data.string(), ": ", most, " poses are asked for, there are ", there, " to learn from"));
 }
 
-/// Calls with the arm of a robot whose number of joints comparisons serve.
+/// Calls with the arm of a robot.
 template <class Work>
 decltype(auto) with_arm(const vn::RobotDescription& robot, Work&& work) {
-#define VERNIER_CASE(N) \
-  if (robot.dof() == N) return work(robot.arm<N>());
-  VERNIER_FOR_COMPARED_DOF(VERNIER_CASE)
-#undef VERNIER_CASE
-#define VERNIER_NUMBER(N) " " #N
-  throw UsageError(vn::message(robot.name, " has ", robot.dof(),
-                               " joints; comparisons serve arms of these:", VERNIER_FOR_COMPARED_DOF(VERNIER_NUMBER)));
-#undef VERNIER_NUMBER
+  return dispatch_dof(robot.dof(), [&](auto n) -> decltype(auto) { return work(robot.arm<n()>()); });
 }
 
 /// Sixteen digits that differ between files of different contents: Fowler, Noll and Vo's hash.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dispatch.hpp"
 #include "searches.hpp"
 #include "vernier/regression/back_propagation.hpp"
 #include "vernier/regression/elm.hpp"
@@ -25,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// How many evaluations take so many seconds, from a few that are drawn at random.
+/// Number of evaluations that take some seconds, estimated from a few random points.
 vn::Index evaluations_in(double seconds, const AnyObjective& objective, const vn::Box& box, std::uint64_t seed) {
   vn::Rng rng(seed);
   vn::MatrixX some(box.dimension(), 20);
@@ -80,7 +81,7 @@ class Learning {
     return recipe;
   }
 
-  /// Fitted as it is, or at what a search finds.
+  /// Fitted as it is, or at the result of a search.
   template <class R>
   LearnedErrors<N> tunable(const R& recipe) const {
     if (method_.search.empty()) return plain(recipe);
@@ -146,7 +147,7 @@ LearnedErrors<N> learn(const Method& method, const Plan& plan, const vernier::Jo
 #define VERNIER_INSTANTIATE(N)                                                                 \
   template LearnedErrors<N> learn<N>(const Method&, const Plan&, const vernier::JointRows<N>&, \
                                      const vernier::PointRows&, const vernier::FitOptions&, Convergence&);
-VERNIER_FOR_COMPARED_DOF(VERNIER_INSTANTIATE)
+VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 
 }  // namespace support

@@ -8,13 +8,6 @@
 #include "comparison.hpp"
 #include "vernier/core/types.hpp"
 
-/// Expands `macro(N)` for every number of joints that comparisons serve.
-#ifdef VERNIER_FEW_DOF
-#define VERNIER_FOR_COMPARED_DOF(macro) macro(6)
-#else
-#define VERNIER_FOR_COMPARED_DOF(macro) macro(6) macro(7)
-#endif
-
 namespace support {
 
 /// Position errors [m] at rows of joints.

@@ -1,7 +1,7 @@
 // Find out how the real arm differs from its drawing: classical identification with Ceres.
 
 #include <cstdio>
-#include <vernier/ceres.hpp>
+#include <vernier/ceres/identify.hpp>
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/evaluation/statistics.hpp>
 #include <vernier/kinematics/robots.hpp>

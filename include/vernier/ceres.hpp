@@ -5,5 +5,4 @@
 
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
-#include "vernier/ceres/solver.hpp"
-#include "vernier/identification/identify.hpp"
+#include "vernier/ceres/identify.hpp"

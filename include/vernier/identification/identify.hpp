@@ -2,7 +2,7 @@
 
 /// @file
 /// Identification of an arm's geometry and frames by nonlinear least squares in Ceres, which the component `ceres`
-/// brings: include vernier/ceres.hpp.
+/// brings: include vernier/ceres/identify.hpp, or vernier/ceres.hpp for the whole pipeline.
 
 #include <concepts>
 

@@ -1,0 +1,7 @@
+#pragma once
+
+/// @file
+/// `identify` with its solver, without the rest of the calibration pipeline.
+
+#include "vernier/ceres/solver.hpp"
+#include "vernier/identification/identify.hpp"

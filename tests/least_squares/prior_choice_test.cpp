@@ -108,7 +108,7 @@ TEST(ChoosePrior, ReportsTheErrorsOfItsChoice) {
   };
   EXPECT_NEAR(choice.chosen_error, mean_with(choice.precision), 1e-9 * choice.chosen_error);
   EXPECT_NEAR(choice.suppressed_error, mean_with(1e20),
-              1e-6 * choice.suppressed_error);  // nothing left is nearly none at all
+              1e-6 * choice.suppressed_error);  // the suppressing precision is finite
 }
 
 TEST(ChoosePrior, SurvivesRowsThatAreNotFinite) {

@@ -29,8 +29,8 @@ VERNIER_API std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estima
 /// @param limits         of the joints; half a turn to either side (0.5 m) where there are none
 /// @param sensors        that would measure
 /// @param oriented       whether orientations would be measured too
-/// @param max_parameters how many parameters
-/// @param poses          how many poses for each
+/// @param max_parameters number of parameters
+/// @param poses          number of poses for each
 template <class Chain>
 std::vector<PoseAdvice> pose_advice(const FittedErrorModel<Chain>& fitted, const IdentificationReport& identification,
                                     const JointLimits<Chain::dof>& limits, const SensorModel& sensors, bool oriented,

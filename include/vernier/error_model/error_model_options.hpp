@@ -20,7 +20,7 @@ struct ErrorModelOptions {
   double gear_ratio_prior_std = 1e-4;  ///< expected relative error of a gear ratio
   double coupling_prior_std = 1e-4;    ///< expected coupling
   double transmission_prior_std = 0.3e-3;  ///< expected amplitude of a first harmonic [rad]; of harmonic k, 1/k of it
-  Index num_validation_poses = 200;        ///< about how many poses are left out, one at a time, to validate a block
+  Index num_validation_poses = 200;        ///< approximate number of poses left out, one at a time, to validate a block
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;

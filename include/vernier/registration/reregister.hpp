@@ -62,7 +62,8 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& da
 /// @param model   as fitted, wherever it stood then
 /// @param data    n >= 1 poses from where it stands now
 /// @param options what is estimated
-/// @param sensors their accuracy; residuals are weighted by squares, whatever its loss
+/// @param sensors their accuracy; residuals are weighted by squares, whatever its loss, and its `joint_sigma` is not
+/// used
 /// @throws std::invalid_argument on no data or an unusable option
 template <class Chain>
 Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,

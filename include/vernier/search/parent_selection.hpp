@@ -21,7 +21,7 @@ enum class ParentSelection {
 class ParentSelector {
  public:
   /// @param selection  how
-  /// @param tournament how many are drawn
+  /// @param tournament number of candidates drawn
   /// @param fitness    values of the population; must outlive this
   VERNIER_API ParentSelector(ParentSelection selection, int tournament, const VectorX& fitness);
 

@@ -23,7 +23,7 @@ struct JointErrorSizes {
   double compliance =
       0.2e-3;                ///< of the products of `GravityCompliance` [rad/m], each made positive: a spring gives way
   double harmonic = 0.2e-3;  ///< of cos q and sin q [rad]; revolute joints alone have harmonics
-  int harmonics = 3;         ///< how many; harmonic k has the size `harmonic / k^decay`
+  int harmonics = 3;         ///< number of harmonics; harmonic k has the size `harmonic / k^decay`
   double decay = 1;          ///< how fast higher harmonics die out
   double ripple = 0;         ///< of one more harmonic, that of the meshing teeth [rad]
   int ripple_harmonic = 100;         ///< periods a turn of the joint; above `harmonics`

@@ -12,33 +12,17 @@
 #include <vector>
 
 #include "vernier/search/minimize.hpp"
-#include "vernier/testing/same_bits.hpp"
+#include "vernier/testing/detail/search_record.hpp"
 
 namespace vernier::testing {
 
 namespace detail {
 
-/// Everything a search evaluated.
-struct SearchRecord {
-  std::vector<MatrixX> populations;
-  std::vector<VectorX> values;
-
-  bool operator==(const SearchRecord& other) const {
-    if (populations.size() != other.populations.size()) return false;
-    for (std::size_t i = 0; i < populations.size(); ++i)
-      if (!same_bits(populations[i], other.populations[i]) || !same_bits(values[i], other.values[i])) return false;
-    return true;
-  }
-};
-
 /// Checks one algorithm on objectives of its own.
 template <Metaheuristic A>
 class MetaheuristicCheck {
  public:
-  MetaheuristicCheck(const A& algorithm, bool keeps_box) : algorithm_(algorithm), keeps_box_(keeps_box) {
-    box_.lower = (VectorX(4) << -1, 0.5, 10, -1e-3).finished();
-    box_.upper = (VectorX(4) << 2, 0.75, 30, 1e-3).finished();
-  }
+  MetaheuristicCheck(const A& algorithm, bool keeps_box) : algorithm_(algorithm), keeps_box_(keeps_box) {}
 
   std::vector<std::string> run() {
     try {
@@ -63,34 +47,13 @@ class MetaheuristicCheck {
     if (!holds) violations_.push_back(message("metaheuristic: ", law));
   }
 
-  /// A quadratic function in coordinates of the unit box, its minimum just outside in two of them.
-  double bowl(const Eigen::Ref<const VectorX>& x) const {
-    const VectorX bottom = (VectorX(4) << 0.3, 1.1, -0.1, 0.6).finished();
-    return ((x - box_.lower).cwiseQuotient(box_.upper - box_.lower) - bottom).squaredNorm() + 0.25;
-  }
-
-  /// The same as an objective.
-  auto bowl_objective() const {
-    return [this](const VectorX& x) { return bowl(x); };
-  }
-
-  /// Evaluates the function and records populations and values.
-  auto recorder(SearchRecord& record) const {
-    return [this, &record](const MatrixX& population, VectorX& fitness) {
-      fitness.resize(population.cols());
-      for (Index k = 0; k < population.cols(); ++k) fitness(k) = bowl(population.col(k));
-      record.populations.push_back(population);
-      record.values.push_back(fitness);
-    };
-  }
-
   /// A search of `generations` steps, or what the algorithm's schedule allows.
   State search(std::uint64_t seed, SearchRecord& record) const {
-    const auto evaluate = recorder(record);
-    State state = algorithm_.start(box_, seed, evaluate);
+    const auto evaluate = bowl_.recorder(record);
+    State state = algorithm_.start(bowl_.box, seed, evaluate);
     while (state.generation < generations && !algorithm_.done(state)) {
       const Index before = state.generation;
-      algorithm_.step(state, box_, evaluate);
+      algorithm_.step(state, bowl_.box, evaluate);
       if (state.generation != before + 1) throw std::runtime_error("step does not count its generation");
     }
     return state;
@@ -105,12 +68,12 @@ class MetaheuristicCheck {
     expect(!(first == other), "another seed made the same search");
 
     // Two searches of one algorithm, stepped alternately.
-    const auto record_left = recorder(left), record_right = recorder(right);
-    State a = algorithm_.start(box_, 1, record_left), b = algorithm_.start(box_, 2, record_right);
+    const auto record_left = bowl_.recorder(left), record_right = bowl_.recorder(right);
+    State a = algorithm_.start(bowl_.box, 1, record_left), b = algorithm_.start(bowl_.box, 2, record_right);
     expect(a.generation == 0, "the first population is not generation 0");
     while (a.generation < generations && !algorithm_.done(a)) {
-      algorithm_.step(a, box_, record_left);
-      algorithm_.step(b, box_, record_right);
+      algorithm_.step(a, bowl_.box, record_left);
+      algorithm_.step(b, bowl_.box, record_right);
     }
     expect(left == first && right == other,
            "searches stepped alternately disturb each other: the algorithm hides state");
@@ -118,13 +81,15 @@ class MetaheuristicCheck {
     // A copied state continues as the original, also with a copy of the algorithm.
     SearchRecord of_original, of_copy;
     const A same_algorithm = algorithm_;
-    State original = algorithm_.start(box_, 3, recorder(of_original));
+    State original = algorithm_.start(bowl_.box, 3, bowl_.recorder(of_original));
     if (algorithm_.done(original)) return;
-    algorithm_.step(original, box_, recorder(of_original));
+    algorithm_.step(original, bowl_.box, bowl_.recorder(of_original));
     State copy = original;
     of_original = {};
-    for (int i = 0; i < 3 && !algorithm_.done(original); ++i) algorithm_.step(original, box_, recorder(of_original));
-    for (int i = 0; i < 3 && !same_algorithm.done(copy); ++i) same_algorithm.step(copy, box_, recorder(of_copy));
+    for (int i = 0; i < 3 && !algorithm_.done(original); ++i)
+      algorithm_.step(original, bowl_.box, bowl_.recorder(of_original));
+    for (int i = 0; i < 3 && !same_algorithm.done(copy); ++i)
+      same_algorithm.step(copy, bowl_.box, bowl_.recorder(of_copy));
     expect(of_original == of_copy && same_bits(original.best, copy.best),
            "a copied state continued differently from the original");
   }
@@ -143,12 +108,12 @@ class MetaheuristicCheck {
 
   void best_point() {
     SearchRecord record;
-    const auto evaluate = recorder(record);
-    State state = algorithm_.start(box_, 4, evaluate);
+    const auto evaluate = bowl_.recorder(record);
+    State state = algorithm_.start(bowl_.box, 4, evaluate);
     bool monotone = true, evaluated = best_was_evaluated(state, record);
     while (state.generation < generations && !algorithm_.done(state)) {
       const double before = state.best_fitness;
-      algorithm_.step(state, box_, evaluate);
+      algorithm_.step(state, bowl_.box, evaluate);
       monotone = monotone && state.best_fitness <= before;
       evaluated = evaluated && best_was_evaluated(state, record);
     }
@@ -157,8 +122,9 @@ class MetaheuristicCheck {
 
     bool dimensions = true, inside = true;
     for (const MatrixX& population : record.populations) {
-      dimensions = dimensions && population.rows() == box_.dimension();
-      for (Index k = 0; dimensions && k < population.cols(); ++k) inside = inside && box_.contains(population.col(k));
+      dimensions = dimensions && population.rows() == bowl_.box.dimension();
+      for (Index k = 0; dimensions && k < population.cols(); ++k)
+        inside = inside && bowl_.box.contains(population.col(k));
     }
     expect(dimensions, "a population has the wrong dimension");
     if (keeps_box_) expect(inside, "a point outside the box was evaluated");
@@ -172,23 +138,23 @@ class MetaheuristicCheck {
     std::atomic<Index> calls = 0;
     const auto objective = [&](const VectorX& x) {
       ++calls;
-      return bowl(x);
+      return bowl_(x);
     };
     const auto batch = [this](const Eigen::Ref<const MatrixX>& population, Eigen::Ref<VectorX> fitness) {
-      for (Index k = 0; k < population.cols(); ++k) fitness(k) = bowl(population.col(k));
+      for (Index k = 0; k < population.cols(); ++k) fitness(k) = bowl_(population.col(k));
     };
     const auto equal = [&](const SearchResult& result) {
       return same_bits(result.best, stepped.best) && result.best_fitness == stepped.best_fitness &&
              result.generations == stepped.generation && result.evaluations == evaluations;
     };
     const StoppingCriteria stop{.max_generations = generations};
-    const SearchResult result = minimize(algorithm_, objective, box_, stop, 5);
+    const SearchResult result = minimize(algorithm_, objective, bowl_.box, stop, 5);
     expect(equal(result), "N steps differ from a run of N through minimize");
     expect(result.evaluations == calls, "minimize counts another number of evaluations than were made");
     for (const int threads : {1, 2}) {
       const ThreadExecutor executor(threads);
-      expect(equal(minimize(algorithm_, objective, box_, stop, 5, executor)) &&
-                 equal(minimize(algorithm_, batch, box_, stop, 5, executor)),
+      expect(equal(minimize(algorithm_, objective, bowl_.box, stop, 5, executor)) &&
+                 equal(minimize(algorithm_, batch, bowl_.box, stop, 5, executor)),
              threads == 1 ? "another result with an executor of 1 thread" : "another result with 2 threads");
     }
   }
@@ -198,15 +164,15 @@ class MetaheuristicCheck {
     Index made = 0;
     const auto counting = [&](const MatrixX& population, VectorX& fitness) {
       SearchRecord ignored;
-      recorder(ignored)(population, fitness);
+      bowl_.recorder(ignored)(population, fitness);
       made += population.cols();
     };
-    State state = algorithm_.start(box_, 5, counting);
+    State state = algorithm_.start(bowl_.box, 5, counting);
     spent_ = {made};
     bool honest = true;
     while (state.generation < generations && !algorithm_.done(state)) {
       announced_.push_back(made + static_cast<Index>(algorithm_.next_evaluations(state)));
-      algorithm_.step(state, box_, counting);
+      algorithm_.step(state, bowl_.box, counting);
       honest = honest && made <= announced_.back();
       spent_.push_back(made);
     }
@@ -223,10 +189,10 @@ class MetaheuristicCheck {
         std::atomic<Index> calls = 0;
         const auto objective = [&](const VectorX& x) {
           ++calls;
-          return bowl(x);
+          return bowl_(x);
         };
         const SearchResult limited =
-            minimize(algorithm_, objective, box_,
+            minimize(algorithm_, objective, bowl_.box,
                      StoppingCriteria{.max_evaluations = budget, .max_generations = generations}, 5);
         kept = kept && limited.evaluations <= budget && calls == limited.evaluations;
         Index affordable = 0;
@@ -245,15 +211,15 @@ class MetaheuristicCheck {
     std::vector<Index> spent;
     const auto watch = [&](const Progress& progress) { spent.push_back(progress.evaluations); };
     const StoppingCriteria last{.max_generations = generations};
-    const SearchResult right = minimize(algorithm_, bowl_objective(), box_, last, 6, {}, watch);
+    const SearchResult right = minimize(algorithm_, bowl_, bowl_.box, last, 6, {}, watch);
     for (std::size_t g = 0; g + 1 < spent.size(); ++g)
       for (const StoppingCriteria& pause :
            {StoppingCriteria{.max_generations = static_cast<Index>(g)},
             StoppingCriteria{.max_evaluations = spent[g] + 1, .max_generations = generations}}) {
-        auto search = start_search(algorithm_, bowl_objective(), box_, 6);
-        minimize(algorithm_, bowl_objective(), box_, search, pause);
+        auto search = start_search(algorithm_, bowl_, bowl_.box, 6);
+        minimize(algorithm_, bowl_, bowl_.box, search, pause);
         auto copy = search;
-        const SearchResult found = minimize(algorithm_, bowl_objective(), box_, copy, last);
+        const SearchResult found = minimize(algorithm_, bowl_, bowl_.box, copy, last);
         if (same_bits(found.best, right.best) && found.best_fitness == right.best_fitness &&
             found.evaluations == right.evaluations && found.generations == right.generations)
           continue;
@@ -265,19 +231,19 @@ class MetaheuristicCheck {
   void values_not_finite() {
     bool finite_seen = false;
     const auto objective = [&](const VectorX& x) {
-      const double at = (x(0) - box_.lower(0)) / (box_.upper(0) - box_.lower(0));
+      const double at = (x(0) - bowl_.box.lower(0)) / (bowl_.box.upper(0) - bowl_.box.lower(0));
       if (at < 0.3) return std::numeric_limits<double>::quiet_NaN();
       if (at < 0.4) return -std::numeric_limits<double>::infinity();
       if (at < 0.5) return std::numeric_limits<double>::infinity();
       finite_seen = true;
-      return bowl(x);
+      return bowl_(x);
     };
     // A small population may lie in that half altogether, but not in every one of eight searches.
     bool sound = true, found = false;
     for (std::uint64_t seed = 10; seed < 18; ++seed) {
       finite_seen = false;
       const SearchResult result =
-          minimize(algorithm_, objective, box_, StoppingCriteria{.max_generations = generations}, seed);
+          minimize(algorithm_, objective, bowl_.box, StoppingCriteria{.max_generations = generations}, seed);
       found = found || finite_seen;
       sound = sound && (finite_seen ? objective(result.best) == result.best_fitness
                                     : result.best_fitness == std::numeric_limits<double>::infinity());
@@ -285,15 +251,16 @@ class MetaheuristicCheck {
     expect(sound, "a value that is not finite became the best");
     expect(found, "with values that are not finite in half of the box the other half was never found");
     const auto never = [](const VectorX&) { return std::numeric_limits<double>::quiet_NaN(); };
-    const SearchResult none = minimize(algorithm_, never, box_, StoppingCriteria{.max_generations = generations}, 1);
-    expect(none.best_fitness == std::numeric_limits<double>::infinity() && none.best.size() == box_.dimension() &&
+    const SearchResult none =
+        minimize(algorithm_, never, bowl_.box, StoppingCriteria{.max_generations = generations}, 1);
+    expect(none.best_fitness == std::numeric_limits<double>::infinity() && none.best.size() == bowl_.box.dimension() &&
                none.best.allFinite(),
            "where no value is finite the best is not a point with the value infinity");
   }
 
   const A& algorithm_;
   bool keeps_box_;
-  Box box_;
+  Bowl bowl_;
   std::vector<Index> spent_, announced_;  // evaluations after each generation, and at most after its next one
   std::vector<std::string> violations_;
 };

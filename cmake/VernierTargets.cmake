@@ -82,6 +82,20 @@ function(vernier_add_component component)
   if(TARGET vernier_internal)
     target_link_libraries(vernier_${compiled} PRIVATE $<BUILD_INTERFACE:vernier_internal>)
   endif()
+  if(component STREQUAL "vernier" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_definitions(vernier_${compiled} PRIVATE VERNIER_DENSE_KERNELS)
+    foreach(set "avx2;-mavx2;-mfma" "avx512;-mavx512f;-mavx512dq;-mavx2;-mfma;-Wno-uninitialized")
+      list(POP_FRONT set name)
+      set(source "${PROJECT_BINARY_DIR}/compiled/dense_kernels_${name}.cpp")
+      file(CONFIGURE OUTPUT "${source}" @ONLY CONTENT "#define Eigen EigenOfKernels_@name@
+#define VERNIER_KERNELS @name@_kernels
+#include \"vernier/core/detail/dense_kernels.inl\"
+")
+      target_sources(vernier_${compiled} PRIVATE "${source}")
+      set_source_files_properties("${source}" PROPERTIES COMPILE_OPTIONS "${set}" SKIP_UNITY_BUILD_INCLUSION ON
+                                  SKIP_PRECOMPILE_HEADERS ON)
+    endforeach()
+  endif()
   # Parsing Eigen is most of a small file's cost.
   set_target_properties(vernier_${compiled} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD ON
                         UNITY_BUILD_BATCH_SIZE 4)

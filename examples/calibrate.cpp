@@ -33,7 +33,7 @@ struct Options {
   Paths data, test, distances;
   vn::Index test_every = 5, train_rows = 0;
   double test_fraction = 0.2, distance_sigma_mm = 0.03;
-  bool positions_only = false;
+  bool positions_only = false, no_approach = false;
   vn::CalibrateOptions calibrate{};
 };
 
@@ -64,10 +64,14 @@ vn::Split<N> hold_out(const vn::Dataset<N>& data, const Options& o, std::uint64_
 /// Training and held-out poses of station s.
 template <int N>
 vn::Split<N> read_station(const Options& o, std::size_t s, const auto& types, std::uint64_t seed, std::string& rule) {
-  vn::Split<N> out{vn::read_dataset<N>(o.data[s], types), {}};
+  const auto read = [&](const std::string& file) {
+    const vn::Dataset<N> data = vn::read_dataset<N>(file, types);
+    return o.no_approach ? data.without_approach() : data;
+  };
+  vn::Split<N> out{read(o.data[s]), {}};
   if (!o.test.empty()) {
     rule += (s == 0 ? "the rows of " : ", ") + o.test[s];
-    out.test = vn::read_dataset<N>(o.test[s], types);
+    out.test = read(o.test[s]);
   } else {
     if (out.train.size() < 2)
       throw vn::CalibrationFailure(o.data[s] + ": a single row; a calibration needs many poses, and held-out ones");
@@ -266,7 +270,9 @@ int run(support::Program& program) {
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}).description(""));
   option("--fix", o.calibrate.geometry.fixed, "parameters that stay nominal, by name (d1, theta6, tool_z, ...)",
          "NAME...");
-  app.add_option("--harmonics", o.calibrate.errors.harmonics, "joint-wise Fourier terms up to this harmonic; 0: none")
+  app.add_flag("--no-approach", o.no_approach,
+               "rows are not in the order of measuring: no hysteresis by the direction of approach");
+  app.add_option("--harmonics", o.calibrate.errors.harmonics, "joint-wise Fourier terms up to this order; 0: none")
       ->type_name("K")
       ->check(CLI::Range(0, 500).description(""));
   app.add_option("--priors", o.priors,

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -70,6 +72,53 @@ void expect_first_row(const Dataset<2>& data) {
   EXPECT_DOUBLE_EQ(data.positions()(0, 0), 0.1);
   EXPECT_DOUBLE_EQ(data.positions()(0, 1), -0.2);
   EXPECT_DOUBLE_EQ(data.positions()(0, 2), 0.3);
+}
+
+TEST_F(Csv, EveryRowIsApproachedFromTheOneBefore) {
+  const auto data = read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm\n1,0,0,0\n2,0,0,0\n4,0,0,0\n"));
+  EXPECT_TRUE(std::isnan(data.previous()(0, 0)));
+  EXPECT_EQ(data.previous()(1, 0), 1);
+  EXPECT_EQ(data.previous()(2, 0), 2);
+  EXPECT_EQ(data.times()(2), 2);
+}
+
+TEST_F(Csv, ASegmentStartsAnew) {
+  const auto data = read_dataset<1>(
+      file("segment,q1_rad,x_mm,y_mm,z_mm,time_s\n1,1,0,0,0,10\n1,2,0,0,0,20\n7,4,0,0,0,300\n7,8,0,0,0,310.5\n"));
+  EXPECT_TRUE(std::isnan(data.previous()(0, 0)));
+  EXPECT_EQ(data.previous()(1, 0), 1);
+  EXPECT_TRUE(std::isnan(data.previous()(2, 0)));
+  EXPECT_EQ(data.previous()(3, 0), 4);
+  EXPECT_EQ(data.times()(3), 310.5);
+}
+
+TEST_F(Csv, ColumnsMaySayFromWhere) {
+  const auto data =
+      read_dataset<2>(file("q1_rad,q2_mm,x_mm,y_mm,z_mm,from_q1_deg,from_q2_mm\n1,2,0,0,0,180,-5\n1,2,0,0,0,-90,1\n"));
+  EXPECT_DOUBLE_EQ(data.previous()(0, 0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(data.previous()(0, 1), -0.005);
+  EXPECT_DOUBLE_EQ(data.previous()(1, 0), -std::numbers::pi / 2);
+  EXPECT_NE(complaint("q1_rad,q2_rad,x_mm,y_mm,z_mm,from_q1_rad\n1,2,0,0,0,1\n").find("no column from_q2_rad"),
+            std::string::npos);
+  EXPECT_NE(complaint("q1_rad,q2_rad,x_mm,y_mm,z_mm,segment\n1,2,0,0,0,first\n").find("line 2, column segment"),
+            std::string::npos);
+}
+
+// What the order of the rows does not say is written: rows that were taken out keep their approach and their time.
+TEST_F(Csv, WrittenRowsKeepTheirApproachAndTime) {
+  const auto data = read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm\n1,0,0,0\n2,0,0,0\n4,0,0,0\n8,0,0,0\n"));
+  const auto again = [&](const Dataset<1>& rows) {
+    write_dataset(in_folder("again.csv"), rows);
+    return read_dataset<1>(in_folder("again.csv"));
+  };
+  const auto whole = again(data), some = again(data.rows(std::array<Index, 2>{1, 3}));
+  EXPECT_TRUE(std::isnan(whole.previous()(0, 0)));
+  EXPECT_EQ(whole.previous().bottomRows(3), data.previous().bottomRows(3));
+  EXPECT_EQ(some.previous()(0, 0), 1);
+  EXPECT_EQ(some.previous()(1, 0), 4);
+  EXPECT_EQ(some.times(), Eigen::Vector2d(1, 3));
+  const auto from_start = again(data.rows(std::array<Index, 2>{0, 3}));
+  EXPECT_EQ(from_start.previous()(0, 0), from_start.joints()(0, 0));  // unknown: as if it had not moved
 }
 
 TEST_F(Csv, ReadsPositions) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vernier/data/dataset.hpp>
@@ -47,6 +48,26 @@ TEST(Dataset, PoseIsPositionAndOrientation) {
   EXPECT_EQ(pose.translation(), data.position(4));
   EXPECT_LT((vernier::log_so3(pose.linear()) - vernier::Vector3(0.4, 0.2, -0.3)).norm(), 1e-14);
   EXPECT_EQ(pose.matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+}
+
+TEST(Dataset, KnowsFromWhereEachRowWasApproachedAlsoAfterASplit) {
+  const auto data = five_rows(false);
+  EXPECT_TRUE(data.previous().row(0).array().isNaN().all());
+  EXPECT_EQ(data.previous().bottomRows(4), data.joints().topRows(4));
+  EXPECT_EQ(data.times(), Eigen::VectorXd::LinSpaced(5, 0, 4));
+  const auto some = data.rows(std::array<Index, 3>{4, 0, 2});
+  EXPECT_EQ(some.previous().row(0), data.joints().row(3));
+  EXPECT_TRUE(some.previous().row(1).array().isNaN().all());
+  EXPECT_EQ(some.previous().row(2), data.joints().row(1));
+  EXPECT_EQ(some.times(), Eigen::Vector3d(4, 0, 2));
+  EXPECT_TRUE(data.without_approach().previous().array().isNaN().all());
+  const auto stated = data.approached_from(data.joints()).measured_at(Eigen::VectorXd::Constant(5, 3.5));
+  EXPECT_EQ(stated.previous(), data.joints());
+  EXPECT_EQ(stated.rows(std::array<Index, 1>{1}).times()(0), 3.5);
+  EXPECT_EQ(complaint([&] { (void)data.approached_from(JointRows<2>(4, 2)); }),
+            "Dataset: 4 previous configurations of 5 rows");
+  EXPECT_NE(complaint([&] { (void)data.measured_at(Eigen::VectorXd::Zero(6)); }), "");
+  EXPECT_NE(complaint([&] { (void)data.measured_at(Eigen::VectorXd::Constant(5, std::nan(""))); }), "");
 }
 
 TEST(Dataset, RowsInTheOrderAskedFor) {

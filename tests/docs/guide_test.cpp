@@ -52,6 +52,7 @@ Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
 const JointLimits<6> limits = working_range();
 const Isometry3 base = frame(2, -1, 0.5, 0.1, -0.2, 1.5), tool = frame(0.02, 0.03, 0.11, 0, 0.1, 0);
 const JointVector<6> q(0.3, -1.4, 1.2, 0.4, -0.7, 0.2);
+const JointVector<6> previous(0.2, -1.1, 1.0, 0.4, -0.9, 0.6);
 
 /// The real arm: off in its links by tenths of a millimetre and milliradians, with three harmonics in each joint.
 Framed<WithJointErrors<Chain>> real_arm(const Isometry3& at = base) {

@@ -95,7 +95,7 @@ vn::ErrorModel<Chain> random_model(const Chain& nominal, double error, vn::Rng& 
   few.gear_ratio = few.coupling = true;
   few.gravity.emplace(nominal);
   vn::JointTerms all = few;
-  all.transmission.assign(Chain::dof, vn::Fourier{3});
+  all.transmission.assign(Chain::dof, vn::Fourier::up_to(3));
   using Arm = typename vn::ErrorModel<Chain>::Arm;
   const vn::FrameParameters base = random_frame(rng), tool = random_frame(rng);
   const auto moved = [&](const vn::FrameParameters& frame) {

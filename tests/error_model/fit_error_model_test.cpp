@@ -149,7 +149,7 @@ double supported_factor(const ErrorModelEstimate& estimate, const MatrixX& covar
   const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
   std::vector<detail::LeftOutVisit> visits;
   std::vector<RowBlock> blocks(static_cast<std::size_t>(data.size()));
-  estimate.arm.linearise(0, data.joints(), blocks.data());
+  estimate.arm.linearise(0, data.joints(), data.previous(), blocks.data());
   Rows6 all(6, estimate.arm.size());
   for (Index b = 0; b < data.size(); ++b) {
     const RowBlock& rows = blocks[static_cast<std::size_t>(b)];
@@ -218,8 +218,8 @@ TEST(ErrorModelEstimate, CovariancesByHand) {
 TEST(ErrorModelEstimate, TransmissionByHand) {
   ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
   JointTerms terms(6);
-  terms.transmission[1] = Fourier{1};
-  terms.transmission[2] = Fourier{1};
+  terms.transmission[1] = Fourier::up_to(1);
+  terms.transmission[2] = Fourier::up_to(1);
   estimate.arm.set_terms(terms, Eigen::Vector4d(1e-3, 2e-3, 3e-3, 4e-3), Eigen::Vector4d::Ones());
   VectorX steps(5);
   steps << 0, 1, 2, 5, 7;

@@ -65,7 +65,7 @@ TEST(Fourier, IsCosineAndSine) {
   std::vector<double> angles = {0.0, pi / 2, -pi / 2, pi, -pi, 1e-9};
   for (int i = 0; i < 500; ++i) angles.push_back(rng.uniform(-2 * pi, 2 * pi));
   for (const double q : angles) {
-    const Functions f = functions(vn::Fourier{60}, q);
+    const Functions f = functions(vn::Fourier::up_to(60), q);
     for (int k = 1; k <= 60; ++k) {
       const long double angle = static_cast<long double>(q) * k;  // k q itself is rounded by 1e-14 in double
       const double c = static_cast<double>(std::cos(angle)), s = static_cast<double>(std::sin(angle));
@@ -74,20 +74,125 @@ TEST(Fourier, IsCosineAndSine) {
       EXPECT_NEAR(f.slope(2 * k - 2), -k * s, 1e-14 * k);
       EXPECT_NEAR(f.slope(2 * k - 1), k * c, 1e-14 * k);
     }
-    expect_slopes_of_values(vn::Fourier{60}, q, 60.0 * 60 * 60 / 6);
+    expect_slopes_of_values(vn::Fourier::up_to(60), q, 60.0 * 60 * 60 / 6);
   }
 }
 
-TEST(Fourier, HigherHarmonicsAreExpectedSmaller) {
-  const vn::Fourier basis{3};
-  EXPECT_EQ(basis.size(), 6);
-  for (Index k = 0; k < 6; ++k) EXPECT_EQ(basis.relative_amplitude(k), 1.0 / static_cast<double>(1 + k / 2));
-  EXPECT_EQ(functions(vn::Fourier{0}, 1.0).value.size(), 0);
+TEST(Fourier, OrdersMayHaveGaps) {
+  const vn::Fourier lines{{1, 2, 7, 128, 404, 1010}};
+  EXPECT_EQ(lines.size(), 12);
+  for (const double q : {0.3, -2.0, 3.1}) {
+    const Functions f = functions(lines, q);
+    for (Index k = 0; k < 6; ++k) {
+      const double order = lines.order(2 * k);
+      EXPECT_NEAR(f.value(2 * k), std::cos(order * q), 2e-13) << order;
+      EXPECT_NEAR(f.value(2 * k + 1), std::sin(order * q), 2e-13) << order;
+      EXPECT_NEAR(f.slope(2 * k), -order * std::sin(order * q), 2e-10) << order;
+    }
+  }
+  EXPECT_EQ(functions(vn::Fourier{}, 1.0).value.size(), 0);
+}
+
+TEST(HarmonicSpectrum, LaterBandsCountAndOrdersFollow) {
+  const vn::HarmonicSpectrum spectrum{{1, 5, 1e-4}, {4, 6, 2e-5}, {20, 21, 3e-6}};
+  const std::vector<double> wanted{0, 1e-4, 1e-4, 1e-4, 2e-5, 2e-5, 2e-5, 0};
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    EXPECT_EQ(vn::expected_std(spectrum, static_cast<int>(k)), wanted[k]) << k;
+  EXPECT_EQ(vn::orders_of(spectrum, 500).orders, (std::vector<int>{1, 2, 3, 4, 5, 6, 20, 21}));
+  EXPECT_EQ(vn::orders_of(spectrum, 20).orders, (std::vector<int>{1, 2, 3, 4, 5, 6, 20}));
+  EXPECT_TRUE(vn::orders_of(spectrum, 0).orders.empty());
+  EXPECT_EQ(vn::orders_of(vn::typical_spectrum(), 500).orders.size(), 140 + 5 + 9);
+}
+
+// Joints side by side are what each is alone, with different orders at each, gaps, and more joints than lanes.
+template <int N>
+void expect_transmissions_of_single_joints() {
+  vn::Rng rng(77);
+  vn::JointTerms terms(N);
+  const std::vector<vn::Fourier> choices{vn::Fourier::up_to(60),
+                                         vn::Fourier{},
+                                         {{3, 128, 404}},
+                                         {{1, 2, 3, 4, 5, 9}},
+                                         vn::orders_of(vn::typical_spectrum(), 500)};
+  for (int j = 0; j < N; ++j)
+    terms.transmission[static_cast<std::size_t>(j)] = choices[static_cast<std::size_t>(j) % 5];
+  const vn::JointErrors errors(terms, normals(rng, terms.size()));
+  for (int i = 0; i < 20; ++i) {
+    const vn::JointVector<N> q = vernier_test::random_joints<N>(rng);
+    const auto at = errors.template effective<N>(q);
+    for (int j = 0; j < N; ++j) {
+      const vn::Fourier::Sum alone = terms.transmission[static_cast<std::size_t>(j)].sum(
+          q(j), errors.coefficients().data() + terms.transmission_begin(j));
+      EXPECT_NEAR(at.joints(j) - q(j), alone.value, 1e-11) << j;
+      EXPECT_NEAR(at.derivative(j, j) - 1, alone.slope, 1e-9) << j;
+    }
+  }
+}
+
+TEST(JointErrors, JointsSideBySideAreSingleOnes) {
+  expect_transmissions_of_single_joints<1>();
+  expect_transmissions_of_single_joints<6>();
+  expect_transmissions_of_single_joints<9>();
+}
+
+TEST(JointErrors, HysteresisFollowsTheDirectionOfApproach) {
+  vn::JointTerms terms(2);
+  terms.hysteresis = {0.01, 0.3};
+  const vn::JointErrors errors(terms, (VectorX(4) << 50e-6, -20e-6, 10e-6, 30e-6).finished());
+  EXPECT_EQ(terms.names(),
+            (std::vector<std::string>{"hysteresis1_1", "hysteresis2_1", "hysteresis1_2", "hysteresis2_2"}));
+  const vn::JointVector<2> q(0.4, -0.2);
+  const auto moved = [&](double d1, double d2) {
+    const vn::JointVector<2> previous = q - vn::JointVector<2>(d1, d2);
+    return vn::JointVector<2>(errors.effective<2>(q, previous.data()).joints - q);
+  };
+  const auto by = [](double h1, double h2, double d) { return h1 * std::tanh(d / 0.01) + h2 * std::tanh(d / 0.3); };
+  EXPECT_NEAR(moved(0.005, -0.1)(0), by(50e-6, 10e-6, 0.005), 1e-16);
+  EXPECT_NEAR(moved(0.005, -0.1)(1), by(-20e-6, 30e-6, -0.1), 1e-16);
+  EXPECT_EQ(moved(0, 0), vn::JointVector<2>(0, 0));
+  EXPECT_LT((moved(1, 2) + moved(-1, -2)).norm(), 1e-16);  // the other direction, the other side
+  EXPECT_EQ(errors.effective<2>(q).joints, q);             // unknown: in the middle
+  const vn::JointVector<2> unknown(std::nan(""), 0.1);
+  EXPECT_EQ(errors.effective<2>(q, unknown.data()).joints(0), q(0));
+  EXPECT_NE(errors.effective<2>(q, unknown.data()).joints(1), q(1));
+  EXPECT_DOUBLE_EQ(errors.half_loop(0), 60e-6);
+  EXPECT_DOUBLE_EQ(errors.half_loop(1), 10e-6);
+  // rows of joint values with and without previous ones
+  const vn::MatrixX rows = q.transpose(), before = (q - vn::JointVector<2>(0.005, -0.1)).transpose();
+  EXPECT_EQ(errors.effective_rows(rows), rows);
+  EXPECT_LT((errors.effective_rows(rows, before) - rows - moved(0.005, -0.1).transpose()).norm(), 1e-15);
+}
+
+/// Linear motion and rotation of a view, by central differences.
+TEST(ApproachedArm, JacobianIsThatOfItsPoses) {
+  vn::Rng rng(78);
+  const auto chain = vernier_test::random_chain<6>(rng);
+  vn::JointTerms terms(6);
+  terms.hysteresis = {0.01, 0.3};
+  terms.transmission.assign(6, vn::Fourier{{1, 12}});
+  const vn::WithJointErrors<vn::DhChain<6>> arm(chain, vn::JointErrors(terms, 1e-3 * normals(rng, terms.size())));
+  const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+  const vn::JointVector<6> previous = q - 0.01 * normals(rng, 6);
+  const vn::ApproachedArm view(arm, previous);
+  EXPECT_GT((view.position(q) - arm.position(q)).norm(), 1e-6);
+  EXPECT_EQ(view.position(q), view.pose(q).translation());
+  const auto found = view.pose_and_jacobian(q);
+  EXPECT_EQ(found.pose.matrix(), view.pose(q).matrix());
+  EXPECT_EQ(found.jacobian, view.jacobian(q));
+  constexpr double h = 1e-5;
+  for (int j = 0; j < 6; ++j) {
+    const vn::JointVector<6> step = h * vn::JointVector<6>::Unit(j);
+    const vn::Isometry3 ahead = view.pose(q + step), behind = view.pose(q - step);
+    const vn::Vector3 linear = (ahead.translation() - behind.translation()) / (2 * h);
+    const vn::Vector3 angular = vn::log_so3(ahead.linear() * behind.linear().transpose()) / (2 * h);
+    EXPECT_LT((found.jacobian.col(j).head<3>() - linear).norm(), 1e-7) << j;
+    EXPECT_LT((found.jacobian.col(j).tail<3>() - angular).norm(), 1e-7) << j;
+  }
 }
 
 TEST(Fourier, SumsItsFunctions) {
   vn::Rng rng(3);
-  for (const vn::Fourier basis : {vn::Fourier{60}, vn::Fourier{1}, vn::Fourier{0}}) {
+  for (const vn::Fourier& basis : {vn::Fourier::up_to(60), vn::Fourier::up_to(1), vn::Fourier{}}) {
     const VectorX beta = normals(rng, basis.size());
     for (int i = 0; i < 50; ++i) {
       const double q = rng.uniform(-pi, pi);
@@ -225,9 +330,9 @@ vn::JointTerms all_terms(const Chain& chain) {
   vn::JointTerms terms(Chain::dof);
   terms.gear_ratio = terms.coupling = true;
   terms.gravity.emplace(chain, vn::Vector3(0.6, 0, -0.8));
-  terms.transmission[0] = vn::Fourier{12};
-  if constexpr (Chain::dof > 2) terms.transmission[2] = vn::Fourier{5};
-  if constexpr (Chain::dof > 3) terms.transmission[3] = vn::Fourier{3};
+  terms.transmission[0] = vn::Fourier::up_to(12);
+  if constexpr (Chain::dof > 2) terms.transmission[2] = vn::Fourier::up_to(5);
+  if constexpr (Chain::dof > 3) terms.transmission[3] = vn::Fourier::up_to(3);
   return terms;
 }
 
@@ -246,13 +351,13 @@ void expect_effective_is_phi_beta() {
     terms.gear_ratio = (present & 1) != 0;
     terms.coupling = (present & 2) != 0;
     if ((present & 4) == 0) terms.gravity.reset();
-    if ((present & 8) == 0) terms.transmission.assign(N, vn::Fourier{0});
+    if ((present & 8) == 0) terms.transmission.assign(N, vn::Fourier{});
     const auto errors = random_errors(rng, terms);
     EXPECT_EQ(errors.empty(), terms.size() == 0);
     for (int i = 0; i < 5; ++i) {
       const vn::JointVector<N> q = vernier_test::random_joints<N>(rng);
       vn::MatrixX dense = vn::MatrixX::Constant(N, terms.num_dense_terms(), std::nan(""));
-      terms.dense_basis(q.data(), dense);
+      terms.dense_basis(q.data(), nullptr, dense);
       vn::MatrixX phi = vn::MatrixX::Zero(N, terms.size());
       phi.leftCols(dense.cols()) = dense;
       for (int j = 0; j < N; ++j) {
@@ -300,14 +405,14 @@ TEST(JointErrors, NamesAreInOrderAndUnique) {
   vn::JointTerms terms(3);
   terms.gear_ratio = terms.coupling = true;
   terms.gravity.emplace(arm);
-  terms.transmission[0] = vn::Fourier{2};
-  terms.transmission[2] = vn::Fourier{1};
+  terms.transmission[0] = vn::Fourier::up_to(2);
+  terms.transmission[2] = vn::Fourier::up_to(1);
   EXPECT_EQ(terms.names(), (std::vector<std::string>{"gear1", "gear2", "gear3", "coupling2", "coupling3", "sag1_1",
                                                      "sag1_2", "sag1_3", "sag2_2", "sag2_3", "sag3_3", "cos1_1",
                                                      "sin1_1", "cos1_2", "sin1_2", "cos3_1", "sin3_1"}));
   const auto many = [&](auto chain) {
     auto all = all_terms(chain);
-    all.transmission.assign(all.transmission.size(), vn::Fourier{60});
+    all.transmission.assign(all.transmission.size(), vn::Fourier::up_to(60));
     const auto names = all.names();
     EXPECT_EQ(static_cast<Index>(names.size()), all.size());
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
@@ -341,10 +446,16 @@ TEST(JointErrors, InconsistentTermsAreNamed) {
     return vernier_test::complaint([&] { (void)vn::JointErrors(terms, VectorX::Ones(coefficients)); });
   };
   vn::JointTerms terms(2);
-  terms.transmission = {vn::Fourier{1}, vn::Fourier{2}};
+  terms.transmission = {vn::Fourier::up_to(1), vn::Fourier::up_to(2)};
   EXPECT_EQ(complaint(terms, 6), "");
-  terms.transmission[1].harmonics = -1;  // 2 - 2 functions
-  EXPECT_EQ(complaint(terms, 0), "JointErrors: joint 2 has -1 harmonics");
+  terms.transmission[1].orders = {2, 2};
+  EXPECT_EQ(complaint(terms, 6), "Fourier: order 2 after 2, must ascend from 1");
+  terms.transmission[1].orders = {0, 2};
+  EXPECT_EQ(complaint(terms, 6), "Fourier: order 0 after 0, must ascend from 1");
+  terms.transmission[1].orders = {};
+  terms.hysteresis = {0.1, 0};
+  EXPECT_EQ(complaint(terms, 6), "JointErrors: a width of the hysteresis is 0, must be positive");
+  terms.hysteresis = {};
   terms.transmission.pop_back();
   EXPECT_EQ(complaint(terms, 2), "JointErrors: transmissions of 1 joints, expected 2");
   terms = vn::JointTerms(2);
@@ -411,7 +522,7 @@ TEST(NoAllocation, JointErrors) {
   EXPECT_EQ(allocations([&] { keep(model.pose_and_jacobian(q)); }), 0);
   EXPECT_EQ(allocations([&] { keep(errors.effective(q)); }), 0);
   EXPECT_EQ(allocations([&] { keep(errors.transmission(2, q(2))); }), 0);
-  EXPECT_EQ(allocations([&] { terms.dense_basis(q.data(), dense); }), 0);
+  EXPECT_EQ(allocations([&] { terms.dense_basis(q.data(), nullptr, dense); }), 0);
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
   ArmParameterisation arm = example();
   JointTerms few(6);
   few.gravity.emplace(robot.chain);
-  few.transmission[1] = Fourier{2};
-  few.transmission[4] = Fourier{3};
+  few.transmission[1] = Fourier::up_to(2);
+  few.transmission[4] = Fourier::up_to(3);
   arm.set_terms(few, VectorX::LinSpaced(few.size(), 1e-4, 2e-4), VectorX::Ones(few.size()));
   arm.move(random_vector(rng, arm.size()));
   MatrixX joints(1, 6);
@@ -49,8 +49,8 @@ TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
   ArmParameterisation more = arm;
   JointTerms all = few;
   all.gear_ratio = all.coupling = true;
-  all.transmission[0] = Fourier{1};
-  all.transmission[4] = Fourier{5};  // longer: what was there comes first
+  all.transmission[0] = Fourier::up_to(1);
+  all.transmission[4] = Fourier::up_to(5);  // longer: what was there comes first
   more.set_terms(all, VectorX::LinSpaced(all.size(), 3e-4, 5e-4), VectorX::Ones(all.size()));
   EXPECT_EQ(more.size(), arm.size() + 6 + 5 + 2 + 4);
   for (const std::string& name : arm.names()) EXPECT_NEAR(value(more, name), value(arm, name), 1e-16) << name;
@@ -62,7 +62,7 @@ TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
   Rng rng(2);
   ArmParameterisation arm = example();
   JointTerms terms(6);
-  terms.transmission[2] = Fourier{2};
+  terms.transmission[2] = Fourier::up_to(2);
   arm.set_terms(terms, VectorX::Constant(4, 1e-4), VectorX::Constant(4, 7));
   EXPECT_TRUE(arm.steps().isZero(0));
   const VectorX first = random_vector(rng, 7), second = random_vector(rng, 7);

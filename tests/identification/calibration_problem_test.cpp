@@ -51,7 +51,8 @@ struct Measured {
     JointTerms terms(6);
     terms.gear_ratio = terms.coupling = true;
     terms.gravity.emplace(robot.chain, Vector3(0.6, 0, -0.8));
-    terms.transmission = {Fourier{3}, Fourier{2}, Fourier{0}, Fourier{1}, Fourier{2}, Fourier{12}};
+    terms.transmission = {Fourier::up_to(3), Fourier::up_to(2), Fourier{},
+                          Fourier::up_to(1), Fourier::up_to(2), Fourier::up_to(12)};
     Rng rng(17);
     const VectorX sizes = size * (VectorX::Ones(terms.size()) + random_vector(rng, terms.size()).cwiseAbs());
     arm.set_terms(terms, sizes, VectorX::Constant(terms.size(), 3));

@@ -224,7 +224,8 @@ CalibratedRobot<6> model() {
   JointTerms terms(6);
   terms.gear_ratio = true;
   terms.gravity.emplace(robot.chain);
-  terms.transmission[0] = terms.transmission[2] = Fourier{2};
+  terms.hysteresis = {0.02};
+  terms.transmission[0] = terms.transmission[2] = Fourier::up_to(2);
   const Model::Arm arm(
       {with_geometric_errors(robot.chain, {}, 3), JointErrors(terms, VectorX::Constant(terms.size(), 1e-4))});
   const CalibratedRobot<6> plain("an arm",
@@ -250,7 +251,7 @@ TEST(BadInput, ModelFiles) {
     return damaged.dump();
   };
   reader.expect_refused(with("/schema_version", 1), "an old version");
-  reader.expect_refused(with("/schema_version", 4), "a new version");
+  reader.expect_refused(with("/schema_version", 5), "a new version");
   reader.expect_refused(with("/convention", "modified"), "a chain of the other convention");
   reader.expect_refused(with("/provenance/rows", -1), "fewer than no rows");
   reader.expect_refused(with("/provenance/rows", 1.5), "half a row");
@@ -260,7 +261,11 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/learned/hidden_nodes", 18446744073709551615ull), "far too many nodes");
   reader.expect_refused(with("/learned/coverage/2/margin", 0), "a gate without margin");
   reader.expect_refused(with("/learned/coverage/2/ranges/0/0", 100), "a gate upside down");
-  reader.expect_refused(with("/arm/joint_errors/transmission/2/harmonics", 3), "a harmonic more than coefficients");
+  reader.expect_refused(with("/arm/joint_errors/transmission/2/orders", {1, 2, 3}), "an order more than coefficients");
+  reader.expect_refused(with("/arm/joint_errors/transmission/2/orders", {2, 1}), "orders upside down");
+  reader.expect_refused(with("/arm/joint_errors/transmission/2/orders", {0, 1}), "a harmonic of order 0");
+  reader.expect_refused(with("/arm/joint_errors/hysteresis/widths_rad/0", 0), "a step without width");
+  reader.expect_refused(with("/arm/joint_errors/hysteresis/widths_rad", {0.1, 0.2}), "more widths than coefficients");
   reader.expect_refused(with("/arm/joint_errors/gravity/down/0", 1), "gravity stronger than gravity");
   reader.expect_refused(with("/arm/joint_errors/backlash", 1), "a joint error nobody knows");
   reader.expect_refused(with("/provenance/measured", "colours"), "another kind of measurement");

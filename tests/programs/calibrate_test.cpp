@@ -76,7 +76,7 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
   EXPECT_EQ(c.command.errors, "");
   EXPECT_EQ(keys(c.json),
-            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "blocks", "parameters",
+            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "chosen", "blocks", "parameters",
                                       "identifiability", "gated_rows", "worst_harm_beside_geometry_mm",
                                       "within_95_percent_ellipsoids", "verdict"}));
   EXPECT_EQ(c.json.at("robot"), "abb_irb120");

@@ -76,15 +76,19 @@ struct LocalStates {
   }
   /// The gradient of all unknowns with priors.
   VectorX gradient() const {
-    VectorX residual(6 * blocks);
-    for (Index b = 0; b < blocks; ++b) residual.segment(6 * b, 6) = rows[static_cast<std::size_t>(b)].residual;
-    VectorX out = jacobian().transpose() * residual;
+    VectorX out = jacobian().transpose() * residual();
     out.head(dense) += precisions.cwiseProduct(steps);
     out.tail(states * size) += prior() * local_steps;
     return out;
   }
 
- private:
+  /// Residuals of all blocks.
+  VectorX residual() const {
+    VectorX out(6 * blocks);
+    for (Index b = 0; b < blocks; ++b) out.segment(6 * b, 6) = rows[static_cast<std::size_t>(b)].residual;
+    return out;
+  }
+  /// Columns of all unknowns, dense ones first.
   MatrixX jacobian() const {
     MatrixX out = MatrixX::Zero(6 * blocks, dense + states * size);
     for (Index b = 0; b < blocks; ++b) {
@@ -95,6 +99,7 @@ struct LocalStates {
     }
     return out;
   }
+  /// Precisions of the local unknowns.
   MatrixX prior() const {
     MatrixX out = MatrixX::Zero(states * size, states * size);
     for (const auto& p : priors) {

@@ -4,6 +4,7 @@
 /// A calibrated arm: every step of the pipeline with its result.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct Calibration {
   FittedErrorModel<Chain> errors;         ///< geometry and joint errors together
   std::optional<LearnedRemainder<dof>> geometry_remainder{};  ///< learned on geometry alone, the classical alternative
   std::optional<LearnedRemainder<dof>> remainder{};           ///< learned on the error model
+  bool remainder_supported = false;                           ///< whether cross-validation supports that remainder
   JointCoverage<dof> coverage{};                              ///< measured joint ranges
   Index poses = 0;                                            ///< number of poses it was fitted to
   Index distances = 0;                                        ///< number of distances it was fitted to
@@ -47,8 +49,42 @@ struct Calibration {
   double median_error = 0;  ///< median position error of the poses it was fitted to [m]
   double fit_seconds = 0;   ///< time from poses to error model
 
+  /// The stage that is deployed, by name: the last one that left-out poses support.
+  const char* chosen() const {
+    if (remainder_supported) return "jointwise_pso_elm";
+    const char* out = "geometry";
+    for (const BlockChoice& block : errors.blocks)
+      for (const char* stage : {"elastic", "jointwise", "approach"})
+        if (block.used && block.name == stage) out = stage;
+    return out;
+  }
   /// The error model of the first station, without learned remainder.
   const ErrorModel<Chain>& model() const { return errors.model(); }
 };
+
+namespace detail {
+
+/// Poses as they would have been measured in the middle of both directions of approach.
+template <class Chain>
+Dataset<Chain::dof> without_hysteresis(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
+  if (model.identified().model().joint_errors().terms().hysteresis.empty()) return data;
+  PointRows positions = data.positions();
+  for (Index i = 0; i < data.size(); ++i) {
+    const JointVector<Chain::dof> q = data.joints(i);
+    positions.row(i) -=
+        (model.approached_from(data.previous().row(i).transpose()).position(q) - model.position(q)).transpose();
+  }
+  return Dataset<Chain::dof>(data.joints(), positions);
+}
+/// The same for every station.
+template <class Chain>
+std::vector<Dataset<Chain::dof>> without_hysteresis(const std::vector<ErrorModel<Chain>>& models,
+                                                    std::span<const Dataset<Chain::dof>> stations) {
+  std::vector<Dataset<Chain::dof>> out;
+  for (std::size_t s = 0; s < stations.size(); ++s) out.push_back(without_hysteresis(models[s], stations[s]));
+  return out;
+}
+
+}  // namespace detail
 
 }  // namespace vernier

@@ -16,7 +16,9 @@ namespace vernier {
 
 /// Errors of held-out poses after a stage of the pipeline.
 struct StageErrors {
-  std::string key;    ///< `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `jointwise_pso_elm`
+  /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (with the direction of approach),
+  /// `jointwise_pso_elm` (on the last of them), `session` (with the session's drift, which no other session has)
+  std::string key;
   std::string title;  ///< for tables
   VectorX position;   ///< [m]
   VectorX rotation;   ///< [rad]; empty where orientations are not used
@@ -54,8 +56,10 @@ struct CalibrationReport {
   std::vector<JointReport> joints{};    ///< one a joint
   std::vector<PoseAdvice> advice{};     ///< for the first weakly determined parameters
   VectorX gates;                        ///< share of the joint-wise terms at each held-out pose
-  double max_degradation = 0;     ///< largest excess of the joint-wise error over that of geometry, inside the measured
-                                  ///< joint ranges [m]
+  std::string chosen = "geometry";      ///< key of the stage that is deployed
+  std::vector<SessionDrift> drift{};    ///< of each station's base; empty where the data do not support it
+  double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the
+                                  ///< measured joint ranges [m]
   double ellipsoid_coverage = 0;  ///< share of held-out poses within their predicted 95 % ellipsoid
   bool oriented = false;          ///< whether orientations are used
   bool converged = true;          ///< whether the error model converged

@@ -43,8 +43,11 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   using detail::brief;
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
-  if (!learned && !stages.empty() && stages.back().key == "jointwise_pso_elm")
-    out.push_back("The PSO-ELM found nothing to learn in what the joint-wise model leaves.");
+  if (chosen != "jointwise_pso_elm")
+    for (const StageErrors& s : stages)
+      if (s.key == "jointwise_pso_elm")
+        out.push_back(learned ? "What the PSO-ELM learned on the error model does not help left-out poses: not used."
+                              : "The PSO-ELM found nothing to learn in what the error model leaves.");
   if (outliers > 0 && median_error > 1e-6)
     out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
                           brief(median_error * 1e3), " mm: outliers?",
@@ -57,7 +60,7 @@ namespace detail {
 
 /// Accuracy inside the measured joint ranges.
 VERNIER_API void describe_accuracy(const CalibrationReport& report, std::vector<std::string>& out) {
-  const VectorX& last = report.stages.back().position;
+  const VectorX& last = report.stage(report.chosen).position;
   std::vector<double> inside;
   for (Index i = 0; i < last.size(); ++i)
     if (report.gates(i) == 1) inside.push_back(last(i) * 1e3);
@@ -101,6 +104,10 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
        {"Beside joint-wise terms gravity compliance is kept ",
         "Beside joint-wise terms gravity compliance is left out "}},
       {"gears", {"Gear ratios and coupling help ", "Gear ratios and coupling do not help "}},
+      {"approach",
+       {"Hysteresis by the direction of approach helps ",
+        "Hysteresis is left out: errors do not depend on the direction of approach "}},
+      {"drift", {"The base drifted during the session ", "No drift of the base is noticeable "}},
       {"tuned_priors", {"Optimised priors help ", "Optimised priors are left out: they do not help "}}};
   const auto& [helps, does_not] = texts.at(block.name);
   return message(block.used ? helps : does_not, "(leave-one-pose-out error: ", brief(block.without * 1e3),

@@ -37,6 +37,17 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
   return out;
 }
 
+/// Poses as predicted with the direction of approach, moved by drift.
+template <class Chain>
+std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
+                                     const SessionDrift& drift) {
+  std::vector<Isometry3> out;
+  for (Index i = 0; i < data.size(); ++i)
+    out.push_back(drift.motion(data.times()(i)) *
+                  model.approached_from(data.previous().row(i).transpose()).pose(data.joints(i)));
+  return out;
+}
+
 }  // namespace detail
 
 /// Errors of held-out poses after every stage of a calibration, and what follows from them.
@@ -74,22 +85,46 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
           test, [&](std::size_t s, const auto& data) { return rotation_errors(models[s], data); });
     out.stages.push_back(std::move(stage));
   };
-  const auto assess_learned = [&](const char* key, const char* title, const auto& models, const auto& remainder) {
+  const auto assess_learned = [&](const char* key, const char* title, const auto& models, const auto& remainder,
+                                  std::span<const Dataset<N>> data) {
     if (!remainder) return;
     std::vector<Isometry3> bases;
     for (const auto& model : models) bases.push_back(model.identified().base());
     bases.resize(test.size());
     const CartesianCorrected hybrid(models.front(), remainder->predictor, remainder->coverage);
     out.stages.push_back(
-        {key, title, position_errors(hybrid, in_one_frame<N>(test, bases, false)), out.stages.back().rotation});
+        {key, title, position_errors(hybrid, in_one_frame<N>(data, bases, false)), out.stages.back().rotation});
   };
   assess("frames", "frames", calibration.frames);
   assess("geometry", "geometry", errors.geometry);
-  assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder);
+  assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder, test);
   assess("elastic", "elastic", errors.elastic);
-  assess("jointwise", "joint-wise", errors.models);
-  assess_learned("jointwise_pso_elm", "joint-wise + PSO-ELM", errors.models, calibration.remainder);
+  assess("jointwise", "joint-wise", errors.jointwise);
+  const auto assess_visits = [&](const char* key, const std::vector<SessionDrift>& drift) {
+    StageErrors stage{key, key, {}, {}};
+    const auto poses = [&](std::size_t s, const Dataset<N>& data) {
+      return detail::visited_poses(errors.models[s], data, s < drift.size() ? drift[s] : SessionDrift{});
+    };
+    stage.position = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
+      return detail::position_errors_of(poses(s, data), data.positions());
+    });
+    if (out.oriented)
+      stage.rotation = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
+        return detail::rotation_errors_of(poses(s, data), data.orientations());
+      });
+    out.stages.push_back(std::move(stage));
+  };
+  const bool approach = !errors.arm.terms().hysteresis.empty();
+  if (approach) assess_visits("approach", {});
+  if (calibration.remainder) {
+    const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
+    assess_learned("jointwise_pso_elm", approach ? "approach + PSO-ELM" : "joint-wise + PSO-ELM", errors.models,
+                   calibration.remainder, centred);
+  }
+  if (!errors.drift.empty()) assess_visits("session", errors.drift);
+  out.drift = errors.drift;
   out.learned = calibration.remainder && !calibration.remainder->empty();
+  out.chosen = calibration.chosen();
 
   out.gates = detail::over_stations<N>(test, [&](std::size_t, const Dataset<N>& data) {
     VectorX gates(data.size());
@@ -99,15 +134,16 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   out.ellipsoid_coverage = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
                              VectorX within(data.size());
                              for (Index i = 0; i < data.size(); ++i) {
-                               const PredictedPose p = errors.predicted(data.joints(i), static_cast<int>(s));
+                               const PredictedPose p = errors.predicted_from(data.previous().row(i).transpose(),
+                                                                             data.joints(i), static_cast<int>(s));
                                within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
                                                                     p.covariance.template topLeftCorner<3, 3>());
                              }
                              return within;
                            }).mean();
-  const VectorX &geometry = out.stage("geometry").position, &jointwise = out.stage("jointwise").position;
+  const VectorX &geometry = out.stage("geometry").position, &deployed = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
-    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, jointwise(i) - geometry(i));
+    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, deployed(i) - geometry(i));
   for (int j = 0; j < N; ++j) {
     JointReport joint;
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;

@@ -28,7 +28,7 @@ VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estim
       joints(c, i) = rng.uniform(std::max(lower(i), -widest), std::min(upper(i), widest));
     }
   std::vector<RowBlock> blocks(candidates);
-  estimate.arm.linearise(0, joints, blocks.data());
+  estimate.arm.linearise(0, joints, MatrixX(), blocks.data());
   std::vector<MatrixX> rows;
   for (const RowBlock& block : blocks) {
     rows.push_back(block.dense.topRows(oriented ? 6 : 3));

@@ -16,26 +16,37 @@ namespace vernier {
 namespace detail {
 
 VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types);
-/// Joints, then the positions [m], then the orientations [rad] if the file has them.
-VERNIER_API MatrixX read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
+/// The columns of a file of poses.
+struct PoseColumns {
+  MatrixX values;    ///< joints, then the positions [m], then the orientations [rad] if the file has them
+  MatrixX previous;  ///< joint values from which each pose was approached; not a number where unknown
+  VectorX times;     ///< of measuring
+};
+VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
 /// Joints, then the distances [m].
 VERNIER_API MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
-                                  const PointRows& orientations);
+                                  const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times);
 
 }  // namespace detail
 
 /// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg; _mm or _m for prismatic joints), x_mm, y_mm, z_mm
 /// (or _m), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg). Any column order; other columns are ignored;
 /// blank lines, CRLF and a byte-order mark are accepted.
+///
+/// Rows are taken to be in the order of measuring, each approached from the row before. A column `segment` (a number)
+/// begins anew where it changes; columns from_q1_rad .. from_qN_rad state from where each pose was approached. A column
+/// `time_s` states when it was measured, else that is the row's number.
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
 /// @throws DataError naming file, line and column
 template <int N>
 Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {}) {
-  const MatrixX values = detail::read_pose_columns(path, N, joint_types);
+  const auto [values, previous, times] = detail::read_pose_columns(path, N, joint_types);
   return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
-                    values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3));
+                    values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3))
+      .approached_from(previous)
+      .measured_at(times);
 }
 
 /// Measured distances from a CSV file: columns q1 .. qN as in `read_dataset`, and distance_mm (or _m, _um).
@@ -54,11 +65,14 @@ JointRows<N> read_joints(const std::string& path, std::span<const JointType> joi
 }
 
 /// Writes measured poses as `read_dataset` reads them, joints in rad, positions in mm, in digits that read back exactly
-/// (positions to the last bit or two, for the change of unit). Atomic: the file is whole, or as it was before.
+/// (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written where the
+/// order of the rows does not say the same; a row whose approach is unknown is then written as one that did not move.
+/// Atomic: the file is whole, or as it was before.
 /// @throws std::runtime_error when the file cannot be written
 template <int N>
 void write_dataset(const std::string& path, const Dataset<N>& data) {
-  write_file(path, detail::pose_text(data.joints(), data.positions(), data.orientations()));
+  write_file(path,
+             detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(), data.times()));
 }
 
 }  // namespace vernier

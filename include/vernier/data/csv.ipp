@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -80,6 +81,13 @@ class CsvTable {
     return found;
   }
 
+  /// A column without unit; empty where there is none.
+  std::optional<CsvColumn> find_plain(std::string_view name) const {
+    for (std::size_t i = 0; i < header_.size(); ++i)
+      if (header_[i] == name) return CsvColumn{std::string(name), i, 1};
+    return {};
+  }
+
   /// As `find`, but its absence is an error that lists the columns present.
   CsvColumn require_column(std::string_view stem, bool length) const {
     if (auto column = find(stem, length)) return *column;
@@ -151,14 +159,15 @@ class CsvTable {
   std::vector<Line> lines_;
 };
 
-/// Columns q1 .. qN: angles, or lengths for prismatic joints. Refuses a file with more joints, and units that do not
-/// fit the types of joints, where these are given.
-VERNIER_API std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types) {
+/// Columns q1 .. qN behind a prefix: angles, or lengths for prismatic joints. Refuses a file with more joints, and
+/// units that do not fit the types of joints, where these are given.
+VERNIER_API std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types,
+                                                 std::string_view prefix = "") {
   require(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
           " types of joints for ", joints, " joints");
   std::vector<CsvColumn> columns;
   for (int i = 1; i <= joints; ++i) {
-    const std::string stem = message("q", i);
+    const std::string stem = message(prefix, "q", i);
     const auto length = table.find(stem, true), angle = table.find(stem, false);
     if (length && angle) table.fail_in_header("columns ", length->name, " and ", angle->name, " both give ", stem);
     columns.push_back(length ? *length : table.require_column(stem, false));
@@ -168,7 +177,7 @@ VERNIER_API std::vector<CsvColumn> joint_columns(const CsvTable& table, int join
       table.fail_in_header("column ", columns.back().name, ", but joint ", i,
                            prismatic ? " is prismatic: a length is needed" : " is revolute: an angle is needed");
   }
-  const std::string surplus = message("q", joints + 1);
+  const std::string surplus = message(prefix, "q", joints + 1);
   for (const bool length : {false, true})
     if (const auto next = table.find(surplus, length))
       table.fail_in_header("column ", next->name, ", but the robot has ", joints, " joints");
@@ -180,13 +189,28 @@ VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std
   return table.numbers(joint_columns(table, joints, types));
 }
 
-VERNIER_IMPL MatrixX read_pose_columns(const std::string& path, int joints, std::span<const JointType> types) {
+VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types) {
   const CsvTable table(path);
   std::vector<CsvColumn> columns = joint_columns(table, joints, types);
   for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, true));
   if (table.find("rx", false) || table.find("ry", false) || table.find("rz", false))
     for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.require_column(axis, false));
-  return table.numbers(columns);
+  PoseColumns out{table.numbers(columns), {}, {}};
+  const Index n = out.values.rows();
+  const auto column = [&](const char* name) -> std::optional<VectorX> {
+    const auto found = table.find_plain(name);
+    return found ? std::optional<VectorX>(table.numbers({*found})) : std::nullopt;
+  };
+  out.times = column("time_s").value_or(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
+  if (table.find("from_q1", false) || table.find("from_q1", true)) {
+    out.previous = table.numbers(joint_columns(table, joints, types, "from_"));
+    return out;
+  }
+  const std::optional<VectorX> segment = column("segment");
+  out.previous.setConstant(n, joints, std::numeric_limits<double>::quiet_NaN());
+  for (Index i = 1; i < n; ++i)
+    if (!segment || (*segment)(i) == (*segment)(i - 1)) out.previous.row(i) = out.values.row(i - 1).head(joints);
+  return out;
 }
 
 VERNIER_IMPL MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types) {
@@ -200,12 +224,23 @@ VERNIER_IMPL MatrixX read_distance_columns(const std::string& path, int joints, 
 }
 
 VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
-                                   const PointRows& orientations) {
+                                   const PointRows& orientations, const ConstMatrixRef& previous,
+                                   const VectorX& times) {
   const bool oriented = orientations.rows() > 0;
+  bool in_order = true, counted = true;  // whether the order of the rows says it all
+  for (Index i = 0; i < joints.rows(); ++i) {
+    in_order = in_order && (i == 0 ? !previous.row(i).allFinite() : previous.row(i) == joints.row(i - 1));
+    counted = counted && times(i) == static_cast<double>(i);
+  }
   std::string out;
+  for (Index j = 1; j <= joints.cols() && !in_order; ++j) out += message("from_q", j, "_rad,");
+  if (!counted) out += "time_s,";
   for (Index j = 1; j <= joints.cols(); ++j) out += message("q", j, "_rad,");
   out += oriented ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
   for (Index i = 0; i < joints.rows(); ++i) {
+    for (Index j = 0; j < joints.cols() && !in_order; ++j)
+      out += message(std::isfinite(previous(i, j)) ? previous(i, j) : joints(i, j), ',');
+    if (!counted) out += message(times(i), ',');
     for (Index j = 0; j < joints.cols(); ++j) out += message(joints(i, j), ',');
     for (Index j = 0; j < 3; ++j) out += message(positions(i, j) * 1e3, j < 2 || oriented ? ',' : '\n');
     if (oriented)

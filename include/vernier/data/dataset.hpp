@@ -3,6 +3,7 @@
 /// @file
 /// Measured poses: joint values and measured positions, with or without orientations.
 
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -23,11 +24,12 @@ VERNIER_API void copy_rows(const ConstMatrixRef& from, std::span<const Index> in
 }  // namespace detail
 
 /// n samples of an N-joint arm: joints [rad, m], measured tool positions [m] and, where measured, orientations.
-/// All values are finite. Samples keep the order in which they were measured.
+/// All values are finite. Samples keep the order in which they were measured; each knows from where it was approached
+/// and when it was measured, also after some were taken out.
 template <int N>
 class Dataset {
  public:
-  Dataset() : joints_(0, N), positions_(0, 3), orientations_(0, 3) {}
+  Dataset() : joints_(0, N), positions_(0, 3), orientations_(0, 3), previous_(0, N) {}
 
   /// @param joints       n x N [rad, m]
   /// @param positions    n x 3 [m]
@@ -36,6 +38,9 @@ class Dataset {
   Dataset(JointRows<N> joints, PointRows positions, PointRows orientations = PointRows(0, 3))
       : joints_(std::move(joints)), positions_(std::move(positions)), orientations_(std::move(orientations)) {
     detail::check_samples(joints_, positions_, orientations_);
+    previous_ = JointRows<N>::Constant(size(), N, std::numeric_limits<double>::quiet_NaN());
+    if (size() > 1) previous_.bottomRows(size() - 1) = joints_.topRows(size() - 1);
+    times_ = VectorX::LinSpaced(size(), 0, static_cast<double>(size() - 1));
   }
 
   /// Number of samples.
@@ -49,6 +54,34 @@ class Dataset {
   const PointRows& positions() const { return positions_; }
   /// Measured rotation vectors [rad], 0 x 3 where only positions were measured.
   const PointRows& orientations() const { return orientations_; }
+
+  /// Joint values from which each sample was approached [rad, m]: those of the sample before, unless stated otherwise;
+  /// not a number where they are unknown.
+  const JointRows<N>& previous() const { return previous_; }
+  /// When each sample was measured: its number in the order of measuring, unless stated otherwise.
+  const VectorX& times() const { return times_; }
+
+  /// The same samples approached from other joint values; rows that are not finite are unknown.
+  /// @throws std::invalid_argument for another number of rows
+  Dataset approached_from(JointRows<N> previous) const {
+    require(previous.rows() == size(), "Dataset: ", previous.rows(), " previous configurations of ", size(), " rows");
+    Dataset out = *this;
+    out.previous_ = std::move(previous);
+    return out;
+  }
+  /// The same samples, from where they were approached unknown.
+  Dataset without_approach() const {
+    return approached_from(JointRows<N>::Constant(size(), N, std::numeric_limits<double>::quiet_NaN()));
+  }
+  /// The same samples measured at other times, in any unit.
+  /// @throws std::invalid_argument for another number of times, or one that is not finite
+  Dataset measured_at(VectorX times) const {
+    require(times.size() == size() && times.allFinite(), "Dataset: ", times.size(), " times of ", size(),
+            " rows, all must be finite");
+    Dataset out = *this;
+    out.times_ = std::move(times);
+    return out;
+  }
 
   /// Joint values of sample i [rad, m].
   JointVector<N> joints(Index i) const { return joints_.row(i).transpose(); }
@@ -72,7 +105,11 @@ class Dataset {
     out.joints_.resize(n, N);
     out.positions_.resize(n, 3);
     out.orientations_.resize(has_orientations() ? n : 0, 3);
+    out.previous_.resize(n, N);
+    out.times_.resize(n);
     detail::copy_rows(joints_, indices, out.joints_);
+    detail::copy_rows(previous_, indices, out.previous_);
+    detail::copy_rows(times_, indices, out.times_);
     detail::copy_rows(positions_, indices, out.positions_);
     if (has_orientations()) detail::copy_rows(orientations_, indices, out.orientations_);
     return out;
@@ -88,6 +125,8 @@ class Dataset {
  private:
   JointRows<N> joints_;
   PointRows positions_, orientations_;
+  JointRows<N> previous_;
+  VectorX times_{};
 };
 
 }  // namespace vernier

@@ -24,6 +24,48 @@ VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometr
 
 }  // namespace detail
 
+namespace detail {
+
+/// A blend of two models by a gate: `near` where the joints were measured, `far` elsewhere. Null pointers: `near`
+/// alone.
+template <class Near, int N>
+struct GatedModels {
+  const Near& near;
+  const Near* far;
+  const JointCoverage<N>* coverage;
+
+  double gate(const JointVector<N>& q) const noexcept { return coverage != nullptr ? (*coverage)(q) : 1; }
+
+  Isometry3 pose(const JointVector<N>& q) const noexcept {
+    const double gate = this->gate(q);
+    if (gate == 1) return near.pose(q);
+    const Isometry3 fallback = far->pose(q);
+    return gate == 0 ? fallback : blend_poses(gate, near.pose(q), fallback);
+  }
+  Vector3 position(const JointVector<N>& q) const noexcept {
+    const double gate = this->gate(q);
+    if (gate == 1) return near.position(q);
+    const Vector3 fallback = far->position(q);
+    return gate == 0 ? fallback : Vector3(fallback + gate * (near.position(q) - fallback));
+  }
+  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
+    const double gate = this->gate(q);
+    if (gate == 1) return near.pose_and_jacobian(q);
+    PoseAndJacobian<N> out = far->pose_and_jacobian(q);
+    if (gate == 0) return out;
+    const PoseAndJacobian<N> at = near.pose_and_jacobian(q);
+    const Eigen::Matrix<double, 1, N> slope = coverage->derivative(q);
+    blend_jacobians(gate, slope.data(), at.pose, at.jacobian.data(), out.pose, N, out.jacobian.data());
+    out.pose = blend_poses(gate, at.pose, out.pose);
+    return out;
+  }
+};
+
+}  // namespace detail
+
+template <class C>
+class ApproachedErrorModel;
+
 /// An arm with geometric and joint errors in identified frames. Transmission terms are functions of joint angles, known
 /// where the joints were measured: outside, the model falls back smoothly (by `JointCoverage`) to one fitted without
 /// them. It keeps the nominal arm in the same frames, so that commands can be corrected towards it.
@@ -74,36 +116,25 @@ class ErrorModel {
     return {nominal_.model(), move(identified_), move(outside_->arm), outside_->coverage};
   }
 
-  /// Share of `identified` in the prediction at q, in [0, 1]; the rest is `fallback`.
-  double gate(const JointVector<dof>& q) const noexcept { return outside_ ? outside_->coverage(q) : 1; }
+  /// The arm as it moves to the next configuration from given joint values: with the hysteresis of its joints.
+  /// Non-owning: the model must outlive the view.
+  /// @param previous joint values [rad, m]
+  ApproachedErrorModel<Chain> approached_from(const JointVector<dof>& previous) const noexcept {
+    return {*this, previous};
+  }
 
-  /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept {
-    const double gate = this->gate(q);
-    if (gate == 1) return identified_.pose(q);
-    const Isometry3 far = outside_->arm.pose(q);
-    return gate == 0 ? far : detail::blend_poses(gate, identified_.pose(q), far);
-  }
+  /// Share of `identified` in the prediction at q, in [0, 1]; the rest is `fallback`.
+  double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }
+
+  /// base_T_tool; where the joints have hysteresis, in the middle of both directions of approach.
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return gated().pose(q); }
   /// Tool position [m], base frame.
-  Vector3 position(const JointVector<dof>& q) const noexcept {
-    const double gate = this->gate(q);
-    if (gate == 1) return identified_.position(q);
-    const Vector3 far = outside_->arm.position(q);
-    return gate == 0 ? far : Vector3(far + gate * (identified_.position(q) - far));
-  }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return gated().position(q); }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
   /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    const double gate = this->gate(q);
-    if (gate == 1) return identified_.pose_and_jacobian(q);
-    PoseAndJacobian<dof> far = outside_->arm.pose_and_jacobian(q);
-    if (gate == 0) return far;
-    const PoseAndJacobian<dof> near = identified_.pose_and_jacobian(q);
-    const Eigen::Matrix<double, 1, dof> slope = outside_->coverage.derivative(q);
-    detail::blend_jacobians(gate, slope.data(), near.pose, near.jacobian.data(), far.pose, dof, far.jacobian.data());
-    far.pose = detail::blend_poses(gate, near.pose, far.pose);
-    return far;
+    return gated().pose_and_jacobian(q);
   }
 
  private:
@@ -112,9 +143,53 @@ class ErrorModel {
     JointCoverage<dof> coverage;
   };
 
+  detail::GatedModels<Arm, dof> gated() const noexcept { return {identified_, fallback(), coverage()}; }
+
   Arm identified_;
   std::optional<Outside> outside_{};
   Framed<Chain> nominal_;
+};
+
+/// An `ErrorModel` that came from known joint values: a view of it, see `ErrorModel::approached_from`.
+template <class C>
+class ApproachedErrorModel {
+ public:
+  /// The kind of chain.
+  using Chain = C;
+  /// Number of joints.
+  static constexpr int dof = Chain::dof;
+
+  /// @param model    seen through this; must outlive it
+  /// @param previous joint values from which it moves to the next configuration [rad, m]
+  ApproachedErrorModel(const ErrorModel<Chain>& model, const JointVector<dof>& previous) noexcept
+      : near_(around(model.identified(), previous)), coverage_(model.coverage()) {
+    if (model.fallback() != nullptr) far_.emplace(around(*model.fallback(), previous));
+  }
+
+  /// Share of the joint-wise terms in the prediction at q, in [0, 1].
+  double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }
+  /// base_T_tool.
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return gated().pose(q); }
+  /// Tool position [m], base frame.
+  Vector3 position(const JointVector<dof>& q) const noexcept { return gated().position(q); }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    return gated().pose_and_jacobian(q);
+  }
+
+ private:
+  using Arm = Framed<ApproachedArm<Chain>>;
+
+  static Arm around(const typename ErrorModel<Chain>::Arm& arm, const JointVector<dof>& previous) noexcept {
+    return arm.around(ApproachedArm<Chain>(arm.model(), previous));
+  }
+  detail::GatedModels<Arm, dof> gated() const noexcept { return {near_, far_ ? &*far_ : nullptr, coverage_}; }
+
+  Arm near_;
+  std::optional<Arm> far_{};
+  const JointCoverage<dof>* coverage_;
 };
 
 }  // namespace vernier

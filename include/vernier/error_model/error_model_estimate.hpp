@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/identification/arm_parameterisation.hpp"
+#include "vernier/identification/session_drift.hpp"
 
 namespace vernier {
 
@@ -18,7 +19,8 @@ struct BlockChoice {
   double without = 0;  ///< mean leave-one-pose-out error without the block [m]
   double with = 0;     ///< with it, as it was fitted [m]; the smallest of all trials where it was not used
   bool used = false;   ///< whether it is in the model
-  double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t)
+  double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
+                         ///< terms that of the lowest band of orders
 };
 
 /// What a transmission adds over some angles beyond its mean, which is the joint's zero; one value an angle [rad].
@@ -34,10 +36,11 @@ struct ErrorModelEstimate {
   double position_sigma = 0;  ///< of a visit, per component: sensor, and what the model lacks [m]; of a distance where
                               ///< nothing else was measured
   double joint_sigma = 0;     ///< of a visit, repeatability of the joints [rad]
-  double orientation_sigma = 0;  ///< of a visit, per component [rad]; 0 for positions alone
-  double fallback_error = 0;     ///< mean leave-one-pose-out position error without transmissions [m]
-  ArmParameterisation arm;       ///< the unknowns and their estimates
-  MatrixX covariance{};          ///< of all unknowns, in units of their scales
+  double orientation_sigma = 0;       ///< of a visit, per component [rad]; 0 for positions alone
+  double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions [m]
+  std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
+  ArmParameterisation arm;            ///< the unknowns and their estimates
+  MatrixX covariance{};               ///< of all unknowns, in units of their scales
 
   /// See `JointFunction`.
   /// @param joint  from 0
@@ -53,11 +56,14 @@ struct ErrorModelEstimate {
 
   /// Covariance of one visit at q: of parameters, joint-wise coefficients and repeatability. Position [m^2], then
   /// orientation [rad^2], base frame.
-  /// @param q       one value a joint
-  /// @param gate    share of the transmission terms in the prediction, in [0, 1]
-  /// @param station from 0
+  /// @param q        one value a joint
+  /// @param gate     share of the transmission terms in the prediction, in [0, 1]
+  /// @param station  from 0
+  /// @param previous joint values from which q was approached; empty, or not finite, where unknown: then hysteresis
+  ///                 adds its half loops
   /// @complexity O(unknowns^2); allocates
-  VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0) const;
+  VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0,
+                                       const ConstVectorRef& previous = VectorX()) const;
 };
 
 }  // namespace vernier

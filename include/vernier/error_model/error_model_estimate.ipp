@@ -33,9 +33,9 @@ namespace detail {
 
 /// Covariance of the modelled pose; `rows` is the linearised pose.
 VERNIER_API Matrix6 pose_covariance(const ErrorModelEstimate& estimate, const ConstVectorRef& q, int station,
-                                    RowBlock& rows) {
-  const MatrixX joints = q.transpose();
-  estimate.arm.linearise(station, joints, &rows);
+                                    const ConstVectorRef& previous, RowBlock& rows) {
+  const MatrixX joints = q.transpose(), before = previous.size() > 0 ? MatrixX(previous.transpose()) : MatrixX();
+  estimate.arm.linearise(station, joints, before, &rows);
   const Index unknowns = estimate.arm.size();
   Rows6 all(6, unknowns);
   rows.expand(estimate.arm.group_sizes(), all);
@@ -49,12 +49,18 @@ VERNIER_API Matrix6 pose_covariance(const ErrorModelEstimate& estimate, const Co
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
   RowBlock rows;
-  return detail::pose_covariance(*this, q, station, rows);
+  return detail::pose_covariance(*this, q, station, VectorX(), rows);
 }
 
-VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station) const {
+VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station,
+                                                          const ConstVectorRef& previous) const {
   RowBlock rows;
-  Matrix6 out = detail::pose_covariance(*this, q, station, rows);
+  Matrix6 out = detail::pose_covariance(*this, q, station, previous, rows);
+  if (!arm.terms().hysteresis.empty() && (previous.size() == 0 || !previous.allFinite()))
+    for (int j = 0; j < arm.terms().joints; ++j) {
+      const Vector6 half = rows.factor.col(j) * arm.joint_errors().half_loop(j);
+      out += half * half.transpose();
+    }
   out += joint_sigma * joint_sigma * rows.factor.lazyProduct(rows.factor.transpose());
   if (gate < 1)  // errors that the suppressed terms would have corrected
     out.diagonal().head<3>().array() +=

@@ -30,9 +30,9 @@ struct ErrorModelInput {
 /// A fitted error model without its type; a vector has one arm a station.
 struct ErrorModelOutput {
   ErrorModelEstimate estimate;
-  std::vector<FittedArm> geometry, elastic, all;
+  std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, all{};
   bool jointwise = false;  ///< whether `all` has transmission terms
-  MatrixX joints;          ///< of all samples
+  MatrixX joints{};        ///< of all samples
 };
 
 /// See `vernier::fit_error_model`.
@@ -70,10 +70,13 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
   for (std::size_t s = 0; s < found.all.size(); ++s) {
     out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
     out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});
-    if (found.jointwise)
-      out.models.push_back({nominal, found.all[s].typed(nominal), out.elastic.back().identified(), coverage});
-    else
-      out.models.push_back(out.elastic.back());
+    const auto gated = [&](const FittedArm& arm) {
+      return found.jointwise ? ErrorModel<Chain>(nominal, arm.typed(nominal),
+                                                 found.elastic[s].with_hysteresis_of(arm).typed(nominal), coverage)
+                             : ErrorModel<Chain>(nominal, arm.typed(nominal));
+    };
+    out.jointwise.push_back(gated(found.without_approach[s]));
+    out.models.push_back(gated(found.all[s]));
   }
   return out;
 }

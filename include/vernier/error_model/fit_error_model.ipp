@@ -11,6 +11,7 @@
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/evidence.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier::detail {
@@ -78,32 +79,46 @@ class ErrorModelFit {
         stride_(std::max<Index>(1, problem_.num_validation_blocks() / options.num_validation_poses)) {}
 
   VERNIER_API ErrorModelOutput run(PriorSearch search) {
-    ErrorModelOutput out{ErrorModelEstimate{.arm = problem_.arm}, {}, {}, {}, false, {}};
+    ErrorModelOutput out{.estimate = {.arm = problem_.arm}};
     ErrorModelEstimate& estimate = out.estimate;
     estimate.converged = problem_.solve();
     out.geometry = arms();
 
     JointTerms elastic(input_.nominal.joints());
     if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
-    if (elastic.size() > 0) add(estimate, "elastic", elastic);
+    if (elastic.size() > 0) add(estimate, "elastic", elastic, false);
     out.elastic = arms();
 
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
-      if (input_.nominal.revolute(j)) all.transmission[static_cast<std::size_t>(j)] = Fourier{options_.harmonics};
-    out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all);
+      if (input_.nominal.revolute(j))
+        all.transmission[static_cast<std::size_t>(j)] = orders_of(options_.spectrum, highest_order());
+    out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all, true);
     if (out.jointwise) {
       estimate.fallback_error = estimate.blocks.back().without;
-      if (elastic.size() > 0) {  // deflection is clearer once the transmissions are modelled
-        estimate.blocks.push_back(choose("elastic_with_jointwise", 0, elastic.size()));
-        estimate.converged = problem_.solve() && estimate.converged;
-      }
+      learn_spectrum(estimate, 8);
       // linear in the joints, so they extrapolate far beyond the measured ranges: only beside terms that do not
       all.gear_ratio = options_.gear_ratio;
       all.coupling = options_.coupling;
-      if (all.gear_ratio || all.coupling) add(estimate, "gears", all);
-      if (search) estimate.converged = tune(estimate, search) && estimate.converged;
+      if ((all.gear_ratio || all.coupling) && add(estimate, "gears", all, true)) learn_spectrum(estimate, 8);
+      if (elastic.size() > 0) {  // deflection is clearer once all else is modelled
+        estimate.blocks.push_back(choose_by_evidence("elastic_with_jointwise", gravity()));
+        estimate.converged = problem_.solve() && estimate.converged;
+      }
+      if (search) tune(estimate, search);
+      estimate.converged = problem_.solve() && estimate.converged;
     }
+    out.without_approach = arms();
+
+    JointTerms approached = problem_.arm.terms();
+    approached.hysteresis = {0.01, 0.3};
+    const bool hysteresis = options_.hysteresis && add(estimate, "approach", approached, true);
+    const bool drift = options_.drift && add_drift(estimate);
+    if ((hysteresis || drift) && out.jointwise && !search) {
+      learn_spectrum(estimate, 4);
+      estimate.converged = problem_.solve() && estimate.converged;
+    }
+    out.estimate.drift = problem_.drift;
     out.all = arms();
     out.joints = problem_.joints();
     estimate.arm = problem_.arm;
@@ -129,8 +144,9 @@ class ErrorModelFit {
           case JointTermBlock::Kind::gear_ratio: std = options_.gear_ratio_prior_std; break;
           case JointTermBlock::Kind::coupling: std = options_.coupling_prior_std; break;
           case JointTermBlock::Kind::gravity: std = options_.compliance_prior_std; break;
+          case JointTermBlock::Kind::hysteresis: std = options_.hysteresis_prior_std; break;
           case JointTermBlock::Kind::transmission:
-            std = options_.transmission_prior_std * Fourier::relative_amplitude(k);
+            std = expected_std(options_.spectrum, terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
             break;
         }
       }
@@ -139,7 +155,7 @@ class ErrorModelFit {
 
   /// Replaces the terms by more, if leave-one-pose-out errors support the additional ones.
   /// @return whether they do
-  VERNIER_API bool add(ErrorModelEstimate& estimate, const char* name, const JointTerms& terms) {
+  VERNIER_API bool add(ErrorModelEstimate& estimate, const char* name, const JointTerms& terms, bool by_evidence) {
     const ArmParameterisation before = problem_.arm;
     const VectorX old_precisions = before.precisions().tail(before.terms().size());
     VectorX precisions = VectorX::Ones(terms.size());
@@ -156,7 +172,8 @@ class ErrorModelFit {
       count += now.count;
     }
     problem_.arm.set_terms(terms, prior_stds(terms), precisions);
-    estimate.blocks.push_back(choose(name, first, count));
+    estimate.blocks.push_back(by_evidence ? choose_by_evidence(name, unknowns(first, count))
+                                          : choose(name, first, count));
     if (!estimate.blocks.back().used) {
       problem_.arm = before;
       return false;
@@ -178,13 +195,135 @@ class ErrorModelFit {
     return {name, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
   }
 
+  /// Unknowns of coefficients first .. first + count - 1.
+  VERNIER_API UnknownGroup unknowns(Index first, Index count) const {
+    UnknownGroup out;
+    const Index at = static_cast<Index>(problem_.arm.geometric().size()) + first;
+    for (Index k = 0; k < count; ++k) out.push_back(at + k);
+    return out;
+  }
+
+  /// Unknowns of the transmissions, of orders first .. last.
+  VERNIER_API UnknownGroup harmonics(int first, int last) const {
+    UnknownGroup out;
+    const Index geometric = static_cast<Index>(problem_.arm.geometric().size());
+    for (const JointTermBlock& block : problem_.arm.terms().blocks())
+      for (Index k = 0; block.joint >= 0 && k < block.count; ++k) {
+        const int order = problem_.arm.terms().transmission[static_cast<std::size_t>(block.joint)].order(k);
+        if (order >= first && order <= last) out.push_back(geometric + block.begin + k);
+      }
+    return out;
+  }
+
+  /// Unknowns of gravity compliance.
+  VERNIER_API UnknownGroup gravity() const {
+    for (const JointTermBlock& block : problem_.arm.terms().blocks())
+      if (block.kind == JointTermBlock::Kind::gravity) return unknowns(block.begin, block.count);
+    return {};
+  }
+
+  /// The highest order of harmonics: few poses determine none above 60, and are not predicted better with them.
+  VERNIER_API int highest_order() const {
+    return problem_.num_blocks() < 400 ? std::min(60, options_.harmonics) : options_.harmonics;
+  }
+
+  /// The problem, linearised at its present values.
+  struct Linearised {
+    BlockSystem system;
+    NormalEquations normal;
+    VectorX steps, local_steps;
+  };
+  VERNIER_API Linearised linearised() const {
+    const BlockSystem system = problem_.system();
+    return {system, NormalEquations(system, problem_.drift_priors()), problem_.arm.steps(), problem_.drift_steps()};
+  }
+
+  /// Position errors of poses left out one at a time, under some priors [m].
+  VERNIER_API VectorX left_out(const Linearised& at, const VectorX& precisions) const {
+    const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
+    return leave_one_out_errors(at.system, solved, stride_).colwise().norm().transpose();
+  }
+
+  /// Sizes of some coefficients by evidence, and their inclusion by leave-one-pose-out errors.
+  VERNIER_API BlockChoice choose_by_evidence(const char* name, const UnknownGroup& group) {
+    const Linearised at = linearised();
+    const VectorX before = problem_.arm.precisions();
+    const VectorX sized = scale_priors(at.normal, before, at.steps, problem_.measured_values(), group, at.local_steps);
+    VectorX suppressed = sized;
+    for (const Index k : group) suppressed(k) = suppressing_precision;
+    const std::vector<PriorTrial> trials{{sized(group.front()), left_out(at, sized)},
+                                         {suppressing_precision, left_out(at, suppressed)}};
+    const bool used = one_standard_error_rule(trials) == 0;
+    problem_.arm.set_precisions((used ? sized : suppressed).tail(problem_.arm.terms().size()));
+    return {name, trials[1].errors.mean(), trials[0].errors.mean(), used,
+            used ? sized(group.front()) : suppressing_precision};
+  }
+
+  /// Sizes of the harmonics by evidence, at the solution: one common factor on the expected sizes; one for every band
+  /// where there are poses enough, or where evidence speaks clearly against the expected spectrum.
+  VERNIER_API void learn_spectrum(ErrorModelEstimate& estimate, int iterations) {
+    const Linearised at = linearised();
+    const Index values = problem_.measured_values();
+    std::vector<int> edges{1};
+    for (const HarmonicBand& band : options_.spectrum) edges.insert(edges.end(), {band.first, band.last + 1});
+    std::sort(edges.begin(), edges.end());
+    std::vector<UnknownGroup> bands;
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+      if (auto band = harmonics(edges[i], edges[i + 1] - 1); !band.empty()) bands.push_back(std::move(band));
+    const auto evidence = [&](const VectorX& precisions) {
+      return log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
+                          at.steps, values, at.local_steps);
+    };
+    VectorX precisions = problem_.arm.precisions();
+    constexpr Index enough = 500;
+    constexpr double clearly = 10;
+    if (at.system.validation_blocks < enough)
+      precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, highest_order()), at.local_steps);
+    const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
+    if (at.system.validation_blocks >= enough || evidence(learned) > evidence(precisions) + clearly)
+      precisions = learned;
+    problem_.arm.set_precisions(precisions.tail(problem_.arm.terms().size()));
+    for (BlockChoice& block : estimate.blocks)
+      if (block.name == "jointwise") block.precision = precisions(bands.front().front());
+  }
+
+  /// Lets the bases drift, if leave-one-pose-out errors support that.
+  VERNIER_API bool add_drift(ErrorModelEstimate& estimate) {
+    const VectorX precisions = problem_.arm.precisions();
+    const VectorX without = left_out(linearised(), precisions);
+    problem_.start_drift(40);
+    if (problem_.system().local_states == 0) return false;
+    double best = 1, highest = -std::numeric_limits<double>::infinity();
+    for (const double factor : {0.0625, 0.25, 1.0, 4.0, 16.0, 64.0}) {
+      problem_.drift_precision = factor;
+      const Linearised at = linearised();
+      const double reached =
+          log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
+                       at.steps, problem_.measured_values(), at.local_steps);
+      if (!(reached > highest)) continue;
+      highest = reached;
+      best = factor;
+    }
+    problem_.drift_precision = best;
+    const std::vector<PriorTrial> trials{{best, left_out(linearised(), precisions)}, {suppressing_precision, without}};
+    const bool used = one_standard_error_rule(trials) == 0;
+    estimate.blocks.push_back({"drift", without.mean(), trials[0].errors.mean(), used, best});
+    if (used)
+      estimate.converged = problem_.solve() && estimate.converged;
+    else
+      problem_.stop_drift();
+    return used;
+  }
+
   /// Priors of the joint errors by a search over leave-one-pose-out errors; kept where those are smaller than before.
-  VERNIER_API bool tune(ErrorModelEstimate& estimate, PriorSearch search) {
+  VERNIER_API void tune(ErrorModelEstimate& estimate, PriorSearch search) {
     VectorX amplitudes(problem_.arm.size() - problem_.arm.num_dense());
     const Index dense_terms = problem_.arm.terms().num_dense_terms();
     for (const JointTermBlock& block : problem_.arm.terms().blocks())
       for (Index k = 0; block.joint >= 0 && k < block.count; ++k)
-        amplitudes(block.begin - dense_terms + k) = Fourier::relative_amplitude(k);
+        amplitudes(block.begin - dense_terms + k) =
+            problem_.arm.scales()(problem_.arm.num_dense() + block.begin - dense_terms + k) /
+            problem_.arm.scales()(problem_.arm.num_dense() + block.begin - dense_terms);
     const BlockSystem system = problem_.system();
     const NormalEquations normal(system);
     const VectorX before = problem_.arm.precisions();
@@ -193,15 +332,25 @@ class ErrorModelFit {
     const double without = objective.error(before), with = objective.error(after);
     estimate.blocks.push_back({"tuned_priors", without, with, with < without, 1});
     problem_.arm.set_precisions((with < without ? after : before).tail(problem_.arm.terms().size()));
-    return problem_.solve();
+  }
+
+  /// The first block of a block's station.
+  VERNIER_API Index first_block(Index block) const {
+    Index first = 0;
+    for (int s = 0; s < problem_.station_index(block); ++s)
+      first += (static_cast<std::size_t>(s) < input_.poses.size()
+                    ? input_.poses[static_cast<std::size_t>(s)]
+                    : input_.distances[static_cast<std::size_t>(s) - input_.poses.size()])
+                   .size();
+    return first;
   }
 
   /// Covariance of the unknowns, and the noise of a visit.
   VERNIER_API void assess(ErrorModelEstimate& estimate) const {
-    const BlockSystem system = problem_.system();
-    const NormalEquations normal(system);
+    const Linearised at = linearised();
+    const auto& [system, normal, steps, local_steps] = at;
     const VectorX precisions = problem_.arm.precisions();
-    const FactorisedEquations solved(normal, precisions, problem_.arm.steps());
+    const FactorisedEquations solved(normal, precisions, steps, local_steps);
     const Index p = system.unknowns();
     estimate.covariance = solved.inverse();
     const double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
@@ -223,7 +372,11 @@ class ErrorModelFit {
         rotation_values += 3;
       }
       if (b % stride_ != 0 || b >= system.validation_blocks) return;
-      const Vector3 error = errors.col(b / stride_);
+      Vector3 error = errors.col(b / stride_);
+      if (station.lengths == nullptr) {  // what is deployed does not know the drift
+        const Isometry3 drift = problem_.drift_motion(b);
+        error += station.position(b - first_block(b)) - drift * station.position(b - first_block(b));
+      }
       if (station.lengths != nullptr) {
         distance_sum += error.squaredNorm();
         return;

@@ -23,9 +23,10 @@ struct FittedErrorModel : ErrorModelEstimate {
   /// Number of joints.
   static constexpr int N = Chain::dof;
 
-  std::vector<ErrorModel<Chain>> models{};    ///< one a station, those of distances last; they differ in their frames
-  std::vector<ErrorModel<Chain>> elastic{};   ///< the same before transmission terms
-  std::vector<ErrorModel<Chain>> geometry{};  ///< the same before all joint errors
+  std::vector<ErrorModel<Chain>> models{};     ///< one a station, those of distances last; they differ in their frames
+  std::vector<ErrorModel<Chain>> jointwise{};  ///< the same before hysteresis
+  std::vector<ErrorModel<Chain>> elastic{};    ///< the same before transmission terms
+  std::vector<ErrorModel<Chain>> geometry{};   ///< the same before all joint errors
 
   /// Without arms.
   explicit FittedErrorModel(ErrorModelEstimate estimate) : ErrorModelEstimate(std::move(estimate)) {}
@@ -39,6 +40,13 @@ struct FittedErrorModel : ErrorModelEstimate {
     const auto& model = models[static_cast<std::size_t>(station)];
     const double gate = model.gate(q);
     return {model.pose(q), visit_covariance(q, gate, station), gate};
+  }
+  /// The same, approached from known joint values.
+  /// @param previous joint values [rad, m]; not finite where unknown
+  PredictedPose predicted_from(const JointVector<N>& previous, const JointVector<N>& q, int station = 0) const {
+    const auto& model = models[static_cast<std::size_t>(station)];
+    const double gate = model.gate(q);
+    return {model.approached_from(previous).pose(q), visit_covariance(q, gate, station, previous), gate};
   }
 };
 

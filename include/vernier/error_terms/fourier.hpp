@@ -1,20 +1,25 @@
 #pragma once
 
 /// @file
-/// Harmonics of a joint's angle: what a transmission or an encoder may add to it.
+/// Harmonics of a joint's angle: what a transmission or an encoder may add to it, and how large each order is expected.
+
+#include <vector>
 
 #include "vernier/core/types.hpp"
 
 namespace vernier {
 
-/// `cos(k q), sin(k q)`, k = 1 .. harmonics, in this order. No constant: that is the joint's zero.
+/// `cos(k q), sin(k q)` for some orders k, in this order. No constant: that is the joint's zero.
 struct Fourier {
-  int harmonics = 60;  ///< K; 0 for no functions
+  std::vector<int> orders{};  ///< ascending, each at least 1 and once; empty for no functions
 
-  /// Number of functions, 2 K.
-  Index size() const { return 2 * harmonics; }
-  /// Expected amplitude of function k relative to that of the first harmonic: 1 / harmonic.
-  static double relative_amplitude(Index k) { return 1.0 / static_cast<double>(k / 2 + 1); }
+  /// Orders 1 .. highest.
+  VERNIER_API static Fourier up_to(int highest);
+
+  /// Number of functions, two an order.
+  Index size() const { return 2 * static_cast<Index>(orders.size()); }
+  /// Order of function k.
+  int order(Index k) const { return orders[static_cast<std::size_t>(k / 2)]; }
 
   /// Values of the functions at q, size() of them.
   VERNIER_API void values(double q, double* out) const noexcept;
@@ -27,9 +32,36 @@ struct Fourier {
   /// `sum_k coefficients(k) h_k(q)`; no allocation.
   VERNIER_API Sum sum(double q, const double* coefficients) const noexcept;
 
+  /// @throws std::invalid_argument naming an order that is not above the one before it
+  VERNIER_API void validate() const;
+
   /// Equal in every entry.
   bool operator==(const Fourier&) const = default;
 };
+
+/// Expected size of the harmonics of a band of orders.
+struct HarmonicBand {
+  int first;   ///< lowest order
+  int last;    ///< highest order
+  double std;  ///< of each coefficient [rad]
+
+  /// Equal in every entry.
+  bool operator==(const HarmonicBand&) const = default;
+};
+
+/// Sizes of harmonics by bands of orders; where bands overlap, the later one counts.
+using HarmonicSpectrum = std::vector<HarmonicBand>;
+
+/// What gears and encoders of industrial arms were found to do, up to order 140: large up to order 28, a hundredth of
+/// that above; and the lines of encoders of 128 periods a turn and strain-wave gears of 101:1, four periods a turn of
+/// their input.
+VERNIER_API HarmonicSpectrum typical_spectrum();
+
+/// All orders of a spectrum up to a highest one.
+VERNIER_API Fourier orders_of(const HarmonicSpectrum& spectrum, int highest);
+
+/// Expected size of an order's coefficients [rad]; 0 outside all bands.
+VERNIER_API double expected_std(const HarmonicSpectrum& spectrum, int order);
 
 }  // namespace vernier
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/error_terms/detail/harmonic_table.hpp"
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"
 
@@ -16,7 +17,7 @@ namespace vernier {
 /// Coefficients of joint errors that belong together.
 struct JointTermBlock {
   /// What they are coefficients of.
-  enum class Kind { gear_ratio, coupling, gravity, transmission };
+  enum class Kind { gear_ratio, coupling, gravity, hysteresis, transmission };
   Kind kind;    ///< see `JointTerms`
   int joint;    ///< of a transmission, from 0; else -1
   Index begin;  ///< first coefficient
@@ -28,23 +29,27 @@ struct JointTermBlock {
 /// - gear ratio: `dq_i = rho_i q_i`
 /// - coupling: `dq_i = kappa_i q_(i-1)`, i >= 2
 /// - gravity compliance: see `GravityCompliance`
+/// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
+///   that is unknown, which is the mean of both directions
 /// - transmission: `dq_i = sum_k beta_ik h_k(q_i)`, harmonics of each joint, joint by joint
 struct JointTerms {
   int joints = 0;                              ///< number of joints
   bool gear_ratio = false;                     ///< present?
   bool coupling = false;                       ///< present?
   std::optional<GravityCompliance> gravity{};  ///< present?
+  std::vector<double> hysteresis{};            ///< widths w of its steps [rad, m]; for every joint the same
   std::vector<Fourier> transmission{};         ///< of each joint; may have no functions
 
   /// No terms.
   JointTerms() = default;
   /// No terms yet, for an arm of some joints.
   explicit JointTerms(int number_of_joints)
-      : joints(number_of_joints), transmission(static_cast<std::size_t>(number_of_joints), Fourier{0}) {}
+      : joints(number_of_joints), transmission(static_cast<std::size_t>(number_of_joints), Fourier{}) {}
 
   /// Number of coefficients before the transmission's: those that depend on several joints.
   Index num_dense_terms() const {
-    return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0);
+    return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0) +
+           joints * static_cast<Index>(hysteresis.size());
   }
   /// First coefficient of a joint's transmission; that of joint N is the number of all.
   Index transmission_begin(int joint) const {
@@ -58,11 +63,13 @@ struct JointTerms {
   VERNIER_API std::vector<JointTermBlock> blocks() const;
 
   /// The columns of Phi before the transmission's.
-  /// @param q   joint values [rad, m]
-  /// @param out joints x num_dense_terms()
-  VERNIER_API void dense_basis(const double* q, MatrixRef out) const noexcept;
+  /// @param q        joint values [rad, m]
+  /// @param previous those from which q was approached; null, or not finite, where unknown
+  /// @param out      joints x num_dense_terms()
+  VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept;
 
-  /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `cos3_12`, `sin3_12` (joint 3,
+  /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `hysteresis3_1` (joint 3,
+  /// first width), `cos3_12`, `sin3_12` (joint 3,
   /// harmonic 12).
   VERNIER_API std::vector<std::string> names() const;
 };
@@ -89,7 +96,9 @@ class JointErrors {
   /// @param n          number of joints
   /// @param effective  n values
   /// @param derivative n x n, by columns
-  VERNIER_API void evaluate(const double* q, int n, double* effective, double* derivative) const noexcept;
+  /// @param previous   joint values from which q was approached; null, or not finite, where unknown
+  VERNIER_API void evaluate(const double* q, int n, double* effective, double* derivative,
+                            const double* previous = nullptr) const noexcept;
 
   /// The same with N known at compile time.
   template <int N>
@@ -99,13 +108,16 @@ class JointErrors {
   };
   /// See `Effective`.
   template <int N>
-  Effective<N> effective(const JointVector<N>& q) const noexcept {
+  Effective<N> effective(const JointVector<N>& q, const double* previous = nullptr) const noexcept {
     Effective<N> out;
-    evaluate(q.data(), N, out.joints.data(), out.derivative.data());
+    evaluate(q.data(), N, out.joints.data(), out.derivative.data(), previous);
     return out;
   }
   /// Effective values of n configurations, n x joints.
-  VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints) const;
+  /// @param previous from where they were approached, n x joints; no rows where unknown
+  VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX()) const;
+  /// Half the width of joint i's hysteresis loop [rad, m]: what its direction of approach adds or takes at most.
+  VERNIER_API double half_loop(int i) const noexcept;
 
   /// What the transmission of joint i (from 0) adds at an angle [rad].
   VERNIER_API double transmission(int i, double q) const noexcept;
@@ -113,6 +125,7 @@ class JointErrors {
  private:
   JointTerms terms_{};
   VectorX coefficients_{};
+  detail::HarmonicTable harmonics_{};
 };
 
 /// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`.
@@ -164,6 +177,43 @@ class WithJointErrors {
  private:
   Chain chain_;
   JointErrors errors_;
+};
+
+/// An arm with joint errors that came from known joint values: a view of a `WithJointErrors`, which must outlive it.
+template <class C>
+class ApproachedArm {
+ public:
+  /// Number of joints.
+  static constexpr int dof = C::dof;
+  /// The chain inside.
+  using Chain = C;
+
+  /// @param arm      seen through this; must outlive it
+  /// @param previous joint values from which it moves to the next configuration [rad, m]
+  ApproachedArm(const WithJointErrors<Chain>& arm, const JointVector<dof>& previous) noexcept
+      : arm_(&arm), previous_(previous) {}
+
+  /// base_T_tool.
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return arm_->chain().pose(effective(q).joints); }
+  /// Tool position [m], base frame.
+  Vector3 position(const JointVector<dof>& q) const noexcept { return arm_->chain().position(effective(q).joints); }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    const auto at = effective(q);
+    PoseAndJacobian<dof> out = arm_->chain().pose_and_jacobian(at.joints);
+    out.jacobian = (out.jacobian * at.derivative).eval();
+    return out;
+  }
+
+ private:
+  JointErrors::Effective<dof> effective(const JointVector<dof>& q) const noexcept {
+    return arm_->joint_errors().template effective<dof>(q, previous_.data());
+  }
+
+  const WithJointErrors<Chain>* arm_;
+  JointVector<dof> previous_;
 };
 
 }  // namespace vernier

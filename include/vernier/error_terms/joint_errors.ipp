@@ -1,20 +1,35 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "vernier/core/check.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 
 namespace vernier {
 
-VERNIER_IMPL void JointTerms::dense_basis(const double* q, MatrixRef out) const noexcept {
+namespace detail {
+
+/// How far a joint's motion saturates a step of its hysteresis, in [-1, 1]; 0 where it is unknown.
+inline double step_of(const double* q, const double* previous, int joint, double width) noexcept {
+  return previous == nullptr || !std::isfinite(previous[joint]) ? 0 : std::tanh((q[joint] - previous[joint]) / width);
+}
+
+}  // namespace detail
+
+VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept {
   out.setZero();
   Index at = 0;
   if (gear_ratio)
     for (int i = 0; i < joints; ++i) out(i, at++) = q[i];
   if (coupling)
     for (int i = 1; i < joints; ++i) out(i, at++) = q[i - 1];
-  if (gravity) gravity->basis(q, out.middleCols(at, gravity->size()));
+  if (gravity) {
+    gravity->basis(q, out.middleCols(at, gravity->size()));
+    at += gravity->size();
+  }
+  for (const double width : hysteresis)
+    for (int i = 0; i < joints; ++i) out(i, at++) = detail::step_of(q, previous, i, width);
 }
 
 VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
@@ -27,6 +42,7 @@ VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   add(Kind::gear_ratio, -1, gear_ratio ? joints : 0);
   add(Kind::coupling, -1, coupling ? joints - 1 : 0);
   add(Kind::gravity, -1, gravity ? gravity->size() : 0);
+  add(Kind::hysteresis, -1, joints * static_cast<Index>(hysteresis.size()));
   for (int i = 0; i < joints; ++i) add(Kind::transmission, i, transmission[static_cast<std::size_t>(i)].size());
   return out;
 }
@@ -40,9 +56,11 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
   if (gravity)
     for (int i = 1; i <= joints; ++i)
       for (int j = i; j <= joints; ++j) out.push_back(message("sag", i, '_', j));
+  for (std::size_t w = 1; w <= hysteresis.size(); ++w)
+    for (int i = 1; i <= joints; ++i) out.push_back(message("hysteresis", i, '_', w));
   for (int i = 1; i <= joints; ++i)
-    for (Index k = 0; k < transmission[static_cast<std::size_t>(i - 1)].size(); ++k)
-      out.push_back(message(k % 2 == 0 ? "cos" : "sin", i, '_', k / 2 + 1));
+    for (const int order : transmission[static_cast<std::size_t>(i - 1)].orders)
+      for (const char* function : {"cos", "sin"}) out.push_back(message(function, i, '_', order));
   return out;
 }
 
@@ -52,16 +70,19 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
           terms_.transmission.size(), " joints, expected ", terms_.joints);
   require(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
           terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
-  for (int i = 0; i < terms_.joints; ++i) {
-    const int harmonics = terms_.transmission[static_cast<std::size_t>(i)].harmonics;
-    require(harmonics >= 0, "JointErrors: joint ", i + 1, " has ", harmonics, " harmonics");
-  }
+  for (const Fourier& fourier : terms_.transmission) fourier.validate();
+  for (const double width : terms_.hysteresis)
+    require(width > 0 && std::isfinite(width), "JointErrors: a width of the hysteresis is ", width,
+            ", must be positive");
   require(coefficients_.size() == terms_.size(), "JointErrors: ", coefficients_.size(), " coefficients for ",
           terms_.size(), " terms");
   require(coefficients_.allFinite(), "JointErrors: a coefficient is not finite");
+  const Index dense = terms_.num_dense_terms();
+  harmonics_ = {terms_.transmission, {coefficients_.data() + dense, coefficients_.data() + coefficients_.size()}};
 }
 
-VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effective, double* derivative) const noexcept {
+VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effective, double* derivative,
+                                        const double* previous) const noexcept {
   std::copy_n(q, n, effective);
   std::fill_n(derivative, n * n, 0.0);
   for (int i = 0; i < n; ++i) derivative[i * n + i] = 1;
@@ -85,25 +106,36 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     terms_.gravity->add(q, beta, effective, derivative);
     beta += terms_.gravity->size();
   }
-  for (int i = 0; i < n; ++i) {
-    const Fourier& fourier = terms_.transmission[static_cast<std::size_t>(i)];
-    const Fourier::Sum f = fourier.sum(q[i], beta);
-    effective[i] += f.value;
-    derivative[i * n + i] += f.slope;
-    beta += fourier.size();
+  for (const double width : terms_.hysteresis) {
+    for (int i = 0; i < n; ++i) {
+      const double step = detail::step_of(q, previous, i, width);
+      effective[i] += beta[i] * step;
+      if (step != 0) derivative[i * n + i] += beta[i] * (1 - step * step) / width;
+    }
+    beta += n;
   }
+  harmonics_.add(q, n, effective, derivative);
 }
 
-VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints) const {
+VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous) const {
   const auto n = static_cast<int>(joints.cols());
   MatrixX out(joints.rows(), joints.cols());
-  VectorX q(n), effective(n), derivative(n * n);
+  VectorX q(n), before(n), effective(n), derivative(n * n);
   for (Index i = 0; i < joints.rows(); ++i) {
     q = joints.row(i).transpose();
-    evaluate(q.data(), n, effective.data(), derivative.data());
+    if (previous.rows() > 0) before = previous.row(i).transpose();
+    evaluate(q.data(), n, effective.data(), derivative.data(), previous.rows() > 0 ? before.data() : nullptr);
     out.row(i) = effective.transpose();
   }
   return out;
+}
+
+VERNIER_IMPL double JointErrors::half_loop(int i) const noexcept {
+  double sum = 0;
+  for (const JointTermBlock& block : terms_.blocks())
+    for (Index k = i; block.kind == JointTermBlock::Kind::hysteresis && k < block.count; k += terms_.joints)
+      sum += coefficients_(block.begin + k);
+  return std::abs(sum);
 }
 
 VERNIER_IMPL double JointErrors::transmission(int i, double q) const noexcept {

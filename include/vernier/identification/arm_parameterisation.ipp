@@ -84,12 +84,14 @@ VERNIER_IMPL std::vector<std::string> ArmParameterisation::names() const {
   return out;
 }
 
-VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, const ConstMatrixRef& joints) const {
-  return errors_.empty() ? geometry(station).poses(joints) : geometry(station).poses(errors_.effective_rows(joints));
+VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, const ConstMatrixRef& joints,
+                                                               const ConstMatrixRef& previous) const {
+  return geometry(station).poses(errors_.empty() ? MatrixX(joints) : errors_.effective_rows(joints, previous));
 }
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
-                                                                   RowBlock* out, bool joint_columns) const {
+                                                                   const ConstMatrixRef& previous, RowBlock* out,
+                                                                   bool joint_columns) const {
   const ArmGeometry& arm = geometry(station);
   const int n = arm.joints();
   const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
@@ -97,10 +99,10 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
   if (errors_.empty())
     arm.poses_and_parameter_jacobians(joints, at);
   else
-    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints), at);
+    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints, previous), at);
   const Index count = joints.rows();
   const bool factored = joint_columns || !errors_.empty() || terms().size() > 0;
-  VectorX q(n);
+  VectorX q(n), before(n);
   MatrixX basis(n, few);
   for (Index i = 0; i < count; ++i) {
     RowBlock& rows = out[i];
@@ -126,7 +128,8 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     if (!factored) continue;
     q = joints.row(i).transpose();
     if (few > 0) {
-      terms().dense_basis(q.data(), basis);
+      if (previous.rows() > 0) before = previous.row(i).transpose();
+      terms().dense_basis(q.data(), previous.rows() > 0 ? before.data() : nullptr, basis);
       for (Index k = 0; k < few; ++k)
         rows.dense.col(of_geometry + k) = rows.factor.lazyProduct(basis.col(k) * coefficient_scales_(k));
     }

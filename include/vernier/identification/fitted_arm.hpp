@@ -19,6 +19,9 @@ struct FittedArm {
     const Framed<Chain> arm = geometry.framed(like);
     return arm.around(WithJointErrors<Chain>(arm.model(), errors));
   }
+  /// The same with the hysteresis of another arm in place of its own.
+  VERNIER_API FittedArm with_hysteresis_of(const FittedArm& other) const;
+
   /// The same without its type.
   template <class Chain>
   static FittedArm of(const Framed<WithJointErrors<Chain>>& arm) {
@@ -27,3 +30,7 @@ struct FittedArm {
 };
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/fitted_arm.ipp"
+#endif

@@ -36,16 +36,20 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     oriented = oriented && data.has_orientations();
   }
   JointRows<N> joints(rows, N);
+  JointRows<N> previous(rows, N);
+  VectorX times(rows);
   PointRows positions(rows, 3), orientations(oriented ? rows : 0, 3);
   Index at = 0;
   for (std::size_t s = 0; s < bases.size(); ++s) {
     const Dataset<N>& data = std::data(stations)[s];
     joints.middleRows(at, data.size()) = data.joints();
+    previous.middleRows(at, data.size()) = data.previous();
+    times.segment(at, data.size()) = data.times();
     detail::move_poses(bases.front() * bases[s].inverse(), data.positions(), data.orientations(), at, positions,
                        orientations);
     at += data.size();
   }
-  return {joints, positions, orientations};
+  return Dataset<N>(joints, positions, orientations).approached_from(previous).measured_at(times);
 }
 
 }  // namespace vernier

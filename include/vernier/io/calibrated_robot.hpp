@@ -171,7 +171,7 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
       info.name, calibration.model(), info.limits,
       {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
        calibration.errors.position_sigma});
-  if (!calibration.remainder || calibration.remainder->empty()) return robot;
+  if (!calibration.remainder_supported) return robot;
   return robot.with_learned(calibration.remainder->predictor, calibration.remainder->coverage);
 }
 

@@ -16,8 +16,9 @@ namespace vernier {
 
 namespace detail {
 
-/// The version of the files of standard chains, and of modified ones, which older programs must refuse.
-inline constexpr int model_schema_version = 2, modified_schema_version = 3;
+/// The version of the files that are written. Versions 2 (standard chains) and 3 (modified ones) are read, too: they
+/// have the orders 1 .. `harmonics` at each joint, and no hysteresis.
+inline constexpr int model_schema_version = 4, oldest_schema_version = 2;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
 inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "tanh", "sine", "radial_basis"};
 inline constexpr std::array<std::string_view, 3> input_map_names{"raw", "sines_and_cosines", "sine_cosine_products"};
@@ -106,7 +107,7 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
   const bool transmissions = terms.size() > terms.num_dense_terms();
   OrderedJson joints = OrderedJson::array();
   for (const Fourier& fourier : terms.transmission)
-    joints.push_back({{"harmonics", fourier.harmonics}, {"coefficients_rad", OrderedJson::array()}});
+    joints.push_back({{"orders", fourier.orders}, {"coefficients_rad", OrderedJson::array()}});
   for (const JointTermBlock& block : terms.blocks()) {
     OrderedJson values = list_of(errors.coefficients().segment(block.begin, block.count));
     switch (block.kind) {
@@ -114,6 +115,9 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
       case Kind::coupling: out["coupling"] = std::move(values); break;
       case Kind::gravity:
         out["gravity"] = {{"down", list_of(terms.gravity->down())}, {"products_rad_per_m", std::move(values)}};
+        break;
+      case Kind::hysteresis:
+        out["hysteresis"] = {{"widths_rad", terms.hysteresis}, {"coefficients_rad", std::move(values)}};
         break;
       case Kind::transmission: joints[static_cast<std::size_t>(block.joint)]["coefficients_rad"] = std::move(values);
     }
@@ -124,7 +128,7 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
 
 /// @param nominal the chain whose torques gravity compliance needs
 VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
-  node.allow_only({"coefficients", "gear_ratio", "coupling", "gravity", "transmission"});
+  node.allow_only({"coefficients", "gear_ratio", "coupling", "gravity", "hysteresis", "transmission"});
   const auto joints = static_cast<std::size_t>(nominal.joints());
   JointTerms terms(nominal.joints());
   std::vector<VectorX> blocks;
@@ -137,6 +141,14 @@ VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const 
     terms.gravity.emplace(nominal, down);
     blocks.push_back(gravity.at("products_rad_per_m").numbers(static_cast<std::size_t>(terms.gravity->size())));
   }
+  if (node.has("hysteresis")) {
+    const JsonNode hysteresis = node.at("hysteresis"), widths = hysteresis.at("widths_rad");
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+      terms.hysteresis.push_back(widths.at(k).number());
+      if (!(terms.hysteresis.back() > 0)) widths.at(k).fail("must be positive");
+    }
+    blocks.push_back(hysteresis.at("coefficients_rad").numbers(joints * terms.hysteresis.size()));
+  }
   if (node.has("transmission")) {
     const JsonNode transmission = node.at("transmission");
     transmission.require_size(joints);
@@ -144,7 +156,15 @@ VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const 
       const JsonNode joint = transmission.at(i);
       if (joint.has("centre_rad"))
         joint.fail("hidden nodes of a joint are no longer supported; calibrate again, with harmonics");
-      terms.transmission[i] = Fourier{static_cast<int>(joint.at("harmonics").integer(0, 500))};
+      if (joint.has("harmonics")) {
+        terms.transmission[i] = Fourier::up_to(static_cast<int>(joint.at("harmonics").integer(0, 500)));
+      } else {
+        const JsonNode orders = joint.at("orders");
+        for (std::size_t k = 0; k < orders.size(); ++k) {
+          const int before = k == 0 ? 0 : terms.transmission[i].orders.back();
+          terms.transmission[i].orders.push_back(static_cast<int>(orders.at(k).integer(before + 1, 5000)));
+        }
+      }
       blocks.push_back(joint.at("coefficients_rad").numbers(static_cast<std::size_t>(terms.transmission[i].size())));
     }
   }
@@ -226,7 +246,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   const Provenance& from = model.provenance;
   require(std::isfinite(from.position_sigma), "save: position_sigma is not finite");
   const bool modified = model.nominal.modified();
-  OrderedJson out{{"schema_version", modified ? modified_schema_version : model_schema_version},
+  OrderedJson out{{"schema_version", model_schema_version},
                   {"written_by",
                    message("vernier ", VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH)},
                   {"name", model.name}};
@@ -259,10 +279,10 @@ VERNIER_IMPL void write_model(const std::string& path, const ModelData& model) {
 VERNIER_API bool check_schema(const JsonNode& root) {
   if (!root.has("schema_version")) root.fail("key 'schema_version' is missing; is this a model that calibrate saved?");
   const auto version = root.at("schema_version").integer(0, INT32_MAX);
-  if (version != model_schema_version && version != modified_schema_version)
+  if (version < oldest_schema_version || version > model_schema_version)
     root.at("schema_version")
-        .fail(message("version ", version, " is unknown; this program reads versions ", model_schema_version, " and ",
-                      modified_schema_version));
+        .fail(message("version ", version, " is unknown; this program reads versions ", oldest_schema_version, " to ",
+                      model_schema_version));
   constexpr std::array<std::string_view, 2> conventions{"standard", "modified"};
   return root.has("convention") && named(root.at("convention"), conventions) == 1;
 }

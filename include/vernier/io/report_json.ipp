@@ -38,6 +38,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"train_rows", report.train_poses},
           {"test_rows", report.test_poses()},
           {"stages", stages_to_json(report.stages)},
+          {"chosen", report.chosen},
           {"blocks", blocks},
           {"parameters", parameters},
           {"identifiability",

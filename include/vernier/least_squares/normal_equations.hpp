@@ -39,6 +39,11 @@ struct NormalEquations {
   VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {});
 };
 
+/// `z' P z` for present values of local unknowns and the precisions P of their priors; 0 without local states.
+VERNIER_API double local_prior_cost(const NormalEquations& normal, const VectorX& local_steps);
+/// Slope of the cost (half its derivative) along a step of the local unknowns.
+VERNIER_API double local_gain(const NormalEquations& normal, const VectorX& step, const VectorX& local_steps);
+
 /// Normal equations with priors, factorised. Unknowns that nothing determines stay at their values.
 class FactorisedEquations {
  public:
@@ -66,6 +71,8 @@ class FactorisedEquations {
   VERNIER_API double log_determinant() const;
   /// Inverse of the matrix with local unknowns eliminated: the covariance of dense and factored unknowns.
   VERNIER_API MatrixX inverse() const;
+  /// Its diagonal, at a third of the cost.
+  VERNIER_API VectorX inverse_diagonal() const;
   /// Multiplies by the inverse of the Cholesky factor of that matrix, in place.
   VERNIER_API void apply_inverse_factor(MatrixRef columns) const;
 

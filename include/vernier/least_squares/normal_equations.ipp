@@ -159,6 +159,15 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
   if (system.local_states > 0) detail::add_local(system, local_priors, *this);
 }
 
+VERNIER_IMPL double local_prior_cost(const NormalEquations& normal, const VectorX& local_steps) {
+  return normal.local.size == 0 ? 0 : local_steps.dot(detail::multiply(normal.local_prior, local_steps));
+}
+
+VERNIER_IMPL double local_gain(const NormalEquations& normal, const VectorX& step, const VectorX& local_steps) {
+  if (normal.local.size == 0) return 0;
+  return step.dot(normal.local_gradient + detail::multiply(normal.local_prior, local_steps));
+}
+
 VERNIER_IMPL FactorisedEquations::FactorisedEquations(const NormalEquations& normal, const VectorX& precisions,
                                                       const VectorX& steps, const VectorX& local_steps,
                                                       SparseSolve solve, double damping)
@@ -198,6 +207,21 @@ VERNIER_IMPL double FactorisedEquations::log_determinant() const {
 }
 
 VERNIER_IMPL MatrixX FactorisedEquations::inverse() const { return detail::inverse_from_cholesky(factor_); }
+
+VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal() const {
+  // columns of the inverse factor start at their own row
+  const Index n = factor_.rows(), width = 64;
+  VectorX out(n);
+  MatrixX columns;
+  for (Index first = 0; first < n; first += width) {
+    const Index count = std::min(width, n - first);
+    columns.setZero(n - first, count);
+    columns.topRows(count).setIdentity();
+    detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
+    out.segment(first, count) = columns.colwise().squaredNorm().transpose();
+  }
+  return out;
+}
 
 VERNIER_IMPL void FactorisedEquations::apply_inverse_factor(MatrixRef columns) const {
   detail::solve_lower(factor_, columns);

@@ -29,9 +29,10 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
   terms.coupling = sizes.coupling > 0;
   if (sizes.compliance > 0) terms.gravity.emplace(chain, sizes.down);
   const int low = sizes.harmonic > 0 ? sizes.harmonics : 0;
+  Fourier harmonics = Fourier::up_to(low);
+  if (sizes.ripple > 0) harmonics.orders.push_back(sizes.ripple_harmonic);
   for (int i = 0; i < n; ++i)
-    if (chain.revolute(i))
-      terms.transmission[static_cast<std::size_t>(i)] = Fourier{sizes.ripple > 0 ? sizes.ripple_harmonic : low};
+    if (chain.revolute(i)) terms.transmission[static_cast<std::size_t>(i)] = harmonics;
 
   VectorX coefficients = VectorX::Zero(terms.size());
   Index at = 0;
@@ -49,13 +50,9 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
   }
   for (int i = 0; i < n; ++i) {
     Rng low_stream(child_seed(seed, stream++)), ripple_stream(child_seed(seed, stream++));
-    const Index end = terms.transmission_begin(i + 1);
-    if (at == end) continue;
+    if (at == terms.transmission_begin(i + 1)) continue;
     for (int k = 1; k <= low; ++k) draw(low_stream, 2, sizes.harmonic / std::pow(k, sizes.decay));
-    if (sizes.ripple > 0) {
-      at = end - 2;
-      draw(ripple_stream, 2, sizes.ripple);
-    }
+    if (sizes.ripple > 0) draw(ripple_stream, 2, sizes.ripple);
   }
   return {std::move(terms), std::move(coefficients)};
 }

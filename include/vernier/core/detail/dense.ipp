@@ -7,27 +7,58 @@
 #include <algorithm>
 
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/detail/dense_kernels.hpp"
+#include "vernier/core/simd.hpp"
 
 namespace vernier::detail {
 
+/// Kernels for the widest instruction set of this machine; null where the operation is small, or Eigen is compiled as
+/// well as it can be.
+inline const DenseKernels* wide_kernels([[maybe_unused]] double operations) {
+#if defined(VERNIER_DENSE_KERNELS)
+  static const DenseKernels* const kernels = widest_instruction_set() == InstructionSet::avx512 ? &avx512_kernels
+                                             : widest_instruction_set() == InstructionSet::avx2 ? &avx2_kernels
+                                                                                                : nullptr;
+  if (operations > 1e5) return kernels;
+#endif
+  return nullptr;
+}
+
+inline MatrixAt<double> at(MatrixRef m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
+inline MatrixAt<const double> at(const ConstMatrixRef& m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
+/// Number of operations on some matrices.
+inline double operations(Index a, Index b, Index c) {
+  return static_cast<double>(a) * static_cast<double>(b) * static_cast<double>(c);
+}
+
 VERNIER_IMPL void add_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b, double factor) {
+  if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.cols())))
+    return wide->add_product(at(out), at(a), at(b), factor);
   out.noalias() += factor * (a * b);
 }
 
 VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b,
                                          double factor) {
+  if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.rows())))
+    return wide->add_transposed_product(at(out), at(a), at(b), factor);
   out.noalias() += factor * (a.transpose() * b);
 }
 
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
+  if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
+    return wide->cholesky(at(matrix));
   return Eigen::LLT<MatrixRef>(matrix).info() == Eigen::Success;  // in place
 }
 
 VERNIER_IMPL void solve_lower(const ConstMatrixRef& factor, MatrixRef right) {
+  if (const auto* wide = wide_kernels(operations(factor.rows(), factor.rows(), right.cols())))
+    return wide->solve_lower(at(factor), at(right));
   factor.triangularView<Eigen::Lower>().solveInPlace(right);
 }
 
 VERNIER_IMPL void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef right) {
+  if (const auto* wide = wide_kernels(operations(factor.rows(), factor.rows(), right.cols())))
+    return wide->solve_lower_transposed(at(factor), at(right));
   factor.triangularView<Eigen::Lower>().transpose().solveInPlace(right);
 }
 

@@ -9,6 +9,8 @@
 
 #include "vernier/identification/arm_parameterisation.hpp"
 #include "vernier/identification/detail/station.hpp"
+#include "vernier/identification/session_drift.hpp"
+#include "vernier/least_squares/normal_equations.hpp"
 
 namespace vernier::detail {
 
@@ -26,8 +28,9 @@ class CalibrationProblem {
   /// @param stations those of poses first
   VERNIER_API CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss);
 
-  ArmParameterisation arm;    ///< at its present values
-  bool joint_columns = true;  ///< whether blocks have `factor` also where no coefficient acts through it
+  ArmParameterisation arm;          ///< at its present values
+  std::vector<SessionDrift> drift;  ///< of each station, at its present values; may be empty
+  bool joint_columns = true;        ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }
   Index num_blocks() const { return static_cast<Index>(blocks_.size()); }
@@ -39,6 +42,20 @@ class CalibrationProblem {
   VERNIER_API Index measured_values() const;
   /// Joint values of all samples, blocks x joints.
   VERNIER_API MatrixX joints() const;
+
+  /// Lets the bases of stations of poses drift from now on, from no motion.
+  /// @param rows_per_knot number of poses from one knot to the next, on average
+  VERNIER_API void start_drift(Index rows_per_knot);
+  /// No drift any more.
+  void stop_drift() { drift.clear(); }
+  /// Precision of the random walks, relative to steps of 0.03 mm and 20 urad in 200 poses.
+  double drift_precision = 1;
+  /// The priors of the drift: random walks, held near zero, which is the stations' base.
+  VERNIER_API std::vector<LocalPrior> drift_priors() const;
+  /// Present values of the drift, in units of their expected sizes.
+  VERNIER_API VectorX drift_steps() const;
+  /// The motion of a block's base by drift.
+  VERNIER_API Isometry3 drift_motion(Index block) const;
 
   /// The problem as rows; refers to this.
   VERNIER_API BlockSystem system() const;
@@ -72,12 +89,18 @@ class CalibrationProblem {
     std::array<double, 2> weight;  ///< in [0, 1]: of position or distance, of orientation
   };
   const Block& at(Index block) const { return blocks_[static_cast<std::size_t>(block)]; }
+  /// Adds to the drift.
+  VERNIER_API void move_drift(const VectorX& steps);
+  /// Moves a modelled pose by the drift, turns its columns along, and writes those of the drift.
+  VERNIER_API void add_drift(const Block& block, Isometry3& pose, RowBlock* rows) const;
   /// Norms of whitened residuals, blocks x 2: of positions or distances, of orientations.
   VERNIER_API MatrixX residual_norms() const;
 
   std::vector<Station> stations_;
   std::vector<Block> blocks_;
   Index validation_blocks_ = 0;
+  std::vector<Index> first_state_;  // of each station
+  Vector6 drift_scale_ = Vector6::Ones();
   Loss loss_;
 };
 

@@ -25,7 +25,11 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
 }
 
 VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
-  return {num_blocks(), num_validation_blocks(), arm.num_dense(), arm.group_sizes(), *this};
+  BlockSystem out{num_blocks(), num_validation_blocks(), arm.num_dense(), arm.group_sizes(), *this};
+  if (drift.empty()) return out;
+  out.local_size = 6;
+  for (const SessionDrift& of_station : drift) out.local_states += of_station.twists.cols();
+  return out;
 }
 
 VERNIER_IMPL Index CalibrationProblem::measured_values() const {
@@ -42,6 +46,86 @@ VERNIER_IMPL MatrixX CalibrationProblem::joints() const {
     at += station.size();
   }
   return out;
+}
+
+VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
+  drift.assign(stations_.size(), {});
+  first_state_.assign(stations_.size(), 0);
+  Index states = 0;
+  for (std::size_t s = 0; s < stations_.size(); ++s) {
+    const Station& station = stations_[s];
+    first_state_[s] = states;
+    if (station.positions == nullptr || station.times == nullptr) continue;
+    const Index intervals = std::max<Index>(1, station.size() / rows_per_knot);
+    const double begin = station.times->minCoeff(), end = station.times->maxCoeff();
+    if (!(end > begin)) continue;
+    drift[s] = {
+        begin, (end - begin) / static_cast<double>(intervals), station.positions->colwise().mean().transpose(), {}};
+    drift[s].twists.setZero(6, intervals + 1);
+    states += intervals + 1;
+  }
+  const double root = std::sqrt(static_cast<double>(rows_per_knot) / 200);
+  drift_scale_ << Vector3::Constant(0.03e-3 * root), Vector3::Constant(20e-6 * root);
+}
+
+VERNIER_IMPL std::vector<LocalPrior> CalibrationProblem::drift_priors() const {
+  std::vector<LocalPrior> out;
+  const MatrixX walk = drift_precision * MatrixX::Identity(6, 6), anchor = 0.01 * walk;
+  for (std::size_t s = 0; s < drift.size(); ++s)
+    for (Index k = 0; k < drift[s].twists.cols(); ++k) {
+      const Index state = first_state_[s] + k;
+      out.push_back({state, state, anchor});
+      if (k == 0) continue;
+      out.push_back({state, state, walk});
+      out.push_back({state - 1, state - 1, walk});
+      out.push_back({state, state - 1, -walk});
+    }
+  return out;
+}
+
+VERNIER_IMPL VectorX CalibrationProblem::drift_steps() const {
+  const Index states = system().local_states;
+  VectorX out(6 * states);
+  for (std::size_t s = 0; s < drift.size(); ++s)
+    for (Index k = 0; k < drift[s].twists.cols(); ++k)
+      out.segment<6>(6 * (first_state_[s] + k)) = drift[s].twists.col(k).cwiseQuotient(drift_scale_);
+  return out;
+}
+
+VERNIER_IMPL void CalibrationProblem::move_drift(const VectorX& steps) {
+  for (std::size_t s = 0; s < drift.size(); ++s)
+    for (Index k = 0; k < drift[s].twists.cols(); ++k)
+      drift[s].twists.col(k) += steps.segment<6>(6 * (first_state_[s] + k)).cwiseProduct(drift_scale_);
+}
+
+VERNIER_IMPL Isometry3 CalibrationProblem::drift_motion(Index block) const {
+  const auto s = static_cast<std::size_t>(at(block).station);
+  if (drift.empty() || drift[s].empty()) return Isometry3::Identity();
+  return drift[s].motion((*stations_[s].times)(at(block).row));
+}
+
+VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& pose, RowBlock* rows) const {
+  const auto s = static_cast<std::size_t>(block.station);
+  if (drift.empty() || drift[s].empty()) return;
+  const double time = (*stations_[s].times)(block.row);
+  const Isometry3 motion = drift[s].motion(time);
+  const Vector3 lever = pose.translation() - drift[s].centre;
+  pose = motion * pose;
+  if (rows == nullptr) return;
+  for (Rows6* columns : {&rows->dense, &rows->factor})
+    for (Index k = 0; k < columns->cols(); ++k) {
+      columns->col(k).head<3>() = (motion.linear() * columns->col(k).head<3>()).eval();
+      columns->col(k).tail<3>() = (motion.linear() * columns->col(k).tail<3>()).eval();
+    }
+  const auto [knot, share] = drift[s].position(time);
+  for (std::size_t k = 0; k < 2 && (k == 0 || share > 0); ++k) {
+    Rows6 columns = Rows6::Zero(6, 6);
+    columns.topLeftCorner<3, 3>().setIdentity();
+    columns.topRightCorner<3, 3>() = -skew(lever);
+    columns.bottomRightCorner<3, 3>().setIdentity();
+    columns *= (k == 0 ? 1 - share : share) * drift_scale_.asDiagonal();
+    rows->local[k] = {first_state_[s] + knot + static_cast<Index>(k), columns};
+  }
 }
 
 /// Residual of a sample, not whitened: model minus measured; and what maps rates of the model to rates of the residual.
@@ -90,11 +174,15 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     const Block& begin = at(first + done);
     const Station& station = stations_[static_cast<std::size_t>(begin.station)];
     const Index stretch = std::min(count - done, station.size() - begin.row);
-    const std::vector<Isometry3> poses = arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
-                                                       out + done, joint_columns || station.joint_sigma > 0);
+    std::vector<Isometry3> poses =
+        arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
+                      station.previous().middleRows(station.previous().rows() > 0 ? begin.row : 0,
+                                                    station.previous().rows() > 0 ? stretch : 0),
+                      out + done, joint_columns || station.joint_sigma > 0);
     for (Index i = 0; i < stretch; ++i) {
       const Block& block = at(first + done + i);
       RowBlock& rows = out[done + i];
+      add_drift(block, poses[static_cast<std::size_t>(i)], &rows);
       Vector3 along = Vector3::Zero();
       Matrix3 rate = Matrix3::Zero();
       rows.residual = measured_residual(station, block.row, poses[static_cast<std::size_t>(i)], along, rate);
@@ -105,6 +193,8 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       rows.residual.tail<3>() *= orientation;
       whiten_rows(station, along, position, orientation * rate, rows.dense);
       whiten_rows(station, along, position, orientation * rate, rows.factor);
+      for (RowBlock::Local& local : rows.local)
+        if (local.state >= 0) whiten_rows(station, along, position, orientation * rate, local.columns);
       rows.unwhiten.setIdentity();
       if (station.joint_sigma <= 0) continue;
       // the residual's covariance with the joint readings eliminated: I + noise noise'
@@ -121,6 +211,12 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       columns = rows.factor;
       solve_lower(covariance, columns);
       rows.factor = columns;
+      for (RowBlock::Local& local : rows.local) {
+        if (local.state < 0) continue;
+        columns = local.columns;
+        solve_lower(covariance, columns);
+        local.columns = columns;
+      }
     }
     done += stretch;
   }
@@ -168,10 +264,11 @@ VERNIER_IMPL double CalibrationProblem::cost() const {
       b += station.size();
       continue;
     }
-    const std::vector<Isometry3> poses = arm.poses(static_cast<int>(s), station.joints());
+    std::vector<Isometry3> poses = arm.poses(static_cast<int>(s), station.joints(), station.previous());
     for (Index i = 0; i < station.size(); ++i, ++b) {
       Vector3 along = Vector3::Zero();
       Matrix3 rate = Matrix3::Zero();
+      add_drift(at(b), poses[static_cast<std::size_t>(i)], nullptr);
       const Vector6 residual = measured_residual(station, i, poses[static_cast<std::size_t>(i)], along, rate);
       sum +=
           at(b).weight[0] * residual.head<3>().squaredNorm() / (station.position_sigma * station.position_sigma) +
@@ -237,29 +334,35 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
   const bool robust = loss_ != Loss::squared;
   MarquardtDamping damping;
   ArmParameterisation accepted = arm;
+  std::vector<SessionDrift> accepted_drift = drift;
   double reached = std::numeric_limits<double>::infinity(), predicted = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const VectorX steps = arm.steps(), precisions = arm.precisions();
-    const double of_priors = precisions.dot(steps.cwiseAbs2());
+    const VectorX local_steps = drift_steps();
     std::array<double, 2> sums{};
     if (robust) sums = reweight();
-    const NormalEquations normal(system());
+    const NormalEquations normal(system(), drift_priors());
+    const double of_priors = precisions.dot(steps.cwiseAbs2()) + local_prior_cost(normal, local_steps);
     if (!robust) sums = {normal.cost, normal.cost};
     const double sum = sums[0] + of_priors;
     if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
       damping.reject();
       arm = accepted;
+      drift = accepted_drift;
       if (robust) reweight();
       continue;
     }
     if (iteration > 0 && damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
     accepted = arm;
+    accepted_drift = drift;
     reached = sums[1] + of_priors;
-    const FactorisedEquations solved(normal, precisions, steps, {}, eigen_sparse_solver, damping.value());
+    const FactorisedEquations solved(normal, precisions, steps, local_steps, eigen_sparse_solver, damping.value());
     if (!solved.usable()) return false;
     arm.move(solved.step());
+    if (!drift.empty()) move_drift(solved.local_step());
     // converged when steps vanish, or change no more than digits of the cost
-    const double gain = -solved.step().dot(normal.gradient + precisions.cwiseProduct(steps));
+    const double gain = -solved.step().dot(normal.gradient + precisions.cwiseProduct(steps)) -
+                        local_gain(normal, solved.local_step(), local_steps);
     predicted = gain + damping.value() * solved.step().cwiseAbs2().dot(normal.matrix.diagonal() + precisions);
     if (damping.value() < 1 &&
         (solved.step().cwiseAbs().maxCoeff() < 1e-6 || gain < (robust ? 1e-5 : 1e-9) * normal.cost))

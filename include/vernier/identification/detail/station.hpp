@@ -13,20 +13,24 @@ namespace vernier::detail {
 
 /// What was measured from one place, poses or distances, and how well. Refers to the measurements.
 struct Station {
-  const double* joint_values;            ///< n x dof, by columns
-  Index samples;                         ///< n
-  int dof;                               ///< number of joints
-  const PointRows* positions = nullptr;  ///< n, or null for distances
-  const VectorX* lengths = nullptr;      ///< n distances, or null
-  std::vector<Matrix3> orientations{};   ///< n, or empty where they are not used
-  double position_sigma = 1;             ///< of a position, per component, or of a distance [m]
-  double orientation_sigma = 1;          ///< [rad]
-  double joint_sigma = 0;                ///< of the joint readings [rad, m]; 0: exact
+  const double* joint_values;               ///< n x dof, by columns
+  Index samples;                            ///< n
+  int dof;                                  ///< number of joints
+  const double* previous_values = nullptr;  ///< n x dof, by columns: from where it was approached; null for unknown
+  const VectorX* times = nullptr;           ///< n, when it was measured; or null
+  const PointRows* positions = nullptr;     ///< n, or null for distances
+  const VectorX* lengths = nullptr;         ///< n distances, or null
+  std::vector<Matrix3> orientations{};      ///< n, or empty where they are not used
+  double position_sigma = 1;                ///< of a position, per component, or of a distance [m]
+  double orientation_sigma = 1;             ///< [rad]
+  double joint_sigma = 0;                   ///< of the joint readings [rad, m]; 0: exact
 
   /// Number of samples.
   Index size() const { return samples; }
   /// Joint values [rad, m], n x dof.
   Eigen::Map<const MatrixX> joints() const { return {joint_values, samples, dof}; }
+  /// Joint values from which samples were approached [rad, m], n x dof; no rows where unknown.
+  Eigen::Map<const MatrixX> previous() const { return {previous_values, previous_values ? samples : 0, dof}; }
   bool oriented() const { return !orientations.empty(); }
   /// Measured values of a sample.
   Index values() const { return positions == nullptr ? 1 : oriented() ? 6 : 3; }
@@ -42,6 +46,8 @@ Station station_of(const Dataset<N>& data, const SensorModel& sensors) {
   Station out{.joint_values = data.joints().data(),
               .samples = data.size(),
               .dof = N,
+              .previous_values = data.previous().data(),
+              .times = &data.times(),
               .positions = &data.positions(),
               .position_sigma = sensors.position_sigma,
               .orientation_sigma = sensors.orientation_sigma,

@@ -1,0 +1,38 @@
+#pragma once
+
+/// @file
+/// Drift of a measuring session: how the arm's base moved with respect to the sensor.
+
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+/// Motion of a base frame over time, linear between knots, constant beyond them. An empty one is no motion.
+struct SessionDrift {
+  double begin = 0;                  ///< time of the first knot, in the unit of `Dataset::times`
+  double spacing = 1;                ///< from one knot to the next
+  Vector3 centre = Vector3::Zero();  ///< point about which the rotations turn [m]
+  /// A column a knot: translation of the centre [m], rotation vector [rad], in the sensor's frame.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> twists{};
+
+  /// Whether there is none.
+  bool empty() const { return twists.cols() == 0; }
+
+  /// The knots on which a time depends: `first` with `1 - share`, the next with `share`.
+  struct Position {
+    Index first;   ///< a knot
+    double share;  ///< of the next knot, in [0, 1)
+  };
+  /// See `Position`.
+  VERNIER_API Position position(double time) const;
+  /// Translation and rotation at a time.
+  VERNIER_API Vector6 twist(double time) const;
+  /// The same as a motion, to be applied in front of a modelled pose.
+  VERNIER_API Isometry3 motion(double time) const;
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/session_drift.ipp"
+#endif

@@ -1,0 +1,148 @@
+// Evidence against the density of a Gaussian, written out; sizes of priors against where its slope vanishes.
+
+#include "vernier/least_squares/evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "local_states.hpp"
+
+namespace vernier::evidence_test {
+namespace {
+
+using vernier_test::LocalStates;
+
+/// log density of the residuals at the prior means, the noise's variance at its most likely value; up to a constant.
+double marginal(const LocalStates& problem, const VectorX& precisions) {
+  const MatrixX jacobian = problem.jacobian();
+  const Index dense = LocalStates::dense, all = jacobian.cols();
+  MatrixX prior = MatrixX::Zero(all, all);
+  prior.diagonal().head(dense) = precisions;
+  prior.bottomRightCorner(all - dense, all - dense) = problem.prior();
+  VectorX steps(all);
+  steps << problem.steps, problem.local_steps;
+  const VectorX residual = problem.residual() - jacobian * steps;
+  const MatrixX covariance =
+      MatrixX::Identity(jacobian.rows(), jacobian.rows()) + jacobian * prior.inverse() * jacobian.transpose();
+  const Eigen::LLT<MatrixX> factor(covariance);
+  const auto n = static_cast<double>(residual.size());
+  const double log_determinant = 2 * MatrixX(factor.matrixL()).diagonal().array().log().sum();
+  return -0.5 * (n * std::log(residual.dot(factor.solve(residual)) / n) + log_determinant);
+}
+
+double evidence(const LocalStates& problem, const NormalEquations& normal, const VectorX& precisions) {
+  const FactorisedEquations solved(normal, precisions, problem.steps, problem.local_steps);
+  return log_evidence(normal, solved, precisions, problem.steps, 6 * LocalStates::blocks, problem.local_steps);
+}
+
+TEST(Evidence, IsTheDensityOfTheResiduals) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const LocalStates problem(seed);
+    const NormalEquations normal = problem.normal_equations();
+    const VectorX some = (VectorX(4) << 0.7, 0.02, 3.0, 40.0).finished(), others = 5 * some.reverse();
+    EXPECT_NEAR(evidence(problem, normal, some), marginal(problem, some), 1e-7 * std::abs(marginal(problem, some)));
+    EXPECT_NEAR(evidence(problem, normal, others) - evidence(problem, normal, some),
+                marginal(problem, others) - marginal(problem, some), 1e-6);
+  }
+}
+
+// A hundred times the residuals at prior means: noise of another size, the same preferences.
+TEST(Evidence, DoesNotDependOnTheSizeOfTheNoise) {
+  LocalStates problem(4), louder(4);
+  for (auto& row : louder.rows) row.residual *= 100;
+  louder.steps *= 100;
+  louder.local_steps *= 100;
+  const VectorX some = VectorX::Constant(4, 0.3), others = VectorX::Constant(4, 7);
+  const NormalEquations quiet_normal = problem.normal_equations(), loud_normal = louder.normal_equations();
+  EXPECT_NEAR(evidence(problem, quiet_normal, some) - evidence(problem, quiet_normal, others),
+              evidence(louder, loud_normal, some) - evidence(louder, loud_normal, others), 1e-6);
+}
+
+// Unknowns without prior take values away from what determines the noise.
+TEST(Evidence, CountsUnknownsWithoutPrior) {
+  const LocalStates problem(5);
+  const NormalEquations normal = problem.normal_equations();
+  VectorX precisions = VectorX::Constant(4, 0.5);
+  precisions(2) = 0;
+  const FactorisedEquations solved(normal, precisions, problem.steps, problem.local_steps);
+  const Index values = 6 * LocalStates::blocks;
+  const double found = log_evidence(normal, solved, precisions, problem.steps, values, problem.local_steps);
+  VectorX wide = precisions;  // the limit of a wide prior, whose own size is left out
+  wide(2) = 1e-9;
+  const FactorisedEquations nearly(normal, wide, problem.steps, problem.local_steps);
+  const double limit = log_evidence(normal, nearly, wide, problem.steps, values - 1, problem.local_steps);
+  EXPECT_NEAR(found, limit - 0.5 * std::log(1e-9), 1e-5);
+}
+
+TEST(Evidence, NoSolutionHasNone) {
+  const LocalStates problem(6);
+  NormalEquations normal = problem.normal_equations();
+  normal.matrix(1, 1) = -1e9;
+  EXPECT_EQ(evidence(problem, normal, problem.precisions), -std::numeric_limits<double>::infinity());
+}
+
+/// Slope of the evidence over the logarithm of a factor on some precisions.
+double slope(const LocalStates& problem, const NormalEquations& normal, const VectorX& precisions,
+             const UnknownGroup& group) {
+  const auto scaled = [&](double factor) {
+    VectorX out = precisions;
+    for (const Index k : group) out(k) *= factor;
+    return evidence(problem, normal, out);
+  };
+  return (scaled(std::exp(1e-4)) - scaled(std::exp(-1e-4))) / 2e-4;
+}
+
+/// A problem whose unknowns are clear: steps from means of zero to values of very different sizes.
+LocalStates clear_problem() {
+  LocalStates problem(7);
+  const VectorX truth = (VectorX(4) << 3, -2, 0.05, -0.04).finished();
+  for (auto& row : problem.rows) row.residual = 0.2 * row.residual - row.dense * truth;
+  problem.steps.setZero();
+  problem.local_steps.setZero();
+  return problem;
+}
+
+TEST(Evidence, LearnedSizesHaveNoSlopeLeft) {
+  const LocalStates problem = clear_problem();
+  const NormalEquations normal = problem.normal_equations();
+  const std::vector<UnknownGroup> groups{{0, 1}, {2, 3}};
+  const VectorX start = VectorX::Constant(4, 1);
+  const VectorX learned =
+      learn_priors(normal, start, problem.steps, 6 * LocalStates::blocks, groups, 60, problem.local_steps);
+  for (const UnknownGroup& group : groups) {
+    EXPECT_LT(std::abs(slope(problem, normal, learned, group)), 1e-3);
+    EXPECT_GT(std::abs(slope(problem, normal, start, group)), 0.1);
+    EXPECT_EQ(learned(group[0]), learned(group[1]));
+  }
+  EXPECT_GT(learned(2), 100 * learned(0));  // small values, a tight prior
+}
+
+TEST(Evidence, OneScaleIsTheBestOfAGrid) {
+  const LocalStates problem = clear_problem();
+  const NormalEquations normal = problem.normal_equations();
+  const VectorX expected = (VectorX(4) << 1, 2, 700, 600).finished();
+  const VectorX found =
+      scale_priors(normal, expected, problem.steps, 6 * LocalStates::blocks, {0, 1, 3}, problem.local_steps);
+  EXPECT_EQ(found(2), expected(2));  // not of the group
+  const double factor = found(0) / expected(0);
+  EXPECT_DOUBLE_EQ(found(3) / expected(3), factor);
+  const double reached = evidence(problem, normal, found);
+  for (double other = 1e-5; other < 1e5; other *= 1.1) {
+    VectorX precisions = expected;
+    for (const Index k : {0, 1, 3}) precisions(k) *= other;
+    EXPECT_LT(evidence(problem, normal, precisions), reached + 0.2) << other << " against " << factor;
+  }
+}
+
+TEST(FactorisedEquations, DiagonalOfTheInverse) {
+  const LocalStates problem(8);
+  const NormalEquations normal = problem.normal_equations();
+  const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+  EXPECT_LT((solved.inverse_diagonal() - solved.inverse().diagonal()).norm(), 1e-12 * solved.inverse().norm());
+}
+
+}  // namespace
+}  // namespace vernier::evidence_test

@@ -348,15 +348,15 @@ class ErrorModelFit {
   /// Covariance of the unknowns, and the noise of a visit.
   VERNIER_API void assess(ErrorModelEstimate& estimate) const {
     const Linearised at = linearised();
-    const auto& [system, normal, steps, local_steps] = at;
+    const auto& system = at.system;  // lambdas of clang 14 cannot capture bindings
     const VectorX precisions = problem_.arm.precisions();
-    const FactorisedEquations solved(normal, precisions, steps, local_steps);
+    const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
     const Index p = system.unknowns();
     estimate.covariance = solved.inverse();
     const double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
     const double values = static_cast<double>(problem_.measured_values());
     const double freedom = std::max(1.0, values - explained);
-    estimate.covariance *= normal.cost / freedom;
+    estimate.covariance *= at.normal.cost / freedom;
 
     // leave-one-pose-out errors contain the noise of a visit and the uncertainty of the unknowns
     Rows6 all(6, p);

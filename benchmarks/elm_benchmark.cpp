@@ -220,7 +220,7 @@ int work(bench::Program& program, int argc, char** argv) {
   const auto kernel = [&](const char* who, vn::InstructionSet set) {
     if (set > vn::widest_instruction_set()) return;
     const auto kept = std::make_shared<std::pair<MatrixX, MatrixX>>(features, targets);  // the equations refer to them
-    const auto equations = std::make_shared<vn::detail::NormalEquations>(elm.layer(), kept->first, kept->second, set);
+    const auto equations = std::make_shared<vn::detail::LayerEquations>(elm.layer(), kept->first, kept->second, set);
     program.measure("kernel", who, [=, keep = kept](std::size_t i) {
       equations->form(theta[i & mask]);
       return keep->first(0);

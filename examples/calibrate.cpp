@@ -111,10 +111,12 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
   }
   std::vector<vn::Distances<N>> distances;
   for (const std::string& file : o.distances) distances.push_back(vn::read_distances<N>(file, types));
+  vn::CalibrateOptions options = o.calibrate;
+  options.errors.drives = robot.drives;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
   };
-  const auto calibration = vn::calibrate(robot.arm, train, distances, o.calibrate, fit,
+  const auto calibration = vn::calibrate(robot.arm, train, distances, options, fit,
                                          o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search));
   const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
   if (!o.save.empty())

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -38,11 +39,13 @@ const char* words(vn::IkStatus status) {
 /// status, predicted_error_mm, gate.
 /// @param poses the targets are poses x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements, their
 /// joints only seeds that choose the branch; else the targets are where the nominal arm stands at the joints
+/// @param approach each command is the one to which the arm moves from the command before; else the direction of
+/// approach is unknown
 /// @throws vn::DataError on a malformed file
 /// @throws std::runtime_error where the commands cannot be written
 template <int N>
 CorrectionReport correct_arm(const std::filesystem::path& model, const std::filesystem::path& targets, bool poses,
-                             const std::filesystem::path& out) {
+                             bool approach, const std::filesystem::path& out) {
   using vn::Index;
   const vn::CalibratedRobot<N> robot = vn::load<N>(model);
   vn::Dataset<N> data;
@@ -62,6 +65,7 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
   for (int j = 0; j < N; ++j)
     text += vn::message("q", j + 1, robot.nominal().chain().row(j).joint == vn::JointType::revolute ? "_rad," : "_m,");
   text += "status,predicted_error_mm,gate\n";
+  vn::JointVector<N> previous = vn::JointVector<N>::Constant(std::numeric_limits<double>::quiet_NaN());
   for (Index i = 0; i < data.size(); ++i) {
     const vn::JointVector<N> q = data.joints(i);
     vn::Isometry3 target = robot.nominal().pose(q);
@@ -69,7 +73,8 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
       target.translation() = data.position(i);
       if (data.has_orientations()) target.linear() = data.orientation(i);
     }
-    const vn::Correction<N> correction = robot.correct(target, q);
+    const vn::Correction<N> correction = robot.correct(target, q, previous);
+    if (approach) previous = correction.command;
     for (int j = 0; j < N; ++j) text += vn::message(correction.command(j), ',');
     text += vn::message(words(correction.status), ',', correction.predicted_error * 1e3, ',', correction.gate, '\n');
     report.errors.push_back(correction.predicted_error);
@@ -82,7 +87,7 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
 
 int run(support::Program& program) {
   std::string model, targets;
-  bool poses = false;
+  bool poses = false, no_approach = false;
   CLI::App& app = program.app();
   app.add_option("--model", model, "calibrated model that calibrate saved")->required()->type_name("FILE");
   app.add_option("--targets", targets, "joints q1_rad.. at which the nominal arm stands where the actual one is to go")
@@ -91,13 +96,16 @@ int run(support::Program& program) {
   app.add_flag("--poses", poses,
                "targets are poses x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; q1_rad.. "
                "choose the branch");
+  app.add_flag("--no-approach", no_approach,
+               "the commands are not executed in the order of the file: correct for the middle of both directions of "
+               "approach, not for the approach from the command before");
   program.parse("", "write the commands to this file", "FILE");
   const std::string& out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
   support::require_writable(out);
 
   const CorrectionReport report = support::dispatch_dof(
-      vn::saved_arm(model).dof, [&](auto n) { return correct_arm<n()>(model, targets, poses, out); });
+      vn::saved_arm(model).dof, [&](auto n) { return correct_arm<n()>(model, targets, poses, !no_approach, out); });
   const auto n = report.errors.size(), missed = report.missed.size();
   const double largest = *std::max_element(report.errors.begin(), report.errors.end()) * 1e3;
   const double mean = std::accumulate(report.errors.begin(), report.errors.end(), 0.0) / static_cast<double>(n) * 1e3;

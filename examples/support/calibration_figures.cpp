@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "figures.hpp"
@@ -74,6 +75,19 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
                {{"joint error", angle, scaled(joint.transmission, 1e3), Style::lines, 2},
                 {"95 % band", angle, scaled(vernier::VectorX(joint.transmission + margin), 1e3), Style::dashed, 1},
                 {"", angle, scaled(vernier::VectorX(joint.transmission - margin), 1e3), Style::dashed, 1}});
+    if (!joint.spectrum.empty()) {
+      Series amplitude{"amplitude", {}, {}, Style::points, 2}, limit{"above noise", {}, {}, Style::dashed, 0};
+      for (const vernier::HarmonicEstimate& one : joint.spectrum) {
+        amplitude.x.push_back(one.order);
+        amplitude.y.push_back(one.amplitude * 1e6);
+        limit.y.push_back(one.std * 1e6 *
+                          std::sqrt(vernier::line_threshold(
+                              static_cast<vernier::Index>(joint.spectrum.size() * report.joints.size()))));
+      }
+      limit.x = amplitude.x;
+      plot_svg(folder / fmt::format("spectrum_{}.svg", j + 1), fmt::format("{}: errors of {} by order", robot, name),
+               "periods a turn", "amplitude [urad]", {amplitude, limit}, {.log_x = true, .log_y = true});
+    }
     const double row = static_cast<double>(j + 1);
     for (std::size_t k = 0; k < joint.measured_ranges.size(); ++k)
       ranges.push_back({k == 0 ? name : "",

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vernier/core/rng.hpp>
 #include <vernier/data/joint_coverage.hpp>
 
@@ -130,6 +131,47 @@ TEST(JointCoverage, RangesAreTwoMarginsApartAlsoWhenWidened) {
       EXPECT_GT(ranges[k].lower - ranges[k - 1].upper, 2 * gate.margin(0));
     for (const double value : q.reshaped()) EXPECT_EQ(gate(JointVector<1>(value)), 1);
   }
+}
+
+TEST(JointCoverage, OnACircleATurnAwayIsTheSame) {
+  constexpr double turn = 2 * std::numbers::pi;
+  JointCoverage<2> gate;
+  gate.ranges = {{{{-5.2, -4.8}, {-1, 0.7}}, {{2, 4}}}};
+  gate.margin << 0.3, 0.25;
+  gate.periodic = {true, false};
+  vernier::Rng rng(7);
+  int falling = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const JointVector<2> q(rng.uniform(-4, 4), rng.uniform(1.7, 4.3));
+    for (const int turns : {-2, 1, 3}) {
+      const JointVector<2> further = q + JointVector<2>(turns * turn, 0);
+      EXPECT_NEAR(gate(further), gate(q), 1e-12);
+      EXPECT_LT((gate.derivative(further) - gate.derivative(q)).norm(), 1e-11);
+    }
+    const JointVector<2> h(1e-6, 0);
+    EXPECT_NEAR(gate.derivative(q)(0), (gate(q + h) - gate(q - h)) / 2e-6, 2e-4);
+    falling += gate.derivative(q)(0) != 0;
+    if (q(0) > -1 && q(0) < 0.7 && q(1) > 2 && q(1) < 4) EXPECT_EQ(gate(q), 1);
+    EXPECT_EQ(gate({q(0), q(1) + turn}), 0);  // the other joint stands on a line
+  }
+  EXPECT_GT(falling, 50);
+  EXPECT_EQ(gate({turn - 5, 3}), 1);  // the range of another turn
+  EXPECT_EQ(gate({0.9, 3}), 1);       // 0.7 .. 1.083 is a gap of less than two margins
+  gate.ranges[0] = {{-10, -1}};       // more than a turn
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(gate({rng.uniform(-20, 20), 3}), 1);
+}
+
+TEST(JointCoverage, NoGapWithinTwoMargins) {
+  JointCoverage<1> gate;
+  gate.ranges[0] = {{-3, 3}};  // leaves 0.283 of a turn
+  gate.margin << 0.15;
+  gate.periodic[0] = true;
+  EXPECT_EQ(gate(JointVector<1>(3.1)), 1);
+  gate.periodic[0] = false;
+  EXPECT_LT(gate(JointVector<1>(3.1)), 1);
+  gate.margin << 0.14;
+  gate.periodic[0] = true;
+  EXPECT_LT(gate(JointVector<1>(3.1)), 0.3);
 }
 
 TEST(JointCoverage, AJointWithoutRangesIsNotLookedAt) { EXPECT_EQ(JointCoverage<2>{}({1e6, -1e6}), 1); }

@@ -4,6 +4,7 @@
 
 #include <Eigen/SVD>
 #include <cmath>
+#include <numbers>
 #include <type_traits>
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/error_model/error_model.hpp>
@@ -168,6 +169,41 @@ void expect_laws(std::uint64_t seed) {
     EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(model, samples)))
         << N << " joints, zone " << static_cast<int>(zone);
   }
+}
+
+TEST(ErrorModel, WholeTurnsFurtherAllButTheLinearTermsIsTheSame) {
+  const auto robot = vn::robots::ur10();
+  vn::JointTerms periodic(6);
+  periodic.gravity.emplace(robot.chain, vn::Vector3(0, 0, -1));
+  vn::JointTerms linear = periodic;
+  linear.gear_ratio = linear.coupling = true;
+  vn::Rng rng(4);
+  for (vn::JointTerms* terms : {&periodic, &linear})
+    for (auto& fourier : terms->transmission) fourier = vn::Fourier::up_to(9);
+  for (auto& range : linear.linear_ranges = std::vector<vn::JointRange>(6)) range = {-1.5, 1.5};
+  vn::VectorX beta(linear.size());
+  for (double& value : beta) value = 1e-4 * rng.normal();
+  auto gate = coverage<6>();
+  gate.periodic.fill(true);
+  const auto model = [&](const vn::JointTerms& terms, const vn::VectorX& values) {
+    using Model = vn::ErrorModel<vn::DhChain<6>>;
+    return Model(robot.chain, Model::Arm({robot.chain, vn::JointErrors(terms, values)}), Model::Arm(robot.chain), gate);
+  };
+  const auto without = model(periodic, beta.tail(periodic.size())), with = model(linear, beta);
+  for (const Zone zone : {Zone::inside, Zone::falling, Zone::outside})
+    for (int i = 0; i < 50; ++i) {
+      const vn::JointVector<6> q = joints_in<6>(zone, rng);
+      vn::JointVector<6> further = q;
+      for (int j = 0; j < 6; ++j)
+        further(j) += 2 * std::numbers::pi * static_cast<double>(rng.below(3)) - 2 * std::numbers::pi;
+      EXPECT_NEAR(without.gate(further), without.gate(q), 1e-12);
+      EXPECT_LT((without.pose(further).matrix() - without.pose(q).matrix()).norm(), 1e-12);
+      EXPECT_LT((without.jacobian(further) - without.jacobian(q)).norm(), 1e-10);
+      // what the linear terms do stays within what they do where they were measured
+      const double change = (with.position(further) - with.position(q)).norm();
+      EXPECT_LT(change, 2 * 3 * 1.5 * beta.head(11).cwiseAbs().sum());
+      if (zone == Zone::inside && !further.isApprox(q)) EXPECT_GT(change, 0);
+    }
 }
 
 TEST(ErrorModel, ObeysTheLawsInEveryZone) {

@@ -387,6 +387,33 @@ TEST(JointErrors, EffectiveJointsArePhiBeta) {
   expect_effective_is_phi_beta<6>();
 }
 
+TEST(JointErrors, LinearTermsStayAtTheEndOfWhereTheyAreKnown) {
+  vn::JointTerms terms(3);
+  terms.gear_ratio = terms.coupling = true;
+  terms.linear_ranges = {{-1, 2}, {0, 0.5}, {-3, 3}};
+  vn::VectorX beta(5);
+  beta << 1e-3, 2e-3, -1e-3, 4e-3, 5e-3;
+  const vn::JointErrors errors(terms, beta);
+  const auto error = [&](double a, double b, double c) {
+    const vn::JointVector<3> q(a, b, c);
+    return vn::JointVector<3>(errors.effective<3>(q).joints - q);
+  };
+  EXPECT_LT((error(1, 0.25, -2) - vn::JointVector<3>(1e-3, 2e-3 * 0.25 + 4e-3 * 1, 2e-3 + 5e-3 * 0.25)).norm(), 1e-15);
+  EXPECT_LT((error(7, 0.7, -2) - vn::JointVector<3>(2e-3, 2e-3 * 0.5 + 4e-3 * 2, 2e-3 + 5e-3 * 0.5)).norm(), 1e-15);
+  EXPECT_LT((error(-7, -9, -9) - vn::JointVector<3>(-1e-3, -4e-3, 3e-3)).norm(), 1e-15);
+  const auto inside = errors.effective<3>({1, 0.25, -2}).derivative,
+             outside = errors.effective<3>({7, 0.7, -5}).derivative;
+  EXPECT_EQ(inside(1, 0), 4e-3);
+  EXPECT_EQ(inside(0, 0), 1 + 1e-3);
+  EXPECT_TRUE(outside.isIdentity(0));
+  vn::MatrixX phi(3, 5);
+  const vn::JointVector<3> q(7, 0.7, -5);
+  terms.dense_basis(q.data(), nullptr, phi);
+  EXPECT_LT((phi * beta - (errors.effective<3>(q).joints - q)).norm(), 1e-15);
+  terms.linear_ranges.pop_back();
+  EXPECT_THROW(vn::JointErrors(terms, beta), std::invalid_argument);
+}
+
 TEST(JointErrors, NoneChangeNothing) {
   const vn::JointErrors none;
   EXPECT_TRUE(none.empty());

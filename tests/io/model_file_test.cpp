@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "temporary_folder.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -12,6 +14,7 @@ namespace vernier::model_file_test {
 namespace {
 
 static_assert(KinematicModel<CalibratedRobot<6>> && Compensator<CalibratedRobot<6>>);
+static_assert(KinematicModel<CalibratedRobot<6>::Approached>);
 static_assert(KinematicModel<CalibratedRobot<3>> && Compensator<CalibratedRobot<9>>);
 
 Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
@@ -31,11 +34,15 @@ CalibratedRobot<6> example(bool learned) {
   JointTerms terms(6);
   terms.gear_ratio = terms.coupling = true;
   terms.gravity.emplace(robot.chain, Vector3(0, 0.6, -0.8));
+  terms.linear_ranges = std::vector<JointRange>(6, {-0.8, 0.6});
+  terms.hysteresis = {0.01, 0.3};
   const JointErrors few(terms, VectorX::LinSpaced(terms.size(), -1e-4, 2e-4));
   for (int i = 0; i < 5; ++i) terms.transmission[static_cast<std::size_t>(i)] = Fourier::up_to(3 + i);
   const JointErrors all(terms, VectorX::LinSpaced(terms.size(), -2e-4, 3e-4));
+  auto coverage = JointCoverage<6>::covering(joints.topRows(30));
+  coverage.periodic = {true, false, true, true, false, true};
   const Model model(robot.chain, Model::Arm({actual, all}, base, tool), Model::Arm({robot.chain, few}, tool, base),
-                    JointCoverage<6>::covering(joints.topRows(30)));
+                    coverage);
   const CalibratedRobot<6> out("an arm", model, robot.limits, from);
   const HiddenLayer layer{.nodes = 12, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<12, 3>();
@@ -81,6 +88,14 @@ TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
       EXPECT_TRUE(loaded.jacobian(joints) == saved.jacobian(joints));
       const auto a = loaded.correct(joints), b = saved.correct(joints);
       EXPECT_TRUE(a.command == b.command && a.predicted_error == b.predicted_error && a.gate == b.gate);
+      const JointVector<6> previous = samples.row((i + 1) % 50).transpose();
+      const auto approached = loaded.approached_from(previous);
+      EXPECT_TRUE(approached.pose(joints).matrix() == saved.approached_from(previous).pose(joints).matrix());
+      if (learned) {
+        EXPECT_GT((approached.position(joints) - loaded.position(joints)).norm(), 1e-6);
+      } else {
+        EXPECT_TRUE(approached.pose(joints).matrix() == loaded.pose(joints).matrix());
+      }
     }
     // and once more through the file: the text is a fixed point
     save(folder_ / "again.json", loaded);
@@ -147,6 +162,50 @@ TEST_F(ModelFile, CorrectsTowardsTheNominalArmInTheIdentifiedFrames) {
     EXPECT_LT(left.tail<3>().norm(), 1e-6);
     EXPECT_GT((correction.command - q).norm(), 1e-4);  // it did something
   }
+}
+
+TEST_F(ModelFile, CorrectsForTheDirectionOfApproach) {
+  const auto robot = example(true);
+  const OperatingRegion<6> region = abb_irb120_operating_region();
+  const JointRows<6> samples = region.sample(robot.nominal().model(), 40, 11);
+  JointVector<6> previous = samples.row(39).transpose();
+  for (Index i = 0; i < samples.rows(); ++i) {
+    const JointVector<6> q = samples.row(i).transpose();
+    const auto correction = robot.correct(q, previous);
+    ASSERT_EQ(correction.status, IkStatus::converged);
+    const auto lands = [&](const JointVector<6>& command) {
+      return (robot.approached_from(previous).position(command) - robot.nominal().position(q)).norm();
+    };
+    EXPECT_LT(lands(correction.command), 1e-6);
+    EXPECT_GT(lands(robot.correct(q).command), 1e-5);  // corrected for the middle of both directions
+    previous = correction.command;
+  }
+}
+
+TEST_F(ModelFile, OlderFilesStandOnALine) {
+  const auto saved = example(true);
+  save(folder_ / "m.json", saved);
+  auto document = nlohmann::ordered_json::parse(read_file(folder_ / "m.json"));
+  document["schema_version"] = 2;
+  for (auto& joint : document["coverage"]) joint.erase("periodic");
+  for (const char* arm : {"arm", "outside_arm"}) {
+    auto& errors = document[arm]["joint_errors"];
+    errors.erase("hysteresis");
+    errors.erase("linear_ranges");
+    errors["coefficients"] = errors["coefficients"].get<int>() - 12;
+    if (!errors.contains("transmission")) continue;
+    for (auto& joint : errors["transmission"]) {
+      joint["harmonics"] = joint["orders"].size();  // orders 1 .. harmonics
+      joint.erase("orders");
+    }
+  }
+  write_file(folder_ / "old.json", document.dump(1));
+  const auto loaded = load<6>(folder_ / "old.json");
+  EXPECT_EQ(loaded.model().coverage()->periodic, (std::array<bool, 6>{}));
+  const JointErrors &old = loaded.identified().model().joint_errors(), &now = saved.identified().model().joint_errors();
+  EXPECT_EQ(old.terms().transmission, now.terms().transmission);
+  EXPECT_TRUE(old.terms().hysteresis.empty() && old.terms().linear_ranges.empty());
+  EXPECT_EQ(old.coefficients().tail(50), now.coefficients().tail(50));
 }
 
 TEST_F(ModelFile, AnArmThatIsNotFiniteIsNotSaved) {

@@ -74,6 +74,30 @@ TEST_F(Correct, PosesAsTargetsGiveTheSameCommands) {
   EXPECT_NE(points.errors.find("points.csv: no columns rx_rad"), std::string::npos) << points.errors;
 }
 
+TEST_F(Correct, EachCommandComesFromTheOneBefore) {
+  JointTerms terms(6);
+  terms.hysteresis = {0.02};
+  const JointErrors hysteresis(terms, VectorX::Constant(6, 1e-4));
+  const Model model(catalogue_.chain,
+                    Model::Arm({actual_.chain(), hysteresis}, actual_.base_frame(), actual_.tool_frame()));
+  save(folder_ / "model.json", CalibratedRobot<6>("with hysteresis", model, catalogue_.limits, {}));
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  ASSERT_EQ(correct("--targets targets.csv --out ordered.csv").exit_code, 0);
+  ASSERT_EQ(correct("--targets targets.csv --no-approach --out any.csv").exit_code, 0);
+  const auto ordered = read_joints<6>(folder_ / "ordered.csv"), any = read_joints<6>(folder_ / "any.csv");
+  // from the first target alone nobody knows where the arm comes from
+  EXPECT_EQ(ordered.row(0), any.row(0));
+  for (Index i = 1; i < 30; ++i) {
+    const Vector3 target = robot_.nominal().position(targets_.row(i).transpose());
+    const auto missed = [&](const JointRows<6>& commands) {
+      const auto arm = model.approached_from(commands.row(i - 1).transpose());
+      return (arm.position(commands.row(i).transpose()) - target).norm();
+    };
+    EXPECT_LT(missed(ordered), 1e-6);
+    EXPECT_GT(missed(any), 1e-6);
+  }
+}
+
 TEST_F(Correct, ATargetOutOfReachIsARowThatSaysSo) {
   targets_.row(3)(1) = 170 * std::numbers::pi / 180;  // joint 2 ends at 110 degrees
   targets_.row(17)(2) = 2.5;                          // joint 3 at 70

@@ -40,7 +40,7 @@ TEST(NormalEquations, EqualThePlainProductsOnEveryInstructionSet) {
         layer.outputs(x, theta, h);
         const MatrixX gram = h.transpose() * h, right = t.transpose() * h;
         for (const InstructionSet set : vernier_test::instruction_sets()) {
-          detail::NormalEquations equations(layer, x, t, set);
+          detail::LayerEquations equations(layer, x, t, set);
           equations.form(theta);
           equations.form(theta);  // nothing is left over from before
           const MatrixX difference = MatrixX(equations.gram()) - gram;

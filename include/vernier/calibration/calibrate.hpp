@@ -184,6 +184,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
   for (const auto& data : poses) append(data);
   for (const auto& data : wires) append(data);
   out.coverage = JointCoverage<N>::covering(measured);
+  for (int i = 0; i < N; ++i)
+    out.coverage.periodic[static_cast<std::size_t>(i)] = nominal.model().row(i).joint == JointType::revolute;
   if (!residuals.empty()) {
     const Eigen::Map<const VectorX> e(residuals.data(), static_cast<Index>(residuals.size()));
     out.median_error = ErrorStatistics::of(e).median;

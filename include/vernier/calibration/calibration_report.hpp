@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/error_model/error_model_estimate.hpp"
+#include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/least_squares/loss.hpp"
 
@@ -33,8 +33,11 @@ struct JointReport {
   std::vector<double> held_out{};                            ///< joint values of the held-out poses [rad, m]
   std::vector<std::pair<double, double>> measured_ranges{};  ///< [rad, m]
   std::vector<double> angle{};                               ///< over the measured ranges [rad, m]
-  VectorX transmission;      ///< what the transmission adds there, mean subtracted [rad]
-  VectorX transmission_std;  ///< its standard deviation [rad]
+  VectorX transmission;                      ///< what the transmission adds there, mean subtracted [rad]
+  VectorX transmission_std;                  ///< its standard deviation [rad]
+  std::vector<HarmonicEstimate> spectrum{};  ///< of the transmission; empty where it has none
+  std::vector<HarmonicEstimate> lines{};     ///< its orders above noise, the largest first
+  JointDrive drive{};                        ///< as far as it was stated
 };
 
 /// A weakly determined parameter, and poses that would determine it.

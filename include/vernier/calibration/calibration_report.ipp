@@ -8,6 +8,7 @@
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/evaluation/statistics.hpp"
 
 namespace vernier {
@@ -107,6 +108,9 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
       {"approach",
        {"Hysteresis by the direction of approach helps ",
         "Hysteresis is left out: errors do not depend on the direction of approach "}},
+      {"lines",
+       {"Orders that stand out of what the model left help ",
+        "Orders that stand out of what the model left are left out "}},
       {"drift", {"The base drifted during the session ", "No drift of the base is noticeable "}},
       {"tuned_priors", {"Optimised priors help ", "Optimised priors are left out: they do not help "}}};
   const auto& [helps, does_not] = texts.at(block.name);
@@ -137,6 +141,21 @@ VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vec
   return out + message("; ", advice.poses.size(), " of them reduce it to ", brief(advice.std_then * 1e3), ".");
 }
 
+/// Lines of a joint's gear and encoder, which errors of its assembly do not reach; empty where there are none.
+VERNIER_API std::string describe_lines(const JointReport& joint, std::size_t number) {
+  constexpr int assembly = 28;
+  constexpr int most = 3;
+  std::string out;
+  int count = 0;
+  for (const HarmonicEstimate& line : joint.lines) {
+    if (line.order <= assembly || ++count > most) continue;
+    out += message(out.empty() ? message("Joint ", number, ": ") : "; ", std::llround(line.amplitude * 1e6),
+                   " urad (+-", std::llround(line.margin() * 1e6), ") at order ", line.order);
+    if (const std::string cause = cause_of(line.order, joint.drive); !cause.empty()) out += ", " + cause;
+  }
+  return out.empty() ? out : out + ".";
+}
+
 }  // namespace detail
 
 VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
@@ -144,6 +163,8 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   detail::describe_accuracy(*this, out);
   out.push_back(detail::describe_ranges(joints));
   for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (std::string lines = detail::describe_lines(joints[j], j + 1); !lines.empty()) out.push_back(std::move(lines));
   for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, joints, oriented));
   if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size())
     out.push_back(message(weak - advice.size(), advice.empty() ? "" : " more",

@@ -20,8 +20,8 @@ namespace detail {
 /// Whether an error lies within the 95 % ellipsoid of a covariance.
 VERNIER_API bool within_ellipsoid(const Vector3& error, const Matrix3& covariance);
 
-/// Sampled transmission of a joint over its measured ranges.
-VERNIER_API void sample_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out);
+/// Transmission of a joint: sampled over its measured ranges, and its spectrum.
+VERNIER_API void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out);
 
 /// A vector of one value a pose of all stations, one station after the other.
 template <int N, class F>
@@ -151,7 +151,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
       joint.held_out.insert(joint.held_out.end(), data.joints().col(j).begin(), data.joints().col(j).end());
     for (const auto& range : calibration.coverage.ranges[static_cast<std::size_t>(j)])
       joint.measured_ranges.emplace_back(range.lower, range.upper);
-    detail::sample_transmission(errors, j, joint);
+    detail::describe_transmission(errors, j, joint);
     out.joints.push_back(std::move(joint));
   }
   out.advice = pose_advice(errors, out.identification, limits, calibration.sensors, out.oriented);

@@ -10,10 +10,15 @@ VERNIER_IMPL bool within_ellipsoid(const Vector3& error, const Matrix3& covarian
   return error.dot(covariance.inverse() * error) <= 7.8147;  // 95 % of chi squared with 3 degrees of freedom
 }
 
-VERNIER_IMPL void sample_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {
+VERNIER_IMPL void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {
   for (const auto& [lower, upper] : out.measured_ranges)
     for (int k = 0; k <= 360; ++k) out.angle.push_back(lower + (upper - lower) * k / 360);
   if (out.angle.empty()) return;
+  out.spectrum = joint_spectrum(estimate, joint);
+  Index trials = 0;
+  for (const Fourier& fourier : estimate.arm.terms().transmission) trials += fourier.size() / 2;
+  out.lines = lines_in(out.spectrum, line_threshold(trials));
+  if (!estimate.drives.empty()) out.drive = estimate.drives[static_cast<std::size_t>(joint)];
   JointFunction f = estimate.transmission(joint, out.angle);
   out.transmission = std::move(f.value);
   out.transmission_std = std::move(f.std);

@@ -35,23 +35,12 @@ class CartesianCorrected {
   /// Share of the learned correction that is used at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gate_(q); }
 
-  /// Tool position [m], base frame.
-  Vector3 position(const JointVector<dof>& q) const noexcept {
-    return model_.position(q) - gate_(q) * learned_.predict(q);
-  }
-  /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept {
-    Isometry3 pose = model_.pose(q);
-    pose.translation() -= gate_(q) * learned_.predict(q);
-    return pose;
-  }
-  /// Geometric Jacobian, 6 x N, see `Jacobian`.
-  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
-  /// Both in one pass.
-  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    PoseAndJacobian<dof> out = model_.pose_and_jacobian(q);
+  /// The learned error at q, `gate(q) f(q)` [m].
+  Vector3 error(const JointVector<dof>& q) const noexcept { return gate_(q) * learned_.predict(q); }
+  /// Takes the learned error off a pose and Jacobian at q: of the model, or of the same arm in more detail.
+  void correct(const JointVector<dof>& q, PoseAndJacobian<dof>& at) const noexcept {
     const double gate = gate_(q);
-    if (gate == 0) return out;
+    if (gate == 0) return;
     Vector3 error;
     Eigen::Matrix<double, 3, dof> slope;
     if constexpr (requires { learned_.predict_and_derivative(q); }) {
@@ -60,8 +49,24 @@ class CartesianCorrected {
       error = learned_.predict(q);
       slope = learned_.derivative(q);
     }
-    out.pose.translation() -= gate * error;
-    out.jacobian.template topRows<3>() -= gate * slope + error * gate_.derivative(q);
+    at.pose.translation() -= gate * error;
+    at.jacobian.template topRows<3>() -= gate * slope + error * gate_.derivative(q);
+  }
+
+  /// Tool position [m], base frame.
+  Vector3 position(const JointVector<dof>& q) const noexcept { return model_.position(q) - error(q); }
+  /// base_T_tool.
+  Isometry3 pose(const JointVector<dof>& q) const noexcept {
+    Isometry3 pose = model_.pose(q);
+    pose.translation() -= error(q);
+    return pose;
+  }
+  /// Geometric Jacobian, 6 x N, see `Jacobian`.
+  Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  /// Both in one pass.
+  PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
+    PoseAndJacobian<dof> out = model_.pose_and_jacobian(q);
+    correct(q, out);
     return out;
   }
 

@@ -46,6 +46,15 @@ enum class JointType { revolute, prismatic };
 template <int N>
 using JointVector = Eigen::Matrix<double, N, 1>;
 
+/// A closed range of joint values [rad, m].
+struct JointRange {
+  double lower;  ///< minimum
+  double upper;  ///< maximum
+
+  /// Equal at both ends.
+  bool operator==(const JointRange&) const = default;
+};
+
 /// Joint values of n configurations, n x N.
 template <int N>
 using JointRows = Eigen::Matrix<double, Eigen::Dynamic, N>;

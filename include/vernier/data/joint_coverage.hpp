@@ -11,15 +11,6 @@
 
 namespace vernier {
 
-/// A closed range of joint values [rad, m].
-struct JointRange {
-  double lower;  ///< minimum
-  double upper;  ///< maximum
-
-  /// Equal at both ends.
-  bool operator==(const JointRange&) const = default;
-};
-
 namespace detail {
 
 /// Ranges of the measured values of one joint, and the margin.
@@ -29,16 +20,21 @@ VERNIER_API std::vector<JointRange> covered_ranges(const ConstVectorRef& values,
 struct GateFactor {
   double value, slope;
 };
-VERNIER_API GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, double q) noexcept;
+/// @param periodic whether ranges are known a turn away, too
+VERNIER_API GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, bool periodic,
+                                   double q) noexcept;
 
 }  // namespace detail
 
 /// The measured ranges of each joint, as a gate: 1 where every joint lies within one of its ranges, decreasing smoothly
-/// (cubic) to 0 where one joint is `margin` away from all of its own. A joint without ranges has no effect.
+/// (cubic) to 0 where one joint is `margin` away from all of its own. Between ranges of at most two margins apart it is
+/// 1. A joint without ranges has no effect. For what is periodic in a joint's angle the gate stands on a circle: an
+/// angle counts as measured where it was, whole turns away.
 template <int N>
 struct JointCoverage {
   std::array<std::vector<JointRange>, N> ranges{};      ///< ascending, more than two margins apart
   JointVector<N> margin = JointVector<N>::Constant(1);  ///< width of the transition [rad, m], > 0
+  std::array<bool, N> periodic{};                       ///< whether an angle is known whole turns away, too
 
   /// The ranges of n measured joints. The margin is a tenth of a joint's total range, at least 0.02; values closer than
   /// two margins belong to one range; every range is widened by 3/n of the total (the extremes of n random values fall
@@ -73,7 +69,8 @@ struct JointCoverage {
 
  private:
   detail::GateFactor factor(int i, double q) const noexcept {
-    return detail::gate_factor(ranges[static_cast<std::size_t>(i)], margin(i), q);
+    return detail::gate_factor(ranges[static_cast<std::size_t>(i)], margin(i), periodic[static_cast<std::size_t>(i)],
+                               q);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace vernier::detail {
 
@@ -23,17 +24,23 @@ VERNIER_IMPL std::vector<JointRange> covered_ranges(const ConstVectorRef& values
   return ranges;
 }
 
-VERNIER_IMPL GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, double q) noexcept {
+VERNIER_IMPL GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, bool periodic,
+                                    double q) noexcept {
   if (ranges.empty()) return {1, 0};
-  double nearest = std::numeric_limits<double>::infinity();  // signed distance: positive above an upper end
+  constexpr double turn = 2 * std::numbers::pi, infinity = std::numeric_limits<double>::infinity();
+  double above = infinity, below = infinity;  // distances to the nearest range on either side
   for (const JointRange& range : ranges) {
-    const double beyond = q > range.upper ? q - range.upper : std::min(0.0, q - range.lower);
-    if (!(std::abs(beyond) >= std::abs(nearest))) nearest = beyond;
+    // the distance up from the lower end, on the circle that within a turn
+    const double length = range.upper - range.lower, from_lower = q - range.lower;
+    const double turned = periodic ? from_lower - turn * std::floor(from_lower / turn) : from_lower;
+    if (turned >= 0 && turned <= length) return {1, 0};
+    if (periodic || turned > length) below = std::min(below, turned - length);
+    if (periodic || turned < 0) above = std::min(above, periodic ? turn - turned : -turned);
   }
-  const double outside = std::abs(nearest) / margin;
-  if (outside <= 0) return {1, 0};
+  if (above + below <= 2 * margin) return {1, 0};
+  const double outside = std::min(above, below) / margin;
   if (!(outside < 1)) return {0, 0};
-  return {1 - outside * outside * (3 - 2 * outside), -6 * outside * (1 - outside) * (nearest > 0 ? 1 : -1) / margin};
+  return {1 - outside * outside * (3 - 2 * outside), 6 * outside * (1 - outside) * (above < below ? 1 : -1) / margin};
 }
 
 }  // namespace vernier::detail

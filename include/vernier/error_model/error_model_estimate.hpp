@@ -9,6 +9,7 @@
 
 #include "vernier/identification/arm_parameterisation.hpp"
 #include "vernier/identification/session_drift.hpp"
+#include "vernier/kinematics/joint_drive.hpp"
 
 namespace vernier {
 
@@ -39,8 +40,10 @@ struct ErrorModelEstimate {
   double orientation_sigma = 0;       ///< of a visit, per component [rad]; 0 for positions alone
   double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions [m]
   std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
+  std::vector<JointDrive> drives{};   ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;            ///< the unknowns and their estimates
   MatrixX covariance{};               ///< of all unknowns, in units of their scales
+  double variance_factor = 1;         ///< covariance divided by the inverse of the normal equations' matrix
 
   /// See `JointFunction`.
   /// @param joint  from 0

@@ -4,6 +4,7 @@
 /// Which joint errors an error model may have, and their expected sizes.
 
 #include "vernier/error_terms/fourier.hpp"
+#include "vernier/kinematics/joint_drive.hpp"
 
 namespace vernier {
 
@@ -15,6 +16,8 @@ struct ErrorModelOptions {
   bool coupling = true;    ///< joint errors proportional to the value of the joint before; likewise
   int harmonics = 500;     ///< highest order of the Fourier terms of each joint, 60 for fewer than 400 poses; 0: none
   HarmonicSpectrum spectrum = typical_spectrum();  ///< orders of the Fourier terms, and their expected sizes
+  std::vector<JointDrive> drives{};     ///< gears and encoders, one a joint: their orders are added; empty: unknown
+  bool find_lines = true;               ///< search for further orders up to 2,500, from 400 poses on
   bool tool_per_station = false;        ///< every station has its own tool frame, not only its own base frame
   Vector3 down{0, 0, -1};               ///< direction of gravity in the arm's base frame
   double compliance_prior_std = 1e-3;   ///< expected product of compliance and weight [rad/m]

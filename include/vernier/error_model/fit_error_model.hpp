@@ -66,7 +66,9 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
   detail::ErrorModelOutput found = detail::fit_error_model(input, options, sensors, search);
 
   FittedErrorModel<Chain> out(std::move(found.estimate));
-  const auto coverage = JointCoverage<N>::covering(found.joints);
+  auto coverage = JointCoverage<N>::covering(found.joints);
+  for (int i = 0; i < N; ++i)
+    coverage.periodic[static_cast<std::size_t>(i)] = nominal.row(i).joint == JointType::revolute;
   for (std::size_t s = 0; s < found.all.size(); ++s) {
     out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
     out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});

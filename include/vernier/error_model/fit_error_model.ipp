@@ -6,8 +6,11 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/error_model/detail/periodogram.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/error_model/joint_spectrum.hpp"
+#include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
@@ -62,6 +65,16 @@ VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInp
   return out;
 }
 
+/// The expected spectrum of each joint, with the lines of its drive.
+VERNIER_API std::vector<HarmonicSpectrum> spectra_of(const ErrorModelOptions& options, int joints) {
+  require(options.drives.empty() || options.drives.size() == static_cast<std::size_t>(joints),
+          "fit_error_model: drives of ", options.drives.size(), " joints for an arm of ", joints);
+  std::vector<HarmonicSpectrum> out(static_cast<std::size_t>(joints), options.spectrum);
+  for (std::size_t j = 0; j < options.drives.size(); ++j)
+    for (const HarmonicBand& line : lines_of(options.drives[j])) out[j].push_back(line);
+  return out;
+}
+
 VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input) {
   std::vector<Station> out = input.poses;
   out.insert(out.end(), input.distances.begin(), input.distances.end());
@@ -74,6 +87,7 @@ class ErrorModelFit {
   VERNIER_API ErrorModelFit(const ErrorModelInput& input, const ErrorModelOptions& options, const SensorModel& sensors)
       : input_(input),
         options_(options),
+        spectra_(spectra_of(options, input.nominal.joints())),
         problem_(ArmParameterisation(starting_arms(input), geometric_unknowns(input, options)), joined_stations(input),
                  sensors.loss),
         stride_(std::max<Index>(1, problem_.num_validation_blocks() / options.num_validation_poses)) {}
@@ -92,7 +106,8 @@ class ErrorModelFit {
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
       if (input_.nominal.revolute(j))
-        all.transmission[static_cast<std::size_t>(j)] = orders_of(options_.spectrum, highest_order());
+        all.transmission[static_cast<std::size_t>(j)] =
+            orders_of(spectra_[static_cast<std::size_t>(j)], highest_order());
     out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all, true);
     if (out.jointwise) {
       estimate.fallback_error = estimate.blocks.back().without;
@@ -100,6 +115,10 @@ class ErrorModelFit {
       // linear in the joints, so they extrapolate far beyond the measured ranges: only beside terms that do not
       all.gear_ratio = options_.gear_ratio;
       all.coupling = options_.coupling;
+      all.linear_ranges.clear();
+      const MatrixX joints = problem_.joints();
+      for (Index j = 0; j < joints.cols(); ++j)
+        all.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
       if ((all.gear_ratio || all.coupling) && add(estimate, "gears", all, true)) learn_spectrum(estimate, 8);
       if (elastic.size() > 0) {  // deflection is clearer once all else is modelled
         estimate.blocks.push_back(choose_by_evidence("elastic_with_jointwise", gravity()));
@@ -118,9 +137,12 @@ class ErrorModelFit {
       learn_spectrum(estimate, 4);
       estimate.converged = problem_.solve() && estimate.converged;
     }
+    if (out.jointwise && options_.find_lines && find_lines(estimate))
+      estimate.converged = problem_.solve() && estimate.converged;
     out.estimate.drift = problem_.drift;
     out.all = arms();
     out.joints = problem_.joints();
+    estimate.drives = options_.drives;
     estimate.arm = problem_.arm;
     assess(estimate);
     return out;
@@ -146,10 +168,19 @@ class ErrorModelFit {
           case JointTermBlock::Kind::gravity: std = options_.compliance_prior_std; break;
           case JointTermBlock::Kind::hysteresis: std = options_.hysteresis_prior_std; break;
           case JointTermBlock::Kind::transmission:
-            std = expected_std(options_.spectrum, terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
+            std = expected_std(spectra_[static_cast<std::size_t>(block.joint)],
+                               terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
             break;
         }
       }
+    return out;
+  }
+
+  /// Precisions of terms, those that were there before as they were, others 1.
+  VERNIER_API static VectorX carried_over(const JointTerms& terms, const JointTerms& before,
+                                          const VectorX& precisions) {
+    VectorX out = VectorX::Ones(terms.size());
+    visit_common_terms(before, terms, [&](Index old, Index now) { out(now) = precisions(old); });
     return out;
   }
 
@@ -158,20 +189,16 @@ class ErrorModelFit {
   VERNIER_API bool add(ErrorModelEstimate& estimate, const char* name, const JointTerms& terms, bool by_evidence) {
     const ArmParameterisation before = problem_.arm;
     const VectorX old_precisions = before.precisions().tail(before.terms().size());
-    VectorX precisions = VectorX::Ones(terms.size());
     Index first = terms.size(), count = 0;  // of the additional coefficients, which are contiguous
     for (const JointTermBlock& now : terms.blocks()) {
       bool known = false;
-      for (const JointTermBlock& old : before.terms().blocks()) {
-        if (old.kind != now.kind || old.joint != now.joint) continue;
-        precisions.segment(now.begin, now.count) = old_precisions.segment(old.begin, old.count);
-        known = true;
-      }
+      for (const JointTermBlock& old : before.terms().blocks())
+        known = known || (old.kind == now.kind && old.joint == now.joint);
       if (known) continue;
       first = std::min(first, now.begin);
       count += now.count;
     }
-    problem_.arm.set_terms(terms, prior_stds(terms), precisions);
+    problem_.arm.set_terms(terms, prior_stds(terms), carried_over(terms, before.terms(), old_precisions));
     estimate.blocks.push_back(by_evidence ? choose_by_evidence(name, unknowns(first, count))
                                           : choose(name, first, count));
     if (!estimate.blocks.back().used) {
@@ -265,8 +292,10 @@ class ErrorModelFit {
     const Linearised at = linearised();
     const Index values = problem_.measured_values();
     std::vector<int> edges{1};
-    for (const HarmonicBand& band : options_.spectrum) edges.insert(edges.end(), {band.first, band.last + 1});
+    for (const HarmonicSpectrum& spectrum : spectra_)
+      for (const HarmonicBand& band : spectrum) edges.insert(edges.end(), {band.first, band.last + 1});
     std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     std::vector<UnknownGroup> bands;
     for (std::size_t i = 0; i + 1 < edges.size(); ++i)
       if (auto band = harmonics(edges[i], edges[i + 1] - 1); !band.empty()) bands.push_back(std::move(band));
@@ -285,6 +314,74 @@ class ErrorModelFit {
     problem_.arm.set_precisions(precisions.tail(problem_.arm.terms().size()));
     for (BlockChoice& block : estimate.blocks)
       if (block.name == "jointwise") block.precision = precisions(bands.front().front());
+  }
+
+  /// Adds orders that stand out of what the model leaves, if leave-one-pose-out errors support them.
+  VERNIER_API bool find_lines(ErrorModelEstimate& estimate) {
+    constexpr Index enough = 400;
+    constexpr int highest = 2500;
+    constexpr double expected = 7e-6;
+    if (problem_.num_blocks() < enough) return false;
+    const std::vector<std::vector<int>> found = lines_beyond(highest);
+    JointTerms terms = problem_.arm.terms();
+    const JointTerms before = terms;
+    bool any = false;
+    for (std::size_t j = 0; j < found.size(); ++j)
+      for (const int order : found[j]) {
+        auto& orders = terms.transmission[j].orders;
+        orders.insert(std::lower_bound(orders.begin(), orders.end(), order), order);
+        spectra_[j].push_back({order, order, expected});
+        any = true;
+      }
+    if (!any) return false;
+    const ArmParameterisation without = problem_.arm;
+    problem_.arm.set_terms(terms, prior_stds(terms),
+                           carried_over(terms, without.terms(), without.precisions().tail(before.size())));
+    UnknownGroup added;
+    const Index geometric = static_cast<Index>(problem_.arm.geometric().size());
+    for (std::size_t j = 0; j < found.size(); ++j)
+      for (Index k = 0; k < terms.transmission[j].size(); ++k) {
+        const int order = terms.transmission[j].order(k);
+        if (std::find(found[j].begin(), found[j].end(), order) != found[j].end())
+          added.push_back(geometric + terms.transmission_begin(static_cast<int>(j)) + k);
+      }
+    estimate.blocks.push_back(choose_by_evidence("lines", added));
+    if (!estimate.blocks.back().used) problem_.arm = without;
+    return estimate.blocks.back().used;
+  }
+
+  /// Orders of each joint that are not in the model and stand out of what it leaves.
+  VERNIER_API std::vector<std::vector<int>> lines_beyond(int highest) const {
+    const Linearised at = linearised();
+    const JointTerms& terms = problem_.arm.terms();
+    const VectorX precisions = problem_.arm.precisions();
+    const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
+    const double explained = static_cast<double>(precisions.size()) - solved.inverse_diagonal().dot(precisions);
+    const double values = static_cast<double>(problem_.measured_values());
+    const double variance = at.normal.cost / std::max(1.0, values - explained);
+    const Index joints = terms.joints;
+    MatrixX score = MatrixX::Zero(at.system.blocks, joints), weight = score;
+    visit_blocks(at.system, 0, 1, at.system.blocks, [&](Index b, const RowBlock& rows) {
+      for (Index j = 0; j < rows.factor.cols(); ++j) {
+        score(b, j) = rows.factor.col(j).dot(rows.residual);
+        weight(b, j) = rows.factor.col(j).squaredNorm();
+      }
+    });
+    const MatrixX angles = problem_.joints();
+    const double threshold = line_threshold(joints * highest);
+    std::vector<std::vector<int>> out(static_cast<std::size_t>(joints));
+    for (Index j = 0; j < joints; ++j) {
+      const std::vector<int>& known = terms.transmission[static_cast<std::size_t>(j)].orders;
+      if (known.empty() || !tells_orders_apart(angles.col(j), weight.col(j), highest)) continue;
+      const VectorX power = periodogram(angles.col(j), score.col(j), weight.col(j), highest) / variance;
+      std::vector<HarmonicEstimate> spectrum;
+      for (int order = 1; order <= highest; ++order)
+        if (!std::binary_search(known.begin(), known.end(), order))
+          spectrum.push_back({order, power(order - 1), 0, power(order - 1)});
+      for (const HarmonicEstimate& line : lines_in(spectrum, threshold))
+        if (out[static_cast<std::size_t>(j)].size() < 8) out[static_cast<std::size_t>(j)].push_back(line.order);
+    }
+    return out;
   }
 
   /// Lets the bases drift, if leave-one-pose-out errors support that.
@@ -356,7 +453,8 @@ class ErrorModelFit {
     const double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
     const double values = static_cast<double>(problem_.measured_values());
     const double freedom = std::max(1.0, values - explained);
-    estimate.covariance *= at.normal.cost / freedom;
+    estimate.variance_factor = at.normal.cost / freedom;
+    estimate.covariance *= estimate.variance_factor;
 
     // leave-one-pose-out errors contain the noise of a visit and the uncertainty of the unknowns
     Rows6 all(6, p);
@@ -399,10 +497,12 @@ class ErrorModelFit {
     estimate.position_sigma = noise.position;
     estimate.joint_sigma = noise.joint;
     estimate.covariance *= noise.model;
+    estimate.variance_factor *= noise.model;
   }
 
   const ErrorModelInput& input_;
   const ErrorModelOptions& options_;
+  std::vector<HarmonicSpectrum> spectra_;  ///< of each joint, with the lines of its drive and those that were found
   CalibrationProblem problem_;
   Index stride_;
 };

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/function_ref.hpp"
 #include "vernier/error_terms/detail/harmonic_table.hpp"
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"
@@ -26,8 +27,8 @@ struct JointTermBlock {
 
 /// Which joint errors there are: `dq(q) = Phi(q) beta`, Phi one column a coefficient. Blocks, in the order of the
 /// coefficients; each may be absent:
-/// - gear ratio: `dq_i = rho_i q_i`
-/// - coupling: `dq_i = kappa_i q_(i-1)`, i >= 2
+/// - gear ratio: `dq_i = rho_i q_i`; outside `linear_ranges` as at their nearest end
+/// - coupling: `dq_i = kappa_i q_(i-1)`, i >= 2; likewise
 /// - gravity compliance: see `GravityCompliance`
 /// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
 ///   that is unknown, which is the mean of both directions
@@ -37,8 +38,10 @@ struct JointTerms {
   bool gear_ratio = false;                     ///< present?
   bool coupling = false;                       ///< present?
   std::optional<GravityCompliance> gravity{};  ///< present?
-  std::vector<double> hysteresis{};            ///< widths w of its steps [rad, m]; for every joint the same
-  std::vector<Fourier> transmission{};         ///< of each joint; may have no functions
+  /// Where gear ratios and couplings are known, of each joint [rad, m]; empty for everywhere.
+  std::vector<JointRange> linear_ranges{};
+  std::vector<double> hysteresis{};     ///< widths w of its steps [rad, m]; for every joint the same
+  std::vector<Fourier> transmission{};  ///< of each joint; may have no functions
 
   /// No terms.
   JointTerms() = default;
@@ -59,6 +62,12 @@ struct JointTerms {
   }
   /// Number of coefficients.
   Index size() const { return transmission_begin(joints); }
+  /// A joint's value as gear ratio and coupling see it: within the range where they are known.
+  double linear_value(int joint, double q) const noexcept {
+    if (linear_ranges.empty()) return q;
+    const JointRange& range = linear_ranges[static_cast<std::size_t>(joint)];
+    return q < range.lower ? range.lower : q > range.upper ? range.upper : q;
+  }
   /// The blocks that are present, in the order of their coefficients.
   VERNIER_API std::vector<JointTermBlock> blocks() const;
 
@@ -73,6 +82,14 @@ struct JointTerms {
   /// harmonic 12).
   VERNIER_API std::vector<std::string> names() const;
 };
+
+namespace detail {
+
+/// Calls `f(a, b)` for the coefficients that two sets of terms have in common: a of the first, b of the second.
+VERNIER_API void visit_common_terms(const JointTerms& first, const JointTerms& second,
+                                    FunctionRef<void(Index a, Index b)> f);
+
+}  // namespace detail
 
 /// Joint errors with their coefficients: the map from commanded to effective joint values.
 class JointErrors {

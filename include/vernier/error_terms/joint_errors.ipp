@@ -17,13 +17,35 @@ inline double step_of(const double* q, const double* previous, int joint, double
 
 }  // namespace detail
 
+VERNIER_IMPL void detail::visit_common_terms(const JointTerms& first, const JointTerms& second,
+                                             FunctionRef<void(Index a, Index b)> f) {
+  for (const JointTermBlock& a : first.blocks())
+    for (const JointTermBlock& b : second.blocks()) {
+      if (a.kind != b.kind || a.joint != b.joint) continue;
+      if (a.joint < 0) {
+        for (Index k = 0; k < std::min(a.count, b.count); ++k) f(a.begin + k, b.begin + k);
+        continue;
+      }
+      const Fourier &before = first.transmission[static_cast<std::size_t>(a.joint)],
+                    &now = second.transmission[static_cast<std::size_t>(a.joint)];
+      for (Index k = 0, l = 0; k < a.count && l < b.count;) {
+        if (before.order(k) == now.order(l))
+          f(a.begin + k++, b.begin + l++);
+        else if (before.order(k) < now.order(l))
+          ++k;
+        else
+          ++l;
+      }
+    }
+}
+
 VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept {
   out.setZero();
   Index at = 0;
   if (gear_ratio)
-    for (int i = 0; i < joints; ++i) out(i, at++) = q[i];
+    for (int i = 0; i < joints; ++i) out(i, at++) = linear_value(i, q[i]);
   if (coupling)
-    for (int i = 1; i < joints; ++i) out(i, at++) = q[i - 1];
+    for (int i = 1; i < joints; ++i) out(i, at++) = linear_value(i - 1, q[i - 1]);
   if (gravity) {
     gravity->basis(q, out.middleCols(at, gravity->size()));
     at += gravity->size();
@@ -71,6 +93,10 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
   require(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
           terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
+  require(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
+          "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
+  for (const JointRange& range : terms_.linear_ranges)
+    require(range.lower <= range.upper, "JointErrors: a linear range ends at ", range.upper, ", below its start");
   for (const double width : terms_.hysteresis)
     require(width > 0 && std::isfinite(width), "JointErrors: a width of the hysteresis is ", width,
             ", must be positive");
@@ -90,15 +116,17 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
   const double* beta = coefficients_.data();
   if (terms_.gear_ratio) {
     for (int i = 0; i < n; ++i) {
-      effective[i] += beta[i] * q[i];
-      derivative[i * n + i] += beta[i];
+      const double linear = terms_.linear_value(i, q[i]);
+      effective[i] += beta[i] * linear;
+      if (linear == q[i]) derivative[i * n + i] += beta[i];
     }
     beta += n;
   }
   if (terms_.coupling) {
     for (int i = 1; i < n; ++i) {
-      effective[i] += beta[i - 1] * q[i - 1];
-      derivative[(i - 1) * n + i] += beta[i - 1];
+      const double linear = terms_.linear_value(i - 1, q[i - 1]);
+      effective[i] += beta[i - 1] * linear;
+      if (linear == q[i - 1]) derivative[(i - 1) * n + i] += beta[i - 1];
     }
     beta += n - 1;
   }

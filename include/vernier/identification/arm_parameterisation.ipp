@@ -17,11 +17,8 @@ VERNIER_IMPL ArmParameterisation::ArmParameterisation(std::vector<ArmGeometry> a
 
 VERNIER_IMPL void ArmParameterisation::set_terms(JointTerms terms, VectorX scales, VectorX precisions) {
   VectorX coefficients = VectorX::Zero(terms.size());
-  for (const JointTermBlock& now : terms.blocks())
-    for (const JointTermBlock& before : errors_.terms().blocks())
-      if (before.kind == now.kind && before.joint == now.joint)
-        coefficients.segment(now.begin, std::min(now.count, before.count)) =
-            errors_.coefficients().segment(before.begin, std::min(now.count, before.count));
+  detail::visit_common_terms(errors_.terms(), terms,
+                             [&](Index before, Index now) { coefficients(now) = errors_.coefficients()(before); });
   errors_ = JointErrors(std::move(terms), std::move(coefficients));
   coefficient_scales_ = std::move(scales);
   coefficient_precisions_ = std::move(precisions);

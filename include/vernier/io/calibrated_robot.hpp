@@ -4,6 +4,7 @@
 /// A calibrated arm as one closed value: everything that is needed to correct its commands, saved and loaded as JSON.
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -110,31 +111,72 @@ class CalibratedRobot {
 
   /// The pose the arm takes when commanded q.
   Isometry3 predict(const JointVector<N>& q) const noexcept { return pose(q); }
-  /// The command that brings the arm where the nominal one would be at q.
-  [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return compensated().correct(q); }
+  /// The command that brings the arm where the nominal one would be at q, from either direction of approach.
+  [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return correct(q, unknown()); }
+  /// The same for the approach from known joint values.
+  /// @param previous the command before [rad, m]; not finite where unknown
+  [[nodiscard]] Correction<N> correct(const JointVector<N>& q, const JointVector<N>& previous) const noexcept {
+    return compensated(previous).correct(q);
+  }
   /// The command that brings the arm to a pose in the frame of the measurements.
   /// @param target the pose
   /// @param seed   joints near the solution; they choose the branch
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed) const noexcept {
-    return compensated().correct(target, seed);
+    return correct(target, seed, unknown());
   }
+  /// The same for the approach from known joint values.
+  /// @param previous the command before [rad, m]; not finite where unknown
+  [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
+                                      const JointVector<N>& previous) const noexcept {
+    return compensated(previous).correct(target, seed);
+  }
+
+  /// The arm as it comes from known joint values: a kinematic model that refers to the robot, which must outlive it.
+  class Approached {
+   public:
+    /// Number of joints.
+    static constexpr int dof = N;
+
+    /// @param robot    seen through this; must outlive it
+    /// @param previous joint values from which it moves to the next configuration [rad, m]; not finite where unknown
+    Approached(const CalibratedRobot& robot, const JointVector<N>& previous) noexcept
+        : robot_(&robot), model_(robot.model_, previous) {}
+
+    /// base_T_tool.
+    Isometry3 pose(const JointVector<N>& q) const noexcept {
+      Isometry3 out = model_.pose(q);
+      if (robot_->corrected_) out.translation() -= robot_->corrected_->error(q);
+      return out;
+    }
+    /// Tool position [m], base frame.
+    Vector3 position(const JointVector<N>& q) const noexcept {
+      const Vector3 out = model_.position(q);
+      return robot_->corrected_ ? Vector3(out - robot_->corrected_->error(q)) : out;
+    }
+    /// Geometric Jacobian, 6 x N, see `Jacobian`.
+    Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+    /// Both in one pass.
+    PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
+      PoseAndJacobian<N> out = model_.pose_and_jacobian(q);
+      if (robot_->corrected_) robot_->corrected_->correct(q, out);
+      return out;
+    }
+    /// Share of what was learned over the joints that is used at q.
+    double gate(const JointVector<N>& q) const noexcept { return robot_->gate(q); }
+
+   private:
+    const CalibratedRobot* robot_;
+    ApproachedErrorModel<Chain> model_;
+  };
+  /// The arm as it moves to the next configuration from known joint values, with the hysteresis of its joints.
+  /// @param previous joint values [rad, m]
+  Approached approached_from(const JointVector<N>& previous) const noexcept { return {*this, previous}; }
 
  private:
-  /// This arm by reference: one inverse kinematics serves it with and without a learned part.
-  struct Reference {
-    static constexpr int dof = N;
-    const CalibratedRobot* robot;
-
-    Isometry3 pose(const JointVector<N>& q) const noexcept { return robot->pose(q); }
-    Vector3 position(const JointVector<N>& q) const noexcept { return robot->position(q); }
-    Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return robot->jacobian(q); }
-    PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept { return robot->pose_and_jacobian(q); }
-    double gate(const JointVector<N>& q) const noexcept { return robot->gate(q); }
-  };
-
-  Compensated<Reference, Framed<Chain>> compensated() const {
-    return Compensated<Reference, Framed<Chain>>({this}, nominal()).within(limits_);
+  Compensated<Approached, Framed<Chain>> compensated(const JointVector<N>& previous) const {
+    return Compensated<Approached, Framed<Chain>>({*this, previous}, nominal()).within(limits_);
   }
+  static JointVector<N> unknown() { return JointVector<N>::Constant(std::numeric_limits<double>::quiet_NaN()); }
 
   static typename Model::Arm by_values(const typename Model::Arm& arm) {
     return typename Model::Arm(arm.model(), FrameParameters(arm.base_frame().values()),

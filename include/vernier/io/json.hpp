@@ -57,6 +57,9 @@ class JsonNode {
   /// A finite number, at most 1e9 in magnitude.
   VERNIER_API double number() const;
 
+  /// True or false.
+  VERNIER_API bool boolean() const;
+
   /// A whole number in [lower, upper].
   VERNIER_API std::int64_t integer(std::int64_t lower, std::int64_t upper) const;
 

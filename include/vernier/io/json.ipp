@@ -94,6 +94,11 @@ VERNIER_IMPL double JsonNode::number() const {
   return out;
 }
 
+VERNIER_IMPL bool JsonNode::boolean() const {
+  if (!value_->is_boolean()) fail(std::string("must be true or false, is ") + type_name());
+  return value_->get<bool>();
+}
+
 VERNIER_IMPL std::int64_t JsonNode::integer(std::int64_t lower, std::int64_t upper) const {
   if (!value_->is_number_integer()) fail(std::string("must be a whole number, is ") + type_name());
   const bool huge = value_->is_number_unsigned() && value_->get<std::uint64_t>() > INT64_MAX;

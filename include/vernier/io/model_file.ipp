@@ -74,7 +74,9 @@ VERNIER_API OrderedJson coverage_to_json(const CoverageData& coverage) {
   for (std::size_t i = 0; i < coverage.ranges.size(); ++i) {
     OrderedJson ranges = OrderedJson::array();
     for (const JointRange& range : coverage.ranges[i]) ranges.push_back({range.lower, range.upper});
-    out.push_back({{"margin", coverage.margins(static_cast<Index>(i))}, {"ranges", std::move(ranges)}});
+    out.push_back({{"margin", coverage.margins(static_cast<Index>(i))},
+                   {"periodic", static_cast<bool>(coverage.periodic[i])},
+                   {"ranges", std::move(ranges)}});
   }
   return out;
 }
@@ -96,6 +98,7 @@ VERNIER_API CoverageData coverage_from_json(const JsonNode& node, int joints) {
       of_joint.push_back({ends(0), ends(1)});
     }
     out.ranges.push_back(std::move(of_joint));
+    out.periodic.push_back(joint.has("periodic") && joint.at("periodic").boolean());
   }
   return out;
 }
@@ -123,17 +126,31 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
     }
   }
   if (transmissions) out["transmission"] = std::move(joints);
+  if (!terms.linear_ranges.empty()) {
+    OrderedJson ranges = OrderedJson::array();
+    for (const JointRange& range : terms.linear_ranges) ranges.push_back({range.lower, range.upper});
+    out["linear_ranges"] = std::move(ranges);
+  }
   return out;
 }
 
 /// @param nominal the chain whose torques gravity compliance needs
 VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
-  node.allow_only({"coefficients", "gear_ratio", "coupling", "gravity", "hysteresis", "transmission"});
+  node.allow_only({"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "hysteresis", "transmission"});
   const auto joints = static_cast<std::size_t>(nominal.joints());
   JointTerms terms(nominal.joints());
   std::vector<VectorX> blocks;
   if ((terms.gear_ratio = node.has("gear_ratio"))) blocks.push_back(node.at("gear_ratio").numbers(joints));
   if ((terms.coupling = node.has("coupling"))) blocks.push_back(node.at("coupling").numbers(joints - 1));
+  if (node.has("linear_ranges")) {
+    node.at("linear_ranges").require_size(joints);
+    for (std::size_t i = 0; i < joints; ++i) {
+      const JsonNode range = node.at("linear_ranges").at(i);
+      const VectorX ends = range.numbers(2);
+      if (!(ends(0) <= ends(1))) range.fail("its lower end is above its upper one");
+      terms.linear_ranges.push_back({ends(0), ends(1)});
+    }
+  }
   if (node.has("gravity")) {
     const JsonNode gravity = node.at("gravity");
     const Vector3 down = gravity.at("down").numbers(3);

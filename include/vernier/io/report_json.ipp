@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/report_json.hpp"
 
@@ -33,6 +34,27 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                           {"nominal", p.nominal * 1e3},
                           {"identified", p.identified * 1e3},
                           {"std", p.std * 1e3}});
+  Json spectrum = Json::array();
+  for (std::size_t j = 0; j < report.joints.size(); ++j) {
+    const JointReport& joint = report.joints[j];
+    Json orders = Json::array(), amplitudes = Json::array(), stds = Json::array(), lines = Json::array();
+    for (const HarmonicEstimate& one : joint.spectrum) {
+      orders.push_back(one.order);
+      amplitudes.push_back(one.amplitude * 1e6);
+      stds.push_back(one.std * 1e6);
+    }
+    for (const HarmonicEstimate& line : joint.lines)
+      lines.push_back({{"order", line.order},
+                       {"amplitude_urad", line.amplitude * 1e6},
+                       {"margin_urad", line.margin() * 1e6},
+                       {"chi_square", line.chi_square},
+                       {"cause", cause_of(line.order, joint.drive)}});
+    spectrum.push_back({{"joint", j + 1},
+                        {"lines", std::move(lines)},
+                        {"orders", std::move(orders)},
+                        {"amplitudes_urad", std::move(amplitudes)},
+                        {"stds_urad", std::move(stds)}});
+  }
   const Observability& o = identification.observability;
   return {{"robot", robot},
           {"train_rows", report.train_poses},
@@ -48,6 +70,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
             {"weak", identification.names(ParameterState::weak)},
             {"strongly_correlated", identification.strongly_correlated()},
             {"observability", {{"O1", o.o1}, {"O2", o.o2}, {"O3", o.o3}, {"O4", o.o4}, {"O5", o.o5}}}}},
+          {"spectrum", spectrum},
           {"gated_rows", report.extrapolated()},
           {"worst_harm_beside_geometry_mm", report.max_degradation * 1e3},
           {"within_95_percent_ellipsoids", report.ellipsoid_coverage},

@@ -17,9 +17,10 @@ namespace vernier {
 /// A nominal arm of N joints in the standard convention.
 template <int N>
 struct DescribedRobot {
-  std::string name;         ///< its name
-  Framed<DhChain<N>> arm;   ///< the chain; its base frame is identity, or the first row of a modified chain
-  JointLimits<N> limits{};  ///< joint limits
+  std::string name;                  ///< its name
+  Framed<DhChain<N>> arm;            ///< the chain; its base frame is identity, or the first row of a modified chain
+  JointLimits<N> limits{};           ///< joint limits
+  std::vector<JointDrive> drives{};  ///< one a joint; empty where nothing is known
 };
 
 /// A nominal arm whose number of joints is only known at run time.
@@ -29,13 +30,16 @@ struct RobotDescription {
   std::vector<DhRow> rows{};                        ///< one a joint [m, rad]
   std::vector<std::pair<double, double>> limits{};  ///< lower and upper, one a joint [rad, m]; infinite where not given
 
+  std::vector<JointDrive> drives{};  ///< gears and encoders, one a joint
+
   /// Of an arm of the catalogue.
   template <int N, class Convention>
   static RobotDescription of(const Robot<N, Convention>& robot) {
-    RobotDescription out{std::string(robot.name), Convention::modified, {}, {}};
+    RobotDescription out{std::string(robot.name), Convention::modified, {}, {}, {}};
     for (int i = 0; i < N; ++i) {
       out.rows.push_back(robot.chain.row(i));
       out.limits.emplace_back(robot.limits.lower(i), robot.limits.upper(i));
+      out.drives.push_back(robot.drives[static_cast<std::size_t>(i)]);
     }
     return out;
   }
@@ -51,7 +55,7 @@ struct RobotDescription {
   template <int N>
   DescribedRobot<N> arm() const {
     require(dof() == N && limits.size() == rows.size(), "RobotDescription: ", dof(), " joints, expected ", N);
-    DescribedRobot<N> out{name, geometry().framed(DhChain<N>::from_rows({})), {}};
+    DescribedRobot<N> out{name, geometry().framed(DhChain<N>::from_rows({})), {}, drives};
     for (int i = 0; i < N; ++i) {
       out.limits.lower(i) = limits[static_cast<std::size_t>(i)].first;
       out.limits.upper(i) = limits[static_cast<std::size_t>(i)].second;
@@ -67,7 +71,8 @@ struct RobotDescription {
 ///                  "lower_deg": -165, "upper_deg": 165}, ...]}
 ///
 /// `convention` is standard or modified; `type` is revolute (by default) or prismatic, with limits in `lower_mm`,
-/// `upper_mm`; `beta_deg` and limits may be omitted; `_m` and `_rad` are accepted too. 3 to 9 joints.
+/// `upper_mm`; `beta_deg` and limits may be omitted; `_m` and `_rad` are accepted too. `gear_ratio` and
+/// `encoder_periods` (a turn of the joint) say at which orders a revolute joint may err. 3 to 9 joints.
 /// @throws DataError naming file and key
 VERNIER_API RobotDescription load_robot(const std::string& path);
 

@@ -13,9 +13,9 @@ namespace detail {
 
 /// One joint of a robot file.
 VERNIER_API void read_joint(const JsonNode& joint, RobotDescription& robot) {
-  joint.allow_only({"type", "a_mm", "a_m", "alpha_deg", "alpha_rad", "d_mm", "d_m", "theta_deg", "theta_rad",
-                    "beta_deg", "beta_rad", "lower_deg", "lower_rad", "lower_mm", "lower_m", "upper_deg", "upper_rad",
-                    "upper_mm", "upper_m"});
+  joint.allow_only({"type",      "a_mm",      "a_m",       "alpha_deg", "alpha_rad", "d_mm",       "d_m",
+                    "theta_deg", "theta_rad", "beta_deg",  "beta_rad",  "lower_deg", "lower_rad",  "lower_mm",
+                    "lower_m",   "upper_deg", "upper_rad", "upper_mm",  "upper_m",   "gear_ratio", "encoder_periods"});
   DhRow row;
   const std::string type = joint.has("type") ? joint.at("type").text() : "revolute";
   if (type != "revolute" && type != "prismatic")
@@ -37,6 +37,15 @@ VERNIER_API void read_joint(const JsonNode& joint, RobotDescription& robot) {
   if (joint.has_quantity("upper")) bounds.second = revolute ? joint.angle("upper") : joint.length("upper");
   if (!(bounds.first < bounds.second))
     joint.fail(message("lower limit ", bounds.first, " is not below upper limit ", bounds.second));
+  JointDrive drive;
+  if (joint.has("gear_ratio")) {
+    drive.gear_ratio = joint.at("gear_ratio").number();
+    if (!(drive.gear_ratio >= 1)) joint.at("gear_ratio").fail("must be at least 1");
+  }
+  if (joint.has("encoder_periods"))
+    drive.encoder_periods = static_cast<int>(joint.at("encoder_periods").integer(1, 100000));
+  if (!revolute && drive != JointDrive{}) joint.fail("gear_ratio and encoder_periods are those of a revolute joint");
+  robot.drives.push_back(drive);
   robot.rows.push_back(row);
   robot.limits.push_back(bounds);
 }

@@ -3,11 +3,13 @@
 /// @file
 /// A catalogue of nominal arms. Tables are the makers' or the literature's nominal values.
 
+#include <array>
 #include <numbers>
 #include <string_view>
 
 #include "vernier/core/literals.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
+#include "vernier/kinematics/joint_drive.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
 namespace vernier {
@@ -21,6 +23,8 @@ struct Robot {
   JointLimits<N> limits;
   /// Name in the catalogue.
   std::string_view name;
+  /// Gears and encoders of the joints, as far as they are known.
+  std::array<JointDrive, N> drives{};
 };
 
 namespace detail {

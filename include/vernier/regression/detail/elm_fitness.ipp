@@ -22,8 +22,8 @@ VERNIER_IMPL ElmFitness::ElmFitness(const HiddenLayer& layer, MatrixX features, 
 }
 
 VERNIER_IMPL void ElmFitness::operator()(const ConstMatrixRef& population, VectorRef fitness) const {
-  std::optional<NormalEquations> equations;
-  if (NormalEquations::supports(layer_.activation))
+  std::optional<LayerEquations> equations;
+  if (LayerEquations::supports(layer_.activation))
     equations.emplace(layer_, features_, targets_, widest_instruction_set(), false,
                       roots_.size() > 0 ? roots_.data() : nullptr);
   for (Index k = 0; k < population.cols(); ++k) {

@@ -20,7 +20,7 @@ class LeaveOneOutError {
  public:
   /// Whether there is a kernel for these nodes and this number of samples.
   static bool supports(const HiddenLayer& layer, Index samples) {
-    return NormalEquations::supports(layer.activation) && samples >= 2 * layer.nodes && samples >= 8;
+    return LayerEquations::supports(layer.activation) && samples >= 2 * layer.nodes && samples >= 8;
   }
 
   /// @param features samples x inputs, scaled; must outlive this
@@ -44,7 +44,7 @@ class LeaveOneOutError {
   Eigen::RowVectorXd mean_target_;
   MatrixX mean_feature_, targets_and_ones_, shift_;
   double centred_square_ = 0;
-  NormalEquations equations_;
+  LayerEquations equations_;
   std::vector<double> scratch_;
 };
 

@@ -14,7 +14,7 @@
 namespace vernier::detail {
 
 /// H'H, H'T and T'T of hidden weights, for layers of sigmoid or tanh nodes. Allocates once, in the constructor.
-class NormalEquations {
+class LayerEquations {
  public:
   /// Whether there is a kernel for such nodes.
   static bool supports(Activation activation) {
@@ -27,7 +27,7 @@ class NormalEquations {
   /// @param set      instructions to use; must be there
   /// @param keep     whether the outputs of all nodes are kept
   /// @param scale    factors of the rows of H and T, one a sample, which must outlive this; null for 1
-  VERNIER_API NormalEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
+  VERNIER_API LayerEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
                               InstructionSet set = widest_instruction_set(), bool keep = false,
                               const double* scale = nullptr);
 

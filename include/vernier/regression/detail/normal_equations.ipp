@@ -53,7 +53,7 @@ VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
   }
 }
 
-VERNIER_IMPL NormalEquations::NormalEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
+VERNIER_IMPL LayerEquations::LayerEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
                                               InstructionSet set, bool keep, const double* scale)
     : layer_(layer), features_(features), targets_(targets), set_(set), keep_(keep), scale_(scale) {
   stride_ = (layer.nodes + targets.cols() + 7) / 8 * 8;
@@ -64,7 +64,7 @@ VERNIER_IMPL NormalEquations::NormalEquations(const HiddenLayer& layer, const Ma
   products_.resize(static_cast<std::size_t>(stride_ * stride_));
 }
 
-VERNIER_IMPL void NormalEquations::form(const ConstVectorRef& theta, const double* shift) {
+VERNIER_IMPL void LayerEquations::form(const ConstVectorRef& theta, const double* shift) {
   const Index f = features_.cols();
   for (Index k = 0; k < layer_.nodes; ++k)
     for (Index j = 0; j <= f; ++j) weights_[static_cast<std::size_t>(j * stride_ + k)] = theta(k * (f + 1) + j);

@@ -23,12 +23,12 @@ VERNIER_IMPL void VarProTrainingError::operator()(const ConstMatrixRef& populati
   const double n = roots.squaredNorm(), target_square = (roots.asDiagonal() * targets_).squaredNorm();
   MatrixX ones_and_targets(targets_.rows(), targets_.cols() + 1);
   ones_and_targets << VectorX::Ones(targets_.rows()), targets_;
-  NormalEquations equations(layer_, features_, ones_and_targets, widest_instruction_set(), false,
+  LayerEquations equations(layer_, features_, ones_and_targets, widest_instruction_set(), false,
                             weights_ ? roots.data() : nullptr);
   std::optional<VariableProjection> projection;
   for (Index k = 0; k < population.cols(); ++k) {
     double objective = -1;
-    if (NormalEquations::supports(layer_.activation)) {
+    if (LayerEquations::supports(layer_.activation)) {
       equations.form(population.col(k));
       const VectorX sum = equations.right().row(0).transpose();
       MatrixX gram = equations.gram();

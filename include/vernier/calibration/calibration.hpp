@@ -38,7 +38,7 @@ struct Calibration {
   Identified<Chain> geometry;             ///< frames and geometry alone, stations joined in the frame of the first
   FittedErrorModel<Chain> errors;         ///< geometry and joint errors together
   std::optional<LearnedRemainder<dof>> geometry_remainder{};  ///< learned on geometry alone, the classical alternative
-  std::optional<LearnedRemainder<dof>> remainder{};           ///< learned on the error model
+  std::optional<LearnedRemainder<dof>> remainder{};           ///< learned on the error model, without hysteresis
   bool remainder_supported = false;                           ///< whether cross-validation supports that remainder
   JointCoverage<dof> coverage{};                              ///< measured joint ranges
   Index poses = 0;                                            ///< number of poses it was fitted to
@@ -49,7 +49,7 @@ struct Calibration {
   double median_error = 0;  ///< median position error of the poses it was fitted to [m]
   double fit_seconds = 0;   ///< time from poses to error model
 
-  /// The stage that is deployed, by name: the last one that left-out poses support.
+  /// The key of the last stage that left-out poses support: the one that is deployed. See `StageErrors`.
   const char* chosen() const {
     if (remainder_supported) return "jointwise_pso_elm";
     const char* out = "geometry";
@@ -64,7 +64,7 @@ struct Calibration {
 
 namespace detail {
 
-/// Poses as they would have been measured in the middle of both directions of approach.
+/// Measured positions less the modelled hysteresis: as the mean of both directions of approach.
 template <class Chain>
 Dataset<Chain::dof> without_hysteresis(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
   if (model.identified().model().joint_errors().terms().hysteresis.empty()) return data;

@@ -16,8 +16,9 @@ namespace vernier {
 
 /// Errors of held-out poses after a stage of the pipeline.
 struct StageErrors {
-  /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (with the direction of approach),
-  /// `jointwise_pso_elm` (on the last of them), `session` (with the session's drift, which no other session has)
+  /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
+  /// approach), `jointwise_pso_elm` (on the last of them, of positions without their hysteresis), `session` (the last
+  /// error model with the session's drift, which no other session has)
   std::string key;
   std::string title;  ///< for tables
   VectorX position;   ///< [m]
@@ -52,7 +53,7 @@ struct PoseAdvice {
 /// A calibration, assessed.
 struct CalibrationReport {
   IdentificationReport identification;  ///< of the geometry
-  std::vector<BlockChoice> blocks{};    ///< decisions on the joint errors
+  std::vector<BlockChoice> blocks{};    ///< decisions on joint errors and drift
   Index train_poses = 0;                ///< poses it was fitted to
   Index distances = 0;                  ///< distances it was fitted to
   std::vector<StageErrors> stages{};    ///< of the held-out poses, in order

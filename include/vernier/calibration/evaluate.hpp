@@ -37,7 +37,7 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
   return out;
 }
 
-/// Poses as predicted with the direction of approach, moved by drift.
+/// Poses as predicted with the configuration of approach, moved by drift.
 template <class Chain>
 std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
                                      const SessionDrift& drift) {

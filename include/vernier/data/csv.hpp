@@ -19,7 +19,7 @@ VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std:
 /// The columns of a file of poses.
 struct PoseColumns {
   MatrixX values;    ///< joints, then the positions [m], then the orientations [rad] if the file has them
-  MatrixX previous;  ///< joint values from which each pose was approached; not a number where unknown
+  MatrixX previous;  ///< joint values from which each pose was approached; NaN where unknown
   VectorX times;     ///< of measuring
 };
 VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
@@ -34,9 +34,10 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 /// (or _m), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg). Any column order; other columns are ignored;
 /// blank lines, CRLF and a byte-order mark are accepted.
 ///
-/// Rows are taken to be in the order of measuring, each approached from the row before. A column `segment` (a number)
-/// begins anew where it changes; columns from_q1_rad .. from_qN_rad state from where each pose was approached. A column
-/// `time_s` states when it was measured, else that is the row's number.
+/// Rows are taken to be in the order of measuring, each approached from the row before; where a column `segment` (a
+/// number) changes, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint values from which each
+/// pose was approached; `segment` is ignored then. A column `time_s` states the time of measuring, else that is the
+/// row's number, from 0.
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
 /// @throws DataError naming file, line and column
@@ -65,8 +66,8 @@ JointRows<N> read_joints(const std::string& path, std::span<const JointType> joi
 }
 
 /// Writes measured poses as `read_dataset` reads them, joints in rad, positions in mm, in digits that read back exactly
-/// (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written where the
-/// order of the rows does not say the same; a row whose approach is unknown is then written as one that did not move.
+/// (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written where they
+/// do not follow from the order of the rows; a row whose approach is unknown is then written as one that did not move.
 /// Atomic: the file is whole, or as it was before.
 /// @throws std::runtime_error when the file cannot be written
 template <int N>

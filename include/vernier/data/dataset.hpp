@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Measured poses: joint values and measured positions, with or without orientations.
+/// Measured poses: joint values and measured positions, with or without orientations; their approach and times.
 
 #include <limits>
 #include <span>
@@ -24,8 +24,8 @@ VERNIER_API void copy_rows(const ConstMatrixRef& from, std::span<const Index> in
 }  // namespace detail
 
 /// n samples of an N-joint arm: joints [rad, m], measured tool positions [m] and, where measured, orientations.
-/// All values are finite. Samples keep the order in which they were measured; each knows from where it was approached
-/// and when it was measured, also after some were taken out.
+/// All values are finite. Samples are taken to be in the order of measuring; each keeps the joint values from which it
+/// was approached and the time of its measurement, also in a subset.
 template <int N>
 class Dataset {
  public:
@@ -56,9 +56,9 @@ class Dataset {
   const PointRows& orientations() const { return orientations_; }
 
   /// Joint values from which each sample was approached [rad, m]: those of the sample before, unless stated otherwise;
-  /// not a number where they are unknown.
+  /// NaN where they are unknown.
   const JointRows<N>& previous() const { return previous_; }
-  /// When each sample was measured: its number in the order of measuring, unless stated otherwise.
+  /// Time of each sample's measurement: its number in the order of measuring, unless stated otherwise.
   const VectorX& times() const { return times_; }
 
   /// The same samples approached from other joint values; rows that are not finite are unknown.
@@ -69,7 +69,7 @@ class Dataset {
     out.previous_ = std::move(previous);
     return out;
   }
-  /// The same samples, from where they were approached unknown.
+  /// The same samples, their approach unknown.
   Dataset without_approach() const {
     return approached_from(JointRows<N>::Constant(size(), N, std::numeric_limits<double>::quiet_NaN()));
   }

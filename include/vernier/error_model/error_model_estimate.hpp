@@ -13,15 +13,17 @@
 
 namespace vernier {
 
-/// Decision on a block of joint errors by leave-one-pose-out errors.
+/// Decision on a block of joint errors, or on drift, by leave-one-pose-out errors.
 struct BlockChoice {
-  std::string name;    ///< `elastic` (gravity), `jointwise` (transmission); where that is in, `elastic_with_jointwise`
-                       ///< (decided again) and `gears` (gear ratios, coupling)
-  double without = 0;  ///< mean leave-one-pose-out error without the block [m]
-  double with = 0;     ///< with it, as it was fitted [m]; the smallest of all trials where it was not used
-  bool used = false;   ///< whether it is in the model
+  /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
+  /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
+  /// `drift` (of the bases)
+  std::string name;
+  double without = 0;    ///< mean leave-one-pose-out error without the block [m]
+  double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried
+  bool used = false;     ///< whether it is in the model
   double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
-                         ///< terms that of the lowest band of orders
+                         ///< terms that of the lowest band of orders, of drift that of its random walk
 };
 
 /// What a transmission adds over some angles beyond its mean, which is the joint's zero; one value an angle [rad].

@@ -8,13 +8,13 @@
 
 namespace vernier {
 
-/// Options of `fit_error_model`. The defaults serve every robot; which blocks of joint errors the data support is
-/// decided by leave-one-pose-out errors on those data.
+/// Options of `fit_error_model`. The defaults serve every robot: evidence scales the expected sizes, and
+/// leave-one-pose-out errors decide which blocks of joint errors the data support.
 struct ErrorModelOptions {
   bool compliance = true;  ///< elastic deflection of joints under gravity
   bool gear_ratio = true;  ///< joint errors proportional to the joint value; only beside joint-wise terms
   bool coupling = true;    ///< joint errors proportional to the value of the joint before; likewise
-  int harmonics = 500;     ///< highest order of the Fourier terms of each joint, 60 for fewer than 400 poses; 0: none
+  int harmonics = 500;     ///< highest order of the harmonics of each joint, at most 60 below 400 measurements; 0: none
   HarmonicSpectrum spectrum = typical_spectrum();  ///< orders of the Fourier terms, and their expected sizes
   std::vector<JointDrive> drives{};     ///< gears and encoders, one a joint: their orders are added; empty: unknown
   bool find_lines = true;               ///< search for further orders up to 2,500, from 400 poses on
@@ -23,7 +23,7 @@ struct ErrorModelOptions {
   double compliance_prior_std = 1e-3;   ///< expected product of compliance and weight [rad/m]
   double gear_ratio_prior_std = 1e-4;   ///< expected relative error of a gear ratio
   double coupling_prior_std = 1e-4;     ///< expected coupling
-  bool hysteresis = true;               ///< joint errors that depend on the direction from which a joint came
+  bool hysteresis = true;               ///< joint errors that depend on the direction of approach
   double hysteresis_prior_std = 60e-6;  ///< expected half width of a hysteresis loop [rad, m]
   bool drift = true;                    ///< motion of the bases during a session
   Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block

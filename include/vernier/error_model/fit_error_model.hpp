@@ -48,8 +48,8 @@ VERNIER_API ErrorModelOutput fit_error_model(const ErrorModelInput& input, const
 /// @param distances measured distances, one set a fixed point, which need not be known; either of the two may be empty
 /// @param options   which joint errors there may be, their expected sizes
 /// @param sensors   accuracy of the measurements, and the loss
-/// @param search    optimises the priors of the joint errors, e.g. a metaheuristic; by default they follow the
-///                  one-standard-error rule
+/// @param search    optimises the priors of the joint errors, e.g. a metaheuristic; by default their sizes follow from
+///                  evidence
 /// @throws std::invalid_argument on an unusable option or no measurements
 /// @complexity O(n u^2 / 6) an iteration for n poses and u unknowns, memory O(u^2)
 template <int N, class Convention, RangeOf<Dataset<N>> Stations, RangeOf<Distances<N>> Wires>

@@ -13,8 +13,8 @@ namespace vernier {
 /// linearised problem. A batch objective: columns of a population are independent.
 ///
 /// The variables: decimal logarithms of relative precisions (1: the expected sizes; t: sizes divided by sqrt(t)), of
-/// the elastic terms where there are any, then of every joint that has transmission terms; last the exponent e by which
-/// the expected amplitude falls with the harmonic, k^-e.
+/// the elastic terms where there are any, then of every joint that has transmission terms; last an exponent e of the
+/// expected spectrum: amplitudes are a^e for the expected ones a, relative to the joint's first.
 /// @cite Allen 1974
 class PriorObjective {
  public:

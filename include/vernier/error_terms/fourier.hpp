@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Harmonics of a joint's angle: what a transmission or an encoder may add to it, and how large each order is expected.
+/// Harmonics of a joint's angle: errors of a transmission or an encoder, and the expected size of each order.
 
 #include <vector>
 
@@ -49,12 +49,13 @@ struct HarmonicBand {
   bool operator==(const HarmonicBand&) const = default;
 };
 
-/// Sizes of harmonics by bands of orders; where bands overlap, the later one counts.
+/// Expected sizes of harmonics by bands of orders; where bands overlap, the last one holds.
 using HarmonicSpectrum = std::vector<HarmonicBand>;
 
-/// What gears and encoders of industrial arms were found to do, up to order 140: large up to order 28, a hundredth of
-/// that above; and the lines of encoders of 128 periods a turn and strain-wave gears of 101:1, four periods a turn of
-/// their input.
+/// The spectrum found at gears and encoders of industrial arms: all orders up to 140, the largest up to 28; and lines
+/// of encoders with 128 signal periods a turn (orders 128 and 256) and of strain-wave gears of ratio 101:1, four
+/// periods a turn of their input (order 404).
+/// @cite Heydemann 1981; Tuttle and Seering 1996
 VERNIER_API HarmonicSpectrum typical_spectrum();
 
 /// All orders of a spectrum up to a highest one.

@@ -33,6 +33,7 @@ struct JointTermBlock {
 /// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
 ///   that is unknown, which is the mean of both directions
 /// - transmission: `dq_i = sum_k beta_ik h_k(q_i)`, harmonics of each joint, joint by joint
+/// @cite Whitney, Lozinski and Rourke 1986; Ruderman, Hoffmann and Bertram 2009 (hysteresis)
 struct JointTerms {
   int joints = 0;                              ///< number of joints
   bool gear_ratio = false;                     ///< present?
@@ -40,7 +41,7 @@ struct JointTerms {
   std::optional<GravityCompliance> gravity{};  ///< present?
   /// Where gear ratios and couplings are known, of each joint [rad, m]; empty for everywhere.
   std::vector<JointRange> linear_ranges{};
-  std::vector<double> hysteresis{};     ///< widths w of its steps [rad, m]; for every joint the same
+  std::vector<double> hysteresis{};     ///< widths w [rad, m], the same for every joint; none: absent
   std::vector<Fourier> transmission{};  ///< of each joint; may have no functions
 
   /// No terms.
@@ -49,7 +50,7 @@ struct JointTerms {
   explicit JointTerms(int number_of_joints)
       : joints(number_of_joints), transmission(static_cast<std::size_t>(number_of_joints), Fourier{}) {}
 
-  /// Number of coefficients before the transmission's: those that depend on several joints.
+  /// Number of coefficients before the transmission's, each with a column of its own in a linearised pose.
   Index num_dense_terms() const {
     return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0) +
            joints * static_cast<Index>(hysteresis.size());
@@ -78,8 +79,7 @@ struct JointTerms {
   VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept;
 
   /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `hysteresis3_1` (joint 3,
-  /// first width), `cos3_12`, `sin3_12` (joint 3,
-  /// harmonic 12).
+  /// first width), `cos3_12`, `sin3_12` (joint 3, order 12).
   VERNIER_API std::vector<std::string> names() const;
 };
 
@@ -133,7 +133,7 @@ class JointErrors {
   /// Effective values of n configurations, n x joints.
   /// @param previous from where they were approached, n x joints; no rows where unknown
   VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX()) const;
-  /// Half the width of joint i's hysteresis loop [rad, m]: what its direction of approach adds or takes at most.
+  /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
   VERNIER_API double half_loop(int i) const noexcept;
 
   /// What the transmission of joint i (from 0) adds at an angle [rad].
@@ -145,7 +145,7 @@ class JointErrors {
   detail::HarmonicTable harmonics_{};
 };
 
-/// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`.
+/// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, the approach unknown.
 template <class C>
 class WithJointErrors {
  public:

@@ -10,7 +10,7 @@ namespace vernier {
 
 namespace detail {
 
-/// How far a joint's motion saturates a step of its hysteresis, in [-1, 1]; 0 where it is unknown.
+/// The function of a joint's hysteresis with a width, in [-1, 1]; 0 where the approach is unknown.
 inline double step_of(const double* q, const double* previous, int joint, double width) noexcept {
   return previous == nullptr || !std::isfinite(previous[joint]) ? 0 : std::tanh((q[joint] - previous[joint]) / width);
 }

@@ -1,13 +1,14 @@
 #pragma once
 
 /// @file
-/// Drift of a measuring session: how the arm's base moved with respect to the sensor.
+/// Drift of a measuring session: motion of the arm's base with respect to the sensor.
 
 #include "vernier/core/types.hpp"
 
 namespace vernier {
 
 /// Motion of a base frame over time, linear between knots, constant beyond them. An empty one is no motion.
+/// @cite ISO 9283; Heisel, Richter and Wurst 1997
 struct SessionDrift {
   double begin = 0;                  ///< time of the first knot, in the unit of `Dataset::times`
   double spacing = 1;                ///< from one knot to the next

@@ -21,8 +21,8 @@ using Rows6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /// - dense ones, each with a column;
 /// - groups of factored ones: the columns of group j are the outer product of one vector and the values of the group's
 ///   functions, so they enter sums as one row (harmonics of a joint act through one Jacobian column);
-/// - local states, which only some blocks depend on (the drift of one hour, the readings of one pose): a block depends
-///   on at most two.
+/// - local states, which only some blocks depend on (a knot of a session's drift, the readings of one pose): a block
+///   depends on at most two.
 struct RowBlock {
   /// Columns of a local state.
   struct Local {

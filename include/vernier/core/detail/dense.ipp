@@ -12,8 +12,8 @@
 
 namespace vernier::detail {
 
-/// Kernels for the widest instruction set of this machine; null where the operation is small, or Eigen is compiled as
-/// well as it can be.
+/// Kernels for the widest instruction set of this machine; null for Eigen as this unit is compiled: where the operation
+/// is small, the machine has neither AVX2 nor AVX-512, or this is not the library.
 inline const DenseKernels* wide_kernels([[maybe_unused]] double operations) {
 #if defined(VERNIER_DENSE_KERNELS)
   static const DenseKernels* const kernels = widest_instruction_set() == InstructionSet::avx512 ? &avx512_kernels

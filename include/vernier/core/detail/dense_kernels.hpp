@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Kernels of dense algebra that the library has once an instruction set. Plain pointers: no type of Eigen may pass
-/// between units that are compiled for different ones.
+/// Kernels of dense algebra, of which the library has a copy for each instruction set. Plain pointers: no type of Eigen
+/// may pass between units that are compiled for different ones.
 
 #include <cstddef>
 

@@ -42,7 +42,9 @@ struct FittedErrorModel : ErrorModelEstimate {
     return {model.pose(q), visit_covariance(q, gate, station), gate};
   }
   /// The same, approached from known joint values.
-  /// @param previous joint values [rad, m]; not finite where unknown
+  /// @param previous joint values from which q is approached [rad, m]; not finite where unknown
+  /// @param q        joint values [rad, m]
+  /// @param station  from 0
   PredictedPose predicted_from(const JointVector<N>& previous, const JointVector<N>& q, int station = 0) const {
     const auto& model = models[static_cast<std::size_t>(station)];
     const double gate = model.gate(q);

@@ -131,7 +131,8 @@ class JointErrors {
     return out;
   }
   /// Effective values of n configurations, n x joints.
-  /// @param previous from where they were approached, n x joints; no rows where unknown
+  /// @param joints   commanded values, n x joints [rad, m]
+  /// @param previous joint values from which they were approached, likewise; no rows where unknown
   VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX()) const;
   /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
   VERNIER_API double half_loop(int i) const noexcept;

@@ -70,14 +70,16 @@ class ArmParameterisation {
   VERNIER_API std::vector<std::string> names() const;
 
   /// Modelled poses at n configurations of a station.
-  /// @param previous from where they were approached; no rows where unknown
+  /// @param station  from 0
+  /// @param joints   n x joints [rad, m]
+  /// @param previous joint values from which they were approached, likewise; no rows where unknown
   VERNIER_API std::vector<Isometry3> poses(int station, const ConstMatrixRef& joints,
                                            const ConstMatrixRef& previous = MatrixX()) const;
   /// Modelled poses, and the columns of unit steps of all unknowns, not whitened: writes `dense`, `factor` (of a unit
   /// error of each joint) and `functions` of n blocks.
   /// @param station       from 0
   /// @param joints        n x joints [rad, m]
-  /// @param previous      from where they were approached; no rows where unknown
+  /// @param previous      joint values from which they were approached, likewise; no rows where unknown
   /// @param out           n blocks
   /// @param joint_columns whether to write `factor` also where no coefficient acts through it; else it is empty then
   VERNIER_API std::vector<Isometry3> linearise(int station, const ConstMatrixRef& joints,

@@ -26,15 +26,26 @@ VERNIER_API double log_evidence(const NormalEquations& normal, const FactorisedE
 using UnknownGroup = std::vector<Index>;
 
 /// The common factor, on a grid, under which the priors of a group have most evidence.
-/// @param precisions of all priors; those of the group are the expected ones
-/// @return           precisions with those of the group multiplied
+/// @param normal      the problem
+/// @param precisions  of all priors; those of the group are the expected ones
+/// @param steps       present values of the unknowns, relative to the means of the priors
+/// @param values      number of measured values
+/// @param group       whose precisions are multiplied
+/// @param local_steps present values of local unknowns, likewise
+/// @return            precisions with those of the group multiplied
 VERNIER_API VectorX scale_priors(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
                                  Index values, const UnknownGroup& group, const VectorX& local_steps = {});
 
 /// The factors under which priors of several groups have most evidence, by fixed-point iteration.
-/// @param precisions of all priors, where to start
-/// @param groups     disjoint
-/// @param iterations number of iterations, each a factorisation and an inverse
+/// @param normal      the problem
+/// @param precisions  of all priors, where to start
+/// @param steps       present values of the unknowns, relative to the means of the priors
+/// @param values      number of measured values
+/// @param groups      disjoint
+/// @param iterations  number of iterations, each a factorisation and the diagonal of an inverse
+/// @param local_steps present values of local unknowns, likewise
+/// @return            precisions with those of each group multiplied
+/// @cite MacKay 1992
 VERNIER_API VectorX learn_priors(const NormalEquations& normal, VectorX precisions, const VectorX& steps, Index values,
                                  const std::vector<UnknownGroup>& groups, int iterations,
                                  const VectorX& local_steps = {});

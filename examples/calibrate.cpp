@@ -238,7 +238,9 @@ int run(support::Program& program) {
       option("--robot", o.robot, "name in the catalogue (abb_irb120, ur10, ur5, barrett_wam, puma560), or a JSON file",
              "NAME|FILE");
   option("--data", o.data,
-         "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad; one file a sensor station",
+         "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s, segment (a new "
+         "number: the "
+         "approach is unknown) or from_q1_rad.. (where each pose was approached from); one file a sensor station",
          "FILE...")
       ->required();
   auto* distances = option("--distances", o.distances,
@@ -274,11 +276,14 @@ int run(support::Program& program) {
          "NAME...");
   app.add_flag("--no-approach", o.no_approach,
                "rows are not in the order of measuring: no hysteresis by the direction of approach");
-  app.add_option("--harmonics", o.calibrate.errors.harmonics, "joint-wise Fourier terms up to this order; 0: none")
+  app.add_option("--harmonics", o.calibrate.errors.harmonics,
+                 "highest order of the joint-wise harmonics, at most 60 below 400 measurements; 0: none")
       ->type_name("K")
       ->check(CLI::Range(0, 500).description(""));
   app.add_option("--priors", o.priors,
-                 "of the joint errors: the default rule, or optimised by pso or ga on left-out poses (takes a minute)")
+                 "sizes of the joint errors: by default those of most evidence, or optimised by pso or ga on left-out "
+                 "poses (takes "
+                 "a minute)")
       ->type_name("HOW")
       ->check(CLI::IsMember({"default", "pso", "ga"}).description(""));
   app.add_flag("--own-tools", o.calibrate.errors.tool_per_station,
@@ -302,6 +307,7 @@ int run(support::Program& program) {
   sensors.loss = losses.at(o.loss);
   sensors.distance_sigma = o.distance_sigma_mm * 1e-3;
   sensors.use_orientations = !o.positions_only;
+  o.calibrate.errors.hysteresis = !o.no_approach;
   if (*model) {
     if (o.data.size() != 1) throw support::UsageError("--model takes one file of --data");
     return run_reregistration(program, o);
@@ -315,7 +321,8 @@ int run(support::Program& program) {
 int main(int argc, char** argv) {
   return support::run_program("calibrate",
                               "Measured poses in; base and tool frames, the arm's geometry, gravity compliance, "
-                              "functions of single joints and a PSO-ELM on the remainder; errors at held-out poses "
-                              "after each, and a verdict.",
+                              "functions of single joints, hysteresis by the direction of approach, drift of the "
+                              "session and a PSO-ELM on the remainder; errors at held-out poses after each, and a "
+                              "verdict.",
                               argc, argv, run);
 }

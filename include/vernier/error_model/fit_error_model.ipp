@@ -141,6 +141,9 @@ class ErrorModelFit {
       estimate.converged = problem_.solve() && estimate.converged;
     out.estimate.drift = problem_.drift;
     out.all = arms();
+    // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
+    if (!hysteresis) out.without_approach = out.all;
+    if (!hysteresis && !out.jointwise) (problem_.arm.terms().size() > 0 ? out.elastic : out.geometry) = out.all;
     out.joints = problem_.joints();
     estimate.drives = options_.drives;
     estimate.arm = problem_.arm;
@@ -389,7 +392,10 @@ class ErrorModelFit {
     const VectorX precisions = problem_.arm.precisions();
     const VectorX without = left_out(linearised(), precisions);
     problem_.start_drift(40);
-    if (problem_.system().local_states == 0) return false;
+    if (problem_.system().local_states == 0) {
+      problem_.stop_drift();
+      return false;
+    }
     double best = 1, highest = -std::numeric_limits<double>::infinity();
     for (const double factor : {0.0625, 0.25, 1.0, 4.0, 16.0, 64.0}) {
       problem_.drift_precision = factor;

@@ -108,6 +108,9 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
       {"approach",
        {"Hysteresis by the direction of approach helps ",
         "Hysteresis is left out: errors do not depend on the direction of approach "}},
+      {"temperature",
+       {"The geometry changes with temperature: that helps ",
+        "No change of the geometry with temperature is noticeable "}},
       {"lines",
        {"Orders that stand out of what the model left help ",
         "Orders that stand out of what the model left are left out "}},
@@ -188,6 +191,9 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   detail::describe_accuracy(*this, out);
   out.push_back(detail::describe_ranges(joints));
   for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
+  if (mean_temperature)
+    out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),
+                          " deg C, the mean of the measurements."));
   for (std::size_t s = 0; s < drift.size(); ++s)
     if (!drift[s].empty())
       out.push_back(detail::describe_drift(drift[s], drift.size() > 1 ? message(" of station ", s + 1) : ""));

@@ -3,6 +3,9 @@
 /// @file
 /// Assessment of a calibration on held-out poses.
 
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,14 +40,17 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
   return out;
 }
 
-/// Poses as predicted with the configuration of approach, moved by drift.
+/// Poses as predicted with the direction of approach, at their temperatures if wanted, moved by drift.
 template <class Chain>
-std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
+std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, bool temperature,
                                      const SessionDrift& drift) {
   std::vector<Isometry3> out;
+  const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
+    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
+  };
+  const bool thermal = temperature && model.thermal() != nullptr;
   for (Index i = 0; i < data.size(); ++i)
-    out.push_back(drift.motion(data.times()(i)) *
-                  model.approached_from(data.previous().row(i).transpose()).pose(data.joints(i)));
+    out.push_back(thermal ? visit(at_temperature_of(model, data, i), i) : visit(model, i));
   return out;
 }
 
@@ -100,10 +106,10 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder, test);
   assess("elastic", "elastic", errors.elastic);
   assess("jointwise", "joint-wise", errors.jointwise);
-  const auto assess_visits = [&](const char* key, const std::vector<SessionDrift>& drift) {
+  const auto assess_visits = [&](const char* key, bool temperature, const std::vector<SessionDrift>& drift) {
     StageErrors stage{key, key, {}, {}};
     const auto poses = [&](std::size_t s, const Dataset<N>& data) {
-      return detail::visited_poses(errors.models[s], data, s < drift.size() ? drift[s] : SessionDrift{});
+      return detail::visited_poses(errors.models[s], data, temperature, s < drift.size() ? drift[s] : SessionDrift{});
     };
     stage.position = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
       return detail::position_errors_of(poses(s, data), data.positions());
@@ -115,32 +121,43 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     out.stages.push_back(std::move(stage));
   };
   const bool approach = !errors.arm.terms().hysteresis.empty();
-  if (approach) assess_visits("approach", {});
+  const bool thermal = errors.model().thermal() != nullptr &&
+                       std::all_of(test.begin(), test.end(), [](const auto& d) { return d.temperatures().size() > 0; });
+  if (approach || errors.model().thermal() != nullptr) assess_visits("approach", false, {});
+  if (thermal) assess_visits("temperature", true, {});
   if (calibration.remainder) {
     const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
-    assess_learned("jointwise_pso_elm", approach ? "approach + PSO-ELM" : "joint-wise + PSO-ELM", errors.models,
-                   calibration.remainder, centred);
+    assess_learned("jointwise_pso_elm",
+                   thermal    ? "temperature + PSO-ELM"
+                   : approach ? "approach + PSO-ELM"
+                              : "joint-wise + PSO-ELM",
+                   errors.models, calibration.remainder, centred);
   }
-  if (!errors.drift.empty()) assess_visits("session", errors.drift);
+  if (!errors.drift.empty()) assess_visits("session", true, errors.drift);
   out.drift = errors.drift;
   out.learned = calibration.remainder && !calibration.remainder->empty();
   out.chosen = calibration.chosen();
+  if (out.chosen == "temperature" && !thermal) out.chosen = "approach";
+  if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
 
   out.gates = detail::over_stations<N>(test, [&](std::size_t, const Dataset<N>& data) {
     VectorX gates(data.size());
     for (Index i = 0; i < data.size(); ++i) gates(i) = calibration.coverage(data.joints(i));
     return gates;
   });
-  out.ellipsoid_coverage = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
-                             VectorX within(data.size());
-                             for (Index i = 0; i < data.size(); ++i) {
-                               const PredictedPose p = errors.predicted_from(data.previous().row(i).transpose(),
-                                                                             data.joints(i), static_cast<int>(s));
-                               within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
-                                                                    p.covariance.template topLeftCorner<3, 3>());
-                             }
-                             return within;
-                           }).mean();
+  out.ellipsoid_coverage =
+      detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
+        VectorX within(data.size());
+        for (Index i = 0; i < data.size(); ++i) {
+          const double temperature =
+              data.temperatures().size() > 0 ? data.temperatures()(i) : std::numeric_limits<double>::quiet_NaN();
+          const PredictedPose p = errors.predicted_from(data.previous().row(i).transpose(), data.joints(i),
+                                                        static_cast<int>(s), temperature);
+          within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
+                                               p.covariance.template topLeftCorner<3, 3>());
+        }
+        return within;
+      }).mean();
   const VectorX &geometry = out.stage("geometry").position, &deployed = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, deployed(i) - geometry(i));

@@ -72,6 +72,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"test_rows", report.test_poses()},
           {"stages", stages_to_json(report.stages)},
           {"chosen", report.chosen},
+          {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
           {"blocks", blocks},
           {"parameters", parameters},
           {"identifiability",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <map>
 
 #include "calibration_figures.hpp"
@@ -177,11 +178,15 @@ int reregister_arm(support::Program& program, const Options& o, const vn::Reregi
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;
-  const auto stage = [&](const char* key, const char* title, const auto& model) {
+  vn::Isometry3 probe = vn::Isometry3::Identity();
+  probe.linear() = vn::exp_so3(found.motion.probe);
+  const auto stage = [&](const char* key, const char* title, const auto& model, const auto& as_seen) {
     return vn::StageErrors{key, title, vn::position_errors(model, test),
-                           oriented ? vn::rotation_errors(model, test) : vn::VectorX()};
+                           oriented ? vn::rotation_errors(as_seen, test) : vn::VectorX()};
   };
-  const std::vector stages{stage("as_fitted", "as fitted", robot), stage("reregistered", "re-registered", moved)};
+  const std::vector stages{stage("as_fitted", "as fitted", robot, robot),
+                           stage("reregistered", "re-registered", moved,
+                                 found.model.moved(vn::Isometry3::Identity(), vn::JointVector<N>::Zero(), probe))};
   fmt::print("{}: {} registered again from {} poses, everything else kept\n\nErrors of {} [mm]\n\n{}\n{}", robot.name(),
              o.free, data.size(),
              o.test.empty() ? "those same poses (--test FILE names held-out ones)"
@@ -209,10 +214,18 @@ int run_reregistration(support::Program& program, const Options& o) {
     const std::size_t comma = std::min(o.free.find(',', at), o.free.size());
     const std::string part = o.free.substr(at, comma - at);
     at = comma + 1;
-    if (part != "base" && part != "tool" && part != "offsets")
-      throw support::UsageError("--free takes base, tool, offsets, joined by commas; not '" +
+    if (part == "base") {
+      free.base = true;
+    } else if (part == "offsets") {
+      free.offsets = true;
+    } else if (part == "tool" || part == "another-tool") {
+      free.tool = true;
+      if (part == "another-tool")
+        free.tool_position_prior_std = free.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
+    } else {
+      throw support::UsageError("--free takes base, tool, another-tool, offsets, joined by commas; not '" +
                                 vn::detail::quotable(part) + "'");
-    (part == "base" ? free.base : part == "tool" ? free.tool : free.offsets) = true;
+    }
   }
   return support::dispatch_dof(vn::saved_arm(o.model).dof,
                                [&](auto n) { return reregister_arm<n()>(program, o, free); });
@@ -292,7 +305,11 @@ int run(support::Program& program) {
   app.add_option("--date", o.date, "date written into the model")->type_name("DATE");
   auto* model =
       option("--model", o.model, "a calibrated model: registered again from the data, the rest is kept", "FILE");
-  auto* free = option("--free", o.free, "with --model: what may move: base, tool, offsets, joined by commas", "WHAT");
+  auto* free =
+      option("--free", o.free,
+             "with --model: what may move: base, tool (remounted: by millimetres), another-tool (by any amount), "
+             "offsets, joined by commas",
+             "WHAT");
   model->excludes(distances)->excludes(robot)->excludes(every)->excludes(split)->excludes(train)->needs(free);
   free->needs(model);
   program.parse("calibrate_out");

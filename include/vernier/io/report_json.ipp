@@ -94,7 +94,15 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) 
   const auto values = [](const auto& vector) { return std::vector<double>(vector.begin(), vector.end()); };
   return {{"base_change_m_rad", values(FrameParameters(report.motion.base).values())},
           {"tool_change_m_rad", values(FrameParameters(report.motion.tool).values())},
-          {"offsets_rad", values(report.motion.offsets)}};
+          {"offsets_rad", values(report.motion.offsets)},
+          {"position_sigma_mm", report.position_sigma * 1e3},
+          {"orientation_sigma_mrad", report.orientation_sigma * 1e3},
+          {"probe",
+           {{"turned", report.probe_turned},
+            {"by_mrad", values(Vector3(1e3 * report.motion.probe))},
+            {"contradiction", report.contradiction}}},
+          {"held", report.held},
+          {"remarks", report.remarks()}};
 }
 
 }  // namespace vernier

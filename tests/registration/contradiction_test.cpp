@@ -223,6 +223,37 @@ TEST(HeldTool, WhereAllPosesFaceOneWay) {
   }
 }
 
+// Poses that face almost one way would move the tool by a centimetre, for errors of the model alone.
+TEST(HeldTool, WherePosesFaceAlmostOneWay) {
+  double farthest = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Case c(seed);
+    JointRows<6> joints(17, 6);
+    const Joints first(0.3, -1.4, 1.2, 0.4, -0.7, 0.2);
+    for (Index i = 0; i < 17; ++i) {
+      Isometry3 target = c.model.pose(first);
+      target.translation() += 0.15 * direction(c.rng);
+      target.linear() *= exp_so3(2e-3 * direction(c.rng));
+      const auto there = inverse_kinematics(c.model, target, first);
+      ASSERT_EQ(there.status, IkStatus::converged) << i;
+      joints.row(i) = there.joints.transpose();
+    }
+    const auto data = measure(c.truth, joints, noise, seed);
+    const auto found = reregister(c.model, data, {.tool = true}, sensors);
+    ASSERT_FALSE(found.held.empty()) << seed;
+    EXPECT_TRUE(mentions(found.held[0], "the position of the tool")) << seed;
+    EXPECT_LT(found.motion.tool.translation().norm(), 3e-3) << seed;
+    // of another tool nothing is known, and that is said, too
+    ReregisterOptions another{.tool = true};
+    another.tool_position_prior_std = another.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
+    const auto free = reregister(c.model, data, another, sensors);
+    farthest = std::max(farthest, free.motion.tool.translation().norm());
+    ASSERT_FALSE(free.remarks().empty()) << seed;
+    EXPECT_TRUE(mentions(free.remarks()[0], "The poses determine the position of the tool to ")) << free.summary();
+  }
+  EXPECT_GT(farthest, 0.01);
+}
+
 TEST(HeldTool, AlongAnAxisThatDoesNotTilt) {
   // joints 1 and 6 alone turn the flange: about vertical axes of an arm that hangs down, but for its errors
   const Case c(2);

@@ -160,6 +160,19 @@ TEST(Contradiction, ARotationBelowTheThresholdDoesNoHarm) {
   EXPECT_LT(median(ratios), 1.3);
 }
 
+// Mounted another way round altogether: the prior is no bound.
+TEST(Contradiction, AProbeMayBeTurnedByAnyAngle) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed)
+    for (const double angle : {0.03, 0.3, std::numbers::pi / 2}) {
+      Case c(seed);
+      const Vector3 probe = angle * direction(c.rng);
+      const auto found = reregister(c.model, c.seen(17, seed, probe), {}, sensors);
+      EXPECT_TRUE(found.converged && found.probe_turned) << seed << ", " << angle;
+      EXPECT_LT((found.motion.probe - probe).norm(), 1e-3) << seed << ", " << angle;
+      EXPECT_LT(c.error(found.model), 2 * c.own_error()) << seed << ", " << angle;
+    }
+}
+
 TEST(Contradiction, IsSaid) {
   Case c(3);
   const auto data = c.seen(17, 3, Vector3(1.2e-3, 0, -0.9e-3));
@@ -191,6 +204,10 @@ TEST(Contradiction, WeightsAreThoseOfTheResiduals) {
   EXPECT_NEAR(found.position_sigma, found.rms_after / std::sqrt(3), 0.02 * found.position_sigma);
   EXPECT_GT(found.position_sigma, 2 * sensors.position_sigma);  // the model's own error is in it
   EXPECT_GT(found.orientation_sigma, 1.5 * sensors.orientation_sigma);
+  EXPECT_TRUE(mentions(found.summary(), "Weighted for residuals of 0.0")) << found.summary();
+  SensorModel positions = sensors;
+  positions.use_orientations = false;
+  EXPECT_EQ(reregister(c.model, c.seen(17, 5, Vector3::Zero()), {}, positions).orientation_sigma, 0);
   // a sensor that is worse than the model
   const SensorModel worse{.position_sigma = 1e-3, .orientation_sigma = 1e-3};
   const auto floor = reregister(c.model, c.seen(17, 5, Vector3::Zero()), {}, worse);

@@ -23,7 +23,7 @@ struct ReregisterOptions {
   double offset_prior_std = 1e-3;  ///< expected change of a joint zero [rad, m]: a prior, so that few poses suffice
   double tool_position_prior_std = 3e-3;  ///< expected motion of the tool point, where the tool is freed [m], a prior
                                           ///< as well; infinite: another tool, of which nothing is known
-  double tool_rotation_prior_std = 5e-3;  ///< expected rotation of the tool, or of the probe, likewise [rad]
+  double tool_rotation_prior_std = 5e-3;  ///< expected rotation of the tool, likewise [rad]
   /// Measured orientations are taken to be turned against the tool where that explains more than chance does: a
   /// chi-squared of three values, which chance exceeds once in a thousand times. Infinite: never.
   double contradiction_threshold = 16.3;
@@ -41,9 +41,12 @@ struct ReregistrationReport {
   FrameMotion motion{};                  ///< how the arm was moved
   ReregisterOptions estimated{};         ///< what was estimated
   std::vector<JointType> joint_types{};  ///< of the arm
-  VectorX change_std{};  ///< standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated
+  /// Standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated [m, rad]. They count what
+  /// was held as uncertain as its prior.
+  VectorX change_std{};
   /// Standard deviations of positions [m] and of orientations [rad], per component, with which they were weighted:
-  /// estimated from the residuals, so that they contain the model's own error, and at least those of the sensors.
+  /// estimated from the residuals, so that they contain the model's own error, and at least those of the sensors. The
+  /// latter is 0 where orientations are not used.
   double position_sigma = 0, orientation_sigma = 0;
   /// What the poses do not determine of the tool, so that it was held where it was: `the position of the tool along
   /// (0.00, 0.00, 1.00) of its frame`. Held is that of which more than half of the prior's standard deviation is left.

@@ -63,14 +63,14 @@ VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
   };
   far("moved", motion.tool.translation().norm(), estimated.tool_position_prior_std, "mm");
   far("turned", log_so3(motion.tool.linear()).norm(), estimated.tool_rotation_prior_std, "mrad");
-  const auto vague = [&](const char* what, const auto& std, double prior, const char* unit) {
-    if (std::isinf(prior) && std.maxCoeff() > 1e-3)
-      out.push_back(detail::formatted("The poses determine the %s of the tool to %.1f %s only.", what,
-                                      1e3 * std.maxCoeff(), unit));
+  const auto vague = [&](const char* what, double sigma, double prior, const char* unit) {
+    if (std::isinf(prior) && sigma > 1e-3)
+      out.push_back(
+          detail::formatted("The poses determine the %s of the tool to %.1f %s only.", what, 1e3 * sigma, unit));
   };
   if (!estimated.tool || change_std.size() == 0) return out;
-  vague("position", change_std.tail<6>().head<3>(), estimated.tool_position_prior_std, "mm");
-  vague("rotation", change_std.tail<3>(), estimated.tool_rotation_prior_std, "mrad");
+  vague("position", change_std.tail<6>().head<3>().maxCoeff(), estimated.tool_position_prior_std, "mm");
+  vague("rotation", change_std.tail<3>().maxCoeff(), estimated.tool_rotation_prior_std, "mrad");
   return out;
 }
 
@@ -79,11 +79,12 @@ VERNIER_IMPL std::string ReregistrationReport::summary() const {
   Index at = 0;
   const bool known = change_std.size() > 0;
   const auto frame = [&](const char* name, const Isometry3& by) {
-    const Vector6 v = 1e3 * FrameParameters(by).values(), std = known ? Vector6(1e3 * change_std.segment<6>(at)) : v;
+    const Vector6 v = 1e3 * FrameParameters(by).values();
+    const Vector6 sigma = known ? Vector6(1e3 * change_std.segment<6>(at)) : v;
     for (const Index k : {0, 3}) {
       out += k == 0 ? std::string(name) + " moved by" : ", turned by";
       out += detail::formatted(" (%.3f, %.3f, %.3f)", v(k), v(k + 1), v(k + 2));
-      if (known) out += detail::formatted(" +- (%.3f, %.3f, %.3f)", std(k), std(k + 1), std(k + 2));
+      if (known) out += detail::formatted(" +- (%.3f, %.3f, %.3f)", sigma(k), sigma(k + 1), sigma(k + 2));
       out += k == 0 ? " mm" : " mrad\n";
     }
     at += 6;
@@ -96,6 +97,9 @@ VERNIER_IMPL std::string ReregistrationReport::summary() const {
     out += revolute ? " mrad\n" : " mm\n";
   }
   if (estimated.tool) frame("Tool", motion.tool);
+  out += detail::formatted("Weighted for residuals of %.3f mm", 1e3 * position_sigma);
+  if (orientation_sigma > 0) out += detail::formatted(" and %.3f mrad", 1e3 * orientation_sigma);
+  out += " a component\n";
   for (const std::string& remark : remarks()) out += remark + "\n";
   return out;
 }
@@ -122,12 +126,13 @@ VERNIER_API Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, cons
   return out;
 }
 
-/// Base motion that brings modelled poses to the measured ones, in closed form.
-VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const Station& data) {
+/// Base motion that brings modelled poses to the measured ones, in closed form; its rotation by the orientations or by
+/// the positions.
+VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const Station& data, bool by_orientations) {
   PointRows points(data.size(), 3);
   for (Index i = 0; i < data.size(); ++i)
     points.row(i) = modelled[static_cast<std::size_t>(i)].translation().transpose();
-  if (!data.oriented()) return register_points(points, *data.positions);
+  if (!by_orientations) return register_points(points, *data.positions);
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t i = 0; i < modelled.size(); ++i) sum += data.orientations[i] * modelled[i].linear().transpose();
   Isometry3 out = Isometry3::Identity();
@@ -135,6 +140,13 @@ VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const 
   const Vector3 from = points.colwise().mean().transpose(), to = data.positions->colwise().mean().transpose();
   out.translation() = to - out.linear() * from;
   return out;
+}
+
+/// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
+VERNIER_API Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < modelled.size(); ++i) sum += modelled[i].linear().transpose() * measured[i];
+  return log_so3(nearest_rotation(sum));
 }
 
 /// Prior standard deviations of what is estimated.
@@ -215,8 +227,10 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
   const int joints = data.dof;
   // a tool that is freed follows the orientations by itself
   const FrameUpdate update{options.base, options.offsets, options.tool, joints, data.oriented() && !options.tool};
+  // The probe may be mounted any way round; a prior this wide keeps one pose from asking for both base and probe.
+  constexpr double any_rotation = 1;
   FrameFit fit{.update = update,
-               .prior_std = prior_std_of(update, options, options.tool_rotation_prior_std),
+               .prior_std = prior_std_of(update, options, any_rotation),
                .motion = {.offsets = VectorX::Zero(joints)},
                .position_sigma = sensors.position_sigma,
                .orientation_sigma = sensors.orientation_sigma,
@@ -234,7 +248,17 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
     if (data.oriented() && options.tool && std::isinf(options.tool_rotation_prior_std))
       fit.motion.tool = tool_rotation(fit.poses, data.orientations);
     evaluate(fit.motion, fit.poses, jacobians);
-    fit.motion.base = base_motion(fit.poses, data);
+    fit.motion.base = base_motion(fit.poses, data, data.oriented());
+    if (update.probe) {  // a probe mounted another way round would put the arm somewhere else
+      const std::vector<Isometry3> before = fit.poses;
+      evaluate(fit.motion, fit.poses, jacobians);
+      if (rms() > 0.02) {
+        fit.motion.base = base_motion(before, data, false);
+        evaluate(fit.motion, fit.poses, jacobians);
+        fit.motion.probe = probe_rotation(fit.poses, data.orientations);
+        fit.total.tail<3>() = fit.motion.probe;
+      }
+    }
   }
   solve_frames_and_weights(evaluate, data, fit);
   if (update.probe && fit.covariance.size() > 0) judge_probe(evaluate, data, options, sensors, fit, report);
@@ -248,7 +272,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
   report.motion = fit.motion;
   report.estimated = options;
   report.position_sigma = fit.position_sigma;
-  report.orientation_sigma = fit.orientation_sigma;
+  report.orientation_sigma = data.oriented() ? fit.orientation_sigma : 0;
   return fit.motion;
 }
 

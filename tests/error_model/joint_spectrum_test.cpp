@@ -10,6 +10,7 @@
 
 #include "gauss_newton.hpp"
 #include "vernier/core/literals.hpp"
+#include "vernier/core/rng.hpp"
 #include "vernier/error_model/detail/periodogram.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -18,6 +19,7 @@ namespace vernier::joint_spectrum_test {
 namespace {
 
 using namespace vernier::literals;
+using vernier_test::identify_by_gauss_newton;
 using Chain = DhChain<3>;
 using Actual = Framed<WithJointErrors<Chain>>;
 

@@ -84,7 +84,7 @@ Dataset<Chain::dof> without_hysteresis(const ErrorModel<Chain>& model, const Dat
     positions.row(i) -=
         ((thermal ? visit(at_temperature_of(model, data, i)) : visit(model)) - model.position(q)).transpose();
   }
-  return Dataset<Chain::dof>(data.joints(), positions);
+  return Dataset<Chain::dof>(data.joints(), positions).without_approach();
 }
 /// The same for every station.
 template <class Chain>

@@ -75,6 +75,7 @@ struct CalibrationReport {
   double median_error = 0;        ///< median position error of the training poses [m]
   Loss loss = Loss::huber;        ///< of the fit
   double fit_seconds = 0;         ///< time from poses to error model
+  double evaluation_seconds = 0;  ///< time of a pose with its Jacobian by the chosen stage
 
   /// Number of held-out poses.
   Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }

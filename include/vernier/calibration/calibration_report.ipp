@@ -191,6 +191,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   detail::describe_accuracy(*this, out);
   out.push_back(detail::describe_ranges(joints));
   for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
+  out.push_back(message("Chosen by left-out poses: ", stage(chosen).title, "."));
   if (mean_temperature)
     out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),
                           " deg C, the mean of the measurements."));

@@ -97,7 +97,8 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
     poses.resize(static_cast<std::size_t>(data.size()));
     jacobians.resize(6, N * data.size());
     for (Index i = 0; i < data.size(); ++i) {
-      const PoseAndJacobian<N> at = now.pose_and_jacobian(data.joints(i));
+      const PoseAndJacobian<N> at =
+          now.approached_from(data.previous().row(i).transpose()).pose_and_jacobian(data.joints(i));
       poses[static_cast<std::size_t>(i)] = at.pose;
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }

@@ -66,7 +66,7 @@ ErrorModelOptions options() {
 }
 
 /// Which arm of the hundred: quarters run side by side.
-class Lines : public testing::TestWithParam<int> {};
+class Lines : public ::testing::TestWithParam<int> {};
 
 TEST_P(Lines, AreFoundWithTheirAmplitude) {
   constexpr int orders[] = {30, 32, 34, 98, 100, 102, 127, 128, 129, 402, 404, 406};
@@ -88,7 +88,7 @@ TEST_P(Lines, AreFoundWithTheirAmplitude) {
   EXPECT_GE(found, 22) << "of 25 arms";  // of a hundred at least 90; chance leaves 95 % of the intervals right
 }
 
-INSTANTIATE_TEST_SUITE_P(HundredArms, Lines, testing::Range(0, 4));
+INSTANTIATE_TEST_SUITE_P(HundredArms, Lines, ::testing::Range(0, 4));
 
 TEST(JointSpectrum, OrdersThatNobodyStatedAreFound) {
   ErrorModelOptions few = options();

@@ -64,7 +64,7 @@ struct Calibration {
 
 namespace detail {
 
-/// The model at the temperature of a row; as it is where that is unknown.
+/// The model at the temperature of a row; unchanged where that is unknown.
 template <class Chain>
 ErrorModel<Chain> at_temperature_of(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, Index row) {
   return data.temperatures().size() > 0 ? model.at_temperature(data.temperatures()(row)) : model;

@@ -19,8 +19,8 @@ namespace vernier {
 struct StageErrors {
   /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
   /// approach), `temperature` (the same at the temperature of each pose), `jointwise_pso_elm` (on the last of them, of
-  /// positions without their hysteresis), `session` (the last error model with the session's drift, which no other
-  /// session has)
+  /// positions at the mean temperature, without their hysteresis), `session` (the last error model with the session's
+  /// drift, which no other session has)
   std::string key;
   std::string title;  ///< for tables
   VectorX position;   ///< [m]
@@ -39,8 +39,8 @@ struct JointReport {
   VectorX transmission;                      ///< what the transmission adds there, mean subtracted [rad]
   VectorX transmission_std;                  ///< its standard deviation [rad]
   std::vector<HarmonicEstimate> spectrum{};  ///< of the transmission; empty where it has none
-  std::vector<HarmonicEstimate> lines{};     ///< its orders above noise, the largest first
-  JointDrive drive{};                        ///< as far as it was stated
+  std::vector<HarmonicEstimate> lines{};     ///< its orders that exceed noise, the largest first
+  JointDrive drive{};                        ///< gear and encoder, as far as they were stated
 };
 
 /// A weakly determined parameter, and poses that would determine it.
@@ -55,7 +55,7 @@ struct PoseAdvice {
 /// A calibration, assessed.
 struct CalibrationReport {
   IdentificationReport identification;       ///< of the geometry
-  std::vector<BlockChoice> blocks{};         ///< decisions on joint errors and drift
+  std::vector<BlockChoice> blocks{};         ///< decisions on blocks of unknowns
   Index train_poses = 0;                     ///< poses it was fitted to
   Index distances = 0;                       ///< distances it was fitted to
   std::vector<StageErrors> stages{};         ///< of the held-out poses, in order
@@ -63,7 +63,7 @@ struct CalibrationReport {
   std::vector<PoseAdvice> advice{};          ///< for the first weakly determined parameters
   VectorX gates;                             ///< share of the joint-wise terms at each held-out pose
   std::string chosen = "geometry";           ///< key of the stage that is deployed
-  std::optional<double> mean_temperature{};  ///< at which the model holds [deg C], where it changes with temperature
+  std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
   double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the
                                   ///< measured joint ranges [m]
@@ -75,7 +75,7 @@ struct CalibrationReport {
   double median_error = 0;        ///< median position error of the training poses [m]
   Loss loss = Loss::huber;        ///< of the fit
   double fit_seconds = 0;         ///< time from poses to error model
-  double evaluation_seconds = 0;  ///< time of a pose with its Jacobian by the chosen stage
+  double evaluation_seconds = 0;  ///< time that the chosen stage takes for a pose and its Jacobian [s]
 
   /// Number of held-out poses.
   Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }

@@ -42,7 +42,8 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
   return out;
 }
 
-/// Poses as predicted with the direction of approach, at their temperatures if wanted, moved by drift.
+/// Poses as predicted with their configurations of approach, moved by drift.
+/// @param temperature whether each is predicted at its temperature, not at the mean one
 template <class Chain>
 std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, bool temperature,
                                      const SessionDrift& drift) {

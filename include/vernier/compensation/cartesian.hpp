@@ -37,7 +37,7 @@ class CartesianCorrected {
 
   /// The learned error at q, `gate(q) f(q)` [m].
   Vector3 error(const JointVector<dof>& q) const noexcept { return gate_(q) * learned_.predict(q); }
-  /// Takes the learned error off a pose and Jacobian at q: of the model, or of the same arm in more detail.
+  /// Subtracts the learned error from a pose and a Jacobian at q: of the model, or of the same arm with hysteresis.
   void correct(const JointVector<dof>& q, PoseAndJacobian<dof>& at) const noexcept {
     const double gate = gate_(q);
     if (gate == 0) return;

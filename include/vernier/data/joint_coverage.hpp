@@ -20,7 +20,7 @@ VERNIER_API std::vector<JointRange> covered_ranges(const ConstVectorRef& values,
 struct GateFactor {
   double value, slope;
 };
-/// @param periodic whether ranges are known a turn away, too
+/// @param periodic whether values that differ by whole turns count as the same
 VERNIER_API GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, bool periodic,
                                    double q) noexcept;
 
@@ -28,17 +28,18 @@ VERNIER_API GateFactor gate_factor(const std::vector<JointRange>& ranges, double
 
 /// The measured ranges of each joint, as a gate: 1 where every joint lies within one of its ranges, decreasing smoothly
 /// (cubic) to 0 where one joint is `margin` away from all of its own. Between ranges of at most two margins apart it is
-/// 1. A joint without ranges has no effect. For what is periodic in a joint's angle the gate stands on a circle: an
-/// angle counts as measured where it was, whole turns away.
+/// 1. A joint without ranges has no effect. In a joint that is `periodic`, angles that differ by whole turns count as
+/// the same, and the gap between the last range and the first, a turn further, is a gap like any other.
 template <int N>
 struct JointCoverage {
   std::array<std::vector<JointRange>, N> ranges{};      ///< ascending, more than two margins apart
   JointVector<N> margin = JointVector<N>::Constant(1);  ///< width of the transition [rad, m], > 0
-  std::array<bool, N> periodic{};                       ///< whether an angle is known whole turns away, too
+  std::array<bool, N> periodic{};                       ///< whether angles that differ by whole turns count as the same
 
   /// The ranges of n measured joints. The margin is a tenth of a joint's total range, at least 0.02; values closer than
   /// two margins belong to one range; every range is widened by 3/n of the total (the extremes of n random values fall
-  /// short by 1/n on average), at most half a margin, and ranges then closer than two margins are merged.
+  /// short by 1/n on average), at most half a margin, and ranges then closer than two margins are merged. `periodic` is
+  /// left false; fits set it for revolute joints.
   static JointCoverage covering(const JointRows<N>& joints) {
     JointCoverage coverage;
     if (joints.rows() == 0) return coverage;

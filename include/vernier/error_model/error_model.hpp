@@ -64,9 +64,9 @@ struct GatedModels {
 
 }  // namespace detail
 
-/// How a geometry changes with temperature.
+/// Linear change of a geometry with temperature.
 struct ThermalRates {
-  double reference = 0;  ///< temperature at which the geometry is as it is [deg C]
+  double reference = 0;  ///< temperature for which the model's parameters hold [deg C]
   double lower = 0;      ///< the measured temperatures [deg C]; beyond them the geometry stays as at their ends
   double upper = 0;      ///< likewise
   VectorX parameters{};  ///< changes of the parameters as `ArmGeometry` counts them [m/K, rad/K]
@@ -113,7 +113,7 @@ class ErrorModel {
   /// The measured joint ranges; null where `identified` is valid everywhere.
   const JointCoverage<dof>* coverage() const { return outside_ ? &outside_->coverage : nullptr; }
 
-  /// The same with a geometry that changes with temperature, which holds as it is at the reference.
+  /// The same with a geometry that changes with temperature; its present parameters are those at the reference.
   /// @throws std::invalid_argument for another number of rates
   ErrorModel with_thermal(ThermalRates rates) const {
     require(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
@@ -125,7 +125,8 @@ class ErrorModel {
   }
   /// How the geometry changes with temperature; null where it does not, or that is unknown.
   const ThermalRates* thermal() const { return thermal_ ? &*thermal_ : nullptr; }
-  /// The arm at a temperature [deg C]; the same where it does not change.
+  /// The arm at a temperature [deg C], at the nearest measured one outside the measured range; the nominal arm stays.
+  /// The same model where it does not change with temperature.
   ErrorModel at_temperature(double celsius) const {
     if (!thermal_) return *this;
     const double measured = std::clamp(celsius, thermal_->lower, thermal_->upper);

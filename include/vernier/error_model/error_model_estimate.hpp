@@ -14,11 +14,11 @@
 
 namespace vernier {
 
-/// Decision on a block of joint errors, or on drift, by leave-one-pose-out errors.
+/// Decision on a block of unknowns by leave-one-pose-out errors.
 struct BlockChoice {
   /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
   /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
-  /// `drift` (of the bases)
+  /// `temperature` (changes of the geometry), `drift` (of the bases), `lines` (orders found in the residuals)
   std::string name;
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried
@@ -45,8 +45,9 @@ struct ErrorModelEstimate {
   std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
   std::vector<JointDrive> drives{};   ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;            ///< the unknowns and their estimates
-  double mean_temperature = 0;        ///< of the measurements [deg C], at which the model holds; where it has changes
-  double temperature_std = 0;         ///< with temperature, and how much they varied [K]; else 0
+  double mean_temperature = 0;        ///< of the measurements [deg C], for which the parameters hold; 0 where the model
+                                      ///< does not change with temperature
+  double temperature_std = 0;         ///< standard deviation of the measured temperatures [K]; likewise
   MatrixX covariance{};               ///< of all unknowns, in units of their scales
   double variance_factor = 1;         ///< covariance divided by the inverse of the normal equations' matrix
 
@@ -69,7 +70,8 @@ struct ErrorModelEstimate {
   /// @param station  from 0
   /// @param previous joint values from which q was approached; empty, or not finite, where unknown: then hysteresis
   ///                 adds its half loops
-  /// @param temperature [deg C]; not finite where unknown: then changes with temperature add their spread
+  /// @param temperature of the arm [deg C]; not finite where unknown: then the effect of a standard deviation of the
+  ///                 measured temperatures is added
   /// @complexity O(unknowns^2); allocates
   VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0,
                                        const ConstVectorRef& previous = VectorX(),

@@ -17,7 +17,7 @@ struct ErrorModelOptions {
   int harmonics = 500;     ///< highest order of the harmonics of each joint, at most 60 below 400 measurements; 0: none
   HarmonicSpectrum spectrum = typical_spectrum();  ///< orders of the Fourier terms, and their expected sizes
   std::vector<JointDrive> drives{};     ///< gears and encoders, one a joint: their orders are added; empty: unknown
-  bool find_lines = true;               ///< search for further orders up to 2,500, from 400 poses on
+  bool find_lines = true;               ///< search for further orders up to 2,500, from 400 measurements on
   bool tool_per_station = false;        ///< every station has its own tool frame, not only its own base frame
   Vector3 down{0, 0, -1};               ///< direction of gravity in the arm's base frame
   double compliance_prior_std = 1e-3;   ///< expected product of compliance and weight [rad/m]
@@ -25,7 +25,7 @@ struct ErrorModelOptions {
   double coupling_prior_std = 1e-4;     ///< expected coupling
   bool hysteresis = true;               ///< joint errors that depend on the direction of approach
   double hysteresis_prior_std = 60e-6;  ///< expected half width of a hysteresis loop [rad, m]
-  bool temperature = true;              ///< change of the geometry with temperature, where that was measured
+  bool temperature = true;              ///< change of the geometry with temperature, where temperatures were measured
   double thermal_prior_std = 1e-4;      ///< expected change of a length [m/K] or an angle [rad/K]
   bool drift = true;                    ///< motion of the bases during a session
   Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Lines in the spectrum of a joint's errors: the orders at which gears and encoders err.
+/// Lines in the spectrum of a joint's errors: narrow bands of orders that its gear and its encoder cause.
 
 #include <string>
 
@@ -10,12 +10,15 @@
 
 namespace vernier {
 
-/// The orders at which a drive is expected to err, and by how much: an encoder at its period and half of it, a
-/// strain-wave gear at multiples of its ratio. Nothing for what is not known.
+/// The bands of orders in which a drive causes errors, with their expected sizes: those of an encoder of n periods
+/// around n and 2 n, those of a strain-wave gear around 2, 4, 5, 8, 10, 12, 20 and 24 times its ratio, where that is
+/// above 140 (lower orders belong to `typical_spectrum`) and at most 2,500. None for what is unknown.
+/// @cite Heydemann 1981; Tuttle and Seering 1996
 VERNIER_API HarmonicSpectrum lines_of(const JointDrive& drive);
 
-/// What errs at an order, in words: "4 a turn of a 101:1 gear". Empty where nothing known does. Where the drive is not
-/// stated, an encoder of 128 periods and a gear of 101:1 are tried, "as of" which a line is.
+/// The probable cause of errors at an order, in words: "4 a turn of a 101:1 gear", which is 4 periods a turn of the
+/// gear's input. Empty where there is none. Orders 1 and 2 are those of eccentric and oval parts. Where gear or encoder
+/// is unknown, one of 101:1, or of 128 periods, is assumed, and the words begin with "as of".
 VERNIER_API std::string cause_of(int order, const JointDrive& drive = {});
 
 }  // namespace vernier

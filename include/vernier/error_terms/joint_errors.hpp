@@ -39,7 +39,7 @@ struct JointTerms {
   bool gear_ratio = false;                     ///< present?
   bool coupling = false;                       ///< present?
   std::optional<GravityCompliance> gravity{};  ///< present?
-  /// Where gear ratios and couplings are known, of each joint [rad, m]; empty for everywhere.
+  /// Ranges of each joint in which gear ratios and couplings were estimated [rad, m]; empty: no bounds.
   std::vector<JointRange> linear_ranges{};
   std::vector<double> hysteresis{};     ///< widths w [rad, m], the same for every joint; none: absent
   std::vector<Fourier> transmission{};  ///< of each joint; may have no functions
@@ -63,7 +63,7 @@ struct JointTerms {
   }
   /// Number of coefficients.
   Index size() const { return transmission_begin(joints); }
-  /// A joint's value as gear ratio and coupling see it: within the range where they are known.
+  /// The joint value that gear ratio and coupling are multiplied by: the nearest within `linear_ranges`.
   double linear_value(int joint, double q) const noexcept {
     if (linear_ranges.empty()) return q;
     const JointRange& range = linear_ranges[static_cast<std::size_t>(joint)];

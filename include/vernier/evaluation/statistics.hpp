@@ -57,7 +57,7 @@ std::vector<Isometry3> predicted_poses(const M& model, const JointRows<M::dof>& 
   return poses;
 }
 
-/// Poses of all samples, each approached from where it was, if the model knows hysteresis.
+/// Poses of all samples; of a model with `approached_from`, each with the approach of its sample.
 template <PosePredictor M>
 std::vector<Isometry3> predicted_poses(const M& model, const Dataset<M::dof>& data) {
   if constexpr (requires(const JointVector<M::dof>& q) { model.approached_from(q).pose(q); }) {
@@ -77,13 +77,14 @@ VERNIER_API PositioningErrors pose_errors(std::span<const Isometry3> desired, st
 
 }  // namespace detail
 
-/// `|p_measured - p_predicted|` of every sample [m]; of a model that knows hysteresis with the approach of each sample.
+/// `|p_measured - p_predicted|` of every sample [m]; a model with `approached_from` predicts each sample with its
+/// approach.
 template <PosePredictor M>
 VectorX position_errors(const M& model, const Dataset<M::dof>& data) {
   return detail::position_errors_of(detail::predicted_poses(model, data), data.positions());
 }
 
-/// Angle between measured and predicted orientation of every sample [rad].
+/// Angle between measured and predicted orientation of every sample [rad], predicted as for `position_errors`.
 /// @throws std::invalid_argument where the data have positions only
 template <PosePredictor M>
 VectorX rotation_errors(const M& model, const Dataset<M::dof>& data) {

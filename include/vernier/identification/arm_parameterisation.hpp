@@ -19,7 +19,7 @@ struct GeometricUnknown {
   int station = -1;      ///< whose frame it belongs to; -1: shared by all stations
   double scale = 1;      ///< unit in which it is estimated: the expected size of its error [m, rad]
   double precision = 0;  ///< of a prior around its start, in that unit: an inverse variance; 0 for none
-  bool thermal = false;  ///< not the parameter, but its change a kelvin
+  bool thermal = false;  ///< the change of the parameter with temperature [m/K, rad/K], not the parameter itself
 };
 
 /// Geometric unknowns and coefficients of joint errors. Estimation is in steps of their scales: geometry first, then
@@ -72,8 +72,7 @@ class ArmParameterisation {
   VERNIER_API VectorX steps() const;
   /// Adds to the present values.
   VERNIER_API void move(const VectorX& steps);
-  /// Names; those of a frame of station s > 0 end in `@s+1`, those of changes with
-  /// temperature in `/K`.
+  /// Names; those of a frame of station s > 0 end in `@s+1`, those of changes with temperature in `/K`.
   VERNIER_API std::vector<std::string> names() const;
 
   /// Modelled poses at n configurations of a station.
@@ -89,7 +88,7 @@ class ArmParameterisation {
   /// @param previous      joint values from which they were approached, likewise; no rows where unknown
   /// @param out           n blocks
   /// @param joint_columns whether to write `factor` also where no coefficient acts through it; else it is empty then
-  /// @param warmer        how much warmer it was [K]; none for zero
+  /// @param warmer        temperatures of the n samples above the reference [K]; none for zero
   VERNIER_API std::vector<Isometry3> linearise(int station, const ConstMatrixRef& joints,
                                                const ConstMatrixRef& previous, RowBlock* out, bool joint_columns = true,
                                                const ConstVectorRef& warmer = VectorX()) const;

@@ -77,7 +77,7 @@ class CalibratedRobot {
                             corrected_->coverage());
   }
 
-  /// The same arm at a temperature [deg C], where its geometry changes with that.
+  /// The same arm at a temperature [deg C], see `ErrorModel::at_temperature`.
   CalibratedRobot at_temperature(double celsius) const {
     return with_model(model_.at_temperature(celsius), provenance_);
   }
@@ -116,7 +116,7 @@ class CalibratedRobot {
 
   /// The pose the arm takes when commanded q.
   Isometry3 predict(const JointVector<N>& q) const noexcept { return pose(q); }
-  /// The command that brings the arm where the nominal one would be at q, from either direction of approach.
+  /// The command that brings the arm where the nominal one would be at q, in the middle of both directions of approach.
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return correct(q, unknown()); }
   /// The same for the approach from known joint values.
   /// @param previous the command before [rad, m]; not finite where unknown
@@ -136,7 +136,8 @@ class CalibratedRobot {
     return compensated(previous).correct(target, seed);
   }
 
-  /// The arm as it comes from known joint values: a kinematic model that refers to the robot, which must outlive it.
+  /// The arm as it moves to a configuration from known joint values: a kinematic model, a view of the robot, which must
+  /// outlive it.
   class Approached {
    public:
     /// Number of joints.

@@ -16,7 +16,9 @@ namespace vernier {
 /// `mean_mrad` where orientations are used. Callers include <nlohmann/json.hpp>.
 VERNIER_API nlohmann::ordered_json stages_to_json(const std::vector<StageErrors>& stages);
 
-/// An assessment of a calibration: stages, decisions on joint errors, parameters [mm, mrad], identifiability, verdict.
+/// An assessment of a calibration: stages, decisions on blocks, parameters [mm, mrad], identifiability, verdict. Under
+/// `spectrum` each joint's amplitudes by order [urad], and its `lines` with margin and probable cause; under `drift`
+/// the motion of each station's base at its knots. `mean_temperature_c` is null where temperature does not matter.
 /// Callers include <nlohmann/json.hpp>.
 /// @param report the assessment
 /// @param robot  its name

@@ -20,7 +20,7 @@ struct DescribedRobot {
   std::string name;                  ///< its name
   Framed<DhChain<N>> arm;            ///< the chain; its base frame is identity, or the first row of a modified chain
   JointLimits<N> limits{};           ///< joint limits
-  std::vector<JointDrive> drives{};  ///< one a joint; empty where nothing is known
+  std::vector<JointDrive> drives{};  ///< gears and encoders, one a joint; may be empty
 };
 
 /// A nominal arm whose number of joints is only known at run time.
@@ -71,8 +71,8 @@ struct RobotDescription {
 ///                  "lower_deg": -165, "upper_deg": 165}, ...]}
 ///
 /// `convention` is standard or modified; `type` is revolute (by default) or prismatic, with limits in `lower_mm`,
-/// `upper_mm`; `beta_deg` and limits may be omitted; `_m` and `_rad` are accepted too. `gear_ratio` and
-/// `encoder_periods` (a turn of the joint) say at which orders a revolute joint may err. 3 to 9 joints.
+/// `upper_mm`; `beta_deg` and limits may be omitted; `_m` and `_rad` are accepted too. Revolute
+/// joints may have `gear_ratio` and `encoder_periods` (a turn of the joint), see `JointDrive`. 3 to 9 joints.
 /// @throws DataError naming file and key
 VERNIER_API RobotDescription load_robot(const std::string& path);
 

@@ -1,14 +1,15 @@
 #pragma once
 
 /// @file
-/// What drives the joints of an arm, as far as it is known.
+/// Gears and encoders of an arm's joints, as far as they are known.
 
 namespace vernier {
 
-/// Gear and encoder of a joint. Their periods are the orders at which a joint errs.
+/// Gear and encoder of a joint. They determine at which orders (periods a turn of the joint) its errors are expected;
+/// see `lines_of`.
 struct JointDrive {
-  double gear_ratio = 0;    ///< turns of the motor in a turn of the joint; 0: unknown
-  int encoder_periods = 0;  ///< periods of the encoder in a turn of the joint; 0: unknown
+  double gear_ratio = 0;    ///< turns of the gear's input in a turn of the joint; 0: unknown
+  int encoder_periods = 0;  ///< signal periods of the encoder in a turn of the joint; 0: unknown
 
   /// Equal in both.
   bool operator==(const JointDrive&) const = default;

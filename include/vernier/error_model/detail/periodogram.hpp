@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The periodogram of what a model leaves: which order of a joint's angle, were it added, would explain how much.
+/// The periodogram of a model's residuals over a joint's angle: how much of them each order would explain, if it were
+/// added to the model.
 
 #include "vernier/core/types.hpp"
 
@@ -15,8 +16,8 @@ namespace vernier::detail {
 VERNIER_API VectorX periodogram(const ConstVectorRef& angles, const ConstVectorRef& score, const ConstVectorRef& weight,
                                 int highest);
 
-/// Whether the angles tell orders apart: no two of them, up to the highest, are the same at most of the angles, as they
-/// would be on a grid.
+/// Whether measurements at these angles distinguish the orders 1 .. highest; on a grid of angles they do not, because
+/// different orders take the same values there (aliasing).
 VERNIER_API bool tells_orders_apart(const ConstVectorRef& angles, const ConstVectorRef& weight, int highest);
 
 }  // namespace vernier::detail

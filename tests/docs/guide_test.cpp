@@ -115,6 +115,8 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
     const Vector3 desired = saved.nominal().position(q);
     EXPECT_LT((real_arm().position(correction.command) - desired).norm(), 0.15e-3);
     EXPECT_GT((real_arm().position(q) - desired).norm(), 0.5e-3);
+    EXPECT_LT((real_arm().position(next.command) - desired).norm(), 0.15e-3);
+    EXPECT_EQ(warm.model().position(q), saved.model().position(q));  // it was measured at no temperature
   }
   {
 #include "guide_11.inc"

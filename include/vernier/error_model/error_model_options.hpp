@@ -16,7 +16,7 @@ struct ErrorModelOptions {
   bool coupling = true;    ///< joint errors proportional to the value of the joint before; likewise
   int harmonics = 500;     ///< highest order of the harmonics of each joint, at most 60 below 400 measurements; 0: none
   HarmonicSpectrum spectrum = typical_spectrum();  ///< orders of the Fourier terms, and their expected sizes
-  std::vector<JointDrive> drives{};     ///< gears and encoders, one a joint: their orders are added; empty: unknown
+  std::vector<JointDrive> drives{};     ///< gears and encoders, one a joint: adds their orders up to `harmonics`
   bool find_lines = true;               ///< search for further orders up to 2,500, from 400 measurements on
   bool tool_per_station = false;        ///< every station has its own tool frame, not only its own base frame
   Vector3 down{0, 0, -1};               ///< direction of gravity in the arm's base frame

@@ -112,7 +112,7 @@ class ErrorModelFit {
     if (out.jointwise) {
       estimate.fallback_error = estimate.blocks.back().without;
       learn_spectrum(estimate, 8);
-      // linear in the joints, so they extrapolate far beyond the measured ranges: only beside terms that do not
+      // linear in the joints, so beyond the measured ranges they stay as at their ends
       all.gear_ratio = options_.gear_ratio;
       all.coupling = options_.coupling;
       all.linear_ranges.clear();

@@ -21,7 +21,8 @@ struct HarmonicEstimate {
 };
 
 /// Estimates of all orders of a joint, ascending; without those that the measurements do not determine.
-/// @param joint from 0
+/// @param estimate of the error model
+/// @param joint    from 0
 /// @complexity O(orders)
 VERNIER_API std::vector<HarmonicEstimate> joint_spectrum(const ErrorModelEstimate& estimate, int joint);
 

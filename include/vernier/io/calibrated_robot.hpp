@@ -119,6 +119,7 @@ class CalibratedRobot {
   /// The command that brings the arm where the nominal one would be at q, in the middle of both directions of approach.
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return correct(q, unknown()); }
   /// The same for the approach from known joint values.
+  /// @param q        where the nominal arm is to be [rad, m]
   /// @param previous the command before [rad, m]; not finite where unknown
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q, const JointVector<N>& previous) const noexcept {
     return compensated(previous).correct(q);
@@ -130,6 +131,8 @@ class CalibratedRobot {
     return correct(target, seed, unknown());
   }
   /// The same for the approach from known joint values.
+  /// @param target   the pose
+  /// @param seed     joints near the solution; they choose the branch
   /// @param previous the command before [rad, m]; not finite where unknown
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
                                       const JointVector<N>& previous) const noexcept {

@@ -44,10 +44,10 @@ struct ReregistrationReport {
   /// Standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated [m, rad]. They count what
   /// was held as uncertain as its prior.
   VectorX change_std{};
-  /// Standard deviations of positions [m] and of orientations [rad], per component, with which they were weighted:
-  /// estimated from the residuals, so that they contain the model's own error, and at least those of the sensors. The
-  /// latter is 0 where orientations are not used.
-  double position_sigma = 0, orientation_sigma = 0;
+  /// Standard deviation of positions with which they were weighted, per component [m]: estimated from the residuals, so
+  /// that it contains the model's own error, and at least that of the sensor.
+  double position_sigma = 0,
+         orientation_sigma = 0;  ///< the same of orientations [rad]; 0 where they are not used
   /// What the poses do not determine of the tool, so that it was held where it was: `the position of the tool along
   /// (0.00, 0.00, 1.00) of its frame`. Held is that of which more than half of the prior's standard deviation is left.
   std::vector<std::string> held{};

@@ -163,8 +163,11 @@ template <int N>
 int reregister_arm(support::Program& program, const Options& o, const vn::ReregisterOptions& free) {
   const vn::CalibratedRobot<N> robot = vn::load<N>(o.model);
   const auto types = robot.nominal().chain().joint_types();
-  const auto data = vn::read_dataset<N>(o.data.front(), types);
-  const auto test = o.test.empty() ? data : vn::read_dataset<N>(o.test.front(), types);
+  const auto read = [&](const std::string& file) {
+    const vn::Dataset<N> data = vn::read_dataset<N>(file, types);
+    return o.no_approach ? data.without_approach() : data;
+  };
+  const vn::Dataset<N> data = read(o.data.front()), test = o.test.empty() ? data : read(o.test.front());
   const auto found = vn::reregister(robot.model(), data, free, o.calibrate.sensors);
   if (!found.determined)
     throw vn::CalibrationFailure(

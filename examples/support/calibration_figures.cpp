@@ -85,6 +85,8 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
   draw_stages(folder, robot, report.stages);
   draw_drift(folder, robot, report.drift);
   std::vector<Series> ranges;
+  vernier::Index trials = 0;
+  for (const vernier::JointReport& joint : report.joints) trials += static_cast<vernier::Index>(joint.spectrum.size());
   for (std::size_t j = 0; j < report.joints.size(); ++j) {
     const vernier::JointReport& joint = report.joints[j];
     const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;
@@ -106,9 +108,7 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
       for (const vernier::HarmonicEstimate& one : joint.spectrum) {
         amplitude.x.push_back(one.order);
         amplitude.y.push_back(one.amplitude * 1e6);
-        limit.y.push_back(one.std * 1e6 *
-                          std::sqrt(vernier::line_threshold(
-                              static_cast<vernier::Index>(joint.spectrum.size() * report.joints.size()))));
+        limit.y.push_back(one.std * 1e6 * std::sqrt(vernier::line_threshold(trials)));
       }
       limit.x = amplitude.x;
       plot_svg(folder / fmt::format("spectrum_{}.svg", j + 1), fmt::format("{}: errors of {} by order", robot, name),

@@ -27,10 +27,10 @@ TEST(DriveLines, CausesAreNamed) {
   EXPECT_EQ(cause_of(512, drive), "the period of an encoder of 512 periods a turn");
   EXPECT_EQ(cause_of(1024, drive), "half the period of an encoder of 512 periods a turn");
   EXPECT_EQ(cause_of(128, drive), "");
-  EXPECT_EQ(cause_of(128), "as of the period of an encoder of 128 periods a turn");
-  EXPECT_EQ(cause_of(404), "as of 4 a turn of a 101:1 gear");
+  EXPECT_EQ(cause_of(128), "probably the period of an encoder of 128 periods a turn");
+  EXPECT_EQ(cause_of(404), "probably 4 a turn of a 101:1 gear");
   EXPECT_EQ(cause_of(404, {.gear_ratio = 50}), "");
-  EXPECT_EQ(cause_of(1), "once a turn, as of an eccentric encoder or gear");
+  EXPECT_EQ(cause_of(1), "once a turn: an eccentric encoder or gear");
 }
 
 }  // namespace

@@ -173,6 +173,10 @@ class Computation {
     };
     if (base == "geometry") return errors(identify(true).model);
     if (base == "jointwise")
+      return errors(vn::fit_error_model(identify(true), samples_.train,
+                                        {.hysteresis = false, .temperature = false, .drift = false}, sensors_)
+                        .model());
+    if (base == "approach")
       return errors(vn::fit_error_model(identify(true), samples_.train, vn::ErrorModelOptions{}, sensors_).model());
     return errors(registered.model);
   }
@@ -231,6 +235,7 @@ const std::vector<Named>& classical_names() {
       {"none", "the arm as designed, in the sensor's frame"},
       {"geometry", "Denavit-Hartenberg parameters identified"},
       {"jointwise", "geometry, compliance and functions of single joints, solved together"},
+      {"approach", "the same with hysteresis by the direction of approach, the drift of the session taken off"},
   };
   return names;
 }

@@ -32,7 +32,7 @@ struct Problem {
   bool measured() const { return !data.empty(); }
 };
 
-/// `[geometry+|jointwise+][SEARCH:]LEARNER[@MAP]`, or one of the classical ones: none, geometry, jointwise.
+/// `[geometry+|jointwise+][SEARCH:]LEARNER[@MAP]`, or one of the classical ones: none, geometry, jointwise, approach.
 struct Method {
   std::string text;                        ///< as it was written
   std::string base{};                      ///< the classical method that leaves what is learned; empty for `none`

@@ -170,14 +170,15 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   });
   out.ellipsoid_coverage =
       detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
-        VectorX within(data.size());
+        VectorX gates(data.size()), within(data.size());
+        for (Index i = 0; i < data.size(); ++i) gates(i) = errors.models[s].gate(data.joints(i));
+        const std::vector<Matrix6> covariances =
+            errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
+        const std::vector<Isometry3> poses = detail::visited_poses(errors.models[s], data, true, {});
         for (Index i = 0; i < data.size(); ++i) {
-          const double temperature =
-              data.temperatures().size() > 0 ? data.temperatures()(i) : std::numeric_limits<double>::quiet_NaN();
-          const PredictedPose p = errors.predicted_from(data.previous().row(i).transpose(), data.joints(i),
-                                                        static_cast<int>(s), temperature);
-          within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
-                                               p.covariance.template topLeftCorner<3, 3>());
+          const auto row = static_cast<std::size_t>(i);
+          within(i) = detail::within_ellipsoid(poses[row].translation() - data.position(i),
+                                               covariances[row].template topLeftCorner<3, 3>());
         }
         return within;
       }).mean();

@@ -3,6 +3,8 @@
 /// @file
 /// A fitted error model: all that is known of a real arm, as one kinematic model that is safe outside the data.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -128,18 +130,11 @@ class ErrorModel {
   /// The arm at a temperature [deg C], at the nearest measured one outside the measured range; the nominal arm stays.
   /// The same model where it does not change with temperature.
   ErrorModel at_temperature(double celsius) const {
-    if (!thermal_) return *this;
+    if (!thermal_ || !std::isfinite(celsius)) return *this;
     const double measured = std::clamp(celsius, thermal_->lower, thermal_->upper);
-    const VectorX change = (measured - thermal_->reference) * thermal_->parameters;
-    ErrorModel out = *this;
-    const auto shift = [&](Arm& arm) {
-      const ArmGeometry geometry(arm.around(arm.chain()));
-      const Framed<Chain> now = geometry.with_parameters(geometry.parameters() + change).framed(arm.chain());
-      arm = now.around(WithJointErrors<Chain>(now.model(), arm.model().joint_errors()));
-    };
-    shift(out.identified_);
-    if (out.outside_) shift(out.outside_->arm);
-    out.nominal_ = nominal_;  // targets stay
+    ErrorModel out = *this;  // the nominal arm stays, and so do targets
+    out.identified_ = warmer(identified_, measured - thermal_->reference);
+    if (out.outside_) out.outside_->arm = warmer(outside_->arm, measured - thermal_->reference);
     out.thermal_->reference = measured;
     return out;
   }
@@ -158,10 +153,10 @@ class ErrorModel {
     ErrorModel out = outside_ ? ErrorModel(nominal_.model(), move(identified_), move(outside_->arm), outside_->coverage)
                               : ErrorModel(nominal_.model(), move(identified_));
     if (thermal_) {  // frames are changed along: what a kelvin does to them there
-      const Arm now = move(identified_), warmer = move(at_temperature(thermal_->reference + 1).identified_);
+      const Arm now = move(identified_), then = move(warmer(identified_, 1));
       VectorX rates = thermal_->parameters;
-      rates.template head<6>() = warmer.base_frame().values() - now.base_frame().values();
-      rates.template tail<6>() = warmer.tool_frame().values() - now.tool_frame().values();
+      rates.template head<6>() = then.base_frame().values() - now.base_frame().values();
+      rates.template tail<6>() = then.tool_frame().values() - now.tool_frame().values();
       out.thermal_ = thermal_;
       out.thermal_->parameters = rates;
     }
@@ -196,6 +191,14 @@ class ErrorModel {
   };
 
   detail::GatedModels<Arm, dof> gated() const noexcept { return {identified_, fallback(), coverage()}; }
+
+  /// An arm warmed up.
+  Arm warmer(const Arm& arm, double kelvin) const {
+    const ArmGeometry geometry(arm.around(arm.chain()));
+    const Framed<Chain> now =
+        geometry.with_parameters(geometry.parameters() + kelvin * thermal_->parameters).framed(arm.chain());
+    return now.around(WithJointErrors<Chain>(now.model(), arm.model().joint_errors()));
+  }
 
   Arm identified_;
   std::optional<Outside> outside_{};

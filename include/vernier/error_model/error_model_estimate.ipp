@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "vernier/core/check.hpp"
@@ -31,53 +32,90 @@ VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std
 
 namespace detail {
 
-/// Covariance of the modelled pose; `rows` is the linearised pose.
-VERNIER_API Matrix6 pose_covariance(const ErrorModelEstimate& estimate, const ConstVectorRef& q, int station,
-                                    const ConstVectorRef& previous, double warmer, RowBlock& rows) {
-  const MatrixX joints = q.transpose(), before = previous.size() > 0 ? MatrixX(previous.transpose()) : MatrixX();
-  estimate.arm.linearise(station, joints, before, &rows, true, VectorX::Constant(1, warmer));
-  const Index unknowns = estimate.arm.size();
-  Rows6 all(6, unknowns);
-  rows.expand(estimate.arm.group_sizes(), all);
-  MatrixX half = MatrixX::Zero(6, unknowns), sum = MatrixX::Zero(6, 6);
+/// Covariances of modelled poses at n configurations; `rows` are the linearised poses.
+VERNIER_API std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate, const ConstMatrixRef& joints,
+                                                  int station, const ConstMatrixRef& previous, const VectorX& warmer,
+                                                  std::vector<RowBlock>& rows) {
+  const Index n = joints.rows(), unknowns = estimate.arm.size();
+  rows.resize(static_cast<std::size_t>(n));
+  estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer);
+  MatrixX all(6 * n, unknowns), half = MatrixX::Zero(6 * n, unknowns);
+  Rows6 one(6, unknowns);
+  for (Index i = 0; i < n; ++i) {
+    rows[static_cast<std::size_t>(i)].expand(estimate.arm.group_sizes(), one);
+    all.middleRows(6 * i, 6) = one;
+  }
   add_product(half, all, estimate.covariance);
-  add_product(sum, half, all.transpose());
-  return sum;
+  std::vector<Matrix6> out;
+  for (Index i = 0; i < n; ++i)
+    out.push_back(half.middleRows(6 * i, 6).lazyProduct(all.middleRows(6 * i, 6).transpose()));
+  return out;
 }
 
 }  // namespace detail
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
-  RowBlock rows;
-  return detail::pose_covariance(*this, q, station, VectorX(), 0, rows);
+  std::vector<RowBlock> rows;
+  return detail::pose_covariances(*this, q.transpose(), station, MatrixX(), VectorX::Zero(1), rows).front();
 }
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station,
                                                           const ConstVectorRef& previous, double temperature) const {
-  RowBlock rows;
-  const bool known = std::isfinite(temperature);
-  Matrix6 out = detail::pose_covariance(*this, q, station, previous, known ? temperature - mean_temperature : 0, rows);
-  if (!known && temperature_std > 0) {  // what a standard deviation of temperature does
-    RowBlock warm;
-    detail::pose_covariance(*this, q, station, previous, temperature_std, warm);
-    Vector6 effect = Vector6::Zero();
-    const VectorX steps = arm.steps();
-    for (std::size_t k = 0; k < arm.geometric().size(); ++k)
-      if (arm.geometric()[k].thermal) effect += steps(static_cast<Index>(k)) * warm.dense.col(static_cast<Index>(k));
-    out += effect * effect.transpose();
-  }
-  if (!arm.terms().hysteresis.empty() && (previous.size() == 0 || !previous.allFinite()))
-    for (int j = 0; j < arm.terms().joints; ++j) {
-      const Vector6 half = rows.factor.col(j) * arm.joint_errors().half_loop(j);
-      out += half * half.transpose();
+  const MatrixX before = previous.size() > 0 ? MatrixX(previous.transpose()) : MatrixX();
+  return visit_covariances(q.transpose(), VectorX::Constant(1, gate), station, before,
+                           VectorX::Constant(1, temperature))
+      .front();
+}
+
+VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const ConstMatrixRef& joints,
+                                                                        const ConstVectorRef& gates, int station,
+                                                                        const ConstMatrixRef& previous,
+                                                                        const ConstVectorRef& temperatures) const {
+  constexpr Index batch = 64;
+  std::vector<Matrix6> all;
+  const VectorX steps = arm.steps();
+  for (Index first = 0; first < joints.rows(); first += batch) {
+    const Index n = std::min(batch, joints.rows() - first);
+    const MatrixX q = joints.middleRows(first, n),
+                  before = previous.rows() > 0 ? MatrixX(previous.middleRows(first, n)) : MatrixX();
+    VectorX warmer = VectorX::Zero(n);
+    std::vector<bool> known(static_cast<std::size_t>(n), false);
+    for (Index i = 0; i < n && temperatures.size() > 0; ++i)
+      if (std::isfinite(temperatures(first + i))) {
+        known[static_cast<std::size_t>(i)] = true;
+        warmer(i) = temperatures(first + i) - mean_temperature;
+      }
+    std::vector<RowBlock> rows, warm;
+    const std::vector<Matrix6> modelled = detail::pose_covariances(*this, q, station, before, warmer, rows);
+    if (temperature_std > 0) {
+      warm.resize(static_cast<std::size_t>(n));
+      arm.linearise(station, q, before, warm.data(), true, VectorX::Constant(n, temperature_std));
     }
-  out += joint_sigma * joint_sigma * rows.factor.lazyProduct(rows.factor.transpose());
-  if (gate < 1)  // errors that the suppressed terms would have corrected
-    out.diagonal().head<3>().array() +=
-        std::pow((1 - gate) * fallback_error / 1.6, 2);  // a mean norm is 1.6 sigma of a component
-  out.diagonal().head<3>().array() += position_sigma * position_sigma;
-  out.diagonal().tail<3>().array() += orientation_sigma * orientation_sigma;
-  return out;
+    for (std::size_t i = 0; i < modelled.size(); ++i) {
+      const auto row = static_cast<Index>(i);
+      Matrix6 out = modelled[i];
+      if (!known[i] && temperature_std > 0) {  // what a standard deviation of temperature does
+        Vector6 effect = Vector6::Zero();
+        for (Index k = 0; k < static_cast<Index>(arm.geometric().size()); ++k)
+          if (arm.geometric()[static_cast<std::size_t>(k)].thermal) effect += steps(k) * warm[i].dense.col(k);
+        out += effect * effect.transpose();
+      }
+      if (!arm.terms().hysteresis.empty() && (before.rows() == 0 || !before.row(row).allFinite()))
+        for (int j = 0; j < arm.terms().joints; ++j) {
+          const Vector6 half = rows[i].factor.col(j) * arm.joint_errors().half_loop(j);
+          out += half * half.transpose();
+        }
+      out += joint_sigma * joint_sigma * rows[i].factor.lazyProduct(rows[i].factor.transpose());
+      const double gate = gates(first + row);
+      if (gate < 1)  // errors that the suppressed terms would have corrected
+        out.diagonal().head<3>().array() +=
+            std::pow((1 - gate) * fallback_error / 1.6, 2);  // a mean norm is 1.6 sigma of a component
+      out.diagonal().head<3>().array() += position_sigma * position_sigma;
+      out.diagonal().tail<3>().array() += orientation_sigma * orientation_sigma;
+      all.push_back(out);
+    }
+  }
+  return all;
 }
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 /// @file
 /// Fits geometry, frames and joint errors together, to poses and distances measured from one place or several.
 
+#include <array>
 #include <span>
 #include <vector>
 

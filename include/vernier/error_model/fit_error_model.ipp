@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "vernier/core/check.hpp"
@@ -106,8 +108,7 @@ class ErrorModelFit {
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
       if (input_.nominal.revolute(j))
-        all.transmission[static_cast<std::size_t>(j)] =
-            orders_of(spectra_[static_cast<std::size_t>(j)], highest_order());
+        all.transmission[static_cast<std::size_t>(j)] = orders_of_joint(static_cast<std::size_t>(j));
     out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all, true);
     if (out.jointwise) {
       estimate.fallback_error = estimate.blocks.back().without;
@@ -262,6 +263,17 @@ class ErrorModelFit {
     return problem_.num_blocks() < 400 ? std::min(60, options_.harmonics) : options_.harmonics;
   }
 
+  /// Orders of a joint's harmonics: of the expected spectrum, and, from 400 poses on, all lines of its drive.
+  VERNIER_API Fourier orders_of_joint(std::size_t joint) const {
+    Fourier out = orders_of(spectra_[joint], highest_order());
+    if (options_.drives.empty() || problem_.num_blocks() < 400) return out;
+    const Fourier lines = orders_of(lines_of(options_.drives[joint]), std::numeric_limits<int>::max());
+    std::vector<int> all;
+    std::set_union(out.orders.begin(), out.orders.end(), lines.orders.begin(), lines.orders.end(),
+                   std::back_inserter(all));
+    return {all};
+  }
+
   /// The problem, linearised at its present values.
   struct Linearised {
     BlockSystem system;
@@ -315,7 +327,8 @@ class ErrorModelFit {
     constexpr Index enough = 500;
     constexpr double clearly = 10;
     if (at.system.validation_blocks < enough)
-      precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, highest_order()), at.local_steps);
+      precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, std::numeric_limits<int>::max()),
+                                at.local_steps);
     const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
     if (at.system.validation_blocks >= enough || evidence(learned) > evidence(precisions) + clearly)
       precisions = learned;
@@ -492,11 +505,21 @@ class ErrorModelFit {
     estimate.covariance *= estimate.variance_factor;
 
     // leave-one-pose-out errors contain the noise of a visit and the uncertainty of the unknowns
+    constexpr Index batch = 64;  // poses whose rows are multiplied by the covariance at once
     Rows6 all(6, p);
-    MatrixX half, effect;
+    MatrixX stack(3 * batch, p), half;
+    Index stacked = 0;
     double rotation_sum = 0, rotation_values = 0, distance_sum = 0;
     std::vector<LeftOutVisit> visits;
     const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, stride_);
+    const auto flush = [&] {
+      half.setZero(3 * stacked, p);
+      add_product(half, stack.topRows(3 * stacked), estimate.covariance);
+      for (Index i = 0; i < stacked; ++i)
+        visits[visits.size() - static_cast<std::size_t>(stacked - i)].model =
+            half.middleRows(3 * i, 3).lazyProduct(stack.middleRows(3 * i, 3).transpose());
+      stacked = 0;
+    };
     visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
       const Station& station = problem_.station_of(b);
       if (station.oriented()) {
@@ -517,12 +540,11 @@ class ErrorModelFit {
       rows.expand(system.group_sizes, all);
       const MatrixX position = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(all);
       const MatrixX joint = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(rows.factor);
-      half.setZero(3, p);
-      effect.setZero(3, 3);
-      add_product(half, position, estimate.covariance);
-      add_product(effect, half, position.transpose());
-      visits.push_back({error, effect, joint.lazyProduct(joint.transpose())});
+      visits.push_back({error, Matrix3::Zero(), joint.lazyProduct(joint.transpose())});
+      stack.middleRows(3 * stacked, 3) = position;
+      if (++stacked == batch) flush();
     });
+    flush();
     if (rotation_values > 0) estimate.orientation_sigma = std::sqrt(rotation_sum / rotation_values * values / freedom);
     if (visits.empty()) {
       estimate.position_sigma = std::sqrt(distance_sum / static_cast<double>(errors.cols()));

@@ -18,7 +18,7 @@ VERNIER_API HarmonicSpectrum lines_of(const JointDrive& drive);
 
 /// The probable cause of errors at an order, in words: "4 a turn of a 101:1 gear", which is 4 periods a turn of the
 /// gear's input. Empty where there is none. Orders 1 and 2 are those of eccentric and oval parts. Where gear or encoder
-/// is unknown, one of 101:1, or of 128 periods, is assumed, and the words begin with "as of".
+/// is unknown, one of 101:1, or of 128 periods, is assumed, and the words begin with "probably".
 VERNIER_API std::string cause_of(int order, const JointDrive& drive = {});
 
 }  // namespace vernier

@@ -46,14 +46,14 @@ VERNIER_IMPL HarmonicSpectrum lines_of(const JointDrive& drive) {
 }
 
 VERNIER_IMPL std::string cause_of(int order, const JointDrive& drive) {
-  if (order == 1) return "once a turn, as of an eccentric encoder or gear";
-  if (order == 2) return "twice a turn, as of an oval encoder or gear";
+  if (order == 1) return "once a turn: an eccentric encoder or gear";
+  if (order == 2) return "twice a turn: an oval encoder or gear";
   if (const std::string stated = detail::source_at(order, drive); !stated.empty()) return stated;
   JointDrive typical;
   if (drive.encoder_periods == 0) typical.encoder_periods = 128;
   if (drive.gear_ratio == 0) typical.gear_ratio = 101;
   const std::string source = detail::source_at(order, typical);
-  return source.empty() ? source : "as of " + source;
+  return source.empty() ? source : "probably " + source;
 }
 
 }  // namespace vernier

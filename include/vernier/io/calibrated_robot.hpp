@@ -79,7 +79,10 @@ class CalibratedRobot {
 
   /// The same arm at a temperature [deg C], see `ErrorModel::at_temperature`.
   CalibratedRobot at_temperature(double celsius) const {
-    return with_model(model_.at_temperature(celsius), provenance_);
+    CalibratedRobot out = *this;
+    out.model_ = model_.at_temperature(celsius);
+    if (corrected_) out.corrected_.emplace(out.model_, corrected_->learned(), corrected_->coverage());
+    return out;
   }
 
   /// Its name.

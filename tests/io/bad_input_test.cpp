@@ -225,6 +225,7 @@ CalibratedRobot<6> model() {
   terms.gear_ratio = true;
   terms.gravity.emplace(robot.chain);
   terms.hysteresis = {0.02};
+  terms.tilt.emplace(robot.chain);
   terms.transmission[0] = terms.transmission[2] = Fourier::up_to(2);
   const Model::Arm arm(
       {with_geometric_errors(robot.chain, {}, 3), JointErrors(terms, VectorX::Constant(terms.size(), 1e-4))});
@@ -267,6 +268,8 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/arm/joint_errors/hysteresis/widths_rad/0", 0), "a step without width");
   reader.expect_refused(with("/arm/joint_errors/hysteresis/widths_rad", {0.1, 0.2}), "more widths than coefficients");
   reader.expect_refused(with("/arm/joint_errors/gravity/down/0", 1), "gravity stronger than gravity");
+  reader.expect_refused(with("/arm/joint_errors/tilt/down/2", 0), "tilts without gravity");
+  reader.expect_refused(with("/arm/joint_errors/tilt/coefficients_rad", {1e-3, 2e-3}), "tilts of a third of a joint");
   reader.expect_refused(with("/arm/joint_errors/backlash", 1), "a joint error nobody knows");
   reader.expect_refused(with("/provenance/measured", "colours"), "another kind of measurement");
   reader.expect_refused(with("/learned/input_map", "raw"), "weights of another layer");

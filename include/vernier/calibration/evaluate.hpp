@@ -100,10 +100,10 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder, test);
   assess("elastic", "elastic", errors.elastic);
   assess("jointwise", "joint-wise", errors.jointwise);
-  const auto assess_visits = [&](const char* key, const std::vector<SessionDrift>& drift) {
+  const auto assess_visits = [&](const char* key, const auto& models, const std::vector<SessionDrift>& drift) {
     StageErrors stage{key, key, {}, {}};
     const auto poses = [&](std::size_t s, const Dataset<N>& data) {
-      return detail::visited_poses(errors.models[s], data, s < drift.size() ? drift[s] : SessionDrift{});
+      return detail::visited_poses(models[s], data, s < drift.size() ? drift[s] : SessionDrift{});
     };
     stage.position = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
       return detail::position_errors_of(poses(s, data), data.positions());
@@ -115,13 +115,18 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     out.stages.push_back(std::move(stage));
   };
   const bool approach = !errors.arm.terms().hysteresis.empty();
-  if (approach) assess_visits("approach", {});
+  const bool tilt = !errors.approach.empty();
+  if (approach) assess_visits("approach", tilt ? errors.approach : errors.models, {});
+  if (tilt) assess_visits("tilt", errors.models, {});
   if (calibration.remainder) {
     const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
-    assess_learned("jointwise_pso_elm", approach ? "approach + PSO-ELM" : "joint-wise + PSO-ELM", errors.models,
-                   calibration.remainder, centred);
+    assess_learned("jointwise_pso_elm",
+                   tilt       ? "tilt + PSO-ELM"
+                   : approach ? "approach + PSO-ELM"
+                              : "joint-wise + PSO-ELM",
+                   errors.models, calibration.remainder, centred);
   }
-  if (!errors.drift.empty()) assess_visits("session", errors.drift);
+  if (!errors.drift.empty()) assess_visits("session", errors.models, errors.drift);
   out.drift = errors.drift;
   out.learned = calibration.remainder && !calibration.remainder->empty();
   out.chosen = calibration.chosen();

@@ -17,7 +17,7 @@ namespace vernier {
 struct BlockChoice {
   /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
   /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
-  /// `drift` (of the bases)
+  /// `tilt` (of joint frames under gravity), `drift` (of the bases)
   std::string name;
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried

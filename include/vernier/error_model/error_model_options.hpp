@@ -25,6 +25,8 @@ struct ErrorModelOptions {
   double coupling_prior_std = 1e-4;     ///< expected coupling
   bool hysteresis = true;               ///< joint errors that depend on the direction of approach
   double hysteresis_prior_std = 60e-6;  ///< expected half width of a hysteresis loop [rad, m]
+  bool tilt = true;                     ///< tilts of the joints' frames under gravity
+  double tilt_prior_std = 2e-3;         ///< expected tilt by each component of gravity's direction [rad]
   bool drift = true;                    ///< motion of the bases during a session
   Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block
 

@@ -30,7 +30,7 @@ struct ErrorModelInput {
 /// A fitted error model without its type; a vector has one arm a station.
 struct ErrorModelOutput {
   ErrorModelEstimate estimate;
-  std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, all{};
+  std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, without_tilt{}, all{};
   bool jointwise = false;  ///< whether `all` has transmission terms
   MatrixX joints{};        ///< of all samples
 };
@@ -78,6 +78,7 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
                              : ErrorModel<Chain>(nominal, arm.typed(nominal));
     };
     out.jointwise.push_back(gated(found.without_approach[s]));
+    if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s]));
     out.models.push_back(gated(found.all[s]));
   }
   return out;

@@ -132,8 +132,17 @@ class ErrorModelFit {
     JointTerms approached = problem_.arm.terms();
     approached.hysteresis = {0.01, 0.3};
     const bool hysteresis = options_.hysteresis && add(estimate, "approach", approached, true);
+    std::vector<FittedArm> without_tilt = arms();
+    JointTerms tilted = problem_.arm.terms();
+    if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
+    const bool tilt = options_.tilt && add(estimate, "tilt", tilted, true);
+    if (tilt) {
+      out.without_tilt = std::move(without_tilt);
+      size_by_evidence(gravity());  // the third axis, that of the joint
+      estimate.converged = problem_.solve() && estimate.converged;
+    }
     const bool drift = options_.drift && add_drift(estimate);
-    if ((hysteresis || drift) && out.jointwise && !search) {
+    if ((hysteresis || tilt || drift) && out.jointwise && !search) {
       learn_spectrum(estimate, 4);
       estimate.converged = problem_.solve() && estimate.converged;
     }
@@ -167,6 +176,7 @@ class ErrorModelFit {
           case JointTermBlock::Kind::coupling: std = options_.coupling_prior_std; break;
           case JointTermBlock::Kind::gravity: std = options_.compliance_prior_std; break;
           case JointTermBlock::Kind::hysteresis: std = options_.hysteresis_prior_std; break;
+          case JointTermBlock::Kind::tilt: std = options_.tilt_prior_std; break;
           case JointTermBlock::Kind::transmission:
             std = expected_std(spectra_[static_cast<std::size_t>(block.joint)],
                                terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
@@ -284,6 +294,15 @@ class ErrorModelFit {
     problem_.arm.set_precisions((used ? sized : suppressed).tail(problem_.arm.terms().size()));
     return {name, trials[1].errors.mean(), trials[0].errors.mean(), used,
             used ? sized(group.front()) : suppressing_precision};
+  }
+
+  /// Sizes of some coefficients by evidence.
+  VERNIER_API void size_by_evidence(const UnknownGroup& group) {
+    if (group.empty()) return;
+    const Linearised at = linearised();
+    problem_.arm.set_precisions(
+        scale_priors(at.normal, problem_.arm.precisions(), at.steps, problem_.measured_values(), group, at.local_steps)
+            .tail(problem_.arm.terms().size()));
   }
 
   /// Sizes of the harmonics by evidence, at the solution: one common factor on the expected sizes; one for every band

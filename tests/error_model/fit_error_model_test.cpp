@@ -157,7 +157,9 @@ TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
       before += (found.jointwise.front().position(q) - actual.position(q)).norm() / 100;
     }
     EXPECT_LT(error, 0.03e-3);
-    if (size > 0) EXPECT_GT(before, 3 * error);
+    if (size > 0) {
+      EXPECT_GT(before, 3 * error);
+    }
   }
 }
 

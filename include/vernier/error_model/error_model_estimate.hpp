@@ -40,7 +40,7 @@ struct ErrorModelEstimate {
                               ///< nothing else was measured
   double joint_sigma = 0;     ///< of a visit, repeatability of the joints [rad]
   double orientation_sigma = 0;       ///< of a visit, per component [rad]; 0 for positions alone
-  double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions [m]
+  double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions and tilts [m]
   std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
   std::vector<JointDrive> drives{};   ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;            ///< the unknowns and their estimates
@@ -62,7 +62,7 @@ struct ErrorModelEstimate {
   /// Covariance of one visit at q: of parameters, joint-wise coefficients and repeatability. Position [m^2], then
   /// orientation [rad^2], base frame.
   /// @param q        one value a joint
-  /// @param gate     share of the transmission terms in the prediction, in [0, 1]
+  /// @param gate     share of transmissions and tilts in the prediction, in [0, 1]
   /// @param station  from 0
   /// @param previous joint values from which q was approached; empty, or not finite, where unknown: then hysteresis
   ///                 adds its half loops

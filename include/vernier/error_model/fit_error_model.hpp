@@ -73,9 +73,10 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
     out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
     out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});
     const auto gated = [&](const FittedArm& arm) {
-      return found.jointwise ? ErrorModel<Chain>(nominal, arm.typed(nominal),
-                                                 found.elastic[s].with_hysteresis_of(arm).typed(nominal), coverage)
-                             : ErrorModel<Chain>(nominal, arm.typed(nominal));
+      return found.jointwise || arm.errors.tilts()
+                 ? ErrorModel<Chain>(nominal, arm.typed(nominal),
+                                     found.elastic[s].with_hysteresis_of(arm).typed(nominal), coverage)
+                 : ErrorModel<Chain>(nominal, arm.typed(nominal));
     };
     out.jointwise.push_back(gated(found.without_approach[s]));
     if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s]));

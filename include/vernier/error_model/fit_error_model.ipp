@@ -138,6 +138,7 @@ class ErrorModelFit {
     const bool tilt = options_.tilt && add(estimate, "tilt", tilted, true);
     if (tilt) {
       out.without_tilt = std::move(without_tilt);
+      if (!out.jointwise) estimate.fallback_error = estimate.blocks.back().without;
       size_by_evidence(gravity());  // the third axis, that of the joint
       estimate.converged = problem_.solve() && estimate.converged;
     }
@@ -296,9 +297,9 @@ class ErrorModelFit {
             used ? sized(group.front()) : suppressing_precision};
   }
 
-  /// Sizes of some coefficients by evidence.
+  /// Sizes of some coefficients by evidence, unless they are suppressed.
   VERNIER_API void size_by_evidence(const UnknownGroup& group) {
-    if (group.empty()) return;
+    if (group.empty() || problem_.arm.precisions()(group.front()) >= suppressing_precision) return;
     const Linearised at = linearised();
     problem_.arm.set_precisions(
         scale_priors(at.normal, problem_.arm.precisions(), at.steps, problem_.measured_values(), group, at.local_steps)

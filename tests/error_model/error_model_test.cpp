@@ -202,7 +202,9 @@ TEST(ErrorModel, WholeTurnsFurtherAllButTheLinearTermsIsTheSame) {
       // what the linear terms do stays within what they do where they were measured
       const double change = (with.position(further) - with.position(q)).norm();
       EXPECT_LT(change, 2 * 3 * 1.5 * beta.head(11).cwiseAbs().sum());
-      if (zone == Zone::inside && !further.isApprox(q)) EXPECT_GT(change, 0);
+      if (zone == Zone::inside && !further.isApprox(q)) {
+        EXPECT_GT(change, 0);
+      }
     }
 }
 

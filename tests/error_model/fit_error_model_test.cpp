@@ -149,6 +149,11 @@ TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
     EXPECT_EQ(choice->used, size > 0);
     EXPECT_EQ(found.model().identified().model().joint_errors().tilts(), size > 0);
     EXPECT_EQ(found.approach.size(), size > 0 ? 1u : 0u);
+    EXPECT_EQ(found.model().coverage() != nullptr, size > 0);  // known where the joints were measured
+    if (size > 0) {
+      EXPECT_FALSE(found.model().fallback()->model().joint_errors().tilts());
+      EXPECT_EQ(found.fallback_error, choice->without);
+    }
     const JointRows<6> elsewhere = abb_irb120_operating_region().sample(robot.chain, 100, 9);
     double error = 0, before = 0;
     for (Index i = 0; i < elsewhere.rows(); ++i) {

@@ -39,7 +39,7 @@ CalibratedRobot<6> example(bool learned) {
   terms.tilt.emplace(robot.chain, Vector3(0, 0.6, -0.8));
   const JointErrors few(terms, VectorX::LinSpaced(terms.size(), -1e-4, 2e-4));
   for (int i = 0; i < 5; ++i) terms.transmission[static_cast<std::size_t>(i)] = Fourier::up_to(3 + i);
-  const JointErrors all(terms, VectorX::LinSpaced(terms.size(), -2e-4, 3e-4));
+  const JointErrors all(terms, VectorX::LinSpaced(terms.size(), -3e-4, 3e-4));
   auto coverage = JointCoverage<6>::covering(joints.topRows(30));
   coverage.periodic = {true, false, true, true, false, true};
   const Model model(robot.chain, Model::Arm({actual, all}, base, tool), Model::Arm({robot.chain, few}, tool, base),

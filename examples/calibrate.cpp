@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <map>
 
 #include "calibration_figures.hpp"
@@ -150,7 +151,10 @@ int run_calibration(support::Program& program, Options& o) {
   if (!program.common().json.empty()) support::write_json(program.common().json, vn::to_json(report, robot.name));
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
-  fmt::print("\nFrom poses to error model in {:.1f} s. Figures: {}\n", report.fit_seconds, folder.string());
+  fmt::print(
+      "\nFrom poses to error model in {:.1f} s; a pose of the chosen stage with its Jacobian takes {:.2g} us. "
+      "Figures: {}\n",
+      report.fit_seconds, report.evaluation_seconds * 1e6, folder.string());
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
   return 0;
 }
@@ -177,11 +181,15 @@ int reregister_arm(support::Program& program, const Options& o, const vn::Reregi
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;
-  const auto stage = [&](const char* key, const char* title, const auto& model) {
+  vn::Isometry3 probe = vn::Isometry3::Identity();
+  probe.linear() = vn::exp_so3(found.motion.probe);
+  const auto stage = [&](const char* key, const char* title, const auto& model, const auto& as_seen) {
     return vn::StageErrors{key, title, vn::position_errors(model, test),
-                           oriented ? vn::rotation_errors(model, test) : vn::VectorX()};
+                           oriented ? vn::rotation_errors(as_seen, test) : vn::VectorX()};
   };
-  const std::vector stages{stage("as_fitted", "as fitted", robot), stage("reregistered", "re-registered", moved)};
+  const std::vector stages{stage("as_fitted", "as fitted", robot, robot),
+                           stage("reregistered", "re-registered", moved,
+                                 found.model.moved(vn::Isometry3::Identity(), vn::JointVector<N>::Zero(), probe))};
   fmt::print("{}: {} registered again from {} poses, everything else kept\n\nErrors of {} [mm]\n\n{}\n{}", robot.name(),
              o.free, data.size(),
              o.test.empty() ? "those same poses (--test FILE names held-out ones)"
@@ -209,10 +217,18 @@ int run_reregistration(support::Program& program, const Options& o) {
     const std::size_t comma = std::min(o.free.find(',', at), o.free.size());
     const std::string part = o.free.substr(at, comma - at);
     at = comma + 1;
-    if (part != "base" && part != "tool" && part != "offsets")
-      throw support::UsageError("--free takes base, tool, offsets, joined by commas; not '" +
+    if (part == "base") {
+      free.base = true;
+    } else if (part == "offsets") {
+      free.offsets = true;
+    } else if (part == "tool" || part == "another-tool") {
+      free.tool = true;
+      if (part == "another-tool")
+        free.tool_position_prior_std = free.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
+    } else {
+      throw support::UsageError("--free takes base, tool, another-tool, offsets, joined by commas; not '" +
                                 vn::detail::quotable(part) + "'");
-    (part == "base" ? free.base : part == "tool" ? free.tool : free.offsets) = true;
+    }
   }
   return support::dispatch_dof(vn::saved_arm(o.model).dof,
                                [&](auto n) { return reregister_arm<n()>(program, o, free); });
@@ -238,7 +254,9 @@ int run(support::Program& program) {
       option("--robot", o.robot, "name in the catalogue (abb_irb120, ur10, ur5, barrett_wam, puma560), or a JSON file",
              "NAME|FILE");
   option("--data", o.data,
-         "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad; one file a sensor station",
+         "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s, segment (a new "
+         "number: the "
+         "approach is unknown) or from_q1_rad.. (where each pose was approached from); one file a sensor station",
          "FILE...")
       ->required();
   auto* distances = option("--distances", o.distances,
@@ -274,11 +292,14 @@ int run(support::Program& program) {
          "NAME...");
   app.add_flag("--no-approach", o.no_approach,
                "rows are not in the order of measuring: no hysteresis by the direction of approach");
-  app.add_option("--harmonics", o.calibrate.errors.harmonics, "joint-wise Fourier terms up to this order; 0: none")
+  app.add_option("--harmonics", o.calibrate.errors.harmonics,
+                 "highest order of the joint-wise harmonics, at most 60 below 400 measurements; 0: none")
       ->type_name("K")
       ->check(CLI::Range(0, 500).description(""));
   app.add_option("--priors", o.priors,
-                 "of the joint errors: the default rule, or optimised by pso or ga on left-out poses (takes a minute)")
+                 "sizes of the joint errors: by default those of most evidence, or optimised by pso or ga on left-out "
+                 "poses (takes "
+                 "a minute)")
       ->type_name("HOW")
       ->check(CLI::IsMember({"default", "pso", "ga"}).description(""));
   app.add_flag("--own-tools", o.calibrate.errors.tool_per_station,
@@ -287,7 +308,11 @@ int run(support::Program& program) {
   app.add_option("--date", o.date, "date written into the model")->type_name("DATE");
   auto* model =
       option("--model", o.model, "a calibrated model: registered again from the data, the rest is kept", "FILE");
-  auto* free = option("--free", o.free, "with --model: what may move: base, tool, offsets, joined by commas", "WHAT");
+  auto* free =
+      option("--free", o.free,
+             "with --model: what may move: base, tool (remounted: by millimetres), another-tool (by any amount), "
+             "offsets, joined by commas",
+             "WHAT");
   model->excludes(distances)->excludes(robot)->excludes(every)->excludes(split)->excludes(train)->needs(free);
   free->needs(model);
   program.parse("calibrate_out");
@@ -302,6 +327,7 @@ int run(support::Program& program) {
   sensors.loss = losses.at(o.loss);
   sensors.distance_sigma = o.distance_sigma_mm * 1e-3;
   sensors.use_orientations = !o.positions_only;
+  o.calibrate.errors.hysteresis = !o.no_approach;
   if (*model) {
     if (o.data.size() != 1) throw support::UsageError("--model takes one file of --data");
     return run_reregistration(program, o);
@@ -315,7 +341,8 @@ int run(support::Program& program) {
 int main(int argc, char** argv) {
   return support::run_program("calibrate",
                               "Measured poses in; base and tool frames, the arm's geometry, gravity compliance, "
-                              "functions of single joints and a PSO-ELM on the remainder; errors at held-out poses "
-                              "after each, and a verdict.",
+                              "functions of single joints, hysteresis by the direction of approach, drift of the "
+                              "session and a PSO-ELM on the remainder; errors at held-out poses after each, and a "
+                              "verdict.",
                               argc, argv, run);
 }

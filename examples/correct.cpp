@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,12 @@ namespace vn = vernier;
 
 /// What became of the targets.
 struct CorrectionReport {
-  std::string robot;                ///< name in the model
-  std::vector<double> errors{};     ///< distance from each target that the model predicts for its command [m]
-  std::vector<vn::Index> missed{};  ///< targets that are not met, counted from 0
-  vn::Index extrapolated = 0;       ///< targets outside the measured joint ranges, where the learned part fades out
+  std::string robot;                    ///< name in the model
+  std::vector<double> errors{};         ///< distance from each target that the model predicts for its command [m]
+  std::vector<vn::Index> missed{};      ///< targets that are not met, counted from 0
+  std::optional<double> temperature{};  ///< for which commands are corrected [deg C], where that matters
+  bool clamped = false;                 ///< whether the temperature asked for is not that
+  vn::Index extrapolated = 0;           ///< targets outside the measured joint ranges, where the learned part fades out
 };
 
 const char* words(vn::IkStatus status) {
@@ -41,13 +44,15 @@ const char* words(vn::IkStatus status) {
 /// joints only seeds that choose the branch; else the targets are where the nominal arm stands at the joints
 /// @param approach each command is the one to which the arm moves from the command before; else the direction of
 /// approach is unknown
+/// @param temperature of the arm [deg C], where it is known
 /// @throws vn::DataError on a malformed file
 /// @throws std::runtime_error where the commands cannot be written
 template <int N>
 CorrectionReport correct_arm(const std::filesystem::path& model, const std::filesystem::path& targets, bool poses,
-                             bool approach, const std::filesystem::path& out) {
+                             bool approach, std::optional<double> temperature, const std::filesystem::path& out) {
   using vn::Index;
-  const vn::CalibratedRobot<N> robot = vn::load<N>(model);
+  const vn::CalibratedRobot<N> saved = vn::load<N>(model);
+  const vn::CalibratedRobot<N> robot = temperature ? saved.at_temperature(*temperature) : saved;
   vn::Dataset<N> data;
   if (poses) {
     data = vn::read_dataset<N>(targets, robot.nominal().chain().joint_types());
@@ -61,6 +66,12 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
   }
 
   CorrectionReport report{robot.name()};
+  if (const vn::ThermalRates* thermal = saved.model().thermal()) {
+    report.temperature = robot.model().thermal()->reference;
+    report.clamped = temperature && *temperature != report.temperature;
+  } else if (temperature) {
+    report.clamped = true;
+  }
   std::string text;
   for (int j = 0; j < N; ++j)
     text += vn::message("q", j + 1, robot.nominal().chain().row(j).joint == vn::JointType::revolute ? "_rad," : "_m,");
@@ -88,6 +99,7 @@ CorrectionReport correct_arm(const std::filesystem::path& model, const std::file
 int run(support::Program& program) {
   std::string model, targets;
   bool poses = false, no_approach = false;
+  std::optional<double> temperature;
   CLI::App& app = program.app();
   app.add_option("--model", model, "calibrated model that calibrate saved")->required()->type_name("FILE");
   app.add_option("--targets", targets, "joints q1_rad.. at which the nominal arm stands where the actual one is to go")
@@ -99,18 +111,30 @@ int run(support::Program& program) {
   app.add_flag("--no-approach", no_approach,
                "the commands are not executed in the order of the file: correct for the middle of both directions of "
                "approach, not for the approach from the command before");
+  app.add_option("--temperature-c", temperature,
+                 "temperature of the arm [deg C], for a model that changes with it; by default the mean of its "
+                 "measurements")
+      ->type_name("T");
   program.parse("", "write the commands to this file", "FILE");
   const std::string& out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
   support::require_writable(out);
 
-  const CorrectionReport report = support::dispatch_dof(
-      vn::saved_arm(model).dof, [&](auto n) { return correct_arm<n()>(model, targets, poses, !no_approach, out); });
+  const CorrectionReport report = support::dispatch_dof(vn::saved_arm(model).dof, [&](auto n) {
+    return correct_arm<n()>(model, targets, poses, !no_approach, temperature, out);
+  });
   const auto n = report.errors.size(), missed = report.missed.size();
   const double largest = *std::max_element(report.errors.begin(), report.errors.end()) * 1e3;
   const double mean = std::accumulate(report.errors.begin(), report.errors.end(), 0.0) / static_cast<double>(n) * 1e3;
   fmt::print("{}: {} of {} targets corrected; the model predicts errors of {:.2g} mm (mean), {:.2g} mm (largest)\n",
              report.robot, n - missed, n, mean, largest);
+  if (report.temperature)
+    fmt::print("Corrected for {:.4g} deg C{}\n", *report.temperature,
+               report.clamped ? ", the nearest that was measured"
+               : temperature  ? ""
+                              : ", the mean of the measurements");
+  else if (report.clamped)
+    fmt::print("The model does not change with temperature; --temperature-c has no effect\n");
   if (report.extrapolated > 0)
     fmt::print("{} of them lie outside the measured joint ranges, where the learned part fades out\n",
                report.extrapolated);

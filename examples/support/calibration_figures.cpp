@@ -55,9 +55,35 @@ void draw_stages(const std::filesystem::path& folder, const std::string& robot,
 
 }  // namespace
 
+namespace {
+
+void draw_drift(const std::filesystem::path& folder, const std::string& robot,
+                const std::vector<vernier::SessionDrift>& drift) {
+  for (std::size_t s = 0; s < drift.size(); ++s) {
+    if (drift[s].empty()) continue;
+    const std::string of = drift.size() > 1 ? fmt::format(" of station {}", s + 1) : "";
+    const char* names[] = {"x [um]", "y [um]", "z [um]", "rotation about x [urad]", "about y [urad]", "about z [urad]"};
+    std::vector<Series> series;
+    for (vernier::Index c = 0; c < 6; ++c) {
+      Series one{names[c], {}, {}, c < 3 ? Style::lines : Style::dashed, static_cast<int>(c % 3)};
+      for (vernier::Index k = 0; k < drift[s].twists.cols(); ++k) {
+        one.x.push_back(drift[s].begin + drift[s].spacing * static_cast<double>(k));
+        one.y.push_back(drift[s].twists(c, k) * 1e6);
+      }
+      series.push_back(std::move(one));
+    }
+    plot_svg(folder / (drift.size() > 1 ? fmt::format("drift_{}.svg", s + 1) : std::string("drift.svg")),
+             fmt::format("{}: drift of the base{} during the session", robot, of), "row, or time_s", "drift [um, urad]",
+             series);
+  }
+}
+
+}  // namespace
+
 void draw_calibration(const std::filesystem::path& folder, const std::string& robot,
                       const vernier::CalibrationReport& report) {
   draw_stages(folder, robot, report.stages);
+  draw_drift(folder, robot, report.drift);
   std::vector<Series> ranges;
   for (std::size_t j = 0; j < report.joints.size(); ++j) {
     const vernier::JointReport& joint = report.joints[j];

@@ -121,6 +121,17 @@ TEST_F(Csv, WrittenRowsKeepTheirApproachAndTime) {
   EXPECT_EQ(from_start.previous()(0, 0), from_start.joints()(0, 0));  // unknown: as if it had not moved
 }
 
+TEST_F(Csv, TemperaturesAreReadAndWritten) {
+  const auto data = read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm,temperature_c\n1,0,0,0,21.5\n2,0,0,0,22.25\n"));
+  EXPECT_EQ(data.temperatures(), Eigen::Vector2d(21.5, 22.25));
+  write_dataset(in_folder("again.csv"), data);
+  EXPECT_EQ(read_dataset<1>(in_folder("again.csv")).temperatures(), data.temperatures());
+  EXPECT_EQ(read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm\n1,0,0,0\n")).temperatures().size(), 0);
+  EXPECT_NE(
+      complaint("q1_rad,q2_rad,x_mm,y_mm,z_mm,temperature_c\n1,2,0,0,0,warm\n").find("line 2, column temperature_c"),
+      std::string::npos);
+}
+
 TEST_F(Csv, ReadsPositions) {
   const auto data = read_dataset<2>(file("q1_rad,q2_rad,x_mm,y_mm,z_mm\n0.5,-1.25,100,-200,300\n1,2,3,4,5\n"));
   expect_first_row(data);

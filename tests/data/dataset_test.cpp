@@ -70,6 +70,17 @@ TEST(Dataset, KnowsFromWhereEachRowWasApproachedAlsoAfterASplit) {
   EXPECT_NE(complaint([&] { (void)data.measured_at(Eigen::VectorXd::Constant(5, std::nan(""))); }), "");
 }
 
+TEST(Dataset, TemperaturesStayWithTheirRows) {
+  const auto data = five_rows(false);
+  EXPECT_EQ(data.temperatures().size(), 0);
+  EXPECT_EQ(data.rows(std::array<Index, 2>{4, 0}).temperatures().size(), 0);
+  const auto warm = data.at_temperatures(Eigen::VectorXd::LinSpaced(5, 20, 24));
+  EXPECT_EQ(warm.rows(std::array<Index, 2>{4, 0}).temperatures(), Eigen::Vector2d(24, 20));
+  EXPECT_EQ(warm.at_temperatures({}).temperatures().size(), 0);
+  EXPECT_NE(complaint([&] { (void)data.at_temperatures(Eigen::VectorXd::Zero(6)); }), "");
+  EXPECT_NE(complaint([&] { (void)data.at_temperatures(Eigen::VectorXd::Constant(5, std::nan(""))); }), "");
+}
+
 TEST(Dataset, RowsInTheOrderAskedFor) {
   for (const bool oriented : {false, true}) {
     const auto data = five_rows(oriented);

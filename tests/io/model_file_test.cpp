@@ -44,7 +44,8 @@ CalibratedRobot<6> example(bool learned) {
   coverage.periodic = {true, false, true, true, false, true};
   const Model model(robot.chain, Model::Arm({actual, all}, base, tool), Model::Arm({robot.chain, few}, tool, base),
                     coverage);
-  const CalibratedRobot<6> out("an arm", model, robot.limits, from);
+  const Model thermal = model.with_thermal({21.5, 19, 24.25, VectorX::LinSpaced(42, -1e-5, 2e-5)});
+  const CalibratedRobot<6> out("an arm", thermal, robot.limits, from);
   const HiddenLayer layer{.nodes = 12, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<12, 3>();
   return out.with_learned({layer,
@@ -80,6 +81,8 @@ TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
     EXPECT_TRUE(loaded.nominal().parameters() == saved.nominal().parameters());
     expect_same_bits(loaded.identified(), saved.identified());
     EXPECT_EQ(loaded.model().fallback() != nullptr, learned);
+    ASSERT_EQ(loaded.model().thermal() != nullptr, learned);
+    EXPECT_TRUE(!learned || *loaded.model().thermal() == *saved.model().thermal());
     EXPECT_TRUE(loaded.limits().lower == saved.limits().lower && loaded.limits().upper == saved.limits().upper);
     EXPECT_EQ(loaded.learned() != nullptr, learned);
     const JointRows<6> samples = sample_joints(saved.limits(), 50, 9);

@@ -294,6 +294,35 @@ TEST(Calibrate, TwoStationsThenARemountedArm) {
   EXPECT_LT(again.at("stages").at("reregistered").at("mean_mrad"), 0.4);
   const auto model = load<6>(folder / "moved.json");
   EXPECT_LT((model.nominal().base().translation() - elsewhere.head<3>()).norm(), 2e-3);
+  EXPECT_EQ(again.at("probe").at("turned"), false);
+  EXPECT_TRUE(again.at("remarks").empty());
+
+  // the probe remounted as well: orientations are turned, positions are not
+  const auto remounted = [&](const char* name, Index n, std::uint64_t seed) {
+    const Framed turned(off, FrameParameters(elsewhere), tool * frame({0, 0, 0, 1e-3, -1e-3, 0.5e-3}));
+    write_dataset(folder / name,
+                  measure(turned, sample_joints(region, n, seed), {.position = 0.03e-3, .orientation = 0.1e-3}, seed));
+  };
+  remounted("turned.csv", 17, 5);
+  remounted("turned_fresh.csv", 100, 6);
+  const auto register_again = [&](const std::string& free) {
+    const CommandResult done =
+        run(folder, "calibrate",
+            "--model m.json --data turned.csv --test turned_fresh.csv --save moved.json --json s.json --free " + free);
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    return std::pair(done.output, Json::parse(read_file(folder / "s.json")));
+  };
+  const auto [said, noticed] = register_again("base");
+  EXPECT_NE(said.find("was the probe remounted?"), std::string::npos) << said;
+  EXPECT_EQ(noticed.at("probe").at("turned"), true);
+  EXPECT_NEAR(noticed.at("probe").at("by_mrad").at(0).get<double>(), 1, 0.15);
+  EXPECT_NEAR(noticed.at("probe").at("by_mrad").at(1).get<double>(), -1, 0.15);
+  EXPECT_EQ(noticed.at("remarks").size(), 1U);
+  EXPECT_LT(noticed.at("stages").at("reregistered").at("mean_mm"), 0.12);
+  EXPECT_LT(noticed.at("stages").at("reregistered").at("mean_mrad"), 0.4);  // the rotation taken off
+  const auto [of_tool, tool_moved] = register_again("base,another-tool");
+  EXPECT_EQ(of_tool.find("remounted"), std::string::npos) << of_tool;
+  EXPECT_NEAR(tool_moved.at("tool_change_m_rad").at(3).get<double>(), 1e-3, 0.15e-3);
 }
 
 TEST(Calibrate, DistancesBesidePosesAndTunedPriors) {

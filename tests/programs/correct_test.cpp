@@ -98,6 +98,25 @@ TEST_F(Correct, EachCommandComesFromTheOneBefore) {
   }
 }
 
+TEST_F(Correct, ForATemperature) {
+  const Model model = Model(catalogue_.chain, actual_).with_thermal({22, 20, 25, VectorX::Constant(42, 2e-5)});
+  save(folder_ / "model.json", CalibratedRobot<6>("thermal", model, catalogue_.limits, {}));
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  const auto lands = [&](const std::string& arguments, double celsius) {
+    const CommandResult done = correct("--targets targets.csv --out commands.csv " + arguments);
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    const auto arm = model.at_temperature(celsius).identified();
+    EXPECT_LT(positioning_errors(arm, robot_.nominal(), read_joints<6>(folder_ / "commands.csv"), targets_)
+                  .position.maxCoeff(),
+              1e-6);
+    return done.output;
+  };
+  EXPECT_NE(lands("", 22).find("Corrected for 22 deg C, the mean of the measurements"), std::string::npos);
+  EXPECT_NE(lands("--temperature-c 24.5", 24.5).find("Corrected for 24.5 deg C\n"), std::string::npos);
+  EXPECT_NE(lands("--temperature-c 50", 25).find("Corrected for 25 deg C, the nearest that was measured"),
+            std::string::npos);
+}
+
 TEST_F(Correct, ATargetOutOfReachIsARowThatSaysSo) {
   targets_.row(3)(1) = 170 * std::numbers::pi / 180;  // joint 2 ends at 110 degrees
   targets_.row(17)(2) = 2.5;                          // joint 3 at 70

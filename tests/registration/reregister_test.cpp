@@ -100,6 +100,13 @@ MatrixX effect_of_changes(const Model& model, const Joints& q) {
   return out;
 }
 
+/// A tool of which nothing is known.
+ReregisterOptions another_tool(ReregisterOptions options = {}) {
+  options.tool = true;
+  options.tool_position_prior_std = options.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
+  return options;
+}
+
 bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 void expect_found(const Reregistered<Chain>& found, const Model& truth) {
@@ -125,21 +132,24 @@ TEST(Reregister, FindsABaseFromSixPositions) {
   // orientations that are not to be used may be anything
   const auto wrong = measure(truth, samples(6, 4), {.orientation = 1}, 5);
   expect_found(reregister(model, wrong, {}, {.use_orientations = false}), truth);
-  EXPECT_GT(reregister(model, wrong).rms_after, 1e-3);
+  // used, they are worth as little as they are
+  const auto weighted = reregister(model, wrong);
+  EXPECT_LT(weighted.rms_after, 1e-7);
+  EXPECT_GT(weighted.orientation_sigma, 0.3);
 }
 
 TEST(Reregister, FindsATool) {
   const Model model = fitted(), truth = model.moved(still, Joints::Zero(), other_tool);
-  const auto found = reregister(model, measure(truth, samples(4, 6)), {.base = false, .tool = true});
+  const auto found = reregister(model, measure(truth, samples(4, 6)), another_tool({.base = false}));
   expect_found(found, truth);
   EXPECT_EQ(found.change_std.size(), 6);
   const Model turned = model.moved(still, Joints::Zero(), elsewhere);  // another tool altogether
-  expect_found(reregister(model, measure(turned, samples(4, 6)), {.base = false, .tool = true}), turned);
+  expect_found(reregister(model, measure(turned, samples(4, 6)), another_tool({.base = false})), turned);
 }
 
 TEST(Reregister, FindsBaseAndTool) {
   const Model model = fitted(), truth = model.moved(elsewhere, Joints::Zero(), other_tool);
-  const auto found = reregister(model, measure(truth, samples(6, 7)), {.tool = true});
+  const auto found = reregister(model, measure(truth, samples(6, 7)), another_tool());
   expect_found(found, truth);
   EXPECT_EQ(found.change_std.size(), 12);
 }
@@ -183,8 +193,7 @@ TEST(Reregister, PriorsPullZerosAsMuchAsPosesDo) {
   Joints push = Joints::Zero();
   for (Index i = 0; i < 2; ++i)
     push += effect_of_changes(found.model, data.joints(i)).block<3, 6>(0, 6).transpose() *
-            (data.position(i) - found.model.position(data.joints(i))) /
-            (sensors.position_sigma * sensors.position_sigma);
+            (data.position(i) - found.model.position(data.joints(i))) / (found.position_sigma * found.position_sigma);
   EXPECT_GT(pull.norm(), 1e3);
   EXPECT_LT((push - pull).norm(), 1e-6 * pull.norm());
 }
@@ -214,8 +223,8 @@ TEST(Reregister, SaysWhatPosesDoNotDetermine) {
   EXPECT_TRUE(reregister(model, measure(model, line)).determined);
 
   // positions do not see how a tool is turned; one pose cannot tell base from tool
-  EXPECT_FALSE(reregister(model, positions_at(samples(20, 14)), {.base = false, .tool = true}).determined);
-  EXPECT_FALSE(reregister(model, measure(model, samples(1, 15)), {.tool = true}).determined);
+  EXPECT_FALSE(reregister(model, positions_at(samples(20, 14)), another_tool({.base = false})).determined);
+  EXPECT_FALSE(reregister(model, measure(model, samples(1, 15)), another_tool()).determined);
 }
 
 TEST(Reregister, KeepsTheBitsOfWhatMayNotMove) {
@@ -245,7 +254,7 @@ TEST(Reregister, KeepsTheBitsOfWhatMayNotMove) {
 
 TEST(Reregister, DeviationsAreThoseOfTheScatter) {
   const Model model = fitted();
-  const ReregisterOptions options{.tool = true, .offsets = true};
+  const ReregisterOptions options = another_tool({.offsets = true});
   const MeasurementNoise noise{.position = sensors.position_sigma, .orientation = sensors.orientation_sigma};
   VectorX squares = VectorX::Zero(18), std;
   constexpr int seeds = 60;
@@ -276,18 +285,27 @@ TEST(Reregister, MisuseThrows) {
   EXPECT_TRUE(mentions(with({}, {.position_sigma = -0.25}), "position_sigma is -0.25"));
   EXPECT_TRUE(mentions(with({}, {.orientation_sigma = 0}), "orientation_sigma is 0"));
   EXPECT_TRUE(mentions(with({.offset_prior_std = -2}), "offset_prior_std -2"));
+  EXPECT_TRUE(mentions(with({.tool_position_prior_std = 0}), "tool_position_prior_std 0 must be positive"));
+  EXPECT_TRUE(mentions(with({.tool_rotation_prior_std = -1}), "tool_rotation_prior_std -1 must be positive"));
+  EXPECT_TRUE(mentions(with({.contradiction_threshold = 0}), "contradiction_threshold 0 must be positive"));
   EXPECT_TRUE(
       mentions(with({}, {.position_sigma = std::numeric_limits<double>::quiet_NaN()}), "position_sigma is nan"));
 }
 
 TEST(FrameUpdateWhiteBox, ColumnsAreCentralDifferences) {
   const detail::FrameUpdate all{true, true, true, 6};
+  const detail::FrameUpdate probe{.base = true, .offsets = false, .tool = false, .joints = 6, .probe = true};
   const auto columns = [&](const PoseAndJacobian<6>& at) { return all.columns(at.pose, at.jacobian.data()); };
   const JointRows<6> joints = samples(20, 19);
   const Model exact = rigid(), model = fitted();
   for (Index i = 0; i < 20; ++i) {
     const Joints q = joints.row(i).transpose();
-    EXPECT_LT((columns(exact.pose_and_jacobian(q)) - effect_of_changes(exact, q)).norm(), 1e-8);
+    const PoseAndJacobian<6> at = exact.pose_and_jacobian(q);
+    EXPECT_LT((columns(at) - effect_of_changes(exact, q)).norm(), 1e-8);
+    // a probe turns as a tool does, and moves no position
+    MatrixX turns = MatrixX::Zero(6, 9);
+    turns << columns(at).leftCols(6), columns(at).rightCols(3);
+    EXPECT_EQ(probe.columns(at.pose, at.jacobian.data()), turns);
     const MatrixX apart = columns(model.pose_and_jacobian(q)) - effect_of_changes(model, q);
     EXPECT_LT(apart.leftCols(6).norm(), 1e-8);
     EXPECT_LT(apart.rightCols(6).norm(), 1e-6);  // between arm and fallback, but for their difference
@@ -413,7 +431,7 @@ TEST(Reregister, FindsAToolTurnedByAnyAngle) {
       Vector6 tool;
       tool << 0.05, -0.02, 0.01, angle * axis.normalized();
       const Model there = model.moved(frame({2, -1, 0.5, 0.4, -1, 0.8}), Joints::Zero(), frame(tool));
-      const auto found = reregister(model, measure(there, samples(12, seed)), {.tool = true});
+      const auto found = reregister(model, measure(there, samples(12, seed)), another_tool());
       EXPECT_TRUE(found.determined && found.converged) << angle << ", " << seed;
       EXPECT_LT(found.rms_after, 1e-9) << angle << ", " << seed;
     }

@@ -54,7 +54,7 @@ struct Calibration {
     if (remainder_supported) return "jointwise_pso_elm";
     const char* out = "geometry";
     for (const BlockChoice& block : errors.blocks)
-      for (const char* stage : {"elastic", "jointwise", "approach", "tilt"})
+      for (const char* stage : {"elastic", "jointwise", "approach", "tilt", "temperature"})
         if (block.used && block.name == stage) out = stage;
     return out;
   }
@@ -64,17 +64,27 @@ struct Calibration {
 
 namespace detail {
 
-/// Measured positions less the modelled hysteresis: as the mean of both directions of approach.
+/// The model at the temperature of a row; as it is where that is unknown.
+template <class Chain>
+ErrorModel<Chain> at_temperature_of(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, Index row) {
+  return data.temperatures().size() > 0 ? model.at_temperature(data.temperatures()(row)) : model;
+}
+
+/// Poses as they would have been measured at the mean temperature, in the middle of both directions of approach.
 template <class Chain>
 Dataset<Chain::dof> without_hysteresis(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
-  if (model.identified().model().joint_errors().terms().hysteresis.empty()) return data;
+  const bool thermal = model.thermal() != nullptr && data.temperatures().size() > 0;
+  if (!thermal && model.identified().model().joint_errors().terms().hysteresis.empty()) return data;
   PointRows positions = data.positions();
   for (Index i = 0; i < data.size(); ++i) {
     const JointVector<Chain::dof> q = data.joints(i);
+    const auto visit = [&](const ErrorModel<Chain>& now) {
+      return Vector3(now.approached_from(data.previous().row(i).transpose()).position(q));
+    };
     positions.row(i) -=
-        (model.approached_from(data.previous().row(i).transpose()).position(q) - model.position(q)).transpose();
+        ((thermal ? visit(at_temperature_of(model, data, i)) : visit(model)) - model.position(q)).transpose();
   }
-  return Dataset<Chain::dof>(data.joints(), positions);
+  return Dataset<Chain::dof>(data.joints(), positions).without_approach();
 }
 /// The same for every station.
 template <class Chain>

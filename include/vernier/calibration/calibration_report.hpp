@@ -3,6 +3,7 @@
 /// @file
 /// The assessment of a calibration on held-out poses, whatever the arm: figures, tables and sentences are made of it.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,8 +18,9 @@ namespace vernier {
 /// Errors of held-out poses after a stage of the pipeline.
 struct StageErrors {
   /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
-  /// approach), `tilt` (with tilts of joint frames), `jointwise_pso_elm` (on the last of them, of positions without
-  /// their hysteresis), `session` (the last error model with the session's drift, which no other session has)
+  /// approach), `tilt` (the same with tilts of joint frames), `temperature` (the same at the temperature of each pose),
+  /// `jointwise_pso_elm` (on the last of them, of positions without their hysteresis), `session` (the last error model
+  /// with the session's drift, which no other session has)
   std::string key;
   std::string title;  ///< for tables
   VectorX position;   ///< [m]
@@ -52,16 +54,17 @@ struct PoseAdvice {
 
 /// A calibration, assessed.
 struct CalibrationReport {
-  IdentificationReport identification;  ///< of the geometry
-  std::vector<BlockChoice> blocks{};    ///< decisions on joint errors and drift
-  Index train_poses = 0;                ///< poses it was fitted to
-  Index distances = 0;                  ///< distances it was fitted to
-  std::vector<StageErrors> stages{};    ///< of the held-out poses, in order
-  std::vector<JointReport> joints{};    ///< one a joint
-  std::vector<PoseAdvice> advice{};     ///< for the first weakly determined parameters
-  VectorX gates;                        ///< share of the joint-wise terms at each held-out pose
-  std::string chosen = "geometry";      ///< key of the stage that is deployed
-  std::vector<SessionDrift> drift{};    ///< of each station's base; empty where the data do not support it
+  IdentificationReport identification;       ///< of the geometry
+  std::vector<BlockChoice> blocks{};         ///< decisions on joint errors and drift
+  Index train_poses = 0;                     ///< poses it was fitted to
+  Index distances = 0;                       ///< distances it was fitted to
+  std::vector<StageErrors> stages{};         ///< of the held-out poses, in order
+  std::vector<JointReport> joints{};         ///< one a joint
+  std::vector<PoseAdvice> advice{};          ///< for the first weakly determined parameters
+  VectorX gates;                             ///< share of the joint-wise terms at each held-out pose
+  std::string chosen = "geometry";           ///< key of the stage that is deployed
+  std::optional<double> mean_temperature{};  ///< at which the model holds [deg C], where it changes with temperature
+  std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
   double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the
                                   ///< measured joint ranges [m]
   double ellipsoid_coverage = 0;  ///< share of held-out poses within their predicted 95 % ellipsoid
@@ -72,6 +75,7 @@ struct CalibrationReport {
   double median_error = 0;        ///< median position error of the training poses [m]
   Loss loss = Loss::huber;        ///< of the fit
   double fit_seconds = 0;         ///< time from poses to error model
+  double evaluation_seconds = 0;  ///< time of a pose with its Jacobian by the chosen stage
 
   /// Number of held-out poses.
   Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }

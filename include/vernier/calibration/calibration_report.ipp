@@ -109,6 +109,9 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
        {"Hysteresis by the direction of approach helps ",
         "Hysteresis is left out: errors do not depend on the direction of approach "}},
       {"tilt", {"Tilts of joint frames under gravity help ", "Tilts of joint frames under gravity do not help "}},
+      {"temperature",
+       {"The geometry changes with temperature: that helps ",
+        "No change of the geometry with temperature is noticeable "}},
       {"lines",
        {"Orders that stand out of what the model left help ",
         "Orders that stand out of what the model left are left out "}},
@@ -142,6 +145,31 @@ VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vec
   return out + message("; ", advice.poses.size(), " of them reduce it to ", brief(advice.std_then * 1e3), ".");
 }
 
+/// How far a base moved, and when.
+VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::string& station) {
+  const Index knots = drift.twists.cols();
+  double translation = 0, rotation = 0, fastest = 0;
+  Index at = 0;
+  for (Index a = 0; a < knots; ++a)
+    for (Index b = a + 1; b < knots; ++b) {
+      const Vector6 apart = drift.twists.col(b) - drift.twists.col(a);
+      translation = std::max(translation, apart.head<3>().norm());
+      rotation = std::max(rotation, apart.tail<3>().norm());
+    }
+  const Index window = std::max<Index>(1, knots / 8);
+  for (Index k = 0; k + window < knots; ++k) {
+    const double moved = (drift.twists.col(k + window) - drift.twists.col(k)).head<3>().norm();
+    if (!(moved > fastest)) continue;
+    fastest = moved;
+    at = k;
+  }
+  const auto time = [&](Index knot) { return std::llround(drift.begin + drift.spacing * static_cast<double>(knot)); };
+  return message("During the session the base", station, " moved by up to ", brief(translation * 1e3), " mm and ",
+                 brief(rotation * 1e6), " urad, fastest (", brief(fastest * 1e3), " mm) between ", time(at), " and ",
+                 time(at + window), " of ", time(0), " .. ", time(knots - 1),
+                 " [row, or time_s]. The model that is saved is without drift.");
+}
+
 /// Lines of a joint's gear and encoder, which errors of its assembly do not reach; empty where there are none.
 VERNIER_API std::string describe_lines(const JointReport& joint, std::size_t number) {
   constexpr int assembly = 28;
@@ -164,6 +192,13 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   detail::describe_accuracy(*this, out);
   out.push_back(detail::describe_ranges(joints));
   for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
+  out.push_back(message("Chosen by left-out poses: ", stage(chosen).title, "."));
+  if (mean_temperature)
+    out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),
+                          " deg C, the mean of the measurements."));
+  for (std::size_t s = 0; s < drift.size(); ++s)
+    if (!drift[s].empty())
+      out.push_back(detail::describe_drift(drift[s], drift.size() > 1 ? message(" of station ", s + 1) : ""));
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (std::string lines = detail::describe_lines(joints[j], j + 1); !lines.empty()) out.push_back(std::move(lines));
   for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, joints, oriented));

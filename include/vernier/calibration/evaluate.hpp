@@ -3,6 +3,11 @@
 /// @file
 /// Assessment of a calibration on held-out poses.
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,14 +42,17 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
   return out;
 }
 
-/// Poses as predicted with the configuration of approach, moved by drift.
+/// Poses as predicted with the direction of approach, at their temperatures if wanted, moved by drift.
 template <class Chain>
-std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
+std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, bool temperature,
                                      const SessionDrift& drift) {
   std::vector<Isometry3> out;
+  const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
+    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
+  };
+  const bool thermal = temperature && model.thermal() != nullptr;
   for (Index i = 0; i < data.size(); ++i)
-    out.push_back(drift.motion(data.times()(i)) *
-                  model.approached_from(data.previous().row(i).transpose()).pose(data.joints(i)));
+    out.push_back(thermal ? visit(at_temperature_of(model, data, i), i) : visit(model, i));
   return out;
 }
 
@@ -100,10 +108,11 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder, test);
   assess("elastic", "elastic", errors.elastic);
   assess("jointwise", "joint-wise", errors.jointwise);
-  const auto assess_visits = [&](const char* key, const auto& models, const std::vector<SessionDrift>& drift) {
+  const auto assess_visits = [&](const char* key, const auto& models, bool temperature,
+                                 const std::vector<SessionDrift>& drift) {
     StageErrors stage{key, key, {}, {}};
     const auto poses = [&](std::size_t s, const Dataset<N>& data) {
-      return detail::visited_poses(models[s], data, s < drift.size() ? drift[s] : SessionDrift{});
+      return detail::visited_poses(models[s], data, temperature, s < drift.size() ? drift[s] : SessionDrift{});
     };
     stage.position = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
       return detail::position_errors_of(poses(s, data), data.positions());
@@ -116,36 +125,66 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   };
   const bool approach = !errors.arm.terms().hysteresis.empty();
   const bool tilt = !errors.approach.empty();
-  if (approach) assess_visits("approach", tilt ? errors.approach : errors.models, {});
-  if (tilt) assess_visits("tilt", errors.models, {});
+  const bool thermal = errors.model().thermal() != nullptr &&
+                       std::all_of(test.begin(), test.end(), [](const auto& d) { return d.temperatures().size() > 0; });
+  if (approach || (errors.model().thermal() != nullptr && !tilt))
+    assess_visits("approach", tilt ? errors.approach : errors.models, false, {});
+  if (tilt) assess_visits("tilt", errors.models, false, {});
+  if (thermal) assess_visits("temperature", errors.models, true, {});
   if (calibration.remainder) {
     const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
     assess_learned("jointwise_pso_elm",
-                   tilt       ? "tilt + PSO-ELM"
+                   thermal    ? "temperature + PSO-ELM"
+                   : tilt     ? "tilt + PSO-ELM"
                    : approach ? "approach + PSO-ELM"
                               : "joint-wise + PSO-ELM",
                    errors.models, calibration.remainder, centred);
   }
-  if (!errors.drift.empty()) assess_visits("session", errors.models, errors.drift);
+  if (!errors.drift.empty()) assess_visits("session", errors.models, true, errors.drift);
   out.drift = errors.drift;
   out.learned = calibration.remainder && !calibration.remainder->empty();
   out.chosen = calibration.chosen();
+  if (out.chosen == "temperature" && !thermal) out.chosen = "approach";
+  if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
+
+  const auto evaluation = [&](const auto& model) {
+    const auto began = std::chrono::steady_clock::now();
+    double sum = 0;  // which nobody can optimise away
+    Index count = 0;
+    for (; count < 2000; ++count) {
+      const Dataset<N>& data = test.front();
+      sum += model.pose_and_jacobian(data.joints(count % data.size())).jacobian(0, 0);
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+    return std::isfinite(sum) ? seconds.count() / static_cast<double>(count) : 0;
+  };
+  const auto& chosen_model = out.chosen == "geometry"    ? errors.geometry.front()
+                             : out.chosen == "elastic"   ? errors.elastic.front()
+                             : out.chosen == "jointwise" ? errors.jointwise.front()
+                                                         : errors.model();
+  out.evaluation_seconds = calibration.remainder_supported
+                               ? evaluation(CartesianCorrected(chosen_model, calibration.remainder->predictor,
+                                                               calibration.remainder->coverage))
+                               : evaluation(chosen_model);
 
   out.gates = detail::over_stations<N>(test, [&](std::size_t, const Dataset<N>& data) {
     VectorX gates(data.size());
     for (Index i = 0; i < data.size(); ++i) gates(i) = calibration.coverage(data.joints(i));
     return gates;
   });
-  out.ellipsoid_coverage = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
-                             VectorX within(data.size());
-                             for (Index i = 0; i < data.size(); ++i) {
-                               const PredictedPose p = errors.predicted_from(data.previous().row(i).transpose(),
-                                                                             data.joints(i), static_cast<int>(s));
-                               within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
-                                                                    p.covariance.template topLeftCorner<3, 3>());
-                             }
-                             return within;
-                           }).mean();
+  out.ellipsoid_coverage =
+      detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
+        VectorX within(data.size());
+        for (Index i = 0; i < data.size(); ++i) {
+          const double temperature =
+              data.temperatures().size() > 0 ? data.temperatures()(i) : std::numeric_limits<double>::quiet_NaN();
+          const PredictedPose p = errors.predicted_from(data.previous().row(i).transpose(), data.joints(i),
+                                                        static_cast<int>(s), temperature);
+          within(i) = detail::within_ellipsoid(p.pose.translation() - data.position(i),
+                                               p.covariance.template topLeftCorner<3, 3>());
+        }
+        return within;
+      }).mean();
   const VectorX &geometry = out.stage("geometry").position, &deployed = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, deployed(i) - geometry(i));

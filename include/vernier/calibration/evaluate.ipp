@@ -11,8 +11,10 @@ VERNIER_IMPL bool within_ellipsoid(const Vector3& error, const Matrix3& covarian
 }
 
 VERNIER_IMPL void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {
-  for (const auto& [lower, upper] : out.measured_ranges)
-    for (int k = 0; k <= 360; ++k) out.angle.push_back(lower + (upper - lower) * k / 360);
+  for (const auto& [lower, upper] : out.measured_ranges) {
+    const int samples = std::max(360, static_cast<int>(200 * (upper - lower)));  // three a period of order 404
+    for (int k = 0; k <= samples; ++k) out.angle.push_back(lower + (upper - lower) * k / samples);
+  }
   if (out.angle.empty()) return;
   out.spectrum = joint_spectrum(estimate, joint);
   Index trials = 0;

@@ -18,15 +18,17 @@ namespace detail {
 VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types);
 /// The columns of a file of poses.
 struct PoseColumns {
-  MatrixX values;    ///< joints, then the positions [m], then the orientations [rad] if the file has them
-  MatrixX previous;  ///< joint values from which each pose was approached; NaN where unknown
-  VectorX times;     ///< of measuring
+  MatrixX values;        ///< joints, then the positions [m], then the orientations [rad] if the file has them
+  MatrixX previous;      ///< joint values from which each pose was approached; NaN where unknown
+  VectorX times;         ///< of measuring
+  VectorX temperatures;  ///< [deg C]; none where the file has none
 };
 VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
 /// Joints, then the distances [m].
 VERNIER_API MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
-                                  const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times);
+                                  const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
+                                  const VectorX& temperatures);
 
 }  // namespace detail
 
@@ -37,17 +39,18 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 /// Rows are taken to be in the order of measuring, each approached from the row before; where a column `segment` (a
 /// number) changes, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint values from which each
 /// pose was approached; `segment` is ignored then. A column `time_s` states the time of measuring, else that is the
-/// row's number, from 0.
+/// row's number, from 0; a column `temperature_c` the temperature of the arm.
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
 /// @throws DataError naming file, line and column
 template <int N>
 Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {}) {
-  const auto [values, previous, times] = detail::read_pose_columns(path, N, joint_types);
+  const auto [values, previous, times, temperatures] = detail::read_pose_columns(path, N, joint_types);
   return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
                     values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3))
       .approached_from(previous)
-      .measured_at(times);
+      .measured_at(times)
+      .at_temperatures(temperatures);
 }
 
 /// Measured distances from a CSV file: columns q1 .. qN as in `read_dataset`, and distance_mm (or _m, _um).
@@ -72,8 +75,8 @@ JointRows<N> read_joints(const std::string& path, std::span<const JointType> joi
 /// @throws std::runtime_error when the file cannot be written
 template <int N>
 void write_dataset(const std::string& path, const Dataset<N>& data) {
-  write_file(path,
-             detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(), data.times()));
+  write_file(path, detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(),
+                                     data.times(), data.temperatures()));
 }
 
 }  // namespace vernier

@@ -195,13 +195,14 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, true));
   if (table.find("rx", false) || table.find("ry", false) || table.find("rz", false))
     for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.require_column(axis, false));
-  PoseColumns out{table.numbers(columns), {}, {}};
+  PoseColumns out{table.numbers(columns), {}, {}, {}};
   const Index n = out.values.rows();
   const auto column = [&](const char* name) -> std::optional<VectorX> {
     const auto found = table.find_plain(name);
     return found ? std::optional<VectorX>(table.numbers({*found})) : std::nullopt;
   };
   out.times = column("time_s").value_or(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
+  out.temperatures = column("temperature_c").value_or(VectorX());
   if (table.find("from_q1", false) || table.find("from_q1", true)) {
     out.previous = table.numbers(joint_columns(table, joints, types, "from_"));
     return out;
@@ -224,8 +225,8 @@ VERNIER_IMPL MatrixX read_distance_columns(const std::string& path, int joints, 
 }
 
 VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
-                                   const PointRows& orientations, const ConstMatrixRef& previous,
-                                   const VectorX& times) {
+                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
+                                   const VectorX& temperatures) {
   const bool oriented = orientations.rows() > 0;
   bool in_order = true, counted = true;  // whether the order of the rows says it all
   for (Index i = 0; i < joints.rows(); ++i) {
@@ -235,12 +236,14 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows
   std::string out;
   for (Index j = 1; j <= joints.cols() && !in_order; ++j) out += message("from_q", j, "_rad,");
   if (!counted) out += "time_s,";
+  if (temperatures.size() > 0) out += "temperature_c,";
   for (Index j = 1; j <= joints.cols(); ++j) out += message("q", j, "_rad,");
   out += oriented ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
   for (Index i = 0; i < joints.rows(); ++i) {
     for (Index j = 0; j < joints.cols() && !in_order; ++j)
       out += message(std::isfinite(previous(i, j)) ? previous(i, j) : joints(i, j), ',');
     if (!counted) out += message(times(i), ',');
+    if (temperatures.size() > 0) out += message(temperatures(i), ',');
     for (Index j = 0; j < joints.cols(); ++j) out += message(joints(i, j), ',');
     for (Index j = 0; j < 3; ++j) out += message(positions(i, j) * 1e3, j < 2 || oriented ? ',' : '\n');
     if (oriented)

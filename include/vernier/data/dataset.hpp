@@ -60,6 +60,8 @@ class Dataset {
   const JointRows<N>& previous() const { return previous_; }
   /// Time of each sample's measurement: its number in the order of measuring, unless stated otherwise.
   const VectorX& times() const { return times_; }
+  /// Temperatures of the arm [deg C], one a sample; none where they were not measured.
+  const VectorX& temperatures() const { return temperatures_; }
 
   /// The same samples approached from other joint values; rows that are not finite are unknown.
   /// @throws std::invalid_argument for another number of rows
@@ -80,6 +82,16 @@ class Dataset {
             " rows, all must be finite");
     Dataset out = *this;
     out.times_ = std::move(times);
+    return out;
+  }
+
+  /// The same samples measured at some temperatures [deg C]; none for unknown.
+  /// @throws std::invalid_argument for another number of temperatures, or one that is not finite
+  Dataset at_temperatures(VectorX temperatures) const {
+    require((temperatures.size() == 0 || temperatures.size() == size()) && temperatures.allFinite(),
+            "Dataset: ", temperatures.size(), " temperatures of ", size(), " rows, all must be finite");
+    Dataset out = *this;
+    out.temperatures_ = std::move(temperatures);
     return out;
   }
 
@@ -110,6 +122,10 @@ class Dataset {
     detail::copy_rows(joints_, indices, out.joints_);
     detail::copy_rows(previous_, indices, out.previous_);
     detail::copy_rows(times_, indices, out.times_);
+    if (temperatures_.size() > 0) {
+      out.temperatures_.resize(n);
+      detail::copy_rows(temperatures_, indices, out.temperatures_);
+    }
     detail::copy_rows(positions_, indices, out.positions_);
     if (has_orientations()) detail::copy_rows(orientations_, indices, out.orientations_);
     return out;
@@ -126,7 +142,7 @@ class Dataset {
   JointRows<N> joints_;
   PointRows positions_, orientations_;
   JointRows<N> previous_;
-  VectorX times_{};
+  VectorX times_{}, temperatures_{};
 };
 
 }  // namespace vernier

@@ -8,6 +8,7 @@
 
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
+#include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/framed.hpp"
 
 namespace vernier {
@@ -63,6 +64,17 @@ struct GatedModels {
 
 }  // namespace detail
 
+/// How a geometry changes with temperature.
+struct ThermalRates {
+  double reference = 0;  ///< temperature at which the geometry is as it is [deg C]
+  double lower = 0;      ///< the measured temperatures [deg C]; beyond them the geometry stays as at their ends
+  double upper = 0;      ///< likewise
+  VectorX parameters{};  ///< changes of the parameters as `ArmGeometry` counts them [m/K, rad/K]
+
+  /// Equal in every entry.
+  bool operator==(const ThermalRates&) const = default;
+};
+
 template <class C>
 class ApproachedErrorModel;
 
@@ -101,6 +113,36 @@ class ErrorModel {
   /// The measured joint ranges; null where `identified` is valid everywhere.
   const JointCoverage<dof>* coverage() const { return outside_ ? &outside_->coverage : nullptr; }
 
+  /// The same with a geometry that changes with temperature, which holds as it is at the reference.
+  /// @throws std::invalid_argument for another number of rates
+  ErrorModel with_thermal(ThermalRates rates) const {
+    require(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
+            "ErrorModel: ", rates.parameters.size(), " thermal rates of ", 12 + 5 * dof,
+            " parameters, all must be finite");
+    ErrorModel out = *this;
+    out.thermal_ = std::move(rates);
+    return out;
+  }
+  /// How the geometry changes with temperature; null where it does not, or that is unknown.
+  const ThermalRates* thermal() const { return thermal_ ? &*thermal_ : nullptr; }
+  /// The arm at a temperature [deg C]; the same where it does not change.
+  ErrorModel at_temperature(double celsius) const {
+    if (!thermal_) return *this;
+    const double measured = std::clamp(celsius, thermal_->lower, thermal_->upper);
+    const VectorX change = (measured - thermal_->reference) * thermal_->parameters;
+    ErrorModel out = *this;
+    const auto shift = [&](Arm& arm) {
+      const ArmGeometry geometry(arm.around(arm.chain()));
+      const Framed<Chain> now = geometry.with_parameters(geometry.parameters() + change).framed(arm.chain());
+      arm = now.around(WithJointErrors<Chain>(now.model(), arm.model().joint_errors()));
+    };
+    shift(out.identified_);
+    if (out.outside_) shift(out.outside_->arm);
+    out.nominal_ = nominal_;  // targets stay
+    out.thermal_->reference = measured;
+    return out;
+  }
+
   /// The same arm in another place, with another tool and other joint zeros; the nominal arm is moved along.
   /// @param base    applied in front: motion of the frame of the measurements
   /// @param offsets added to the joint values [rad, m]
@@ -112,8 +154,17 @@ class ErrorModel {
       return Arm(WithJointErrors<Chain>(arm.chain().with_parameters(p), arm.model().joint_errors()),
                  Isometry3(base * arm.base()), Isometry3(arm.tool() * tool));
     };
-    if (!outside_) return {nominal_.model(), move(identified_)};
-    return {nominal_.model(), move(identified_), move(outside_->arm), outside_->coverage};
+    ErrorModel out = outside_ ? ErrorModel(nominal_.model(), move(identified_), move(outside_->arm), outside_->coverage)
+                              : ErrorModel(nominal_.model(), move(identified_));
+    if (thermal_) {  // frames are changed along: what a kelvin does to them there
+      const Arm now = move(identified_), warmer = move(at_temperature(thermal_->reference + 1).identified_);
+      VectorX rates = thermal_->parameters;
+      rates.template head<6>() = warmer.base_frame().values() - now.base_frame().values();
+      rates.template tail<6>() = warmer.tool_frame().values() - now.tool_frame().values();
+      out.thermal_ = thermal_;
+      out.thermal_->parameters = rates;
+    }
+    return out;
   }
 
   /// The arm as it moves to the next configuration from given joint values: with the hysteresis of its joints.
@@ -148,6 +199,7 @@ class ErrorModel {
   Arm identified_;
   std::optional<Outside> outside_{};
   Framed<Chain> nominal_;
+  std::optional<ThermalRates> thermal_{};
 };
 
 /// An `ErrorModel` that came from known joint values: a view of it, see `ErrorModel::approached_from`.

@@ -4,6 +4,7 @@
 /// What a fit of an error model estimated, whatever the arm: unknowns, their covariance, and what was decided on the
 /// way.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ struct ErrorModelEstimate {
   std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
   std::vector<JointDrive> drives{};   ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;            ///< the unknowns and their estimates
+  double mean_temperature = 0;        ///< of the measurements [deg C], at which the model holds; where it has changes
+  double temperature_std = 0;         ///< with temperature, and how much they varied [K]; else 0
   MatrixX covariance{};               ///< of all unknowns, in units of their scales
   double variance_factor = 1;         ///< covariance divided by the inverse of the normal equations' matrix
 
@@ -66,9 +69,11 @@ struct ErrorModelEstimate {
   /// @param station  from 0
   /// @param previous joint values from which q was approached; empty, or not finite, where unknown: then hysteresis
   ///                 adds its half loops
+  /// @param temperature [deg C]; not finite where unknown: then changes with temperature add their spread
   /// @complexity O(unknowns^2); allocates
   VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0,
-                                       const ConstVectorRef& previous = VectorX()) const;
+                                       const ConstVectorRef& previous = VectorX(),
+                                       double temperature = std::numeric_limits<double>::quiet_NaN()) const;
 };
 
 }  // namespace vernier

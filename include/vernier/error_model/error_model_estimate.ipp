@@ -33,9 +33,9 @@ namespace detail {
 
 /// Covariance of the modelled pose; `rows` is the linearised pose.
 VERNIER_API Matrix6 pose_covariance(const ErrorModelEstimate& estimate, const ConstVectorRef& q, int station,
-                                    const ConstVectorRef& previous, RowBlock& rows) {
+                                    const ConstVectorRef& previous, double warmer, RowBlock& rows) {
   const MatrixX joints = q.transpose(), before = previous.size() > 0 ? MatrixX(previous.transpose()) : MatrixX();
-  estimate.arm.linearise(station, joints, before, &rows);
+  estimate.arm.linearise(station, joints, before, &rows, true, VectorX::Constant(1, warmer));
   const Index unknowns = estimate.arm.size();
   Rows6 all(6, unknowns);
   rows.expand(estimate.arm.group_sizes(), all);
@@ -49,13 +49,23 @@ VERNIER_API Matrix6 pose_covariance(const ErrorModelEstimate& estimate, const Co
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
   RowBlock rows;
-  return detail::pose_covariance(*this, q, station, VectorX(), rows);
+  return detail::pose_covariance(*this, q, station, VectorX(), 0, rows);
 }
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station,
-                                                          const ConstVectorRef& previous) const {
+                                                          const ConstVectorRef& previous, double temperature) const {
   RowBlock rows;
-  Matrix6 out = detail::pose_covariance(*this, q, station, previous, rows);
+  const bool known = std::isfinite(temperature);
+  Matrix6 out = detail::pose_covariance(*this, q, station, previous, known ? temperature - mean_temperature : 0, rows);
+  if (!known && temperature_std > 0) {  // what a standard deviation of temperature does
+    RowBlock warm;
+    detail::pose_covariance(*this, q, station, previous, temperature_std, warm);
+    Vector6 effect = Vector6::Zero();
+    const VectorX steps = arm.steps();
+    for (std::size_t k = 0; k < arm.geometric().size(); ++k)
+      if (arm.geometric()[k].thermal) effect += steps(static_cast<Index>(k)) * warm.dense.col(static_cast<Index>(k));
+    out += effect * effect.transpose();
+  }
   if (!arm.terms().hysteresis.empty() && (previous.size() == 0 || !previous.allFinite()))
     for (int j = 0; j < arm.terms().joints; ++j) {
       const Vector6 half = rows.factor.col(j) * arm.joint_errors().half_loop(j);

@@ -27,6 +27,8 @@ struct ErrorModelOptions {
   double hysteresis_prior_std = 60e-6;  ///< expected half width of a hysteresis loop [rad, m]
   bool tilt = true;                     ///< tilts of the joints' frames under gravity
   double tilt_prior_std = 2e-3;         ///< expected tilt by each component of gravity's direction [rad]
+  bool temperature = true;              ///< change of the geometry with temperature, where that was measured
+  double thermal_prior_std = 1e-4;      ///< expected change of a length [m/K] or an angle [rad/K]
   bool drift = true;                    ///< motion of the bases during a session
   Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block
 

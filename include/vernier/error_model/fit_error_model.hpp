@@ -31,8 +31,10 @@ struct ErrorModelInput {
 struct ErrorModelOutput {
   ErrorModelEstimate estimate;
   std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, without_tilt{}, all{};
-  bool jointwise = false;  ///< whether `all` has transmission terms
-  MatrixX joints{};        ///< of all samples
+  bool jointwise = false;                ///< whether `all` has transmission terms
+  MatrixX joints{};                      ///< of all samples
+  std::vector<VectorX> thermal_rates{};  ///< one a station; empty where the geometry does not change with temperature
+  std::array<double, 2> temperatures{};  ///< lowest and highest [deg C]
 };
 
 /// See `vernier::fit_error_model`.
@@ -81,6 +83,9 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
     out.jointwise.push_back(gated(found.without_approach[s]));
     if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s]));
     out.models.push_back(gated(found.all[s]));
+    if (!found.thermal_rates.empty())
+      out.models.back() = out.models.back().with_thermal(
+          {out.mean_temperature, found.temperatures[0], found.temperatures[1], found.thermal_rates[s]});
   }
   return out;
 }

@@ -142,8 +142,9 @@ class ErrorModelFit {
       size_by_evidence(gravity());  // the third axis, that of the joint
       estimate.converged = problem_.solve() && estimate.converged;
     }
+    const bool thermal = options_.temperature && add_temperature(estimate);
     const bool drift = options_.drift && add_drift(estimate);
-    if ((hysteresis || tilt || drift) && out.jointwise && !search) {
+    if ((hysteresis || tilt || thermal || drift) && out.jointwise && !search) {
       learn_spectrum(estimate, 4);
       estimate.converged = problem_.solve() && estimate.converged;
     }
@@ -151,7 +152,14 @@ class ErrorModelFit {
       estimate.converged = problem_.solve() && estimate.converged;
     out.estimate.drift = problem_.drift;
     out.all = arms();
+    // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
+    const bool later = hysteresis || tilt || thermal;
+    if (!later) out.without_approach = out.all;
+    if (!later && !out.jointwise) (problem_.arm.terms().size() > 0 ? out.elastic : out.geometry) = out.all;
     out.joints = problem_.joints();
+    for (int s = 0; thermal && s < problem_.arm.stations(); ++s)
+      out.thermal_rates.push_back(problem_.arm.thermal_rates(s));
+    if (thermal) out.temperatures = problem_.temperatures().range;
     estimate.drives = options_.drives;
     estimate.arm = problem_.arm;
     assess(estimate);
@@ -228,7 +236,7 @@ class ErrorModelFit {
     const PriorChoice choice =
         choose_prior(system, NormalEquations(system), precisions, problem_.arm.steps(), at, count, stride_);
     precisions.segment(at, count).setConstant(choice.precision);
-    problem_.arm.set_precisions(precisions.tail(problem_.arm.terms().size()));
+    problem_.arm.set_precisions(precisions);
     const bool used = choice.precision < suppressing_precision;
     return {name, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
   }
@@ -292,7 +300,7 @@ class ErrorModelFit {
     const std::vector<PriorTrial> trials{{sized(group.front()), left_out(at, sized)},
                                          {suppressing_precision, left_out(at, suppressed)}};
     const bool used = one_standard_error_rule(trials) == 0;
-    problem_.arm.set_precisions((used ? sized : suppressed).tail(problem_.arm.terms().size()));
+    problem_.arm.set_precisions(used ? sized : suppressed);
     return {name, trials[1].errors.mean(), trials[0].errors.mean(), used,
             used ? sized(group.front()) : suppressing_precision};
   }
@@ -301,9 +309,8 @@ class ErrorModelFit {
   VERNIER_API void size_by_evidence(const UnknownGroup& group) {
     if (group.empty() || problem_.arm.precisions()(group.front()) >= suppressing_precision) return;
     const Linearised at = linearised();
-    problem_.arm.set_precisions(
-        scale_priors(at.normal, problem_.arm.precisions(), at.steps, problem_.measured_values(), group, at.local_steps)
-            .tail(problem_.arm.terms().size()));
+    problem_.arm.set_precisions(scale_priors(at.normal, problem_.arm.precisions(), at.steps, problem_.measured_values(),
+                                             group, at.local_steps));
   }
 
   /// Sizes of the harmonics by evidence, at the solution: one common factor on the expected sizes; one for every band
@@ -331,9 +338,33 @@ class ErrorModelFit {
     const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
     if (at.system.validation_blocks >= enough || evidence(learned) > evidence(precisions) + clearly)
       precisions = learned;
-    problem_.arm.set_precisions(precisions.tail(problem_.arm.terms().size()));
+    problem_.arm.set_precisions(precisions);
     for (BlockChoice& block : estimate.blocks)
       if (block.name == "jointwise") block.precision = precisions(bands.front().front());
+  }
+
+  /// Lets the geometry change with temperature, if leave-one-pose-out errors support that.
+  VERNIER_API bool add_temperature(ErrorModelEstimate& estimate) {
+    const double mean = problem_.temperatures().mean, std = problem_.temperatures().std;
+    if (!(std > 0.02)) return false;  // not measured, or it did not vary
+    const ArmParameterisation before = problem_.arm;
+    std::vector<GeometricUnknown> unknowns = before.geometric();
+    UnknownGroup added;
+    for (const GeometricUnknown& u : before.geometric()) {
+      added.push_back(static_cast<Index>(unknowns.size()));
+      unknowns.push_back({u.parameter, u.station, options_.thermal_prior_std, 1, true});
+    }
+    problem_.reference_temperature = mean;
+    problem_.arm.set_geometric(std::move(unknowns));
+    estimate.blocks.push_back(choose_by_evidence("temperature", added));
+    if (!estimate.blocks.back().used) {
+      problem_.arm = before;
+      return false;
+    }
+    estimate.mean_temperature = mean;
+    estimate.temperature_std = std;
+    estimate.converged = problem_.solve() && estimate.converged;
+    return true;
   }
 
   /// Adds orders that stand out of what the model leaves, if leave-one-pose-out errors support them.
@@ -409,7 +440,10 @@ class ErrorModelFit {
     const VectorX precisions = problem_.arm.precisions();
     const VectorX without = left_out(linearised(), precisions);
     problem_.start_drift(40);
-    if (problem_.system().local_states == 0) return false;
+    if (problem_.system().local_states == 0) {
+      problem_.stop_drift();
+      return false;
+    }
     double best = 1, highest = -std::numeric_limits<double>::infinity();
     for (const double factor : {0.0625, 0.25, 1.0, 4.0, 16.0, 64.0}) {
       problem_.drift_precision = factor;
@@ -448,7 +482,7 @@ class ErrorModelFit {
     const VectorX after = objective.precisions(search(objective, objective.box()));
     const double without = objective.error(before), with = objective.error(after);
     estimate.blocks.push_back({"tuned_priors", without, with, with < without, 1});
-    problem_.arm.set_precisions((with < without ? after : before).tail(problem_.arm.terms().size()));
+    problem_.arm.set_precisions(with < without ? after : before);
   }
 
   /// The first block of a block's station.

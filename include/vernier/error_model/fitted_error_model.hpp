@@ -3,6 +3,8 @@
 /// @file
 /// A fitted error model: its arms, what was decided and why, and the covariance of its predictions.
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "vernier/error_model/error_model.hpp"
@@ -46,10 +48,17 @@ struct FittedErrorModel : ErrorModelEstimate {
   /// @param previous joint values from which q is approached [rad, m]; not finite where unknown
   /// @param q        joint values [rad, m]
   /// @param station  from 0
-  PredictedPose predicted_from(const JointVector<N>& previous, const JointVector<N>& q, int station = 0) const {
+  /// @param temperature of the arm [deg C]; not finite where unknown
+  PredictedPose predicted_from(const JointVector<N>& previous, const JointVector<N>& q, int station = 0,
+                               double temperature = std::numeric_limits<double>::quiet_NaN()) const {
     const auto& model = models[static_cast<std::size_t>(station)];
     const double gate = model.gate(q);
-    return {model.approached_from(previous).pose(q), visit_covariance(q, gate, station, previous), gate};
+    const auto predict = [&](const auto& now) {
+      return PredictedPose{now.approached_from(previous).pose(q),
+                           visit_covariance(q, gate, station, previous, temperature), gate};
+    };
+    return std::isfinite(temperature) && model.thermal() != nullptr ? predict(model.at_temperature(temperature))
+                                                                    : predict(model);
   }
 };
 

@@ -165,11 +165,13 @@ VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, c
 }
 
 VERNIER_IMPL double JointErrors::half_loop(int i) const noexcept {
-  double sum = 0;
+  double sum = 0, largest = 0;  // narrow steps saturate first
   for (const JointTermBlock& block : terms_.blocks())
-    for (Index k = i; block.kind == JointTermBlock::Kind::hysteresis && k < block.count; k += terms_.joints)
+    for (Index k = i; block.kind == JointTermBlock::Kind::hysteresis && k < block.count; k += terms_.joints) {
       sum += coefficients_(block.begin + k);
-  return std::abs(sum);
+      largest = std::max(largest, std::abs(sum));
+    }
+  return largest;
 }
 
 VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* jacobian) const noexcept {

@@ -57,16 +57,30 @@ std::vector<Isometry3> predicted_poses(const M& model, const JointRows<M::dof>& 
   return poses;
 }
 
+/// Poses of all samples, each approached from where it was, if the model knows hysteresis.
+template <PosePredictor M>
+std::vector<Isometry3> predicted_poses(const M& model, const Dataset<M::dof>& data) {
+  if constexpr (requires(const JointVector<M::dof>& q) { model.approached_from(q).pose(q); }) {
+    std::vector<Isometry3> poses(static_cast<std::size_t>(data.size()));
+    for (Index i = 0; i < data.size(); ++i)
+      poses[static_cast<std::size_t>(i)] =
+          model.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
+    return poses;
+  } else {
+    return predicted_poses(model, data.joints());
+  }
+}
+
 VERNIER_API VectorX position_errors_of(std::span<const Isometry3> predicted, const PointRows& positions);
 VERNIER_API VectorX rotation_errors_of(std::span<const Isometry3> predicted, const PointRows& orientations);
 VERNIER_API PositioningErrors pose_errors(std::span<const Isometry3> desired, std::span<const Isometry3> reached);
 
 }  // namespace detail
 
-/// `|p_measured - p_predicted|` of every sample [m].
+/// `|p_measured - p_predicted|` of every sample [m]; of a model that knows hysteresis with the approach of each sample.
 template <PosePredictor M>
 VectorX position_errors(const M& model, const Dataset<M::dof>& data) {
-  return detail::position_errors_of(detail::predicted_poses(model, data.joints()), data.positions());
+  return detail::position_errors_of(detail::predicted_poses(model, data), data.positions());
 }
 
 /// Angle between measured and predicted orientation of every sample [rad].
@@ -74,7 +88,7 @@ VectorX position_errors(const M& model, const Dataset<M::dof>& data) {
 template <PosePredictor M>
 VectorX rotation_errors(const M& model, const Dataset<M::dof>& data) {
   require(data.has_orientations(), "rotation_errors: the data have positions only");
-  return detail::rotation_errors_of(detail::predicted_poses(model, data.joints()), data.orientations());
+  return detail::rotation_errors_of(detail::predicted_poses(model, data), data.orientations());
 }
 
 /// Statistics of `position_errors` [m].

@@ -19,6 +19,7 @@ struct GeometricUnknown {
   int station = -1;      ///< whose frame it belongs to; -1: shared by all stations
   double scale = 1;      ///< unit in which it is estimated: the expected size of its error [m, rad]
   double precision = 0;  ///< of a prior around its start, in that unit: an inverse variance; 0 for none
+  bool thermal = false;  ///< not the parameter, but its change a kelvin
 };
 
 /// Geometric unknowns and coefficients of joint errors. Estimation is in steps of their scales: geometry first, then
@@ -29,16 +30,19 @@ class ArmParameterisation {
   /// @param unknowns geometric parameters to estimate
   VERNIER_API ArmParameterisation(std::vector<ArmGeometry> arms, std::vector<GeometricUnknown> unknowns);
 
-  /// Replaces the geometric unknowns; values stay.
-  void set_geometric(std::vector<GeometricUnknown> unknowns) { unknowns_ = std::move(unknowns); }
+  /// Replaces the geometric unknowns; values stay, changes with temperature start from none.
+  void set_geometric(std::vector<GeometricUnknown> unknowns) {
+    unknowns_ = std::move(unknowns);
+    thermal_rates_.clear();
+  }
   /// Replaces the terms of joint errors. Coefficients of terms that were there before keep their values; others are
   /// zero.
   /// @param terms      the new ones
   /// @param scales     units of the coefficients
   /// @param precisions of their zero-mean priors, in those units
   VERNIER_API void set_terms(JointTerms terms, VectorX scales, VectorX precisions);
-  /// Replaces the precisions of the coefficients' priors.
-  void set_precisions(VectorX of_coefficients) { coefficient_precisions_ = std::move(of_coefficients); }
+  /// Replaces the precisions of the priors of all unknowns.
+  VERNIER_API void set_precisions(const VectorX& precisions);
 
   /// Geometric unknowns.
   const std::vector<GeometricUnknown>& geometric() const { return unknowns_; }
@@ -54,6 +58,8 @@ class ArmParameterisation {
   int stations() const { return static_cast<int>(arms_.size()); }
   /// Chain and frames of a station, without joint errors.
   const ArmGeometry& geometry(int station) const { return arms_[static_cast<std::size_t>(station)]; }
+  /// Changes of the parameters a kelvin; empty where no unknown is thermal.
+  VERNIER_API VectorX thermal_rates(int station) const;
   /// Number of functions of each joint's transmission.
   VERNIER_API std::vector<Index> group_sizes() const;
 
@@ -66,7 +72,8 @@ class ArmParameterisation {
   VERNIER_API VectorX steps() const;
   /// Adds to the present values.
   VERNIER_API void move(const VectorX& steps);
-  /// Names; those of a frame of station s > 0 end in `@s+1`.
+  /// Names; those of a frame of station s > 0 end in `@s+1`, those of changes with
+  /// temperature in `/K`.
   VERNIER_API std::vector<std::string> names() const;
 
   /// Modelled poses at n configurations of a station.
@@ -82,9 +89,10 @@ class ArmParameterisation {
   /// @param previous      joint values from which they were approached, likewise; no rows where unknown
   /// @param out           n blocks
   /// @param joint_columns whether to write `factor` also where no coefficient acts through it; else it is empty then
+  /// @param warmer        how much warmer it was [K]; none for zero
   VERNIER_API std::vector<Isometry3> linearise(int station, const ConstMatrixRef& joints,
-                                               const ConstMatrixRef& previous, RowBlock* out,
-                                               bool joint_columns = true) const;
+                                               const ConstMatrixRef& previous, RowBlock* out, bool joint_columns = true,
+                                               const ConstVectorRef& warmer = VectorX()) const;
   /// Values of the transmissions' functions at q, in units of scales.
   VERNIER_API void transmission_values(const double* q, VectorX& out) const;
 
@@ -95,6 +103,7 @@ class ArmParameterisation {
   std::vector<ArmGeometry> arms_;
   std::vector<VectorX> start_;
   std::vector<GeometricUnknown> unknowns_;
+  std::vector<double> thermal_rates_{};  // of each geometric unknown; empty for zero
   JointErrors errors_;
   VectorX coefficient_scales_, coefficient_precisions_;
 };

@@ -25,6 +25,23 @@ VERNIER_IMPL void ArmParameterisation::set_terms(JointTerms terms, VectorX scale
   coefficient_precisions_ = std::move(precisions);
 }
 
+VERNIER_IMPL void ArmParameterisation::set_precisions(const VectorX& precisions) {
+  require(precisions.size() == size(), "ArmParameterisation: ", precisions.size(), " precisions of ", size(),
+          " unknowns");
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) unknowns_[k].precision = precisions(static_cast<Index>(k));
+  coefficient_precisions_ = precisions.tail(terms().size());
+}
+
+VERNIER_IMPL VectorX ArmParameterisation::thermal_rates(int station) const {
+  VectorX out;
+  for (std::size_t k = 0; k < thermal_rates_.size(); ++k) {
+    if (!unknowns_[k].thermal || (unknowns_[k].station >= 0 && unknowns_[k].station != station)) continue;
+    if (out.size() == 0) out.setZero(geometry(station).num_parameters());
+    out(unknowns_[k].parameter) = thermal_rates_[k];
+  }
+  return out;
+}
+
 VERNIER_IMPL std::vector<Index> ArmParameterisation::group_sizes() const {
   std::vector<Index> out;
   for (const Fourier& fourier : terms().transmission) out.push_back(fourier.size());
@@ -50,8 +67,11 @@ VERNIER_IMPL VectorX ArmParameterisation::precisions() const {
 VERNIER_IMPL VectorX ArmParameterisation::steps() const {
   std::vector<VectorX> now;
   for (const ArmGeometry& arm : arms_) now.push_back(arm.parameters());
+  Index k = 0;
   return joined(
       [&](const GeometricUnknown& u) {
+        const auto unknown = static_cast<std::size_t>(k++);
+        if (u.thermal) return thermal_rates_.empty() ? 0.0 : thermal_rates_[unknown] / u.scale;
         const auto s = static_cast<std::size_t>(std::max(0, u.station));
         return (now[s](u.parameter) - start_[s](u.parameter)) / u.scale;
       },
@@ -59,11 +79,14 @@ VERNIER_IMPL VectorX ArmParameterisation::steps() const {
 }
 
 VERNIER_IMPL void ArmParameterisation::move(const VectorX& steps) {
+  thermal_rates_.resize(unknowns_.size(), 0);
+  for (std::size_t k = 0; k < unknowns_.size(); ++k)
+    if (unknowns_[k].thermal) thermal_rates_[k] += unknowns_[k].scale * steps(static_cast<Index>(k));
   for (int s = 0; s < stations(); ++s) {
     ArmGeometry& arm = arms_[static_cast<std::size_t>(s)];
     VectorX p = arm.parameters();
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      if (unknowns_[k].station < 0 || unknowns_[k].station == s)
+      if (!unknowns_[k].thermal && (unknowns_[k].station < 0 || unknowns_[k].station == s))
         p(unknowns_[k].parameter) += unknowns_[k].scale * steps(static_cast<Index>(k));
     arm = arm.with_parameters(p);
   }
@@ -77,7 +100,7 @@ VERNIER_IMPL std::vector<std::string> ArmParameterisation::names() const {
   std::vector<std::string> out;
   for (const auto& u : unknowns_)
     out.push_back(of_arm[static_cast<std::size_t>(u.parameter)] +
-                  (u.station > 0 ? message('@', u.station + 1) : std::string()));
+                  (u.station > 0 ? message('@', u.station + 1) : std::string()) + (u.thermal ? "/K" : ""));
   for (auto& name : terms().names()) out.push_back(std::move(name));
   return out;
 }
@@ -136,7 +159,8 @@ VERNIER_API void tilt_columns(const JointErrors& errors, const VectorX& q, const
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
                                                                    const ConstMatrixRef& previous, RowBlock* out,
-                                                                   bool joint_columns) const {
+                                                                   bool joint_columns,
+                                                                   const ConstVectorRef& warmer) const {
   const ArmGeometry& arm = geometry(station);
   const int n = arm.joints();
   const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
@@ -165,10 +189,20 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     rows.dense.resize(6, num_dense());
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       double* column = rows.dense.col(static_cast<Index>(k)).data();
+      const double share = unknowns_[k].thermal ? warmer.size() > 0 ? warmer(i) : 0 : 1;
       if (unknowns_[k].station < 0 || unknowns_[k].station == station)
-        copy(unknowns_[k].parameter, unknowns_[k].scale, column);
+        copy(unknowns_[k].parameter, share * unknowns_[k].scale, column);
       else
         std::fill_n(column, 6, 0.0);
+    }
+    if (warmer.size() > 0 && !thermal_rates_.empty()) {  // tiny, so it adds up
+      Vector6 shift = Vector6::Zero();
+      for (std::size_t k = 0; k < unknowns_.size(); ++k)
+        if (unknowns_[k].thermal)
+          shift += thermal_rates_[k] / unknowns_[k].scale * rows.dense.col(static_cast<Index>(k));
+      at.poses[static_cast<std::size_t>(i)].translation() += shift.head<3>();
+      at.poses[static_cast<std::size_t>(i)].linear() =
+          exp_so3(Vector3(shift.tail<3>())) * at.poses[static_cast<std::size_t>(i)].linear();
     }
     rows.local = {};
     rows.functions.resize(0);

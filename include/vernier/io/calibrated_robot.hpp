@@ -77,6 +77,11 @@ class CalibratedRobot {
                             corrected_->coverage());
   }
 
+  /// The same arm at a temperature [deg C], where its geometry changes with that.
+  CalibratedRobot at_temperature(double celsius) const {
+    return with_model(model_.at_temperature(celsius), provenance_);
+  }
+
   /// Its name.
   const std::string& name() const { return name_; }
   /// The identified chain with its joint errors, in the identified frames, where the joints were measured.
@@ -184,8 +189,10 @@ class CalibratedRobot {
   }
   static Model by_values(const Model& model) {
     const Chain& chain = model.nominal().model();
-    if (model.fallback() == nullptr) return {chain, by_values(model.identified())};
-    return {chain, by_values(model.identified()), by_values(*model.fallback()), *model.coverage()};
+    const Model out = model.fallback() == nullptr ? Model(chain, by_values(model.identified()))
+                                                  : Model(chain, by_values(model.identified()),
+                                                          by_values(*model.fallback()), *model.coverage());
+    return model.thermal() == nullptr ? out : out.with_thermal(*model.thermal());
   }
 
   std::string name_;

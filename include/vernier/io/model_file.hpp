@@ -57,6 +57,7 @@ struct ModelData {
   FittedArm identified;
   std::optional<FittedArm> fallback;
   CoverageData coverage;  ///< where there is a fallback
+  std::optional<ThermalRates> thermal;
   std::optional<LearnedData> learned;
 };
 
@@ -77,7 +78,9 @@ ModelData model_data(const CalibratedRobot<N, Convention>& robot) {
                 FittedArm::of(robot.identified()),
                 {},
                 {},
+                {},
                 {}};
+  if (robot.model().thermal() != nullptr) out.thermal = *robot.model().thermal();
   if (const auto* fallback = robot.model().fallback()) {
     out.fallback = FittedArm::of(*fallback);
     out.coverage = CoverageData(*robot.model().coverage());
@@ -135,9 +138,10 @@ CalibratedRobot<N, Convention> load(const std::string& path) {
   std::copy(data.nominal.rows().begin(), data.nominal.rows().end(), rows.begin());
   const Chain nominal = Chain::from_rows(rows);
   using Model = typename Robot::Model;
-  const Model model = data.fallback ? Model(nominal, data.identified.typed(nominal), data.fallback->typed(nominal),
-                                            data.coverage.template typed<N>())
-                                    : Model(nominal, data.identified.typed(nominal));
+  Model model = data.fallback ? Model(nominal, data.identified.typed(nominal), data.fallback->typed(nominal),
+                                      data.coverage.template typed<N>())
+                              : Model(nominal, data.identified.typed(nominal));
+  if (data.thermal) model = model.with_thermal(*data.thermal);
   const Robot robot(data.name, model, {data.lower, data.upper}, data.provenance);
   if (!data.learned) return robot;
   const detail::LearnedData& learned = *data.learned;

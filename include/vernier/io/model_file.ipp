@@ -290,6 +290,10 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
     out["outside_arm"] = arm_to_json(*model.fallback);
     out["coverage"] = coverage_to_json(model.coverage);
   }
+  if (model.thermal)
+    out["thermal"] = {{"reference_c", model.thermal->reference},
+                      {"measured_c", {model.thermal->lower, model.thermal->upper}},
+                      {"rates_per_k", list_of(model.thermal->parameters)}};
   if (model.learned) out["learned"] = learned_to_json(*model.learned);
   return out;
 }
@@ -354,11 +358,19 @@ VERNIER_IMPL ModelData read_model(const std::string& path, int joints, bool modi
                 arm_from_json(nominal, root.at("arm")),
                 {},
                 {},
+                {},
                 {}};
   if (root.has("coverage") && !root.has("outside_arm")) root.fail("key 'outside_arm' is missing");
   if (root.has("outside_arm")) {
     out.fallback = arm_from_json(nominal, root.at("outside_arm"));
     out.coverage = coverage_from_json(root.at("coverage"), joints);
+  }
+  if (root.has("thermal")) {
+    const JsonNode node = root.at("thermal");
+    const VectorX range = node.at("measured_c").numbers(2);
+    if (!(range(0) <= range(1))) node.at("measured_c").fail("its lower end is above its upper one");
+    out.thermal = ThermalRates{node.at("reference_c").number(), range(0), range(1),
+                               node.at("rates_per_k").numbers(static_cast<std::size_t>(12 + 5 * joints))};
   }
   if (root.has("learned")) out.learned = learned_from_json(root.at("learned"), joints);
   return out;

@@ -22,7 +22,9 @@ VERNIER_API nlohmann::ordered_json stages_to_json(const std::vector<StageErrors>
 /// @param robot  its name
 VERNIER_API nlohmann::ordered_json to_json(const CalibrationReport& report, const std::string& robot);
 
-/// A re-registration: `base_change_m_rad` and `tool_change_m_rad` (translation and rotation vector), `offsets_rad`.
+/// A re-registration: `base_change_m_rad` and `tool_change_m_rad` (translation and rotation vector), `offsets_rad`, the
+/// weights `position_sigma_mm` and `orientation_sigma_mrad`, `probe` (whether orientations are `turned`, `by_mrad`, and
+/// `contradiction`, the statistic behind), `held` and `remarks` in words.
 /// Callers include <nlohmann/json.hpp>.
 VERNIER_API nlohmann::ordered_json to_json(const ReregistrationReport& report);
 

@@ -34,6 +34,17 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                           {"nominal", p.nominal * 1e3},
                           {"identified", p.identified * 1e3},
                           {"std", p.std * 1e3}});
+  Json drift = Json::array();
+  for (const SessionDrift& of_station : report.drift) {
+    Json knots = Json::array();
+    for (Index k = 0; k < of_station.twists.cols(); ++k) {
+      const Vector6 twist = of_station.twists.col(k);
+      knots.push_back({{"time", of_station.begin + of_station.spacing * static_cast<double>(k)},
+                       {"translation_um", {twist(0) * 1e6, twist(1) * 1e6, twist(2) * 1e6}},
+                       {"rotation_urad", {twist(3) * 1e6, twist(4) * 1e6, twist(5) * 1e6}}});
+    }
+    drift.push_back({{"station", drift.size() + 1}, {"knots", std::move(knots)}});
+  }
   Json spectrum = Json::array();
   for (std::size_t j = 0; j < report.joints.size(); ++j) {
     const JointReport& joint = report.joints[j];
@@ -61,6 +72,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"test_rows", report.test_poses()},
           {"stages", stages_to_json(report.stages)},
           {"chosen", report.chosen},
+          {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
           {"blocks", blocks},
           {"parameters", parameters},
           {"identifiability",
@@ -71,6 +83,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
             {"strongly_correlated", identification.strongly_correlated()},
             {"observability", {{"O1", o.o1}, {"O2", o.o2}, {"O3", o.o3}, {"O4", o.o4}, {"O5", o.o5}}}}},
           {"spectrum", spectrum},
+          {"drift", drift},
           {"gated_rows", report.extrapolated()},
           {"worst_harm_beside_geometry_mm", report.max_degradation * 1e3},
           {"within_95_percent_ellipsoids", report.ellipsoid_coverage},
@@ -81,7 +94,15 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) 
   const auto values = [](const auto& vector) { return std::vector<double>(vector.begin(), vector.end()); };
   return {{"base_change_m_rad", values(FrameParameters(report.motion.base).values())},
           {"tool_change_m_rad", values(FrameParameters(report.motion.tool).values())},
-          {"offsets_rad", values(report.motion.offsets)}};
+          {"offsets_rad", values(report.motion.offsets)},
+          {"position_sigma_mm", report.position_sigma * 1e3},
+          {"orientation_sigma_mrad", report.orientation_sigma * 1e3},
+          {"probe",
+           {{"turned", report.probe_turned},
+            {"by_mrad", values(Vector3(1e3 * report.motion.probe))},
+            {"contradiction", report.contradiction}}},
+          {"held", report.held},
+          {"remarks", report.remarks()}};
 }
 
 }  // namespace vernier

@@ -41,7 +41,8 @@ VERNIER_API void whitened_rows(const FrameUpdate& update, const SensorModel& sen
 
 }  // namespace detail
 
-/// Tracks a drifting arm pose by pose: recursive least squares on base, joint zeros or tool, with forgetting.
+/// Tracks a drifting arm pose by pose: recursive least squares on base, joint zeros or tool, with forgetting. It does
+/// not test for contradictions as `reregister` does.
 /// @cite Ljung and Soderstrom 1983
 template <class Chain>
 class RecursiveCalibration {
@@ -50,7 +51,7 @@ class RecursiveCalibration {
   static constexpr int N = Chain::dof;
 
   /// @param model      where to start
-  /// @param options    what drifts
+  /// @param options    what drifts; of its priors that of the joint zeros is used
   /// @param sensors    accuracy of the measurements
   /// @param forgetting weight of a pose after the next one, in (0, 1]: 0.98 remembers about 50 poses
   /// @param sizes      initial standard deviations: of lengths (first) and angles (second) [m, rad]

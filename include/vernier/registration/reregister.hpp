@@ -11,16 +11,22 @@
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/identification/detail/station.hpp"
 #include "vernier/identification/sensor_model.hpp"
-#include "vernier/registration/frame_update.hpp"
+#include "vernier/registration/detail/frame_fit.hpp"
 
 namespace vernier {
 
 /// What is estimated again.
 struct ReregisterOptions {
   bool base = true;                ///< the arm, or the sensor, was moved
-  bool tool = false;               ///< another tool, or the same remounted
+  bool tool = false;               ///< the tool was remounted, or is another one
   bool offsets = false;            ///< joint zeros
   double offset_prior_std = 1e-3;  ///< expected change of a joint zero [rad, m]: a prior, so that few poses suffice
+  double tool_position_prior_std = 3e-3;  ///< expected motion of the tool point, where the tool is freed [m], a prior
+                                          ///< as well; infinite: another tool, of which nothing is known
+  double tool_rotation_prior_std = 5e-3;  ///< expected rotation of the tool, likewise [rad]
+  /// Measured orientations are taken to be turned against the tool where that explains more than chance does: a
+  /// chi-squared of three values, which chance exceeds once in a thousand times. Infinite: never.
+  double contradiction_threshold = 16.3;
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;
@@ -28,16 +34,32 @@ struct ReregisterOptions {
 
 /// Outcome of a re-registration, whatever the arm.
 struct ReregistrationReport {
-  bool determined = false;               ///< whether the poses determine everything that is estimated
+  bool determined = false;               ///< whether the poses, with the priors, determine everything that is estimated
   bool converged = false;                ///< whether the iteration converged
   double rms_before = 0;                 ///< position error with the frames of before [m]
   double rms_after = 0;                  ///< position error with the new ones [m]
   FrameMotion motion{};                  ///< how the arm was moved
   ReregisterOptions estimated{};         ///< what was estimated
   std::vector<JointType> joint_types{};  ///< of the arm
-  VectorX change_std{};  ///< standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated
+  /// Standard deviations: base twist (6), joint zeros (N), tool twist (6), those estimated [m, rad]. They count what
+  /// was held as uncertain as its prior.
+  VectorX change_std{};
+  /// Standard deviations of positions [m] and of orientations [rad], per component, with which they were weighted:
+  /// estimated from the residuals, so that they contain the model's own error, and at least those of the sensors. The
+  /// latter is 0 where orientations are not used.
+  double position_sigma = 0, orientation_sigma = 0;
+  /// What the poses do not determine of the tool, so that it was held where it was: `the position of the tool along
+  /// (0.00, 0.00, 1.00) of its frame`. Held is that of which more than half of the prior's standard deviation is left.
+  std::vector<std::string> held{};
+  /// Whether orientations contradict positions and were taken to be turned by `motion.probe`.
+  bool probe_turned = false;
+  double contradiction = 0;             ///< the statistic behind, to be compared with `contradiction_threshold`
+  Vector3 probe_std = Vector3::Zero();  ///< standard deviations of `motion.probe` [rad]
 
-  /// What was estimated and how it changed, a line each [mm, mrad].
+  /// What is to be known before the result is used, a sentence each: contradictions, what was held, a tool that moved
+  /// further than expected.
+  VERNIER_API std::vector<std::string> remarks() const;
+  /// What was estimated and how it changed, a line each [mm, mrad]; then the remarks.
   VERNIER_API std::string summary() const;
 };
 
@@ -49,9 +71,6 @@ struct Reregistered : ReregistrationReport {
 
 namespace detail {
 
-/// Modelled poses of all samples after a motion, and the geometric Jacobians, 6 x joints each, side by side.
-using MovedPoses = FunctionRef<void(const FrameMotion& motion, std::vector<Isometry3>& poses, MatrixX& jacobians)>;
-
 /// Estimates how an arm was moved.
 VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
                                    const SensorModel& sensors, ReregistrationReport& report);
@@ -59,11 +78,14 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& da
 }  // namespace detail
 
 /// Estimates base, tool or joint zeros of a fitted arm again, from a handful of poses; everything else is kept.
+///
+/// Where positions and orientations contradict each other by a constant rotation of the tool frame (a remounted probe),
+/// that rotation is estimated as well and reported, for orientations alone: the model's tool stays as it was.
 /// @param model   as fitted, wherever it stood then
 /// @param data    n >= 1 poses from where it stands now
 /// @param options what is estimated
-/// @param sensors their accuracy; residuals are weighted by squares, whatever its loss, and its `joint_sigma` is not
-/// used
+/// @param sensors their accuracy, the least that residuals are taken for; they are weighted by squares, whatever its
+/// loss, and its `joint_sigma` is not used
 /// @throws std::invalid_argument on no data or an unusable option
 template <class Chain>
 Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
@@ -75,7 +97,8 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
     poses.resize(static_cast<std::size_t>(data.size()));
     jacobians.resize(6, N * data.size());
     for (Index i = 0; i < data.size(); ++i) {
-      const PoseAndJacobian<N> at = now.pose_and_jacobian(data.joints(i));
+      const PoseAndJacobian<N> at =
+          now.approached_from(data.previous().row(i).transpose()).pose_and_jacobian(data.joints(i));
       poses[static_cast<std::size_t>(i)] = at.pose;
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }

@@ -10,34 +10,97 @@
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
-#include "vernier/least_squares/marquardt_damping.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
 #include "vernier/registration/reregister.hpp"
 
 namespace vernier {
 
 VERNIER_IMPL void ReregisterOptions::validate() const {
   require(base || tool || offsets, "ReregisterOptions: nothing is to be estimated");
-  require(offset_prior_std > 0, "ReregisterOptions: offset_prior_std ", offset_prior_std, " must be positive");
+  const auto positive = [](const char* name, double value) {
+    require(value > 0, "ReregisterOptions: ", name, " ", value, " must be positive");
+  };
+  positive("offset_prior_std", offset_prior_std);
+  positive("tool_position_prior_std", tool_position_prior_std);
+  positive("tool_rotation_prior_std", tool_rotation_prior_std);
+  positive("contradiction_threshold", contradiction_threshold);
+}
+
+namespace detail {
+
+/// printf into a string.
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char line[320];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+}  // namespace detail
+
+VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
+  std::vector<std::string> out;
+  if (probe_turned)
+    out.push_back(detail::formatted(
+        "Measured orientations are turned by %.2f mrad against the tool, (%.2f, %.2f, %.2f) +- (%.2f, %.2f, %.2f) in "
+        "its frame (statistic %.0f, by chance up to %.1f): was the probe remounted? The rotation is taken off the "
+        "orientations; the model's tool is kept.",
+        1e3 * motion.probe.norm(), 1e3 * motion.probe.x(), 1e3 * motion.probe.y(), 1e3 * motion.probe.z(),
+        1e3 * probe_std.x(), 1e3 * probe_std.y(), 1e3 * probe_std.z(), contradiction,
+        estimated.contradiction_threshold));
+  for (const std::string& what : held) out.push_back("The poses do not determine " + what + ": held where it was.");
+  std::string zeros;
+  const Index zeros_begin = estimated.base ? 6 : 0, count = change_std.size() > 0 ? motion.offsets.size() : 0;
+  for (Index i = 0; estimated.offsets && i < count; ++i)
+    if (change_std(zeros_begin + i) > 0.5 * estimated.offset_prior_std) zeros += " " + std::to_string(i + 1);
+  if (!zeros.empty())
+    out.push_back("The poses tell little about the zeros of joints" + zeros + ": held near where they were.");
+  const auto far = [&](const char* how, double moved, double prior, const char* unit) {
+    if (moved > 3 * prior)
+      out.push_back(
+          detail::formatted("The tool has %s by %.2f %s, where %.2f are expected of one remounted: if it is "
+                            "another tool, register it as such (with infinite priors).",
+                            how, 1e3 * moved, unit, 1e3 * prior));
+  };
+  far("moved", motion.tool.translation().norm(), estimated.tool_position_prior_std, "mm");
+  far("turned", log_so3(motion.tool.linear()).norm(), estimated.tool_rotation_prior_std, "mrad");
+  const auto vague = [&](const char* what, double sigma, double prior, const char* unit) {
+    if (std::isinf(prior) && sigma > 1e-3)
+      out.push_back(
+          detail::formatted("The poses determine the %s of the tool to %.1f %s only.", what, 1e3 * sigma, unit));
+  };
+  if (!estimated.tool || change_std.size() == 0) return out;
+  vague("position", change_std.tail<6>().head<3>().maxCoeff(), estimated.tool_position_prior_std, "mm");
+  vague("rotation", change_std.tail<3>().maxCoeff(), estimated.tool_rotation_prior_std, "mrad");
+  return out;
 }
 
 VERNIER_IMPL std::string ReregistrationReport::summary() const {
   std::string out;
-  char line[160];
+  Index at = 0;
+  const bool known = change_std.size() > 0;
   const auto frame = [&](const char* name, const Isometry3& by) {
     const Vector6 v = 1e3 * FrameParameters(by).values();
-    std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm, turned by (%.3f, %.3f, %.3f) mrad\n", name,
-                  v(0), v(1), v(2), v(3), v(4), v(5));
-    out += line;
+    const Vector6 sigma = known ? Vector6(1e3 * change_std.segment<6>(at)) : v;
+    for (const Index k : {0, 3}) {
+      out += k == 0 ? std::string(name) + " moved by" : ", turned by";
+      out += detail::formatted(" (%.3f, %.3f, %.3f)", v(k), v(k + 1), v(k + 2));
+      if (known) out += detail::formatted(" +- (%.3f, %.3f, %.3f)", sigma(k), sigma(k + 1), sigma(k + 2));
+      out += k == 0 ? " mm" : " mrad\n";
+    }
+    at += 6;
   };
   if (estimated.base) frame("Base", motion.base);
-  if (estimated.tool) frame("Tool", motion.tool);
-  for (Index i = 0; estimated.offsets && i < motion.offsets.size(); ++i) {
+  for (Index i = 0; estimated.offsets && i < motion.offsets.size(); ++i, ++at) {
     const bool revolute = joint_types[static_cast<std::size_t>(i)] == JointType::revolute;
-    std::snprintf(line, sizeof line, "Zero of joint %d moved by %+.4f %s\n", static_cast<int>(i + 1),
-                  motion.offsets(i) * 1e3, revolute ? "mrad" : "mm");
-    out += line;
+    out += detail::formatted("Zero of joint %d moved by %+.4f", static_cast<int>(i + 1), motion.offsets(i) * 1e3);
+    if (known) out += detail::formatted(" +- %.4f", change_std(at) * 1e3);
+    out += revolute ? " mrad\n" : " mm\n";
   }
+  if (estimated.tool) frame("Tool", motion.tool);
+  out += detail::formatted("Weighted for residuals of %.3f mm", 1e3 * position_sigma);
+  if (orientation_sigma > 0) out += detail::formatted(" and %.3f mrad", 1e3 * orientation_sigma);
+  out += " a component\n";
+  for (const std::string& remark : remarks()) out += remark + "\n";
   return out;
 }
 
@@ -63,12 +126,13 @@ VERNIER_API Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, cons
   return out;
 }
 
-/// Base motion that brings modelled poses to the measured ones, in closed form.
-VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const Station& data) {
+/// Base motion that brings modelled poses to the measured ones, in closed form; its rotation by the orientations or by
+/// the positions.
+VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const Station& data, bool by_orientations) {
   PointRows points(data.size(), 3);
   for (Index i = 0; i < data.size(); ++i)
     points.row(i) = modelled[static_cast<std::size_t>(i)].translation().transpose();
-  if (!data.oriented()) return register_points(points, *data.positions);
+  if (!by_orientations) return register_points(points, *data.positions);
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t i = 0; i < modelled.size(); ++i) sum += data.orientations[i] * modelled[i].linear().transpose();
   Isometry3 out = Isometry3::Identity();
@@ -78,93 +142,138 @@ VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const 
   return out;
 }
 
+/// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
+VERNIER_API Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < modelled.size(); ++i) sum += modelled[i].linear().transpose() * measured[i];
+  return log_so3(nearest_rotation(sum));
+}
+
+/// Prior standard deviations of what is estimated.
+VERNIER_API VectorX prior_std_of(const FrameUpdate& update, const ReregisterOptions& options, double probe_std) {
+  VectorX out = VectorX::Constant(update.size(), std::numeric_limits<double>::infinity());
+  if (update.offsets) out.segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);
+  if (update.tool) {
+    out.segment(update.tool_begin(), 3).setConstant(options.tool_position_prior_std);
+    out.segment(update.tool_begin() + 3, 3).setConstant(options.tool_rotation_prior_std);
+  }
+  if (update.probe) out.segment(update.probe_begin(), 3).setConstant(probe_std);
+  return out;
+}
+
+/// Holds what the poses tell little about: directions of the tool's position and rotation of which more than half of
+/// the prior's standard deviation is left. They would follow errors of the model by as much as a prior allows.
+/// @return what is held, in words
+VERNIER_API std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
+  std::vector<std::string> out;
+  for (const Index part : {0, 3}) {
+    const Index begin = fit.update.tool_begin() + part;
+    const double least = std::pow(0.5 * fit.prior_std(begin), 2);
+    const RightSingular axes = right_singular(fit.covariance_of(begin, 3));  // in descending order
+    const Index count = (axes.values.array() > least).count();
+    if (count == 0) continue;
+    std::string what = part == 0 ? "the position of the tool" : "the rotation of the tool";
+    for (Index k = 0; k < count; ++k) {
+      Vector3 axis = axes.vectors.col(k);
+      fit.held.conservativeResizeLike(MatrixX::Zero(fit.update.size(), fit.held.cols() + 1));
+      fit.held.rightCols<1>().segment<3>(begin) = axis;
+      Index largest = 0;
+      axis.cwiseAbs().maxCoeff(&largest);
+      axis /= axis(largest) < 0 ? -1 : 1;
+      axis = (axis.array().abs() < 0.005).select(0, axis);  // no -0.00
+      if (count < 3)
+        what += formatted("%s (%.2f, %.2f, %.2f)", k == 0 ? (part == 0 ? " along" : " about") : " and", axis.x(),
+                          axis.y(), axis.z());
+    }
+    out.push_back(count < 3 ? what + " of its frame" : what);
+  }
+  return out;
+}
+
+/// Decides whether the orientations are turned against the tool, from a fit in which they are free to, and solves again
+/// where they are not.
+VERNIER_API void judge_probe(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
+                             const SensorModel& sensors, FrameFit& fit, ReregistrationReport& report) {
+  const Index begin = fit.update.probe_begin();
+  // A mean error of the model's orientations is no remounted probe: it may be as large as their scatter.
+  const double own =
+      fit.orientation_sigma * fit.orientation_sigma - sensors.orientation_sigma * sensors.orientation_sigma;
+  MatrixX by_chance = fit.covariance_of(begin, 3);
+  report.probe_std = by_chance.diagonal().cwiseSqrt();
+  by_chance.diagonal().array() += own;
+  MatrixX whitened = fit.motion.probe;
+  cholesky(by_chance);
+  solve_lower(by_chance, whitened);
+  // Wald's statistic; few values make their own scale uncertain, so that it may be larger by chance (as F is)
+  const double redundancy = fit.position_redundancy + fit.orientation_redundancy;
+  report.contradiction = redundancy < 1 ? 0 : redundancy * std::log1p(whitened.squaredNorm() / redundancy);
+  report.probe_turned = report.contradiction > options.contradiction_threshold;
+  if (report.probe_turned) return;
+  // What orientations tell about the base is worth no more than that mean error allows.
+  report.probe_std.setZero();
+  fit.motion.probe.setZero();
+  fit.update.probe = own > 1e-18;
+  fit.total.conservativeResize(fit.update.size());
+  if (fit.update.probe) fit.total.tail<3>().setZero();
+  fit.prior_std = prior_std_of(fit.update, options, std::sqrt(own));
+  solve_frames(evaluate, data, fit);
+}
+
 VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
                                     const SensorModel& sensors, ReregistrationReport& report) {
   options.validate();
   sensors.validate();
   require(data.size() >= 1, "reregister: no samples");
   const int joints = data.dof;
-  const FrameUpdate update{options.base, options.offsets, options.tool, joints};
-  FrameMotion motion;
-  motion.offsets = VectorX::Zero(joints);
-  std::vector<Isometry3> poses;
+  // a tool that is freed follows the orientations by itself
+  const FrameUpdate update{options.base, options.offsets, options.tool, joints, data.oriented() && !options.tool};
+  // The probe may be mounted any way round; a prior this wide keeps one pose from asking for both base and probe.
+  constexpr double any_rotation = 1;
+  FrameFit fit{.update = update,
+               .prior_std = prior_std_of(update, options, any_rotation),
+               .motion = {.offsets = VectorX::Zero(joints)},
+               .position_sigma = sensors.position_sigma,
+               .orientation_sigma = sensors.orientation_sigma,
+               .total = VectorX::Zero(update.size())};
   MatrixX jacobians;
   const auto rms = [&] {
     double sum = 0;
     for (Index i = 0; i < data.size(); ++i)
-      sum += (poses[static_cast<std::size_t>(i)].translation() - data.position(i)).squaredNorm();
+      sum += (fit.poses[static_cast<std::size_t>(i)].translation() - data.position(i)).squaredNorm();
     return std::sqrt(sum / static_cast<double>(data.size()));
   };
-  evaluate(motion, poses, jacobians);
+  evaluate(fit.motion, fit.poses, jacobians);
   report.rms_before = rms();
   if (options.base) {  // the arm may be anywhere: a closed-form start
-    if (data.oriented() && options.tool) motion.tool = tool_rotation(poses, data.orientations);
-    evaluate(motion, poses, jacobians);
-    motion.base = base_motion(poses, data);
-    evaluate(motion, poses, jacobians);
-  }
-
-  const auto rows = [&](Index first, Index count, RowBlock* out) {
-    for (Index b = 0; b < count; ++b) {
-      const Index i = first + b;
-      const Isometry3& pose = poses[static_cast<std::size_t>(i)];
-      out[b].residual.setZero();
-      out[b].residual.head<3>() = (pose.translation() - data.position(i)) / sensors.position_sigma;
-      out[b].dense = update.columns(pose, jacobians.data() + 6 * joints * i);
-      out[b].dense.topRows<3>() /= sensors.position_sigma;
-      if (data.oriented()) {
-        out[b].residual.tail<3>() =
-            log_so3(pose.linear() * data.orientations[static_cast<std::size_t>(i)].transpose()) /
-            sensors.orientation_sigma;
-        out[b].dense.bottomRows<3>() /= sensors.orientation_sigma;
-      } else {
-        out[b].dense.bottomRows<3>().setZero();
+    if (data.oriented() && options.tool && std::isinf(options.tool_rotation_prior_std))
+      fit.motion.tool = tool_rotation(fit.poses, data.orientations);
+    evaluate(fit.motion, fit.poses, jacobians);
+    fit.motion.base = base_motion(fit.poses, data, data.oriented());
+    if (update.probe) {  // a probe mounted another way round would put the arm somewhere else
+      const std::vector<Isometry3> before = fit.poses;
+      evaluate(fit.motion, fit.poses, jacobians);
+      if (rms() > 0.02) {
+        fit.motion.base = base_motion(before, data, false);
+        evaluate(fit.motion, fit.poses, jacobians);
+        fit.motion.probe = probe_rotation(fit.poses, data.orientations);
+        fit.total.tail<3>() = fit.motion.probe;
       }
     }
-  };
-  const BlockSystem system{data.size(), data.size(), update.size(), {}, rows};
-  VectorX precisions = VectorX::Zero(update.size()), total = precisions;
-  if (options.offsets)
-    precisions.segment(update.offsets_begin(), joints)
-        .setConstant(1 / (options.offset_prior_std * options.offset_prior_std));
-  MarquardtDamping damping;
-  FrameMotion accepted = motion;
-  VectorX accepted_total = total;
-  double reached = std::numeric_limits<double>::infinity(), predicted = 0;
-  for (int iteration = 0; iteration < 50 && !report.converged; ++iteration) {
-    const NormalEquations normal(system);
-    const double sum = normal.cost + precisions.dot(total.cwiseAbs2());
-    if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
-      damping.reject();
-      motion = accepted;
-      total = accepted_total;
-      evaluate(motion, poses, jacobians);
-      continue;
-    }
-    if (iteration > 0 && damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
-    accepted = motion;
-    accepted_total = total;
-    reached = sum;
-    MatrixX information = normal.matrix;
-    information.diagonal() += precisions;
-    // eigenvalues are squares of singular values
-    const VectorX spectrum = right_singular(information).values;
-    report.determined = spectrum(spectrum.size() - 1) > 1e-14 * spectrum(0);
-    if (!report.determined) break;
-    const FactorisedEquations solved(normal, precisions, total, {}, eigen_sparse_solver, damping.value());
-    if (!solved.usable()) break;
-    const VectorX slope = normal.gradient + precisions.cwiseProduct(total);
-    predicted = damping.value() * solved.step().cwiseAbs2().dot(information.diagonal()) - solved.step().dot(slope);
-    total += solved.step();
-    motion = update.apply(motion, solved.step());
-    evaluate(motion, poses, jacobians);
-    report.converged = solved.step().cwiseAbs().maxCoeff() < 1e-10;
-    report.change_std = FactorisedEquations(normal, precisions, accepted_total).inverse().diagonal().cwiseSqrt();
   }
+  solve_frames_and_weights(evaluate, data, fit);
+  if (update.probe && fit.covariance.size() > 0) judge_probe(evaluate, data, options, sensors, fit, report);
+  if (!report.probe_turned) fit.motion.probe.setZero();  // that much is the model's own error
+  if (fit.covariance.size() > 0) report.change_std = fit.covariance.diagonal().head(update.probe_begin()).cwiseSqrt();
+  if (options.tool && fit.covariance.size() > 0) report.held = hold_undetermined_tool(fit);
+  if (!report.held.empty()) solve_frames(evaluate, data, fit);
+  report.determined = fit.determined;
+  report.converged = fit.converged;
   report.rms_after = rms();
-  report.motion = motion;
+  report.motion = fit.motion;
   report.estimated = options;
-  return motion;
+  report.position_sigma = fit.position_sigma;
+  report.orientation_sigma = data.oriented() ? fit.orientation_sigma : 0;
+  return fit.motion;
 }
 
 }  // namespace detail

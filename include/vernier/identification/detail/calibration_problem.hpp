@@ -28,9 +28,10 @@ class CalibrationProblem {
   /// @param stations those of poses first
   VERNIER_API CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss);
 
-  ArmParameterisation arm;          ///< at its present values
-  std::vector<SessionDrift> drift;  ///< of each station, at its present values; may be empty
-  bool joint_columns = true;        ///< whether blocks have `factor` also where no coefficient acts through it
+  ArmParameterisation arm;           ///< at its present values
+  std::vector<SessionDrift> drift;   ///< of each station, at its present values; may be empty
+  double reference_temperature = 0;  ///< at which thermal unknowns have no effect [deg C]
+  bool joint_columns = true;         ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }
   Index num_blocks() const { return static_cast<Index>(blocks_.size()); }
@@ -42,6 +43,13 @@ class CalibrationProblem {
   VERNIER_API Index measured_values() const;
   /// Joint values of all samples, blocks x joints.
   VERNIER_API MatrixX joints() const;
+
+  /// Temperatures of the poses.
+  struct Temperatures {
+    double mean = 0, std = 0;       ///< [deg C]; both 0 where a station has none
+    std::array<double, 2> range{};  ///< lowest and highest
+  };
+  VERNIER_API Temperatures temperatures() const;
 
   /// Lets the bases of stations of poses drift from now on, from no motion.
   /// @param rows_per_knot number of poses from one knot to the next, on average

@@ -48,6 +48,20 @@ VERNIER_IMPL MatrixX CalibrationProblem::joints() const {
   return out;
 }
 
+VERNIER_IMPL CalibrationProblem::Temperatures CalibrationProblem::temperatures() const {
+  std::vector<double> all;
+  for (const Station& station : stations_) {
+    if (station.positions == nullptr) continue;
+    if (station.temperatures == nullptr) return {};
+    all.insert(all.end(), station.temperatures->begin(), station.temperatures->end());
+  }
+  if (all.empty()) return {};
+  const Eigen::Map<const VectorX> values(all.data(), static_cast<Index>(all.size()));
+  return {values.mean(),
+          std::sqrt((values.array() - values.mean()).square().mean()),
+          {values.minCoeff(), values.maxCoeff()}};
+}
+
 VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
   drift.assign(stations_.size(), {});
   first_state_.assign(stations_.size(), 0);
@@ -174,11 +188,14 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     const Block& begin = at(first + done);
     const Station& station = stations_[static_cast<std::size_t>(begin.station)];
     const Index stretch = std::min(count - done, station.size() - begin.row);
+    VectorX warmer;
+    if (station.temperatures != nullptr)
+      warmer = station.temperatures->segment(begin.row, stretch).array() - reference_temperature;
     std::vector<Isometry3> poses =
         arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
                       station.previous().middleRows(station.previous().rows() > 0 ? begin.row : 0,
                                                     station.previous().rows() > 0 ? stretch : 0),
-                      out + done, joint_columns || station.joint_sigma > 0);
+                      out + done, joint_columns || station.joint_sigma > 0, warmer);
     for (Index i = 0; i < stretch; ++i) {
       const Block& block = at(first + done + i);
       RowBlock& rows = out[done + i];
@@ -258,7 +275,7 @@ VERNIER_IMPL double CalibrationProblem::cost() const {
   Index b = 0;
   for (std::size_t s = 0; s < stations_.size(); ++s) {
     const Station& station = stations_[s];
-    if (station.joint_sigma > 0) {  // whitening needs the Jacobian
+    if (station.joint_sigma > 0 || arm.thermal_rates(static_cast<int>(s)).size() > 0) {  // they need the Jacobian
       visit_blocks(system(), b, 1, station.size(),
                    [&](Index, const RowBlock& rows) { sum += rows.residual.squaredNorm(); });
       b += station.size();

@@ -18,6 +18,7 @@ struct Station {
   int dof;                                  ///< number of joints
   const double* previous_values = nullptr;  ///< n x dof, by columns: from where it was approached; null for unknown
   const VectorX* times = nullptr;           ///< n, when it was measured; or null
+  const VectorX* temperatures = nullptr;    ///< n [deg C]; or null
   const PointRows* positions = nullptr;     ///< n, or null for distances
   const VectorX* lengths = nullptr;         ///< n distances, or null
   std::vector<Matrix3> orientations{};      ///< n, or empty where they are not used
@@ -48,6 +49,7 @@ Station station_of(const Dataset<N>& data, const SensorModel& sensors) {
               .dof = N,
               .previous_values = data.previous().data(),
               .times = &data.times(),
+              .temperatures = data.temperatures().size() > 0 ? &data.temperatures() : nullptr,
               .positions = &data.positions(),
               .position_sigma = sensors.position_sigma,
               .orientation_sigma = sensors.orientation_sigma,

@@ -1,0 +1,130 @@
+// A geometry that changes with temperature: found where it was measured, and where it is none nothing is found.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gauss_newton.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier::temperature_test {
+namespace {
+
+using vernier_test::identify_by_gauss_newton;
+using Chain = DhChain<6>;
+using Model = ErrorModel<Chain>;
+
+const Robot<6> robot = robots::abb_irb120();
+const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
+const SensorModel squared{.loss = Loss::squared};
+
+/// An arm whose links get longer by 20 ppm/K, whose joint zeros move by up to 10 urad/K and whose base by 15 um/K.
+Model actual_arm() {
+  const Model model(robot.chain, Model::Arm(with_geometric_errors(robot.chain, {}, 4), base, tool));
+  const VectorX p = ArmGeometry(model.identified().around(model.identified().chain())).parameters();
+  VectorX rates = VectorX::Zero(p.size());
+  for (int j = 0; j < 6; ++j) {
+    rates(6 + 5 * j) = 20e-6 * p(6 + 5 * j);
+    rates(6 + 5 * j + 2) = 20e-6 * p(6 + 5 * j + 2);
+    rates(6 + 5 * j + 3) = 5e-6 * (j % 3 - 1);
+  }
+  rates.head<3>() = Vector3(15e-6, -5e-6, 10e-6);
+  return model.with_thermal({22, 10, 40, rates});
+}
+
+Dataset<6> measured(const Model& actual, Index poses, double spread, std::uint64_t seed) {
+  const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, poses, seed);
+  Rng rng(seed);
+  VectorX celsius(poses);
+  PointRows positions(poses, 3), orientations(poses, 3);
+  for (Index i = 0; i < poses; ++i) {
+    celsius(i) = rng.uniform(22 - spread, 22 + spread);
+    const Isometry3 pose = actual.at_temperature(celsius(i)).pose(joints.row(i).transpose());
+    positions.row(i) = pose.translation().transpose();
+    orientations.row(i) = log_so3(pose.linear()).transpose();
+    for (int k = 0; k < 3; ++k) {
+      positions(i, k) += 0.02e-3 * rng.normal();
+      orientations(i, k) += 0.05e-3 * rng.normal();
+    }
+  }
+  return Dataset<6>(joints, positions, orientations).without_approach().at_temperatures(celsius);
+}
+
+FittedErrorModel<Chain> fitted(const Dataset<6>& data) {
+  const Framed<Chain> nominal(robot.chain, base, tool);
+  const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
+  EXPECT_TRUE(start.converged()) << start.message;
+  return fit_error_model(start, std::vector<Dataset<6>>{data},
+                         {.harmonics = 2, .drift = false, .num_validation_poses = 60}, squared);
+}
+
+const BlockChoice* block_of(const FittedErrorModel<Chain>& found) {
+  for (const BlockChoice& block : found.blocks)
+    if (block.name == "temperature") return &block;
+  return nullptr;
+}
+
+double mean_error(const Model& a, const Model& b, std::uint64_t seed) {
+  const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, 200, seed);
+  double sum = 0;
+  for (const auto& q : joints.rowwise()) sum += (a.position(q.transpose()) - b.position(q.transpose())).norm() / 200;
+  return sum;
+}
+
+TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
+  const Model actual = actual_arm();
+  const auto found = fitted(measured(actual, 250, 4, 1));
+  ASSERT_TRUE(found.converged);
+  ASSERT_NE(block_of(found), nullptr);
+  EXPECT_TRUE(block_of(found)->used);
+  EXPECT_NEAR(found.mean_temperature, 22, 0.5);
+  EXPECT_NEAR(found.temperature_std, 4 / std::sqrt(3), 0.3);
+  for (const double celsius : {18.5, 22.0, 25.5}) {
+    const Model now = found.model().at_temperature(celsius), truth = actual.at_temperature(celsius);
+    EXPECT_LT(mean_error(now, truth, 7), 0.02e-3) << celsius;
+    EXPECT_GT(mean_error(found.model(), truth, 7), celsius == 22 ? 0 : 0.05e-3) << celsius;
+  }
+  // beyond what was measured it stays
+  EXPECT_EQ(mean_error(found.model().at_temperature(100), found.model().at_temperature(27), 3), 0);
+  // the spread of an unknown temperature is in the covariance
+  const JointVector<6> q = JointVector<6>::Constant(0.3);
+  const double known = found.visit_covariance(q, 1, 0, VectorX(), found.mean_temperature).topLeftCorner<3, 3>().trace(),
+               unknown = found.visit_covariance(q, 1).topLeftCorner<3, 3>().trace();
+  EXPECT_GT(unknown, known + 0.5 * std::pow(mean_error(found.model(), found.model().at_temperature(22 + 2.3), 3), 2));
+}
+
+TEST(Temperature, NothingIsFoundWhereThereIsNothing) {
+  const Model actual = actual_arm();
+  const Dataset<6> varied = measured(actual, 250, 4, 2);
+  EXPECT_EQ(block_of(fitted(varied.at_temperatures({}))), nullptr);
+  EXPECT_EQ(block_of(fitted(varied.at_temperatures(VectorX::Constant(250, 21)))), nullptr);
+  VectorX shuffled = varied.temperatures();
+  std::reverse(shuffled.begin(), shuffled.end());
+  const auto found = fitted(varied.at_temperatures(shuffled));
+  ASSERT_NE(block_of(found), nullptr);
+  EXPECT_FALSE(block_of(found)->used);
+  EXPECT_EQ(found.model().thermal(), nullptr);
+}
+
+TEST(Temperature, MovesAlongWithTheArm) {
+  const Model actual = actual_arm();
+  const Isometry3 by = FrameParameters(Vector6{2, -1, 0.3, 0.5, -0.9, 1.4}).isometry(),
+                  grip = FrameParameters(Vector6{0.01, 0.02, 0.1, 1, 0.2, -0.4}).isometry();
+  const JointVector<6> zeros = JointVector<6>::Constant(0.01);
+  const Model moved = actual.moved(by, zeros, grip);
+  EXPECT_EQ(moved.thermal()->reference, 22);
+  for (const double celsius : {15.0, 22.0, 30.0})
+    EXPECT_LT(mean_error(moved.at_temperature(celsius), actual.at_temperature(celsius).moved(by, zeros, grip), 5),
+              1e-8);
+  EXPECT_EQ(actual.at_temperature(30).thermal()->reference, 30);
+  EXPECT_LT(mean_error(actual.at_temperature(30).at_temperature(20), actual.at_temperature(20), 5), 1e-14);
+  EXPECT_THROW((void)actual.with_thermal({22, 10, 40, VectorX::Zero(5)}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vernier::temperature_test

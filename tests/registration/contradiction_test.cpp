@@ -1,0 +1,330 @@
+// Re-registration where positions, orientations and the model contradict each other: a remounted probe, a model with
+// errors of its own, poses that cannot tell base from tool.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "vernier/kinematics/inverse_kinematics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/registration/reregister.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::contradiction_test {
+namespace {
+
+using Chain = DhChain<6>;
+using Model = ErrorModel<Chain>;
+using Joints = JointVector<6>;
+
+const Robot<6> robot = robots::ur10();
+const MeasurementNoise noise{.position = 0.02e-3, .orientation = 0.05e-3};
+const SensorModel sensors{.position_sigma = 0.02e-3, .orientation_sigma = 0.05e-3};
+
+Isometry3 frame(const Vector6& values) { return FrameParameters(values).isometry(); }
+Isometry3 turned(const Vector3& by) {
+  Isometry3 out = Isometry3::Identity();
+  out.linear() = exp_so3(by);
+  return out;
+}
+Vector3 direction(Rng& rng) {
+  Vector3 out;
+  for (double& x : out) x = rng.normal();
+  return out.normalized();
+}
+
+/// Joints within a cell.
+JointLimits<6> cell() {
+  JointLimits<6> out;
+  out.lower = Joints(-2, -2.4, 0.4, -2, -1.8, -2);
+  out.upper = Joints(2, -0.6, 2.2, 2, 1.8, 2);
+  return out;
+}
+
+/// Joints 1, 4 and 6 a turn further, towards where the limits are.
+JointRows<6> a_turn_further(JointRows<6> joints) {
+  for (Index i = 0; i < joints.rows(); ++i)
+    for (const Index j : {0, 3, 5}) joints(i, j) += (joints(i, j) < 0 ? 2 : -2) * std::numbers::pi;
+  return joints;
+}
+
+/// An arm whose joints have more harmonics than its model knows: 0.08 mm and 0.13 mrad. Both are periodic, so that they
+/// hold a turn further.
+struct Case {
+  Model model, truth;
+  Rng rng;
+
+  explicit Case(std::uint64_t case_seed)
+      : model(arm(case_seed, 3)), truth(arm(case_seed, 30)), rng(case_seed), seed_(case_seed) {
+    truth = truth.moved(elsewhere(), Joints::Zero(), Isometry3::Identity());
+  }
+
+  static Model arm(std::uint64_t seed, int harmonics) {
+    const JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .harmonic = 0.12e-3, .harmonics = harmonics};
+    const WithJointErrors<Chain> chain(with_geometric_errors(robot.chain, {}, seed),
+                                       draw_joint_errors(robot.chain, sizes, seed));
+    return {robot.chain,
+            Model::Arm(chain, frame({0.4, -0.2, 0.1, 0.1, -0.3, 0.8}), frame({0.03, 0.01, 0.12, 0.2, 0.4, 0}))};
+  }
+  /// Where the base is now, against where it was: metres away.
+  Isometry3 elsewhere() const {
+    Rng drawn(1000 + seed_);
+    Vector6 values;
+    values.head<3>() = 3 * direction(drawn);
+    values.tail<3>() = 2 * direction(drawn);
+    return frame(values);
+  }
+
+  /// What a sensor sees of it, whose probe is turned.
+  Dataset<6> seen(Index poses, std::uint64_t seed, const Vector3& probe) const {
+    const Model held_by_it = truth.moved(Isometry3::Identity(), Joints::Zero(), turned(probe));
+    return measure(held_by_it, a_turn_further(sample_joints(cell(), poses, seed)), noise, seed);
+  }
+
+  /// Mean position error at fresh poses [m].
+  double error(const Model& found) const {
+    const JointRows<6> joints = a_turn_further(sample_joints(cell(), 200, 77));
+    double sum = 0;
+    for (Index i = 0; i < joints.rows(); ++i) {
+      const Joints q = joints.row(i).transpose();
+      sum += (found.position(q) - truth.position(q)).norm();
+    }
+    return sum / static_cast<double>(joints.rows());
+  }
+  /// The same of the model in its true frames: its own error.
+  double own_error() const { return error(model.moved(elsewhere(), Joints::Zero(), Isometry3::Identity())); }
+
+ private:
+  std::uint64_t seed_;
+};
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+constexpr std::uint64_t cases = 50;
+
+TEST(Contradiction, ARemountedProbeDoesNotMoveTheArm) {
+  std::vector<double> ratios;
+  int noticed = 0;
+  for (std::uint64_t seed = 0; seed < cases; ++seed) {
+    Case c(seed);
+    const Vector3 probe = 1.5e-3 * direction(c.rng);
+    const auto found = reregister(c.model, c.seen(17, seed, probe), {}, sensors);
+    ratios.push_back(c.error(found.model) / c.own_error());
+    if (!found.probe_turned) continue;
+    ++noticed;
+    EXPECT_LT((found.motion.probe - probe).norm(), 0.2e-3) << seed;
+    EXPECT_GT((found.motion.probe - probe).norm(), 0.1 * found.probe_std.norm()) << seed;
+    EXPECT_EQ(found.model.identified().tool().matrix(), c.model.identified().tool().matrix()) << seed;
+  }
+  EXPECT_EQ(noticed, cases);
+  EXPECT_LT(median(ratios), 1.3);
+  EXPECT_GT(median(ratios), 1);
+}
+
+TEST(Contradiction, NothingIsFreedWithoutOne) {
+  std::vector<double> ratios;
+  int noticed = 0;
+  for (std::uint64_t seed = 0; seed < cases; ++seed) {
+    const Case c(seed);
+    const auto found = reregister(c.model, c.seen(17, seed, Vector3::Zero()), {}, sensors);
+    noticed += found.probe_turned;
+    ratios.push_back(c.error(found.model) / c.own_error());
+    if (found.probe_turned) continue;
+    EXPECT_EQ(found.motion.probe, Vector3::Zero()) << seed;
+    EXPECT_EQ(found.probe_std, Vector3::Zero()) << seed;
+    EXPECT_TRUE(found.remarks().empty()) << found.summary();
+  }
+  EXPECT_LE(noticed, 2);
+  EXPECT_LT(median(ratios), 1.3);
+}
+
+// A rotation too small to be told from errors of the model may not turn the arm either.
+TEST(Contradiction, ARotationBelowTheThresholdDoesNoHarm) {
+  std::vector<double> ratios;
+  for (std::uint64_t seed = 0; seed < cases; ++seed) {
+    Case c(seed);
+    const auto found = reregister(c.model, c.seen(17, seed, 0.25e-3 * direction(c.rng)), {}, sensors);
+    ratios.push_back(c.error(found.model) / c.own_error());
+  }
+  EXPECT_LT(median(ratios), 1.3);
+}
+
+// Mounted another way round altogether: the prior is no bound.
+TEST(Contradiction, AProbeMayBeTurnedByAnyAngle) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed)
+    for (const double angle : {0.03, 0.3, std::numbers::pi / 2}) {
+      Case c(seed);
+      const Vector3 probe = angle * direction(c.rng);
+      const auto found = reregister(c.model, c.seen(17, seed, probe), {}, sensors);
+      EXPECT_TRUE(found.converged && found.probe_turned) << seed << ", " << angle;
+      EXPECT_LT((found.motion.probe - probe).norm(), 1e-3) << seed << ", " << angle;
+      EXPECT_LT(c.error(found.model), 2 * c.own_error()) << seed << ", " << angle;
+    }
+}
+
+TEST(Contradiction, IsSaid) {
+  Case c(3);
+  const auto data = c.seen(17, 3, Vector3(1.2e-3, 0, -0.9e-3));
+  const auto found = reregister(c.model, data, {}, sensors);
+  ASSERT_TRUE(found.probe_turned);
+  ASSERT_EQ(found.remarks().size(), 1U);
+  EXPECT_TRUE(mentions(found.summary(), "orientations are turned by 1.")) << found.summary();
+  EXPECT_TRUE(mentions(found.summary(), "was the probe remounted?")) << found.summary();
+  EXPECT_GT(found.contradiction, found.estimated.contradiction_threshold);
+
+  // on demand it is never taken for one; then it is an error of the orientations, which says so by its size
+  const auto never =
+      reregister(c.model, data, {.contradiction_threshold = std::numeric_limits<double>::infinity()}, sensors);
+  EXPECT_FALSE(never.probe_turned);
+  EXPECT_EQ(never.contradiction, found.contradiction);
+
+  // a tool that is freed follows the orientations
+  const auto tool = reregister(c.model, data, {.tool = true}, sensors);
+  EXPECT_FALSE(tool.probe_turned);
+  EXPECT_EQ(tool.contradiction, 0);
+  EXPECT_NEAR(log_so3(tool.motion.tool.linear()).norm(), 1.5e-3, 0.15e-3);
+  EXPECT_LT(tool.motion.tool.translation().norm(), 0.2e-3);
+  EXPECT_TRUE(tool.remarks().empty()) << tool.summary();
+}
+
+TEST(Contradiction, WeightsAreThoseOfTheResiduals) {
+  const Case c(5);
+  const auto found = reregister(c.model, c.seen(200, 5, Vector3::Zero()), {}, sensors);
+  EXPECT_NEAR(found.position_sigma, found.rms_after / std::sqrt(3), 0.02 * found.position_sigma);
+  EXPECT_GT(found.position_sigma, 2 * sensors.position_sigma);  // the model's own error is in it
+  EXPECT_GT(found.orientation_sigma, 1.5 * sensors.orientation_sigma);
+  EXPECT_TRUE(mentions(found.summary(), "Weighted for residuals of 0.0")) << found.summary();
+  SensorModel positions = sensors;
+  positions.use_orientations = false;
+  EXPECT_EQ(reregister(c.model, c.seen(17, 5, Vector3::Zero()), {}, positions).orientation_sigma, 0);
+  // a sensor that is worse than the model
+  const SensorModel worse{.position_sigma = 1e-3, .orientation_sigma = 1e-3};
+  const auto floor = reregister(c.model, c.seen(17, 5, Vector3::Zero()), {}, worse);
+  EXPECT_EQ(floor.position_sigma, worse.position_sigma);
+  EXPECT_EQ(floor.orientation_sigma, worse.orientation_sigma);
+}
+
+TEST(HeldTool, WhereAllPosesFaceOneWay) {
+  const Case c(1);
+  const Joints first(0.3, -1.4, 1.2, 0.4, -0.7, 0.2);
+  for (const Index poses : {1, 3, 4, 17}) {
+    JointRows<6> joints(poses, 6);
+    for (Index i = 0; i < poses; ++i) {  // the flange is moved, not turned
+      Isometry3 target = c.model.pose(first);
+      target.translation() +=
+          0.05 * Vector3(static_cast<double>(i % 3), static_cast<double>(i % 2), static_cast<double>(i % 5));
+      const auto there = inverse_kinematics(c.model, target, first);
+      ASSERT_EQ(there.status, IkStatus::converged) << i;
+      joints.row(i) = there.joints.transpose();
+    }
+    const Model moved = c.model.moved(c.elsewhere(), Joints::Zero(), frame({0.5e-3, 0, 0, 0, 0, 0}));
+    const auto found = reregister(c.model, measure(moved, joints, noise, 1), {.tool = true}, sensors);
+    EXPECT_TRUE(found.determined) << poses;
+    ASSERT_FALSE(found.held.empty()) << poses;
+    EXPECT_EQ(found.held[0], "the position of the tool") << poses;
+    EXPECT_EQ(found.held.size() == 2, poses == 1) << poses;  // positions do tell how it is turned
+    EXPECT_LT(found.motion.tool.translation().norm(), 1e-7) << poses;
+    EXPECT_GT(found.change_std.tail<6>()(0), 2.9e-3) << poses;
+    EXPECT_TRUE(mentions(found.summary(), "The poses do not determine the position of the tool: held where it was."));
+  }
+}
+
+// Poses that face almost one way would move the tool by a centimetre, for errors of the model alone.
+TEST(HeldTool, WherePosesFaceAlmostOneWay) {
+  double farthest = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Case c(seed);
+    JointRows<6> joints(17, 6);
+    const Joints first(0.3, -1.4, 1.2, 0.4, -0.7, 0.2);
+    for (Index i = 0; i < 17; ++i) {
+      Isometry3 target = c.model.pose(first);
+      target.translation() += 0.15 * direction(c.rng);
+      target.linear() *= exp_so3(2e-3 * direction(c.rng));
+      const auto there = inverse_kinematics(c.model, target, first);
+      ASSERT_EQ(there.status, IkStatus::converged) << i;
+      joints.row(i) = there.joints.transpose();
+    }
+    const auto data = measure(c.truth, joints, noise, seed);
+    const auto found = reregister(c.model, data, {.tool = true}, sensors);
+    ASSERT_FALSE(found.held.empty()) << seed;
+    EXPECT_TRUE(mentions(found.held[0], "the position of the tool")) << seed;
+    EXPECT_LT(found.motion.tool.translation().norm(), 3e-3) << seed;
+    // of another tool nothing is known, and that is said, too
+    ReregisterOptions another{.tool = true};
+    another.tool_position_prior_std = another.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
+    const auto free = reregister(c.model, data, another, sensors);
+    farthest = std::max(farthest, free.motion.tool.translation().norm());
+    ASSERT_FALSE(free.remarks().empty()) << seed;
+    EXPECT_TRUE(mentions(free.remarks()[0], "The poses determine the position of the tool to ")) << free.summary();
+  }
+  EXPECT_GT(farthest, 0.01);
+}
+
+TEST(HeldTool, AlongAnAxisThatDoesNotTilt) {
+  // joints 1 and 6 alone turn the flange: about vertical axes of an arm that hangs down, but for its errors
+  const Case c(2);
+  JointRows<6> joints = sample_joints(cell(), 17, 2);
+  for (Index i = 0; i < joints.rows(); ++i) {
+    joints(i, 3) = -joints(i, 1) - joints(i, 2) - std::numbers::pi / 2;
+    joints(i, 4) = -std::numbers::pi / 2;
+  }
+  const Model model{robot.chain, Model::Arm(WithJointErrors<Chain>(robot.chain), FrameParameters(),
+                                            FrameParameters(Vector6{0.03, 0.01, 0.12, 0, 0, 0}))};
+  const Model moved = model.moved(c.elsewhere(), Joints::Zero(), frame({1e-3, -1e-3, 0.5e-3, 0, 0, 0}));
+  const auto found = reregister(model, measure(moved, joints, noise, 2), {.tool = true}, sensors);
+  ASSERT_EQ(found.held.size(), 1U) << found.summary();
+  EXPECT_EQ(found.held[0], "the position of the tool along (0.00, 0.00, 1.00) of its frame");
+  EXPECT_LT((found.motion.tool.translation() - Vector3(1e-3, -1e-3, 0)).norm(), 0.05e-3);
+  EXPECT_LT(std::abs(found.motion.tool.translation().z()), 1e-7);
+}
+
+TEST(HeldTool, FewPositionsSayLittle) {
+  for (const Index poses : {3, 4})
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const Case c(seed);
+      SensorModel positions = sensors;
+      positions.use_orientations = false;
+      const auto found = reregister(c.model, c.seen(poses, seed, Vector3::Zero()), {.tool = true}, positions);
+      EXPECT_TRUE(found.determined);
+      ASSERT_FALSE(found.held.empty());
+      EXPECT_EQ(found.held.back(), "the rotation of the tool");  // which no position shows
+      EXPECT_LT(log_so3(found.motion.tool.linear()).norm(), 1e-8);
+      EXPECT_LT(found.motion.tool.translation().norm(), 5e-3);
+    }
+}
+
+TEST(HeldTool, AToolThatMovedFarIsSaid) {
+  const Case c(4);
+  const auto seen = [&](const Vector6& by) {
+    return measure(c.truth.moved(Isometry3::Identity(), Joints::Zero(), frame(by)), sample_joints(cell(), 17, 4), noise,
+                   4);
+  };
+  const auto far = reregister(c.model, seen({0, 0.02, 0, 0, 0, 0.03}), {.tool = true}, sensors);
+  ASSERT_EQ(far.remarks().size(), 2U) << far.summary();
+  EXPECT_TRUE(mentions(far.remarks()[0], "The tool has moved by 20.")) << far.summary();
+  EXPECT_TRUE(mentions(far.remarks()[1], "The tool has turned by 30.")) << far.summary();
+  ReregisterOptions another{.tool = true};
+  another.tool_position_prior_std = another.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(reregister(c.model, seen({0, 0.02, 0, 0, 0, 0.03}), another, sensors).remarks().empty());
+}
+
+TEST(HeldTool, ZerosThatThePosesDoNotTell) {
+  const Case c(6);  // joint 1 turns as the base does
+  const auto found = reregister(c.model, c.seen(17, 6, Vector3::Zero()), {.offsets = true}, sensors);
+  ASSERT_EQ(found.remarks().size(), 1U) << found.summary();
+  EXPECT_EQ(found.remarks()[0], "The poses tell little about the zeros of joints 1: held near where they were.");
+}
+
+}  // namespace
+}  // namespace vernier::contradiction_test

@@ -117,6 +117,29 @@ TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   EXPECT_EQ(verdict[2].find("Measured joint ranges [deg, mm]: q1 -14"), 0u) << verdict[2];
 }
 
+TEST(Evaluate, TiltsAreAStageWhereTheyAreFound) {
+  const auto off = actual_arm();
+  JointTerms terms(6);
+  terms.tilt.emplace(robot.chain);
+  VectorX coefficients(terms.size());
+  Rng rng(7);
+  for (double& c : coefficients) c = 0.5e-3 * rng.normal();
+  const auto actual = off.around(WithJointErrors<Chain>(off.chain(), JointErrors(terms, coefficients)));
+  CalibrateOptions options = quick;
+  options.errors.harmonics = 0;
+  options.remainder = {.on_error_model = false};
+  const auto found = calibrate(robot.chain, measure(actual, joints(150, 1), noise, 2), options);
+  const auto fresh = measure(actual, joints(60, 3), noise, 4);
+  const CalibrationReport report = evaluate(found, fresh);
+  EXPECT_EQ(report.chosen, "tilt");
+  EXPECT_EQ(report.stage("tilt").position, position_errors(found.model(), fresh));
+  EXPECT_LT(report.stage("tilt").position.mean(), 0.5 * report.stage("jointwise").position.mean());
+  bool stated = false;
+  for (const std::string& sentence : report.verdict())
+    stated = stated || sentence.find("Tilts of joint frames under gravity help") == 0;
+  EXPECT_TRUE(stated);
+}
+
 TEST(Evaluate, EveryStationNeedsItsHeldOutPoses) {
   const auto actual = actual_arm();
   CalibrateOptions options = quick;

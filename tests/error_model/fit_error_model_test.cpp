@@ -122,6 +122,52 @@ TEST(FitErrorModel, FindsTheCoefficientsWithinTheirDeviations) {
   expect_found(fitted(measured_widely(geared)), geared, {"coupling2", "gear6"}, 0.01e-3);
 }
 
+/// An arm whose frames tilt by some, one coefficient of gravity's direction [rad].
+Actual tilting_arm(double size) {
+  JointTerms terms(6);
+  terms.tilt.emplace(robot.chain);
+  VectorX coefficients(terms.size());
+  Rng rng(6);
+  for (double& c : coefficients) c = size * rng.normal();
+  return Actual({with_geometric_errors(robot.chain, {}, 4), JointErrors(terms, coefficients)}, base, tool);
+}
+
+const BlockChoice* choice_of(const FittedErrorModel<Chain>& found, const std::string& name) {
+  for (const BlockChoice& block : found.blocks)
+    if (block.name == name) return &block;
+  return nullptr;
+}
+
+// Some coefficients act as others and the geometry do, so what is found is judged by its predictions.
+TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
+  const ErrorModelOptions no_harmonics{.harmonics = 0, .num_validation_poses = 60};
+  for (const double size : {0.5e-3, 0.0}) {
+    const Actual actual = tilting_arm(size);
+    const auto found = fitted(measured(actual, 150, 3), no_harmonics);
+    const BlockChoice* choice = choice_of(found, "tilt");
+    ASSERT_NE(choice, nullptr);
+    EXPECT_EQ(choice->used, size > 0);
+    EXPECT_EQ(found.model().identified().model().joint_errors().tilts(), size > 0);
+    EXPECT_EQ(found.approach.size(), size > 0 ? 1u : 0u);
+    EXPECT_EQ(found.model().coverage() != nullptr, size > 0);  // known where the joints were measured
+    if (size > 0) {
+      EXPECT_FALSE(found.model().fallback()->model().joint_errors().tilts());
+      EXPECT_EQ(found.fallback_error, choice->without);
+    }
+    const JointRows<6> elsewhere = abb_irb120_operating_region().sample(robot.chain, 100, 9);
+    double error = 0, before = 0;
+    for (Index i = 0; i < elsewhere.rows(); ++i) {
+      const JointVector<6> q = elsewhere.row(i).transpose();
+      error += (found.model().position(q) - actual.position(q)).norm() / 100;
+      before += (found.jointwise.front().position(q) - actual.position(q)).norm() / 100;
+    }
+    EXPECT_LT(error, 0.03e-3);
+    if (size > 0) {
+      EXPECT_GT(before, 3 * error);
+    }
+  }
+}
+
 /// The covariance at the solution, before the noise of visits is known: (J'J + priors)^-1 times the weighted squares
 /// over the values that the unknowns leave free.
 MatrixX expected_covariance(const ErrorModelEstimate& estimate, std::vector<detail::Station> stations) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/identification/fitted_arm.hpp"
 #include "vernier/kinematics/robots.hpp"
 
 namespace vernier::arm_parameterisation_test {
@@ -73,6 +75,43 @@ TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
   EXPECT_EQ(arm.scales(), (VectorX(7) << 1e-3, 1e-2, 2e-3, 1e-4, 1e-4, 1e-4, 1e-4).finished());
   arm.set_geometric({{38, -1, 2e-3, 4}});  // values stay
   EXPECT_NEAR(arm.steps()(0), first(2) + second(2), 1e-12);
+}
+
+// Every column of a pose with tilts against the difference of two poses: of both frames, the chain and all joint
+// errors.
+TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
+  Rng rng(3);
+  ArmParameterisation arm = example();
+  std::vector<GeometricUnknown> unknowns;
+  for (Index k = 0; k < 42; ++k) unknowns.push_back({k, -1, 1e-2, 0});
+  arm.set_geometric(unknowns);
+  JointTerms terms(6);
+  terms.gear_ratio = true;
+  terms.gravity.emplace(robot.chain);
+  terms.tilt.emplace(robot.chain, Vector3(0.6, 0, -0.8));
+  terms.transmission[2] = Fourier::up_to(2);
+  arm.set_terms(terms, VectorX::LinSpaced(terms.size(), 1e-2, 2e-2), VectorX::Ones(terms.size()));
+  arm.move(random_vector(rng, arm.size()));
+  MatrixX joints(2, 6);
+  joints << 0.1, -0.5, 0.3, 0.7, -0.4, 1, -1.2, 0.4, 0.2, -0.7, 1.1, 0.5;
+  std::vector<RowBlock> rows(2);
+  const auto poses = arm.linearise(0, joints, MatrixX(), rows.data());
+  const auto typed = FittedArm{arm.geometry(0), arm.joint_errors()}.typed(robot.chain);
+  for (Index i = 0; i < 2; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    EXPECT_LT((poses[s].matrix() - arm.poses(0, joints)[s].matrix()).norm(), 1e-14);
+    EXPECT_LT((poses[s].matrix() - typed.pose(joints.row(i).transpose()).matrix()).norm(), 1e-14);
+    Rows6 all(6, arm.size());
+    rows[s].expand(arm.group_sizes(), all);
+    for (Index k = 0; k < arm.size(); ++k) {
+      constexpr double h = 1e-4;
+      ArmParameterisation ahead = arm, behind = arm;
+      ahead.move(h * VectorX::Unit(arm.size(), k));
+      behind.move(-h * VectorX::Unit(arm.size(), k));
+      const Vector6 difference = pose_difference(ahead.poses(0, joints)[s], behind.poses(0, joints)[s]) / (2 * h);
+      EXPECT_LT((all.col(k) - difference).norm(), 1e-9) << arm.names()[static_cast<std::size_t>(k)];
+    }
+  }
 }
 
 }  // namespace

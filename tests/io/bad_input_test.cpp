@@ -156,6 +156,7 @@ void expect_refused_when_damaged(Reader& reader, const Json& valid, const std::v
         nullptr, true, "wrong", 1e300, -1e300, Json::array(), Json::object(), Json::array({1, "x"}), deep};
     for (const Json& value : wrong) {
       if (value.is_string() && among(texts, key)) continue;
+      if (value.is_boolean() && valid.at(place).is_boolean()) continue;
       Json damaged = valid;
       damaged[place] = value;
       reader.expect_refused(damaged.dump(1), place.to_string() + " = " + value.dump().substr(0, 20));
@@ -223,13 +224,16 @@ CalibratedRobot<6> model() {
   using Model = CalibratedRobot<6>::Model;
   JointTerms terms(6);
   terms.gear_ratio = true;
+  terms.linear_ranges = std::vector<JointRange>(6, {-1, 1});
   terms.gravity.emplace(robot.chain);
   terms.hysteresis = {0.02};
+  terms.tilt.emplace(robot.chain);
   terms.transmission[0] = terms.transmission[2] = Fourier::up_to(2);
   const Model::Arm arm(
       {with_geometric_errors(robot.chain, {}, 3), JointErrors(terms, VectorX::Constant(terms.size(), 1e-4))});
   const CalibratedRobot<6> plain("an arm",
-                                 Model(robot.chain, arm, Model::Arm(robot.chain), JointCoverage<6>::covering(joints)),
+                                 Model(robot.chain, arm, Model::Arm(robot.chain), JointCoverage<6>::covering(joints))
+                                     .with_thermal({22, 20, 24, VectorX::Constant(42, 1e-6)}),
                                  robot.limits, {"poses.csv", 30, "2024-05-01", "commanded"});
   const HiddenLayer layer{.nodes = 4, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<4, 3>();
@@ -244,7 +248,7 @@ TEST(BadInput, ModelFiles) {
   });
   const Json valid = to_json(model());
   expect_refused_when_damaged(reader, valid, {"written_by"}, {"name", "data_file", "date"},
-                              {"lower_rad", "upper_rad", "learned"});
+                              {"lower_rad", "upper_rad", "learned", "periodic", "linear_ranges", "thermal"});
   const auto with = [&](const char* pointer, const Json& value) {
     Json damaged = valid;
     damaged[Json::json_pointer(pointer)] = value;
@@ -261,12 +265,16 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/learned/hidden_nodes", 18446744073709551615ull), "far too many nodes");
   reader.expect_refused(with("/learned/coverage/2/margin", 0), "a gate without margin");
   reader.expect_refused(with("/learned/coverage/2/ranges/0/0", 100), "a gate upside down");
+  reader.expect_refused(with("/arm/joint_errors/linear_ranges/1/0", 2), "a linear range upside down");
+  reader.expect_refused(with("/thermal/measured_c/0", 30), "temperatures upside down");
   reader.expect_refused(with("/arm/joint_errors/transmission/2/orders", {1, 2, 3}), "an order more than coefficients");
   reader.expect_refused(with("/arm/joint_errors/transmission/2/orders", {2, 1}), "orders upside down");
   reader.expect_refused(with("/arm/joint_errors/transmission/2/orders", {0, 1}), "a harmonic of order 0");
   reader.expect_refused(with("/arm/joint_errors/hysteresis/widths_rad/0", 0), "a step without width");
   reader.expect_refused(with("/arm/joint_errors/hysteresis/widths_rad", {0.1, 0.2}), "more widths than coefficients");
   reader.expect_refused(with("/arm/joint_errors/gravity/down/0", 1), "gravity stronger than gravity");
+  reader.expect_refused(with("/arm/joint_errors/tilt/down/2", 0), "tilts without gravity");
+  reader.expect_refused(with("/arm/joint_errors/tilt/coefficients_rad", {1e-3, 2e-3}), "tilts of a third of a joint");
   reader.expect_refused(with("/arm/joint_errors/backlash", 1), "a joint error nobody knows");
   reader.expect_refused(with("/provenance/measured", "colours"), "another kind of measurement");
   reader.expect_refused(with("/learned/input_map", "raw"), "weights of another layer");

@@ -422,6 +422,8 @@ TEST(CalibrateMeasured, BarrettWam) {
   const double geometry = stages.at("geometry").at("mean_mm");
   EXPECT_LE(geometry, 2.2);
   EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
+  EXPECT_LE(stages.at("approach").at("mean_mm"), 1.55);
+  EXPECT_LE(stages.at("tilt").at("mean_mm"), 1.4);
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ namespace vernier {
 /// Errors of held-out poses after a stage of the pipeline.
 struct StageErrors {
   /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
-  /// approach), `temperature` (the same at the temperature of each pose), `jointwise_pso_elm` (on the last of them, of
-  /// positions at the mean temperature, without their hysteresis), `session` (the last error model with the session's
-  /// drift, which no other session has)
+  /// approach), `tilt` (the same with tilts of joint frames), `temperature` (the same at the temperature of each pose),
+  /// `jointwise_pso_elm` (on the last of them, of positions at the mean temperature, without their hysteresis),
+  /// `session` (the last error model with the session's drift, which no other session has)
   std::string key;
   std::string title;  ///< for tables
   VectorX position;   ///< [m]

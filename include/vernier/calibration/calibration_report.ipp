@@ -108,6 +108,7 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
       {"approach",
        {"Hysteresis by the direction of approach helps ",
         "Hysteresis is left out: errors do not depend on the direction of approach "}},
+      {"tilt", {"Tilts of joint frames under gravity help ", "Tilts of joint frames under gravity do not help "}},
       {"temperature",
        {"The geometry changes with temperature: that helps ",
         "No change of the geometry with temperature is noticeable "}},

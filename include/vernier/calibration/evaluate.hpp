@@ -109,10 +109,11 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder, test);
   assess("elastic", "elastic", errors.elastic);
   assess("jointwise", "joint-wise", errors.jointwise);
-  const auto assess_visits = [&](const char* key, bool temperature, const std::vector<SessionDrift>& drift) {
+  const auto assess_visits = [&](const char* key, const auto& models, bool temperature,
+                                 const std::vector<SessionDrift>& drift) {
     StageErrors stage{key, key, {}, {}};
     const auto poses = [&](std::size_t s, const Dataset<N>& data) {
-      return detail::visited_poses(errors.models[s], data, temperature, s < drift.size() ? drift[s] : SessionDrift{});
+      return detail::visited_poses(models[s], data, temperature, s < drift.size() ? drift[s] : SessionDrift{});
     };
     stage.position = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
       return detail::position_errors_of(poses(s, data), data.positions());
@@ -124,23 +125,27 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     out.stages.push_back(std::move(stage));
   };
   const bool approach = !errors.arm.terms().hysteresis.empty();
+  const bool tilt = !errors.approach.empty();
   const bool thermal = errors.model().thermal() != nullptr &&
                        std::all_of(test.begin(), test.end(), [](const auto& d) { return d.temperatures().size() > 0; });
-  if (approach || errors.model().thermal() != nullptr) assess_visits("approach", false, {});
-  if (thermal) assess_visits("temperature", true, {});
+  if (approach || (errors.model().thermal() != nullptr && !tilt))
+    assess_visits("approach", tilt ? errors.approach : errors.models, false, {});
+  if (tilt) assess_visits("tilt", errors.models, false, {});
+  if (thermal) assess_visits("temperature", errors.models, true, {});
   if (calibration.remainder) {
     const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
     assess_learned("jointwise_pso_elm",
                    thermal    ? "temperature + PSO-ELM"
+                   : tilt     ? "tilt + PSO-ELM"
                    : approach ? "approach + PSO-ELM"
                               : "joint-wise + PSO-ELM",
                    errors.models, calibration.remainder, centred);
   }
-  if (!errors.drift.empty()) assess_visits("session", true, errors.drift);
+  if (!errors.drift.empty()) assess_visits("session", errors.models, true, errors.drift);
   out.drift = errors.drift;
   out.learned = calibration.remainder && !calibration.remainder->empty();
   out.chosen = calibration.chosen();
-  if (out.chosen == "temperature" && !thermal) out.chosen = "approach";
+  if (out.chosen == "temperature" && !thermal) out.chosen = tilt ? "tilt" : "approach";
   if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
 
   const auto evaluation = [&](const auto& model) {

@@ -80,9 +80,9 @@ struct ThermalRates {
 template <class C>
 class ApproachedErrorModel;
 
-/// An arm with geometric and joint errors in identified frames. Transmission terms are functions of joint angles, known
-/// where the joints were measured: outside, the model falls back smoothly (by `JointCoverage`) to one fitted without
-/// them. It keeps the nominal arm in the same frames, so that commands can be corrected towards it.
+/// An arm with geometric and joint errors in identified frames. Transmissions and tilts are functions of joint angles,
+/// known where the joints were measured: outside, the model falls back smoothly (by `JointCoverage`) to one fitted
+/// without them. It keeps the nominal arm in the same frames, so that commands can be corrected towards it.
 template <class C>
 class ErrorModel {
  public:
@@ -99,7 +99,7 @@ class ErrorModel {
 
   /// @param nominal    the chain as designed
   /// @param identified with all terms, for where the joints were measured
-  /// @param fallback   without transmission terms, for elsewhere
+  /// @param fallback   without transmissions and tilts, for elsewhere
   /// @param coverage   where the joints were measured
   ErrorModel(const Chain& nominal, Arm identified, Arm fallback, JointCoverage<dof> coverage)
       : identified_(std::move(identified)),

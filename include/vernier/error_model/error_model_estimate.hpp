@@ -18,7 +18,8 @@ namespace vernier {
 struct BlockChoice {
   /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
   /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
-  /// `temperature` (changes of the geometry), `drift` (of the bases), `lines` (orders found in the residuals)
+  /// `tilt` (of joint frames under gravity), `temperature` (changes of the geometry), `drift` (of the bases), `lines`
+  /// (orders found in the residuals)
   std::string name;
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried
@@ -41,7 +42,7 @@ struct ErrorModelEstimate {
                               ///< nothing else was measured
   double joint_sigma = 0;     ///< of a visit, repeatability of the joints [rad]
   double orientation_sigma = 0;       ///< of a visit, per component [rad]; 0 for positions alone
-  double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions [m]
+  double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions and tilts [m]
   std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
   std::vector<JointDrive> drives{};   ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;            ///< the unknowns and their estimates
@@ -66,7 +67,7 @@ struct ErrorModelEstimate {
   /// Covariance of one visit at q: of parameters, joint-wise coefficients and repeatability. Position [m^2], then
   /// orientation [rad^2], base frame.
   /// @param q        one value a joint
-  /// @param gate     share of the transmission terms in the prediction, in [0, 1]
+  /// @param gate     share of transmissions and tilts in the prediction, in [0, 1]
   /// @param station  from 0
   /// @param previous joint values from which q was approached; empty, or not finite, where unknown: then hysteresis
   ///                 adds its half loops

@@ -25,6 +25,8 @@ struct ErrorModelOptions {
   double coupling_prior_std = 1e-4;     ///< expected coupling
   bool hysteresis = true;               ///< joint errors that depend on the direction of approach
   double hysteresis_prior_std = 60e-6;  ///< expected half width of a hysteresis loop [rad, m]
+  bool tilt = true;                     ///< tilts of the joints' frames under gravity
+  double tilt_prior_std = 2e-3;         ///< expected tilt by each component of gravity's direction [rad]
   bool temperature = true;              ///< change of the geometry with temperature, where temperatures were measured
   double thermal_prior_std = 1e-4;      ///< expected change of a length [m/K] or an angle [rad/K]
   bool drift = true;                    ///< motion of the bases during a session

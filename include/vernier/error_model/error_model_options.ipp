@@ -13,7 +13,8 @@ VERNIER_IMPL void ErrorModelOptions::validate() const {
                                     std::pair{"thermal_prior_std", thermal_prior_std},
                                     {"gear_ratio_prior_std", gear_ratio_prior_std},
                                     {"coupling_prior_std", coupling_prior_std},
-                                    {"hysteresis_prior_std", hysteresis_prior_std}})
+                                    {"hysteresis_prior_std", hysteresis_prior_std},
+                                    {"tilt_prior_std", tilt_prior_std}})
     require(value > 0 && std::isfinite(value), "ErrorModelOptions: ", name, " is ", value, ", must be positive");
   require(harmonics >= 0 && harmonics <= 500, "ErrorModelOptions: harmonics is ", harmonics, ", must lie in 0..500");
   require(num_validation_poses >= 1, "ErrorModelOptions: num_validation_poses is ", num_validation_poses,

@@ -31,7 +31,7 @@ struct ErrorModelInput {
 /// A fitted error model without its type; a vector has one arm a station.
 struct ErrorModelOutput {
   ErrorModelEstimate estimate;
-  std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, all{};
+  std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, without_tilt{}, all{};
   bool jointwise = false;                ///< whether `all` has transmission terms
   MatrixX joints{};                      ///< of all samples
   std::vector<VectorX> thermal_rates{};  ///< one a station; empty where the geometry does not change with temperature
@@ -76,11 +76,13 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
     out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
     out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});
     const auto gated = [&](const FittedArm& arm) {
-      return found.jointwise ? ErrorModel<Chain>(nominal, arm.typed(nominal),
-                                                 found.elastic[s].with_hysteresis_of(arm).typed(nominal), coverage)
-                             : ErrorModel<Chain>(nominal, arm.typed(nominal));
+      return found.jointwise || arm.errors.tilts()
+                 ? ErrorModel<Chain>(nominal, arm.typed(nominal),
+                                     found.elastic[s].with_hysteresis_of(arm).typed(nominal), coverage)
+                 : ErrorModel<Chain>(nominal, arm.typed(nominal));
     };
     out.jointwise.push_back(gated(found.without_approach[s]));
+    if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s]));
     out.models.push_back(gated(found.all[s]));
     if (!found.thermal_rates.empty())
       out.models.back() = out.models.back().with_thermal(

@@ -133,9 +133,19 @@ class ErrorModelFit {
     JointTerms approached = problem_.arm.terms();
     approached.hysteresis = {0.01, 0.3};
     const bool hysteresis = options_.hysteresis && add(estimate, "approach", approached, true);
+    std::vector<FittedArm> without_tilt = arms();
+    JointTerms tilted = problem_.arm.terms();
+    if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
+    const bool tilt = options_.tilt && add(estimate, "tilt", tilted, true);
+    if (tilt) {
+      out.without_tilt = std::move(without_tilt);
+      if (!out.jointwise) estimate.fallback_error = estimate.blocks.back().without;
+      size_by_evidence(gravity());  // the third axis, that of the joint
+      estimate.converged = problem_.solve() && estimate.converged;
+    }
     const bool thermal = options_.temperature && add_temperature(estimate);
     const bool drift = options_.drift && add_drift(estimate);
-    if ((hysteresis || thermal || drift) && out.jointwise && !search) {
+    if ((hysteresis || tilt || thermal || drift) && out.jointwise && !search) {
       learn_spectrum(estimate, 4);
       estimate.converged = problem_.solve() && estimate.converged;
     }
@@ -144,9 +154,9 @@ class ErrorModelFit {
     out.estimate.drift = problem_.drift;
     out.all = arms();
     // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
-    if (!hysteresis && !thermal) out.without_approach = out.all;
-    if (!hysteresis && !thermal && !out.jointwise)
-      (problem_.arm.terms().size() > 0 ? out.elastic : out.geometry) = out.all;
+    const bool later = hysteresis || tilt || thermal;
+    if (!later) out.without_approach = out.all;
+    if (!later && !out.jointwise) (problem_.arm.terms().size() > 0 ? out.elastic : out.geometry) = out.all;
     out.joints = problem_.joints();
     for (int s = 0; thermal && s < problem_.arm.stations(); ++s)
       out.thermal_rates.push_back(problem_.arm.thermal_rates(s));
@@ -176,6 +186,7 @@ class ErrorModelFit {
           case JointTermBlock::Kind::coupling: std = options_.coupling_prior_std; break;
           case JointTermBlock::Kind::gravity: std = options_.compliance_prior_std; break;
           case JointTermBlock::Kind::hysteresis: std = options_.hysteresis_prior_std; break;
+          case JointTermBlock::Kind::tilt: std = options_.tilt_prior_std; break;
           case JointTermBlock::Kind::transmission:
             std = expected_std(spectra_[static_cast<std::size_t>(block.joint)],
                                terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
@@ -304,6 +315,14 @@ class ErrorModelFit {
     problem_.arm.set_precisions(used ? sized : suppressed);
     return {name, trials[1].errors.mean(), trials[0].errors.mean(), used,
             used ? sized(group.front()) : suppressing_precision};
+  }
+
+  /// Sizes of some coefficients by evidence, unless they are suppressed.
+  VERNIER_API void size_by_evidence(const UnknownGroup& group) {
+    if (group.empty() || problem_.arm.precisions()(group.front()) >= suppressing_precision) return;
+    const Linearised at = linearised();
+    problem_.arm.set_precisions(scale_priors(at.normal, problem_.arm.precisions(), at.steps, problem_.measured_values(),
+                                             group, at.local_steps));
   }
 
   /// Sizes of the harmonics by evidence, at the solution: one common factor on the expected sizes; one for every band

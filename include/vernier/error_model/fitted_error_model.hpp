@@ -26,7 +26,8 @@ struct FittedErrorModel : ErrorModelEstimate {
   static constexpr int N = Chain::dof;
 
   std::vector<ErrorModel<Chain>> models{};     ///< one a station, those of distances last; they differ in their frames
-  std::vector<ErrorModel<Chain>> jointwise{};  ///< the same before hysteresis and changes with temperature
+  std::vector<ErrorModel<Chain>> approach{};   ///< the same before tilts of joint frames; empty where there are none
+  std::vector<ErrorModel<Chain>> jointwise{};  ///< the same before hysteresis, tilts and changes with temperature
   std::vector<ErrorModel<Chain>> elastic{};    ///< the same before transmission terms
   std::vector<ErrorModel<Chain>> geometry{};   ///< the same before all joint errors
 

@@ -12,13 +12,14 @@
 #include "vernier/error_terms/detail/harmonic_table.hpp"
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"
+#include "vernier/error_terms/gravity_tilt.hpp"
 
 namespace vernier {
 
 /// Coefficients of joint errors that belong together.
 struct JointTermBlock {
   /// What they are coefficients of.
-  enum class Kind { gear_ratio, coupling, gravity, hysteresis, transmission };
+  enum class Kind { gear_ratio, coupling, gravity, hysteresis, tilt, transmission };
   Kind kind;    ///< see `JointTerms`
   int joint;    ///< of a transmission, from 0; else -1
   Index begin;  ///< first coefficient
@@ -32,6 +33,7 @@ struct JointTermBlock {
 /// - gravity compliance: see `GravityCompliance`
 /// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
 ///   that is unknown, which is the mean of both directions
+/// - tilt of the joints' frames: no error of joint values but a motion of the arm's end, see `GravityTilt`
 /// - transmission: `dq_i = sum_k beta_ik h_k(q_i)`, harmonics of each joint, joint by joint
 /// @cite Whitney, Lozinski and Rourke 1986; Ruderman, Hoffmann and Bertram 2009 (hysteresis)
 struct JointTerms {
@@ -42,6 +44,7 @@ struct JointTerms {
   /// Ranges of each joint in which gear ratios and couplings were estimated [rad, m]; empty: no bounds.
   std::vector<JointRange> linear_ranges{};
   std::vector<double> hysteresis{};     ///< widths w [rad, m], the same for every joint; none: absent
+  std::optional<GravityTilt> tilt{};    ///< present?
   std::vector<Fourier> transmission{};  ///< of each joint; may have no functions
 
   /// No terms.
@@ -53,8 +56,10 @@ struct JointTerms {
   /// Number of coefficients before the transmission's, each with a column of its own in a linearised pose.
   Index num_dense_terms() const {
     return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0) +
-           joints * static_cast<Index>(hysteresis.size());
+           joints * static_cast<Index>(hysteresis.size()) + (tilt ? tilt->size() : 0);
   }
+  /// First coefficient of the tilts, which are the last before the transmission's.
+  Index tilt_begin() const { return num_dense_terms() - (tilt ? tilt->size() : 0); }
   /// First coefficient of a joint's transmission; that of joint N is the number of all.
   Index transmission_begin(int joint) const {
     Index begin = num_dense_terms();
@@ -72,14 +77,14 @@ struct JointTerms {
   /// The blocks that are present, in the order of their coefficients.
   VERNIER_API std::vector<JointTermBlock> blocks() const;
 
-  /// The columns of Phi before the transmission's.
+  /// The columns of Phi before the transmission's; those of tilts are zero.
   /// @param q        joint values [rad, m]
   /// @param previous those from which q was approached; null, or not finite, where unknown
   /// @param out      joints x num_dense_terms()
   VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept;
 
   /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `hysteresis3_1` (joint 3,
-  /// first width), `cos3_12`, `sin3_12` (joint 3, order 12).
+  /// first width), `tilt3_xz` (joint 3, about x by gravity along z), `cos3_12`, `sin3_12` (joint 3, order 12).
   VERNIER_API std::vector<std::string> names() const;
 };
 
@@ -91,7 +96,8 @@ VERNIER_API void visit_common_terms(const JointTerms& first, const JointTerms& s
 
 }  // namespace detail
 
-/// Joint errors with their coefficients: the map from commanded to effective joint values.
+/// Joint errors with their coefficients: the map from commanded to effective joint values, and the tilts of the joints'
+/// frames.
 class JointErrors {
  public:
   /// None.
@@ -137,6 +143,15 @@ class JointErrors {
   /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
   VERNIER_API double half_loop(int i) const noexcept;
 
+  /// Whether frames of joints tilt.
+  bool tilts() const { return terms_.tilt.has_value(); }
+  /// Moves a pose of the arm's end by the tilts of the joints' frames, and extends its derivative by theirs. Does not
+  /// allocate.
+  /// @param q        commanded joint values
+  /// @param pose     in the base frame of the chain
+  /// @param jacobian of that pose with respect to commanded joint values, 6 x joints by columns; null for none
+  VERNIER_API void tilt(const double* q, Isometry3& pose, double* jacobian = nullptr) const noexcept;
+
   /// What the transmission of joint i (from 0) adds at an angle [rad].
   VERNIER_API double transmission(int i, double q) const noexcept;
 
@@ -146,7 +161,8 @@ class JointErrors {
   detail::HarmonicTable harmonics_{};
 };
 
-/// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, the approach unknown.
+/// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, moved by tilts of the joints' frames where there are
+/// any; the approach unknown.
 template <class C>
 class WithJointErrors {
  public:
@@ -169,26 +185,47 @@ class WithJointErrors {
   const JointErrors& joint_errors() const { return errors_; }
 
   /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept { return chain_.pose(errors_.effective<dof>(q).joints); }
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return pose_from(nullptr, q); }
   /// Tool position [m], base frame.
-  Vector3 position(const JointVector<dof>& q) const noexcept {
-    return chain_.position(errors_.effective<dof>(q).joints);
-  }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return pose(q).translation(); }
   /// Positions [m], base frame, of a point [m] fixed in the tool frame, at n configurations.
   PointRows positions(const JointRows<dof>& joints, const Vector3& point = Vector3::Zero()) const {
-    return chain_.positions(errors_.effective_rows(joints), point);
+    if (!errors_.tilts()) return chain_.positions(errors_.effective_rows(joints), point);
+    const std::vector<Isometry3> ends = poses(joints);
+    PointRows out(joints.rows(), 3);
+    for (Index i = 0; i < out.rows(); ++i) out.row(i) = (ends[static_cast<std::size_t>(i)] * point).transpose();
+    return out;
   }
   /// base_T_tool at n configurations.
   std::vector<Isometry3> poses(const JointRows<dof>& joints) const {
-    return chain_.poses(errors_.effective_rows(joints));
+    std::vector<Isometry3> out = chain_.poses(errors_.effective_rows(joints));
+    for (std::size_t i = 0; errors_.tilts() && i < out.size(); ++i) {
+      const JointVector<dof> q = joints.row(static_cast<Index>(i)).transpose();
+      errors_.tilt(q.data(), out[i]);
+    }
+    return out;
   }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
   /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    const auto effective = errors_.effective<dof>(q);
+    return pose_and_jacobian_from(nullptr, q);
+  }
+
+  /// base_T_tool, approached from given joint values.
+  /// @param previous dof values; null, or not finite, where unknown
+  /// @param q        joint values [rad, m]
+  Isometry3 pose_from(const double* previous, const JointVector<dof>& q) const noexcept {
+    Isometry3 out = chain_.pose(errors_.effective<dof>(q, previous).joints);
+    if (errors_.tilts()) errors_.tilt(q.data(), out);
+    return out;
+  }
+  /// The same with the geometric Jacobian.
+  PoseAndJacobian<dof> pose_and_jacobian_from(const double* previous, const JointVector<dof>& q) const noexcept {
+    const auto effective = errors_.effective<dof>(q, previous);
     PoseAndJacobian<dof> out = chain_.pose_and_jacobian(effective.joints);
     out.jacobian = (out.jacobian * effective.derivative).eval();
+    if (errors_.tilts()) errors_.tilt(q.data(), out.pose, out.jacobian.data());
     return out;
   }
 
@@ -212,24 +249,17 @@ class ApproachedArm {
       : arm_(&arm), previous_(previous) {}
 
   /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept { return arm_->chain().pose(effective(q).joints); }
+  Isometry3 pose(const JointVector<dof>& q) const noexcept { return arm_->pose_from(previous_.data(), q); }
   /// Tool position [m], base frame.
-  Vector3 position(const JointVector<dof>& q) const noexcept { return arm_->chain().position(effective(q).joints); }
+  Vector3 position(const JointVector<dof>& q) const noexcept { return pose(q).translation(); }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
   /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    const auto at = effective(q);
-    PoseAndJacobian<dof> out = arm_->chain().pose_and_jacobian(at.joints);
-    out.jacobian = (out.jacobian * at.derivative).eval();
-    return out;
+    return arm_->pose_and_jacobian_from(previous_.data(), q);
   }
 
  private:
-  JointErrors::Effective<dof> effective(const JointVector<dof>& q) const noexcept {
-    return arm_->joint_errors().template effective<dof>(q, previous_.data());
-  }
-
   const WithJointErrors<Chain>* arm_;
   JointVector<dof> previous_;
 };

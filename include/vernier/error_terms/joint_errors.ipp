@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 
 namespace vernier {
@@ -65,6 +66,7 @@ VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   add(Kind::coupling, -1, coupling ? joints - 1 : 0);
   add(Kind::gravity, -1, gravity ? gravity->size() : 0);
   add(Kind::hysteresis, -1, joints * static_cast<Index>(hysteresis.size()));
+  add(Kind::tilt, -1, tilt ? tilt->size() : 0);
   for (int i = 0; i < joints; ++i) add(Kind::transmission, i, transmission[static_cast<std::size_t>(i)].size());
   return out;
 }
@@ -80,6 +82,8 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
       for (int j = i; j <= joints; ++j) out.push_back(message("sag", i, '_', j));
   for (std::size_t w = 1; w <= hysteresis.size(); ++w)
     for (int i = 1; i <= joints; ++i) out.push_back(message("hysteresis", i, '_', w));
+  for (int i = 1; tilt && i <= joints; ++i)
+    for (const char* which : {"xx", "xy", "xz", "yx", "yy", "yz"}) out.push_back(message("tilt", i, '_', which));
   for (int i = 1; i <= joints; ++i)
     for (const int order : transmission[static_cast<std::size_t>(i - 1)].orders)
       for (const char* function : {"cos", "sin"}) out.push_back(message(function, i, '_', order));
@@ -92,6 +96,8 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
           terms_.transmission.size(), " joints, expected ", terms_.joints);
   require(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
           terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
+  require(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
+          terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
   require(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
           "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
@@ -166,6 +172,28 @@ VERNIER_IMPL double JointErrors::half_loop(int i) const noexcept {
       largest = std::max(largest, std::abs(sum));
     }
   return largest;
+}
+
+VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* jacobian) const noexcept {
+  if (!terms_.tilt) return;
+  const int n = terms_.joints;
+  double rates[6 * max_joints];
+  const Vector6 motion =
+      terms_.tilt->motion(q, coefficients_.data() + terms_.tilt_begin(), jacobian != nullptr ? rates : nullptr);
+  const Vector3 turn = motion.tail<3>();
+  const Matrix3 rotation = exp_so3(turn);
+  const Vector3 turned = rotation * pose.translation();
+  pose.translation() = turned + motion.head<3>();
+  pose.linear() = (rotation * pose.linear()).eval();
+  if (jacobian == nullptr) return;
+  const Matrix3 rate_of_rotation = left_jacobian_so3(turn);
+  for (int k = 0; k < n; ++k) {
+    Eigen::Map<Vector3> linear(jacobian + 6 * k), angular(jacobian + 6 * k + 3);
+    const Eigen::Map<const Vector6> rate(rates + 6 * k);
+    const Vector3 omega = rate_of_rotation * rate.tail<3>();
+    linear = (rotation * linear + omega.cross(turned) + rate.head<3>()).eval();
+    angular = (rotation * angular + omega).eval();
+  }
 }
 
 VERNIER_IMPL double JointErrors::transmission(int i, double q) const noexcept {

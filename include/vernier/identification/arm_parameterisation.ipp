@@ -107,8 +107,55 @@ VERNIER_IMPL std::vector<std::string> ArmParameterisation::names() const {
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, const ConstMatrixRef& joints,
                                                                const ConstMatrixRef& previous) const {
-  return geometry(station).poses(errors_.empty() ? MatrixX(joints) : errors_.effective_rows(joints, previous));
+  const ArmGeometry& arm = geometry(station);
+  std::vector<Isometry3> out = arm.poses(errors_.empty() ? MatrixX(joints) : errors_.effective_rows(joints, previous));
+  for (std::size_t i = 0; errors_.tilts() && i < out.size(); ++i) {
+    const VectorX q = joints.row(static_cast<Index>(i)).transpose();
+    Isometry3 motion = Isometry3::Identity();
+    errors_.tilt(q.data(), motion);
+    out[i] = arm.base().isometry() * motion * arm.base().isometry().inverse() * out[i];
+  }
+  return out;
 }
+
+namespace detail {
+
+/// Moves a pose and its columns by the tilts of joint frames, and writes the columns of their coefficients.
+/// @param of_base whether each of the first columns turns the arm about its base, and not about a point of the arm
+VERNIER_API void tilt_columns(const JointErrors& errors, const VectorX& q, const Isometry3& base,
+                              const std::vector<bool>& of_base, Index first, const ConstVectorRef& scales,
+                              Isometry3& pose, RowBlock& rows) {
+  const GravityTilt& tilt = *errors.terms().tilt;
+  const Index begin = errors.terms().tilt_begin();
+  const Vector6 at = tilt.motion(q.data(), errors.coefficients().data() + begin);
+  const Vector3 turn = at.tail<3>(), before = pose.translation();
+  Isometry3 motion = Isometry3::Identity();
+  motion.linear() = exp_so3(turn);
+  const Vector3 turned = base.linear() * motion.linear() * (base.inverse() * before);  // about the base's origin
+  motion.translation() = at.head<3>();
+  motion = base * motion * base.inverse();
+  pose = motion * pose;
+  for (Rows6* columns : {&rows.dense, &rows.factor})
+    for (Index k = 0; k < columns->cols(); ++k) {
+      auto linear = columns->col(k).head<3>(), angular = columns->col(k).tail<3>();
+      if (columns == &rows.dense && k < static_cast<Index>(of_base.size()) && of_base[static_cast<std::size_t>(k)]) {
+        linear += Vector3(angular).cross(pose.translation() - before);
+        continue;
+      }
+      linear = (motion.linear() * linear).eval();
+      angular = (motion.linear() * angular).eval();
+    }
+  MatrixX basis(6, tilt.size());
+  tilt.basis(q.data(), basis);
+  const Matrix3 rate = base.linear() * left_jacobian_so3(turn);
+  for (Index k = 0; k < tilt.size(); ++k) {
+    const Vector3 omega = rate * basis.col(k).tail<3>();
+    rows.dense.col(first + k) << omega.cross(turned) + base.linear() * basis.col(k).head<3>(), omega;
+    rows.dense.col(first + k) *= scales(begin + k);
+  }
+}
+
+}  // namespace detail
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
                                                                    const ConstMatrixRef& previous, RowBlock* out,
@@ -126,6 +173,8 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
   const bool factored = joint_columns || !errors_.empty() || terms().size() > 0;
   VectorX q(n), before(n);
   MatrixX basis(n, few);
+  std::vector<bool> of_base;
+  for (const GeometricUnknown& u : unknowns_) of_base.push_back(u.parameter < 6);
   for (Index i = 0; i < count; ++i) {
     RowBlock& rows = out[i];
     // entry r of column k of configuration i
@@ -166,6 +215,9 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
         rows.dense.col(of_geometry + k) = rows.factor.lazyProduct(basis.col(k) * coefficient_scales_(k));
     }
     transmission_values(q.data(), rows.functions);
+    if (errors_.tilts())
+      detail::tilt_columns(errors_, q, arm.base().isometry(), of_base, of_geometry + terms().tilt_begin(),
+                           coefficient_scales_, at.poses[static_cast<std::size_t>(i)], rows);
   }
   return std::move(at.poses);
 }

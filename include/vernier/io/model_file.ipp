@@ -122,6 +122,9 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
       case Kind::hysteresis:
         out["hysteresis"] = {{"widths_rad", terms.hysteresis}, {"coefficients_rad", std::move(values)}};
         break;
+      case Kind::tilt:
+        out["tilt"] = {{"down", list_of(terms.tilt->down())}, {"coefficients_rad", std::move(values)}};
+        break;
       case Kind::transmission: joints[static_cast<std::size_t>(block.joint)]["coefficients_rad"] = std::move(values);
     }
   }
@@ -134,9 +137,16 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
   return out;
 }
 
-/// @param nominal the chain whose torques gravity compliance needs
+VERNIER_API Vector3 direction_from_json(const JsonNode& node) {
+  const Vector3 out = node.numbers(3);
+  if (!(std::abs(out.norm() - 1) < 1e-6)) node.fail("must have length 1");
+  return out;
+}
+
+/// @param nominal the chain whose torques gravity compliance needs, and whose frames tilt
 VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
-  node.allow_only({"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "hysteresis", "transmission"});
+  node.allow_only(
+      {"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "hysteresis", "tilt", "transmission"});
   const auto joints = static_cast<std::size_t>(nominal.joints());
   JointTerms terms(nominal.joints());
   std::vector<VectorX> blocks;
@@ -153,9 +163,7 @@ VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const 
   }
   if (node.has("gravity")) {
     const JsonNode gravity = node.at("gravity");
-    const Vector3 down = gravity.at("down").numbers(3);
-    if (!(std::abs(down.norm() - 1) < 1e-6)) gravity.at("down").fail("must have length 1");
-    terms.gravity.emplace(nominal, down);
+    terms.gravity.emplace(nominal, direction_from_json(gravity.at("down")));
     blocks.push_back(gravity.at("products_rad_per_m").numbers(static_cast<std::size_t>(terms.gravity->size())));
   }
   if (node.has("hysteresis")) {
@@ -165,6 +173,11 @@ VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const 
       if (!(terms.hysteresis.back() > 0)) widths.at(k).fail("must be positive");
     }
     blocks.push_back(hysteresis.at("coefficients_rad").numbers(joints * terms.hysteresis.size()));
+  }
+  if (node.has("tilt")) {
+    const JsonNode tilt = node.at("tilt");
+    terms.tilt.emplace(nominal, direction_from_json(tilt.at("down")));
+    blocks.push_back(tilt.at("coefficients_rad").numbers(static_cast<std::size_t>(terms.tilt->size())));
   }
   if (node.has("transmission")) {
     const JsonNode transmission = node.at("transmission");

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -109,6 +110,23 @@ TEST(JointSpectrum, OrdersThatNobodyStatedAreFound) {
     EXPECT_NEAR(estimate.amplitude, line.amplitude, 3.5 * estimate.std);
     EXPECT_LT(estimate.std, 4e-6);
   }
+}
+
+TEST(JointSpectrum, LinesOfAStatedDriveAreInTheModel) {
+  ErrorModelOptions few = options();
+  few.spectrum = {{1, 4, 100e-6}};
+  few.drives = {{}, {.gear_ratio = 101}, {}};
+  Rng rng(5);
+  const Line line{1, 1010, 40e-6, 0.7};
+  const auto model = fitted(arm_with({line}, rng), few, rng);
+  EXPECT_NE(model.blocks.back().name, "lines");
+  EXPECT_EQ(model.arm.terms().transmission[0].orders, (std::vector<int>{1, 2, 3, 4}));
+  const auto lines = lines_in(joint_spectrum(model, 1), line_threshold(50));
+  const auto found = std::find_if(lines.begin(), lines.end(), [](const auto& one) { return one.order == 1010; });
+  ASSERT_NE(found, lines.end());
+  EXPECT_NEAR(found->amplitude, line.amplitude, 3.5 * found->std);
+  few.drives.pop_back();
+  EXPECT_THROW((void)fitted(arm_with({line}, rng), few, rng), std::invalid_argument);
 }
 
 TEST(JointSpectrum, ArmsWithoutLinesHaveNone) {

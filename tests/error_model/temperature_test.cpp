@@ -95,6 +95,17 @@ TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
   const JointVector<6> q = JointVector<6>::Constant(0.3);
   const double known = found.visit_covariance(q, 1, 0, VectorX(), found.mean_temperature).topLeftCorner<3, 3>().trace(),
                unknown = found.visit_covariance(q, 1).topLeftCorner<3, 3>().trace();
+  // many visits at once are single ones
+  const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, 70, 9);
+  VectorX gates = VectorX::Ones(70), celsius = VectorX::LinSpaced(70, 19, 25);
+  gates(3) = 0.4;
+  celsius(69) = std::nan("");
+  const auto all = found.visit_covariances(joints, gates, 0, MatrixX(), celsius);
+  ASSERT_EQ(all.size(), 70u);
+  for (const Index i : {Index{0}, Index{3}, Index{63}, Index{64}, Index{69}}) {
+    const Matrix6 one = found.visit_covariance(joints.row(i).transpose(), gates(i), 0, VectorX(), celsius(i));
+    EXPECT_LT((all[static_cast<std::size_t>(i)] - one).norm(), 1e-12 * one.norm()) << i;
+  }
   EXPECT_GT(unknown, known + 0.5 * std::pow(mean_error(found.model(), found.model().at_temperature(22 + 2.3), 3), 2));
 }
 

@@ -137,6 +137,33 @@ TEST(Evidence, OneScaleIsTheBestOfAGrid) {
   }
 }
 
+// A few unknowns are scaled by their marginal distribution, many by one factorisation a factor: here with 300 more
+// unknowns that nothing depends on, which change neither the evidence of a factor nor its best.
+TEST(Evidence, AFewAreScaledAsManyAre) {
+  const LocalStates problem = clear_problem();
+  const NormalEquations few = problem.normal_equations();
+  NormalEquations many = few;
+  constexpr Index more = 300;
+  many.matrix = MatrixX::Identity(4 + more, 4 + more);
+  many.matrix.topLeftCorner(4, 4) = few.matrix;
+  many.gradient = VectorX::Zero(4 + more);
+  many.gradient.head(4) = few.gradient;
+  many.coupling.setZero(few.coupling.rows(), 4 + more);
+  many.coupling.leftCols(4) = few.coupling;
+  const VectorX expected = (VectorX(4) << 1, 2, 700, 600).finished();
+  VectorX padded = VectorX::Constant(4 + more, 1e12), steps = VectorX::Zero(4 + more);
+  padded.head(4) = expected;
+  UnknownGroup group{0, 1, 3};
+  const VectorX of_few =
+      scale_priors(few, expected, problem.steps, 6 * LocalStates::blocks, group, problem.local_steps);
+  for (Index k = 0; k < more; ++k) group.push_back(4 + k);
+  for (Index k = 4; k < 4 + more; ++k) padded(k) = 1e-9;  // no information of their own: evidence leaves them alone
+  many.matrix.bottomRightCorner(more, more).setZero();
+  const VectorX of_many = scale_priors(many, padded, steps, 6 * LocalStates::blocks, group, problem.local_steps);
+  EXPECT_DOUBLE_EQ(of_many(0), of_few(0));
+  EXPECT_DOUBLE_EQ(of_many(3), of_few(3));
+}
+
 TEST(FactorisedEquations, DiagonalOfTheInverse) {
   const LocalStates problem(8);
   const NormalEquations normal = problem.normal_equations();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/least_squares/evidence.hpp"
@@ -46,6 +47,52 @@ VERNIER_IMPL double log_evidence(const NormalEquations& normal, const Factorised
   return -0.5 * (freedom * std::log(cost / freedom) + solved.log_determinant() - of_priors);
 }
 
+namespace detail {
+
+/// Evidence over a factor on the priors of a few unknowns, up to a constant, from one factorisation: their marginal
+/// normal distribution is all that the factor acts on.
+class ScaledEvidence {
+ public:
+  VERNIER_API ScaledEvidence(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
+                             Index values, const UnknownGroup& group, const VectorX& local_steps)
+      : size_(static_cast<Index>(group.size())) {
+    const FactorisedEquations solved(normal, precisions, steps, local_steps);
+    if (!solved.usable()) return;
+    minimum_ = penalised_minimum(normal, solved, precisions, steps, values, local_steps);
+    MatrixX columns = MatrixX::Zero(precisions.size(), size_);
+    value_.resize(size_, 1);
+    for (Index k = 0; k < size_; ++k) {
+      const Index unknown = group[static_cast<std::size_t>(k)];
+      const double root = std::sqrt(precisions(unknown));
+      columns(unknown, k) = root;
+      value_(k, 0) = root * (steps(unknown) + solved.step()(unknown));
+    }
+    solved.apply_inverse_factor(columns);
+    share_.setZero(size_, size_);
+    add_product(share_, columns.transpose(), columns);
+    usable_ = true;
+  }
+
+  VERNIER_API double operator()(double factor) const {
+    if (!usable_) return -std::numeric_limits<double>::infinity();
+    MatrixX change = (factor - 1) * share_, value = value_;
+    change.diagonal().array() += 1;
+    if (!cholesky(change)) return -std::numeric_limits<double>::infinity();
+    solve_lower(change, value);
+    const double cost = std::max(minimum_.cost + (factor - 1) * value.squaredNorm(), 1e-300);
+    const double log_determinant = 2 * change.diagonal().array().log().sum();
+    return -0.5 * (minimum_.freedom * std::log(cost) + log_determinant - static_cast<double>(size_) * std::log(factor));
+  }
+
+ private:
+  Index size_;
+  PenalisedMinimum minimum_{};
+  MatrixX share_, value_;  // of the posterior in the prior's units
+  bool usable_ = false;
+};
+
+}  // namespace detail
+
 VERNIER_IMPL VectorX scale_priors(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
                                   Index values, const UnknownGroup& group, const VectorX& local_steps) {
   const auto scaled = [&](double factor) {
@@ -53,7 +100,11 @@ VERNIER_IMPL VectorX scale_priors(const NormalEquations& normal, const VectorX& 
     for (const Index k : group) out(k) *= factor;
     return out;
   };
+  constexpr std::size_t few = 256;
+  std::optional<detail::ScaledEvidence> of_few;
+  if (group.size() <= few) of_few.emplace(normal, precisions, steps, values, group, local_steps);
   const auto evidence = [&](double factor) {
+    if (of_few) return (*of_few)(factor);
     const VectorX now = scaled(factor);
     return log_evidence(normal, FactorisedEquations(normal, now, steps, local_steps), now, steps, values, local_steps);
   };

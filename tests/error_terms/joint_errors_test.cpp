@@ -156,7 +156,7 @@ TEST(JointErrors, HysteresisFollowsTheDirectionOfApproach) {
   EXPECT_EQ(errors.effective<2>(q, unknown.data()).joints(0), q(0));
   EXPECT_NE(errors.effective<2>(q, unknown.data()).joints(1), q(1));
   EXPECT_DOUBLE_EQ(errors.half_loop(0), 60e-6);
-  EXPECT_DOUBLE_EQ(errors.half_loop(1), 10e-6);
+  EXPECT_DOUBLE_EQ(errors.half_loop(1), 20e-6);  // of small motions; of large ones 10
   // rows of joint values with and without previous ones
   const vn::MatrixX rows = q.transpose(), before = (q - vn::JointVector<2>(0.005, -0.1)).transpose();
   EXPECT_EQ(errors.effective_rows(rows), rows);

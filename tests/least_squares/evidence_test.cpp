@@ -157,7 +157,7 @@ TEST(Evidence, AFewAreScaledAsManyAre) {
   const VectorX of_few =
       scale_priors(few, expected, problem.steps, 6 * LocalStates::blocks, group, problem.local_steps);
   for (Index k = 0; k < more; ++k) group.push_back(4 + k);
-  for (Index k = 4; k < 4 + more; ++k) padded(k) = 1e-9;  // no information of their own: evidence leaves them alone
+  padded.tail(more).setOnes();  // no information of their own: evidence leaves them alone
   many.matrix.bottomRightCorner(more, more).setZero();
   const VectorX of_many = scale_priors(many, padded, steps, 6 * LocalStates::blocks, group, problem.local_steps);
   EXPECT_DOUBLE_EQ(of_many(0), of_few(0));

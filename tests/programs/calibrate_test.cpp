@@ -76,9 +76,14 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
   EXPECT_EQ(c.command.errors, "");
   EXPECT_EQ(keys(c.json),
-            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "chosen", "blocks", "parameters",
-                                      "identifiability", "gated_rows", "worst_harm_beside_geometry_mm",
-                                      "within_95_percent_ellipsoids", "verdict"}));
+            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "chosen", "mean_temperature_c",
+                                      "blocks", "parameters", "identifiability", "spectrum", "drift", "gated_rows",
+                                      "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict"}));
+  ASSERT_EQ(c.json.at("spectrum").size(), 6u);
+  for (const Json& joint : c.json.at("spectrum")) {
+    EXPECT_EQ(joint.at("orders").size(), joint.at("amplitudes_urad").size());
+    EXPECT_EQ(joint.at("orders").size(), joint.at("stds_urad").size());
+  }
   EXPECT_EQ(c.json.at("robot"), "abb_irb120");
   EXPECT_EQ(c.json.at("train_rows"), 120);
   EXPECT_EQ(c.json.at("test_rows"), 30);

@@ -51,6 +51,7 @@ struct ErrorModelEstimate {
   double temperature_std = 0;         ///< standard deviation of the measured temperatures [K]; likewise
   MatrixX covariance{};               ///< of all unknowns, in units of their scales
   double variance_factor = 1;         ///< covariance divided by the inverse of the normal equations' matrix
+  double residual_variance = 1;       ///< of the whitened residuals: that factor as far as the residuals alone tell
 
   /// See `JointFunction`.
   /// @param joint  from 0

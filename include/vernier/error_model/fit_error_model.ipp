@@ -437,13 +437,8 @@ class ErrorModelFit {
     for (Index j = 0; j < joints; ++j) {
       const std::vector<int>& known = terms.transmission[static_cast<std::size_t>(j)].orders;
       if (known.empty() || !tells_orders_apart(angles.col(j), weight.col(j), highest)) continue;
-      const VectorX power = periodogram(angles.col(j), score.col(j), weight.col(j), highest) / variance;
-      std::vector<HarmonicEstimate> spectrum;
-      for (int order = 1; order <= highest; ++order)
-        if (!std::binary_search(known.begin(), known.end(), order))
-          spectrum.push_back({order, power(order - 1), 0, power(order - 1)});
-      for (const HarmonicEstimate& line : lines_in(spectrum, threshold))
-        if (out[static_cast<std::size_t>(j)].size() < 8) out[static_cast<std::size_t>(j)].push_back(line.order);
+      out[static_cast<std::size_t>(j)] =
+          lines_of_residuals(angles.col(j), score.col(j), weight.col(j), known, highest, variance * threshold);
     }
     return out;
   }
@@ -520,7 +515,7 @@ class ErrorModelFit {
     const double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
     const double values = static_cast<double>(problem_.measured_values());
     const double freedom = std::max(1.0, values - explained);
-    estimate.variance_factor = at.normal.cost / freedom;
+    estimate.residual_variance = estimate.variance_factor = at.normal.cost / freedom;
     estimate.covariance *= estimate.variance_factor;
 
     // leave-one-pose-out errors contain the noise of a visit and the uncertainty of the unknowns

@@ -28,8 +28,8 @@ VERNIER_IMPL std::vector<HarmonicEstimate> joint_spectrum(const ErrorModelEstima
     if (!(norm > 0)) continue;
     const Vector2 direction = value / norm;
     out.push_back({fourier.order(k), scale * norm,
-                   scale * std::sqrt(estimate.variance_factor * direction.dot(information.inverse() * direction)),
-                   value.dot(information * value) / estimate.variance_factor});
+                   scale * std::sqrt(estimate.residual_variance * direction.dot(information.inverse() * direction)),
+                   value.dot(information * value) / estimate.residual_variance});
   }
   return out;
 }

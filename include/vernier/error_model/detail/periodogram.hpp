@@ -4,6 +4,8 @@
 /// The periodogram of a model's residuals over a joint's angle: how much of them each order would explain, if it were
 /// added to the model.
 
+#include <vector>
+
 #include "vernier/core/types.hpp"
 
 namespace vernier::detail {
@@ -15,6 +17,16 @@ namespace vernier::detail {
 /// @cite Lomb 1976
 VERNIER_API VectorX periodogram(const ConstVectorRef& angles, const ConstVectorRef& score, const ConstVectorRef& weight,
                                 int highest);
+
+/// Orders beside known ones whose chi-square exceeds a threshold, at most eight, the largest first: each is taken off
+/// before the next is looked for, so that none is the echo of another.
+/// @param angles,score,weight as in `periodogram`
+/// @param known     ascending
+/// @param highest   order
+/// @param threshold of the chi-square
+VERNIER_API std::vector<int> lines_of_residuals(const ConstVectorRef& angles, VectorX score,
+                                                const ConstVectorRef& weight, const std::vector<int>& known,
+                                                int highest, double threshold);
 
 /// Whether measurements at these angles distinguish the orders 1 .. highest; on a grid of angles they do not, because
 /// different orders take the same values there (aliasing).

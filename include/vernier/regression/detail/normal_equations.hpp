@@ -28,8 +28,8 @@ class LayerEquations {
   /// @param keep     whether the outputs of all nodes are kept
   /// @param scale    factors of the rows of H and T, one a sample, which must outlive this; null for 1
   VERNIER_API LayerEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
-                              InstructionSet set = widest_instruction_set(), bool keep = false,
-                              const double* scale = nullptr);
+                             InstructionSet set = widest_instruction_set(), bool keep = false,
+                             const double* scale = nullptr);
 
   /// Forms the products at weights `theta`, node by node.
   /// @param shift taken off the outputs of the nodes; null for nothing

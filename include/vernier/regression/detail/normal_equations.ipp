@@ -54,7 +54,7 @@ VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
 }
 
 VERNIER_IMPL LayerEquations::LayerEquations(const HiddenLayer& layer, const MatrixX& features, const MatrixX& targets,
-                                              InstructionSet set, bool keep, const double* scale)
+                                            InstructionSet set, bool keep, const double* scale)
     : layer_(layer), features_(features), targets_(targets), set_(set), keep_(keep), scale_(scale) {
   stride_ = (layer.nodes + targets.cols() + 7) / 8 * 8;
   tile_samples_ = std::max<Index>(8, 3072 / stride_);  // 24 KiB

@@ -24,7 +24,7 @@ VERNIER_IMPL void VarProTrainingError::operator()(const ConstMatrixRef& populati
   MatrixX ones_and_targets(targets_.rows(), targets_.cols() + 1);
   ones_and_targets << VectorX::Ones(targets_.rows()), targets_;
   LayerEquations equations(layer_, features_, ones_and_targets, widest_instruction_set(), false,
-                            weights_ ? roots.data() : nullptr);
+                           weights_ ? roots.data() : nullptr);
   std::optional<VariableProjection> projection;
   for (Index k = 0; k < population.cols(); ++k) {
     double objective = -1;

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "calibration_figures.hpp"
 #include "cli.hpp"
@@ -30,7 +31,7 @@ using Paths = std::vector<std::string>;
 constexpr vn::Index prior_generations = 15;
 
 struct Options {
-  std::string robot, model, save, date, split, priors = "default", loss = "huber", free;
+  std::string robot, model, save, date, split, priors = "default", loss = "huber", free, prior;
   Paths data, test, distances;
   vn::Index test_every = 5, train_rows = 0;
   double test_fraction = 0.2, distance_sigma_mm = 0.03;
@@ -97,6 +98,20 @@ vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& bo
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
+/// An earlier calibration, of the same arm or of another of its type.
+template <int N>
+vn::ArmPrior read_prior(const std::string& file) {
+  const vn::SavedArm saved = vn::saved_arm(file);
+  if (saved.dof != N || saved.modified)
+    throw support::UsageError(fmt::format("{}: is of an arm of {} joints, expected {}", file, saved.dof, N));
+  const vn::CalibratedRobot<N> robot = vn::load<N>(file);
+  if (robot.estimate() == nullptr)
+    throw support::UsageError(file + ": has no covariance, an older program saved it; calibrate that arm again");
+  vn::ArmPrior out = vn::arm_prior(robot);
+  out.name = file_name(file);
+  return out;
+}
+
 template <int N>
 vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, const Options& o,
                                     const vn::FitOptions& fit, std::string& rule) {
@@ -114,6 +129,11 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
   for (const std::string& file : o.distances) distances.push_back(vn::read_distances<N>(file, types));
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
+  std::optional<vn::ArmPrior> prior;
+  if (!o.prior.empty()) {
+    prior = read_prior<N>(o.prior);
+    options.errors.prior = &*prior;
+  }
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
   };
@@ -309,6 +329,10 @@ int run(support::Program& program) {
                "every file of --data has its own tool, not only its own base");
   app.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   app.add_option("--date", o.date, "date written into the model")->type_name("DATE");
+  auto* prior = option("--prior", o.prior,
+                       "a calibrated model to start from: of this arm, earlier, or of another of its type; used as far "
+                       "as left-out poses support it",
+                       "FILE");
   auto* model =
       option("--model", o.model, "a calibrated model: registered again from the data, the rest is kept", "FILE");
   auto* free =
@@ -316,7 +340,13 @@ int run(support::Program& program) {
              "with --model: what may move: base, tool (remounted: by millimetres), another-tool (by any amount), "
              "offsets, joined by commas",
              "WHAT");
-  model->excludes(distances)->excludes(robot)->excludes(every)->excludes(split)->excludes(train)->needs(free);
+  model->excludes(distances)
+      ->excludes(robot)
+      ->excludes(every)
+      ->excludes(split)
+      ->excludes(train)
+      ->excludes(prior)
+      ->needs(free);
   free->needs(model);
   program.parse("calibrate_out");
 

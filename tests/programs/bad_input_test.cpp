@@ -170,7 +170,7 @@ TEST_F(BadInputToPrograms, Correct) {
   const std::string text = read_file(folder_ / "model.json");
   write_file(folder_ / "cut.json", text.substr(0, text.size() / 2));
   expect_refused("correct --model cut.json --targets poses.csv --out c.csv", 1, "the file ends here");
-  write_file(folder_ / "new.json", replaced(text, "\"schema_version\": 4", "\"schema_version\": 7"));
+  write_file(folder_ / "new.json", replaced(text, "\"schema_version\": 5", "\"schema_version\": 7"));
   expect_refused("correct --model new.json --targets poses.csv --out c.csv", 1, "version 7 is unknown");
   write_file(folder_ / "targets.csv", "q1_rad,q2_rad\n0,0\n");
   expect_refused("correct --model model.json --targets targets.csv --out c.csv", 1, "targets.csv: no column q3_rad");

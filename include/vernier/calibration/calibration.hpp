@@ -54,7 +54,7 @@ struct Calibration {
     if (remainder_supported) return "jointwise_pso_elm";
     const char* out = "geometry";
     for (const BlockChoice& block : errors.blocks)
-      for (const char* stage : {"elastic", "jointwise", "approach", "tilt", "temperature"})
+      for (const char* stage : {"elastic", "jointwise", "approach", "tilt", "temperature", "prior"})
         if (block.used && block.name == stage) out = stage;
     return out;
   }

@@ -19,6 +19,7 @@ namespace vernier {
 struct StageErrors {
   /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
   /// approach), `tilt` (the same with tilts of joint frames), `temperature` (the same at the temperature of each pose),
+  /// `prior` (fitted with an earlier calibration as the prior),
   /// `jointwise_pso_elm` (on the last of them, of positions at the mean temperature, without their hysteresis),
   /// `session` (the last error model with the session's drift, which no other session has)
   std::string key;
@@ -64,6 +65,7 @@ struct CalibrationReport {
   VectorX gates;                             ///< share of the joint-wise terms at each held-out pose
   std::string chosen = "geometry";           ///< key of the stage that is deployed
   std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
+  std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
   double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the
                                   ///< measured joint ranges [m]

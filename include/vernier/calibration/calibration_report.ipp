@@ -112,6 +112,7 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
       {"temperature",
        {"The geometry changes with temperature: that helps ",
         "No change of the geometry with temperature is noticeable "}},
+      {"prior", {"An earlier calibration as the prior helps ", "The earlier calibration is useless here: left out "}},
       {"lines",
        {"Orders that stand out of what the model left help ",
         "Orders that stand out of what the model left are left out "}},
@@ -192,6 +193,10 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   detail::describe_accuracy(*this, out);
   out.push_back(detail::describe_ranges(joints));
   for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
+  if (prior && prior->used)
+    out.push_back(message("Of the calibration '", prior->name, "' the geometry has changed by ",
+                          detail::brief(prior->geometry * 100), " % and the joint errors by ",
+                          detail::brief(prior->joints * 100), " % of their expected sizes, as far as evidence tells."));
   out.push_back(message("Chosen by left-out poses: ", stage(chosen).title, "."));
   if (mean_temperature)
     out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),

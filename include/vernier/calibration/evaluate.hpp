@@ -124,18 +124,21 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
       });
     out.stages.push_back(std::move(stage));
   };
-  const bool approach = !errors.arm.terms().hysteresis.empty();
+  const bool prior = errors.prior && errors.prior->used;
+  const bool approach = !prior && !errors.arm.terms().hysteresis.empty();
   const bool tilt = !errors.approach.empty();
-  const bool thermal = errors.model().thermal() != nullptr &&
+  const bool thermal = !prior && errors.model().thermal() != nullptr &&
                        std::all_of(test.begin(), test.end(), [](const auto& d) { return d.temperatures().size() > 0; });
-  if (approach || (errors.model().thermal() != nullptr && !tilt))
+  if (approach || (!prior && errors.model().thermal() != nullptr && !tilt))
     assess_visits("approach", tilt ? errors.approach : errors.models, false, {});
   if (tilt) assess_visits("tilt", errors.models, false, {});
   if (thermal) assess_visits("temperature", errors.models, true, {});
+  if (prior) assess_visits("prior", errors.models, true, {});
   if (calibration.remainder) {
     const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
     assess_learned("jointwise_pso_elm",
-                   thermal    ? "temperature + PSO-ELM"
+                   prior      ? "prior + PSO-ELM"
+                   : thermal  ? "temperature + PSO-ELM"
                    : tilt     ? "tilt + PSO-ELM"
                    : approach ? "approach + PSO-ELM"
                               : "joint-wise + PSO-ELM",
@@ -143,6 +146,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   }
   if (!errors.drift.empty()) assess_visits("session", errors.models, true, errors.drift);
   out.drift = errors.drift;
+  out.prior = errors.prior;
   out.learned = calibration.remainder && !calibration.remainder->empty();
   out.chosen = calibration.chosen();
   if (out.chosen == "temperature" && !thermal) out.chosen = tilt ? "tilt" : "approach";

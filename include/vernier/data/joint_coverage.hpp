@@ -3,6 +3,7 @@
 /// @file
 /// The joint ranges covered by measurements, which bound where a model learned from them is valid.
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -15,6 +16,10 @@ namespace detail {
 
 /// Ranges of the measured values of one joint, and the margin.
 VERNIER_API std::vector<JointRange> covered_ranges(const ConstVectorRef& values, double& margin);
+
+/// The union of ranges, those closer than two margins merged.
+VERNIER_API std::vector<JointRange> joined_ranges(std::vector<JointRange> ranges, const std::vector<JointRange>& others,
+                                                  double margin);
 
 /// A gate's value and slope.
 struct GateFactor {
@@ -46,6 +51,25 @@ struct JointCoverage {
     for (int i = 0; i < N; ++i)
       coverage.ranges[static_cast<std::size_t>(i)] = detail::covered_ranges(joints.col(i), coverage.margin(i));
     return coverage;
+  }
+
+  /// The same with the measured ranges of other measurements.
+  /// @param others  of each joint, ascending; no joints: those measurements were everywhere
+  /// @param margins of each joint; the larger of the two counts
+  JointCoverage joined(const std::vector<std::vector<JointRange>>& others, const VectorX& margins) const {
+    JointCoverage out = *this;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (others.empty()) {
+        out.ranges[i].clear();
+        continue;
+      }
+      const auto k = static_cast<Index>(i);
+      out.margin(k) = std::max(margin(k), margins(k));
+      out.ranges[i] = ranges[i].empty() || others[i].empty()
+                          ? std::vector<JointRange>{}
+                          : detail::joined_ranges(ranges[i], others[i], out.margin(k));
+    }
+    return out;
   }
 
   /// The gate at q; no allocation.

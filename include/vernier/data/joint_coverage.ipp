@@ -24,6 +24,19 @@ VERNIER_IMPL std::vector<JointRange> covered_ranges(const ConstVectorRef& values
   return ranges;
 }
 
+VERNIER_IMPL std::vector<JointRange> joined_ranges(std::vector<JointRange> ranges,
+                                                   const std::vector<JointRange>& others, double margin) {
+  ranges.insert(ranges.end(), others.begin(), others.end());
+  std::sort(ranges.begin(), ranges.end(), [](const JointRange& a, const JointRange& b) { return a.lower < b.lower; });
+  std::vector<JointRange> out;
+  for (const JointRange& range : ranges)
+    if (out.empty() || range.lower - out.back().upper > 2 * margin)
+      out.push_back(range);
+    else
+      out.back().upper = std::max(out.back().upper, range.upper);
+  return out;
+}
+
 VERNIER_IMPL GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, bool periodic,
                                     double q) noexcept {
   if (ranges.empty()) return {1, 0};

@@ -5,10 +5,12 @@
 /// way.
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vernier/identification/arm_parameterisation.hpp"
+#include "vernier/identification/fitted_arm.hpp"
 #include "vernier/identification/session_drift.hpp"
 #include "vernier/kinematics/joint_drive.hpp"
 
@@ -18,8 +20,8 @@ namespace vernier {
 struct BlockChoice {
   /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
   /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
-  /// `tilt` (of joint frames under gravity), `temperature` (changes of the geometry), `drift` (of the bases), `lines`
-  /// (orders found in the residuals)
+  /// `tilt` (of joint frames under gravity), `temperature` (changes of the geometry), `prior` (an earlier calibration),
+  /// `drift` (of the bases), `lines` (orders found in the residuals)
   std::string name;
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried
@@ -34,6 +36,26 @@ struct JointFunction {
   VectorX std;    ///< standard deviations of that
 };
 
+/// How much of an earlier calibration holds, see `ArmPrior`.
+struct PriorTransfer {
+  std::string name;     ///< of the earlier calibration
+  double geometry = 0;  ///< kappa of the geometry: change relative to the expected sizes of its errors
+  double joints = 0;    ///< kappa of the joint errors
+  bool used = false;    ///< whether left-out poses are predicted better with it
+};
+
+namespace detail {
+
+/// An arm of one station with some unknowns, at its values.
+/// @param coefficient_scales     of its terms
+/// @param coefficient_precisions of its terms
+/// @param thermal_rates          of each parameter; empty for none
+VERNIER_API ArmParameterisation parameterised(const FittedArm& arm, std::vector<GeometricUnknown> unknowns,
+                                              const VectorX& coefficient_scales, const VectorX& coefficient_precisions,
+                                              const VectorX& thermal_rates);
+
+}  // namespace detail
+
 /// A fitted error model without its typed arms.
 struct ErrorModelEstimate {
   bool converged = false;             ///< whether every solve converged
@@ -41,17 +63,24 @@ struct ErrorModelEstimate {
   double position_sigma = 0;  ///< of a visit, per component: sensor, and what the model lacks [m]; of a distance where
                               ///< nothing else was measured
   double joint_sigma = 0;     ///< of a visit, repeatability of the joints [rad]
-  double orientation_sigma = 0;       ///< of a visit, per component [rad]; 0 for positions alone
-  double fallback_error = 0;          ///< mean leave-one-pose-out position error without transmissions and tilts [m]
-  std::vector<SessionDrift> drift{};  ///< of each station's base; empty where the data do not support it
-  std::vector<JointDrive> drives{};   ///< gears and encoders, one a joint, as given; empty where unknown
-  ArmParameterisation arm;            ///< the unknowns and their estimates
-  double mean_temperature = 0;        ///< of the measurements [deg C], for which the parameters hold; 0 where the model
-                                      ///< does not change with temperature
-  double temperature_std = 0;         ///< standard deviation of the measured temperatures [K]; likewise
-  MatrixX covariance{};               ///< of all unknowns, in units of their scales
-  double variance_factor = 1;         ///< covariance divided by the inverse of the normal equations' matrix
-  double residual_variance = 1;       ///< of the whitened residuals: that factor as far as the residuals alone tell
+  double orientation_sigma = 0;          ///< of a visit, per component [rad]; 0 for positions alone
+  double fallback_error = 0;             ///< mean leave-one-pose-out position error without transmissions and tilts [m]
+  std::vector<SessionDrift> drift{};     ///< of each station's base; empty where the data do not support it
+  std::optional<PriorTransfer> prior{};  ///< of an earlier calibration, where there was one
+  std::vector<JointDrive> drives{};      ///< gears and encoders, one a joint, as given; empty where unknown
+  ArmParameterisation arm;               ///< the unknowns and their estimates
+  double mean_temperature = 0;   ///< of the measurements [deg C], for which the parameters hold; 0 where the model
+                                 ///< does not change with temperature
+  double temperature_std = 0;    ///< standard deviation of the measured temperatures [K]; likewise
+  MatrixX covariance{};          ///< of all unknowns, in units of their scales
+  double variance_factor = 1;    ///< covariance divided by the inverse of the normal equations' matrix
+  double residual_variance = 1;  ///< of the whitened residuals: that factor as far as the residuals alone tell
+
+  /// What it says of the first station.
+  VERNIER_API ErrorModelEstimate first_station() const;
+  /// The same estimate at other values of the unknowns: of the arm in other frames, with other joint zeros.
+  /// @param now with the same terms
+  VERNIER_API ErrorModelEstimate of_arm(const FittedArm& now) const;
 
   /// See `JointFunction`.
   /// @param joint  from 0

@@ -9,6 +9,63 @@
 
 namespace vernier {
 
+namespace detail {
+
+VERNIER_IMPL ArmParameterisation parameterised(const FittedArm& arm, std::vector<GeometricUnknown> unknowns,
+                                               const VectorX& coefficient_scales, const VectorX& coefficient_precisions,
+                                               const VectorX& thermal_rates) {
+  ArmParameterisation out({arm.geometry}, std::move(unknowns));
+  out.set_terms(arm.errors.terms(), coefficient_scales, coefficient_precisions);
+  VectorX steps = VectorX::Zero(out.size());
+  for (std::size_t k = 0; k < out.geometric().size(); ++k)
+    if (const GeometricUnknown& u = out.geometric()[k]; u.thermal && thermal_rates.size() > 0)
+      steps(static_cast<Index>(k)) = thermal_rates(u.parameter) / u.scale;
+  if (!arm.errors.empty())
+    steps.tail(arm.errors.coefficients().size()) = arm.errors.coefficients().cwiseQuotient(coefficient_scales);
+  out.move(steps);
+  return out;
+}
+
+}  // namespace detail
+
+VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::first_station() const {
+  std::vector<GeometricUnknown> unknowns;
+  std::vector<Index> kept;
+  for (std::size_t k = 0; k < arm.geometric().size(); ++k) {
+    GeometricUnknown u = arm.geometric()[k];
+    if (u.station > 0) continue;
+    u.station = -1;
+    unknowns.push_back(u);
+    kept.push_back(static_cast<Index>(k));
+  }
+  const Index terms = arm.terms().size();
+  for (Index k = 0; k < terms; ++k) kept.push_back(static_cast<Index>(arm.geometric().size()) + k);
+  ErrorModelEstimate out{.arm = detail::parameterised({arm.geometry(0), arm.joint_errors()}, std::move(unknowns),
+                                                      arm.scales().tail(terms), arm.precisions().tail(terms),
+                                                      arm.thermal_rates(0))};
+  out.converged = converged;
+  out.position_sigma = position_sigma;
+  out.joint_sigma = joint_sigma;
+  out.orientation_sigma = orientation_sigma;
+  out.fallback_error = fallback_error;
+  out.mean_temperature = mean_temperature;
+  out.temperature_std = temperature_std;
+  out.covariance = covariance(kept, kept);
+  out.variance_factor = variance_factor;
+  out.residual_variance = residual_variance;
+  return out;
+}
+
+VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::of_arm(const FittedArm& now) const {
+  ErrorModelEstimate out = *this;
+  const Index terms = arm.terms().size();
+  require(now.errors.terms().size() == terms, "of_arm: ", now.errors.terms().size(),
+          " terms of joint errors, expected ", terms);
+  out.arm = detail::parameterised(now, arm.geometric(), arm.scales().tail(terms), arm.precisions().tail(terms),
+                                  arm.thermal_rates(0));
+  return out;
+}
+
 VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std::vector<double>& angles) const {
   require(!angles.empty(), "transmission: no angles");
   const JointTerms& terms = arm.terms();

@@ -8,6 +8,8 @@
 
 namespace vernier {
 
+struct ArmPrior;
+
 /// Options of `fit_error_model`. The defaults serve every robot: evidence scales the expected sizes, and
 /// leave-one-pose-out errors decide which blocks of joint errors the data support.
 struct ErrorModelOptions {
@@ -30,6 +32,7 @@ struct ErrorModelOptions {
   bool temperature = true;              ///< change of the geometry with temperature, where temperatures were measured
   double thermal_prior_std = 1e-4;      ///< expected change of a length [m/K] or an angle [rad/K]
   bool drift = true;                    ///< motion of the bases during a session
+  const ArmPrior* prior = nullptr;      ///< an earlier calibration, which must outlive the fit; null for none
   Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block
 
   /// @throws std::invalid_argument naming the value

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/data/ranges.hpp"
+#include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/error_model/prior_objective.hpp"
@@ -32,7 +33,7 @@ struct ErrorModelInput {
 struct ErrorModelOutput {
   ErrorModelEstimate estimate;
   std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, without_tilt{}, all{};
-  bool jointwise = false;                ///< whether `all` has transmission terms
+  bool jointwise = false;                ///< whether the data support transmission terms
   MatrixX joints{};                      ///< of all samples
   std::vector<VectorX> thermal_rates{};  ///< one a station; empty where the geometry does not change with temperature
   std::array<double, 2> temperatures{};  ///< lowest and highest [deg C]
@@ -72,18 +73,23 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
   auto coverage = JointCoverage<N>::covering(found.joints);
   for (int i = 0; i < N; ++i)
     coverage.periodic[static_cast<std::size_t>(i)] = nominal.row(i).joint == JointType::revolute;
+  // what an earlier calibration measured is known, too
+  const bool inherited = out.prior && out.prior->used;
+  const JointCoverage<N> known = inherited ? coverage.joined(options.prior->ranges, options.prior->margins) : coverage;
+  if (inherited) found.without_tilt.clear();
   for (std::size_t s = 0; s < found.all.size(); ++s) {
     out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
     out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});
-    const auto gated = [&](const FittedArm& arm) {
-      return found.jointwise || arm.errors.tilts()
+    const auto gated = [&](const FittedArm& arm, const JointCoverage<N>& where) {
+      const JointTerms& terms = arm.errors.terms();
+      return terms.size() > terms.num_dense_terms() || arm.errors.tilts()
                  ? ErrorModel<Chain>(nominal, arm.typed(nominal),
-                                     found.elastic[s].with_hysteresis_of(arm).typed(nominal), coverage)
+                                     found.elastic[s].with_hysteresis_of(arm).typed(nominal), where)
                  : ErrorModel<Chain>(nominal, arm.typed(nominal));
     };
-    out.jointwise.push_back(gated(found.without_approach[s]));
-    if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s]));
-    out.models.push_back(gated(found.all[s]));
+    out.jointwise.push_back(gated(found.without_approach[s], coverage));
+    if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s], coverage));
+    out.models.push_back(gated(found.all[s], known));
     if (!found.thermal_rates.empty())
       out.models.back() = out.models.back().with_thermal(
           {out.mean_temperature, found.temperatures[0], found.temperatures[1], found.thermal_rates[s]});

@@ -9,6 +9,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/error_model/detail/periodogram.hpp"
+#include "vernier/error_model/detail/prior_transfer.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
@@ -143,27 +144,34 @@ class ErrorModelFit {
       size_by_evidence(gravity());  // the third axis, that of the joint
       estimate.converged = problem_.solve() && estimate.converged;
     }
-    const bool thermal = options_.temperature && add_temperature(estimate);
+    bool thermal = options_.temperature && add_temperature(estimate);
+    if (thermal) out.temperatures = problem_.temperatures().range;
+    const bool inherited = options_.prior != nullptr && inherit(out);
+    if (inherited) thermal = problem_.arm.thermal_rates(0).size() > 0;
     const bool drift = options_.drift && add_drift(estimate);
-    if ((hysteresis || tilt || thermal || drift) && out.jointwise && !search) {
+    if ((hysteresis || tilt || thermal || drift) && out.jointwise && !search && !inherited) {
       learn_spectrum(estimate, 4);
       estimate.converged = problem_.solve() && estimate.converged;
     }
-    if (out.jointwise && options_.find_lines && find_lines(estimate))
+    if (out.jointwise && options_.find_lines && !inherited && find_lines(estimate))
       estimate.converged = problem_.solve() && estimate.converged;
     out.estimate.drift = problem_.drift;
     out.all = arms();
     // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
-    const bool later = hysteresis || tilt || thermal;
+    const bool later = hysteresis || tilt || thermal || inherited;
     if (!later) out.without_approach = out.all;
     if (!later && !out.jointwise) (problem_.arm.terms().size() > 0 ? out.elastic : out.geometry) = out.all;
     out.joints = problem_.joints();
     for (int s = 0; thermal && s < problem_.arm.stations(); ++s)
       out.thermal_rates.push_back(problem_.arm.thermal_rates(s));
-    if (thermal) out.temperatures = problem_.temperatures().range;
     estimate.drives = options_.drives;
     estimate.arm = problem_.arm;
     assess(estimate);
+    if (inherited) {  // for the next to start from
+      VectorX precisions = problem_.arm.precisions();
+      precisions.tail(expected_.size()) = expected_;
+      estimate.arm.set_precisions(precisions);
+    }
     return out;
   }
 
@@ -292,8 +300,7 @@ class ErrorModelFit {
     VectorX steps, local_steps;
   };
   VERNIER_API Linearised linearised() const {
-    const BlockSystem system = problem_.system();
-    return {system, NormalEquations(system, problem_.drift_priors()), problem_.arm.steps(), problem_.drift_steps()};
+    return {problem_.system(), problem_.normal_equations(), problem_.arm.steps(), problem_.drift_steps()};
   }
 
   /// Position errors of poses left out one at a time, under some priors [m].
@@ -377,6 +384,63 @@ class ErrorModelFit {
     estimate.mean_temperature = mean;
     estimate.temperature_std = std;
     estimate.converged = problem_.solve() && estimate.converged;
+    return true;
+  }
+
+  /// Fits again with what an earlier calibration knows as the prior, and keeps that where left-out poses are predicted
+  /// better.
+  VERNIER_API bool inherit(ErrorModelOutput& out) {
+    const ArmPrior& prior = *options_.prior;
+    require(prior.nominal.joints() == input_.nominal.joints() && prior.nominal.modified() == input_.nominal.modified(),
+            "fit_error_model: the earlier calibration is of an arm of ", prior.nominal.joints(), " joints in the ",
+            prior.nominal.modified() ? "modified" : "standard", " convention");
+    ErrorModelEstimate& estimate = out.estimate;
+    const CalibrationProblem without = problem_;
+    const double error_without = left_out(linearised(), problem_.arm.precisions()).mean();
+
+    const ErrorModelEstimate& before = prior.estimate;
+    const JointTerms& terms = before.arm.terms();
+    problem_.arm =
+        ArmParameterisation(starting_arms(input_), with_unknowns_of(prior, geometric_unknowns(input_, options_)));
+    problem_.arm.set_terms(terms, before.arm.scales().tail(terms.size()), VectorX::Zero(terms.size()));
+    problem_.reference_temperature = before.mean_temperature;
+    const TransferredUnknowns known = transferred_unknowns(prior, problem_.arm, input_.nominal);
+    VectorX to_mean = VectorX::Zero(problem_.arm.size());
+    for (std::size_t k = 0; k < known.unknowns.size(); ++k)
+      to_mean(known.unknowns[k]) = known.mean(static_cast<Index>(k));
+    problem_.arm.move(to_mean);
+    problem_.reset_weights();
+    constexpr double usual = 0.15;  // change of an arm in months
+    problem_.prior = known.prior(problem_.arm.size(), usual, usual);
+    bool converged = problem_.solve();
+    PriorTransfer transfer = likely_transfer(problem_, known);
+    problem_.prior = known.prior(problem_.arm.size(), transfer.geometry, transfer.joints);
+    converged = problem_.solve() && converged;
+
+    const double error_with = left_out(linearised(), problem_.arm.precisions()).mean();
+    transfer.name = prior.name;
+    transfer.used = converged && error_with < error_without;
+    estimate.prior = transfer;
+    estimate.blocks.push_back(
+        {"prior", error_without, error_with, transfer.used, 1 / (transfer.joints * transfer.joints)});
+    if (!transfer.used) {
+      problem_ = without;
+      return false;
+    }
+    estimate.converged = true;
+    if (estimate.fallback_error == 0) estimate.fallback_error = error_without;
+    expected_ = before.arm.precisions().tail(terms.size());
+    if (before.temperature_std > 0) {
+      const double measured_mean = estimate.mean_temperature;
+      out.temperatures = estimate.temperature_std > 0 && measured_mean != 0
+                             ? std::array{std::min(out.temperatures[0], prior.temperatures[0]),
+                                          std::max(out.temperatures[1], prior.temperatures[1])}
+                             : prior.temperatures;
+      estimate.mean_temperature = before.mean_temperature;
+      estimate.temperature_std = before.temperature_std;
+    } else {
+      estimate.mean_temperature = estimate.temperature_std = 0;
+    }
     return true;
   }
 
@@ -512,7 +576,8 @@ class ErrorModelFit {
     const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
     const Index p = system.unknowns();
     estimate.covariance = solved.inverse();
-    const double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
+    double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
+    if (at.normal.prior.size() > 0) explained -= estimate.covariance.cwiseProduct(at.normal.prior).sum();
     const double values = static_cast<double>(problem_.measured_values());
     const double freedom = std::max(1.0, values - explained);
     estimate.residual_variance = estimate.variance_factor = at.normal.cost / freedom;
@@ -576,6 +641,7 @@ class ErrorModelFit {
   std::vector<HarmonicSpectrum> spectra_;  ///< of each joint, with the lines of its drive and those that were found
   CalibrationProblem problem_;
   Index stride_;
+  VectorX expected_{};  // precisions of the joint errors by an earlier calibration that is used
 };
 
 VERNIER_IMPL ErrorModelOutput fit_error_model(const ErrorModelInput& input, const ErrorModelOptions& options,

@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
+#include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
+#include "vernier/identification/fitted_arm.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 #include "vernier/regression/elm_predictor.hpp"
 
@@ -69,6 +72,7 @@ class CalibratedRobot {
   /// The same arm with another model, in other frames perhaps: what was learned in its base frame rotates with it.
   CalibratedRobot with_model(const Model& model, Provenance provenance) const {
     CalibratedRobot out(name_, model, limits_, std::move(provenance));
+    if (estimate_) out = out.with_estimate(estimate_->of_arm(FittedArm::of(out.identified())));
     if (!corrected_) return out;
     const Matrix3 turn = out.identified().base().linear() * identified().base().linear().transpose();
     const Learned& learned = corrected_->learned();
@@ -84,6 +88,15 @@ class CalibratedRobot {
     if (corrected_) out.corrected_.emplace(out.model_, corrected_->learned(), corrected_->coverage());
     return out;
   }
+
+  /// The same with what its calibration estimated: unknowns with their covariance, and noise.
+  CalibratedRobot with_estimate(ErrorModelEstimate estimate) const {
+    CalibratedRobot out = *this;
+    out.estimate_ = std::make_shared<const ErrorModelEstimate>(std::move(estimate));
+    return out;
+  }
+  /// What its calibration estimated, of one station; null where that was not kept, as in older files.
+  const ErrorModelEstimate* estimate() const { return estimate_.get(); }
 
   /// Its name.
   const std::string& name() const { return name_; }
@@ -207,6 +220,7 @@ class CalibratedRobot {
   Provenance provenance_;
   Model model_;
   std::optional<Corrected> corrected_{};
+  std::shared_ptr<const ErrorModelEstimate> estimate_{};  // shared, for it is large and never changes
 };
 
 /// What a saved calibration is described by beside its model.
@@ -219,14 +233,29 @@ struct RobotInfo {
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
 };
 
+/// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
+/// @throws std::invalid_argument where its covariance was not kept
+template <int N, class Convention>
+ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
+  require(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
+  ArmPrior out{robot.name(), detail::ChainTable(robot.nominal().model().view()), *robot.estimate()};
+  if (const JointCoverage<N>* coverage = robot.model().coverage()) {
+    out.ranges.assign(coverage->ranges.begin(), coverage->ranges.end());
+    out.margins = coverage->margin;
+  }
+  if (const ThermalRates* thermal = robot.model().thermal()) out.temperatures = {thermal->lower, thermal->upper};
+  return out;
+}
+
 /// The arm of a calibration, with what was learned on top: as seen from its first station.
 template <int N, class Convention>
 CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
                                                 const RobotInfo<N>& info = {}) {
-  const CalibratedRobot<N, Convention> robot(
-      info.name, calibration.model(), info.limits,
-      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
-       calibration.errors.position_sigma});
+  const auto robot =
+      CalibratedRobot<N, Convention>(info.name, calibration.model(), info.limits,
+                                     {info.data_file, calibration.poses, info.date, info.joints,
+                                      calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma})
+          .with_estimate(calibration.errors.first_station());
   if (!calibration.remainder_supported) return robot;
   return robot.with_learned(calibration.remainder->predictor, calibration.remainder->coverage);
 }

@@ -63,8 +63,8 @@ class JsonNode {
   /// A whole number in [lower, upper].
   VERNIER_API std::int64_t integer(std::int64_t lower, std::int64_t upper) const;
 
-  /// A text of 1 to 1000 printable characters.
-  VERNIER_API std::string text() const;
+  /// A text of 1 to `most` printable characters.
+  VERNIER_API std::string text(std::size_t most = 1000) const;
 
   /// Whether it is an empty text.
   VERNIER_API bool is_empty_text() const;

@@ -107,10 +107,10 @@ VERNIER_IMPL std::int64_t JsonNode::integer(std::int64_t lower, std::int64_t upp
   return out;
 }
 
-VERNIER_IMPL std::string JsonNode::text() const {
+VERNIER_IMPL std::string JsonNode::text(std::size_t most) const {
   if (!value_->is_string()) fail(std::string("must be a text, is ") + type_name());
   auto out = value_->get<std::string>();
-  if (out.empty() || out.size() > 1000) fail(message("must have 1 to 1000 characters, has ", out.size()));
+  if (out.empty() || out.size() > most) fail(message("must have 1 to ", most, " characters, has ", out.size()));
   if (std::any_of(out.begin(), out.end(), [](unsigned char c) { return c < 32 || c == 127; }))
     fail("has a character that cannot be printed");
   return out;

@@ -59,6 +59,7 @@ struct ModelData {
   CoverageData coverage;  ///< where there is a fallback
   std::optional<ThermalRates> thermal;
   std::optional<LearnedData> learned;
+  std::optional<ErrorModelEstimate> estimate;
 };
 
 VERNIER_API nlohmann::ordered_json model_to_json(const ModelData& model);
@@ -79,7 +80,9 @@ ModelData model_data(const CalibratedRobot<N, Convention>& robot) {
                 {},
                 {},
                 {},
+                {},
                 {}};
+  if (robot.estimate() != nullptr) out.estimate = *robot.estimate();
   if (robot.model().thermal() != nullptr) out.thermal = *robot.model().thermal();
   if (const auto* fallback = robot.model().fallback()) {
     out.fallback = FittedArm::of(*fallback);
@@ -142,7 +145,8 @@ CalibratedRobot<N, Convention> load(const std::string& path) {
                                       data.coverage.template typed<N>())
                               : Model(nominal, data.identified.typed(nominal));
   if (data.thermal) model = model.with_thermal(*data.thermal);
-  const Robot robot(data.name, model, {data.lower, data.upper}, data.provenance);
+  Robot robot(data.name, model, {data.lower, data.upper}, data.provenance);
+  if (data.estimate) robot = robot.with_estimate(*data.estimate);
   if (!data.learned) return robot;
   const detail::LearnedData& learned = *data.learned;
   return robot.with_learned({learned.layer, learned.scaling, learned.theta, learned.beta, learned.offset},

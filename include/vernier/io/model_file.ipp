@@ -10,15 +10,16 @@
 
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/version.hpp"
+#include "vernier/io/detail/estimate_json.hpp"
 #include "vernier/io/model_file.hpp"
 
 namespace vernier {
 
 namespace detail {
 
-/// The version of the files that are written. Versions 2 (standard chains) and 3 (modified ones) are read, too: they
-/// have the orders 1 .. `harmonics` at each joint, and no hysteresis.
-inline constexpr int model_schema_version = 4, oldest_schema_version = 2;
+/// The version of the files that are written. Version 4 is read, too, without an estimate, and versions 2 (standard
+/// chains) and 3 (modified ones): they have the orders 1 .. `harmonics` at each joint, and no hysteresis.
+inline constexpr int model_schema_version = 5, oldest_schema_version = 2;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
 inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "tanh", "sine", "radial_basis"};
 inline constexpr std::array<std::string_view, 3> input_map_names{"raw", "sines_and_cosines", "sine_cosine_products"};
@@ -295,6 +296,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
                       {"measured_c", {model.thermal->lower, model.thermal->upper}},
                       {"rates_per_k", list_of(model.thermal->parameters)}};
   if (model.learned) out["learned"] = learned_to_json(*model.learned);
+  if (model.estimate) out["estimate"] = estimate_to_json(*model.estimate);
   return out;
 }
 
@@ -359,6 +361,7 @@ VERNIER_IMPL ModelData read_model(const std::string& path, int joints, bool modi
                 {},
                 {},
                 {},
+                {},
                 {}};
   if (root.has("coverage") && !root.has("outside_arm")) root.fail("key 'outside_arm' is missing");
   if (root.has("outside_arm")) {
@@ -373,6 +376,8 @@ VERNIER_IMPL ModelData read_model(const std::string& path, int joints, bool modi
                                node.at("rates_per_k").numbers(static_cast<std::size_t>(12 + 5 * joints))};
   }
   if (root.has("learned")) out.learned = learned_from_json(root.at("learned"), joints);
+  if (root.has("estimate"))
+    out.estimate = estimate_from_json(root.at("estimate"), out.identified, out.thermal ? &*out.thermal : nullptr);
   return out;
 }
 

@@ -74,6 +74,11 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"chosen", report.chosen},
           {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
           {"blocks", blocks},
+          {"prior", report.prior ? Json{{"name", report.prior->name},
+                                        {"used", report.prior->used},
+                                        {"geometry_kappa", report.prior->geometry},
+                                        {"joints_kappa", report.prior->joints}}
+                                 : Json()},
           {"parameters", parameters},
           {"identifiability",
            {{"rank", identification.rank},

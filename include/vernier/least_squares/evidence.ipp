@@ -23,7 +23,7 @@ VERNIER_API PenalisedMinimum penalised_minimum(const NormalEquations& normal, co
   const double at_present = normal.cost + precisions.dot(steps.cwiseAbs2()) + local_prior_cost(normal, local_steps);
   const double gain = solved.step().dot(normal.gradient + precisions.cwiseProduct(steps)) +
                       local_gain(normal, solved.local_step(), local_steps);
-  const auto without_prior = static_cast<double>((precisions.array() <= 0).count());
+  const auto without_prior = static_cast<double>((precisions.array() <= 0).count() - normal.prior_unknowns);
   return {std::max(at_present + gain, 1e-300), std::max(1.0, static_cast<double>(values) - without_prior)};
 }
 

@@ -24,7 +24,17 @@ struct LocalPrior {
   MatrixX precision;  ///< local_size x local_size
 };
 
-/// J'J and J'r of all blocks, priors apart.
+/// A Gaussian prior of all dense and factored unknowns together, with correlations.
+struct JointPrior {
+  MatrixX precision;  ///< unknowns x unknowns, both triangles; rows of unknowns without prior are zero
+  VectorX mean;       ///< values of the unknowns in steps; zero for those without prior
+  Index unknowns;     ///< number of those with a prior
+
+  /// Twice the negative logarithm of its density, up to a constant.
+  VERNIER_API double cost(const VectorX& steps) const;
+};
+
+/// J'J and J'r of all blocks, independent priors apart.
 struct NormalEquations {
   MatrixX matrix;               ///< of dense and factored unknowns, both triangles
   VectorX gradient;             ///< of dense and factored unknowns
@@ -33,10 +43,17 @@ struct NormalEquations {
   VectorX local_gradient;       ///< of local unknowns
   SparseSymmetric local;        ///< of local unknowns
   SparseSymmetric local_prior;  ///< precisions of local unknowns, same pattern
+  MatrixX prior{};              ///< precision of a `JointPrior` that was added; empty for none
+  Index prior_unknowns = 0;     ///< number of unknowns with such a prior
 
   /// Sums over all blocks.
   /// @complexity O(blocks u^2 / 6) for u unknowns, memory O(u^2)
   VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {});
+
+  /// Adds a prior with correlations to matrix, gradient and cost, as if it were measurements.
+  /// @param joint the prior
+  /// @param steps present values of dense and factored unknowns
+  VERNIER_API void add(const JointPrior& joint, const VectorX& steps);
 };
 
 /// `z' P z` for present values of local unknowns and the precisions P of their priors; 0 without local states.

@@ -159,6 +159,24 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
   if (system.local_states > 0) detail::add_local(system, local_priors, *this);
 }
 
+VERNIER_IMPL double JointPrior::cost(const VectorX& steps) const {
+  const MatrixX offset = steps - mean;
+  MatrixX slope = MatrixX::Zero(offset.rows(), 1);
+  detail::add_product(slope, precision, offset);
+  return slope.col(0).dot(offset.col(0));
+}
+
+VERNIER_IMPL void NormalEquations::add(const JointPrior& joint, const VectorX& steps) {
+  const MatrixX offset = steps - joint.mean;
+  MatrixX slope = MatrixX::Zero(offset.rows(), 1);
+  detail::add_product(slope, joint.precision, offset);
+  matrix += joint.precision;
+  gradient += slope.col(0);
+  cost += slope.col(0).dot(offset.col(0));
+  prior = joint.precision;
+  prior_unknowns = joint.unknowns;
+}
+
 VERNIER_IMPL double local_prior_cost(const NormalEquations& normal, const VectorX& local_steps) {
   return normal.local.size == 0 ? 0 : local_steps.dot(detail::multiply(normal.local_prior, local_steps));
 }

@@ -5,6 +5,7 @@
 /// measurement meets a model.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "vernier/identification/arm_parameterisation.hpp"
@@ -31,6 +32,7 @@ class CalibrationProblem {
   ArmParameterisation arm;           ///< at its present values
   std::vector<SessionDrift> drift;   ///< of each station, at its present values; may be empty
   double reference_temperature = 0;  ///< at which thermal unknowns have no effect [deg C]
+  std::optional<JointPrior> prior;   ///< with correlations; of unknowns that have no prior of their own
   bool joint_columns = true;         ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }
@@ -67,6 +69,8 @@ class CalibrationProblem {
 
   /// The problem as rows; refers to this.
   VERNIER_API BlockSystem system() const;
+  /// Its normal equations at the present values, with `prior`.
+  VERNIER_API NormalEquations normal_equations() const;
   /// Evaluates blocks first .. first + count - 1: residuals and columns divided by the sensors' sigmas and weighted by
   /// the loss. Errors of joint readings are unknowns of each pose with a prior, eliminated here in closed form.
   VERNIER_API void operator()(Index first, Index count, RowBlock* out) const;

@@ -32,6 +32,12 @@ VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
   return out;
 }
 
+VERNIER_IMPL NormalEquations CalibrationProblem::normal_equations() const {
+  NormalEquations out(system(), drift_priors());
+  if (prior) out.add(*prior, arm.steps());
+  return out;
+}
+
 VERNIER_IMPL Index CalibrationProblem::measured_values() const {
   Index sum = 0;
   for (const auto& station : stations_) sum += station.values() * station.size();
@@ -293,7 +299,7 @@ VERNIER_IMPL double CalibrationProblem::cost() const {
     }
   }
   const VectorX steps = arm.steps();
-  return sum + arm.precisions().dot(steps.cwiseAbs2());
+  return sum + arm.precisions().dot(steps.cwiseAbs2()) + (prior ? prior->cost(steps) : 0);
 }
 
 VERNIER_IMPL MatrixX CalibrationProblem::residual_norms() const {
@@ -358,9 +364,10 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
     const VectorX local_steps = drift_steps();
     std::array<double, 2> sums{};
     if (robust) sums = reweight();
-    const NormalEquations normal(system(), drift_priors());
-    const double of_priors = precisions.dot(steps.cwiseAbs2()) + local_prior_cost(normal, local_steps);
+    const NormalEquations normal = normal_equations();
+    double of_priors = precisions.dot(steps.cwiseAbs2()) + local_prior_cost(normal, local_steps);
     if (!robust) sums = {normal.cost, normal.cost};
+    if (robust && prior) of_priors += prior->cost(steps);  // `normal.cost` has it
     const double sum = sums[0] + of_priors;
     if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
       damping.reject();

@@ -235,10 +235,15 @@ CalibratedRobot<6> model() {
                                  Model(robot.chain, arm, Model::Arm(robot.chain), JointCoverage<6>::covering(joints))
                                      .with_thermal({22, 20, 24, VectorX::Constant(42, 1e-6)}),
                                  robot.limits, {"poses.csv", 30, "2024-05-01", "commanded"});
+  ErrorModelEstimate estimate{
+      .arm = detail::parameterised(FittedArm::of(arm), {{7, -1, 1e-3, 1}, {7, -1, 1e-4, 1, true}},
+                                   VectorX::Ones(terms.size()), VectorX::Ones(terms.size()), VectorX())};
+  estimate.covariance = MatrixX::Identity(terms.size() + 2, terms.size() + 2);
   const HiddenLayer layer{.nodes = 4, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<4, 3>();
-  return plain.with_learned({layer, {VectorX::Zero(12), VectorX::Ones(12)}, layer.draw(6, 2), beta, Vector3::Zero()},
-                            JointCoverage<6>::covering(joints));
+  return plain.with_estimate(estimate).with_learned(
+      {layer, {VectorX::Zero(12), VectorX::Ones(12)}, layer.draw(6, 2), beta, Vector3::Zero()},
+      JointCoverage<6>::covering(joints));
 }
 
 TEST(BadInput, ModelFiles) {
@@ -247,8 +252,9 @@ TEST(BadInput, ModelFiles) {
     (void)load<6>(path);
   });
   const Json valid = to_json(model());
-  expect_refused_when_damaged(reader, valid, {"written_by"}, {"name", "data_file", "date"},
-                              {"lower_rad", "upper_rad", "learned", "periodic", "linear_ranges", "thermal"});
+  expect_refused_when_damaged(
+      reader, valid, {"written_by"}, {"name", "data_file", "date"},
+      {"lower_rad", "upper_rad", "learned", "periodic", "linear_ranges", "thermal", "estimate", "per_kelvin"});
   const auto with = [&](const char* pointer, const Json& value) {
     Json damaged = valid;
     damaged[Json::json_pointer(pointer)] = value;
@@ -279,6 +285,16 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/provenance/measured", "colours"), "another kind of measurement");
   reader.expect_refused(with("/learned/input_map", "raw"), "weights of another layer");
   reader.expect_refused(with("/joints/3/lower_rad", 100), "limits upside down");
+  reader.expect_refused(with("/estimate/position_sigma_m", -1), "noise below none");
+  reader.expect_refused(with("/estimate/variance_factor", 0), "no variance");
+  reader.expect_refused(with("/estimate/geometric/0/parameter", "d9"), "a parameter of another arm");
+  reader.expect_refused(with("/estimate/geometric/0/scale", 0), "an unknown without unit");
+  reader.expect_refused(with("/estimate/geometric/0/prior_std", -1), "a prior narrower than none");
+  reader.expect_refused(with("/estimate/coefficient_scales/3", 0), "a coefficient without unit");
+  reader.expect_refused(with("/estimate/stds_in_scales/3", -1), "a negative deviation");
+  reader.expect_refused(with("/estimate/correlated", 3), "a factor of another size");
+  reader.expect_refused(with("/estimate/correlation_factor", "AACAPw=="), "a factor of one number");
+  reader.expect_refused(with("/estimate/correlation_factor", "AACAPw="), "no base64");
   RecordProperty("cases", reader.cases);
   EXPECT_GE(reader.cases, 400);
 }

@@ -77,6 +77,22 @@ TEST(Evidence, CountsUnknownsWithoutPrior) {
   EXPECT_NEAR(found, limit - 0.5 * std::log(1e-9), 1e-5);
 }
 
+// A joint prior without correlations is the same as independent ones, but for its own size, which is left out.
+TEST(Evidence, AJointPriorIsAPrior) {
+  const LocalStates problem(5);
+  const VectorX independent = VectorX::Constant(4, 0.5), none = VectorX::Zero(4);
+  const NormalEquations normal = problem.normal_equations();
+  NormalEquations joint = normal;
+  joint.add({MatrixX(independent.asDiagonal()), none, 4}, problem.steps);
+  const Index values = 6 * LocalStates::blocks;
+  EXPECT_NEAR(log_evidence(joint, FactorisedEquations(joint, none, problem.steps, problem.local_steps), none,
+                           problem.steps, values, problem.local_steps),
+              log_evidence(normal, FactorisedEquations(normal, independent, problem.steps, problem.local_steps),
+                           independent, problem.steps, values, problem.local_steps) -
+                  2 * std::log(0.5),
+              1e-8);
+}
+
 TEST(Evidence, NoSolutionHasNone) {
   const LocalStates problem(6);
   NormalEquations normal = problem.normal_equations();

@@ -74,6 +74,29 @@ TEST(FactorisedEquations, StepEndsTheRegularisedProblem) {
   EXPECT_LT(slope.norm(), 1e-9 * normal.gradient.norm());
 }
 
+// A prior with correlations, as rows of its Cholesky factor would be.
+TEST(NormalEquations, AJointPriorActsAsMeasurements) {
+  const RandomBlocks blocks(15, 4);
+  Rng rng(6);
+  MatrixX half(15, 15);
+  for (Index k = 0; k < 15; ++k) half.col(k) = random_vector(rng, 15);
+  half.col(3).setZero();  // no prior
+  const VectorX mean = random_vector(rng, 15), steps = random_vector(rng, 15), none = VectorX::Zero(15);
+  const JointPrior prior{half.transpose() * half, mean, 14};
+  NormalEquations normal = blocks.normal();
+  const VectorX rows = half * (steps - mean);  // residuals of the prior
+  const MatrixX matrix = normal.matrix + half.transpose() * half;
+  const VectorX gradient = normal.gradient + half.transpose() * rows;
+  const double cost = normal.cost + rows.squaredNorm();
+  EXPECT_NEAR(prior.cost(steps), rows.squaredNorm(), 1e-10 * cost);
+  normal.add(prior, steps);
+  EXPECT_NEAR(normal.cost, cost, 1e-12 * cost);
+  const FactorisedEquations solved(normal, none, steps);
+  ASSERT_TRUE(solved.usable());
+  const VectorX wanted = -matrix.llt().solve(gradient);
+  EXPECT_LT((solved.step() - wanted).norm(), 1e-8 * wanted.norm());
+}
+
 TEST(FactorisedEquations, WhatNothingDeterminesStays) {
   RandomBlocks blocks(15, 6);
   for (RowBlock& p : blocks.rows) p.dense.col(2).setZero();

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "vernier/error_model/error_model.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
 
 namespace vernier {
@@ -24,5 +26,20 @@ struct ArmPrior {
   VectorX margins{};                              ///< of `JointCoverage`, one a joint
   std::array<double, 2> temperatures{};           ///< measured range [deg C], where the geometry changes with it
 };
+
+/// A fitted arm as the prior of another fit.
+/// @param name     for messages
+/// @param model    of its first station
+/// @param estimate of that station, see `ErrorModelEstimate::first_station`
+template <class Chain>
+ArmPrior arm_prior(std::string name, const ErrorModel<Chain>& model, ErrorModelEstimate estimate) {
+  ArmPrior out{std::move(name), detail::ChainTable(model.nominal().model().view()), std::move(estimate)};
+  if (const auto* coverage = model.coverage()) {
+    out.ranges.assign(coverage->ranges.begin(), coverage->ranges.end());
+    out.margins = coverage->margin;
+  }
+  if (const ThermalRates* thermal = model.thermal()) out.temperatures = {thermal->lower, thermal->upper};
+  return out;
+}
 
 }  // namespace vernier

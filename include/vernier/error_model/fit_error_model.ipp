@@ -419,7 +419,9 @@ class ErrorModelFit {
 
     const double error_with = left_out(linearised(), problem_.arm.precisions()).mean();
     transfer.name = prior.name;
-    transfer.used = converged && error_with < error_without;
+    constexpr double unrelated = 0.6;  // of errors that have nothing to do with each other it would be above 1
+    const bool holds = std::min(transfer.geometry, transfer.joints) < unrelated;
+    transfer.used = converged && holds && error_with < error_without;
     estimate.prior = transfer;
     estimate.blocks.push_back(
         {"prior", error_without, error_with, transfer.used, 1 / (transfer.joints * transfer.joints)});

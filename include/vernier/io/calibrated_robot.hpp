@@ -238,13 +238,7 @@ struct RobotInfo {
 template <int N, class Convention>
 ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
   require(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
-  ArmPrior out{robot.name(), detail::ChainTable(robot.nominal().model().view()), *robot.estimate()};
-  if (const JointCoverage<N>* coverage = robot.model().coverage()) {
-    out.ranges.assign(coverage->ranges.begin(), coverage->ranges.end());
-    out.margins = coverage->margin;
-  }
-  if (const ThermalRates* thermal = robot.model().thermal()) out.temperatures = {thermal->lower, thermal->upper};
-  return out;
+  return arm_prior(robot.name(), robot.model(), *robot.estimate());
 }
 
 /// The arm of a calibration, with what was learned on top: as seen from its first station.

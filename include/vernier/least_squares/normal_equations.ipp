@@ -193,7 +193,9 @@ VERNIER_IMPL FactorisedEquations::FactorisedEquations(const NormalEquations& nor
   factor_ = normal.matrix;
   VectorX right = normal.gradient + precisions.cwiseProduct(steps);
   factor_.diagonal() += precisions + damping * (normal.matrix.diagonal() + precisions);
-  factor_.diagonal().array() += 1e-12 * normal.matrix.diagonal().maxCoeff();  // of the data alone: priors may be huge
+  VectorX of_data = normal.matrix.diagonal();  // priors may be huge
+  if (normal.prior.size() > 0) of_data -= normal.prior.diagonal();
+  factor_.diagonal().array() += 1e-12 * of_data.maxCoeff();
   VectorX local_right;
   if (normal.local.size > 0) {
     local_ = normal.local;

@@ -85,8 +85,9 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
   const std::vector<std::string> names = arm.geometry(0).parameter_names();
   Json geometric = Json::array();
   for (const GeometricUnknown& u : arm.geometric()) {
-    Json one{
-        {"parameter", names[static_cast<std::size_t>(u.parameter)]}, {"scale", u.scale}, {"precision", u.precision}};
+    Json one{{"parameter", names[static_cast<std::size_t>(u.parameter)]},
+             {"scale", u.scale},
+             {"prior_std", u.precision > 0 ? 1 / std::sqrt(u.precision) : 0}};
     if (u.thermal) one["per_kelvin"] = true;
     geometric.push_back(std::move(one));
   }
@@ -107,6 +108,10 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
     for (Index j = 0; j <= i; ++j) factor.push_back(static_cast<float>(correlation(i, j)));
   const VectorX scales = arm.scales(), precisions = arm.precisions();
   const Index terms = arm.terms().size();
+  VectorX prior_stds = VectorX::Zero(terms);  // in scales; 0 for none
+  for (Index k = 0; k < terms; ++k)
+    if (const double precision = precisions(precisions.size() - terms + k); precision > 0)
+      prior_stds(k) = 1 / std::sqrt(precision);
   return {{"position_sigma_m", estimate.position_sigma},
           {"joint_sigma_rad", estimate.joint_sigma},
           {"orientation_sigma_rad", estimate.orientation_sigma},
@@ -117,7 +122,7 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
           {"residual_variance", estimate.residual_variance},
           {"geometric", std::move(geometric)},
           {"coefficient_scales", list(scales.tail(terms))},
-          {"coefficient_precisions", list(precisions.tail(terms))},
+          {"coefficient_prior_stds", list(prior_stds)},
           {"stds_in_scales", list(stds)},
           {"correlated", kept},
           {"correlation_factor", base64_of(factor)}};
@@ -134,6 +139,11 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
     if (!(value.number() > 0)) value.fail("must be positive");
     return value.number();
   };
+  const auto precision_of = [](const JsonNode& prior_std) {
+    const double std = prior_std.number();
+    if (std < 0) prior_std.fail("must not be negative");
+    return std > 0 ? 1 / (std * std) : 0;
+  };
   const std::vector<std::string> names = arm.geometry.parameter_names();
   std::vector<GeometricUnknown> unknowns;
   const JsonNode geometric = node.at("geometric");
@@ -141,16 +151,17 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
     const JsonNode one = geometric.at(k);
     const auto name = std::find(names.begin(), names.end(), one.at("parameter").text());
     if (name == names.end()) one.at("parameter").fail("is no parameter of the arm");
-    if (one.at("precision").number() < 0) one.at("precision").fail("must not be negative");
     unknowns.push_back({static_cast<Index>(name - names.begin()), -1, positive(one.at("scale")),
-                        one.at("precision").number(), one.has("per_kelvin")});
+                        precision_of(one.at("prior_std")), one.has("per_kelvin")});
   }
   const Index terms = arm.errors.terms().size(), size = static_cast<Index>(unknowns.size()) + terms;
   const VectorX scales = node.at("coefficient_scales").numbers(static_cast<std::size_t>(terms));
-  const VectorX precisions = node.at("coefficient_precisions").numbers(static_cast<std::size_t>(terms));
+  const JsonNode prior_stds = node.at("coefficient_prior_stds");
+  prior_stds.require_size(static_cast<std::size_t>(terms));
+  VectorX precisions(terms);
+  for (Index k = 0; k < terms; ++k) precisions(k) = precision_of(prior_stds.at(static_cast<std::size_t>(k)));
   const VectorX stds = node.at("stds_in_scales").numbers(static_cast<std::size_t>(size));
   if ((scales.array() <= 0).any()) node.at("coefficient_scales").fail("must be positive");
-  if ((precisions.array() < 0).any()) node.at("coefficient_precisions").fail("must not be negative");
   if ((stds.array() < 0).any()) node.at("stds_in_scales").fail("must not be negative");
   const Index kept = static_cast<Index>(node.at("correlated").integer(0, size));
   const std::vector<float> factor = floats_of(node.at("correlation_factor").text(16'000'000));

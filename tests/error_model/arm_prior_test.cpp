@@ -1,0 +1,170 @@
+// An earlier calibration as the prior of a later one.
+
+#include "vernier/error_model/arm_prior.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "gauss_newton.hpp"
+#include "vernier/error_model/detail/prior_transfer.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::arm_prior_test {
+namespace {
+
+using Chain = DhChain<6>;
+using Actual = Framed<WithJointErrors<Chain>>;
+
+const Robot<6> robot = robots::abb_irb120();
+const SensorModel squared{.loss = Loss::squared};
+const ErrorModelOptions twenty_orders{.harmonics = 20, .num_validation_poses = 100};
+
+/// Joint errors of a typical size, of orders 1 to 20.
+JointErrors joint_errors(std::uint64_t seed) {
+  return draw_joint_errors(
+      robot.chain, {.gear_ratio = 0, .coupling = 0, .compliance = 0.2e-3, .harmonic = 0.2e-3, .harmonics = 20}, seed);
+}
+
+/// An arm in a cell: where it stands depends on the seed of its geometry.
+Actual arm(std::uint64_t geometry, const JointErrors& errors, double x) {
+  return Actual({with_geometric_errors(robot.chain, {}, geometry), errors},
+                FrameParameters(Vector6{x, -0.3, 0.2, 0.3, -0.4, 0.6}),
+                FrameParameters(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5}));
+}
+
+/// The same joint functions, changed by a share of their sizes.
+JointErrors changed(const JointErrors& before, double share, std::uint64_t seed) {
+  const JointErrors other = joint_errors(seed);
+  return {before.terms(), before.coefficients() + share * other.coefficients()};
+}
+
+Dataset<6> measured(const Actual& actual, Index poses, std::uint64_t seed) {
+  return measure(actual, sample_joints(robot.limits, poses, seed), {.position = 0.03e-3, .orientation = 0.1e-3}, seed);
+}
+
+FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ArmPrior* prior) {
+  const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain), data,
+                                                            {.frames = Frames::base_and_tool}, squared);
+  ErrorModelOptions options = twenty_orders;
+  options.prior = prior;
+  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+}
+
+ArmPrior prior_from(const Actual& actual, Index poses) {
+  const auto found = fitted(measured(actual, poses, 1), nullptr);
+  return arm_prior("before", found.model(), found.first_station());
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Errors of unseen poses with a prior, divided by those without, of arms fitted to 20 poses.
+struct Outcome {
+  std::vector<double> ratios;
+  std::vector<PriorTransfer> transfers;
+};
+template <class TrueArm>
+Outcome from_twenty_poses(const ArmPrior& prior, const TrueArm& true_arm, int arms) {
+  Outcome out;
+  for (int k = 0; k < arms; ++k) {
+    const auto seed = static_cast<std::uint64_t>(100 + k);
+    const Actual actual = true_arm(seed);
+    const Dataset<6> few = measured(actual, 20, seed), unseen = measured(actual, 200, seed + 1000);
+    const auto without = fitted(few, nullptr), with = fitted(few, &prior);
+    EXPECT_TRUE(with.prior.has_value());
+    out.transfers.push_back(*with.prior);
+    out.ratios.push_back(position_errors(with.model(), unseen).mean() /
+                         position_errors(without.model(), unseen).mean());
+  }
+  return out;
+}
+
+// Joint functions that changed by 15 %, of the same arm in another cell: from 20 poses at least a third less error.
+TEST(ArmPrior, TheSameArmLaterIsPredictedFromFewPoses) {
+  const JointErrors errors = joint_errors(5);
+  const Outcome found = from_twenty_poses(
+      prior_from(arm(4, errors, 0.4), 400),
+      [&](std::uint64_t seed) { return arm(4, changed(errors, 0.15, seed), -0.7); }, 5);
+  EXPECT_LT(median(found.ratios), 2.0 / 3);
+  for (const PriorTransfer& transfer : found.transfers) {
+    EXPECT_TRUE(transfer.used);
+    EXPECT_LE(transfer.geometry, 0.1);
+    EXPECT_LE(transfer.joints, 0.4);
+  }
+}
+
+// Another arm of the type, with a geometry of its own.
+TEST(ArmPrior, ATwinIsPredictedFromFewPoses) {
+  const JointErrors errors = joint_errors(5);
+  const Outcome found = from_twenty_poses(
+      prior_from(arm(4, errors, 0.4), 400),
+      [&](std::uint64_t seed) { return arm(seed, changed(errors, 0.15, seed), -0.7); }, 5);
+  EXPECT_LT(median(found.ratios), 2.0 / 3);
+  for (const PriorTransfer& transfer : found.transfers) {
+    EXPECT_TRUE(transfer.used);
+    EXPECT_GE(transfer.geometry, 0.4);
+    EXPECT_LE(transfer.joints, 0.4);
+  }
+}
+
+// Nothing of an arm with other functions and another geometry holds: named useless, and no harm.
+TEST(ArmPrior, ADifferentArmIsNamedUseless) {
+  const ArmPrior prior = prior_from(arm(4, joint_errors(5), 0.4), 400);
+  const Outcome found = from_twenty_poses(
+      prior, [&](std::uint64_t seed) { return arm(seed, joint_errors(seed + 50), -0.7); }, 5);
+  for (std::size_t k = 0; k < found.ratios.size(); ++k) {
+    EXPECT_FALSE(found.transfers[k].used) << found.transfers[k].geometry << ' ' << found.transfers[k].joints;
+    EXPECT_LT(found.ratios[k], 1.05);
+  }
+}
+
+TEST(ArmPrior, OfAnotherNumberOfJointsIsRefused) {
+  ArmPrior prior = prior_from(arm(4, joint_errors(5), 0.4), 60);
+  prior.nominal = detail::ChainTable(robots::barrett_wam().chain.view());
+  EXPECT_THROW(fitted(measured(arm(4, joint_errors(5), 0), 40, 2), &prior), std::invalid_argument);
+}
+
+// What was measured by either of the two is covered.
+TEST(ArmPrior, CoversWhatWasMeasuredBefore) {
+  const JointErrors errors = joint_errors(5);
+  const ArmPrior prior = prior_from(arm(4, errors, 0.4), 300);
+  JointLimits<6> narrow = robot.limits;
+  narrow.lower *= 0.2;
+  narrow.upper *= 0.2;
+  const Actual actual = arm(4, errors, -0.7);
+  const Dataset<6> few = measure(actual, sample_joints(narrow, 20, 3), {.position = 0.03e-3, .orientation = 0.1e-3}, 3);
+  const auto found = fitted(few, &prior);
+  ASSERT_TRUE(found.prior && found.prior->used);
+  const JointVector<6> far = 0.8 * robot.limits.upper;
+  EXPECT_EQ(found.model().gate(far), 1);
+  EXPECT_LT(found.jointwise.front().gate(far), 1);
+  EXPECT_LT(position_errors(found.model(), measured(actual, 200, 9)).mean(), 0.1e-3);
+}
+
+// N(m, S + kappa^2 V0) of three unknowns by hand; the first is geometric.
+TEST(TransferredUnknownsWhiteBox, PriorByHand) {
+  detail::TransferredUnknowns known{{2, 0}, 1, Eigen::Vector2d(0.5, -1), MatrixX(2, 2), Eigen::Vector2d(4, 9)};
+  known.covariance << 1, 0.5, 0.5, 2;
+  const JointPrior prior = known.prior(3, 0.5, 2);
+  // S + diag(0.25 * 4, 4 * 9) = [2, 0.5; 0.5, 38], whose determinant is 75.75
+  EXPECT_EQ(prior.unknowns, 2);
+  EXPECT_EQ(prior.mean, Vector3(-1, 0, 0.5));
+  EXPECT_NEAR(prior.precision(2, 2), 38 / 75.75, 1e-12);
+  EXPECT_NEAR(prior.precision(0, 0), 2 / 75.75, 1e-12);
+  EXPECT_NEAR(prior.precision(0, 2), -0.5 / 75.75, 1e-12);
+  EXPECT_EQ(prior.precision.row(1).norm(), 0);
+  EXPECT_NEAR(prior.cost(Vector3(0, 7, 0.5)), 2 / 75.75, 1e-12);
+}
+
+}  // namespace
+}  // namespace vernier::arm_prior_test

@@ -11,32 +11,13 @@
 
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/calibration/detail/plausibility.hpp"
+#include "vernier/calibration/learn_remainders.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/identification/identify.hpp"
 #include "vernier/identification/stations.hpp"
-#include "vernier/least_squares/prior_choice.hpp"
-#include "vernier/regression/ridge_elm.hpp"
-#include "vernier/search/pso.hpp"
-#include "vernier/search/tuned.hpp"
 
 namespace vernier {
-
-/// How the position error that a model leaves is learned: a ridge ELM whose hidden weights a particle swarm optimises
-/// by leave-one-out error, the mean alone among the candidates.
-struct RemainderOptions {
-  bool on_geometry = false;    ///< also on geometry alone: the classical alternative to an error model
-  bool on_error_model = true;  ///< on the error model
-  int hidden_nodes = 30;       ///< number of hidden nodes
-  int particles = 20;          ///< of the swarm
-  int iterations = 20;         ///< of the swarm; more bring nothing that held-out poses would show
-
-  /// The recipe.
-  Tuned<RidgeElm, Pso> recipe() const {
-    return {RidgeElm{.hidden_nodes = hidden_nodes},
-            Pso{.particles = particles, .iterations = iterations, .positions = PositionRule::clamped}};
-  }
-};
 
 /// Options of `calibrate`.
 struct CalibrateOptions {
@@ -55,48 +36,6 @@ namespace detail {
 /// A given name, or `what` and a number.
 inline std::string name_of(const std::vector<std::string>& names, std::size_t k, const char* what) {
   return k < names.size() ? names[k] : message(what, ' ', k + 1);
-}
-
-/// Poses of all stations of one arm, as seen from the first.
-template <class Chain>
-Dataset<Chain::dof> seen_from_first(const std::vector<ErrorModel<Chain>>& models,
-                                    std::span<const Dataset<Chain::dof>> stations) {
-  std::vector<Isometry3> bases;
-  for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
-  return in_one_frame<Chain::dof>(stations, bases, false);
-}
-
-/// Learns what the models of some stations leave, in the frame of the first.
-template <class Chain>
-LearnedRemainder<Chain::dof> learn_remainder(const std::vector<ErrorModel<Chain>>& models,
-                                             std::span<const Dataset<Chain::dof>> stations,
-                                             const RemainderOptions& options, const FitOptions& fit) {
-  const auto hybrid =
-      CartesianCompensation{options.recipe()}.fit(models.front(), seen_from_first<Chain>(models, stations), fit);
-  return {hybrid.identified().learned(), hybrid.identified().coverage()};
-}
-
-/// Whether what is learned on training poses improves left-out ones by more than a standard error: five folds, each
-/// learned anew.
-template <class Chain>
-bool remainder_helps(const std::vector<ErrorModel<Chain>>& models, std::span<const Dataset<Chain::dof>> stations,
-                     const RemainderOptions& options, const FitOptions& fit) {
-  const Dataset<Chain::dof> data = seen_from_first<Chain>(models, stations);
-  constexpr Index folds = 5;
-  if (data.size() < 2 * folds) return false;
-  std::vector<PriorTrial> trials{{0, VectorX(data.size())}, {1, VectorX(data.size())}};  // with, without
-  Index done = 0;
-  for (Index fold = 0; fold < folds; ++fold) {
-    std::vector<Index> inside, left_out;
-    for (Index i = 0; i < data.size(); ++i) (i % folds == fold ? left_out : inside).push_back(i);
-    const auto hybrid = CartesianCompensation{options.recipe()}.fit(models.front(), data.rows(inside),
-                                                                    {.seed = fit.seed, .executor = fit.executor});
-    const Dataset<Chain::dof> rest = data.rows(left_out);
-    trials[0].errors.segment(done, rest.size()) = position_errors(hybrid.identified(), rest);
-    trials[1].errors.segment(done, rest.size()) = position_errors(models.front(), rest);
-    done += rest.size();
-  }
-  return one_standard_error_rule(trials) == 0;
 }
 
 }  // namespace detail
@@ -157,21 +96,14 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
   Calibration<Chain> out{std::move(frames), std::move(geometry), std::move(errors)};
   out.fit_seconds = seconds.count();
   out.sensors = options.sensors;
-  if (!poses.empty() && options.remainder.on_geometry)
-    out.geometry_remainder = detail::learn_remainder<Chain>(out.errors.geometry, poses, options.remainder, fit);
-  if (!poses.empty() && options.remainder.on_error_model) {
-    const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(out.errors.models, poses);
-    out.remainder = detail::learn_remainder<Chain>(out.errors.models, centred, options.remainder, fit);
-    out.remainder_supported =
-        !out.remainder->empty() && detail::remainder_helps<Chain>(out.errors.models, centred, options.remainder, fit);
-  }
+  if (!poses.empty()) detail::learn_remainders<Chain>(out, poses, options.remainder, fit);
 
   std::vector<double> residuals;
   out.oriented = options.sensors.use_orientations && !poses.empty();
   for (std::size_t s = 0; s < poses.size(); ++s) {
     out.poses += poses[s].size();
     out.oriented = out.oriented && poses[s].has_orientations();
-    const VectorX e = position_errors(out.errors.models[s], detail::without_hysteresis(out.errors.models[s], poses[s]));
+    const VectorX e = detail::visited_errors(out.errors.models[s], poses[s]);
     residuals.insert(residuals.end(), e.begin(), e.end());
   }
   for (const auto& data : wires) out.distances += data.size();

@@ -8,22 +8,25 @@
 #include <string>
 #include <vector>
 
+#include "vernier/calibration/remainder_options.hpp"
 #include "vernier/compensation/cartesian.hpp"
+#include "vernier/compensation/learned_error.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/identification/identified.hpp"
 #include "vernier/identification/sensor_model.hpp"
-#include "vernier/regression/elm_predictor.hpp"
 
 namespace vernier {
 
 /// A position error learned on top of a model, and where it is valid.
 template <int N>
 struct LearnedRemainder {
-  ElmPredictor<N, 3> predictor;  ///< of the position error [m], base frame
-  JointCoverage<N> coverage;     ///< the measured joint ranges
+  bool on_geometry;           ///< on geometry alone, not on the error model
+  Learner learner;            ///< how it was learned
+  LearnedError<N> predictor;  ///< of the position error [m], base frame
+  JointCoverage<N> coverage;  ///< the measured joint ranges
 
-  /// Whether anything was learned: leave-one-out errors may prefer the mean alone, or nothing.
-  bool empty() const { return predictor.beta().isZero(0); }
+  /// Whether nothing was learned: leave-one-out errors may prefer the mean alone.
+  bool empty() const { return predictor.constant(); }
 };
 
 /// Everything that `calibrate` found.
@@ -37,29 +40,36 @@ struct Calibration {
   std::vector<Calibrated<Chain>> frames;  ///< the nominal chain in registered frames, one a station of poses
   Identified<Chain> geometry;             ///< frames and geometry alone, stations joined in the frame of the first
   FittedErrorModel<Chain> errors;         ///< geometry and joint errors together
-  std::optional<LearnedRemainder<dof>> geometry_remainder{};  ///< learned on geometry alone, the classical alternative
-  std::optional<LearnedRemainder<dof>> remainder{};           ///< learned on the error model, without hysteresis
-  bool remainder_supported = false;                           ///< whether cross-validation supports that remainder
-  JointCoverage<dof> coverage{};                              ///< measured joint ranges
-  Index poses = 0;                                            ///< number of poses it was fitted to
-  Index distances = 0;                                        ///< number of distances it was fitted to
-  bool oriented = false;                                      ///< whether orientations were used
-  SensorModel sensors{};                                      ///< as given
-  Index outliers = 0;                                         ///< poses whose error exceeds eight times the median
-  double median_error = 0;  ///< median position error of the poses it was fitted to [m]
-  double fit_seconds = 0;   ///< time from poses to error model
+  std::vector<RemainderTrial> trials{};   ///< learners that were tried on what the models leave
+  std::vector<LearnedRemainder<dof>> remainders{};  ///< those of them that were learned from all poses
+  std::optional<std::size_t> deployed_remainder{};  ///< which of them is deployed; none where cross-validation
+                                                    ///< supports none
+  JointCoverage<dof> coverage{};                    ///< measured joint ranges
+  Index poses = 0;                                  ///< number of poses it was fitted to
+  Index distances = 0;                              ///< number of distances it was fitted to
+  bool oriented = false;                            ///< whether orientations were used
+  SensorModel sensors{};                            ///< as given
+  Index outliers = 0;                               ///< poses whose error exceeds eight times the median
+  double median_error = 0;                          ///< median position error of the poses it was fitted to [m]
+  double fit_seconds = 0;                           ///< time from poses to error model
 
-  /// The key of the last stage that left-out poses support: the one that is deployed. See `StageErrors`.
-  const char* chosen() const {
-    if (remainder_supported) return "jointwise_pso_elm";
-    const char* out = "geometry";
+  /// What was learned and is deployed; null for nothing.
+  const LearnedRemainder<dof>* deployed() const {
+    return deployed_remainder ? &remainders[*deployed_remainder] : nullptr;
+  }
+  /// The key of the stage that is deployed: the last that left-out poses support. See `StageErrors`.
+  std::string chosen() const {
+    if (deployed() != nullptr) return remainder_key(deployed()->on_geometry, deployed()->learner);
+    std::string out = "geometry";
     for (const BlockChoice& block : errors.blocks)
       for (const char* stage : {"elastic", "jointwise", "approach", "tilt", "temperature", "prior"})
         if (block.used && block.name == stage) out = stage;
     return out;
   }
-  /// The error model of the first station, without learned remainder.
-  const ErrorModel<Chain>& model() const { return errors.model(); }
+  /// The model of the first station that is deployed, without what was learned on it.
+  const ErrorModel<Chain>& model() const {
+    return deployed() != nullptr && deployed()->on_geometry ? errors.geometry.front() : errors.model();
+  }
 };
 
 namespace detail {
@@ -70,28 +80,39 @@ ErrorModel<Chain> at_temperature_of(const ErrorModel<Chain>& model, const Datase
   return data.temperatures().size() > 0 ? model.at_temperature(data.temperatures()(row)) : model;
 }
 
-/// Poses as they would have been measured at the mean temperature, in the middle of both directions of approach.
+/// Poses as predicted with their configurations of approach, moved by drift.
+/// @param temperature whether each is predicted at its temperature, not at the mean one
 template <class Chain>
-Dataset<Chain::dof> without_hysteresis(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
-  const bool thermal = model.thermal() != nullptr && data.temperatures().size() > 0;
-  if (!thermal && model.identified().model().joint_errors().terms().hysteresis.empty()) return data;
-  PointRows positions = data.positions();
-  for (Index i = 0; i < data.size(); ++i) {
-    const JointVector<Chain::dof> q = data.joints(i);
-    const auto visit = [&](const ErrorModel<Chain>& now) {
-      return Vector3(now.approached_from(data.previous().row(i).transpose()).position(q));
-    };
-    positions.row(i) -=
-        ((thermal ? visit(at_temperature_of(model, data, i)) : visit(model)) - model.position(q)).transpose();
-  }
-  return Dataset<Chain::dof>(data.joints(), positions).without_approach();
+std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, bool temperature,
+                                     const SessionDrift& drift) {
+  std::vector<Isometry3> out;
+  const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
+    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
+  };
+  const bool thermal = temperature && model.thermal() != nullptr;
+  for (Index i = 0; i < data.size(); ++i)
+    out.push_back(thermal ? visit(at_temperature_of(model, data, i), i) : visit(model, i));
+  return out;
 }
-/// The same for every station.
+
+/// Poses as they would have been measured at the mean temperature, in the middle of both directions of approach,
+/// without drift.
+/// @param drift one a station; none where there is none
 template <class Chain>
-std::vector<Dataset<Chain::dof>> without_hysteresis(const std::vector<ErrorModel<Chain>>& models,
-                                                    std::span<const Dataset<Chain::dof>> stations) {
+std::vector<Dataset<Chain::dof>> static_poses(const std::vector<ErrorModel<Chain>>& models,
+                                              std::span<const Dataset<Chain::dof>> stations,
+                                              const std::vector<SessionDrift>& drift) {
   std::vector<Dataset<Chain::dof>> out;
-  for (std::size_t s = 0; s < stations.size(); ++s) out.push_back(without_hysteresis(models[s], stations[s]));
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    const Dataset<Chain::dof>& data = stations[s];
+    const std::vector<Isometry3> visited =
+        visited_poses(models[s], data, true, s < drift.size() ? drift[s] : SessionDrift{});
+    PointRows positions = data.positions();
+    for (Index i = 0; i < data.size(); ++i)
+      positions.row(i) -=
+          (visited[static_cast<std::size_t>(i)].translation() - models[s].position(data.joints(i))).transpose();
+    out.push_back(Dataset<Chain::dof>(data.joints(), positions).without_approach());
+  }
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/calibration/remainder_options.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/least_squares/loss.hpp"
@@ -20,7 +21,8 @@ struct StageErrors {
   /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
   /// approach), `tilt` (the same with tilts of joint frames), `temperature` (the same at the temperature of each pose),
   /// `prior` (fitted with an earlier calibration as the prior),
-  /// `jointwise_pso_elm` (on the last of them, of positions at the mean temperature, without their hysteresis),
+  /// `jointwise_pso_elm` (on the last of them, of positions at the mean temperature, without their hysteresis), where
+  /// another learner is better `_ridge_elm` or `_kernel_elm` of either,
   /// `session` (the last error model with the session's drift, which no other session has)
   std::string key;
   std::string title;  ///< for tables
@@ -59,6 +61,7 @@ struct CalibrationReport {
   std::vector<BlockChoice> blocks{};         ///< decisions on blocks of unknowns
   Index train_poses = 0;                     ///< poses it was fitted to
   Index distances = 0;                       ///< distances it was fitted to
+  std::vector<RemainderTrial> trials{};      ///< learners that were tried on what the models leave
   std::vector<StageErrors> stages{};         ///< of the held-out poses, in order
   std::vector<JointReport> joints{};         ///< one a joint
   std::vector<PoseAdvice> advice{};          ///< for the first weakly determined parameters
@@ -72,7 +75,6 @@ struct CalibrationReport {
   double ellipsoid_coverage = 0;  ///< share of held-out poses within their predicted 95 % ellipsoid
   bool oriented = false;          ///< whether orientations are used
   bool converged = true;          ///< whether the error model converged
-  bool learned = false;           ///< whether a remainder was learned on the error model
   Index outliers = 0;             ///< training poses whose error exceeds eight times the median
   double median_error = 0;        ///< median position error of the training poses [m]
   Loss loss = Loss::huber;        ///< of the fit

@@ -44,11 +44,9 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   using detail::brief;
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
-  if (chosen != "jointwise_pso_elm")
-    for (const StageErrors& s : stages)
-      if (s.key == "jointwise_pso_elm")
-        out.push_back(learned ? "What the PSO-ELM learned on the error model does not help left-out poses: not used."
-                              : "The PSO-ELM found nothing to learn in what the error model leaves.");
+  for (const RemainderTrial& trial : trials)
+    if (!trial.on_geometry && trial.learner == Learner::pso_elm && chosen.rfind("jointwise_", 0) != 0)
+      out.push_back("What learners find in what the error model leaves does not help left-out poses: not used.");
   if (outliers > 0 && median_error > 1e-6)
     out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
                           brief(median_error * 1e3), " mm: outliers?",
@@ -197,6 +195,16 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
     out.push_back(message("Of the calibration '", prior->name, "' the geometry has changed by ",
                           detail::brief(prior->geometry * 100), " % and the joint errors by ",
                           detail::brief(prior->joints * 100), " % of their expected sizes, as far as evidence tells."));
+  if (!trials.empty()) {
+    std::string sentence = "Left-out folds with what was learned on top: ";
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      const RemainderTrial& trial = trials[k];
+      sentence += message(k == 0 ? "" : "; ", learner_title(trial.learner),
+                          trial.on_geometry ? " on geometry " : " on the error model ", detail::brief(trial.with * 1e3),
+                          " mm (", detail::brief(trial.without * 1e3), " without)");
+    }
+    out.push_back(sentence + ".");
+  }
   out.push_back(message("Chosen by left-out poses: ", stage(chosen).title, "."));
   if (mean_temperature)
     out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),

@@ -42,21 +42,6 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
   return out;
 }
 
-/// Poses as predicted with their configurations of approach, moved by drift.
-/// @param temperature whether each is predicted at its temperature, not at the mean one
-template <class Chain>
-std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, bool temperature,
-                                     const SessionDrift& drift) {
-  std::vector<Isometry3> out;
-  const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
-    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
-  };
-  const bool thermal = temperature && model.thermal() != nullptr;
-  for (Index i = 0; i < data.size(); ++i)
-    out.push_back(thermal ? visit(at_temperature_of(model, data, i), i) : visit(model, i));
-  return out;
-}
-
 }  // namespace detail
 
 /// Errors of held-out poses after every stage of a calibration, and what follows from them.
@@ -94,19 +79,23 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
           test, [&](std::size_t s, const auto& data) { return rotation_errors(models[s], data); });
     out.stages.push_back(std::move(stage));
   };
-  const auto assess_learned = [&](const char* key, const char* title, const auto& models, const auto& remainder,
+  const auto assess_learned = [&](bool on_geometry, const char* base, const auto& models,
                                   std::span<const Dataset<N>> data) {
-    if (!remainder) return;
     std::vector<Isometry3> bases;
     for (const auto& model : models) bases.push_back(model.identified().base());
     bases.resize(test.size());
-    const CartesianCorrected hybrid(models.front(), remainder->predictor, remainder->coverage);
-    out.stages.push_back(
-        {key, title, position_errors(hybrid, in_one_frame<N>(data, bases, false)), out.stages.back().rotation});
+    const VectorX rotation = out.stages.back().rotation;
+    for (const LearnedRemainder<N>& remainder : calibration.remainders) {
+      if (remainder.on_geometry != on_geometry) continue;
+      const CartesianCorrected hybrid(models.front(), remainder.predictor, remainder.coverage);
+      out.stages.push_back({remainder_key(on_geometry, remainder.learner),
+                            message(base, " + ", learner_title(remainder.learner)),
+                            position_errors(hybrid, in_one_frame<N>(data, bases, false)), rotation});
+    }
   };
   assess("frames", "frames", calibration.frames);
   assess("geometry", "geometry", errors.geometry);
-  assess_learned("geometry_pso_elm", "geometry + PSO-ELM", errors.geometry, calibration.geometry_remainder, test);
+  assess_learned(true, "geometry", errors.geometry, test);
   assess("elastic", "elastic", errors.elastic);
   assess("jointwise", "joint-wise", errors.jointwise);
   const auto assess_visits = [&](const char* key, const auto& models, bool temperature,
@@ -134,20 +123,17 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   if (tilt) assess_visits("tilt", errors.models, false, {});
   if (thermal) assess_visits("temperature", errors.models, true, {});
   if (prior) assess_visits("prior", errors.models, true, {});
-  if (calibration.remainder) {
-    const std::vector<Dataset<N>> centred = detail::without_hysteresis<Chain>(errors.models, test);
-    assess_learned("jointwise_pso_elm",
-                   prior      ? "prior + PSO-ELM"
-                   : thermal  ? "temperature + PSO-ELM"
-                   : tilt     ? "tilt + PSO-ELM"
-                   : approach ? "approach + PSO-ELM"
-                              : "joint-wise + PSO-ELM",
-                   errors.models, calibration.remainder, centred);
-  }
+  assess_learned(false,
+                 prior      ? "prior"
+                 : thermal  ? "temperature"
+                 : tilt     ? "tilt"
+                 : approach ? "approach"
+                            : "joint-wise",
+                 errors.models, detail::static_poses<Chain>(errors.models, test, {}));
   if (!errors.drift.empty()) assess_visits("session", errors.models, true, errors.drift);
   out.drift = errors.drift;
   out.prior = errors.prior;
-  out.learned = calibration.remainder && !calibration.remainder->empty();
+  out.trials = calibration.trials;
   out.chosen = calibration.chosen();
   if (out.chosen == "temperature" && !thermal) out.chosen = tilt ? "tilt" : "approach";
   if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
@@ -163,13 +149,12 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
     return std::isfinite(sum) ? seconds.count() / static_cast<double>(count) : 0;
   };
-  const auto& chosen_model = out.chosen == "geometry"    ? errors.geometry.front()
-                             : out.chosen == "elastic"   ? errors.elastic.front()
+  const LearnedRemainder<N>* deployed = calibration.deployed();
+  const auto& chosen_model = out.chosen == "elastic"     ? errors.elastic.front()
                              : out.chosen == "jointwise" ? errors.jointwise.front()
-                                                         : errors.model();
-  out.evaluation_seconds = calibration.remainder_supported
-                               ? evaluation(CartesianCorrected(chosen_model, calibration.remainder->predictor,
-                                                               calibration.remainder->coverage))
+                                                         : calibration.model();
+  out.evaluation_seconds = deployed != nullptr
+                               ? evaluation(CartesianCorrected(chosen_model, deployed->predictor, deployed->coverage))
                                : evaluation(chosen_model);
 
   out.gates = detail::over_stations<N>(test, [&](std::size_t, const Dataset<N>& data) {
@@ -184,16 +169,20 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
         const std::vector<Matrix6> covariances =
             errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
         const std::vector<Isometry3> poses = detail::visited_poses(errors.models[s], data, true, {});
+        const Matrix3 turn =
+            errors.models[s].identified().base().linear() * errors.model().identified().base().linear().transpose();
         for (Index i = 0; i < data.size(); ++i) {
           const auto row = static_cast<std::size_t>(i);
-          within(i) = detail::within_ellipsoid(poses[row].translation() - data.position(i),
-                                               covariances[row].template topLeftCorner<3, 3>());
+          Vector3 error = poses[row].translation() - data.position(i);
+          if (deployed != nullptr && !deployed->on_geometry)
+            error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
+          within(i) = detail::within_ellipsoid(error, covariances[row].template topLeftCorner<3, 3>());
         }
         return within;
       }).mean();
-  const VectorX &geometry = out.stage("geometry").position, &deployed = out.stage(out.chosen).position;
+  const VectorX &geometry = out.stage("geometry").position, &of_chosen = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
-    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, deployed(i) - geometry(i));
+    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, of_chosen(i) - geometry(i));
   for (int j = 0; j < N; ++j) {
     JointReport joint;
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;

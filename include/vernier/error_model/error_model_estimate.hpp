@@ -69,12 +69,14 @@ struct ErrorModelEstimate {
   std::optional<PriorTransfer> prior{};  ///< of an earlier calibration, where there was one
   std::vector<JointDrive> drives{};      ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;               ///< the unknowns and their estimates
-  double mean_temperature = 0;   ///< of the measurements [deg C], for which the parameters hold; 0 where the model
-                                 ///< does not change with temperature
-  double temperature_std = 0;    ///< standard deviation of the measured temperatures [K]; likewise
-  MatrixX covariance{};          ///< of all unknowns, in units of their scales
-  double variance_factor = 1;    ///< covariance divided by the inverse of the normal equations' matrix
-  double residual_variance = 1;  ///< of the whitened residuals: that factor as far as the residuals alone tell
+  double mean_temperature = 0;  ///< of the measurements [deg C], for which the parameters hold; 0 where the model
+                                ///< does not change with temperature
+  double temperature_std = 0;   ///< standard deviation of the measured temperatures [K]; likewise
+  VectorX left_out_errors{};    ///< of some poses, each predicted by the model without it, drift not known [m]
+  std::vector<Index> left_out_rows{};  ///< which poses, counted over the stations
+  MatrixX covariance{};                ///< of all unknowns, in units of their scales
+  double variance_factor = 1;          ///< covariance divided by the inverse of the normal equations' matrix
+  double residual_variance = 1;        ///< of the whitened residuals: that factor as far as the residuals alone tell
 
   /// What it says of the first station.
   VERNIER_API ErrorModelEstimate first_station() const;

@@ -621,12 +621,16 @@ class ErrorModelFit {
       rows.expand(system.group_sizes, all);
       const MatrixX position = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(all);
       const MatrixX joint = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(rows.factor);
+      estimate.left_out_rows.push_back(b);
       visits.push_back({error, Matrix3::Zero(), joint.lazyProduct(joint.transpose())});
       stack.middleRows(3 * stacked, 3) = position;
       if (++stacked == batch) flush();
     });
     flush();
     if (rotation_values > 0) estimate.orientation_sigma = std::sqrt(rotation_sum / rotation_values * values / freedom);
+    estimate.left_out_errors.resize(static_cast<Index>(visits.size()));
+    for (std::size_t k = 0; k < visits.size(); ++k)
+      estimate.left_out_errors(static_cast<Index>(k)) = visits[k].error.norm();
     if (visits.empty()) {
       estimate.position_sigma = std::sqrt(distance_sum / static_cast<double>(errors.cols()));
       return;

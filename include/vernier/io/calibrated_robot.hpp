@@ -12,11 +12,11 @@
 
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
+#include "vernier/compensation/learned_error.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
-#include "vernier/regression/elm_predictor.hpp"
 
 namespace vernier {
 
@@ -46,7 +46,7 @@ class CalibratedRobot {
   /// The identified arm beside the nominal one.
   using Model = ErrorModel<Chain>;
   /// The learned position error.
-  using Learned = ElmPredictor<N, 3>;
+  using Learned = LearnedError<N>;
   /// The error model with the learned position error.
   using Corrected = CartesianCorrected<Model, Learned>;
 
@@ -75,10 +75,7 @@ class CalibratedRobot {
     if (estimate_) out = out.with_estimate(estimate_->of_arm(FittedArm::of(out.identified())));
     if (!corrected_) return out;
     const Matrix3 turn = out.identified().base().linear() * identified().base().linear().transpose();
-    const Learned& learned = corrected_->learned();
-    return out.with_learned({learned.layer(), learned.scaling(), learned.theta(), learned.beta() * turn.transpose(),
-                             turn * learned.offset()},
-                            corrected_->coverage());
+    return out.with_learned(corrected_->learned().turned(turn), corrected_->coverage());
   }
 
   /// The same arm at a temperature [deg C], see `ErrorModel::at_temperature`.
@@ -245,13 +242,13 @@ ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
 template <int N, class Convention>
 CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
                                                 const RobotInfo<N>& info = {}) {
-  const auto robot =
+  auto robot =
       CalibratedRobot<N, Convention>(info.name, calibration.model(), info.limits,
                                      {info.data_file, calibration.poses, info.date, info.joints,
-                                      calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma})
-          .with_estimate(calibration.errors.first_station());
-  if (!calibration.remainder_supported) return robot;
-  return robot.with_learned(calibration.remainder->predictor, calibration.remainder->coverage);
+                                      calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma});
+  const LearnedRemainder<N>* learned = calibration.deployed();
+  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
+  return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
 }
 
 }  // namespace vernier

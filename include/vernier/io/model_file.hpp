@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "vernier/identification/fitted_arm.hpp"
@@ -40,11 +41,7 @@ struct CoverageData {
 
 /// A learned position error.
 struct LearnedData {
-  HiddenLayer layer;
-  ColumnScaling scaling;
-  VectorX theta;
-  MatrixX beta;  ///< nodes x 3
-  Vector3 offset;
+  std::variant<FittedNetwork, FittedKernels> function;
   CoverageData coverage;
 };
 
@@ -89,9 +86,14 @@ ModelData model_data(const CalibratedRobot<N, Convention>& robot) {
     out.coverage = CoverageData(*robot.model().coverage());
   }
   if (const auto* corrected = robot.learned()) {
-    const auto& elm = corrected->learned();
-    out.learned = LearnedData{elm.layer(), elm.scaling(), elm.theta(),
-                              elm.beta(),  elm.offset(),  CoverageData(corrected->coverage())};
+    const CoverageData coverage(corrected->coverage());
+    if (const auto* elm = corrected->learned().network())
+      out.learned =
+          LearnedData{FittedNetwork{elm->layer(), elm->scaling(), elm->theta(), elm->beta(), elm->offset()}, coverage};
+    else if (const auto* kernels = corrected->learned().kernels())
+      out.learned = LearnedData{FittedKernels{kernels->kernel(), kernels->input_map(), kernels->scaling(),
+                                              kernels->centres(), kernels->alpha(), kernels->mean()},
+                                coverage};
   }
   return out;
 }
@@ -148,9 +150,10 @@ CalibratedRobot<N, Convention> load(const std::string& path) {
   Robot robot(data.name, model, {data.lower, data.upper}, data.provenance);
   if (data.estimate) robot = robot.with_estimate(*data.estimate);
   if (!data.learned) return robot;
-  const detail::LearnedData& learned = *data.learned;
-  return robot.with_learned({learned.layer, learned.scaling, learned.theta, learned.beta, learned.offset},
-                            learned.coverage.template typed<N>());
+  const JointCoverage<N> gate = data.learned->coverage.template typed<N>();
+  if (const auto* network = std::get_if<detail::FittedNetwork>(&data.learned->function))
+    return robot.with_learned(ElmPredictor<N, 3>(*network), gate);
+  return robot.with_learned(KernelPredictor<N, 3>(*std::get_if<detail::FittedKernels>(&data.learned->function)), gate);
 }
 
 }  // namespace vernier

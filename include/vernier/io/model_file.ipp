@@ -23,6 +23,7 @@ inline constexpr int model_schema_version = 5, oldest_schema_version = 2;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
 inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "tanh", "sine", "radial_basis"};
 inline constexpr std::array<std::string_view, 3> input_map_names{"raw", "sines_and_cosines", "sine_cosine_products"};
+inline constexpr std::array<std::string_view, 2> kernel_names{"squared_exponential", "matern_5_2"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
 inline constexpr std::array<std::string_view, 2> measured_names{"poses", "positions"};
 inline constexpr std::array<std::string_view, 3> scaling_names{"none", "min_max", "standard"};
@@ -228,7 +229,20 @@ VERNIER_API FittedArm arm_from_json(const ChainTable& nominal, const JsonNode& n
           joint_errors_from_json(nominal, node.at("joint_errors"))};
 }
 
-VERNIER_API OrderedJson learned_to_json(const LearnedData& elm) {
+VERNIER_API OrderedJson learned_to_json(const LearnedData& learned) {
+  const auto flat = [](const MatrixX& values) { return list_of(VectorX(values.reshaped())); };
+  if (const FittedKernels* kernels = std::get_if<FittedKernels>(&learned.function))
+    return {{"kind", "kernels"},
+            {"kernel", kernel_names[static_cast<std::size_t>(kernels->kernel)]},
+            {"input_map", input_map_names[static_cast<std::size_t>(kernels->input_map)]},
+            {"feature_offset", list_of(kernels->scaling.offset)},
+            {"feature_factor", list_of(kernels->scaling.factor)},
+            {"samples", kernels->centres.rows()},
+            {"centres", flat(kernels->centres)},
+            {"coefficients_m", flat(kernels->alpha)},
+            {"mean_m", list_of(kernels->mean)},
+            {"coverage", coverage_to_json(learned.coverage)}};
+  const FittedNetwork& elm = *std::get_if<FittedNetwork>(&learned.function);
   const HiddenLayer& layer = elm.layer;
   return {{"kind", "elm"},
           {"hidden_nodes", layer.nodes},
@@ -239,15 +253,13 @@ VERNIER_API OrderedJson learned_to_json(const LearnedData& elm) {
           {"feature_offset", list_of(elm.scaling.offset)},
           {"feature_factor", list_of(elm.scaling.factor)},
           {"hidden_weights", list_of(elm.theta)},
-          {"output_weights_m", list_of(VectorX(elm.beta.reshaped()))},
+          {"output_weights_m", flat(elm.beta)},
           {"output_offset_m", list_of(elm.offset)},
-          {"coverage", coverage_to_json(elm.coverage)}};
+          {"coverage", coverage_to_json(learned.coverage)}};
 }
 
-VERNIER_API LearnedData learned_from_json(const JsonNode& node, int joints) {
-  if (const std::string kind = node.at("kind").text(); kind != "elm")
-    node.at("kind").fail("'" + quotable(kind) + "' is unknown");
-  LearnedData out;
+VERNIER_API FittedNetwork network_from_json(const JsonNode& node, int joints) {
+  FittedNetwork out;
   HiddenLayer& layer = out.layer;
   layer.nodes = static_cast<int>(node.at("hidden_nodes").integer(1, 100000));
   layer.activation = static_cast<Activation>(named(node.at("activation"), activation_names));
@@ -260,8 +272,28 @@ VERNIER_API LearnedData learned_from_json(const JsonNode& node, int joints) {
   out.theta = node.at("hidden_weights").numbers(static_cast<std::size_t>(layer.dimension(joints)));
   out.beta = node.at("output_weights_m").numbers(3 * static_cast<std::size_t>(layer.nodes)).reshaped(layer.nodes, 3);
   out.offset = node.at("output_offset_m").numbers(3);
-  out.coverage = coverage_from_json(node.at("coverage"), joints);
   return out;
+}
+
+VERNIER_API FittedKernels kernels_from_json(const JsonNode& node, int joints) {
+  FittedKernels out;
+  out.kernel = static_cast<Kernel>(named(node.at("kernel"), kernel_names));
+  out.input_map = static_cast<InputMap>(named(node.at("input_map"), input_map_names));
+  const Index samples = static_cast<Index>(node.at("samples").integer(1, 1000000));
+  const Index features = feature_count(out.input_map, joints);
+  out.scaling = {node.at("feature_offset").numbers(static_cast<std::size_t>(features)),
+                 node.at("feature_factor").numbers(static_cast<std::size_t>(features))};
+  out.centres = node.at("centres").numbers(static_cast<std::size_t>(samples * features)).reshaped(samples, features);
+  out.alpha = node.at("coefficients_m").numbers(3 * static_cast<std::size_t>(samples)).reshaped(samples, 3);
+  out.mean = node.at("mean_m").numbers(3);
+  return out;
+}
+
+VERNIER_API LearnedData learned_from_json(const JsonNode& node, int joints) {
+  constexpr std::array<std::string_view, 2> kinds{"elm", "kernels"};
+  const CoverageData coverage = coverage_from_json(node.at("coverage"), joints);
+  if (named(node.at("kind"), kinds) == 0) return {network_from_json(node, joints), coverage};
+  return {kernels_from_json(node, joints), coverage};
 }
 
 VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {

@@ -34,6 +34,12 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                           {"nominal", p.nominal * 1e3},
                           {"identified", p.identified * 1e3},
                           {"std", p.std * 1e3}});
+  Json trials = Json::array();
+  for (const RemainderTrial& trial : report.trials)
+    trials.push_back({{"stage", remainder_key(trial.on_geometry, trial.learner)},
+                      {"used", trial.supported},
+                      {"left_out_without_mm", trial.without * 1e3},
+                      {"left_out_with_mm", trial.with * 1e3}});
   Json drift = Json::array();
   for (const SessionDrift& of_station : report.drift) {
     Json knots = Json::array();
@@ -74,6 +80,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"chosen", report.chosen},
           {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
           {"blocks", blocks},
+          {"learners", trials},
           {"prior", report.prior ? Json{{"name", report.prior->name},
                                         {"used", report.prior->used},
                                         {"geometry_kappa", report.prior->geometry},

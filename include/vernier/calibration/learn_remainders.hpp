@@ -1,0 +1,146 @@
+#pragma once
+
+/// @file
+/// Learns what the models of a calibration leave, and decides by cross-validation what of it is deployed.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vernier/calibration/calibration.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/identification/stations.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
+#include "vernier/regression/kernel_elm.hpp"
+#include "vernier/regression/ridge_elm.hpp"
+#include "vernier/search/pso.hpp"
+#include "vernier/search/tuned.hpp"
+
+namespace vernier::detail {
+
+/// Errors of the models of all stations at poses as they were visited, of one station.
+template <class Chain>
+VectorX visited_errors(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
+  return position_errors_of(visited_poses(model, data, true, {}), data.positions());
+}
+
+/// Learns what a model leaves at some poses in its frame.
+template <class Chain>
+LearnedRemainder<Chain::dof> learn_remainder(bool on_geometry, Learner learner, const ErrorModel<Chain>& model,
+                                             const Dataset<Chain::dof>& data, const RemainderOptions& options,
+                                             const FitOptions& fit) {
+  const RidgeElm elm{.hidden_nodes = options.hidden_nodes};
+  const PointRows error = positions(model, data.joints()) - data.positions();
+  const auto learned = [&](const auto& recipe) -> LearnedError<Chain::dof> {
+    return recipe.fit(data.joints(), error, fit);
+  };
+  return {on_geometry, learner,
+          learner == Learner::pso_elm     ? learned(Tuned<RidgeElm, Pso>{elm, Pso{.particles = options.particles,
+                                                                                  .iterations = options.iterations,
+                                                                                  .positions = PositionRule::clamped}})
+          : learner == Learner::ridge_elm ? learned(elm)
+                                          : learned(KernelElm{.input_map = InputMap::sines_and_cosines}),
+          JointCoverage<Chain::dof>::covering(data.joints())};
+}
+
+/// Errors of poses left out in folds of consecutive ones, of which what is learned on the others is taken off.
+template <class Chain>
+VectorX fold_errors(Learner learner, const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
+                    const RemainderOptions& options, const FitOptions& fit) {
+  constexpr Index folds = 5;
+  VectorX out(data.size());
+  for (Index fold = 0; fold < folds; ++fold) {
+    const Index begin = fold * data.size() / folds, end = (fold + 1) * data.size() / folds;
+    std::vector<Index> inside, left_out;
+    for (Index i = 0; i < data.size(); ++i) (i >= begin && i < end ? left_out : inside).push_back(i);
+    const auto learned = learn_remainder(false, learner, model, data.rows(inside), options,
+                                         {.seed = fit.seed, .executor = fit.executor});
+    out.segment(begin, end - begin) =
+        position_errors(CartesianCorrected(model, learned.predictor, learned.coverage), data.rows(left_out));
+  }
+  return out;
+}
+
+/// The best learner on one model, and its errors in cross-validation.
+struct BestLearner {
+  std::size_t trial = 0;
+  VectorX with, without;
+};
+
+/// Tries learners on the models of one stage, and learns the first of them from all poses.
+/// @param stations poses, one set a station
+template <class Chain>
+std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometry,
+                                        const std::vector<ErrorModel<Chain>>& models,
+                                        std::span<const Dataset<Chain::dof>> stations, const RemainderOptions& options,
+                                        const FitOptions& fit) {
+  constexpr Index enough = 10;
+  std::vector<Isometry3> bases;
+  for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
+  const Dataset<Chain::dof> data = in_one_frame<Chain::dof>(stations, bases, false);
+  const ErrorModel<Chain>& model = models.front();
+  out.remainders.push_back(learn_remainder(on_geometry, options.learners.front(), model, data, options, fit));
+  if (data.size() < enough) return {};
+  BestLearner best{0, {}, position_errors(model, data)};
+  for (const Learner learner : options.learners) {
+    const VectorX errors = fold_errors(learner, model, data, options, fit);
+    if (best.with.size() == 0 || errors.mean() < best.with.mean()) {
+      best.trial = out.trials.size();
+      best.with = errors;
+    }
+    out.trials.push_back({on_geometry, learner, best.without.mean(), errors.mean()});
+  }
+  return best;
+}
+
+/// See `RemainderOptions`. What is learned on geometry is deployed where it predicts left-out poses better than the
+/// error model does, by more than a standard error.
+template <class Chain>
+void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::dof>> stations,
+                      const RemainderOptions& options, const FitOptions& fit) {
+  const FittedErrorModel<Chain>& errors = out.errors;
+  if (options.learners.empty()) return;
+  const auto better = [](const VectorX& candidate, const VectorX& other) {
+    return candidate.mean() < other.mean() && one_standard_error_rule({{0, candidate}, {1, other}}) == 0;
+  };
+  std::optional<BestLearner> on_geometry, on_model;
+  if (options.on_geometry) on_geometry = try_learners<Chain>(out, true, errors.geometry, stations, options, fit);
+  if (options.on_error_model)
+    on_model = try_learners<Chain>(out, false, errors.models,
+                                   static_poses<Chain>(errors.models, stations, errors.drift), options, fit);
+  std::optional<std::size_t> chosen;
+  if (on_model && better(on_model->with, on_model->without)) chosen = on_model->trial;
+  if (on_geometry && errors.left_out_errors.size() > 0) {
+    VectorX with(errors.left_out_errors.size()), without = errors.left_out_errors;
+    for (Index k = 0; k < with.size(); ++k) {
+      const Index row = errors.left_out_rows[static_cast<std::size_t>(k)];
+      with(k) = on_geometry->with(row);
+      if (chosen) without(k) += on_model->with(row) - on_model->without(row);
+    }
+    if (better(with, without)) chosen = on_geometry->trial;
+  }
+  if (!chosen) return;
+  RemainderTrial& trial = out.trials[*chosen];
+  trial.supported = true;
+  for (std::size_t k = 0; k < out.remainders.size(); ++k)
+    if (out.remainders[k].on_geometry == trial.on_geometry && out.remainders[k].learner == trial.learner)
+      out.deployed_remainder = k;
+  if (!out.deployed_remainder) {
+    const auto& models = trial.on_geometry ? errors.geometry : errors.models;
+    std::vector<Isometry3> bases;
+    for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
+    const std::vector<Dataset<Chain::dof>> still = static_poses<Chain>(errors.models, stations, errors.drift);
+    out.deployed_remainder = out.remainders.size();
+    out.remainders.push_back(
+        learn_remainder(trial.on_geometry, trial.learner, models.front(),
+                        in_one_frame<Chain::dof>(
+                            trial.on_geometry ? stations : std::span<const Dataset<Chain::dof>>(still), bases, false),
+                        options, fit));
+  }
+  if (out.remainders[*out.deployed_remainder].empty()) {  // nothing but a mean
+    out.deployed_remainder.reset();
+    trial.supported = false;
+  }
+}
+
+}  // namespace vernier::detail

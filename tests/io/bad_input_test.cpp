@@ -241,9 +241,9 @@ CalibratedRobot<6> model() {
   estimate.covariance = MatrixX::Identity(terms.size() + 2, terms.size() + 2);
   const HiddenLayer layer{.nodes = 4, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<4, 3>();
-  return plain.with_estimate(estimate).with_learned(
-      {layer, {VectorX::Zero(12), VectorX::Ones(12)}, layer.draw(6, 2), beta, Vector3::Zero()},
-      JointCoverage<6>::covering(joints));
+  const ElmPredictor<6, 3> network(layer, {VectorX::Zero(12), VectorX::Ones(12)}, layer.draw(6, 2), beta,
+                                   Vector3::Zero());
+  return plain.with_estimate(estimate).with_learned(network, JointCoverage<6>::covering(joints));
 }
 
 TEST(BadInput, ModelFiles) {
@@ -297,6 +297,26 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/estimate/correlation_factor", "AACAPw="), "no base64");
   RecordProperty("cases", reader.cases);
   EXPECT_GE(reader.cases, 400);
+}
+
+TEST(BadInput, LearnedKernels) {
+  Reader reader("model.json", [](const auto& path) { (void)load<6>(path); });
+  const JointRows<6> joints = sample_joints(robots::abb_irb120().limits, 5, 5);
+  const KernelPredictor<6, 3> kernels(Kernel::squared_exponential, InputMap::raw, {VectorX::Zero(6), VectorX::Ones(6)},
+                                      joints, 1e-4 * joints.leftCols<3>(), Vector3::Zero());
+  Json valid = to_json(model().with_learned(kernels, JointCoverage<6>::covering(joints)));
+  const auto with = [&](const char* pointer, const Json& value) {
+    Json damaged = valid;
+    damaged[Json::json_pointer(pointer)] = value;
+    return damaged.dump();
+  };
+  reader.expect_refused(with("/learned/kind", "forest"), "another kind");
+  reader.expect_refused(with("/learned/kernel", "triangle"), "another kernel");
+  reader.expect_refused(with("/learned/input_map", "sines_and_cosines"), "features of another map");
+  reader.expect_refused(with("/learned/samples", 6), "a sample more than centres");
+  reader.expect_refused(with("/learned/samples", 0), "no samples");
+  reader.expect_refused(with("/learned/coefficients_m/3", "a"), "a coefficient that is no number");
+  reader.expect_refused(with("/learned/mean_m", {1, 2}), "a mean of two numbers");
 }
 
 TEST(BadInput, MissingFilesAndFolders) {

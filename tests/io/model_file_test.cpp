@@ -48,12 +48,19 @@ CalibratedRobot<6> example(bool learned) {
   const CalibratedRobot<6> out("an arm", thermal, robot.limits, from);
   const HiddenLayer layer{.nodes = 12, .input_map = InputMap::sines_and_cosines};
   const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<12, 3>();
-  return out.with_learned({layer,
-                           {VectorX::Constant(12, 0.01), VectorX::Constant(12, 0.9)},
-                           layer.draw(6, 2),
-                           beta,
-                           Vector3(1e-5, 0, -2e-5)},
-                          JointCoverage<6>::covering(joints));
+  const ElmPredictor<6, 3> network(layer, {VectorX::Constant(12, 0.01), VectorX::Constant(12, 0.9)}, layer.draw(6, 2),
+                                   beta, Vector3(1e-5, 0, -2e-5));
+  return out.with_learned(network, JointCoverage<6>::covering(joints));
+}
+
+/// The same with kernels in place of a network.
+CalibratedRobot<6> example_of_kernels() {
+  const CalibratedRobot<6> out = example(true);
+  const JointRows<6> joints = sample_joints(out.limits(), 30, 6);
+  const KernelPredictor<6, 3> kernels(Kernel::squared_exponential, InputMap::raw,
+                                      {VectorX::Constant(6, 0.01), VectorX::Constant(6, 0.9)}, joints,
+                                      1e-4 * joints.leftCols<3>(), Vector3(1e-5, 0, -2e-5));
+  return out.with_learned(kernels, JointCoverage<6>::covering(joints));
 }
 
 void expect_same_bits(const Model::Arm& a, const Model::Arm& b) {
@@ -69,8 +76,8 @@ class ModelFile : public testing::Test {
 };
 
 TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
-  for (const bool learned : {false, true}) {
-    const auto saved = example(learned);
+  for (const auto& saved : {example(false), example(true), example_of_kernels()}) {
+    const bool learned = saved.learned() != nullptr;
     const auto path = folder_ / "m.json";
     save(path, saved);
     EXPECT_EQ(saved_arm(path).dof, 6);

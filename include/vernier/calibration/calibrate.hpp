@@ -46,7 +46,7 @@ inline std::string name_of(const std::vector<std::string>& names, std::size_t k,
 /// @param stations  measured poses, one set a place of the sensor; may be empty
 /// @param distances measured distances, one set a fixed point; in the error model beside poses, in both steps without
 /// @param options   of all steps
-/// @param fit       seed, executor and observer of what is learned
+/// @param fit       seed and observer of what is learned, executor of that and of the error model
 /// @param search    of priors, see `fit_error_model`
 /// @throws std::invalid_argument on an unusable option or no measurements
 /// @throws CalibrationFailure for data that do not fit the arm or do not support a calibration, with the reason, unless
@@ -90,7 +90,9 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
                                    : identify(nominal, in_one_frame<N>(poses, bases, options.sensors.use_orientations),
                                               options.geometry, options.sensors);
   if (options.refuse_implausible) detail::require_usable(geometry, "identifying the geometry");
-  FittedErrorModel<Chain> errors = fit_error_model(geometry, poses, wires, options.errors, options.sensors, search);
+  ErrorModelOptions of_errors = options.errors;
+  of_errors.executor = fit.executor;
+  FittedErrorModel<Chain> errors = fit_error_model(geometry, poses, wires, of_errors, options.sensors, search);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
 
   Calibration<Chain> out{std::move(frames), std::move(geometry), std::move(errors)};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "vernier/core/check.hpp"
@@ -93,17 +94,20 @@ class ErrorModelFit {
         spectra_(spectra_of(options, input.nominal.joints())),
         problem_(ArmParameterisation(starting_arms(input), geometric_unknowns(input, options)), joined_stations(input),
                  sensors.loss),
-        stride_(std::max<Index>(1, problem_.num_validation_blocks() / options.num_validation_poses)) {}
+        stride_(std::max<Index>(1, problem_.num_validation_blocks() / options.num_validation_poses)) {
+    problem_.executor = options.executor;
+  }
 
   VERNIER_API ErrorModelOutput run(PriorSearch search) {
     ErrorModelOutput out{.estimate = {.arm = problem_.arm}};
     ErrorModelEstimate& estimate = out.estimate;
-    estimate.converged = problem_.solve();
+    estimate.converged = true;
+    solve(estimate);
     out.geometry = arms();
 
     JointTerms elastic(input_.nominal.joints());
     if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
-    if (elastic.size() > 0) add(estimate, "elastic", elastic, false);
+    if (elastic.size() > 0 && add(estimate, "elastic", elastic, false)) solve(estimate);
     out.elastic = arms();
 
     JointTerms all = elastic;
@@ -112,8 +116,9 @@ class ErrorModelFit {
         all.transmission[static_cast<std::size_t>(j)] = orders_of_joint(static_cast<std::size_t>(j));
     out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all, true);
     if (out.jointwise) {
+      steps(2);
       estimate.fallback_error = estimate.blocks.back().without;
-      learn_spectrum(estimate, 8);
+      learn_spectrum(estimate, 6);
       // linear in the joints, so beyond the measured ranges they stay as at their ends
       all.gear_ratio = options_.gear_ratio;
       all.coupling = options_.coupling;
@@ -121,19 +126,21 @@ class ErrorModelFit {
       const MatrixX joints = problem_.joints();
       for (Index j = 0; j < joints.cols(); ++j)
         all.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
-      if ((all.gear_ratio || all.coupling) && add(estimate, "gears", all, true)) learn_spectrum(estimate, 8);
-      if (elastic.size() > 0) {  // deflection is clearer once all else is modelled
+      if ((all.gear_ratio || all.coupling) && add(estimate, "gears", all, true)) learn_spectrum(estimate, 4);
+      if (elastic.size() > 0)  // deflection is clearer once all else is modelled
         estimate.blocks.push_back(choose_by_evidence("elastic_with_jointwise", gravity()));
-        estimate.converged = problem_.solve() && estimate.converged;
+      solve(estimate);
+      if (search) {
+        tune(estimate, search);
+        solve(estimate);
       }
-      if (search) tune(estimate, search);
-      estimate.converged = problem_.solve() && estimate.converged;
     }
     out.without_approach = arms();
 
     JointTerms approached = problem_.arm.terms();
     approached.hysteresis = {0.01, 0.3};
     const bool hysteresis = options_.hysteresis && add(estimate, "approach", approached, true);
+    if (hysteresis) steps(2);
     std::vector<FittedArm> without_tilt = arms();
     JointTerms tilted = problem_.arm.terms();
     if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
@@ -141,8 +148,9 @@ class ErrorModelFit {
     if (tilt) {
       out.without_tilt = std::move(without_tilt);
       if (!out.jointwise) estimate.fallback_error = estimate.blocks.back().without;
+      steps(2);
       size_by_evidence(gravity());  // the third axis, that of the joint
-      estimate.converged = problem_.solve() && estimate.converged;
+      solve(estimate);
     }
     bool thermal = options_.temperature && add_temperature(estimate);
     if (thermal) out.temperatures = problem_.temperatures().range;
@@ -151,10 +159,10 @@ class ErrorModelFit {
     const bool drift = options_.drift && add_drift(estimate);
     if ((hysteresis || tilt || thermal || drift) && out.jointwise && !search && !inherited) {
       learn_spectrum(estimate, 4);
-      estimate.converged = problem_.solve() && estimate.converged;
+      steps(1);
     }
-    if (out.jointwise && options_.find_lines && !inherited && find_lines(estimate))
-      estimate.converged = problem_.solve() && estimate.converged;
+    if (out.jointwise && options_.find_lines && !inherited) find_lines(estimate);
+    solve(estimate);
     out.estimate.drift = problem_.drift;
     out.all = arms();
     // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
@@ -227,23 +235,21 @@ class ErrorModelFit {
       count += now.count;
     }
     problem_.arm.set_terms(terms, prior_stds(terms), carried_over(terms, before.terms(), old_precisions));
+    linearised_.reset();
     estimate.blocks.push_back(by_evidence ? choose_by_evidence(name, unknowns(first, count))
                                           : choose(name, first, count));
-    if (!estimate.blocks.back().used) {
-      problem_.arm = before;
-      return false;
-    }
-    estimate.converged = problem_.solve() && estimate.converged;
-    return true;
+    if (estimate.blocks.back().used) return true;
+    problem_.arm = before;
+    linearised_.reset();
+    return false;
   }
 
   /// Chooses the prior of coefficients first .. first + count - 1 by leave-one-pose-out errors.
   VERNIER_API BlockChoice choose(const char* name, Index first, Index count) {
     VectorX precisions = problem_.arm.precisions();
     const Index at = static_cast<Index>(problem_.arm.geometric().size()) + first;
-    const BlockSystem system = problem_.system();
-    const PriorChoice choice =
-        choose_prior(system, NormalEquations(system), precisions, problem_.arm.steps(), at, count, stride_);
+    const Linearised& now = linearised();
+    const PriorChoice choice = choose_prior(now.system, now.normal, precisions, now.steps, at, count, stride_);
     precisions.segment(at, count).setConstant(choice.precision);
     problem_.arm.set_precisions(precisions);
     const bool used = choice.precision < suppressing_precision;
@@ -299,8 +305,23 @@ class ErrorModelFit {
     NormalEquations normal;
     VectorX steps, local_steps;
   };
-  VERNIER_API Linearised linearised() const {
-    return {problem_.system(), problem_.normal_equations(), problem_.arm.steps(), problem_.drift_steps()};
+  /// Computed again only after the unknowns or their values have changed.
+  VERNIER_API const Linearised& linearised() const {
+    if (!linearised_)
+      linearised_.emplace(
+          Linearised{problem_.system(), problem_.normal_equations(), problem_.arm.steps(), problem_.drift_steps()});
+    return *linearised_;
+  }
+
+  /// Solves the problem as it is.
+  VERNIER_API void solve(ErrorModelEstimate& estimate) {
+    estimate.converged = problem_.solve() && estimate.converged;
+    linearised_.reset();
+  }
+  /// Steps towards the solution: enough where the unknowns change again soon.
+  VERNIER_API void steps(int count) {
+    problem_.solve(count);
+    linearised_.reset();
   }
 
   /// Position errors of poses left out one at a time, under some priors [m].
@@ -311,7 +332,7 @@ class ErrorModelFit {
 
   /// Sizes of some coefficients by evidence, and their inclusion by leave-one-pose-out errors.
   VERNIER_API BlockChoice choose_by_evidence(const char* name, const UnknownGroup& group) {
-    const Linearised at = linearised();
+    const Linearised& at = linearised();
     const VectorX before = problem_.arm.precisions();
     const VectorX sized = scale_priors(at.normal, before, at.steps, problem_.measured_values(), group, at.local_steps);
     VectorX suppressed = sized;
@@ -327,7 +348,7 @@ class ErrorModelFit {
   /// Sizes of some coefficients by evidence, unless they are suppressed.
   VERNIER_API void size_by_evidence(const UnknownGroup& group) {
     if (group.empty() || problem_.arm.precisions()(group.front()) >= suppressing_precision) return;
-    const Linearised at = linearised();
+    const Linearised& at = linearised();
     problem_.arm.set_precisions(scale_priors(at.normal, problem_.arm.precisions(), at.steps, problem_.measured_values(),
                                              group, at.local_steps));
   }
@@ -335,7 +356,7 @@ class ErrorModelFit {
   /// Sizes of the harmonics by evidence, at the solution: one common factor on the expected sizes; one for every band
   /// where there are poses enough, or where evidence speaks clearly against the expected spectrum.
   VERNIER_API void learn_spectrum(ErrorModelEstimate& estimate, int iterations) {
-    const Linearised at = linearised();
+    const Linearised& at = linearised();
     const Index values = problem_.measured_values();
     std::vector<int> edges{1};
     for (const HarmonicSpectrum& spectrum : spectra_)
@@ -355,7 +376,8 @@ class ErrorModelFit {
     if (at.system.validation_blocks < enough)
       precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, std::numeric_limits<int>::max()),
                                 at.local_steps);
-    const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
+    const VectorX learned =
+        learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps, options_.executor);
     if (at.system.validation_blocks >= enough || evidence(learned) > evidence(precisions) + clearly)
       precisions = learned;
     problem_.arm.set_precisions(precisions);
@@ -376,14 +398,16 @@ class ErrorModelFit {
     }
     problem_.reference_temperature = mean;
     problem_.arm.set_geometric(std::move(unknowns));
+    linearised_.reset();
     estimate.blocks.push_back(choose_by_evidence("temperature", added));
     if (!estimate.blocks.back().used) {
       problem_.arm = before;
+      linearised_.reset();
       return false;
     }
     estimate.mean_temperature = mean;
     estimate.temperature_std = std;
-    estimate.converged = problem_.solve() && estimate.converged;
+    steps(1);
     return true;
   }
 
@@ -413,9 +437,11 @@ class ErrorModelFit {
     constexpr double usual = 0.15;  // change of an arm in months
     problem_.prior = known.prior(problem_.arm.size(), usual, usual);
     bool converged = problem_.solve();
+    linearised_.reset();
     PriorTransfer transfer = likely_transfer(problem_, known);
     problem_.prior = known.prior(problem_.arm.size(), transfer.geometry, transfer.joints);
     converged = problem_.solve() && converged;
+    linearised_.reset();
 
     const double error_with = left_out(linearised(), problem_.arm.precisions()).mean();
     transfer.name = prior.name;
@@ -427,6 +453,7 @@ class ErrorModelFit {
         {"prior", error_without, error_with, transfer.used, 1 / (transfer.joints * transfer.joints)});
     if (!transfer.used) {
       problem_ = without;
+      linearised_.reset();
       return false;
     }
     estimate.converged = true;
@@ -467,6 +494,7 @@ class ErrorModelFit {
     const ArmParameterisation without = problem_.arm;
     problem_.arm.set_terms(terms, prior_stds(terms),
                            carried_over(terms, without.terms(), without.precisions().tail(before.size())));
+    linearised_.reset();
     UnknownGroup added;
     const Index geometric = static_cast<Index>(problem_.arm.geometric().size());
     for (std::size_t j = 0; j < found.size(); ++j)
@@ -476,17 +504,20 @@ class ErrorModelFit {
           added.push_back(geometric + terms.transmission_begin(static_cast<int>(j)) + k);
       }
     estimate.blocks.push_back(choose_by_evidence("lines", added));
-    if (!estimate.blocks.back().used) problem_.arm = without;
-    return estimate.blocks.back().used;
+    if (estimate.blocks.back().used) return true;
+    problem_.arm = without;
+    linearised_.reset();
+    return false;
   }
 
   /// Orders of each joint that are not in the model and stand out of what it leaves.
   VERNIER_API std::vector<std::vector<int>> lines_beyond(int highest) const {
-    const Linearised at = linearised();
+    const Linearised& at = linearised();
     const JointTerms& terms = problem_.arm.terms();
     const VectorX precisions = problem_.arm.precisions();
     const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
-    const double explained = static_cast<double>(precisions.size()) - solved.inverse_diagonal().dot(precisions);
+    const double explained =
+        static_cast<double>(precisions.size()) - solved.inverse_diagonal(options_.executor).dot(precisions);
     const double values = static_cast<double>(problem_.measured_values());
     const double variance = at.normal.cost / std::max(1.0, values - explained);
     const Index joints = terms.joints;
@@ -514,14 +545,21 @@ class ErrorModelFit {
     const VectorX precisions = problem_.arm.precisions();
     const VectorX without = left_out(linearised(), precisions);
     problem_.start_drift(40);
+    problem_.drift_precision = 1;
     if (problem_.system().local_states == 0) {
       problem_.stop_drift();
       return false;
     }
+    linearised_.reset();
+    Linearised at = linearised();  // the precisions of the random walks are all that changes
+    const std::vector<double> expected = at.normal.local_prior.values;
+    const auto scaled = [&](double factor) {
+      std::transform(expected.begin(), expected.end(), at.normal.local_prior.values.begin(),
+                     [&](double value) { return factor * value; });
+    };
     double best = 1, highest = -std::numeric_limits<double>::infinity();
     for (const double factor : {0.0625, 0.25, 1.0, 4.0, 16.0, 64.0}) {
-      problem_.drift_precision = factor;
-      const Linearised at = linearised();
+      scaled(factor);
       const double reached =
           log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
                        at.steps, problem_.measured_values(), at.local_steps);
@@ -529,14 +567,16 @@ class ErrorModelFit {
       highest = reached;
       best = factor;
     }
+    scaled(best);
     problem_.drift_precision = best;
-    const std::vector<PriorTrial> trials{{best, left_out(linearised(), precisions)}, {suppressing_precision, without}};
+    const std::vector<PriorTrial> trials{{best, left_out(at, precisions)}, {suppressing_precision, without}};
     const bool used = one_standard_error_rule(trials) == 0;
     estimate.blocks.push_back({"drift", without.mean(), trials[0].errors.mean(), used, best});
     if (used)
-      estimate.converged = problem_.solve() && estimate.converged;
+      steps(1);
     else
       problem_.stop_drift();
+    linearised_.reset();
     return used;
   }
 
@@ -549,10 +589,9 @@ class ErrorModelFit {
         amplitudes(block.begin - dense_terms + k) =
             problem_.arm.scales()(problem_.arm.num_dense() + block.begin - dense_terms + k) /
             problem_.arm.scales()(problem_.arm.num_dense() + block.begin - dense_terms);
-    const BlockSystem system = problem_.system();
-    const NormalEquations normal(system);
+    const Linearised& at = linearised();
     const VectorX before = problem_.arm.precisions();
-    const PriorObjective objective(system, normal, before, problem_.arm.steps(), dense_terms, amplitudes, stride_);
+    const PriorObjective objective(at.system, at.normal, before, at.steps, dense_terms, amplitudes, stride_);
     const VectorX after = objective.precisions(search(objective, objective.box()));
     const double without = objective.error(before), with = objective.error(after);
     estimate.blocks.push_back({"tuned_priors", without, with, with < without, 1});
@@ -572,7 +611,7 @@ class ErrorModelFit {
 
   /// Covariance of the unknowns, and the noise of a visit.
   VERNIER_API void assess(ErrorModelEstimate& estimate) const {
-    const Linearised at = linearised();
+    const Linearised& at = linearised();
     const auto& system = at.system;  // lambdas of clang 14 cannot capture bindings
     const VectorX precisions = problem_.arm.precisions();
     const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
@@ -647,6 +686,7 @@ class ErrorModelFit {
   std::vector<HarmonicSpectrum> spectra_;  ///< of each joint, with the lines of its drive and those that were found
   CalibrationProblem problem_;
   Index stride_;
+  mutable std::optional<Linearised> linearised_{};
   VectorX expected_{};  // precisions of the joint errors by an earlier calibration that is used
 };
 

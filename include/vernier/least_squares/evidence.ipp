@@ -121,12 +121,13 @@ VERNIER_IMPL VectorX scale_priors(const NormalEquations& normal, const VectorX& 
 }
 
 VERNIER_IMPL VectorX learn_priors(const NormalEquations& normal, VectorX precisions, const VectorX& steps, Index values,
-                                  const std::vector<UnknownGroup>& groups, int iterations, const VectorX& local_steps) {
+                                  const std::vector<UnknownGroup>& groups, int iterations, const VectorX& local_steps,
+                                  ExecutorRef executor) {
   for (int i = 0; i < iterations; ++i) {
     const FactorisedEquations solved(normal, precisions, steps, local_steps);
     if (!solved.usable()) return precisions;
     const auto [cost, freedom] = detail::penalised_minimum(normal, solved, precisions, steps, values, local_steps);
-    const VectorX variance = solved.inverse_diagonal(), z = steps + solved.step();
+    const VectorX variance = solved.inverse_diagonal(executor), z = steps + solved.step();
     for (const UnknownGroup& group : groups) {
       double determined = 0, squares = 0;  // number of unknowns that the data determine, not the priors
       for (const Index k : group) {

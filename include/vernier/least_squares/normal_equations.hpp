@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/executor.hpp"
 #include "vernier/least_squares/row_block.hpp"
 #include "vernier/least_squares/sparse_solve.hpp"
 
@@ -46,9 +47,10 @@ struct NormalEquations {
   MatrixX prior{};              ///< precision of a `JointPrior` that was added; empty for none
   Index prior_unknowns = 0;     ///< number of unknowns with such a prior
 
-  /// Sums over all blocks.
+  /// Sums over all blocks; the bits do not depend on the executor.
   /// @complexity O(blocks u^2 / 6) for u unknowns, memory O(u^2)
-  VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {});
+  VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {},
+                                       ExecutorRef executor = {});
 
   /// Adds a prior with correlations to matrix, gradient and cost, as if it were measurements.
   /// @param joint the prior
@@ -89,7 +91,7 @@ class FactorisedEquations {
   /// Inverse of the matrix with local unknowns eliminated: the covariance of dense and factored unknowns.
   VERNIER_API MatrixX inverse() const;
   /// Its diagonal, at a third of the cost.
-  VERNIER_API VectorX inverse_diagonal() const;
+  VERNIER_API VectorX inverse_diagonal(ExecutorRef executor = {}) const;
   /// Multiplies by the inverse of the Cholesky factor of that matrix, in place.
   VERNIER_API void apply_inverse_factor(MatrixRef columns) const;
 

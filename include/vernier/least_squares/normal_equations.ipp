@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "vernier/core/check.hpp"
@@ -112,13 +113,20 @@ VERNIER_API VectorX multiply(const SparseSymmetric& matrix, const VectorX& x) {
 
 }  // namespace detail
 
-VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors)
+VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors,
+                                              ExecutorRef executor)
     : matrix(MatrixX::Zero(system.unknowns(), system.unknowns())), gradient(VectorX::Zero(system.unknowns())) {
   constexpr Index chunk = 256;
   const Index all = system.unknowns(), d = system.dense, groups = system.groups();
-  MatrixX dense(6 * chunk, d), h(chunk, all - d), mixed(chunk, d * groups), scaled, product;
+  MatrixX dense(6 * chunk, d), h(chunk, all - d), mixed(chunk, d * groups), product;
   MatrixX factor_residual(chunk, groups), factor_product(chunk, groups * groups);  // f_j' r and f_i' f_j of each block
   VectorX residuals(6 * chunk);
+  std::vector<std::array<Index, 2>> pairs;  // of groups, the second not before the first
+  std::vector<Index> begin{0};              // of each group's functions
+  for (Index j = 0; j < groups; ++j) {
+    begin.push_back(begin.back() + system.group_sizes[static_cast<std::size_t>(j)]);
+    for (Index i = 0; i <= j; ++i) pairs.push_back({i, j});
+  }
   for (Index first = 0; first < system.blocks; first += chunk) {
     const Index n = std::min(chunk, system.blocks - first);
     detail::visit_blocks(system, first, 1, n, [&](Index b, const RowBlock& rows) {
@@ -138,22 +146,33 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
     detail::add_transposed_product(matrix.topLeftCorner(d, d), dense_rows, dense_rows);
     detail::add_transposed_product(gradient.head(d), dense_rows, residuals.head(6 * n));
     cost += residuals.head(6 * n).squaredNorm();
-    Index to_j = 0;
+    const auto functions = [&](Index j) {
+      const auto group = static_cast<std::size_t>(j);
+      return h.block(0, begin[group], n, begin[group + 1] - begin[group]);
+    };
     for (Index j = 0; j < groups && all > d; ++j) {
-      const Index count_j = system.group_sizes[static_cast<std::size_t>(j)];
-      const auto h_j = h.block(0, to_j, n, count_j);
-      detail::add_transposed_product(gradient.segment(d + to_j, count_j), h_j, factor_residual.col(j).head(n));
-      detail::add_transposed_product(matrix.block(0, d + to_j, d, count_j), mixed.block(0, j * d, n, d), h_j);
-      Index to_i = 0;
-      for (Index i = 0; i <= j; ++i) {
-        const Index count_i = system.group_sizes[static_cast<std::size_t>(i)];
-        scaled = factor_product.col(i + groups * j).head(n).asDiagonal() * h_j;
-        detail::add_transposed_product(matrix.block(d + to_i, d + to_j, count_i, count_j), h.block(0, to_i, n, count_i),
-                                       scaled);
-        to_i += count_i;
-      }
-      to_j += count_j;
+      const auto h_j = functions(j);
+      const Index at = d + begin[static_cast<std::size_t>(j)];
+      detail::add_transposed_product(gradient.segment(at, h_j.cols()), h_j, factor_residual.col(j).head(n));
+      detail::add_transposed_product(matrix.block(0, at, d, h_j.cols()), mixed.block(0, j * d, n, d), h_j);
     }
+    executor.for_ranges(all > d ? static_cast<Index>(pairs.size()) : 0, [&](Index from, Index to) {
+      MatrixX scaled;
+      for (Index pair = from; pair < to; ++pair) {
+        const Index i = pairs[static_cast<std::size_t>(pair)][0], j = pairs[static_cast<std::size_t>(pair)][1];
+        const auto h_i = functions(i), h_j = functions(j);
+        const Index row = d + begin[static_cast<std::size_t>(i)], column = d + begin[static_cast<std::size_t>(j)];
+        scaled = factor_product.col(i + groups * j).head(n).asDiagonal() * h_j;
+        if (i != j) {
+          detail::add_transposed_product(matrix.block(row, column, h_i.cols(), h_j.cols()), h_i, scaled);
+          continue;
+        }
+        const Index half = h_i.cols() / 2, rest = h_i.cols() - half;  // nothing below the diagonal blocks of this block
+        detail::add_transposed_product(matrix.block(row, column, half, h_i.cols()), h_i.leftCols(half), scaled);
+        detail::add_transposed_product(matrix.block(row + half, column + half, rest, rest), h_i.rightCols(rest),
+                                       scaled.rightCols(rest));
+      }
+    });
   }
   matrix.triangularView<Eigen::StrictlyLower>() = matrix.transpose();
   if (system.local_states > 0) detail::add_local(system, local_priors, *this);
@@ -228,18 +247,23 @@ VERNIER_IMPL double FactorisedEquations::log_determinant() const {
 
 VERNIER_IMPL MatrixX FactorisedEquations::inverse() const { return detail::inverse_from_cholesky(factor_); }
 
-VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal() const {
+VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal(ExecutorRef executor) const {
   // columns of the inverse factor start at their own row
   const Index n = factor_.rows(), width = 64;
   VectorX out(n);
-  MatrixX columns;
-  for (Index first = 0; first < n; first += width) {
-    const Index count = std::min(width, n - first);
-    columns.setZero(n - first, count);
-    columns.topRows(count).setIdentity();
-    detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
-    out.segment(first, count) = columns.colwise().squaredNorm().transpose();
-  }
+  const Index blocks = (n + width - 1) / width;
+  executor.for_ranges(blocks, [&](Index from, Index to) {
+    MatrixX columns;
+    for (Index k = from; k < to; ++k) {
+      // the first blocks are the longest: every thread gets long and short ones
+      const Index block = k % 2 == 0 ? k / 2 : blocks - 1 - k / 2;
+      const Index first = block * width, count = std::min(width, n - first);
+      columns.setZero(n - first, count);
+      columns.topRows(count).setIdentity();
+      detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
+      out.segment(first, count) = columns.colwise().squaredNorm().transpose();
+    }
+  });
   return out;
 }
 

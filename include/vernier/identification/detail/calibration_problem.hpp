@@ -33,6 +33,7 @@ class CalibrationProblem {
   std::vector<SessionDrift> drift;   ///< of each station, at its present values; may be empty
   double reference_temperature = 0;  ///< at which thermal unknowns have no effect [deg C]
   std::optional<JointPrior> prior;   ///< with correlations; of unknowns that have no prior of their own
+  ExecutorRef executor{};            ///< computes the normal equations
   bool joint_columns = true;         ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }

@@ -33,7 +33,7 @@ VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
 }
 
 VERNIER_IMPL NormalEquations CalibrationProblem::normal_equations() const {
-  NormalEquations out(system(), drift_priors());
+  NormalEquations out(system(), drift_priors(), executor);
   if (prior) out.add(*prior, arm.steps());
   return out;
 }

@@ -116,6 +116,8 @@ template <int N>
 vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, const Options& o,
                                     const vn::FitOptions& fit, std::string& rule) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
+  std::optional<vn::ArmPrior> prior;
+  if (!o.prior.empty()) prior = read_prior<N>(o.prior);
   const auto types = robot.arm.chain().joint_types();
   std::vector<vn::Dataset<N>> train, test;
   std::string names;
@@ -129,11 +131,7 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
   for (const std::string& file : o.distances) distances.push_back(vn::read_distances<N>(file, types));
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
-  std::optional<vn::ArmPrior> prior;
-  if (!o.prior.empty()) {
-    prior = read_prior<N>(o.prior);
-    options.errors.prior = &*prior;
-  }
+  if (prior) options.errors.prior = &*prior;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
   };
@@ -372,10 +370,11 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("calibrate",
-                              "Measured poses in; base and tool frames, the arm's geometry, gravity compliance, "
-                              "functions of single joints, hysteresis by the direction of approach, drift of the "
-                              "session and a PSO-ELM on the remainder; errors at held-out poses after each, and a "
-                              "verdict.",
-                              argc, argv, run);
+  return support::run_program(
+      "calibrate",
+      "Measured poses in; base and tool frames, the arm's geometry, gravity compliance, "
+      "functions of single joints, hysteresis by the direction of approach, drift of the "
+      "session and what learners find in the remainder; errors at held-out poses after each, and a "
+      "verdict.",
+      argc, argv, run);
 }

@@ -147,6 +147,10 @@ TEST_F(BadInputToPrograms, WrongUsage) {
   expect_refused("calibrate --model model.json --data poses.csv", 2, "--free");
   expect_refused("calibrate --model model.json --data poses.csv --free elbow", 2, "not 'elbow'");
   expect_refused("calibrate --robot ur10 --model model.json --data poses.csv --free base", 2, "excludes");
+  expect_refused(calibrate + "--data poses.csv --prior missing.json", 1, "missing.json");
+  expect_refused(calibrate + "--data poses.csv --prior model.json", 2, "model.json: has no covariance");
+  expect_refused("calibrate --robot barrett_wam --data poses.csv --prior model.json", 2,
+                 "model.json: is of an arm of 6 joints, expected 7");
 }
 
 TEST_F(BadInputToPrograms, Reregistration) {

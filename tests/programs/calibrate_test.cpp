@@ -75,10 +75,14 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   const Calibration& c = calibration();
   ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
   EXPECT_EQ(c.command.errors, "");
-  EXPECT_EQ(keys(c.json),
-            (std::vector<std::string>{"robot", "train_rows", "test_rows", "stages", "chosen", "mean_temperature_c",
-                                      "blocks", "parameters", "identifiability", "spectrum", "drift", "gated_rows",
-                                      "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict"}));
+  EXPECT_EQ(keys(c.json), (std::vector<std::string>{
+                              "robot", "train_rows", "test_rows", "stages", "chosen", "mean_temperature_c", "blocks",
+                              "learners", "prior", "parameters", "identifiability", "spectrum", "drift", "gated_rows",
+                              "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict"}));
+  EXPECT_TRUE(c.json.at("prior").is_null());
+  ASSERT_EQ(c.json.at("learners").size(), 6u);  // three on geometry, three on the error model
+  for (const Json& learner : c.json.at("learners"))
+    EXPECT_EQ(keys(learner), (std::vector<std::string>{"stage", "used", "left_out_without_mm", "left_out_with_mm"}));
   ASSERT_EQ(c.json.at("spectrum").size(), 6u);
   for (const Json& joint : c.json.at("spectrum")) {
     EXPECT_EQ(joint.at("orders").size(), joint.at("amplitudes_urad").size());
@@ -166,6 +170,34 @@ TEST(Calibrate, CorrectBringsTheActualArmWithinTheNoise) {
   const Json report = Json::parse(read_file(c.folder / "correct.json"));
   EXPECT_EQ(report.at("targets"), 60);
   EXPECT_EQ(report.at("corrected"), 60);
+}
+
+// A few new poses of the same arm, with the earlier calibration and without.
+TEST(Calibrate, StartsFromAnEarlierCalibration) {
+  const TemporaryFolder& folder = calibration().folder;
+  write_dataset(folder / "later.csv", measured(15, 71));
+  write_dataset(folder / "unseen.csv", measured(100, 72));
+  const auto calibrated = [&](const std::string& prior, const std::string& name) {
+    const CommandResult result = run(folder, "calibrate",
+                                     "--robot abb_irb120 --data later.csv --test unseen.csv --threads 1 --out later "
+                                     "--save " +
+                                         name + ".json --json " + name + "_report.json" + prior);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return Json::parse(read_file(folder / (name + "_report.json")));
+  };
+  const Json alone = calibrated("", "alone"), with = calibrated(" --prior model.json", "with");
+  ASSERT_EQ(with.at("prior").at("used"), true) << with.dump();
+  EXPECT_EQ(with.at("prior").at("name"), "model.json");
+  EXPECT_LE(with.at("prior").at("geometry_kappa"), 0.1);
+  EXPECT_EQ(with.at("chosen"), "prior");
+  const auto chosen = [](const Json& json) -> double {
+    return json.at("stages").at(json.at("chosen").get<std::string>()).at("mean_mm");
+  };
+  EXPECT_LT(chosen(with), 0.03 * 1.6 * 1.15);  // the noise, a mean norm of three components
+  EXPECT_LT(chosen(with), chosen(alone));
+  const auto loaded = load<6>(folder / "with.json");  // what was saved is what was assessed
+  ASSERT_NE(loaded.estimate(), nullptr);
+  EXPECT_NEAR(position_errors(loaded, read_dataset<6>(folder / "unseen.csv")).mean() * 1e3, chosen(with), 1e-9);
 }
 
 TEST(Calibrate, SameBitsForAnyNumberOfThreads) {

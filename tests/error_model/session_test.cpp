@@ -1,0 +1,179 @@
+// What a session leaves in its measurements: the direction of approach, and a base that drifts.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "gauss_newton.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::session_test {
+namespace {
+
+using Chain = DhChain<6>;
+using Arm = ErrorModel<Chain>::Arm;
+
+const Robot<6> robot = robots::abb_irb120();
+const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
+const SensorModel squared{.loss = Loss::squared};
+
+/// An arm whose joints have loops of hysteresis of some half width [rad].
+ErrorModel<Chain> arm_with_hysteresis(double half_width) {
+  JointTerms terms(6);
+  terms.hysteresis = {0.02};
+  const JointErrors errors(terms, VectorX::Constant(6, half_width));
+  return {robot.chain, Arm({with_geometric_errors(robot.chain, {}, 4), errors}, base, tool)};
+}
+
+/// Poses visited one after the other, in a base that moves: `motion(i)` is applied in front of pose i.
+template <class Motion>
+Dataset<6> visited(const ErrorModel<Chain>& actual, const JointRows<6>& joints, const JointRows<6>& previous,
+                   std::uint64_t seed, const Motion& motion) {
+  Rng rng(seed);
+  PointRows positions(joints.rows(), 3), orientations(joints.rows(), 3);
+  for (Index i = 0; i < joints.rows(); ++i) {
+    const Isometry3 pose =
+        motion(i) * actual.approached_from(previous.row(i).transpose()).pose(joints.row(i).transpose());
+    positions.row(i) = pose.translation().transpose();
+    orientations.row(i) = log_so3(pose.linear()).transpose();
+    for (int k = 0; k < 3; ++k) {
+      positions(i, k) += 0.02e-3 * rng.normal();
+      orientations(i, k) += 0.05e-3 * rng.normal();
+    }
+  }
+  return Dataset<6>(joints, positions, orientations).approached_from(previous);
+}
+
+JointRows<6> rows_before(const JointRows<6>& joints) {
+  JointRows<6> out(joints.rows(), 6);
+  out.row(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  out.bottomRows(joints.rows() - 1) = joints.topRows(joints.rows() - 1);
+  return out;
+}
+
+const auto still = [](Index) { return Isometry3::Identity(); };
+
+FittedErrorModel<Chain> fitted(const Dataset<6>& data) {
+  const Framed<Chain> nominal(robot.chain, base, tool);
+  const auto start = vernier_test::identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
+  EXPECT_TRUE(start.converged()) << start.message;
+  return fit_error_model(start, std::vector<Dataset<6>>{data}, {.harmonics = 2, .num_validation_poses = 100}, squared);
+}
+
+bool used(const FittedErrorModel<Chain>& found, const char* name) {
+  for (const BlockChoice& block : found.blocks)
+    if (block.name == name) return block.used;
+  return false;
+}
+
+JointRows<6> samples(Index n, std::uint64_t seed) { return abb_irb120_operating_region().sample(robot.chain, n, seed); }
+
+TEST(Approach, HysteresisIsFoundWithItsWidth) {
+  const JointRows<6> joints = samples(250, 1);
+  const auto found = fitted(visited(arm_with_hysteresis(60e-6), joints, rows_before(joints), 2, still));
+  ASSERT_TRUE(used(found, "approach"));
+  for (int j = 0; j < 6; ++j) EXPECT_NEAR(found.arm.joint_errors().half_loop(j), 60e-6, 20e-6) << j;
+  // a pose from either side, against the arm
+  const auto actual = arm_with_hysteresis(60e-6);
+  const JointVector<6> q = joints.row(7).transpose(), below = q.array() - 0.4, above = q.array() + 0.4;
+  const Vector3 loop = actual.approached_from(below).position(q) - actual.approached_from(above).position(q);
+  const auto& model = found.model();
+  EXPECT_LT((model.approached_from(below).position(q) - model.approached_from(above).position(q) - loop).norm(),
+            0.3 * loop.norm());
+}
+
+TEST(Approach, NothingIsFoundInAnArmWithout) {
+  const JointRows<6> joints = samples(250, 1);
+  EXPECT_FALSE(used(fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still)), "approach"));
+}
+
+// The rows are in another order than they were measured in: the pose before says nothing.
+TEST(Approach, AShuffledFileFindsNothing) {
+  const JointRows<6> joints = samples(250, 1);
+  const Dataset<6> data = visited(arm_with_hysteresis(60e-6), joints, rows_before(joints), 2, still);
+  const Dataset<6> mixed = data.rows(Rng(3).permutation(data.size()));
+  EXPECT_FALSE(used(fitted(mixed.approached_from(rows_before(mixed.joints()))), "approach"));
+}
+
+// Every joint always came from the same side: its loop cannot be told from its zero.
+TEST(Approach, ApproachesThatNeverVaryFindNothing) {
+  const JointRows<6> joints = samples(250, 1), before = joints.array() - 0.5;
+  EXPECT_FALSE(used(fitted(visited(arm_with_hysteresis(60e-6), joints, before, 2, still)), "approach"));
+}
+
+/// A base that moves along a wave of 0.1 mm and 100 urad.
+Isometry3 wave(Index i, Index n) {
+  const double phase = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+  Isometry3 out = Isometry3::Identity();
+  out.translation() = 0.1e-3 * std::sin(phase) * Vector3(1, -0.5, 0.3);
+  out.linear() = exp_so3(Vector3(100e-6 * std::cos(phase) * Vector3(0, 0, 1)));
+  return out;
+}
+
+TEST(Drift, OfTheBaseIsFollowed) {
+  const Index n = 400;
+  const JointRows<6> joints = samples(n, 1);
+  const auto found =
+      fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, [&](Index i) { return wave(i, n); }));
+  ASSERT_TRUE(used(found, "drift"));
+  ASSERT_EQ(found.drift.size(), 1u);
+  // where the tool was, on average over the session, nothing is left but the mean
+  const Vector3 centre = found.drift.front().centre;
+  Vector3 mean = Vector3::Zero();
+  for (Index i = 0; i < n; ++i)
+    mean += (wave(i, n) * centre - found.drift.front().motion(static_cast<double>(i)) * centre) / n;
+  double worst = 0;
+  for (Index i = 0; i < n; ++i)
+    worst = std::max(worst,
+                     (wave(i, n) * centre - found.drift.front().motion(static_cast<double>(i)) * centre - mean).norm());
+  EXPECT_LT(worst, 0.04e-3);
+}
+
+TEST(Drift, NothingIsFoundInABaseThatRests) {
+  const JointRows<6> joints = samples(400, 1);
+  EXPECT_FALSE(used(fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still)), "drift"));
+}
+
+// The columns of a drift's knots, against finite differences of residuals.
+TEST(DriftWhiteBox, ColumnsAreDerivatives) {
+  const JointRows<6> joints = samples(80, 1);
+  const Dataset<6> data = visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still);
+  const ArmGeometry arm{Framed<Chain>(robot.chain, base, tool)};
+  detail::CalibrationProblem problem(ArmParameterisation({arm}, {}), {detail::station_of(data, squared)},
+                                     Loss::squared);
+  problem.start_drift(40);
+  ASSERT_EQ(problem.drift.front().twists.cols(), 3);
+  problem.drift.front().twists.setConstant(1e-4);  // not at rest
+  for (const Index pose : {Index{0}, Index{13}, Index{60}}) {
+    RowBlock rows, ahead, behind;
+    problem(pose, 1, &rows);
+    for (const RowBlock::Local& local : rows.local) {
+      if (local.state < 0) continue;
+      for (Index k = 0; k < 6; ++k) {
+        const double scale = problem.drift_steps()(6 * local.state + k) > 0
+                                 ? 1e-4 / problem.drift_steps()(6 * local.state + k)
+                                 : 0,
+                     step = 1e-2 * scale;
+        problem.drift.front().twists(k, local.state) += step;
+        problem(pose, 1, &ahead);
+        problem.drift.front().twists(k, local.state) -= 2 * step;
+        problem(pose, 1, &behind);
+        problem.drift.front().twists(k, local.state) += step;
+        const Vector6 slope = (ahead.residual - behind.residual) / (2 * step) * scale;
+        EXPECT_LT((slope - local.columns.col(k)).norm(), 1e-3 * local.columns.norm()) << pose << ' ' << k;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vernier::session_test

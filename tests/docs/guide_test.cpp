@@ -31,7 +31,7 @@
 namespace vernier::guide_test {
 namespace {
 
-static_assert(guide_blocks == 17, "a block of docs/guide.md without a test");
+static_assert(guide_blocks == 18, "a block of docs/guide.md without a test");
 
 using namespace vernier::literals;
 using Chain = DhChain<6>;
@@ -104,11 +104,11 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
     EXPECT_LT(sigma, 0.2e-3);
   }
   {
-#include "guide_9.inc"
+#include "guide_10.inc"
     EXPECT_LT(error(tuned.model()), 0.1e-3);
   }
   {
-#include "guide_10.inc"
+#include "guide_11.inc"
     EXPECT_EQ(saved.name(), "cell 3");
     EXPECT_EQ(saved.limits().upper, limits.upper);
     EXPECT_EQ(saved.model().position(q), calibration.model().position(q));
@@ -119,7 +119,7 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
     EXPECT_EQ(warm.model().position(q), saved.model().position(q));  // it was measured at no temperature
   }
   {
-#include "guide_11.inc"
+#include "guide_12.inc"
     EXPECT_LT((real_arm().position(command) - compensator.nominal().position(q)).norm(), 0.15e-3);
   }
   {
@@ -139,6 +139,15 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
 #include "guide_8.inc"
     EXPECT_GT(error(robot.model(), drifted), 0.4e-3);
     EXPECT_LT(error(now, drifted), 0.15e-3);
+  }
+  {
+    const Isometry3 elsewhere = frame(-1, 2, 0.3, 0, 0.1, -0.4) * base;
+    const Dataset<6> a_dozen = measured(real_arm(elsewhere), 12, 9);
+    ::testing::internal::CaptureStdout();
+#include "guide_9.inc"
+    EXPECT_EQ(::testing::internal::GetCapturedStdout().rfind("joint errors changed by ", 0), 0u);
+    EXPECT_LT(error(after.model(), elsewhere), 0.1e-3);
+    EXPECT_LT(std::sqrt(covariance.topLeftCorner<3, 3>().trace()), 0.2e-3);
   }
 }
 
@@ -185,7 +194,7 @@ TEST_F(Guide, Distances) {
 }
 
 TEST_F(Guide, DescribesARobot) {
-#include "guide_12.inc"
+#include "guide_13.inc"
   const JointVector<3> zero = JointVector<3>::Zero();
   EXPECT_NEAR((gantry.position(zero) - Vector3(0.025 + 0.455, 0.01, 0.4)).norm(), 0, 1e-12);
   EXPECT_EQ(gantry.row(2).joint, JointType::prismatic);
@@ -196,7 +205,7 @@ TEST_F(Guide, DescribesARobot) {
                     R"(, "d_m": )", arm.row(i).d, R"(, "theta_rad": )", arm.row(i).theta, "}");
   write_file("my_arm.json", text + "]}");
   const Dataset<6> data = measured(real_arm(), 60, 1);
-#include "guide_13.inc"
+#include "guide_14.inc"
   EXPECT_EQ(described.name, "mine");
   EXPECT_LT((described.arm.position(q) - arm.position(q)).norm(), 1e-4);  // numbers of six digits
   EXPECT_LT(error(identified.model), 0.5 * error(identified.model.nominal()));
@@ -205,9 +214,9 @@ TEST_F(Guide, DescribesARobot) {
 TEST_F(Guide, Learns) {
   const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);
   const double nominal = prediction_error(arm, data).mean;
-#include "guide_14.inc"
-  EXPECT_LT(prediction_error(learned, data).mean, 0.2 * nominal);
 #include "guide_15.inc"
+  EXPECT_LT(prediction_error(learned, data).mean, 0.2 * nominal);
+#include "guide_16.inc"
   EXPECT_LT(prediction_error(trained, data).mean, 0.2 * nominal);
 }
 
@@ -216,7 +225,7 @@ const CartesianCompensation compensation{Tuned{Elm{.hidden_nodes = 20}, Pso{.par
 TEST_F(Guide, ThreadsChangeNothing) {
   const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);
   ::testing::internal::CaptureStdout();
-#include "guide_16.inc"
+#include "guide_17.inc"
   const std::string seen = ::testing::internal::GetCapturedStdout();
   EXPECT_EQ(std::count(seen.begin(), seen.end(), '\n'), 6);  // the first population and five iterations
   EXPECT_EQ(in_parallel.position(q), compensation.fit(arm, data, {.seed = 1}).position(q));
@@ -224,7 +233,7 @@ TEST_F(Guide, ThreadsChangeNothing) {
 
 #ifdef VERNIER_DOCS_MPI
 [[maybe_unused]] void over_several_machines(int argc, char** argv, const Dataset<6>& data, const Dataset<6>& test) {
-#include "guide_17.inc"
+#include "guide_18.inc"
 }
 #endif
 

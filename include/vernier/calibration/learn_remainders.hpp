@@ -81,16 +81,14 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   const ErrorModel<Chain>& model = models.front();
   out.remainders.push_back(learn_remainder(on_geometry, options.learners.front(), model, data, options, fit));
   if (data.size() < enough) return {};
-  BestLearner best{0, {}, position_errors(model, data)};
+  const VectorX without = position_errors(model, data);
+  std::vector<PriorTrial> errors;  // the preferred one last
   for (const Learner learner : options.learners) {
-    const VectorX errors = fold_errors(learner, model, data, options, fit);
-    if (best.with.size() == 0 || errors.mean() < best.with.mean()) {
-      best.trial = out.trials.size();
-      best.with = errors;
-    }
-    out.trials.push_back({on_geometry, learner, best.without.mean(), errors.mean()});
+    errors.insert(errors.begin(), {0, fold_errors(learner, model, data, options, fit)});
+    out.trials.push_back({on_geometry, learner, without.mean(), errors.front().errors.mean()});
   }
-  return best;
+  const std::size_t best = one_standard_error_rule(errors);
+  return BestLearner{out.trials.size() - 1 - best, errors[best].errors, without};
 }
 
 /// See `RemainderOptions`. What is learned on geometry is deployed where it predicts left-out poses better than the

@@ -35,8 +35,9 @@ inline std::string remainder_key(bool on_geometry, Learner learner) {
 struct RemainderOptions {
   bool on_geometry = false;    ///< also on geometry alone: the classical alternative to an error model
   bool on_error_model = true;  ///< on the error model
-  /// The learners that are tried, each in five folds of consecutive poses. The first is learned from all poses in any
-  /// case; the one that is deployed is the best of them, if cross-validation supports one.
+  /// The learners that are tried, each in five folds of consecutive poses, in the order of preference: of those within
+  /// a standard error of the best the first is taken, and deployed if cross-validation supports it. The first of all is
+  /// learned from all poses in any case.
   std::vector<Learner> learners{Learner::pso_elm, Learner::ridge_elm, Learner::kernel_elm};
   int hidden_nodes = 30;  ///< number of hidden nodes of the ELM
   int particles = 20;     ///< of the swarm

@@ -9,7 +9,7 @@
 
 namespace vernier::detail {
 
-/// An estimate of one station without the values of its unknowns, which the model has. Of more than 1,850 unknowns
+/// An estimate of one station without the values of its unknowns, which the model has. Of more than 1,700 unknowns
 /// those of the highest orders are kept with their standard deviations alone, so that a file stays below 10 MB.
 VERNIER_API nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& estimate);
 /// @param arm     the identified arm of the model

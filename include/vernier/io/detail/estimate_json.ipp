@@ -76,7 +76,7 @@ VERNIER_API std::vector<Index> unknowns_by_order(const ArmParameterisation& arm)
 
 VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& estimate) {
   using Json = nlohmann::ordered_json;
-  constexpr Index most = 1850;
+  constexpr Index most = 1700;
   const auto list = [](const VectorX& values) {
     require(values.allFinite(), "save: a value of the estimate is not finite");
     return Json(std::vector<double>(values.begin(), values.end()));

@@ -85,10 +85,14 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
                                         detail::name_of(options.distance_names, d, "distances"));
 
   const auto began = std::chrono::steady_clock::now();
-  Identified<Chain> geometry = poses.empty()
-                                   ? identify(nominal, wires.front(), options.geometry, options.sensors)
-                                   : identify(nominal, in_one_frame<N>(poses, bases, options.sensors.use_orientations),
-                                              options.geometry, options.sensors);
+  const auto identified = [&](const IdentifyOptions& of_geometry) {
+    return poses.empty() ? identify(nominal, wires.front(), of_geometry, options.sensors)
+                         : identify(nominal, in_one_frame<N>(poses, bases, options.sensors.use_orientations),
+                                    of_geometry, options.sensors);
+  };
+  Identified<Chain> geometry = identified(options.geometry);
+  if (options.errors.prior != nullptr && geometry.status == IdentifyStatus::underdetermined)
+    geometry = identified(frames_alone);  // an earlier calibration knows the rest
   if (options.refuse_implausible) detail::require_usable(geometry, "identifying the geometry");
   ErrorModelOptions of_errors = options.errors;
   of_errors.executor = fit.executor;

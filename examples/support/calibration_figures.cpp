@@ -66,9 +66,9 @@ void draw_drift(const std::filesystem::path& folder, const std::string& robot,
     std::vector<Series> series;
     for (vernier::Index c = 0; c < 6; ++c) {
       Series one{names[c], {}, {}, c < 3 ? Style::lines : Style::dashed, static_cast<int>(c % 3)};
-      for (vernier::Index k = 0; k < drift[s].twists.cols(); ++k) {
+      for (vernier::Index k = 0; k < drift[s].knots.cols(); ++k) {
         one.x.push_back(drift[s].begin + drift[s].spacing * static_cast<double>(k));
-        one.y.push_back(drift[s].twists(c, k) * 1e6);
+        one.y.push_back(drift[s].knots(c, k) * 1e6);
       }
       series.push_back(std::move(one));
     }

@@ -143,33 +143,68 @@ TEST(Drift, NothingIsFoundInABaseThatRests) {
   EXPECT_FALSE(used(fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still)), "drift"));
 }
 
+/// Joint 2 loses and regains 150 urad.
+TEST(Drift, OfAJointsZeroIsFollowed) {
+  const Index n = 600;
+  const JointRows<6> joints = samples(n, 1);
+  const auto zero = [&](Index i) {
+    return 150e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+  };
+  JointRows<6> actually = joints;
+  for (Index i = 0; i < n; ++i) actually(i, 1) += zero(i);
+  const Dataset<6> seen =
+      visited(arm_with_hysteresis(0), actually, rows_before(actually), 2, [&](Index i) { return wave(i, n); });
+  const auto found =
+      fitted(Dataset<6>(joints, seen.positions(), seen.orientations()).approached_from(rows_before(joints)));
+  ASSERT_TRUE(used(found, "drift"));
+  ASSERT_TRUE(used(found, "joint_drift"));
+  ASSERT_EQ(found.drift.front().knots.rows(), 12);
+  double worst = 0;
+  for (Index i = 0; i < n; ++i)
+    worst = std::max(worst, std::abs(found.drift.front().joint_zeros(static_cast<double>(i))(1) - zero(i)));
+  EXPECT_LT(worst, 60e-6);
+}
+
+TEST(Drift, OfTheBaseAloneMovesNoJoint) {
+  const Index n = 400;
+  const JointRows<6> joints = samples(n, 1);
+  const auto found =
+      fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, [&](Index i) { return wave(i, n); }));
+  EXPECT_FALSE(used(found, "joint_drift"));
+  EXPECT_EQ(found.drift.front().knots.rows(), 6);
+}
+
 // The columns of a drift's knots, against finite differences of residuals.
 TEST(DriftWhiteBox, ColumnsAreDerivatives) {
   const JointRows<6> joints = samples(80, 1);
   const Dataset<6> data = visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still);
   const ArmGeometry arm{Framed<Chain>(robot.chain, base, tool)};
-  detail::CalibrationProblem problem(ArmParameterisation({arm}, {}), {detail::station_of(data, squared)},
-                                     Loss::squared);
-  problem.start_drift(40);
-  ASSERT_EQ(problem.drift.front().twists.cols(), 3);
-  problem.drift.front().twists.setConstant(1e-4);  // not at rest
-  for (const Index pose : {Index{0}, Index{13}, Index{60}}) {
-    RowBlock rows, ahead, behind;
-    problem(pose, 1, &rows);
-    for (const RowBlock::Local& local : rows.local) {
-      if (local.state < 0) continue;
-      for (Index k = 0; k < 6; ++k) {
-        const double scale = problem.drift_steps()(6 * local.state + k) > 0
-                                 ? 1e-4 / problem.drift_steps()(6 * local.state + k)
-                                 : 0,
-                     step = 1e-2 * scale;
-        problem.drift.front().twists(k, local.state) += step;
-        problem(pose, 1, &ahead);
-        problem.drift.front().twists(k, local.state) -= 2 * step;
-        problem(pose, 1, &behind);
-        problem.drift.front().twists(k, local.state) += step;
-        const Vector6 slope = (ahead.residual - behind.residual) / (2 * step) * scale;
-        EXPECT_LT((slope - local.columns.col(k)).norm(), 1e-3 * local.columns.norm()) << pose << ' ' << k;
+  for (const bool with_joints : {false, true}) {
+    detail::CalibrationProblem problem(ArmParameterisation({arm}, {}), {detail::station_of(data, squared)},
+                                       Loss::squared);
+    problem.start_drift(40);
+    if (with_joints) problem.start_joint_drift();
+    MatrixX& knots = problem.drift.front().knots;
+    ASSERT_EQ(knots.rows(), with_joints ? 12 : 6);
+    ASSERT_EQ(knots.cols(), 3);
+    knots.setConstant(1e-4);  // not at rest
+    const VectorX scales = (1e-4 / problem.drift_steps().array()).matrix();
+    for (const Index pose : {Index{0}, Index{13}, Index{60}}) {
+      RowBlock rows, ahead, behind;
+      problem(pose, 1, &rows);
+      for (const RowBlock::Local& local : rows.local) {
+        if (local.state < 0) continue;
+        ASSERT_EQ(local.columns.cols(), knots.rows());
+        for (Index k = 0; k < knots.rows(); ++k) {
+          const double scale = scales(local.state * knots.rows() + k), step = 1e-2 * scale;
+          knots(k, local.state) += step;
+          problem(pose, 1, &ahead);
+          knots(k, local.state) -= 2 * step;
+          problem(pose, 1, &behind);
+          knots(k, local.state) += step;
+          const Vector6 slope = (ahead.residual - behind.residual) / (2 * step) * scale;
+          EXPECT_LT((slope - local.columns.col(k)).norm(), 1e-3 * local.columns.norm()) << pose << ' ' << k;
+        }
       }
     }
   }

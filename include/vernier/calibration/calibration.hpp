@@ -87,7 +87,9 @@ std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Datas
                                      const SessionDrift& drift) {
   std::vector<Isometry3> out;
   const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
-    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
+    JointVector<Chain::dof> q = data.joints(i);
+    if (const VectorX zeros = drift.joint_zeros(data.times()(i)); zeros.size() > 0) q += zeros;
+    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(q);
   };
   const bool thermal = temperature && model.thermal() != nullptr;
   for (Index i = 0; i < data.size(); ++i)

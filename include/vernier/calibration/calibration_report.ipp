@@ -115,6 +115,7 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
        {"Orders that stand out of what the model left help ",
         "Orders that stand out of what the model left are left out "}},
       {"drift", {"The base drifted during the session ", "No drift of the base is noticeable "}},
+      {"joint_drift", {"The zeros of the joints drifted, too ", "No drift of the joints' zeros is noticeable "}},
       {"tuned_priors", {"Optimised priors help ", "Optimised priors are left out: they do not help "}}};
   const auto& [helps, does_not] = texts.at(block.name);
   return message(block.used ? helps : does_not, "(leave-one-pose-out error: ", brief(block.without * 1e3),
@@ -146,27 +147,34 @@ VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vec
 
 /// How far a base moved, and when.
 VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::string& station) {
-  const Index knots = drift.twists.cols();
+  const Index knots = drift.knots.cols();
   double translation = 0, rotation = 0, fastest = 0;
   Index at = 0;
   for (Index a = 0; a < knots; ++a)
     for (Index b = a + 1; b < knots; ++b) {
-      const Vector6 apart = drift.twists.col(b) - drift.twists.col(a);
+      const Vector6 apart = drift.knots.col(b).head<6>() - drift.knots.col(a).head<6>();
       translation = std::max(translation, apart.head<3>().norm());
       rotation = std::max(rotation, apart.tail<3>().norm());
     }
   const Index window = std::max<Index>(1, knots / 8);
   for (Index k = 0; k + window < knots; ++k) {
-    const double moved = (drift.twists.col(k + window) - drift.twists.col(k)).head<3>().norm();
+    const double moved = (drift.knots.col(k + window) - drift.knots.col(k)).head<3>().norm();
     if (!(moved > fastest)) continue;
     fastest = moved;
     at = k;
   }
   const auto time = [&](Index knot) { return std::llround(drift.begin + drift.spacing * static_cast<double>(knot)); };
+  std::string zeros;
+  if (drift.knots.rows() > 6) {
+    const MatrixX of_joints = drift.knots.bottomRows(drift.knots.rows() - 6);
+    Index joint = 0;
+    const double largest = (of_joints.rowwise().maxCoeff() - of_joints.rowwise().minCoeff()).maxCoeff(&joint);
+    zeros = message(" The zero of joint ", joint + 1, " moved most, by ", brief(largest * 1e6), " urad [um].");
+  }
   return message("During the session the base", station, " moved by up to ", brief(translation * 1e3), " mm and ",
                  brief(rotation * 1e6), " urad, fastest (", brief(fastest * 1e3), " mm) between ", time(at), " and ",
-                 time(at + window), " of ", time(0), " .. ", time(knots - 1),
-                 " [row, or time_s]. The model that is saved is without drift.");
+                 time(at + window), " of ", time(0), " .. ", time(knots - 1), " [row, or time_s].", zeros,
+                 " The model that is saved is without drift.");
 }
 
 /// Lines of a joint's gear and encoder, which errors of its assembly do not reach; empty where there are none.

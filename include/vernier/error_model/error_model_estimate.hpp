@@ -21,7 +21,7 @@ struct BlockChoice {
   /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
   /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
   /// `tilt` (of joint frames under gravity), `temperature` (changes of the geometry), `prior` (an earlier calibration),
-  /// `drift` (of the bases), `lines` (orders found in the residuals)
+  /// `drift` (of the bases), `joint_drift` (of the joints' zeros), `lines` (orders found in the residuals)
   std::string name;
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried

@@ -577,7 +577,44 @@ class ErrorModelFit {
     else
       problem_.stop_drift();
     linearised_.reset();
+    if (used) add_joint_drift(estimate);
     return used;
+  }
+
+  /// Lets the joints' zeros drift beside the bases, if leave-one-pose-out errors support that.
+  VERNIER_API void add_joint_drift(ErrorModelEstimate& estimate) {
+    const VectorX precisions = problem_.arm.precisions();
+    const VectorX without = left_out(linearised(), precisions);
+    problem_.start_joint_drift();
+    problem_.joint_drift_precision = 1;
+    linearised_.reset();
+    Linearised at = linearised();
+    const std::vector<double> expected = at.normal.local_prior.values;
+    const auto scaled = [&](double factor) {  // the precisions of the joints alone
+      const SparseSymmetric& prior = at.normal.local_prior;
+      for (std::size_t k = 0; k < expected.size(); ++k)
+        at.normal.local_prior.values[k] = expected[k] * (prior.rows[k] % at.system.local_size >= 6 ? factor : 1);
+    };
+    double best = 1, highest = -std::numeric_limits<double>::infinity();
+    for (const double factor : {0.25, 1.0, 4.0, 16.0, 64.0}) {
+      scaled(factor);
+      const double reached =
+          log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
+                       at.steps, problem_.measured_values(), at.local_steps);
+      if (!(reached > highest)) continue;
+      highest = reached;
+      best = factor;
+    }
+    scaled(best);
+    problem_.joint_drift_precision = best;
+    const std::vector<PriorTrial> trials{{best, left_out(at, precisions)}, {suppressing_precision, without}};
+    const bool used = one_standard_error_rule(trials) == 0;
+    estimate.blocks.push_back({"joint_drift", without.mean(), trials[0].errors.mean(), used, best});
+    if (used)
+      steps(1);
+    else
+      problem_.stop_joint_drift();
+    linearised_.reset();
   }
 
   /// Priors of the joint errors by a search over leave-one-pose-out errors; kept where those are smaller than before.
@@ -660,6 +697,7 @@ class ErrorModelFit {
       rows.expand(system.group_sizes, all);
       const MatrixX position = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(all);
       const MatrixX joint = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(rows.factor);
+      if (const VectorX zeros = problem_.drift_joint_zeros(b); zeros.size() > 0) error -= joint.lazyProduct(zeros);
       estimate.left_out_rows.push_back(b);
       visits.push_back({error, Matrix3::Zero(), joint.lazyProduct(joint.transpose())});
       stack.middleRows(3 * stacked, 3) = position;

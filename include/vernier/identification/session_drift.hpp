@@ -7,17 +7,19 @@
 
 namespace vernier {
 
-/// Motion of a base frame over time, linear between knots, constant beyond them. An empty one is no motion.
+/// Motion of a base frame over time, and of the zeros of the joints where those move, linear between knots, constant
+/// beyond them. An empty one is no motion.
 /// @cite ISO 9283; Heisel, Richter and Wurst 1997
 struct SessionDrift {
   double begin = 0;                  ///< time of the first knot, in the unit of `Dataset::times`
   double spacing = 1;                ///< from one knot to the next
   Vector3 centre = Vector3::Zero();  ///< point about which the rotations turn [m]
-  /// A column a knot: translation of the centre [m], rotation vector [rad], in the sensor's frame.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> twists{};
+  /// A column a knot: translation of the centre [m], rotation vector [rad], in the sensor's frame; then, where the
+  /// joints' zeros move, too, their changes [rad, m].
+  MatrixX knots{};
 
   /// Whether there is none.
-  bool empty() const { return twists.cols() == 0; }
+  bool empty() const { return knots.cols() == 0; }
 
   /// The knots on which a time depends: `first` with `1 - share`, the next with `share`.
   struct Position {
@@ -26,6 +28,8 @@ struct SessionDrift {
   };
   /// See `Position`.
   VERNIER_API Position position(double time) const;
+  /// Changes of the joints' zeros at a time [rad, m]; empty where they rest.
+  VERNIER_API VectorX joint_zeros(double time) const;
   /// Translation and rotation at a time.
   VERNIER_API Vector6 twist(double time) const;
   /// The same as a motion, to be applied in front of a modelled pose.

@@ -9,17 +9,29 @@
 namespace vernier {
 
 VERNIER_IMPL SessionDrift::Position SessionDrift::position(double time) const {
-  const double at = std::clamp((time - begin) / spacing, 0.0, static_cast<double>(twists.cols() - 1));
+  const double at = std::clamp((time - begin) / spacing, 0.0, static_cast<double>(knots.cols() - 1));
   const double first = std::floor(at);
   return {static_cast<Index>(first), at - first};
 }
 
-VERNIER_IMPL Vector6 SessionDrift::twist(double time) const {
-  if (empty()) return Vector6::Zero();
-  const auto [first, share] = position(time);
-  Vector6 out = (1 - share) * twists.col(first);
-  if (share > 0) out += share * twists.col(first + 1);
+namespace detail {
+
+/// Some rows of the knots at a time.
+VERNIER_API VectorX interpolated(const SessionDrift& drift, Index first_row, Index rows, double time) {
+  const auto [first, share] = drift.position(time);
+  VectorX out = (1 - share) * drift.knots.block(first_row, first, rows, 1);
+  if (share > 0) out += share * drift.knots.block(first_row, first + 1, rows, 1);
   return out;
+}
+
+}  // namespace detail
+
+VERNIER_IMPL Vector6 SessionDrift::twist(double time) const {
+  return empty() ? Vector6(Vector6::Zero()) : Vector6(detail::interpolated(*this, 0, 6, time));
+}
+
+VERNIER_IMPL VectorX SessionDrift::joint_zeros(double time) const {
+  return knots.rows() > 6 ? detail::interpolated(*this, 6, knots.rows() - 6, time) : VectorX();
 }
 
 VERNIER_IMPL Isometry3 SessionDrift::motion(double time) const {

@@ -43,11 +43,13 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
   Json drift = Json::array();
   for (const SessionDrift& of_station : report.drift) {
     Json knots = Json::array();
-    for (Index k = 0; k < of_station.twists.cols(); ++k) {
-      const Vector6 twist = of_station.twists.col(k);
-      knots.push_back({{"time", of_station.begin + of_station.spacing * static_cast<double>(k)},
-                       {"translation_um", {twist(0) * 1e6, twist(1) * 1e6, twist(2) * 1e6}},
-                       {"rotation_urad", {twist(3) * 1e6, twist(4) * 1e6, twist(5) * 1e6}}});
+    for (Index k = 0; k < of_station.knots.cols(); ++k) {
+      const VectorX knot = of_station.knots.col(k) * 1e6;
+      Json one{{"time", of_station.begin + of_station.spacing * static_cast<double>(k)},
+               {"translation_um", {knot(0), knot(1), knot(2)}},
+               {"rotation_urad", {knot(3), knot(4), knot(5)}}};
+      if (knot.size() > 6) one["joint_zeros_urad"] = std::vector<double>(knot.begin() + 6, knot.end());
+      knots.push_back(std::move(one));
     }
     drift.push_back({{"station", drift.size() + 1}, {"knots", std::move(knots)}});
   }

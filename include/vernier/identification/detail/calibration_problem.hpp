@@ -57,14 +57,22 @@ class CalibrationProblem {
   /// Lets the bases of stations of poses drift from now on, from no motion.
   /// @param rows_per_knot number of poses from one knot to the next, on average
   VERNIER_API void start_drift(Index rows_per_knot);
+  /// Lets the joints' zeros drift along, from no change.
+  VERNIER_API void start_joint_drift();
   /// No drift any more.
   void stop_drift() { drift.clear(); }
-  /// Precision of the random walks, relative to steps of 0.03 mm and 20 urad in 200 poses.
+  /// No drift of the joints' zeros any more.
+  VERNIER_API void stop_joint_drift();
+  /// Precision of the random walks of bases, relative to steps of 0.03 mm and 20 urad in 200 poses.
   double drift_precision = 1;
+  /// The same of joints' zeros, relative to steps of 10 urad or 10 um.
+  double joint_drift_precision = 1;
   /// The priors of the drift: random walks, held near zero, which is the stations' base.
   VERNIER_API std::vector<LocalPrior> drift_priors() const;
   /// Present values of the drift, in units of their expected sizes.
   VERNIER_API VectorX drift_steps() const;
+  /// Changes of the joints' zeros at a block; empty where they rest.
+  VERNIER_API VectorX drift_joint_zeros(Index block) const;
   /// The motion of a block's base by drift.
   VERNIER_API Isometry3 drift_motion(Index block) const;
 
@@ -112,8 +120,8 @@ class CalibrationProblem {
   std::vector<Station> stations_;
   std::vector<Block> blocks_;
   Index validation_blocks_ = 0;
-  std::vector<Index> first_state_;  // of each station
-  Vector6 drift_scale_ = Vector6::Ones();
+  std::vector<Index> first_state_;          // of each station
+  VectorX drift_scale_ = VectorX::Ones(6);  // as the rows of knots
   Loss loss_;
 };
 

@@ -27,8 +27,8 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
 VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
   BlockSystem out{num_blocks(), num_validation_blocks(), arm.num_dense(), arm.group_sizes(), *this};
   if (drift.empty()) return out;
-  out.local_size = 6;
-  for (const SessionDrift& of_station : drift) out.local_states += of_station.twists.cols();
+  out.local_size = drift_scale_.size();
+  for (const SessionDrift& of_station : drift) out.local_states += of_station.knots.cols();
   return out;
 }
 
@@ -81,18 +81,39 @@ VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
     if (!(end > begin)) continue;
     drift[s] = {
         begin, (end - begin) / static_cast<double>(intervals), station.positions->colwise().mean().transpose(), {}};
-    drift[s].twists.setZero(6, intervals + 1);
+    drift[s].knots.setZero(6, intervals + 1);
     states += intervals + 1;
   }
   const double root = std::sqrt(static_cast<double>(rows_per_knot) / 200);
+  drift_scale_.resize(6);
   drift_scale_ << Vector3::Constant(0.03e-3 * root), Vector3::Constant(20e-6 * root);
+}
+
+VERNIER_IMPL void CalibrationProblem::start_joint_drift() {
+  const Index joints = arm.geometry(0).joints();
+  for (SessionDrift& of_station : drift)
+    if (!of_station.empty()) {
+      of_station.knots.conservativeResize(6 + joints, Eigen::NoChange);
+      of_station.knots.bottomRows(joints).setZero();
+    }
+  const double step = drift_scale_(3) / 2;  // half of the base's rotation
+  drift_scale_.conservativeResize(6 + joints);
+  drift_scale_.tail(joints).setConstant(step);
+}
+
+VERNIER_IMPL void CalibrationProblem::stop_joint_drift() {
+  drift_scale_.conservativeResize(6);
+  for (SessionDrift& of_station : drift)
+    if (!of_station.empty()) of_station.knots.conservativeResize(6, Eigen::NoChange);
 }
 
 VERNIER_IMPL std::vector<LocalPrior> CalibrationProblem::drift_priors() const {
   std::vector<LocalPrior> out;
-  const MatrixX walk = drift_precision * MatrixX::Identity(6, 6), anchor = 0.01 * walk;
+  VectorX precisions = VectorX::Constant(drift_scale_.size(), joint_drift_precision);
+  precisions.head<6>().setConstant(drift_precision);
+  const MatrixX walk = precisions.asDiagonal(), anchor = 0.01 * walk;
   for (std::size_t s = 0; s < drift.size(); ++s)
-    for (Index k = 0; k < drift[s].twists.cols(); ++k) {
+    for (Index k = 0; k < drift[s].knots.cols(); ++k) {
       const Index state = first_state_[s] + k;
       out.push_back({state, state, anchor});
       if (k == 0) continue;
@@ -105,17 +126,25 @@ VERNIER_IMPL std::vector<LocalPrior> CalibrationProblem::drift_priors() const {
 
 VERNIER_IMPL VectorX CalibrationProblem::drift_steps() const {
   const Index states = system().local_states;
-  VectorX out(6 * states);
+  const Index size = drift_scale_.size();
+  VectorX out(size * states);
   for (std::size_t s = 0; s < drift.size(); ++s)
-    for (Index k = 0; k < drift[s].twists.cols(); ++k)
-      out.segment<6>(6 * (first_state_[s] + k)) = drift[s].twists.col(k).cwiseQuotient(drift_scale_);
+    for (Index k = 0; k < drift[s].knots.cols(); ++k)
+      out.segment(size * (first_state_[s] + k), size) = drift[s].knots.col(k).cwiseQuotient(drift_scale_);
   return out;
 }
 
 VERNIER_IMPL void CalibrationProblem::move_drift(const VectorX& steps) {
+  const Index size = drift_scale_.size();
   for (std::size_t s = 0; s < drift.size(); ++s)
-    for (Index k = 0; k < drift[s].twists.cols(); ++k)
-      drift[s].twists.col(k) += steps.segment<6>(6 * (first_state_[s] + k)).cwiseProduct(drift_scale_);
+    for (Index k = 0; k < drift[s].knots.cols(); ++k)
+      drift[s].knots.col(k) += steps.segment(size * (first_state_[s] + k), size).cwiseProduct(drift_scale_);
+}
+
+VERNIER_IMPL VectorX CalibrationProblem::drift_joint_zeros(Index block) const {
+  const auto s = static_cast<std::size_t>(at(block).station);
+  if (drift.empty() || drift[s].empty()) return {};
+  return drift[s].joint_zeros((*stations_[s].times)(at(block).row));
 }
 
 VERNIER_IMPL Isometry3 CalibrationProblem::drift_motion(Index block) const {
@@ -129,6 +158,12 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
   if (drift.empty() || drift[s].empty()) return;
   const double time = (*stations_[s].times)(block.row);
   const Isometry3 motion = drift[s].motion(time);
+  const Index joints = drift_scale_.size() - 6;
+  if (joints > 0) {  // tiny, so it adds up
+    const Vector6 shift = rows->factor.lazyProduct(drift[s].joint_zeros(time));
+    pose.translation() += shift.head<3>();
+    pose.linear() = exp_so3(Vector3(shift.tail<3>())) * pose.linear();
+  }
   const Vector3 lever = pose.translation() - drift[s].centre;
   pose = motion * pose;
   if (rows == nullptr) return;
@@ -139,10 +174,11 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
     }
   const auto [knot, share] = drift[s].position(time);
   for (std::size_t k = 0; k < 2 && (k == 0 || share > 0); ++k) {
-    Rows6 columns = Rows6::Zero(6, 6);
+    Rows6 columns = Rows6::Zero(6, 6 + joints);
     columns.topLeftCorner<3, 3>().setIdentity();
-    columns.topRightCorner<3, 3>() = -skew(lever);
-    columns.bottomRightCorner<3, 3>().setIdentity();
+    columns.block<3, 3>(0, 3) = -skew(lever);
+    columns.block<3, 3>(3, 3).setIdentity();
+    columns.rightCols(joints) = rows->factor.leftCols(joints);
     columns *= (k == 0 ? 1 - share : share) * drift_scale_.asDiagonal();
     rows->local[k] = {first_state_[s] + knot + static_cast<Index>(k), columns};
   }
@@ -281,7 +317,9 @@ VERNIER_IMPL double CalibrationProblem::cost() const {
   Index b = 0;
   for (std::size_t s = 0; s < stations_.size(); ++s) {
     const Station& station = stations_[s];
-    if (station.joint_sigma > 0 || arm.thermal_rates(static_cast<int>(s)).size() > 0) {  // they need the Jacobian
+    const bool joint_drift = !drift.empty() && drift_scale_.size() > 6;
+    if (station.joint_sigma > 0 || joint_drift ||
+        arm.thermal_rates(static_cast<int>(s)).size() > 0) {  // they need the Jacobian
       visit_blocks(system(), b, 1, station.size(),
                    [&](Index, const RowBlock& rows) { sum += rows.residual.squaredNorm(); });
       b += station.size();

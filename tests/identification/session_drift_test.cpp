@@ -13,21 +13,21 @@ namespace {
 
 SessionDrift three_knots() {
   SessionDrift out{.begin = 10, .spacing = 5, .centre = {1, 2, 3}};
-  out.twists.setZero(6, 3);
-  out.twists.col(0) << 1e-3, 0, 0, 0, 0, 0;
-  out.twists.col(1) << 3e-3, 0, 1e-3, 0, 0, 0.02;
-  out.twists.col(2) << 0, 0, 0, 0.01, 0, 0;
+  out.knots.setZero(6, 3);
+  out.knots.col(0) << 1e-3, 0, 0, 0, 0, 0;
+  out.knots.col(1) << 3e-3, 0, 1e-3, 0, 0, 0.02;
+  out.knots.col(2) << 0, 0, 0, 0.01, 0, 0;
   return out;
 }
 
 TEST(SessionDrift, IsLinearBetweenKnotsAndConstantBeyond) {
   const SessionDrift drift = three_knots();
-  EXPECT_LT((drift.twist(12.5) - 0.5 * (drift.twists.col(0) + drift.twists.col(1))).norm(), 1e-18);
-  EXPECT_LT((drift.twist(16) - (0.8 * drift.twists.col(1) + 0.2 * drift.twists.col(2))).norm(), 1e-17);
-  EXPECT_EQ(drift.twist(-100), drift.twists.col(0));
-  EXPECT_EQ(drift.twist(10), drift.twists.col(0));
-  EXPECT_EQ(drift.twist(20), drift.twists.col(2));
-  EXPECT_EQ(drift.twist(1e9), drift.twists.col(2));
+  EXPECT_LT((drift.twist(12.5) - 0.5 * (drift.knots.col(0) + drift.knots.col(1))).norm(), 1e-18);
+  EXPECT_LT((drift.twist(16) - (0.8 * drift.knots.col(1) + 0.2 * drift.knots.col(2))).norm(), 1e-17);
+  EXPECT_EQ(drift.twist(-100), drift.knots.col(0));
+  EXPECT_EQ(drift.twist(10), drift.knots.col(0));
+  EXPECT_EQ(drift.twist(20), drift.knots.col(2));
+  EXPECT_EQ(drift.twist(1e9), drift.knots.col(2));
 }
 
 TEST(SessionDrift, TurnsAboutItsCentre) {
@@ -40,8 +40,22 @@ TEST(SessionDrift, TurnsAboutItsCentre) {
   EXPECT_LT((log_so3(motion.linear()) - Vector3(0, 0, 0.02)).norm(), 1e-15);
 }
 
+TEST(SessionDrift, ZerosOfTheJointsStandBelowTheTwist) {
+  SessionDrift drift = three_knots();
+  EXPECT_EQ(drift.joint_zeros(12.5).size(), 0);  // they rest
+  const MatrixX base = drift.knots;
+  drift.knots.setZero(8, 3);
+  drift.knots.topRows<6>() = base;
+  drift.knots.row(6) << 1e-5, 3e-5, -1e-5;
+  drift.knots.row(7) << 0, 2e-6, 2e-6;
+  EXPECT_LT((drift.joint_zeros(12.5) - Eigen::Vector2d(2e-5, 1e-6)).norm(), 1e-18);
+  EXPECT_LT((drift.joint_zeros(99) - Eigen::Vector2d(-1e-5, 2e-6)).norm(), 1e-18);
+  EXPECT_EQ(drift.twist(12.5), three_knots().twist(12.5));
+}
+
 TEST(SessionDrift, NoneIsNoMotion) {
   const SessionDrift none;
+  EXPECT_EQ(none.joint_zeros(3).size(), 0);
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(none.motion(3).matrix(), Isometry3::Identity().matrix());
 }

@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file
+/// A six-axis arm by the lines of its joint axes, and the joint values that a solver of such arms finds.
+
+#include <array>
+
+#include "vernier/core/types.hpp"
+
+namespace vernier::detail {
+
+/// Six revolute joints by the lines of their axes at joint values zero, in the frame in which targets are given. Any
+/// convention of link frames leads to this.
+struct SixAxes {
+  Eigen::Matrix<double, 3, 6> direction;  ///< unit vectors; the joint turns about it by the right-hand rule
+  Eigen::Matrix<double, 3, 6> point;      ///< a point on each axis [m]
+  Isometry3 tool;                         ///< base_T_tool at joint values zero
+};
+
+/// base_T_tool at joint values: the product of exponentials.
+/// @cite Brockett 1984; Lynch and Park 2017
+VERNIER_API Isometry3 pose_of(const SixAxes& arm, const JointVector<6>& q) noexcept;
+
+/// Joint values that a solver found.
+struct SixAxisRoot {
+  JointVector<6> joints;  ///< [rad], each in (-pi, pi]
+  /// By how much the target lies beyond a boundary of the arm, relative to that boundary: 0 for a root, positive for
+  /// the joint values at the boundary that come nearest.
+  double margin = 0;
+};
+
+/// All joint values that a solver found for one target.
+struct SixAxisRoots {
+  /// A six-axis arm has at most so many solutions. @cite Primrose 1986
+  static constexpr int capacity = 16;
+  std::array<SixAxisRoot, capacity> roots;  ///< the first `count` are set
+  int count = 0;                            ///< how many were found
+  double condition = 1;                     ///< of the linear algebra that found them; 1 for closed forms
+
+  const SixAxisRoot* begin() const { return roots.data(); }
+  const SixAxisRoot* end() const { return roots.data() + count; }
+};
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/kinematics/detail/six_axes.ipp"
+#endif

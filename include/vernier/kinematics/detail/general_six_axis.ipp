@@ -1,0 +1,222 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/detail/general_six_axis.hpp"
+#include "vernier/kinematics/detail/hidden_joint.hpp"
+#include "vernier/kinematics/detail/reflections.hpp"
+
+namespace vernier::detail {
+
+inline AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point.col(joint), arm.direction.col(joint)}; }
+
+/// Angle in (-pi, pi].
+inline double wrapped(double angle) {
+  constexpr double pi = std::numbers::pi;
+  const double out = std::remainder(angle, 2 * pi);
+  return out > -pi ? out : pi;
+}
+
+/// Greatest difference of two joints, modulo turns [rad].
+inline double turn_distance(const JointVector<6>& a, const JointVector<6>& b) {
+  double out = 0;
+  for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(wrapped(a(i) - b(i))));
+  return out;
+}
+
+/// Moves the origin to the middle of the axes and makes their distance from it the unit of length, that the equations
+/// of lengths, squares of lengths and directions weigh alike.
+inline void normalize(SixAxes& arm, Isometry3& target) {
+  const auto nearest = [&](int i, const Vector3& to) {
+    const AxisLine axis = axis_of(arm, i);
+    return Vector3(axis.point + axis.direction * axis.direction.dot(to - axis.point));
+  };
+  Vector3 centre = arm.point.col(0);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < 6; ++i) sum += nearest(i, centre);
+    centre = sum / 6;
+  }
+  const Vector3 closure = target * (arm.tool.inverse(Eigen::Isometry) * centre);
+  double square = (closure - centre).squaredNorm();
+  for (int i = 0; i < 6; ++i) {
+    arm.point.col(i) = nearest(i, centre) - centre;
+    square += arm.point.col(i).squaredNorm();
+  }
+  const double unit = square > 0 ? std::sqrt(square / 6) : 1;
+  arm.point /= unit;
+  arm.tool.translation() = (arm.tool.translation() - centre) / unit;
+  target.translation() = (target.translation() - centre) / unit;
+}
+
+/// The same arm with each axis displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
+/// for every angle; displaced, they leave it regular, and Newton steps make up for it.
+inline SixAxes displaced(SixAxes arm) {
+  Rng rng;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 3; ++k) {
+      arm.direction(k, i) += rng.uniform(-1e-7, 1e-7);
+      arm.point(k, i) += rng.uniform(-1e-7, 1e-7);
+    }
+  arm.direction.colwise().normalize();
+  return arm;
+}
+
+/// The loop of an arm and its target in which joint `first` comes first, counted from 0. A joint moves from the start
+/// of the product to its end with its axis moved by the inverse of the closure.
+VERNIER_API ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int first) noexcept {
+  const Isometry3 closure = target * arm.tool.inverse(Eigen::Isometry);
+  ClosedLoop out;
+  for (int i = 0; i < 6; ++i) {
+    const AxisLine axis = axis_of(arm, (first + i) % 6);
+    out.axes[static_cast<std::size_t>(i)] = first + i < 6 ? axis : closure.inverse(Eigen::Isometry) * axis;
+  }
+  const Isometry3 frame = to_z_axis(out.axes[2]);
+  for (AxisLine& axis : out.axes) {
+    axis = frame * axis;
+    axis.point -= axis.direction * axis.direction.dot(axis.point);
+  }
+  out.closure = frame * closure * frame.inverse(Eigen::Isometry);
+  return out;
+}
+
+/// All joints of a loop, from the third.
+VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPencil& pencil, double q3) noexcept {
+  // The null vector of the pencil: (cos 3h, sin 3h, cos h, sin h) by (1, cos q5, sin q5), times any number.
+  LoopPencil::Matrix rows = pencil.at(q3).transpose();
+  Eigen::Matrix<double, 12, 1> null;
+  orthogonal_complement(rows.data(), 12, 12, 11, null.data());
+  const double h = std::atan2(null(9), null(6));
+  const Eigen::Matrix<double, 3, 4> by_half_angle = Eigen::Map<const Eigen::Matrix<double, 3, 4>>(null.data());
+  const Vector3 five = by_half_angle * Eigen::Vector4d(std::cos(3 * h), std::sin(3 * h), std::cos(h), std::sin(h));
+  const double sign = five(0) < 0 ? -1 : 1;
+  const double q4 = 2 * h, q5 = std::atan2(sign * five(2), sign * five(1));
+
+  // E_2 (E_3 E_4 E_5 line 6) = E_1^-1 (closure line 6): what joint 1 leaves alone is linear in cos q2 and sin q2.
+  const auto& axes = loop.axes;
+  const Isometry3 frame = to_z_axis(axes[0]);
+  const Isometry3 wrist = turn_about(axes[2], q3) * turn_about(axes[3], q4) * turn_about(axes[4], q5);
+  const LineCoordinates goal = coordinates_of(frame * (loop.closure * axes[5]));
+  const auto turned_second = [&](double q2) {
+    return coordinates_of(frame * (turn_about(axes[1], q2) * (wrist * axes[5])));
+  };
+  const auto kept = [&](double q2) { return Vector6(turned_second(q2).template tail<6>()); };
+  const Vector6 plus = kept(0), quarter = kept(std::numbers::pi / 2), minus = kept(std::numbers::pi);
+  const Vector6 middle = (plus + minus) / 2;
+  Eigen::Matrix<double, 6, 2> linear;
+  linear << plus - middle, quarter - middle;
+  const Eigen::Vector2d second =
+      Eigen::Matrix2d(linear.transpose() * linear).inverse() * (linear.transpose() * (goal.tail<6>() - middle));
+  const double q2 = std::atan2(second(1), second(0));
+
+  // What joint 1 turns, and then joint 6 by the rotation left.
+  const LineCoordinates from = turned_second(q2);
+  double cosine = 0, sine = 0;
+  for (int k = 0; k < 4; ++k) {
+    cosine += from(k) * goal(k) + from(k + 4) * goal(k + 4);
+    sine += from(k) * goal(k + 4) - from(k + 4) * goal(k);
+  }
+  const double q1 = std::atan2(sine, cosine);
+  const Isometry3 before_last = turn_about(axes[0], q1) * turn_about(axes[1], q2) * wrist;
+  const Vector3 x = axes[5].direction.unitOrthogonal();
+  const Vector3 turned = before_last.linear().transpose() * (loop.closure.linear() * x);
+  const double q6 = std::atan2(axes[5].direction.dot(x.cross(turned)), x.dot(turned));
+  return JointVector<6>{q1, q2, q3, q4, q5, q6};
+}
+
+/// Damped Newton steps until the pose is met.
+/// @cite Levenberg 1944; Nakamura and Hanafusa 1986
+VERNIER_API bool polish(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
+  constexpr int max_steps = 15;
+  constexpr double longest_step = 0.3, enough = 1e-13, accepted = 1e-10;
+  Eigen::Matrix<double, 6, 6> jacobian;
+  for (int step = 0;; ++step) {
+    Isometry3 pose = Isometry3::Identity();
+    for (int i = 0; i < 6; ++i) {
+      const AxisLine axis = axis_of(arm, i), moved = pose * axis;
+      jacobian.col(i) << moved.point, moved.direction;
+      pose = pose * turn_about(axis, q(i));
+    }
+    pose = pose * arm.tool;
+    for (int i = 0; i < 6; ++i) {
+      const Vector3 lever = pose.translation() - jacobian.col(i).head<3>();
+      jacobian.col(i).head<3>() = jacobian.col(i).tail<3>().cross(lever);
+    }
+    const Vector6 error = pose_difference(target, pose);
+    const double left = error.norm();
+    if (left < enough) return true;
+    if (step == max_steps || !std::isfinite(left)) return left < accepted;
+    // Damping in proportion to the square of the error: convergence stays quadratic.
+    Eigen::Matrix<double, 6, 6> normal = jacobian.transpose() * jacobian;
+    normal.diagonal().array() += 1e-2 * left * left + 1e-15;
+    const Vector6 newton = normal.ldlt().solve(jacobian.transpose() * error);
+    q += newton * std::min(1.0, longest_step / newton.cwiseAbs().maxCoeff());
+  }
+}
+
+/// Whether the joints were new.
+inline bool insert(SixAxisRoots& roots, const JointVector<6>& q) {
+  constexpr double same = 1e-5;  // rad
+  for (const SixAxisRoot& root : roots)
+    if (turn_distance(root.joints, q) < same) return false;
+  if (roots.count == SixAxisRoots::capacity) return false;
+  roots.roots[static_cast<std::size_t>(roots.count++)].joints = q.unaryExpr(&wrapped);
+  return true;
+}
+
+/// Adds the roots that one elimination finds. Returns whether they are likely to be all.
+VERNIER_API bool find_roots(const SixAxes& arm, const SixAxes& nearby, const Isometry3& target, int hidden,
+                            SixAxisRoots& roots) noexcept {
+  constexpr double largest_imaginary = 0.2, nearly_real = 0.01;  // rad; Newton steps and the residual decide
+  constexpr double trusted_condition = 1e6, accounted = 1e-3;
+  const int first = (hidden + 4) % 6;
+  const ClosedLoop loop = loop_of(nearby, target, first);
+  const LoopPencil pencil = eliminate(loop);
+  const HiddenJointValues values = hidden_joint_values(pencil);
+  roots.condition = std::min(roots.condition, values.condition);
+  bool complete = values.count > 0 && values.condition < trusted_condition;
+  SixAxisRoots found;
+  for (int i = 0; i < values.count; ++i) {
+    const std::complex<double> angle = values.angles[static_cast<std::size_t>(i)];
+    if (!(angle.imag() >= 0 && angle.imag() < largest_imaginary)) continue;  // one of a conjugate pair
+    const JointVector<6> from_first = back_substitute(loop, pencil, angle.real());
+    JointVector<6> start;
+    for (int k = 0; k < 6; ++k) start((first + k) % 6) = from_first(k);
+    JointVector<6> q = start;
+    const bool is_root = polish(arm, target, q), is_new = is_root && insert(found, q);
+    if (angle.imag() >= nearly_real) continue;
+    complete &= is_new && std::abs(wrapped(q(hidden) - angle.real())) < accounted;
+    // A conjugate pair may be two roots that rounding, or the displacement, has merged: the other is opposite.
+    if (angle.imag() > 0 && is_root) {
+      JointVector<6> opposite = 2 * start - q;
+      if (polish(arm, target, opposite)) insert(found, opposite);
+    }
+  }
+  for (const SixAxisRoot& root : found) insert(roots, root.joints);
+  return complete && roots.count % 2 == 0;  // real roots come and go in pairs
+}
+
+VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& target) noexcept {
+  SixAxisRoots out;
+  out.condition = std::numeric_limits<double>::infinity();
+  SixAxes scaled = arm;
+  Isometry3 scaled_target = target;
+  normalize(scaled, scaled_target);
+  if (!scaled.point.allFinite() || !scaled.direction.allFinite() || !scaled.tool.matrix().allFinite() ||
+      !scaled_target.matrix().allFinite())
+    return out;
+  const SixAxes nearby = displaced(scaled);
+  constexpr int order[] = {3, 1, 4, 5, 2, 0};  // industrial arms need the fewest eliminations so
+  for (const int hidden : order)
+    if (find_roots(scaled, nearby, scaled_target, hidden, out)) break;
+  return out;
+}
+
+}  // namespace vernier::detail

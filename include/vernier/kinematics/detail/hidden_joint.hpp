@@ -1,0 +1,78 @@
+#pragma once
+
+/// @file
+/// Elimination: of six turns that close a loop, the values that the third may have.
+
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+
+#include "vernier/core/types.hpp"
+
+namespace vernier::detail {
+
+/// The axis of a joint.
+struct AxisLine {
+  Vector3 point;      ///< any point on it
+  Vector3 direction;  ///< unit vector; the joint turns about it by the right-hand rule
+};
+
+/// A line moved.
+inline AxisLine operator*(const Isometry3& motion, const AxisLine& line) {
+  return {motion * line.point, motion.linear() * line.direction};
+}
+
+/// The turn about an axis by an angle [rad].
+VERNIER_API Isometry3 turn_about(const AxisLine& axis, double angle) noexcept;
+
+/// A motion that takes a line to the z-axis.
+VERNIER_API Isometry3 to_z_axis(const AxisLine& line) noexcept;
+
+/// A line of direction l with a marked point p, in 14 coordinates: the x of p, l, m = p x l and
+/// f = (p.p) l - 2 (p.l) p, their y, their z, p.p and p.l. A motion maps (1, coordinates) linearly, for (1, p, p.p) are
+/// the conformal coordinates of the point and (l, m, f, p.l) those of the tangent there. So a turn by q is of first
+/// degree in cos q and sin q; if about z, it turns the four pairs of x and y and leaves the other six alone.
+/// @cite Raghavan and Roth 1993
+using LineCoordinates = Eigen::Matrix<double, 14, 1>;
+VERNIER_API LineCoordinates coordinates_of(const AxisLine& line) noexcept;
+
+/// Six turns E_i about axes whose product is given: E_1 E_2 ... E_6 = closure. Axis 3 is the z-axis.
+struct ClosedLoop {
+  std::array<AxisLine, 6> axes;
+  Isometry3 closure;
+};
+
+/// The loop without its joints 1, 2 and 6: twelve equations `at(q3) x = 0`, linear in the products x of
+/// (cos 3h, sin 3h, cos h, sin h), h = q4 / 2, and (1, cos q5, sin q5). Half angles instead of their tangents keep half
+/// turns from being infinite and the matrices balanced.
+struct LoopPencil {
+  using Matrix = Eigen::Matrix<double, 12, 12>;
+  Matrix constant;                         ///< what does not turn with joint 3
+  Eigen::Matrix<double, 12, 16> equation;  ///< how what turns enters the equations
+  Eigen::Matrix<double, 16, 12> turning;   ///< what turns: twice the x of p, l, m and f, and their y
+
+  /// `turning`, turned by q3 [rad].
+  Eigen::Matrix<double, 16, 12> turned(double q3) const;
+  /// The equations where joint 3 has a value [rad].
+  Matrix at(double q3) const;
+};
+
+VERNIER_API LoopPencil eliminate(const ClosedLoop& loop) noexcept;
+
+/// The values of joint 3 with which a pencil is singular, complex ones among them.
+struct HiddenJointValues {
+  std::array<std::complex<double>, 16> angles;  ///< [rad]; the first `count` are set
+  int count = 0;                                ///< 16, or 0 where the arithmetic broke down
+  double condition = 0;                         ///< of the matrix inverted; infinite if it is singular
+};
+
+/// As the eigenvalues t = tan((q3 - origin) / 2) of a matrix, for the origin where it is conditioned best. What turns
+/// with joint 3 has half the rank of the usual pencil of 24 rows, so 16 rows suffice and no eigenvalue is spurious.
+/// @cite Manocha and Canny 1994; Kohli and Osvatic 1993
+VERNIER_API HiddenJointValues hidden_joint_values(const LoopPencil& pencil) noexcept;
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/kinematics/detail/hidden_joint.ipp"
+#endif

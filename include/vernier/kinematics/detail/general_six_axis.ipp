@@ -134,8 +134,8 @@ VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPen
 /// Damped Newton steps until the pose is met.
 /// @cite Levenberg 1944; Nakamura and Hanafusa 1986
 VERNIER_API bool polish(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
-  constexpr int max_steps = 15;
-  constexpr double longest_step = 0.3, enough = 1e-13, accepted = 1e-10;
+  constexpr int steps_to_come_near = 15, max_steps = 40;
+  constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
   Eigen::Matrix<double, 6, 6> jacobian;
   for (int step = 0;; ++step) {
     Isometry3 pose = Isometry3::Identity();
@@ -152,7 +152,8 @@ VERNIER_API bool polish(const SixAxes& arm, const Isometry3& target, JointVector
     const Vector6 error = pose_difference(target, pose);
     const double left = error.norm();
     if (left < enough) return true;
-    if (step == max_steps || !std::isfinite(left)) return left < accepted;
+    if (step == max_steps || (step >= steps_to_come_near && !(left < near)) || !std::isfinite(left))
+      return left < accepted;
     // Damping in proportion to the square of the error: convergence stays quadratic.
     Eigen::Matrix<double, 6, 6> normal = jacobian.transpose() * jacobian;
     normal.diagonal().array() += 1e-2 * left * left + 1e-15;

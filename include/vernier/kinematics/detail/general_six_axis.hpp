@@ -15,11 +15,13 @@ namespace vernier::detail {
 /// the hidden joint's value), another joint is, and the roots found are united. Always the same bits; does not
 /// allocate.
 ///
-/// May be lost: one of two roots within about 1e-3 rad of each other, where the arm is singular. An arm that can move
-/// with its tool at rest has no isolated roots; then up to 16 points of that motion are found.
+/// May be lost: one of two roots within about 1e-4 rad of each other, where the arm is all but singular. An arm that
+/// can move with its tool at rest has no isolated roots; then up to 16 points of that motion are found.
 /// @param arm    lengths in any unit, the same as the target's
 /// @param target base_T_tool
-/// @return       roots more than 1e-5 rad apart, margins 0; `condition` is the least of the eliminations made
+/// @return       roots more than 1e-5 rad apart, margins 0; `condition` is the least of the eliminations made, infinite
+/// if
+///               there was none
 /// @cite Raghavan and Roth 1993; Manocha and Canny 1994
 VERNIER_API SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& target) noexcept;
 

@@ -18,22 +18,22 @@ namespace vernier::detail {
 inline AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point.col(joint), arm.direction.col(joint)}; }
 
 /// Angle in (-pi, pi].
-inline double wrapped(double angle) {
+inline double half_turn_angle(double angle) {
   constexpr double pi = std::numbers::pi;
   const double out = std::remainder(angle, 2 * pi);
   return out > -pi ? out : pi;
 }
 
 /// Greatest difference of two joints, modulo turns [rad].
-inline double turn_distance(const JointVector<6>& a, const JointVector<6>& b) {
+inline double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
   double out = 0;
-  for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(wrapped(a(i) - b(i))));
+  for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(half_turn_angle(a(i) - b(i))));
   return out;
 }
 
 /// Moves the origin to the middle of the axes and makes their distance from it the unit of length, that the equations
 /// of lengths, squares of lengths and directions weigh alike.
-inline void normalize(SixAxes& arm, Isometry3& target) {
+inline void normalize_lengths(SixAxes& arm, Isometry3& target) {
   const auto nearest = [&](int i, const Vector3& to) {
     const AxisLine axis = axis_of(arm, i);
     return Vector3(axis.point + axis.direction * axis.direction.dot(to - axis.point));
@@ -58,7 +58,7 @@ inline void normalize(SixAxes& arm, Isometry3& target) {
 
 /// The same arm with each axis displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
 /// for every angle; displaced, they leave it regular, and Newton steps make up for it.
-inline SixAxes displaced(SixAxes arm) {
+inline SixAxes with_displaced_axes(SixAxes arm) {
   Rng rng;
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 3; ++k) {
@@ -70,7 +70,8 @@ inline SixAxes displaced(SixAxes arm) {
 }
 
 /// The loop of an arm and its target in which joint `first` comes first, counted from 0. A joint moves from the start
-/// of the product to its end with its axis moved by the inverse of the closure.
+/// of the product to its end with its axis moved by the inverse of the closure. Points next to the origin, so that the
+/// coordinates of lines stay small.
 VERNIER_API ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int first) noexcept {
   const Isometry3 closure = target * arm.tool.inverse(Eigen::Isometry);
   ClosedLoop out;
@@ -90,7 +91,7 @@ VERNIER_API ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int 
 /// All joints of a loop, from the third.
 VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPencil& pencil, double q3) noexcept {
   // The null vector of the pencil: (cos 3h, sin 3h, cos h, sin h) by (1, cos q5, sin q5), times any number.
-  LoopPencil::Matrix rows = pencil.at(q3).transpose();
+  LoopPencil::Matrix rows = equations_at(pencil, q3).transpose();
   Eigen::Matrix<double, 12, 1> null;
   orthogonal_complement(rows.data(), 12, 12, 11, null.data());
   const double h = std::atan2(null(9), null(6));
@@ -131,9 +132,9 @@ VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPen
   return JointVector<6>{q1, q2, q3, q4, q5, q6};
 }
 
-/// Damped Newton steps until the pose is met.
+/// Damped Newton steps until the pose is met. Returns whether it is.
 /// @cite Levenberg 1944; Nakamura and Hanafusa 1986
-VERNIER_API bool polish(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
+VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
   constexpr int steps_to_come_near = 15, max_steps = 40;
   constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
   Eigen::Matrix<double, 6, 6> jacobian;
@@ -163,18 +164,19 @@ VERNIER_API bool polish(const SixAxes& arm, const Isometry3& target, JointVector
 }
 
 /// Whether the joints were new.
-inline bool insert(SixAxisRoots& roots, const JointVector<6>& q) {
+inline bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
   constexpr double same = 1e-5;  // rad
   for (const SixAxisRoot& root : roots)
-    if (turn_distance(root.joints, q) < same) return false;
+    if (root_distance(root.joints, q) < same) return false;
   if (roots.count == SixAxisRoots::capacity) return false;
-  roots.roots[static_cast<std::size_t>(roots.count++)].joints = q.unaryExpr(&wrapped);
+  roots.roots[static_cast<std::size_t>(roots.count++)].joints = q.unaryExpr(&half_turn_angle);
   return true;
 }
 
-/// Adds the roots that one elimination finds. Returns whether they are likely to be all.
-VERNIER_API bool find_roots(const SixAxes& arm, const SixAxes& nearby, const Isometry3& target, int hidden,
-                            SixAxisRoots& roots) noexcept {
+/// Adds the roots that one elimination on an arm near by finds. Returns whether they are likely to be all: the
+/// elimination is to be trusted, and each real value of the hidden joint led to a root of its own with that value.
+VERNIER_API bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, const Isometry3& target, int hidden,
+                                   SixAxisRoots& roots) noexcept {
   constexpr double largest_imaginary = 0.2, nearly_real = 0.01;  // rad; Newton steps and the residual decide
   constexpr double trusted_condition = 1e6, accounted = 1e-3;
   const int first = (hidden + 4) % 6;
@@ -191,16 +193,16 @@ VERNIER_API bool find_roots(const SixAxes& arm, const SixAxes& nearby, const Iso
     JointVector<6> start;
     for (int k = 0; k < 6; ++k) start((first + k) % 6) = from_first(k);
     JointVector<6> q = start;
-    const bool is_root = polish(arm, target, q), is_new = is_root && insert(found, q);
+    const bool is_root = polish_root(arm, target, q), is_new = is_root && insert_root(found, q);
     if (angle.imag() >= nearly_real) continue;
-    complete &= is_new && std::abs(wrapped(q(hidden) - angle.real())) < accounted;
+    complete &= is_new && std::abs(half_turn_angle(q(hidden) - angle.real())) < accounted;
     // A conjugate pair may be two roots that rounding, or the displacement, has merged: the other is opposite.
     if (angle.imag() > 0 && is_root) {
       JointVector<6> opposite = 2 * start - q;
-      if (polish(arm, target, opposite)) insert(found, opposite);
+      if (polish_root(arm, target, opposite)) insert_root(found, opposite);
     }
   }
-  for (const SixAxisRoot& root : found) insert(roots, root.joints);
+  for (const SixAxisRoot& root : found) insert_root(roots, root.joints);
   return complete && roots.count % 2 == 0;  // real roots come and go in pairs
 }
 
@@ -209,14 +211,14 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
   out.condition = std::numeric_limits<double>::infinity();
   SixAxes scaled = arm;
   Isometry3 scaled_target = target;
-  normalize(scaled, scaled_target);
+  normalize_lengths(scaled, scaled_target);
   if (!scaled.point.allFinite() || !scaled.direction.allFinite() || !scaled.tool.matrix().allFinite() ||
       !scaled_target.matrix().allFinite())
     return out;
-  const SixAxes nearby = displaced(scaled);
+  const SixAxes nearby = with_displaced_axes(scaled);
   constexpr int order[] = {3, 1, 4, 5, 2, 0};  // industrial arms need the fewest eliminations so
   for (const int hidden : order)
-    if (find_roots(scaled, nearby, scaled_target, hidden, out)) break;
+    if (find_roots_hiding(scaled, nearby, scaled_target, hidden, out)) break;
   return out;
 }
 

@@ -42,7 +42,7 @@ struct ClosedLoop {
   Isometry3 closure;
 };
 
-/// The loop without its joints 1, 2 and 6: twelve equations `at(q3) x = 0`, linear in the products x of
+/// The loop without its joints 1, 2 and 6: twelve equations `equations_at(q3) x = 0`, linear in the products x of
 /// (cos 3h, sin 3h, cos h, sin h), h = q4 / 2, and (1, cos q5, sin q5). Half angles instead of their tangents keep half
 /// turns from being infinite and the matrices balanced.
 struct LoopPencil {
@@ -50,14 +50,12 @@ struct LoopPencil {
   Matrix constant;                         ///< what does not turn with joint 3
   Eigen::Matrix<double, 12, 16> equation;  ///< how what turns enters the equations
   Eigen::Matrix<double, 16, 12> turning;   ///< what turns: twice the x of p, l, m and f, and their y
-
-  /// `turning`, turned by q3 [rad].
-  Eigen::Matrix<double, 16, 12> turned(double q3) const;
-  /// The equations where joint 3 has a value [rad].
-  Matrix at(double q3) const;
 };
 
 VERNIER_API LoopPencil eliminate(const ClosedLoop& loop) noexcept;
+
+/// The twelve equations where joint 3 has a value [rad].
+VERNIER_API LoopPencil::Matrix equations_at(const LoopPencil& pencil, double q3) noexcept;
 
 /// The values of joint 3 with which a pencil is singular, complex ones among them.
 struct HiddenJointValues {

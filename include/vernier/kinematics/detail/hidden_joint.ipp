@@ -91,18 +91,21 @@ VERNIER_IMPL LoopPencil eliminate(const ClosedLoop& loop) noexcept {
   return out;
 }
 
-inline Eigen::Matrix<double, 16, 12> LoopPencil::turned(double q3) const {
+/// What turns with joint 3, turned [rad].
+VERNIER_API Eigen::Matrix<double, 16, 12> turned_by(const LoopPencil& pencil, double q3) noexcept {
   const double c = std::cos(q3), s = std::sin(q3);
   Eigen::Matrix<double, 16, 12> out;
   for (int k = 0; k < 16; k += 8) {
-    const auto x = turning.middleRows<4>(k), y = turning.middleRows<4>(k + 4);
+    const auto x = pencil.turning.middleRows<4>(k), y = pencil.turning.middleRows<4>(k + 4);
     out.middleRows<4>(k) = c * x - s * y;
     out.middleRows<4>(k + 4) = s * x + c * y;
   }
   return out;
 }
 
-inline LoopPencil::Matrix LoopPencil::at(double q3) const { return constant + equation * turned(q3); }
+VERNIER_IMPL LoopPencil::Matrix equations_at(const LoopPencil& pencil, double q3) noexcept {
+  return pencil.constant + pencil.equation * turned_by(pencil, q3);
+}
 
 VERNIER_IMPL HiddenJointValues hidden_joint_values(const LoopPencil& pencil) noexcept {
   // With B, W, Y the parts of the pencil, R the turn by q3 / 2 and u = R Y x, (B + W R^2 Y) x = 0 becomes
@@ -115,7 +118,7 @@ VERNIER_IMPL HiddenJointValues hidden_joint_values(const LoopPencil& pencil) noe
   double best_inverse_condition = 0, origin = 0;
   for (int k = 0; k < origins; ++k) {
     const double candidate = 0.3 + 2 * pi / origins * k;  // 0.3: zeros of catalogue arms are special
-    const Eigen::PartialPivLU<LoopPencil::Matrix> lu(pencil.at(candidate + pi));
+    const Eigen::PartialPivLU<LoopPencil::Matrix> lu(equations_at(pencil, candidate + pi));
     const double inverse_condition = lu.rcond();
     if (inverse_condition > best_inverse_condition) {  // false for NaN too
       best_inverse_condition = inverse_condition;
@@ -128,7 +131,7 @@ VERNIER_IMPL HiddenJointValues hidden_joint_values(const LoopPencil& pencil) noe
 
   using Matrix16 = Eigen::Matrix<double, 16, 16>;
   const Eigen::Matrix<double, 12, 16> solved = best.solve(pencil.equation);
-  Matrix16 doubled = 2 * pencil.turned(origin) * solved;
+  Matrix16 doubled = 2 * turned_by(pencil, origin) * solved;
   doubled.diagonal().array() += 1;
   Matrix16 a;
   for (int k = 0; k < 16; k += 8) {

@@ -4,6 +4,7 @@
 /// A six-axis arm by the lines of its joint axes, and the joint values that a solver of such arms finds.
 
 #include <array>
+#include <limits>
 
 #include "vernier/core/types.hpp"
 
@@ -21,21 +22,29 @@ struct SixAxes {
 /// @cite Brockett 1984; Lynch and Park 2017
 VERNIER_API Isometry3 pose_of(const SixAxes& arm, const JointVector<6>& q) noexcept;
 
+/// Bound of the distance of the tool from any axis point, in every configuration [m].
+VERNIER_API double arm_length(const SixAxes& arm) noexcept;
+/// By how much a target lies farther away than the arm is long [m]; negative where it may be within reach.
+VERNIER_API double reach_excess(const SixAxes& arm, const Isometry3& target) noexcept;
+
 /// Joint values that a solver found.
 struct SixAxisRoot {
   JointVector<6> joints;  ///< [rad], each in (-pi, pi]
   /// By how much the target lies beyond a boundary of the arm, relative to that boundary: 0 for a root, positive for
   /// the joint values at the boundary that come nearest.
   double margin = 0;
+  unsigned free = 0;  ///< bit i: every value of joint i would do as well, given that others follow
 };
 
 /// All joint values that a solver found for one target.
 struct SixAxisRoots {
-  /// A six-axis arm has at most so many solutions. @cite Primrose 1986
-  static constexpr int capacity = 16;
+  /// A six-axis arm has at most 16 solutions (@cite Primrose 1986); the others are for samples near singularities.
+  static constexpr int capacity = 48;
   std::array<SixAxisRoot, capacity> roots;  ///< the first `count` are set
   int count = 0;                            ///< how many were found
-  double condition = 1;                     ///< of the linear algebra that found them; 1 for closed forms
+  /// The smallest margin of what was left out because its own was too large; infinite where there was nothing such.
+  double nearest_margin = std::numeric_limits<double>::infinity();
+  double condition = 1;  ///< of the linear algebra that found them; 1 for closed forms
 
   const SixAxisRoot* begin() const { return roots.data(); }
   const SixAxisRoot* end() const { return roots.data() + count; }

@@ -1,0 +1,168 @@
+#pragma once
+
+/// @file
+/// All branches of the inverse kinematics of an arm that is near a nominal one: identified, with joint errors, learned.
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "vernier/kinematics/closed_form.hpp"
+#include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/detail/branch_refinement.hpp"
+#include "vernier/kinematics/joint_limits.hpp"
+
+namespace vernier {
+
+/// Options of `all_branches`.
+template <int N>
+struct BranchOptions {
+  JointLimits<N> limits{};  ///< of the joints
+  /// Of the whole turns by which a joint's value may differ, the nearest to this within the limits is taken [rad].
+  /// Where a branch meets a singularity and a joint's value is arbitrary, it is this.
+  JointVector<N> near = JointVector<N>::Zero();
+  /// So near to a singularity of the nominal arm's shoulder or wrist, branches may lie anywhere around it [m, rad]: a
+  /// few times what the model differs from the nominal arm.
+  double near_singularity = 0.01;
+  double rotation_length = 0.3;  ///< 1 rad of rotation weighs as many metres in `sigma_min` and `radius` [m]
+};
+
+/// One branch.
+template <int N>
+struct Branch {
+  JointVector<N> joints;               ///< [rad]
+  SingularityDistances singularities;  ///< of the nominal arm there; zero without a closed form
+  double position_error;               ///< what is left [m]
+  double rotation_error;               ///< what is left [rad]
+  double sigma_min;                    ///< smallest singular value of the Jacobian [m/rad]; zero in a singularity
+  /// Around these joint values there is one exact solution, and no other within this distance [rad, Euclidean]; 0 where
+  /// nothing can be said. Beyond rounding errors (Newton-Kantorovich).
+  double radius;
+  bool proven;         ///< whether `radius` is a proof: the model bounds the Lipschitz constant of its Jacobian
+  int iterations;      ///< evaluations of the model
+  bool within_limits;  ///< whether all joints are
+};
+
+/// All branches of one target; a range of `Branch`. No allocation.
+template <int N>
+struct Branches {
+  /// At most so many.
+  static constexpr int capacity = detail::BranchSet::capacity;
+  std::array<Branch<N>, capacity> branches;  ///< the first `count` are set
+  int count = 0;                             ///< number of branches
+  Reach reach = Reach::not_found;            ///< what became of the target
+  /// Where no branch was found: by how much the target lies beyond a boundary of the nominal arm, relative to that; or
+  /// of the real arm [m], where it is `proven_out`. Infinite where nothing is known.
+  double margin = std::numeric_limits<double>::infinity();
+  int seeds_lost = 0;  ///< roots of the nominal arm from which none was found
+
+  /// The first branch.
+  const Branch<N>* begin() const { return branches.data(); }
+  /// Behind the last branch.
+  const Branch<N>* end() const { return branches.data() + count; }
+  /// The branch within limits whose largest joint difference from q is smallest; null where there is none.
+  const Branch<N>* nearest(const JointVector<N>& q) const noexcept {
+    const Branch<N>* best = nullptr;
+    for (const Branch<N>& branch : *this)
+      if (branch.within_limits &&
+          (best == nullptr || (branch.joints - q).cwiseAbs().maxCoeff() < (best->joints - q).cwiseAbs().maxCoeff()))
+        best = &branch;
+    return best;
+  }
+  /// What became of the target, in a sentence.
+  std::string describe() const { return detail::describe_reach(reach, count, margin); }
+};
+
+/// Joint values that differ by whole turns from given ones: the nearest to other ones within limits. A joint that no
+/// turn brings within its limits takes the nearest turn to its limits.
+template <int N>
+JointVector<N> nearest_turns(const JointVector<N>& joints, const JointVector<N>& near,
+                             const JointLimits<N>& limits) noexcept {
+  JointVector<N> out;
+  for (int j = 0; j < N; ++j) out(j) = detail::nearest_turn(joints(j), near(j), limits.lower(j), limits.upper(j));
+  return out;
+}
+
+/// All branches of the inverse kinematics of a model whose nominal arm has a closed form: Newton's method from each of
+/// its roots, and across the fold where two branches meet. Of seven joints the held one stays.
+/// @param nominal roots of the nominal arm, in the same frames as the model: `ClosedForm(model.nominal())`
+/// @param model   any kinematic model near the nominal arm, e.g. by 1 mm and a few mrad
+/// @param target  base_T_tool in the frames of the model
+/// @param options limits, turns
+/// @complexity    the roots, and per branch three evaluations of pose and Jacobian; no allocation
+/// @cite Kantorovich and Akilov 1982
+template <class Roots, KinematicModel M>
+  requires(Roots::dof == M::dof)
+[[nodiscard]] Branches<M::dof> all_branches(const Roots& nominal, const M& model, const Isometry3& target,
+                                            const BranchOptions<M::dof>& options = {}) noexcept {
+  constexpr int N = M::dof;
+  const detail::MovingJoints<N> moving(HeldJoint{nominal.held_joint(), 0});
+  Branches<N> out;
+  if (!detail::is_pose(target)) {
+    out.reach = Reach::invalid_target;
+    return out;
+  }
+  const InverseRoots<N> roots = nominal.roots(target, options.near, options.near_singularity);
+  const auto evaluate = [&](const double* q, Isometry3& pose, double* jacobian) {
+    const PoseAndJacobian<N> at = model.pose_and_jacobian(JointVector<N>(q));
+    pose = at.pose;
+    for (int k = 0; k < 6; ++k)
+      std::copy_n(at.jacobian.data() + 6 * moving.index[static_cast<std::size_t>(k)], 6, jacobian + 6 * k);
+  };
+  constexpr bool geometric = NominalArm<M>;
+  const detail::SixAxes axes = [&] {
+    if constexpr (geometric) {
+      HeldJoint held = moving.held;
+      if (held.joint >= 0 && roots.count > 0) held.value = roots.roots[0].joints(held.joint);
+      return detail::six_axes_of(model, held);
+    } else {
+      return nominal.axes();
+    }
+  }();
+  const detail::BranchProblem problem{N,
+                                      moving.index,
+                                      evaluate,
+                                      target,
+                                      options.limits.lower.data(),
+                                      options.limits.upper.data(),
+                                      options.near.data(),
+                                      options.rotation_length,
+                                      detail::lipschitz_bound(axes, options.rotation_length)};
+
+  detail::BranchSet found;
+  for (const InverseRoot<N>& root : roots) found.refine(problem, root.joints.data(), root.margin);
+  found.complete(problem);
+  out.count = found.count;
+  out.seeds_lost = found.seeds_lost;
+  bool within = false;
+  for (int k = 0; k < found.count; ++k) {
+    const detail::FoundBranch& from = found.branches[static_cast<std::size_t>(k)];
+    Branch<N>& to = out.branches[static_cast<std::size_t>(k)];
+    to.joints = JointVector<N>(from.q);
+    to.singularities = nominal.distances(to.joints);
+    to.position_error = from.position_error;
+    to.rotation_error = from.rotation_error;
+    to.sigma_min = from.sigma_min;
+    to.radius = from.radius;
+    to.proven = geometric && from.radius > 0;
+    to.iterations = from.iterations;
+    to.within_limits = options.limits.contains(to.joints);
+    within = within || to.within_limits;
+  }
+  if (out.count > 0) {
+    out.reach = within ? Reach::met : Reach::beyond_limits;
+    out.margin = 0;
+  } else {
+    out.margin = roots.nearest_margin;
+    if constexpr (geometric) {
+      if (const double excess = detail::reach_excess(axes, target); excess > 0) {
+        out.reach = Reach::proven_out;
+        out.margin = excess;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace vernier

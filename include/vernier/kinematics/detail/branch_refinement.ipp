@@ -1,0 +1,268 @@
+#pragma once
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/detail/branch_refinement.hpp"
+#include "vernier/kinematics/inverse_kinematics.hpp"
+
+namespace vernier::detail {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+inline constexpr double accepted_error = 1e-10;  // m and rad
+
+/// The model at joint values: rows of rotations weighted as lengths.
+struct BranchIterate {
+  Matrix6 jacobian, inverse;
+  Vector6 error;  ///< what lacks to the target [m]
+  double position_error, rotation_error;
+
+  bool accepted() const { return position_error < accepted_error && rotation_error < accepted_error; }
+};
+
+/// Inverse of a matrix, by Gauss-Jordan elimination with row pivoting; entries that are not finite for a singular one.
+inline void invert(const Matrix6& matrix, Matrix6& out) noexcept {
+  Matrix6 a = matrix;
+  out.setIdentity();
+  for (int k = 0; k < 6; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < 6; ++i)
+      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
+    if (pivot != k) {
+      a.row(k).swap(a.row(pivot));
+      out.row(k).swap(out.row(pivot));
+    }
+    Vector6 factor = -a.col(k) / a(k, k);
+    factor(k) = 1 / a(k, k) - 1;
+    for (int j = k + 1; j < 6; ++j) a.col(j) += factor * a(k, j);
+    for (int j = 0; j < 6; ++j) out.col(j) += factor * out(k, j);
+  }
+}
+
+VERNIER_API void evaluate_iterate(const BranchProblem& problem, const double* q, BranchIterate& out) noexcept {
+  Isometry3 pose;
+  problem.model(q, pose, out.jacobian.data());
+  out.error.head<3>() = problem.target.translation() - pose.translation();
+  // between rotations that are nearly the same, the antisymmetric part is the rotation vector to third order
+  const Matrix3 between = problem.target.linear() * pose.linear().transpose();
+  const Vector3 sine =
+      0.5 * Vector3(between(2, 1) - between(1, 2), between(0, 2) - between(2, 0), between(1, 0) - between(0, 1));
+  const double square = sine.squaredNorm();
+  const Vector3 rotation = square < 1e-10 && between.trace() > 2 ? sine : log_so3(between);
+  out.position_error = out.error.head<3>().norm();
+  out.rotation_error = rotation.norm();
+  out.error.tail<3>() = problem.rotation_length * rotation;
+  out.jacobian.bottomRows<3>() *= problem.rotation_length;
+}
+
+VERNIER_IMPL double nearest_turn(double angle, double near, double lower, double upper) noexcept {
+  constexpr double turn = 2 * std::numbers::pi, slack = 1e-9;
+  const double least = std::ceil((lower - slack - angle) / turn), most = std::floor((upper + slack - angle) / turn);
+  double k = std::nearbyint((near - angle) / turn);
+  if (least <= most) {
+    k = std::clamp(k, least, most);
+  } else if (std::isfinite(lower) && std::isfinite(upper)) {
+    k = std::nearbyint((0.5 * (lower + upper) - angle) / turn);
+  }
+  return angle + k * turn;
+}
+
+VERNIER_IMPL bool is_pose(const Isometry3& target) noexcept {
+  const Matrix3 r = target.linear();
+  return target.matrix().allFinite() && (r * r.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() < 1e-9 &&
+         r.determinant() > 0;
+}
+
+VERNIER_IMPL double lipschitz_bound(const SixAxes& arm, double rotation_length) noexcept {
+  // Each second derivative of a revolute arm is at most as long as the arm; twice that covers the rotation's logarithm.
+  return 2 * 6 * std::hypot(arm_length(arm), rotation_length);
+}
+
+/// Newton's method, damped least squares where that does not converge. The last step is not evaluated where its square
+/// proves that nothing is left.
+/// @return whether the target is met
+VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations) noexcept {
+  constexpr double longest_step = 0.3, last_step = 2e-7;  // rad
+  double start[most_branch_joints];
+  std::copy_n(q, problem.joints, start);
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 8; ++k) {
+    evaluate_iterate(problem, q, at);
+    ++iterations;
+    const double size = at.error.norm();
+    if (!(size < 2 * before)) break;
+    before = size;
+    invert(at.jacobian, at.inverse);
+    const Vector6 step = at.inverse * at.error;
+    const double largest = step.cwiseAbs().maxCoeff();
+    if (!std::isfinite(largest)) break;
+    const double shorten = std::min(1.0, longest_step / largest);
+    for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += shorten * step(i);
+    if (largest < last_step) {
+      const double left = 0.5 * problem.lipschitz * step.squaredNorm();
+      at.position_error = std::min(at.position_error, left);
+      at.rotation_error = std::min(at.rotation_error, left / problem.rotation_length);
+      return true;
+    }
+  }
+
+  // near a singularity
+  double lower[most_branch_joints], upper[most_branch_joints], jacobian[36];
+  for (int i = 0; i < problem.joints; ++i) lower[i] = upper[i] = start[i];
+  for (const int i : problem.moving) {
+    lower[i] = start[i] - std::numbers::pi;
+    upper[i] = start[i] + std::numbers::pi;
+  }
+  const auto whole = [&](const double* joints, Isometry3& pose, double* columns) {
+    problem.model(joints, pose, jacobian);
+    std::fill_n(columns, 6 * problem.joints, 0.0);
+    for (std::size_t k = 0; k < 6; ++k) std::copy_n(jacobian + 6 * k, 6, columns + 6 * problem.moving[k]);
+  };
+  const IkOutcome found =
+      solve_inverse_kinematics({problem.joints, problem.joints, 0, 30, whole, problem.target, true, start, lower, upper,
+                                0.1 * accepted_error, 0.1 * accepted_error, problem.rotation_length},
+                               q);
+  iterations += found.iterations;
+  evaluate_iterate(problem, q, at);
+  invert(at.jacobian, at.inverse);
+  ++iterations;
+  return at.accepted();
+}
+
+/// Whether a branch was found whose joints differ by less than a distance [rad] from q, whole turns aside.
+VERNIER_API bool is_known(const BranchSet& set, const BranchProblem& problem, const double* q,
+                          double distance) noexcept {
+  for (int b = 0; b < set.count; ++b) {
+    bool near = true;
+    for (int i = 0; near && i < problem.joints; ++i) {
+      const double turns = (q[i] - set.branches[static_cast<std::size_t>(b)].q[i]) / (2 * std::numbers::pi);
+      near = std::abs(turns - std::nearbyint(turns)) * (2 * std::numbers::pi) < distance;
+    }
+    if (near) return true;
+  }
+  return false;
+}
+
+/// Adds a solution unless it is there.
+VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const double* q, const BranchIterate& at,
+                            int iterations) noexcept {
+  if (is_known(set, problem, q, 1e-5)) return false;
+  if (set.count == BranchSet::capacity) return false;
+  FoundBranch& out = set.branches[static_cast<std::size_t>(set.count++)];
+  std::copy_n(q, problem.joints, out.q);
+  out.position_error = at.position_error;
+  out.rotation_error = at.rotation_error;
+  out.iterations = iterations;
+
+  const double bound = at.inverse.norm();  // of the largest singular value of the inverse
+  if (!std::isfinite(bound)) {
+    out.sigma_min = out.radius = 0;
+    return true;
+  }
+  // power iteration on a matrix squared twice
+  const Matrix6 once = at.inverse * at.inverse.transpose() / (bound * bound);
+  Matrix6 power = once * once;
+  power = (power * power).eval();
+  Index widest = 0;
+  power.diagonal().maxCoeff(&widest);
+  const Vector6 direction = (power * power.col(widest)).normalized();
+  out.sigma_min = 1 / (bound * std::sqrt(direction.dot(once * direction)));
+
+  const double step = (at.inverse * at.error).norm() + 1e-15 * bound;
+  const double h = bound * problem.lipschitz * step;
+  out.radius = h < 0.5 ? (1 + std::sqrt(1 - 2 * h)) / (bound * problem.lipschitz) : 0;
+  return true;
+}
+
+VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* seed, double margin) noexcept {
+  double q[most_branch_joints];
+  for (int i = 0; i < problem.joints; ++i) q[i] = seed[i];
+  for (const int i : problem.moving) q[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+  BranchIterate at;
+  int iterations = 0;
+  if (margin > 0) suspicious = true;
+  if (!solve_near(problem, q, at, iterations)) {
+    if (margin == 0) ++seeds_lost;
+    if (stalled_count < max_stalled) std::copy_n(q, problem.joints, stalled[stalled_count++].data());
+    suspicious = true;
+  } else if (!add_branch(*this, problem, q, at, iterations)) {
+    suspicious = true;
+  }
+}
+
+/// Looks for branches on the other side of a fold: along the direction in which the Jacobian is singular, two solutions
+/// lie on a parabola, whose curvature gives the distance of the other one.
+VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const double* from, bool met,
+                             double near_fold) noexcept {
+  BranchIterate at;
+  evaluate_iterate(problem, from, at);
+  if (!at.jacobian.allFinite()) return;
+  const Eigen::JacobiSVD<Matrix6> svd(at.jacobian, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  constexpr double h = 1e-4, wide = 0.25 * std::numbers::pi;
+  double start[most_branch_joints], q[most_branch_joints];
+  std::copy_n(from, problem.joints, start);
+  Vector6 v;
+  const auto displace = [&](double by) {
+    std::copy_n(start, problem.joints, q);
+    for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += by * v(i);
+  };
+  for (int direction = 5; direction >= 4 && svd.singularValues()(direction) < near_fold; --direction) {
+    const Vector6 u = svd.matrixU().col(direction);
+    v = svd.matrixV().col(direction);
+    BranchIterate ahead, behind;
+    displace(h);
+    evaluate_iterate(problem, q, ahead);
+    displace(-h);
+    evaluate_iterate(problem, q, behind);
+    const double curvature = u.dot((ahead.jacobian - behind.jacobian) * v) / (2 * h);
+    // the other solution; where the seed stalled, it is at the vertex, and both sides may have one
+    const double twin =
+        met ? -2 * svd.singularValues()(direction) / curvature : std::sqrt(2 * std::abs(u.dot(at.error) / curvature));
+    displace(twin);
+    if (met && std::abs(twin) < 0.3 && is_known(set, problem, q, 0.5 * std::abs(twin))) continue;
+    for (const double by : {twin, met ? 0.5 * twin : -twin, 2 * twin, 0.15, -0.15, wide, -wide}) {
+      if (!(std::abs(by) < 2)) continue;
+      displace(by);
+      int iterations = 3;
+      if (!solve_near(problem, q, at, iterations)) continue;
+      double turned[most_branch_joints];
+      std::copy_n(q, problem.joints, turned);
+      bool same = true;
+      for (const int i : problem.moving) {
+        turned[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+        same = same && turned[i] == q[i];
+      }
+      if (same || solve_near(problem, turned, at, iterations)) add_branch(set, problem, turned, at, iterations);
+    }
+  }
+}
+
+VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
+  const double near_fold = suspicious || count % 2 != 0 ? 0.05 : 0.01;  // m/rad
+  for (int b = 0; b < count; ++b) {
+    const FoundBranch& from = branches[static_cast<std::size_t>(b)];
+    if (from.sigma_min < near_fold) cross_folds(*this, problem, from.q, true, near_fold);
+  }
+  for (int k = 0; k < stalled_count; ++k) cross_folds(*this, problem, stalled[k].data(), false, near_fold);
+}
+
+VERNIER_IMPL std::string describe_reach(Reach reach, int branches, double margin) {
+  switch (reach) {
+    case Reach::met: return message(branches, branches == 1 ? " branch" : " branches");
+    case Reach::beyond_limits: return message("joint limits exclude all ", branches, " branches");
+    case Reach::proven_out: return message("out of reach: ", margin * 1e3, " mm farther away than the arm is long");
+    case Reach::invalid_target: return "the target is no pose: not finite, or no rotation";
+    default: break;
+  }
+  return std::isfinite(margin)
+             ? message("no branch found: the target lies ", 100 * margin, " % beyond a boundary of the nominal arm")
+             : std::string("no branch found");
+}
+
+}  // namespace vernier::detail

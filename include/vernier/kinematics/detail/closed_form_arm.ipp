@@ -1,0 +1,371 @@
+#pragma once
+
+#include <numbers>
+
+#include "vernier/core/check.hpp"
+#include "vernier/kinematics/detail/closed_form_arm.hpp"
+#include "vernier/kinematics/detail/subproblems.hpp"
+
+namespace vernier::detail {
+
+inline constexpr double most_margin = 0.05;  // a target so far outside the nominal arm may be inside the real one
+inline constexpr double negligible_length = 1e-10;
+
+/// Lines as seen from an end of the arm.
+struct AxisLines {
+  Vector3 h[6], o[6];
+
+  double angle(int i, int j) const { return std::atan2(h[i].cross(h[j]).norm(), h[i].dot(h[j])); }
+  /// Angle between lines, whatever their directions.
+  double deviation(int i, int j) const {
+    const double a = angle(i, j);
+    return std::min(a, std::numbers::pi - a);
+  }
+  double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
+  /// The point nearest to lines i..j, and the largest distance from one of them.
+  double meeting_point(int i, int j, Vector3& point) const {
+    Matrix3 normal = Matrix3::Zero();
+    Vector3 right = Vector3::Zero();
+    for (int k = i; k <= j; ++k) {
+      const Matrix3 off = Matrix3::Identity() - h[k] * h[k].transpose();
+      normal += off;
+      right += off * o[k];
+    }
+    point = normal.inverse() * right;
+    double largest = 0;
+    for (int k = i; k <= j; ++k) largest = std::max(largest, distance(k, point));
+    return std::isfinite(largest) ? largest : 1e300;
+  }
+};
+
+inline Wrist wrist_of(const Vector3& k4, const Vector3& k5, const Vector3& k6) {
+  Wrist out{k4, k5, k6, 0, 0, 0, {}, {}};
+  out.alpha = std::atan2(k4.cross(k5).norm(), k4.dot(k5));
+  out.beta = std::atan2(k5.cross(k6).norm(), k5.dot(k6));
+  out.centre = std::atan2(k4.dot(k5.cross(k6)), k4.dot(k6) - k4.dot(k5) * k5.dot(k6));
+  Index least = 0;
+  k6.cwiseAbs().minCoeff(&least);
+  out.e6 = k6.cross(Vector3(Vector3::Unit(least))).normalized();
+  out.f6 = k6.cross(out.e6);
+  return out;
+}
+
+/// Sorts an arm, seen from one of its ends, into a family.
+/// @param why what keeps it out of each, where there is none
+inline bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std::string& why) {
+  constexpr double apart = 0.05;  // rad: axes that have to be distinct
+  Vector3 centre;
+  const double spherical = lines.meeting_point(3, 5, centre);
+  if (spherical <= tolerance && lines.deviation(3, 4) > apart && lines.deviation(4, 5) > apart) {
+    constexpr double lever = 1e-3;  // m: a shorter one moves nothing
+    Vector3 shoulder;
+    const bool distinct = lines.deviation(0, 1) > apart, bends = lines.distance(2, centre) > lever;
+    if (lines.deviation(1, 2) <= tolerance && distinct && bends && lines.distance(2, lines.o[1]) > lever) {
+      kind = ArmKind::second_parallel_to_third;
+    } else if (lines.deviation(0, 1) <= tolerance && lines.deviation(1, 2) > apart && bends &&
+               lines.distance(1, lines.o[0]) > lever) {
+      kind = ArmKind::first_parallel_to_second;
+    } else if (distinct && bends && lines.meeting_point(0, 1, shoulder) <= tolerance &&
+               lines.distance(2, shoulder) > lever) {
+      kind = ArmKind::first_meets_second;
+      lines.o[0] = lines.o[1] = shoulder;
+    } else if (lines.deviation(1, 2) > apart && bends && lines.meeting_point(1, 2, shoulder) <= tolerance &&
+               lines.distance(0, shoulder) > lever) {
+      kind = ArmKind::second_meets_third;
+      lines.o[1] = lines.o[2] = shoulder;
+    } else {
+      why +=
+          "the last three axes meet in a point, but the other three have no neighbours that are parallel or meet, and "
+          "bend the arm";
+      return false;
+    }
+    lines.o[3] = lines.o[4] = lines.o[5] = centre;
+    return true;
+  }
+  Vector3 meeting;
+  const double parallel = std::max(lines.deviation(1, 2), lines.deviation(1, 3));
+  const double last = lines.meeting_point(4, 5, meeting);
+  if (parallel <= tolerance && last <= tolerance && lines.deviation(0, 1) > apart && lines.deviation(3, 4) > apart &&
+      lines.deviation(4, 5) > apart) {
+    kind = ArmKind::three_parallel;
+    lines.o[4] = lines.o[5] = meeting;
+    return true;
+  }
+  why += message("the last three axes miss a common point by ", spherical * 1e3, " mm, the middle three are ",
+                 parallel * 180 / std::numbers::pi, " deg from parallel and the last two ", last * 1e3, " mm apart");
+  return false;
+}
+
+VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance) : axes_(axes), mirrored_(false) {
+  AxisLines lines;
+  std::string forward = "seen from the base, ", backward = "; seen from the tool, ";
+  const auto collect = [&] {
+    for (int i = 0; i < 6; ++i) {
+      const int from = mirrored_ ? 5 - i : i;
+      lines.h[i] = (mirrored_ ? -1 : 1) * axes.direction.col(from).normalized();
+      lines.o[i] = axes.point.col(from);
+    }
+  };
+  collect();
+  if (!classify(lines, tolerance, kind_, forward)) {
+    mirrored_ = true;
+    collect();
+    require(classify(lines, tolerance, kind_, backward), "ClosedForm: the arm has no closed form: ", forward, backward);
+  }
+  // Along its axis a point may lie anywhere; next to its neighbour, rounding errors are smallest.
+  const auto slide = [&](int i, int to) {
+    lines.o[i] += lines.h[i] * lines.h[i].dot(Vector3(lines.o[to] - lines.o[i]));
+  };
+  const bool fixed_first = kind_ == ArmKind::first_meets_second, fixed_middle = kind_ == ArmKind::second_meets_third;
+  if (kind_ == ArmKind::three_parallel) slide(3, 4);
+  if (!fixed_middle) slide(2, 3);
+  if (!fixed_middle && !fixed_first) slide(1, 2);
+  if (!fixed_first) slide(0, 1);
+  for (int i = 0; i < 6; ++i) {
+    h_[i] = lines.h[i];
+    o_[i] = lines.o[i];
+    p_[i] = i < 5 ? Vector3(lines.o[i + 1] - lines.o[i]) : Vector3(Vector3::Zero());
+  }
+  third_ = h_[1].dot(h_[2]) < 0 ? -1 : 1;
+  fourth_ = h_[1].dot(h_[3]) < 0 ? -1 : 1;
+  wrist_ = wrist_of(kind_ == ArmKind::three_parallel ? h_[1] : h_[3], h_[4], h_[5]);
+}
+
+inline constexpr int angle_samples = 8;         // of a joint whose value hardly matters
+inline constexpr double sampled_margin = 1e-3;  // marks them
+
+/// The one or two angles of a pair that are no further outside than allowed; next to a singularity samples all around.
+struct Candidates {
+  double angles[2 + angle_samples];
+  int count;
+  double margin;
+  bool any;
+
+  /// @param widest circle that counts as next to a singularity [m]
+  Candidates(const AnglePair& pair, double near, double widest = 0)
+      : angles{near, near}, count(1), margin(pair.margin), any(pair.any) {
+    if (margin > most_margin) count = 0;
+    if (!any) {
+      angles[0] = pair.centre + pair.half;
+      angles[1] = pair.centre - pair.half;
+      if (margin == 0 && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
+    }
+    if (pair.radius >= widest) return;
+    margin = std::clamp(margin, sampled_margin, most_margin);
+    for (int k = 0; k < angle_samples; ++k)
+      angles[count++] = pair.centre + (k + 0.5) * 2 * std::numbers::pi / angle_samples;
+  }
+};
+
+/// Angles of a wrist whose rotation is given.
+struct WristAngles {
+  double q4[2 + angle_samples], q5[2 + angle_samples], q6[2 + angle_samples];
+  int count;
+  double margin;
+  bool any;
+};
+
+/// Joint 5 by the half-angle formula of spherical triangles, which keeps its digits where the wrist is nearly straight.
+/// @param widest angle from the straight wrist that counts as next to a singularity [rad]: then samples of joint 4, too
+inline WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation, double near4, double widest) noexcept {
+  const Vector3 axis = rotation * wrist.k6;
+  const double gamma = std::atan2(wrist.k4.cross(axis).norm(), wrist.k4.dot(axis));
+  const double a = wrist.alpha, b = wrist.beta;
+  const double numerator = std::sin(0.5 * (gamma - a + b)) * std::sin(0.5 * (gamma + a - b));
+  const double denominator = std::sin(0.5 * (a + b + gamma)) * std::sin(0.5 * (a + b - gamma));
+  const double half = 2 * std::atan2(std::sqrt(std::max(numerator, 0.0)), std::sqrt(std::max(denominator, 0.0)));
+  WristAngles out;
+  out.any = false;
+  out.margin = std::max({-numerator, -denominator, 0.0});
+  if (out.margin < 1e-15) out.margin = 0;
+  out.count = 0;
+  const auto add = [&](double q4, double q5, const Matrix3& r5) {
+    const Vector3 e = r5.transpose() * (rotation_about(wrist.k4, -q4) * (rotation * wrist.e6));
+    out.q4[out.count] = q4;
+    out.q5[out.count] = q5;
+    out.q6[out.count++] = std::atan2(wrist.f6.dot(e), wrist.e6.dot(e));
+  };
+  const int roots = out.margin > most_margin ? 0 : half > 1e-12 && half < std::numbers::pi - 1e-12 ? 2 : 1;
+  for (int k = 0; k < roots; ++k) {
+    const double q5 = wrist.centre + (k == 0 ? half : -half);
+    const Matrix3 r5 = rotation_about(wrist.k5, q5);
+    const AngleAbout q4 = angle_between(wrist.k4, r5 * wrist.k6, axis, negligible_length);
+    out.any = out.any || q4.any;
+    add(q4.any ? near4 : q4.angle, q5, r5);
+  }
+  if (roots > 0 && std::min(half, std::numbers::pi - half) < widest) {
+    out.margin = std::max(out.margin, sampled_margin);
+    const double q5 = wrist.centre + (half < 1 ? 0 : std::numbers::pi), q4 = out.q4[0];
+    const Matrix3 r5 = rotation_about(wrist.k5, q5);
+    for (int k = 0; k < angle_samples; ++k) add(q4 + (k + 0.5) * 2 * std::numbers::pi / angle_samples, q5, r5);
+  }
+  return out;
+}
+
+inline double wrapped_angle(double angle) noexcept {
+  const double out = angle - 2 * std::numbers::pi * std::nearbyint(angle / (2 * std::numbers::pi));
+  return out <= -std::numbers::pi ? std::numbers::pi : out;
+}
+
+VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const JointVector<6>& near,
+                                               double width) const noexcept {
+  SixAxisRoots out;
+  const auto nearby = [&](int i) { return near(mirrored_ ? 5 - i : i); };
+  const auto emit = [&](const double(&q)[6], double margin, unsigned free) {
+    if (out.count >= SixAxisRoots::capacity) return;
+    SixAxisRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
+    root.margin = margin;
+    root.free = 0;
+    for (int i = 0; i < 6; ++i) {
+      const int joint = mirrored_ ? 5 - i : i;
+      root.joints(joint) = wrapped_angle(q[i]);
+      if ((free >> i & 1u) != 0) root.free |= 1u << joint;
+    }
+  };
+  const auto missed = [&](double margin) {
+    if (margin > most_margin) out.nearest_margin = std::min(out.nearest_margin, margin);
+  };
+
+  // displacement of the arm: rotation, and from the point of the first axis to that of the last
+  Matrix3 rotation = target.linear() * axes_.tool.linear().transpose();
+  const Vector3 last = mirrored_ ? o_[0] : o_[5], first = mirrored_ ? o_[5] : o_[0];
+  Vector3 w = target.translation() + rotation * (last - axes_.tool.translation()) - first;
+  if (mirrored_) {
+    w = (-(rotation.transpose() * w)).eval();
+    rotation.transposeInPlace();
+  }
+
+  // with the first three joints known, a spherical wrist does the rest
+  const auto finish = [&](double q1, double q2, double q3, const Matrix3& r1, const Matrix3& r3, double margin,
+                          unsigned free) {
+    const Matrix3 to_wrist = r1 * rotation_about(h_[1], q2) * r3;
+    const WristAngles end = solve_wrist(wrist_, to_wrist.transpose() * rotation, nearby(3), width);
+    missed(end.margin);
+    for (int k = 0; k < end.count; ++k)
+      emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin), free | (end.any ? 8u : 0u));
+  };
+
+  switch (kind_) {
+    case ArmKind::second_parallel_to_third:
+    case ArmKind::second_meets_third: {
+      const bool parallel = kind_ == ArmKind::second_parallel_to_third;
+      const Candidates firsts(
+          parallel ? angles_to_plane(h_[1], -h_[0], w, h_[1].dot(p_[0] + p_[1] + p_[2]), negligible_length)
+                   : angles_to_distance(-h_[0], w, p_[0], p_[2].norm(), negligible_length),
+          nearby(0), parallel ? width : 0);
+      missed(firsts.margin);
+      for (int i = 0; i < firsts.count; ++i) {
+        const double q1 = firsts.angles[i];
+        const Matrix3 r1 = rotation_about(h_[0], q1);
+        const Vector3 u = r1.transpose() * w - p_[0];
+        const Candidates thirds(parallel ? angles_to_distance(h_[2], p_[2], -p_[1], u.norm(), negligible_length)
+                                         : angles_to_plane(h_[1], h_[2], p_[2], h_[1].dot(u), negligible_length),
+                                nearby(2));
+        missed(thirds.margin);
+        for (int k = 0; k < thirds.count; ++k) {
+          const Matrix3 r3 = rotation_about(h_[2], thirds.angles[k]);
+          const AngleAbout second = angle_between(h_[1], p_[1] + r3 * p_[2], u, negligible_length);
+          finish(q1, second.any ? nearby(1) : second.angle, thirds.angles[k], r1, r3,
+                 std::max(firsts.margin, thirds.margin),
+                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u));
+        }
+      }
+      break;
+    }
+    case ArmKind::first_parallel_to_second:
+    case ArmKind::first_meets_second: {
+      const bool parallel = kind_ == ArmKind::first_parallel_to_second;
+      const Candidates thirds(
+          parallel ? angles_to_plane(h_[0], h_[2], p_[2], h_[0].dot(w - p_[0] - p_[1]), negligible_length)
+                   : angles_to_distance(h_[2], p_[2], -p_[1], w.norm(), negligible_length),
+          nearby(2));
+      missed(thirds.margin);
+      for (int i = 0; i < thirds.count; ++i) {
+        const Matrix3 r3 = rotation_about(h_[2], thirds.angles[i]);
+        const Vector3 v = p_[1] + r3 * p_[2];
+        const Candidates seconds(parallel ? angles_to_distance(h_[1], v, -p_[0], w.norm(), negligible_length)
+                                          : angles_to_plane(h_[0], h_[1], v, h_[0].dot(w), negligible_length),
+                                 nearby(1));
+        missed(seconds.margin);
+        for (int k = 0; k < seconds.count; ++k) {
+          const double q2 = seconds.angles[k];
+          const AngleAbout q1 = angle_between(h_[0], p_[0] + rotation_about(h_[1], q2) * v, w, negligible_length);
+          const double turn = q1.any ? nearby(0) : q1.angle;
+          finish(turn, q2, thirds.angles[i], rotation_about(h_[0], turn), r3, std::max(thirds.margin, seconds.margin),
+                 (q1.any ? 1u : 0u) | (seconds.any ? 2u : 0u) | (thirds.any ? 4u : 0u));
+        }
+      }
+      break;
+    }
+    case ArmKind::three_parallel: {
+      const double near_sum = nearby(1) + third_ * nearby(2) + fourth_ * nearby(3);
+      const Candidates firsts(
+          angles_to_plane(h_[1], -h_[0], w, h_[1].dot(p_[0] + p_[1] + p_[2] + p_[3]), negligible_length), nearby(0),
+          width);
+      missed(firsts.margin);
+      for (int i = 0; i < firsts.count; ++i) {
+        const Matrix3 back = rotation_about(h_[0], -firsts.angles[i]);
+        const WristAngles end = solve_wrist(wrist_, back * rotation, near_sum, width);
+        missed(end.margin);
+        for (int m = 0; m < end.count; ++m) {
+          const Vector3 u = back * w - p_[0] - rotation_about(h_[1], end.q4[m]) * p_[3];
+          const Candidates thirds(angles_to_distance(h_[2], p_[2], -p_[1], u.norm(), negligible_length), nearby(2));
+          missed(thirds.margin);
+          for (int k = 0; k < thirds.count; ++k) {
+            const double q3 = thirds.angles[k];
+            const AngleAbout second =
+                angle_between(h_[1], p_[1] + rotation_about(h_[2], q3) * p_[2], u, negligible_length);
+            const double q2 = second.any ? nearby(1) : second.angle;
+            emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
+                 std::max({firsts.margin, end.margin, thirds.margin}),
+                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u));
+          }
+        }
+      }
+      break;
+    }
+  }
+  return out;
+}
+
+VERNIER_IMPL SingularityDistances ClosedFormArm::distances(const JointVector<6>& joints) const noexcept {
+  double q[6];
+  for (int i = 0; i < 6; ++i) q[i] = joints(mirrored_ ? 5 - i : i);
+  const auto off = [](const Vector3& axis, const Vector3& v) { return axis.cross(v).norm(); };
+  const Vector3 bent = rotation_about(h_[2], q[2]) * p_[2];  // from axis 3 on, seen from before joint 3
+  const double upper = off(h_[2], p_[1]), fore = off(h_[2], p_[2]);
+  SingularityDistances out;
+  out.wrist = wrist_.k4.dot(wrist_.k5.cross(rotation_about(wrist_.k5, q[4]) * wrist_.k6)) /
+              (std::sin(wrist_.alpha) * std::sin(wrist_.beta));
+  switch (kind_) {
+    case ArmKind::second_parallel_to_third:
+    case ArmKind::three_parallel: {
+      Vector3 end = p_[0] + rotation_about(h_[1], q[1]) * (p_[1] + bent);
+      double length = upper + fore;
+      if (kind_ == ArmKind::three_parallel) {
+        end += rotation_about(h_[1], q[1] + third_ * q[2] + fourth_ * q[3]) * p_[3];
+        length += off(h_[1], p_[3]);
+      }
+      out.shoulder = h_[1].dot(h_[0].cross(end)) / (off(h_[0], h_[1]) * (length + off(h_[1], p_[0])));
+      out.elbow = h_[2].dot(p_[1].cross(bent)) / (upper * fore);
+      break;
+    }
+    case ArmKind::first_meets_second:
+      out.shoulder = (rotation_about(h_[1], q[1]) * (p_[1] + bent)).dot(h_[0].cross(h_[1])) /
+                     (off(h_[0], h_[1]) * (p_[1].norm() + p_[2].norm()));
+      out.elbow = p_[1].dot(h_[2].cross(bent)) / (upper * fore);
+      break;
+    case ArmKind::first_parallel_to_second:
+      out.shoulder = h_[0].dot(h_[2].cross(bent)) / (off(h_[0], h_[2]) * fore);
+      out.elbow = h_[0].dot(p_[0].cross(rotation_about(h_[1], q[1]) * (p_[1] + bent))) /
+                  (off(h_[0], p_[0]) * (off(h_[0], p_[1]) + p_[2].norm()));
+      break;
+    case ArmKind::second_meets_third:
+      out.shoulder = (rotation_about(h_[1], q[1]) * bent).dot(h_[0].cross(p_[0])) / (off(h_[0], p_[0]) * p_[2].norm());
+      out.elbow = bent.dot(h_[1].cross(h_[2])) / (off(h_[1], h_[2]) * p_[2].norm());
+      break;
+  }
+  return out;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,70 @@
+#pragma once
+
+/// @file
+/// The subproblems of closed-form inverse kinematics: angles about given axes. Axes are unit vectors.
+/// @cite Paden 1986; Kahan 1983; Elias and Wen 2025
+
+#include <algorithm>
+#include <cmath>
+
+#include "vernier/core/types.hpp"
+
+namespace vernier::detail {
+
+/// Rotation matrix by an angle [rad] about an axis.
+inline Matrix3 rotation_about(const Vector3& k, double angle) noexcept {
+  const double s = std::sin(angle), c = std::cos(angle), x = k.x(), y = k.y(), z = k.z(), v = 1 - c;
+  Matrix3 out;
+  out << x * x * v + c, x * y * v - z * s, x * z * v + y * s,  //
+      x * y * v + z * s, y * y * v + c, y * z * v - x * s,     //
+      x * z * v - y * s, y * z * v + x * s, z * z * v + c;
+  return out;
+}
+
+/// An angle that a subproblem determines, unless every angle solves it.
+struct AngleAbout {
+  double angle;  ///< [rad]
+  bool any;      ///< whether no angle is better than another
+};
+
+/// Subproblem 1: the angle with `R(k, angle) a = b`; in the least-squares sense where a and b differ.
+/// @param negligible distance from the axis at which a or b counts as on it
+inline AngleAbout angle_between(const Vector3& k, const Vector3& a, const Vector3& b, double negligible) noexcept {
+  const double sine = k.cross(a).dot(b), cosine = a.dot(b) - k.dot(a) * k.dot(b);
+  const double square = negligible * negligible;
+  return {std::atan2(sine, cosine), sine * sine + cosine * cosine < square * square};
+}
+
+/// Two angles, symmetric about a centre.
+struct AnglePair {
+  double centre, half;  ///< angles `centre + half` and `centre - half` [rad]
+  double margin;        ///< by how much, relatively, no angle solves the equation; then `half` is that of the nearest
+  bool any;             ///< whether every angle solves the equation, or none
+  double radius;        ///< of the circle on which the point moves, as far as it matters
+};
+
+/// Subproblem 4: the angles with `h . R(k, angle) p = d`.
+/// @param negligible length of p's part at right angles to k, seen along h, that counts as zero
+inline AnglePair angles_to_plane(const Vector3& h, const Vector3& k, const Vector3& p, double d,
+                                 double negligible) noexcept {
+  const double along = k.dot(p) * h.dot(k);
+  const double sine = h.dot(k.cross(p)), cosine = h.dot(p) - along, rest = d - along;
+  const double r = std::sqrt(sine * sine + cosine * cosine);
+  if (r < negligible) return {0, 0, std::abs(rest) <= negligible ? 0 : std::abs(rest) / negligible, true, r};
+  return {std::atan2(sine, cosine), std::atan2(std::sqrt(std::max((r - rest) * (r + rest), 0.0)), rest),
+          std::max(std::abs(rest) / r - 1, 0.0), false, r};
+}
+
+/// Subproblem 3: the angles with `|R(k, angle) a - b| = d`.
+inline AnglePair angles_to_distance(const Vector3& k, const Vector3& a, const Vector3& b, double d,
+                                    double negligible) noexcept {
+  const double along = k.dot(a) * k.dot(b), sine = b.dot(k.cross(a)), cosine = b.dot(a) - along;
+  const double rest = 0.5 * (a.squaredNorm() + b.squaredNorm() - d * d) - along;
+  const double r = std::sqrt(sine * sine + cosine * cosine);
+  if (r < negligible * negligible)
+    return {0, 0, std::abs(rest) <= negligible * negligible ? 0 : std::abs(rest) / (negligible * negligible), true, r};
+  return {std::atan2(sine, cosine), std::atan2(std::sqrt(std::max((r - rest) * (r + rest), 0.0)), rest),
+          std::max(std::abs(rest) / r - 1, 0.0), false, r};
+}
+
+}  // namespace vernier::detail

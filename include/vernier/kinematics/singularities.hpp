@@ -1,0 +1,38 @@
+#pragma once
+
+/// @file
+/// Distances of a six-axis arm from its singularities; their signs name a branch of its inverse kinematics.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace vernier {
+
+/// The three factors into which the determinant of the Jacobian of an arm with a closed form decomposes, each scaled
+/// to [-1, 1]: zero in a singularity, and there its sign changes. `asin` of each is an angle: that of the elbow from
+/// its stretched, of the wrist from its straight configuration.
+/// @cite Gorla and Renaud 1984; Wenger 2004
+struct SingularityDistances {
+  double shoulder =
+      0;             ///< distance of the wrist centre from the surface on which it is singular, over the arm's length
+  double elbow = 0;  ///< sine of the angle between upper arm and forearm
+  double wrist = 0;  ///< sine of the angle between the wrist's first and last axis, where the second is orthogonal
+
+  /// All three, in that order.
+  std::array<double, 3> values() const { return {shoulder, elbow, wrist}; }
+  /// The signs as a number from 0 to 7: bit 0 shoulder, bit 1 elbow, bit 2 wrist; set where negative.
+  int branch() const { return (shoulder < 0 ? 1 : 0) + (elbow < 0 ? 2 : 0) + (wrist < 0 ? 4 : 0); }
+  /// The smallest distance as an angle [rad].
+  double nearest_angle() const {
+    return std::asin(std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist), 1.0}));
+  }
+  /// The singularity to which that belongs: `shoulder`, `elbow` or `wrist`.
+  std::string_view nearest() const {
+    const double least = std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist)});
+    return std::abs(wrist) == least ? "wrist" : std::abs(elbow) == least ? "elbow" : "shoulder";
+  }
+};
+
+}  // namespace vernier

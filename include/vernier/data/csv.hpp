@@ -3,8 +3,11 @@
 /// @file
 /// Reading and writing measured poses and joint targets as comma-separated values, units in the column names.
 
+#include <algorithm>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/data_error.hpp"
@@ -24,6 +27,13 @@ struct PoseColumns {
   VectorX temperatures;  ///< [deg C]; none where the file has none
 };
 VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
+/// The columns of a file of targets; what it lacks has no rows.
+struct TargetColumns {
+  MatrixX joints;            ///< n x joints [rad, m]
+  MatrixX poses;             ///< positions [m], then orientations as rotation vectors if the file has them [rad]
+  std::vector<bool> linear;  ///< whether the move to each is a linear one
+};
+VERNIER_API TargetColumns read_target_columns(const std::string& path, int joints, std::span<const JointType> types);
 /// Joints, then the distances [m].
 VERNIER_API MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
@@ -66,6 +76,32 @@ Distances<N> read_distances(const std::string& path, std::span<const JointType> 
 template <int N>
 JointRows<N> read_joints(const std::string& path, std::span<const JointType> joint_types = {}) {
   return detail::read_joint_columns(path, N, joint_types);
+}
+
+/// Targets of a path, as a file states them.
+template <int N>
+struct TargetRows {
+  JointRows<N> joints{};       ///< of each target [rad, m]; no rows where the file has none
+  PointRows positions{};       ///< likewise [m]
+  PointRows orientations{};    ///< likewise, rotation vectors [rad]
+  std::vector<bool> linear{};  ///< whether the move to each is a linear one; empty where the file does not say
+
+  /// Number of targets.
+  Index size() const { return std::max(joints.rows(), positions.rows()); }
+};
+
+/// Targets from a CSV file: columns q1_rad .. or poses x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad, or both, in the units
+/// of `read_dataset`; an optional column `move` says how the arm moves there: j joint by joint, l along a line.
+/// @throws DataError naming file, line and column
+template <int N>
+TargetRows<N> read_targets(const std::string& path, std::span<const JointType> joint_types = {}) {
+  auto [joints, poses, linear] = detail::read_target_columns(path, N, joint_types);
+  TargetRows<N> out;
+  if (joints.rows() > 0) out.joints = joints;
+  if (poses.rows() > 0) out.positions = poses.leftCols<3>();
+  if (poses.cols() > 3) out.orientations = poses.rightCols<3>();
+  out.linear = std::move(linear);
+  return out;
 }
 
 /// Writes measured poses as `read_dataset` reads them, joints in rad, positions in mm, in digits that read back exactly

@@ -98,6 +98,16 @@ class CsvTable {
                             " in the header (", present, ")"));
   }
 
+  /// The text of a column, one entry a row.
+  std::vector<std::string> texts(const CsvColumn& column) const {
+    std::vector<std::string> out;
+    for (const auto& [number, line] : lines_) {
+      const auto fields = cells(line);
+      out.push_back(column.index < fields.size() ? printable(fields[column.index]) : std::string());
+    }
+    return out;
+  }
+
   /// All values of some columns, rows x columns, in m and rad; at least one row.
   MatrixX numbers(const std::vector<CsvColumn>& columns) const {
     if (lines_.empty()) throw DataError(message(file_, ": a header, but no rows of data"));
@@ -211,6 +221,30 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   out.previous.setConstant(n, joints, std::numeric_limits<double>::quiet_NaN());
   for (Index i = 1; i < n; ++i)
     if (!segment || (*segment)(i) == (*segment)(i - 1)) out.previous.row(i) = out.values.row(i - 1).head(joints);
+  return out;
+}
+
+VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int joints, std::span<const JointType> types) {
+  const CsvTable table(path);
+  TargetColumns out;
+  const bool posed = table.find("x", true) || table.find("y", true) || table.find("z", true);
+  if (!posed || table.find("q1", false) || table.find("q1", true))
+    out.joints = table.numbers(joint_columns(table, joints, types));
+  if (posed) {
+    std::vector<CsvColumn> columns;
+    for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, true));
+    if (table.find("rx", false) || table.find("ry", false) || table.find("rz", false))
+      for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.require_column(axis, false));
+    out.poses = table.numbers(columns);
+  }
+  if (const auto move = table.find_plain("move")) {
+    const std::vector<std::string> words = table.texts(*move);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (words[i] != "j" && words[i] != "l")
+        table.fail_in_row(static_cast<Index>(i), *move, "'", words[i], "', must be j (joint move) or l (linear move)");
+      out.linear.push_back(words[i] == "l");
+    }
+  }
   return out;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Sample quantiles.
+/// Sample quantiles, and a quantile of distances.
 
 #include "vernier/core/types.hpp"
 
@@ -13,6 +13,11 @@ namespace vernier {
 /// @complexity O(n log n)
 /// @cite Hyndman and Fan 1996
 VERNIER_API double quantile(const ConstVectorRef& values, double probability);
+
+/// Radius of a ball around the mean of a normal distribution in space that contains 95 % of it, by the chi-square
+/// distribution with the same first two moments of the squared distance.
+/// @cite Satterthwaite 1946; Wilson and Hilferty 1931
+VERNIER_API double radius_95(const Matrix3& covariance) noexcept;
 
 namespace detail {
 

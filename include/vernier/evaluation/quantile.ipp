@@ -18,6 +18,14 @@ VERNIER_IMPL double quantile(const ConstVectorRef& values, double probability) {
   return detail::quantile_of_sorted(sorted, probability);
 }
 
+VERNIER_IMPL double radius_95(const Matrix3& covariance) noexcept {
+  const double mean = covariance.trace(), variance = 2 * (covariance * covariance).trace();
+  if (!(mean > 0)) return mean == 0 ? 0 : std::nan("");
+  const double degrees = 2 * mean * mean / variance, z = 1.6448536269514722;  // 95 % of a standard normal
+  const double spread = 2 / (9 * degrees);
+  return std::sqrt(mean * std::pow(1 - spread + z * std::sqrt(spread), 3));
+}
+
 VERNIER_IMPL double detail::quantile_of_sorted(const ConstVectorRef& values, double probability) {
   const double at = probability * static_cast<double>(values.size() - 1);
   const auto below = static_cast<Index>(at);

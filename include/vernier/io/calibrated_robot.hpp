@@ -15,6 +15,7 @@
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
+#include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
@@ -150,6 +151,36 @@ class CalibratedRobot {
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
                                       const JointVector<N>& previous) const noexcept {
     return compensated(previous).correct(target, seed);
+  }
+
+  /// Radius around the modelled tool position within which the arm's is with 95 % probability [m], for n commands that
+  /// are executed in their order; NaN where a command is not finite. What is left of the target comes on top.
+  /// @param commands n x N; the first one is approached from nobody knows where, as is one behind a row that is not
+  /// finite
+  /// @throws std::invalid_argument where the covariance of the calibration was not kept
+  /// @complexity O(n unknowns^2)
+  std::vector<double> radii_95(const JointRows<N>& commands) const {
+    require(estimate_ != nullptr, name_, ": its model has no covariance; calibrate it again");
+    std::vector<double> out(static_cast<std::size_t>(commands.rows()), std::numeric_limits<double>::quiet_NaN());
+    std::vector<Index> rows;
+    for (Index i = 0; i < commands.rows(); ++i)
+      if (commands.row(i).allFinite()) rows.push_back(i);
+    const auto n = static_cast<Index>(rows.size());
+    JointRows<N> q(n, N), previous(n, N);
+    VectorX gates(n), temperatures(n);
+    for (Index k = 0; k < n; ++k) {
+      const Index i = rows[static_cast<std::size_t>(k)];
+      q.row(k) = commands.row(i);
+      previous.row(k) = unknown().transpose();
+      if (i > 0) previous.row(k) = commands.row(i - 1);
+      gates(k) = gate(q.row(k).transpose());
+    }
+    temperatures.setConstant(model_.thermal() == nullptr ? std::numeric_limits<double>::quiet_NaN()
+                                                         : model_.thermal()->reference);
+    const std::vector<Matrix6> covariances = estimate_->visit_covariances(q, gates, 0, previous, temperatures);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      out[static_cast<std::size_t>(rows[k])] = radius_95(covariances[k].template topLeftCorner<3, 3>());
+    return out;
   }
 
   /// The arm as it moves to a configuration from known joint values: a kinematic model, a view of the robot, which must

@@ -1,0 +1,337 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "vernier/compensation/detail/path_solver.hpp"
+#include "vernier/core/so3.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL Isometry3 pose_between(const Isometry3& a, const Isometry3& b, double share) noexcept {
+  Isometry3 out;
+  out.linear() = a.linear() * exp_so3(Vector3(share * log_so3(Matrix3(a.linear().transpose() * b.linear()))));
+  out.translation() = (1 - share) * a.translation() + share * b.translation();
+  out.makeAffine();
+  return out;
+}
+
+/// A branch with its whole turns at one target, and the cheapest way to it.
+struct PathState {
+  PathJoints joints;
+  int id;
+  double cost;
+  int from;   ///< index of the state before
+  bool jump;  ///< whether the move to it is not the one asked for
+};
+
+/// Chooses branches and whole turns over a path, then commands.
+class PathSearch {
+ public:
+  PathSearch(const PathArm& arm, const std::vector<PathGoal>& goals, const PathSettings& settings)
+      : arm_(arm), goals_(goals), settings_(settings) {}
+
+  VERNIER_API SolvedPath run();
+
+ private:
+  /// Time of a joint move, in units of the speeds.
+  double duration(const PathJoints& a, const PathJoints& b) const {
+    return ((b - a).array().abs() / settings_.speed.array()).maxCoeff();
+  }
+  PathJoints turned(const PathJoints& joints, const PathJoints& near) const {
+    PathJoints out = joints;
+    for (int j = 0; j < arm_.joints; ++j)
+      out(j) = nearest_turn(joints(j), near(j), settings_.lower(j), settings_.upper(j));
+    return out;
+  }
+  bool within(const PathJoints& q) const {
+    return (q.array() >= settings_.lower.array() - 1e-9).all() && (q.array() <= settings_.upper.array() + 1e-9).all();
+  }
+  bool at_limit(const PathJoints& q) const {
+    return ((q - settings_.lower).array() <= 1e-9).any() || ((settings_.upper - q).array() <= 1e-9).any();
+  }
+  /// Adds a state, or a cheaper way to it.
+  static void relax(std::vector<PathState>& states, const PathState& state) {
+    for (PathState& known : states)
+      if (known.id == state.id && (known.joints - state.joints).cwiseAbs().maxCoeff() < 1e-6) {
+        if (state.cost < known.cost) known = state;
+        return;
+      }
+    states.push_back(state);
+  }
+
+  VERNIER_API Reach find_branches(const PathGoal& goal, const PathJoints& near, std::vector<PathBranch>& out) const;
+  VERNIER_API std::optional<PathJoints> end_of_line(const PathState& from, const PathGoal& start, const PathBranch& to,
+                                                    const PathGoal& end) const;
+  VERNIER_API void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
+                           const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
+  VERNIER_API double worst_ratio(const PathJoints& a, const PathJoints& b, const Isometry3& from, const Isometry3& to,
+                                 double& deviation) const;
+  VERNIER_API bool fill_line(const PathJoints& from, const PathJoints& near, const Isometry3& start,
+                             const Isometry3& end, int pieces, std::vector<SolvedPoint>& out, double& worst,
+                             double& deviation) const;
+  VERNIER_API void move_to(Index target, const PathState& state, const SolvedPoint* before, SolvedPath& out) const;
+
+  const PathArm& arm_;
+  const std::vector<PathGoal>& goals_;
+  const PathSettings& settings_;
+};
+
+VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& near,
+                                             std::vector<PathBranch>& out) const {
+  if (!is_pose(goal.pose)) return Reach::invalid_target;
+  if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
+  PathJoints command = goal.joints, unknown = PathJoints::Constant(arm_.joints, std::nan(""));
+  double errors[2];
+  const bool met = arm_.correct(goal.pose, unknown, command, errors);
+  out.push_back({command, arm_.branch_id(command)});  // else the joint values that come nearest
+  return met ? Reach::met : Reach::not_found;
+}
+
+/// The turns of a branch at which a linear move ends: the nominal arm follows the line where the joints change by much.
+VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& from, const PathGoal& start,
+                                                               const PathBranch& to, const PathGoal& end) const {
+  constexpr double small = 0.2, step = 0.1;  // rad
+  if (from.id != to.id) return std::nullopt;
+  PathJoints near = turned(to.joints, from.joints);
+  const double largest = (near - from.joints).cwiseAbs().maxCoeff();
+  if (largest > small) {
+    const int n = std::clamp(static_cast<int>(std::ceil(largest / step)), 4, 64);
+    PathJoints q = from.joints;
+    for (int k = 1; k <= n; ++k) {
+      const PathJoints before = q;
+      if (!arm_.nominal_joints(pose_between(start.pose, end.pose, static_cast<double>(k) / n), q) ||
+          (q - before).cwiseAbs().maxCoeff() > settings_.max_joint_step || arm_.branch_id(q) != from.id)
+        return std::nullopt;
+    }
+    near = turned(to.joints, q);
+    if ((near - q).cwiseAbs().maxCoeff() > 0.1) return std::nullopt;
+  }
+  return within(near) ? std::optional<PathJoints>(near) : std::nullopt;
+}
+
+/// States at a target from those before.
+VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
+                                      const std::vector<PathBranch>& branches, std::vector<PathState>& out) const {
+  constexpr std::size_t most_states = 24;
+  constexpr double jump_cost = 1e6;
+  const auto add = [&](PathJoints joints, const PathBranch& branch, int from, bool jump) {
+    const PathState& last = before[static_cast<std::size_t>(from)];
+    relax(out, {joints, branch.id, last.cost + duration(last.joints, joints) + (jump ? jump_cost : 0), from, jump});
+  };
+  const bool linear = start != nullptr && goal.motion == Motion::linear;
+  if (linear)
+    for (std::size_t a = 0; a < before.size(); ++a)
+      for (const PathBranch& branch : branches)
+        if (const auto joints = end_of_line(before[a], *start, branch, goal))
+          add(*joints, branch, static_cast<int>(a), false);
+  if (out.empty()) {
+    const bool jump = goal.motion == Motion::linear;  // on no branch does the line lead there
+    const auto cheapest = static_cast<int>(
+        std::min_element(before.begin(), before.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }) -
+        before.begin());
+    for (std::size_t a = 0; a < before.size(); ++a)
+      for (const PathBranch& branch : branches) {
+        const PathJoints joints = turned(branch.joints, before[a].joints);
+        if (!within(joints)) continue;
+        add(joints, branch, static_cast<int>(a), jump);
+        if (static_cast<int>(a) != cheapest) continue;
+        for (int j = 0; j < arm_.joints; ++j)  // another turn of a joint, with which the moves to come may fit
+          for (const double turn : {-2 * std::numbers::pi, 2 * std::numbers::pi}) {
+            PathJoints other = joints;
+            other(j) += turn;
+            if (within(other)) add(other, branch, static_cast<int>(a), jump);
+          }
+      }
+  }
+  if (out.size() > most_states) {
+    std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    out.resize(most_states);
+  }
+}
+
+/// How far the tool is from a line where the controller interpolates between two commands, in units of the tolerances,
+/// and in space [m].
+VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& a, const PathJoints& b, const Isometry3& from,
+                                            const Isometry3& to, double& deviation) const {
+  const Isometry3 first = arm_.nominal_pose(a), last = arm_.nominal_pose(b);
+  double worst = 0;
+  for (const double share : {0.25, 0.5, 0.75}) {
+    PathJoints q = a + share * (b - a);
+    if (!arm_.nominal_joints(pose_between(first, last, share), q) ||
+        (q - a - share * (b - a)).cwiseAbs().maxCoeff() > settings_.max_joint_step)
+      return std::numeric_limits<double>::infinity();
+    const Isometry3 there = arm_.pose(q, a), wanted = pose_between(from, to, share);
+    const double off = (there.translation() - wanted.translation()).norm();
+    const double turned = log_so3(Matrix3(there.linear() * wanted.linear().transpose())).norm();
+    deviation = std::max(deviation, off);
+    worst = std::max({worst, off / settings_.tolerance, turned / settings_.rotation_tolerance});
+  }
+  return worst;
+}
+
+/// Commands that divide a line into equal pieces, the last one at its end.
+/// @return whether all of them were found next to one another
+VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& from, const PathJoints& near, const Isometry3& start,
+                                        const Isometry3& end, int pieces, std::vector<SolvedPoint>& out, double& worst,
+                                        double& deviation) const {
+  PathJoints before = from, tracked = from;
+  Isometry3 at = start;
+  worst = deviation = 0;
+  for (int k = 1; k <= pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    const Isometry3 wanted = k == pieces ? end : pose_between(start, end, share);
+    SolvedPoint point{k == pieces ? near : tracked, 0, k < pieces, PointStatus::met, 0, 0};
+    if (k < pieces) {
+      if (!arm_.nominal_joints(wanted, point.command)) return false;
+      tracked = point.command;
+    }
+    double errors[2];
+    if (!arm_.correct(wanted, before, point.command, errors) ||
+        (point.command - before).cwiseAbs().maxCoeff() > settings_.max_joint_step)
+      return false;
+    point.position_error = errors[0];
+    point.rotation_error = errors[1];
+    worst = std::max(worst, worst_ratio(before, point.command, at, wanted, point.deviation));
+    deviation = std::max(deviation, point.deviation);
+    before = point.command;
+    at = wanted;
+    out.push_back(point);
+  }
+  return true;
+}
+
+VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, const SolvedPoint* before,
+                                      SolvedPath& out) const {
+  const PathGoal& goal = goals_[static_cast<std::size_t>(target)];
+  const PathJoints from = before != nullptr ? before->command : settings_.start;
+  SolvedPoint point{state.joints, target, false, state.jump ? PointStatus::jump : PointStatus::met, 0, 0};
+  double errors[2];
+  const bool found = arm_.correct(goal.pose, from, point.command, errors);
+  point.position_error = errors[0];
+  point.rotation_error = errors[1];
+  if (!found) point.status = at_limit(point.command) ? PointStatus::beyond_limits : PointStatus::not_found;
+  if (goal.motion == Motion::linear && point.status == PointStatus::met) {
+    if (before == nullptr || before->target + 1 != target) {
+      if (before != nullptr) point.status = PointStatus::jump;  // the line does not begin at its target
+    } else {
+      const Isometry3& start = goals_[static_cast<std::size_t>(target - 1)].pose;
+      const double ratio = worst_ratio(from, point.command, start, goal.pose, point.deviation);
+      point.ends_only = point.deviation;
+      out.before = std::max(out.before, point.deviation);
+      const double change = (point.command - from).cwiseAbs().maxCoeff();
+      // what is left grows with the square of a piece's length
+      int pieces = std::isfinite(ratio) ? static_cast<int>(std::ceil(std::sqrt(std::min(ratio, 1e6)))) : 8;
+      pieces = std::max(pieces, static_cast<int>(std::ceil(change / settings_.max_joint_step)));
+      if (pieces > 1) {
+        std::vector<SolvedPoint> line;
+        double worst = 0, deviation = 0;
+        bool complete = false;
+        for (pieces = std::min(pieces, settings_.max_inserted + 1);;
+             pieces = std::min(2 * pieces, settings_.max_inserted + 1)) {
+          line.clear();
+          complete = fill_line(from, point.command, start, goal.pose, pieces, line, worst, deviation);
+          if ((complete && worst <= 1) || pieces == settings_.max_inserted + 1) break;
+        }
+        if (complete) {
+          for (SolvedPoint& one : line) one.target = target;
+          line.back().ends_only = point.ends_only;
+          if (worst > 1) line.back().status = PointStatus::off_path;
+          out.after = std::max(out.after, deviation);
+          out.points.insert(out.points.end(), line.begin(), line.end());
+          return;
+        }
+        point.status = PointStatus::jump;
+      }
+      out.after = std::max(out.after, point.deviation);
+    }
+  }
+  out.points.push_back(point);
+}
+
+VERNIER_IMPL SolvedPath PathSearch::run() {
+  const std::size_t n = goals_.size();
+  std::vector<std::vector<PathState>> states(n);
+  std::vector<Reach> reach(n);
+  std::vector<PathBranch> branches;
+  const bool started = settings_.start.allFinite();
+  PathJoints near = PathJoints::Zero(arm_.joints);
+  for (int j = 0; j < arm_.joints; ++j)
+    if (std::isfinite(settings_.lower(j) + settings_.upper(j)))
+      near(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
+  if (started) near = settings_.start;
+  const std::vector<PathState> beginning{{near, 0, 0, -1, false}};
+
+  std::size_t last = n;
+  for (std::size_t k = 0; k < n; ++k) {
+    branches.clear();
+    const std::vector<PathState>& before = last < n ? states[last] : beginning;
+    const auto cheapest =
+        std::min_element(before.begin(), before.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    reach[k] = find_branches(goals_[k], cheapest->joints, branches);
+    const PathGoal* const start = last < n && last + 1 == k ? &goals_[last] : nullptr;
+    if (!branches.empty()) {
+      advance(before, start, goals_[k], branches, states[k]);
+      if (states[k].empty()) reach[k] = Reach::beyond_limits;
+      if (last == n)
+        for (PathState& state : states[k]) {
+          state.jump = false;  // nothing is asked of the move to the first target
+          if (!started) state.cost *= 1e-3;
+        }
+    }
+    if (!states[k].empty()) last = k;
+  }
+
+  std::vector<int> chosen(n, -1);
+  if (last < n) {
+    const auto& end = states[last];
+    int state = static_cast<int>(
+        std::min_element(end.begin(), end.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }) -
+        end.begin());
+    for (std::size_t k = last + 1; k-- > 0;) {
+      if (states[k].empty()) continue;
+      chosen[k] = state;
+      state = states[k][static_cast<std::size_t>(state)].from;
+    }
+  }
+  SolvedPath out;
+  out.points.reserve(n);
+  SolvedPoint before;
+  bool any = false;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto target = static_cast<Index>(k);
+    if (chosen[k] >= 0) {
+      move_to(target, states[k][static_cast<std::size_t>(chosen[k])], any ? &before : nullptr, out);
+      if (out.points.back().status <= PointStatus::off_path) {
+        before = out.points.back();
+        any = true;
+      }
+      continue;
+    }
+    SolvedPoint point{PathJoints::Constant(arm_.joints, std::nan("")),
+                      target,
+                      false,
+                      PointStatus::not_found,
+                      std::nan(""),
+                      std::nan("")};
+    switch (reach[k]) {
+      case Reach::beyond_limits: point.status = PointStatus::beyond_limits; break;
+      case Reach::proven_out: point.status = PointStatus::proven_out; break;
+      case Reach::invalid_target: point.status = PointStatus::invalid_target; break;
+      default: break;
+    }
+    out.points.push_back(point);
+  }
+  return out;
+}
+
+VERNIER_IMPL SolvedPath solve_path(const PathArm& arm, const std::vector<PathGoal>& goals,
+                                   const PathSettings& settings) {
+  return PathSearch(arm, goals, settings).run();
+}
+
+}  // namespace vernier::detail

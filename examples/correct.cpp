@@ -17,6 +17,7 @@
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io/model_file.hpp"
+#include "vernier/kinematics/general_six_axis.hpp"
 
 namespace {
 
@@ -104,29 +105,32 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
   return out;
 }
 
-/// The closed form of an arm, where it has one.
-template <int N>
-std::optional<vn::ClosedForm<N>> closed_form_of(const vn::CalibratedRobot<N>& robot) {
+/// Calls `use` with what finds the branches of an arm of six joints; with null for others, whose branch is followed.
+template <int N, class Use>
+void with_branches(const vn::CalibratedRobot<N>& robot, const Use& use) {
   if constexpr (N == 6) {
-    try {
-      return vn::ClosedForm<N>(robot.nominal());
-    } catch (const std::invalid_argument&) {  // then branches are followed from target to target
-    }
+    const auto made = [&]<class Roots>(std::optional<Roots>& roots) {
+      try {
+        roots.emplace(robot.nominal());
+      } catch (const std::invalid_argument&) {  // another geometry
+      }
+      return roots.has_value();
+    };
+    if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form)) return use(*closed_form);
+    if (std::optional<vn::GeneralSixAxis<N>> general; made(general)) return use(*general);
   }
-  return {};
+  use(nullptr);
 }
 
 /// All branches of each target.
-template <int N>
-void list_branches(const vn::CalibratedRobot<N>& robot, const std::vector<vn::PathTarget<N>>& targets,
-                   CorrectionReport& report) {
-  const auto closed_form = closed_form_of(robot);
-  if (!closed_form) throw support::UsageError("--all-branches: the arm has no closed form");
+template <int N, class Roots>
+void list_branches(const vn::CalibratedRobot<N>& robot, const Roots& roots,
+                   const std::vector<vn::PathTarget<N>>& targets, CorrectionReport& report) {
   for (const auto& target : targets) {
     const vn::Index number = static_cast<vn::Index>(&target - targets.data()) + 1;
     vn::BranchOptions<N> options{.limits = robot.limits()};
     if (target.joints.allFinite()) options.near = target.joints;
-    const vn::Branches<N> found = vn::all_branches(*closed_form, robot, target.pose, options);
+    const vn::Branches<N> found = vn::all_branches(roots, robot, target.pose, options);
     for (const auto& b : found)
       report.rows.push_back({list(b.joints), number, vn::message("branch ", b.singularities.branch()),
                              words(b.within_limits ? vn::PointStatus::met : vn::PointStatus::beyond_limits),
@@ -170,15 +174,19 @@ CorrectionReport correct_arm(const Settings& settings) {
     if (settings.start.size() != N) throw support::UsageError(fmt::format("--start needs {} values", N));
     options.start = Eigen::Map<const vn::JointVector<N>>(settings.start.data());
   }
-  if (settings.branches) {
-    if constexpr (N == 6 || N == 7) list_branches(robot, targets, report);
-    return report;
-  }
-  const auto closed_form = closed_form_of(robot);
-  if (!closed_form && !targets.front().joints.allFinite() && settings.start.empty())
-    throw support::UsageError("the arm has no closed form: poses without joints need --start");
-  const vn::CorrectedPath<N> path =
-      closed_form ? vn::correct_path(robot, *closed_form, targets, options) : vn::correct_path(robot, targets, options);
+  vn::CorrectedPath<N> path;
+  with_branches(robot, [&](const auto& roots) {
+    if constexpr (std::is_null_pointer_v<std::remove_cvref_t<decltype(roots)>>) {
+      if (settings.branches) throw support::UsageError("--all-branches: needs an arm of six revolute joints");
+      if (!targets.front().joints.allFinite() && settings.start.empty())
+        throw support::UsageError(fmt::format("poses of an arm of {} joints need joints q1_rad .. or --start", N));
+      path = vn::correct_path(robot, targets, options);
+    } else if (settings.branches) {
+      list_branches(robot, roots, targets, report);
+    } else {
+      path = vn::correct_path(robot, roots, targets, options);
+    }
+  });
   for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;
   report.before = path.before;
   report.after = path.after;
@@ -188,7 +196,7 @@ CorrectionReport correct_arm(const Settings& settings) {
     report.rows.push_back({list(p.command), p.target + 1, p.inserted ? "inserted" : "target", words(p.status),
                            p.position_error, p.rotation_error, p.deviation, p.ends_only, p.gate, p.singularities});
   }
-  if (settings.radius && saved.estimate() != nullptr) {
+  if (settings.radius && !settings.branches && saved.estimate() != nullptr) {
     const std::vector<double> radii = robot.radii_95(commands);
     for (std::size_t i = 0; i < radii.size(); ++i) report.rows[i].radius = radii[i];
   }
@@ -279,9 +287,8 @@ int run(support::Program& program) {
   if (settings.out.empty()) throw support::UsageError("--out is required");
   support::require_writable(settings.out);
 
-  const vn::SavedArm arm = vn::saved_arm(settings.model);
-  if (settings.branches && arm.dof != 6) throw support::UsageError("--all-branches: the arm has no closed form");
-  const CorrectionReport report = support::dispatch_dof(arm.dof, [&](auto n) { return correct_arm<n()>(settings); });
+  const CorrectionReport report =
+      support::dispatch_dof(vn::saved_arm(settings.model).dof, [&](auto n) { return correct_arm<n()>(settings); });
   vn::write_file(settings.out, csv(report));
 
   std::vector<vn::Index> missed, displaced;

@@ -201,15 +201,16 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
 /// @param arm         an identified or calibrated arm: a kinematic model with `nominal()`, the arm as the controller
 /// knows
 ///                    it, in the same frames; with `approached_from` where its joints have hysteresis
-/// @param closed_form of the nominal arm in the same frames
+/// @param closed_form of the nominal arm in the same frames, or `GeneralSixAxis`
 /// @param targets     in the frames of the model
 /// @param options     tolerances, limits, start
 /// @return            points in order; what cannot be met as asked has a status that says so, and no move jumps
 /// silently
 /// @throws std::invalid_argument for options that are not positive
 /// @complexity        O(targets)
-template <KinematicModel Arm>
-[[nodiscard]] CorrectedPath<Arm::dof> correct_path(const Arm& arm, const ClosedForm<Arm::dof>& closed_form,
+template <KinematicModel Arm, BranchRoots Roots>
+  requires(Roots::dof == Arm::dof)
+[[nodiscard]] CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
                                                    const std::vector<PathTarget<Arm::dof>>& targets,
                                                    const PathOptions<Arm::dof>& options = {}) {
   return detail::correct_path(arm, closed_form, targets, options);

@@ -86,13 +86,14 @@ JointVector<N> nearest_turns(const JointVector<N>& joints, const JointVector<N>&
 
 /// All branches of the inverse kinematics of a model whose nominal arm has a closed form: Newton's method from each of
 /// its roots, and across the fold where two branches meet. Of seven joints the held one stays.
-/// @param nominal roots of the nominal arm, in the same frames as the model: `ClosedForm(model.nominal())`
+/// @param nominal roots of the nominal arm, in the same frames as the model: `ClosedForm(model.nominal())`, or
+///                `GeneralSixAxis` where it has no closed form
 /// @param model   any kinematic model near the nominal arm, e.g. by 1 mm and a few mrad
 /// @param target  base_T_tool in the frames of the model
 /// @param options limits, turns
 /// @complexity    the roots, and per branch three evaluations of pose and Jacobian; no allocation
 /// @cite Kantorovich and Akilov 1982
-template <class Roots, KinematicModel M>
+template <BranchRoots Roots, KinematicModel M>
   requires(Roots::dof == M::dof)
 [[nodiscard]] Branches<M::dof> all_branches(const Roots& nominal, const M& model, const Isometry3& target,
                                             const BranchOptions<M::dof>& options = {}) noexcept {

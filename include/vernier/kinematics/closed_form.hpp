@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 
 #include "vernier/core/check.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -163,6 +164,19 @@ class ClosedForm {
  private:
   detail::MovingJoints<N> moving_;
   detail::ClosedFormArm arm_;
+};
+
+/// Joint values of a nominal arm at a pose: what `all_branches` starts from. `ClosedForm` and `GeneralSixAxis` are
+/// such.
+///
+/// - `roots(target, near, width)`, `distances(q)`, `held_joint()`: see `ClosedForm`
+template <class S>
+concept BranchRoots = requires(const S& solver, const Isometry3& target, const JointVector<S::dof>& q) {
+  { solver.roots(target, q, 0.0) }
+  noexcept->std::same_as<InverseRoots<S::dof>>;
+  { solver.distances(q) }
+  noexcept->std::same_as<SingularityDistances>;
+  { solver.held_joint() } -> std::convertible_to<int>;
 };
 
 /// Of six joints.

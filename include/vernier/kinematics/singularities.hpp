@@ -20,6 +20,10 @@ struct SingularityDistances {
   double elbow = 0;  ///< sine of the angle between upper arm and forearm
   double wrist = 0;  ///< sine of the angle between the wrist's first and last axis, where the second is orthogonal
 
+  /// Whether those three are known. Of an arm without closed form they are not: then `wrist` is the determinant of the
+  /// Jacobian over the product of its columns' lengths, and the others are 1.
+  bool factored = true;
+
   /// All three, in that order.
   std::array<double, 3> values() const { return {shoulder, elbow, wrist}; }
   /// The signs as a number from 0 to 7: bit 0 shoulder, bit 1 elbow, bit 2 wrist; set where negative.
@@ -28,8 +32,9 @@ struct SingularityDistances {
   double nearest_angle() const {
     return std::asin(std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist), 1.0}));
   }
-  /// The singularity to which that belongs: `shoulder`, `elbow` or `wrist`.
+  /// The singularity to which that belongs: `shoulder`, `elbow` or `wrist`; `any` where they are not told apart.
   std::string_view nearest() const {
+    if (!factored) return "any";
     const double least = std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist)});
     return std::abs(wrist) == least ? "wrist" : std::abs(elbow) == least ? "elbow" : "shoulder";
   }

@@ -4,6 +4,7 @@
 /// Inverse kinematics of six revolute joints whose axes lie anyhow.
 
 #include "vernier/kinematics/detail/six_axes.hpp"
+#include "vernier/kinematics/singularities.hpp"
 
 namespace vernier::detail {
 
@@ -20,10 +21,12 @@ namespace vernier::detail {
 /// @param arm    lengths in any unit, the same as the target's
 /// @param target base_T_tool
 /// @return       roots more than 1e-5 rad apart, margins 0; `condition` is the least of the eliminations made, infinite
-/// if
-///               there was none
+///               where there was none
 /// @cite Raghavan and Roth 1993; Manocha and Canny 1994
 VERNIER_API SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& target) noexcept;
+
+/// The determinant of the Jacobian over the product of its columns' lengths.
+VERNIER_API SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept;
 
 }  // namespace vernier::detail
 

@@ -222,4 +222,18 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
   return out;
 }
 
+VERNIER_IMPL SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept {
+  Eigen::Matrix<double, 6, 6> columns;
+  Isometry3 moved = Isometry3::Identity();
+  const double length = std::max(arm_length(arm), 1e-9);
+  for (int i = 0; i < 6; ++i) {
+    const Vector3 axis = moved.linear() * arm.direction.col(i), point = moved * Vector3(arm.point.col(i));
+    columns.col(i) << point.cross(axis) / length, axis;
+    const Matrix3 turn = exp_so3(Vector3(axis * q(i)));
+    moved.pretranslate(Vector3(-point)).prerotate(turn).pretranslate(point);
+    columns.col(i).normalize();
+  }
+  return {1, 1, columns.determinant(), false};
+}
+
 }  // namespace vernier::detail

@@ -29,6 +29,8 @@ struct PathState {
   bool jump;  ///< whether the move to it is not the one asked for
 };
 
+inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
+
 /// Chooses branches and whole turns over a path, then commands.
 class PathSearch {
  public:
@@ -51,6 +53,14 @@ class PathSearch {
   bool within(const PathJoints& q) const {
     return (q.array() >= settings_.lower.array() - 1e-9).all() && (q.array() <= settings_.upper.array() + 1e-9).all();
   }
+  /// Where each joint turned round last: at a command, or before it where it goes on in its direction. What hysteresis
+  /// does depends on the way since.
+  PathJoints last_reversal(const PathJoints& before, const PathJoints& command, const PathJoints& q) const {
+    PathJoints out = command;
+    for (int j = 0; j < arm_.joints; ++j)
+      if ((q(j) - command(j)) * (command(j) - before(j)) > 0) out(j) = before(j);
+    return out;
+  }
   bool at_limit(const PathJoints& q) const {
     return ((q - settings_.lower).array() <= 1e-9).any() || ((settings_.upper - q).array() <= 1e-9).any();
   }
@@ -69,8 +79,8 @@ class PathSearch {
                                                     const PathGoal& end) const;
   VERNIER_API void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
                            const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
-  VERNIER_API double worst_ratio(const PathJoints& a, const PathJoints& b, const Isometry3& from, const Isometry3& to,
-                                 double& deviation) const;
+  VERNIER_API double worst_ratio(const PathJoints& before, const PathJoints& a, const PathJoints& b,
+                                 const Isometry3& from, const Isometry3& to, double& deviation) const;
   VERNIER_API bool fill_line(const PathJoints& from, const PathJoints& near, const Isometry3& start,
                              const Isometry3& end, int pieces, std::vector<SolvedPoint>& out, double& worst,
                              double& deviation) const;
@@ -117,7 +127,7 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
 /// States at a target from those before.
 VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
                                       const std::vector<PathBranch>& branches, std::vector<PathState>& out) const {
-  constexpr std::size_t most_states = 24;
+  constexpr std::size_t most_states = 40;
   constexpr double jump_cost = 1e6;
   const auto add = [&](PathJoints joints, const PathBranch& branch, int from, bool jump) {
     const PathState& last = before[static_cast<std::size_t>(from)];
@@ -131,33 +141,34 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
           add(*joints, branch, static_cast<int>(a), false);
   if (out.empty()) {
     const bool jump = goal.motion == Motion::linear;  // on no branch does the line lead there
-    const auto cheapest = static_cast<int>(
-        std::min_element(before.begin(), before.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }) -
-        before.begin());
+    const auto cheapest = static_cast<int>(std::min_element(before.begin(), before.end(), cheaper) - before.begin());
     for (std::size_t a = 0; a < before.size(); ++a)
-      for (const PathBranch& branch : branches) {
-        const PathJoints joints = turned(branch.joints, before[a].joints);
-        if (!within(joints)) continue;
-        add(joints, branch, static_cast<int>(a), jump);
-        if (static_cast<int>(a) != cheapest) continue;
-        for (int j = 0; j < arm_.joints; ++j)  // another turn of a joint, with which the moves to come may fit
-          for (const double turn : {-2 * std::numbers::pi, 2 * std::numbers::pi}) {
-            PathJoints other = joints;
-            other(j) += turn;
-            if (within(other)) add(other, branch, static_cast<int>(a), jump);
-          }
-      }
+      for (const PathBranch& branch : branches)
+        if (const PathJoints joints = turned(branch.joints, before[a].joints); within(joints))
+          add(joints, branch, static_cast<int>(a), jump);
+    // Another turn of a joint, with which the moves to come may fit: of the branches that are nearest.
+    std::vector<PathState> nearest;
+    for (const PathState& state : out)
+      if (state.from == cheapest) nearest.push_back(state);
+    std::stable_sort(nearest.begin(), nearest.end(), cheaper);
+    for (std::size_t k = 0; k < std::min<std::size_t>(nearest.size(), 2); ++k)
+      for (int j = 0; j < arm_.joints; ++j)
+        for (const double turn : {-2 * std::numbers::pi, 2 * std::numbers::pi}) {
+          PathJoints other = nearest[k].joints;
+          other(j) += turn;
+          if (within(other)) add(other, {other, nearest[k].id}, cheapest, jump);
+        }
   }
   if (out.size() > most_states) {
-    std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    std::stable_sort(out.begin(), out.end(), cheaper);
     out.resize(most_states);
   }
 }
 
 /// How far the tool is from a line where the controller interpolates between two commands, in units of the tolerances,
 /// and in space [m].
-VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& a, const PathJoints& b, const Isometry3& from,
-                                            const Isometry3& to, double& deviation) const {
+VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& before, const PathJoints& a, const PathJoints& b,
+                                            const Isometry3& from, const Isometry3& to, double& deviation) const {
   const Isometry3 first = arm_.nominal_pose(a), last = arm_.nominal_pose(b);
   double worst = 0;
   for (const double share : {0.25, 0.5, 0.75}) {
@@ -165,7 +176,7 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& a, const PathJoint
     if (!arm_.nominal_joints(pose_between(first, last, share), q) ||
         (q - a - share * (b - a)).cwiseAbs().maxCoeff() > settings_.max_joint_step)
       return std::numeric_limits<double>::infinity();
-    const Isometry3 there = arm_.pose(q, a), wanted = pose_between(from, to, share);
+    const Isometry3 there = arm_.pose(q, last_reversal(before, a, q)), wanted = pose_between(from, to, share);
     const double off = (there.translation() - wanted.translation()).norm();
     const double turned = log_so3(Matrix3(there.linear() * wanted.linear().transpose())).norm();
     deviation = std::max(deviation, off);
@@ -179,7 +190,7 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& a, const PathJoint
 VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& from, const PathJoints& near, const Isometry3& start,
                                         const Isometry3& end, int pieces, std::vector<SolvedPoint>& out, double& worst,
                                         double& deviation) const {
-  PathJoints before = from, tracked = from;
+  PathJoints before = from, tracked = from, reversal = from;
   Isometry3 at = start;
   worst = deviation = 0;
   for (int k = 1; k <= pieces; ++k) {
@@ -191,12 +202,14 @@ VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& from, const PathJoints
       tracked = point.command;
     }
     double errors[2];
-    if (!arm_.correct(wanted, before, point.command, errors) ||
+    const PathJoints coming = last_reversal(reversal, before, point.command);
+    if (!arm_.correct(wanted, coming, point.command, errors) ||
         (point.command - before).cwiseAbs().maxCoeff() > settings_.max_joint_step)
       return false;
     point.position_error = errors[0];
     point.rotation_error = errors[1];
-    worst = std::max(worst, worst_ratio(before, point.command, at, wanted, point.deviation));
+    worst = std::max(worst, worst_ratio(reversal, before, point.command, at, wanted, point.deviation));
+    reversal = coming;
     deviation = std::max(deviation, point.deviation);
     before = point.command;
     at = wanted;
@@ -220,7 +233,7 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
       if (before != nullptr) point.status = PointStatus::jump;  // the line does not begin at its target
     } else {
       const Isometry3& start = goals_[static_cast<std::size_t>(target - 1)].pose;
-      const double ratio = worst_ratio(from, point.command, start, goal.pose, point.deviation);
+      const double ratio = worst_ratio(from, from, point.command, start, goal.pose, point.deviation);
       point.ends_only = point.deviation;
       out.before = std::max(out.before, point.deviation);
       const double change = (point.command - from).cwiseAbs().maxCoeff();
@@ -270,8 +283,7 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   for (std::size_t k = 0; k < n; ++k) {
     branches.clear();
     const std::vector<PathState>& before = last < n ? states[last] : beginning;
-    const auto cheapest =
-        std::min_element(before.begin(), before.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    const auto cheapest = std::min_element(before.begin(), before.end(), cheaper);
     reach[k] = find_branches(goals_[k], cheapest->joints, branches);
     const PathGoal* const start = last < n && last + 1 == k ? &goals_[last] : nullptr;
     if (!branches.empty()) {
@@ -289,9 +301,7 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   std::vector<int> chosen(n, -1);
   if (last < n) {
     const auto& end = states[last];
-    int state = static_cast<int>(
-        std::min_element(end.begin(), end.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }) -
-        end.begin());
+    int state = static_cast<int>(std::min_element(end.begin(), end.end(), cheaper) - end.begin());
     for (std::size_t k = last + 1; k-- > 0;) {
       if (states[k].empty()) continue;
       chosen[k] = state;

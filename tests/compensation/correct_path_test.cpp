@@ -1,0 +1,302 @@
+// Corrected commands of whole paths: branches, turns, lines, and what cannot be met.
+
+#include "vernier/compensation/correct_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "vernier/core/rng.hpp"
+#include "vernier/error_model/error_model.hpp"
+#include "vernier/kinematics/general_six_axis.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+#include "vernier/testing/path_laws.hpp"
+
+namespace vernier::correct_path_test {
+namespace {
+
+using Model = ErrorModel<DhChain<6>>;
+constexpr double pi = std::numbers::pi;
+const Robot<6> robot = robots::ur10();
+const ClosedForm<6> closed_form(robot.chain);
+const JointVector<6> home{0.3, -1.2, 1.4, -0.9, 1.0, 0.2};
+
+/// An arm off by half a millimetre and a few milliradians, with transmission errors, and hysteresis where asked.
+Model arm_off(std::uint64_t seed, double hysteresis = 0) {
+  JointTerms terms(6);
+  for (Fourier& of_joint : terms.transmission) of_joint = Fourier::up_to(4);
+  if (hysteresis > 0) terms.hysteresis = {0.02};
+  VectorX coefficients(terms.size());
+  Rng rng(seed);
+  for (double& c : coefficients) c = 1e-4 * rng.normal();
+  if (hysteresis > 0) coefficients.tail(6).setConstant(hysteresis);
+  return Model(robot.chain,
+               Model::Arm({with_geometric_errors(robot.chain, {}, seed), JointErrors(terms, coefficients)}));
+}
+
+Isometry3 moved(Isometry3 pose, const Vector3& by) {
+  pose.translation() += by;
+  return pose;
+}
+
+/// A rectangle of 200 mm in the air, its sides linear moves.
+std::vector<PathTarget<6>> rectangle(const Model& arm) {
+  const Isometry3 corner = arm.nominal().pose(home);
+  std::vector<PathTarget<6>> out{{.pose = corner}};
+  for (const Vector3& by : {Vector3(0.2, 0, 0), Vector3(0.2, 0.2, 0), Vector3(0, 0.2, 0.05), Vector3(0, 0, 0)})
+    out.push_back({.pose = moved(corner, by), .motion = Motion::linear});
+  return out;
+}
+
+const auto correct = [](const auto& arm, const auto& targets, const auto& options) {
+  return correct_path(arm, closed_form, targets, options);
+};
+
+TEST(CorrectPath, ObeysTheLawsOfPaths) {
+  PathOptions<6> options{.limits = robot.limits};
+  options.start = home;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Model arm = arm_off(seed);
+    for (const auto& violation : ::vernier::testing::path_violations(correct, arm, rectangle(arm), options))
+      ADD_FAILURE() << violation;
+    const Model lagging = arm_off(seed, 1.5e-5);
+    for (const auto& violation :
+         ::vernier::testing::path_violations(correct, lagging, rectangle(lagging), options, {.reversible = false}))
+      ADD_FAILURE() << "with hysteresis: " << violation;
+  }
+}
+
+TEST(CorrectPath, LawsCatchPlantedFaults) {
+  const Model arm = arm_off(1);
+  PathOptions<6> options{.limits = robot.limits};
+  options.start = home;
+  const auto broken = [&](const auto& spoil) {
+    const auto solver = [&](const auto& model, const auto& targets, const auto& asked) {
+      auto path = correct_path(model, closed_form, targets, asked);
+      spoil(path);
+      return path;
+    };
+    std::string all;
+    for (const auto& violation : ::vernier::testing::path_violations(solver, arm, rectangle(arm), options))
+      all += violation + "; ";
+    return all;
+  };
+  EXPECT_EQ(broken([](auto&) {}), "");
+  const std::string flipped = broken([&](auto& path) {  // another branch from the middle on
+    for (std::size_t i = path.points.size() / 2; i < path.points.size(); ++i) {
+      const auto others = all_branches(closed_form, arm, arm.pose(path.points[i].command));
+      for (const auto& other : others)
+        if (other.singularities.branch() != path.points[i].singularities.branch())
+          path.points[i].command = other.joints;
+    }
+  });
+  EXPECT_NE(flipped.find("a joint leaps"), std::string::npos) << flipped;
+  const std::string ends =
+      broken([](auto& path) { std::erase_if(path.points, [](const auto& point) { return point.inserted; }); });
+  EXPECT_NE(ends.find("leaves its line"), std::string::npos) << ends;
+  const std::string missed = broken([](auto& path) { path.points.back().command(0) += 1e-4; });
+  EXPECT_NE(missed.find("is missed"), std::string::npos) << missed;
+  const std::string dropped = broken([](auto& path) { path.points.pop_back(); });
+  EXPECT_NE(dropped.find("targets have a point"), std::string::npos) << dropped;
+  int calls = 0;
+  const std::string another = broken([&](auto& path) {
+    if (++calls == 3) path.points.front().command(5) += 1e-5;
+  });
+  EXPECT_NE(another.find("the way back"), std::string::npos) << another;
+}
+
+// Errors that no fit knows: the arm differs from its model by harmonics of 20 urad.
+TEST(CorrectPath, ArmsStayOnTheirLines) {
+  const Model model = arm_off(5);
+  JointTerms terms = model.identified().model().joint_errors().terms();
+  VectorX coefficients = model.identified().model().joint_errors().coefficients();
+  Rng rng(9);
+  for (double& c : coefficients) c += 2e-5 * rng.normal();
+  const Model arm(robot.chain, Model::Arm({model.identified().chain(), JointErrors(terms, coefficients)}));
+  PathOptions<6> options{.limits = robot.limits};
+  double before = 0, after = 0, apart = 0;
+  int lines = 0;
+  while (lines < 100) {
+    JointVector<6> q;
+    for (double& value : q) value = rng.uniform(-2, 2);
+    q(2) = rng.uniform(0.5, 2.2);
+    const Isometry3 a = model.nominal().pose(q);
+    const Isometry3 b = moved(a, 0.2 * Vector3(rng.normal(), rng.normal(), rng.normal()).normalized());
+    options.start = q;
+    const auto path = correct_path(model, closed_form, {{.pose = a}, {.pose = b, .motion = Motion::linear}}, options);
+    if (path.first_failure() != nullptr) continue;  // ends out of reach, or a singularity between them
+    ++lines;
+    const auto n = static_cast<double>(path.points.size() - 1);
+    const auto deviation = [&](const Model& of, std::size_t i, std::size_t k, double s, double e) {
+      return ::vernier::testing::detail::deviation_from_line(of, path.points[i].command, path.points[i].command,
+                                                             path.points[k].command, detail::pose_between(a, b, s),
+                                                             detail::pose_between(a, b, e));
+    };
+    before = std::max(before, deviation(arm, 0, path.points.size() - 1, 0, 1));
+    for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+      const auto s = static_cast<double>(i);
+      after = std::max(after, deviation(arm, i, i + 1, s / n, (s + 1) / n));
+      apart = std::max(apart, (arm.position(path.points[i].command) - model.position(path.points[i].command)).norm());
+    }
+  }
+  EXPECT_LE(after, 1.1 * options.tolerance + 1.5 * apart);  // the places where they are apart most lie between
+  EXPECT_GT(before, 5 * options.tolerance);
+  EXPECT_GT(before, 2 * after);
+}
+
+TEST(CorrectPath, EachCommandIsForTheApproachFromTheOneBefore) {
+  const Model arm = arm_off(3, 3e-4);
+  std::vector<PathTarget<6>> targets;
+  Rng rng(2);
+  for (int i = 0; i < 20; ++i) {
+    JointVector<6> q = home;
+    for (double& value : q) value += rng.uniform(-0.4, 0.4);
+    targets.push_back({.pose = arm.nominal().pose(q)});
+  }
+  PathOptions<6> options{.limits = robot.limits};
+  options.start = home;
+  const auto path = correct_path(arm, closed_form, targets, options);
+  options.approach = false;
+  const auto middle = correct_path(arm, closed_form, targets, options);
+  ASSERT_EQ(path.count(PointStatus::met), 20);
+  for (std::size_t i = 1; i < 20; ++i) {
+    const auto missed = [&](const auto& of) {
+      return (arm.approached_from(of.points[i - 1].command).position(of.points[i].command) -
+              targets[i].pose.translation())
+          .norm();
+    };
+    EXPECT_LT(missed(path), 1e-7);
+    EXPECT_GT(missed(middle), 1e-6);
+  }
+}
+
+TEST(CorrectPath, ALineThroughAWristSingularityIsAJump) {
+  const Model arm = arm_off(1);
+  JointVector<6> near = home, far = home;
+  near(4) = -0.15;
+  far(4) = 0.15;  // joint 5 changes its sign between them
+  Isometry3 a = arm.nominal().pose(near), b = arm.nominal().pose(far);
+  PathOptions<6> options{.limits = robot.limits};
+  const auto path = correct_path(
+      arm, closed_form, {{.pose = a, .joints = near}, {.pose = b, .joints = far, .motion = Motion::linear}}, options);
+  ASSERT_EQ(path.points.size(), 2u);
+  EXPECT_EQ(path.points[0].status, PointStatus::met);
+  EXPECT_EQ(path.points[1].status, PointStatus::jump);
+  EXPECT_EQ(path.first_failure(), &path.points[1]);
+  EXPECT_LT(path.points[1].position_error, 1e-7);  // it is met all the same
+  const auto joint = correct_path(arm, closed_form, {{.pose = a, .joints = near}, {.pose = b, .joints = far}}, options);
+  EXPECT_EQ(joint.first_failure(), nullptr);
+}
+
+TEST(CorrectPath, ChoosesTheShortestWayOverAllTargets) {
+  const Model arm = arm_off(2);
+  // From a start near another branch, the first target is met on the branch on which the others are near, too.
+  std::vector<PathTarget<6>> targets;
+  for (int i = 0; i < 6; ++i) {
+    JointVector<6> q = home;
+    q(0) += 0.2 * i;
+    targets.push_back({.pose = arm.nominal().pose(q)});
+  }
+  PathOptions<6> options{.limits = robot.limits};
+  for (const auto& branch :
+       all_branches(closed_form, arm, targets.front().pose, {.limits = robot.limits, .near = home})) {
+    options.start = branch.joints;
+    const auto path = correct_path(arm, closed_form, targets, options);
+    ASSERT_EQ(path.first_failure(), nullptr);
+    for (const auto& point : path.points) {
+      EXPECT_EQ(point.singularities.branch(), branch.singularities.branch());
+      EXPECT_LT((point.command - branch.joints).cwiseAbs().maxCoeff(), 1.5);
+    }
+  }
+}
+
+TEST(CorrectPath, WholeTurnsFitAllMovesToCome) {
+  const Model arm = arm_off(2);
+  // joint 6 turns by 1.5 turns; from +1 rad it would leave its limits of one turn
+  std::vector<PathTarget<6>> targets;
+  for (int i = 0; i <= 15; ++i) {
+    JointVector<6> q = home;
+    q(5) = 1 + 0.1 * 2 * pi * i;
+    targets.push_back({.pose = arm.nominal().pose(q), .motion = i == 0 ? Motion::joint : Motion::linear});
+  }
+  PathOptions<6> options{.limits = robot.limits};
+  options.max_joint_step = 0.7;
+  options.start = home;
+  options.start(5) = 1;
+  const auto path = correct_path(arm, closed_form, targets, options);
+  EXPECT_EQ(path.first_failure(), nullptr) << static_cast<int>(path.first_failure()->status);
+  EXPECT_NEAR(path.points.front().command(5), 1 - 2 * pi, 0.05);
+  for (const auto& point : path.points) EXPECT_TRUE(options.limits.contains(point.command));
+}
+
+TEST(CorrectPath, SaysWhatCannotBeMet) {
+  const Model arm = arm_off(4);
+  const Isometry3 good = arm.nominal().pose(home);
+  Isometry3 far = moved(good, Vector3(10, 0, 0)), nan = good, mirrored = good;
+  nan.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  mirrored.linear().col(0) *= -1;
+  PathOptions<6> options{.limits = robot.limits};
+  const auto path = correct_path(
+      arm, closed_form,
+      {{.pose = good}, {.pose = far}, {.pose = nan}, {.pose = mirrored}, {.pose = good, .motion = Motion::linear}},
+      options);
+  ASSERT_EQ(path.points.size(), 5u);
+  EXPECT_EQ(path.points[0].status, PointStatus::met);
+  EXPECT_EQ(path.points[1].status, PointStatus::not_found);  // the model bounds no reach
+  EXPECT_FALSE(path.points[1].command.allFinite());
+  EXPECT_EQ(path.points[2].status, PointStatus::invalid_target);
+  EXPECT_EQ(path.points[3].status, PointStatus::invalid_target);
+  EXPECT_EQ(path.points[4].status, PointStatus::jump);  // its line begins at a target that was not met
+  EXPECT_EQ(correct_path(robot.chain, closed_form, {{.pose = far}}).points[0].status, PointStatus::proven_out);
+
+  options.limits.lower = home.array() + 0.5;
+  options.limits.upper = home.array() + 0.6;
+  EXPECT_EQ(correct_path(arm, closed_form, {{.pose = good}}, options).points[0].status, PointStatus::beyond_limits);
+  options = {};
+  options.tolerance = 0;
+  EXPECT_THROW(static_cast<void>(correct_path(arm, closed_form, {{.pose = good}}, options)), std::invalid_argument);
+  EXPECT_TRUE(correct_path(arm, closed_form, std::vector<PathTarget<6>>{}).points.empty());
+}
+
+TEST(CorrectPath, TooFewInsertedPointsLeaveTheLine) {
+  const Model arm = arm_off(1);
+  PathOptions<6> options{.limits = robot.limits};
+  options.tolerance = 1e-6;
+  options.rotation_tolerance = 1e-2;
+  options.max_inserted = 3;
+  options.start = home;
+  const auto path = correct_path(arm, closed_form, rectangle(arm), options);
+  EXPECT_GT(path.count(PointStatus::off_path), 0);
+  EXPECT_GT(path.after, 1e-6);
+  EXPECT_LT(path.after, path.before);
+}
+
+TEST(CorrectPath, WithoutClosedFormItFollowsTheBranchOfTheStart) {
+  const Model arm = arm_off(1);
+  PathOptions<6> options{.limits = robot.limits};
+  options.start = home;
+  const auto followed = correct_path(arm, rectangle(arm), options);
+  const auto chosen = correct_path(arm, closed_form, rectangle(arm), options);
+  const auto general = correct_path(arm, GeneralSixAxis(robot.chain), rectangle(arm), options);
+  ASSERT_EQ(followed.points.size(), chosen.points.size());
+  ASSERT_EQ(general.points.size(), chosen.points.size());
+  for (std::size_t i = 0; i < chosen.points.size(); ++i) {
+    EXPECT_LT((followed.points[i].command - chosen.points[i].command).norm(), 1e-6);
+    EXPECT_LT((general.points[i].command - chosen.points[i].command).norm(), 1e-6);
+  }
+  const auto wam = robots::barrett_wam();  // seven joints: Newton's method from the start
+  JointVector<7> q;
+  q << 0.2, 0.5, 0.1, 1.5, 0.3, 0.4, 0.2;
+  PathOptions<7> seven{.limits = wam.limits};
+  seven.start = q;
+  const Isometry3 a = wam.chain.pose(q);
+  const auto path = correct_path(
+      wam.chain, {{.pose = a}, {.pose = moved(a, Vector3(0, 0.05, -0.05)), .motion = Motion::linear}}, seven);
+  EXPECT_EQ(path.first_failure(), nullptr);
+}
+
+}  // namespace
+}  // namespace vernier::correct_path_test

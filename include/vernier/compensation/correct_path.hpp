@@ -33,8 +33,11 @@ struct PathOptions {
   double max_joint_step = 0.5;         ///< largest change of a joint between commands of a linear move [rad, m]
   int max_inserted = 63;               ///< most points that are inserted in one linear move
   JointVector<N> speed = JointVector<N>::Ones();  ///< of the joints in a joint move; their ratios choose the branch
-  bool approach =
-      true;  ///< each command is for the approach from the one before; else for the middle of all approaches
+  /// Each target outside the measured joint ranges, where the gate is 0, counts as so much joint motion in the choice
+  /// of branches [rad at speed 1]: inside, the model predicts better.
+  double extrapolation_cost = 10;
+  /// Whether each command is for the approach from the one before; else it is for the middle of all approaches.
+  bool approach = true;
   /// Where the arm is before it moves to the first target [rad, m]; not finite where unknown. That move is no linear
   /// one.
   JointVector<N> start = JointVector<N>::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -155,6 +158,10 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
       return SingularityDistances{};
     }
   };
+  const auto cost = [&](const PathJoints& q) {
+    if constexpr (requires { arm.gate(Joints(q)); }) return options.extrapolation_cost * (1 - arm.gate(Joints(q)));
+    return 0.0;
+  };
   const auto branch_id = [&](const PathJoints& q) { return branches_known ? distances(Joints(q)).branch() : 0; };
 
   std::vector<PathGoal> goals;
@@ -162,7 +169,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   for (const PathTarget<N>& target : targets)
     goals.push_back({target.pose, target.joints.allFinite() ? PathJoints(target.joints) : PathJoints(), target.motion});
   const SolvedPath solved =
-      solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, branch_id}, goals,
+      solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
                  {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
                   options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper,
                   options.speed, options.start});
@@ -194,10 +201,11 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
 }  // namespace detail
 
 /// Corrected commands for a whole path; positions alone of an arm of fewer than six joints. Branches and whole turns
-/// are chosen for all targets together, for the shortest time of its joint moves (dynamic programming); a linear move
-/// stays on its branch. Between two commands a controller moves the tool of the *nominal* arm along a line, the real
-/// one beside it: points are inserted, equally spaced, until it stays within the tolerances. Each command is for the
-/// approach from the command before.
+/// are chosen for all targets together, for the shortest time of joint moves within the measured joint ranges (dynamic
+/// programming); a linear move stays on its branch. Between two commands a controller moves the tool of the *nominal*
+/// arm along a line, the real one beside it: points are inserted, equally spaced, until it stays within the tolerances.
+/// Each command is for the approach from the command before; on the way of a linear move, each joint comes from where
+/// it turned round last.
 /// @param arm         an identified or calibrated arm: a kinematic model with `nominal()`, the arm as the controller
 /// knows
 ///                    it, in the same frames; with `approached_from` where its joints have hysteresis

@@ -43,6 +43,7 @@ struct PathGoal {
 struct PathBranch {
   PathJoints joints;
   int id;
+  double cost = 0;  ///< beside that of the move to it
 };
 
 /// What the path's solver has to know of an arm.
@@ -57,6 +58,8 @@ struct PathArm {
   /// The nominal arm, as the controller knows it, and its inverse kinematics near joint values.
   FunctionRef<Isometry3(const PathJoints& joints)> nominal_pose;
   FunctionRef<bool(const Isometry3& target, PathJoints& joints)> nominal_joints;
+  /// Cost of being at joint values.
+  FunctionRef<double(const PathJoints& joints)> cost;
   /// Bits of singularity signs.
   FunctionRef<int(const PathJoints& joints)> branch_id;
 };

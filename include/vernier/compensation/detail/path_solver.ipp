@@ -24,9 +24,9 @@ VERNIER_IMPL Isometry3 pose_between(const Isometry3& a, const Isometry3& b, doub
 struct PathState {
   PathJoints joints;
   int id;
-  double cost;
-  int from;   ///< index of the state before
-  bool jump;  ///< whether the move to it is not the one asked for
+  double cost, own_cost;  ///< of the way up to it; of being there
+  int from;               ///< index of the state before
+  bool jump;              ///< whether the move to it is not the one asked for
 };
 
 inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
@@ -94,7 +94,11 @@ class PathSearch {
 VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& near,
                                              std::vector<PathBranch>& out) const {
   if (!is_pose(goal.pose)) return Reach::invalid_target;
-  if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
+  if (goal.joints.size() == 0) {
+    const Reach reach = arm_.branches(goal.pose, near, out);
+    for (PathBranch& branch : out) branch.cost = arm_.cost(branch.joints);
+    return reach;
+  }
   PathJoints command = goal.joints, unknown = PathJoints::Constant(arm_.joints, std::nan(""));
   double errors[2];
   const bool met = arm_.correct(goal.pose, unknown, command, errors);
@@ -131,7 +135,8 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
   constexpr double jump_cost = 1e6;
   const auto add = [&](PathJoints joints, const PathBranch& branch, int from, bool jump) {
     const PathState& last = before[static_cast<std::size_t>(from)];
-    relax(out, {joints, branch.id, last.cost + duration(last.joints, joints) + (jump ? jump_cost : 0), from, jump});
+    relax(out, {joints, branch.id, last.cost + duration(last.joints, joints) + branch.cost + (jump ? jump_cost : 0),
+                branch.cost, from, jump});
   };
   const bool linear = start != nullptr && goal.motion == Motion::linear;
   if (linear)
@@ -156,7 +161,7 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
         for (const double turn : {-2 * std::numbers::pi, 2 * std::numbers::pi}) {
           PathJoints other = nearest[k].joints;
           other(j) += turn;
-          if (within(other)) add(other, {other, nearest[k].id}, cheapest, jump);
+          if (within(other)) add(other, {other, nearest[k].id, nearest[k].own_cost}, cheapest, jump);
         }
   }
   if (out.size() > most_states) {
@@ -277,7 +282,7 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
     if (std::isfinite(settings_.lower(j) + settings_.upper(j)))
       near(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
   if (started) near = settings_.start;
-  const std::vector<PathState> beginning{{near, 0, 0, -1, false}};
+  const std::vector<PathState> beginning{{near, 0, 0, 0, -1, false}};
 
   std::size_t last = n;
   for (std::size_t k = 0; k < n; ++k) {

@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -253,16 +254,22 @@ VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
 }
 
 VERNIER_IMPL std::string describe_reach(Reach reach, int branches, double margin) {
+  char digits[32];
+  const auto number = [&](double value) {
+    std::snprintf(digits, sizeof digits, "%.3g", value);
+    return digits;
+  };
   switch (reach) {
     case Reach::met: return message(branches, branches == 1 ? " branch" : " branches");
     case Reach::beyond_limits: return message("joint limits exclude all ", branches, " branches");
-    case Reach::proven_out: return message("out of reach: ", margin * 1e3, " mm farther away than the arm is long");
+    case Reach::proven_out:
+      return message("out of reach: ", number(margin * 1e3), " mm farther away than the arm is long");
     case Reach::invalid_target: return "the target is no pose: not finite, or no rotation";
     default: break;
   }
-  return std::isfinite(margin)
-             ? message("no branch found: the target lies ", 100 * margin, " % beyond a boundary of the nominal arm")
-             : std::string("no branch found");
+  return std::isfinite(margin) ? message("no branch found: the target lies ", number(100 * margin),
+                                         " % beyond a boundary of the nominal arm")
+                               : std::string("no branch found");
 }
 
 }  // namespace vernier::detail

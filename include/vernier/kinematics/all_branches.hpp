@@ -156,6 +156,7 @@ template <BranchRoots Roots, KinematicModel M>
     out.margin = 0;
   } else {
     out.margin = roots.nearest_margin;
+    for (const InverseRoot<N>& root : roots) out.margin = std::min(out.margin, root.margin);
     if constexpr (geometric) {
       if (const double excess = detail::reach_excess(axes, target); excess > 0) {
         out.reach = Reach::proven_out;

@@ -181,9 +181,9 @@ concept BranchRoots = requires(const S& solver, const Isometry3& target, const J
 
 /// Of six joints.
 template <NominalArm Arm>
-ClosedForm(const Arm&) -> ClosedForm<Arm::dof>;
+ClosedForm(const Arm&, double = 0) -> ClosedForm<Arm::dof>;
 /// Of seven, one of them held.
 template <NominalArm Arm>
-ClosedForm(const Arm&, HeldJoint) -> ClosedForm<Arm::dof>;
+ClosedForm(const Arm&, HeldJoint, double = 0) -> ClosedForm<Arm::dof>;
 
 }  // namespace vernier

@@ -166,13 +166,14 @@ VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const 
     out.sigma_min = out.radius = 0;
     return true;
   }
-  // power iteration on a matrix squared twice
+  // power iteration on a matrix squared thrice
   const Matrix6 once = at.inverse * at.inverse.transpose() / (bound * bound);
   Matrix6 power = once * once;
-  power = (power * power).eval();
+  for (int k = 0; k < 2; ++k) power = (power * power).eval();
   Index widest = 0;
   power.diagonal().maxCoeff(&widest);
-  const Vector6 direction = (power * power.col(widest)).normalized();
+  Vector6 direction = power.col(widest).normalized();
+  for (int k = 0; k < 4; ++k) direction = (power * direction).normalized();
   out.sigma_min = 1 / (bound * std::sqrt(direction.dot(once * direction)));
 
   const double step = (at.inverse * at.error).norm() + 1e-15 * bound;
@@ -188,7 +189,17 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
   BranchIterate at;
   int iterations = 0;
   if (margin > 0) suspicious = true;
-  if (!solve_near(problem, q, at, iterations)) {
+  // Newton's method may lead across a limit, or farther than half a turn from `near`
+  const auto turned = [&] {
+    bool changed = false;
+    for (const int i : problem.moving) {
+      const double value = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+      changed = changed || value != q[i];
+      q[i] = value;
+    }
+    return !changed || solve_near(problem, q, at, iterations);
+  };
+  if (!solve_near(problem, q, at, iterations) || !turned()) {
     if (margin == 0) ++seeds_lost;
     if (stalled_count < max_stalled) std::copy_n(q, problem.joints, stalled[stalled_count++].data());
     suspicious = true;

@@ -144,7 +144,10 @@ struct Candidates {
   /// @param widest circle that counts as next to a singularity [m]
   Candidates(const AnglePair& pair, double near, double widest = 0)
       : angles{near, near}, count(1), margin(pair.margin), any(pair.any) {
-    if (margin > most_margin) count = 0;
+    if (margin > most_margin && !(margin * pair.radius < widest))
+      count = 0;
+    else
+      margin = std::min(margin, most_margin);
     if (!any) {
       angles[0] = pair.centre + pair.half;
       angles[1] = pair.centre - pair.half;
@@ -189,7 +192,7 @@ inline WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation, doub
   for (int k = 0; k < roots; ++k) {
     const double q5 = wrist.centre + (k == 0 ? half : -half);
     const Matrix3 r5 = rotation_about(wrist.k5, q5);
-    const AngleAbout q4 = angle_between(wrist.k4, r5 * wrist.k6, axis, negligible_length);
+    const AngleAbout q4 = angle_between(wrist.k4, r5 * wrist.k6, axis, 1e-11);
     out.any = out.any || q4.any;
     add(q4.any ? near4 : q4.angle, q5, r5);
   }
@@ -278,14 +281,14 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
       const Candidates thirds(
           parallel ? angles_to_plane(h_[0], h_[2], p_[2], h_[0].dot(w - p_[0] - p_[1]), negligible_length)
                    : angles_to_distance(h_[2], p_[2], -p_[1], w.norm(), negligible_length),
-          nearby(2));
+          nearby(2), parallel ? width : 0);
       missed(thirds.margin);
       for (int i = 0; i < thirds.count; ++i) {
         const Matrix3 r3 = rotation_about(h_[2], thirds.angles[i]);
         const Vector3 v = p_[1] + r3 * p_[2];
         const Candidates seconds(parallel ? angles_to_distance(h_[1], v, -p_[0], w.norm(), negligible_length)
                                           : angles_to_plane(h_[0], h_[1], v, h_[0].dot(w), negligible_length),
-                                 nearby(1));
+                                 nearby(1), parallel ? 0 : width);
         missed(seconds.margin);
         for (int k = 0; k < seconds.count; ++k) {
           const double q2 = seconds.angles[k];
@@ -305,7 +308,15 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
       missed(firsts.margin);
       for (int i = 0; i < firsts.count; ++i) {
         const Matrix3 back = rotation_about(h_[0], -firsts.angles[i]);
-        const WristAngles end = solve_wrist(wrist_, back * rotation, near_sum, width);
+        WristAngles end = solve_wrist(wrist_, back * rotation, near_sum, width);
+        // with a straight wrist any sum of the parallel joints will do that the arm reaches: the nearest of a few
+        const auto out_of_reach = [&] {
+          const Vector3 u = back * w - p_[0] - rotation_about(h_[1], end.q4[0]) * p_[3];
+          return angles_to_distance(h_[2], p_[2], -p_[1], u.norm(), negligible_length).margin > 0;
+        };
+        for (int k = 1; k <= 16 && end.any && out_of_reach(); ++k)
+          end = solve_wrist(wrist_, back * rotation,
+                            near_sum + (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * std::numbers::pi / 8, width);
         missed(end.margin);
         for (int m = 0; m < end.count; ++m) {
           const Vector3 u = back * w - p_[0] - rotation_about(h_[1], end.q4[m]) * p_[3];

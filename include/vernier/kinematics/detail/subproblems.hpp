@@ -30,9 +30,15 @@ struct AngleAbout {
 /// Subproblem 1: the angle with `R(k, angle) a = b`; in the least-squares sense where a and b differ.
 /// @param negligible distance from the axis at which a or b counts as on it
 inline AngleAbout angle_between(const Vector3& k, const Vector3& a, const Vector3& b, double negligible) noexcept {
-  const double sine = k.cross(a).dot(b), cosine = a.dot(b) - k.dot(a) * k.dot(b);
-  const double square = negligible * negligible;
-  return {std::atan2(sine, cosine), sine * sine + cosine * cosine < square * square};
+  // from the parts at right angles to the axis: differences of larger numbers would leave nothing of them next to it
+  const Vector3 u = k.cross(a), v = k.cross(b);
+  return {std::atan2(k.dot(u.cross(v)), u.dot(v)), u.norm() < negligible || v.norm() < negligible};
+}
+
+/// By how much, relatively, a value lies beyond a bound; rounding errors do not count.
+inline double beyond(double value, double bound) noexcept {
+  const double out = std::abs(value) / bound - 1;
+  return out > 1e-12 ? out : 0;
 }
 
 /// Two angles, symmetric about a centre.
@@ -48,23 +54,27 @@ struct AnglePair {
 inline AnglePair angles_to_plane(const Vector3& h, const Vector3& k, const Vector3& p, double d,
                                  double negligible) noexcept {
   const double along = k.dot(p) * h.dot(k);
-  const double sine = h.dot(k.cross(p)), cosine = h.dot(p) - along, rest = d - along;
+  const Vector3 u = k.cross(p), v = k.cross(h);
+  const double sine = k.dot(u.cross(v)), cosine = u.dot(v), rest = d - along;
   const double r = std::sqrt(sine * sine + cosine * cosine);
   if (r < negligible) return {0, 0, std::abs(rest) <= negligible ? 0 : std::abs(rest) / negligible, true, r};
   return {std::atan2(sine, cosine), std::atan2(std::sqrt(std::max((r - rest) * (r + rest), 0.0)), rest),
-          std::max(std::abs(rest) / r - 1, 0.0), false, r};
+          beyond(rest, r), false, r};
 }
 
 /// Subproblem 3: the angles with `|R(k, angle) a - b| = d`.
 inline AnglePair angles_to_distance(const Vector3& k, const Vector3& a, const Vector3& b, double d,
                                     double negligible) noexcept {
-  const double along = k.dot(a) * k.dot(b), sine = b.dot(k.cross(a)), cosine = b.dot(a) - along;
+  const Vector3 u = k.cross(a), v = k.cross(b);
+  const double along = k.dot(a) * k.dot(b), sine = k.dot(u.cross(v)), cosine = u.dot(v);
   const double rest = 0.5 * (a.squaredNorm() + b.squaredNorm() - d * d) - along;
   const double r = std::sqrt(sine * sine + cosine * cosine);
-  if (r < negligible * negligible)
-    return {0, 0, std::abs(rest) <= negligible * negligible ? 0 : std::abs(rest) / (negligible * negligible), true, r};
+  if (const double longer = std::max(u.norm(), v.norm()); r < negligible * longer || longer < negligible) {
+    const double scale = negligible * std::max({a.norm(), b.norm(), d});
+    return {0, 0, std::abs(rest) <= scale ? 0 : std::abs(rest) / scale, true, r};
+  }
   return {std::atan2(sine, cosine), std::atan2(std::sqrt(std::max((r - rest) * (r + rest), 0.0)), rest),
-          std::max(std::abs(rest) / r - 1, 0.0), false, r};
+          beyond(rest, r), false, r};
 }
 
 }  // namespace vernier::detail

@@ -1,0 +1,593 @@
+// All branches of arms that differ from a nominal one: none lost, none twice, and what is said of each is true.
+
+#include "vernier/kinematics/all_branches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "allocation_counter.hpp"
+#include "branch_helpers.hpp"
+#include "random_chains.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/inverse_kinematics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/testing/same_bits.hpp"
+
+namespace vernier::all_branches_test {
+namespace {
+
+using vernier_test::as_made;
+using vernier_test::joint_difference;
+using vernier_test::joint_distance;
+using vernier_test::random_joints;
+
+constexpr double pi = std::numbers::pi;
+constexpr double held_value = 0.3;
+const double rotation_length = BranchOptions<6>{}.rotation_length;
+
+/// A chain whose joints turn unevenly, as gears make them: no `DhChain` any more.
+template <int N>
+struct UnevenJoints {
+  static constexpr int dof = N;
+  DhChain<N> chain;
+  double amplitude = 1e-3;  // rad
+
+  JointVector<N> effective(const JointVector<N>& q) const noexcept {
+    JointVector<N> out;
+    for (int i = 0; i < N; ++i) out(i) = q(i) + amplitude * std::sin(2 * q(i) + i);
+    return out;
+  }
+  Isometry3 pose(const JointVector<N>& q) const noexcept { return chain.pose(effective(q)); }
+  Vector3 position(const JointVector<N>& q) const noexcept { return pose(q).translation(); }
+  Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
+  PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
+    PoseAndJacobian<N> out = chain.pose_and_jacobian(effective(q));
+    for (int i = 0; i < N; ++i) out.jacobian.col(i) *= 1 + 2 * amplitude * std::cos(2 * q(i) + i);
+    return out;
+  }
+};
+static_assert(KinematicModel<UnevenJoints<6>> && !NominalArm<UnevenJoints<6>>);
+
+template <int N>
+JointVector<N> random_configuration(Rng& rng, int held) {
+  JointVector<N> q = random_joints<N>(rng);
+  if (held >= 0) q(held) = held_value;
+  return q;
+}
+
+/// Jacobian of the moving joints, rotations weighted as lengths.
+template <class M>
+Eigen::Matrix<double, 6, 6> weighted_jacobian(const M& model, const JointVector<M::dof>& q, int held) {
+  const Jacobian<M::dof> all = model.jacobian(q);
+  Eigen::Matrix<double, 6, 6> out;
+  for (int j = 0, k = 0; j < M::dof; ++j)
+    if (j != held) out.col(k++) = all.col(j);
+  out.template bottomRows<3>() *= rotation_length;
+  return out;
+}
+
+template <class M>
+double smallest_singular_value(const M& model, const JointVector<M::dof>& q, int held) {
+  return Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>>(weighted_jacobian(model, q, held)).singularValues()(5);
+}
+
+template <int N>
+bool contains(const Branches<N>& branches, const JointVector<N>& q, double tolerance) {
+  for (const Branch<N>& branch : branches)
+    if (joint_difference<N>(branch.joints, q) < tolerance) return true;
+  return false;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// random poses
+
+/// Poses of arms as made: every branch meets its target, no two alike, and the joints that made the target among them,
+/// but for one in a thousand poses, next to folds.
+template <int N, class Roots, class Make>
+void expect_branches(const Roots& nominal, const Make& make, const std::string& name, int poses,
+                     double most_lost = 0.001) {
+  Rng rng(1);
+  const int held = nominal.held_joint();
+  double position = 0, rotation = 0, understated = 0, sigma = 0;
+  int lost = 0, alike = 0, inside = 0, moved = 0, not_met = 0;
+  for (int i = 0; i < poses; ++i) {
+    const auto arm = make(rng);
+    const JointVector<N> q = random_configuration<N>(rng, held);
+    const Isometry3 target = arm.pose(q);
+    const Branches<N> branches = all_branches(nominal, arm, target);
+    not_met += branches.reach != Reach::met;
+    if (!contains<N>(branches, q, 1e-6)) {
+      ++lost;
+      EXPECT_LT(smallest_singular_value(arm, q, held), 0.02) << name;
+    }
+    for (const Branch<N>& branch : branches) {
+      const Vector6 left = pose_difference(target, arm.pose(branch.joints));
+      position = std::max(position, left.head<3>().norm());
+      rotation = std::max(rotation, left.tail<3>().norm());
+      understated = std::max(
+          {understated, left.head<3>().norm() - branch.position_error, left.tail<3>().norm() - branch.rotation_error});
+      EXPECT_TRUE(branch.within_limits);
+      EXPECT_GE(branch.radius, 0);
+      if (held >= 0) moved += branch.joints(held) != held_value;
+      if (i < 500) {
+        // an estimate without a decomposition; at 0 the inverse, of which it is made, has no digits
+        const double exact = smallest_singular_value(arm, branch.joints, held);
+        if (exact > 1e-6) sigma = std::max(sigma, std::abs(branch.sigma_min / exact - 1));
+      }
+      for (const Branch<N>& other : branches) {
+        if (&other == &branch) continue;
+        alike += joint_difference<N>(branch.joints, other.joints) < 1e-6;
+        inside += joint_distance<N>(branch.joints, other.joints) < branch.radius;
+      }
+    }
+  }
+  EXPECT_LT(position, 1e-9) << name;
+  EXPECT_LT(rotation, 1e-9) << name;
+  EXPECT_LT(understated, 1e-13) << name << ": errors are larger than stated";
+  EXPECT_LT(sigma, 0.1) << name;
+  EXPECT_LE(lost, most_lost * poses) << name;
+  EXPECT_LE(not_met, 0.001 * poses) << name;
+  EXPECT_EQ(alike, 0) << name;
+  EXPECT_EQ(inside, 0) << name << ": branches within the radius of another";
+  EXPECT_EQ(moved, 0) << name;
+}
+
+template <int N, class Convention>
+auto made_from(const DhChain<N, Convention>& nominal) {
+  return [nominal](Rng& rng) { return as_made(nominal, rng); };
+}
+
+TEST(AllBranches, OfArmsAsMade) {
+  expect_branches<6>(ClosedForm(robots::ur10().chain), made_from(robots::ur10().chain), "ur10", 5000);
+  expect_branches<6>(ClosedForm(robots::abb_irb120().chain), made_from(robots::abb_irb120().chain), "irb120", 2000);
+  // its shoulder and its elbow have folds that meet
+  expect_branches<6>(ClosedForm(robots::puma560().chain), made_from(robots::puma560().chain), "puma560", 2000, 0.004);
+  expect_branches<6>(ClosedForm(robots::puma560_modified().chain), made_from(robots::puma560_modified().chain),
+                     "puma560_modified", 2000, 0.004);
+}
+
+TEST(AllBranches, OfSevenJointsWithOneHeld) {
+  const auto wam = robots::barrett_wam().chain;
+  for (const int joint : {2, 4})
+    expect_branches<7>(ClosedForm(wam, HeldJoint{joint, held_value}), made_from(wam),
+                       "wam, joint " + std::to_string(joint + 1), 2000);
+}
+
+TEST(AllBranches, OfArmsBetweenFramesAndWithUnevenJoints) {
+  const auto ur10 = robots::ur10().chain;
+  Vector6 base, tool;
+  base << 1, -2, 0.5, 0.3, -0.2, 1.1;
+  tool << 0.02, -0.03, 0.15, 0.1, 0.4, -0.7;
+  const Framed framed(ur10, FrameParameters(base), FrameParameters(tool));
+  expect_branches<6>(
+      ClosedForm(framed), [&](Rng& rng) { return framed.around(as_made(ur10, rng)); }, "ur10 between frames", 3000);
+  expect_branches<6>(
+      ClosedForm(ur10), [&](Rng& rng) { return UnevenJoints<6>{as_made(ur10, rng)}; }, "ur10 with uneven joints", 3000);
+}
+
+/// Against a search from many starts: all that it finds, but for pairs of branches that are about to merge.
+template <int N, class Convention, class Roots>
+void expect_no_fewer_than_a_search(const DhChain<N, Convention>& nominal, const Roots& roots, const char* name) {
+  constexpr int poses = 40, starts = 100;
+  Rng rng(2);
+  const int held = roots.held_joint();
+  IkOptions<N> options;
+  options.position_tolerance = options.rotation_tolerance = 1e-11;
+  options.max_iterations = 60;
+  if (held >= 0) options.limits.lower(held) = options.limits.upper(held) = held_value;
+  int searched = 0, enumerated = 0;
+  for (int i = 0; i < poses; ++i) {
+    const auto arm = as_made(nominal, rng);
+    const Isometry3 target = arm.pose(random_configuration<N>(rng, held));
+    const Branches<N> branches = all_branches(roots, arm, target);
+    enumerated += branches.count;
+    std::vector<JointVector<N>> found;
+    for (int s = 0; s < starts; ++s) {
+      const auto result = inverse_kinematics(arm, target, random_configuration<N>(rng, held), options);
+      if (result.status != IkStatus::converged) continue;
+      const bool known = std::any_of(found.begin(), found.end(), [&](const JointVector<N>& q) {
+        return joint_difference<N>(q, result.joints) < 1e-5;
+      });
+      if (known) continue;
+      found.push_back(result.joints);
+      if (!contains<N>(branches, result.joints, 2e-5)) {
+        EXPECT_LT(smallest_singular_value(arm, result.joints, held), 0.02) << name << ", pose " << i;
+      }
+    }
+    searched += static_cast<int>(found.size());
+  }
+  EXPECT_GE(enumerated, 0.995 * searched) << name;
+  EXPECT_GT(searched, 2 * poses) << name;
+}
+
+TEST(AllBranches, NoFewerThanASearchFromManyStarts) {
+  expect_no_fewer_than_a_search(robots::ur10().chain, ClosedForm(robots::ur10().chain), "ur10");
+  expect_no_fewer_than_a_search(robots::abb_irb120().chain, ClosedForm(robots::abb_irb120().chain), "irb120");
+  expect_no_fewer_than_a_search(robots::puma560().chain, ClosedForm(robots::puma560().chain), "puma560");
+  const auto wam = robots::barrett_wam().chain;
+  expect_no_fewer_than_a_search(wam, ClosedForm(wam, HeldJoint{2, held_value}), "wam");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// what is said of a branch
+
+TEST(AllBranches, RadiusIsProvenForGeometricModels) {
+  Rng rng(3);
+  const auto ur10 = robots::ur10().chain;
+  const ClosedForm form(ur10);
+  const auto made = as_made(ur10, rng);
+  const JointVector<6> q{0.3, -1.1, 0.8, 0.4, 0.9, 1};
+  const auto all_proven = [&](const auto& arm) {
+    const auto branches = all_branches(form, arm, arm.pose(q));
+    EXPECT_EQ(branches.count, 8);
+    int proven = 0;
+    for (const auto& branch : branches) {
+      EXPECT_GT(branch.radius, 0);
+      proven += branch.proven;
+    }
+    return proven;
+  };
+  EXPECT_EQ(all_proven(made), 8);
+  EXPECT_EQ(all_proven(Framed(made)), 8);
+  EXPECT_EQ(all_proven(UnevenJoints<6>{made}), 0);
+}
+
+TEST(AllBranches, NewtonsMethodConvergesToABranchFromWithinItsRadius) {
+  Rng rng(4);
+  const auto expect_converges = [&](const auto& nominal, const char* name) {
+    const ClosedForm form(nominal);
+    for (int i = 0; i < 20; ++i) {
+      const auto arm = as_made(nominal, rng);
+      const Isometry3 target = arm.pose(random_joints<6>(rng));
+      for (const auto& branch : all_branches(form, arm, target)) {
+        for (int k = 0; k < 20; ++k) {
+          Vector6 direction;
+          for (int j = 0; j < 6; ++j) direction(j) = rng.normal();
+          JointVector<6> q = branch.joints + 0.999 * branch.radius * direction.normalized();
+          for (int step = 0; step < 8; ++step) {
+            Vector6 error = pose_difference(target, arm.pose(q));
+            error.tail<3>() *= rotation_length;
+            q += weighted_jacobian(arm, q, -1).partialPivLu().solve(error);
+          }
+          // at a fold, half of the digits
+          EXPECT_LT((q - branch.joints).norm(), std::max(1e-9, std::min(1e-12 / branch.sigma_min, 1e-4))) << name;
+        }
+      }
+    }
+  };
+  expect_converges(robots::ur10().chain, "ur10");
+  expect_converges(robots::abb_irb120().chain, "irb120");
+}
+
+TEST(AllBranches, SingularitiesAreThoseOfTheNominalArm) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  const auto branches = all_branches(form, irb, irb.pose({0.3, 0.4, -0.5, 0.6, 0.9, 0.8}));
+  std::set<int> names;
+  for (const auto& branch : branches) {
+    EXPECT_EQ(branch.singularities.values(), form.distances(branch.joints).values());
+    names.insert(branch.singularities.branch());
+  }
+  EXPECT_EQ(branches.count, 8);
+  EXPECT_EQ(names.size(), 8u);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// whole turns and limits
+
+TEST(NearestTurn, StaysWithinLimits) {
+  using detail::nearest_turn;
+  const double inf = std::numeric_limits<double>::infinity(), turn = 2 * pi;
+  EXPECT_EQ(nearest_turn(0.5, 0, -inf, inf), 0.5);
+  EXPECT_NEAR(nearest_turn(0.5, 7, -inf, inf), 0.5 + turn, 1e-15);
+  EXPECT_NEAR(nearest_turn(0.5, -20, -inf, inf), 0.5 - 3 * turn, 1e-14);
+  EXPECT_NEAR(nearest_turn(0.5, 20, -turn, turn), 0.5, 1e-15);  // 0.5 + turn is beyond
+  EXPECT_NEAR(nearest_turn(-0.5, 20, -turn, turn), turn - 0.5, 1e-15);
+  EXPECT_NEAR(nearest_turn(3, 0, -4, 0), 3 - turn, 1e-15);   // the only one
+  EXPECT_NEAR(nearest_turn(3, 0, 3, 3), 3, 1e-15);           // bounds included
+  EXPECT_NEAR(nearest_turn(3, 0, 9, 9.2), 3 + turn, 1e-15);  // none: the nearest to the bounds
+  EXPECT_NEAR(nearest_turn(3, -100, 2, 2.5), 3, 1e-15);
+  const JointVector<6> joints = JointVector<6>::Constant(0.5), near = JointVector<6>::Constant(7);
+  EXPECT_LT((nearest_turns<6>(joints, near, {}) - JointVector<6>::Constant(0.5 + turn)).norm(), 1e-14);
+}
+
+TEST(AllBranches, TakeTheTurnNearestToTheGivenJoints) {
+  Rng rng(5);
+  const auto robot = robots::ur10();
+  const ClosedForm form(robot.chain);
+  for (int i = 0; i < 200; ++i) {
+    const auto arm = as_made(robot.chain, rng);
+    const JointVector<6> q = random_joints<6>(rng);
+    BranchOptions<6> options;
+    options.limits = robot.limits;
+    options.near = random_joints<6>(rng, 2 * pi);
+    const auto branches = all_branches(form, arm, arm.pose(q), options);
+    EXPECT_EQ(branches.reach, Reach::met);
+    for (const auto& branch : branches) {
+      // turns are those of the nominal arm's joint values: in doubt is what differs from a limit or from half a turn by
+      // as little as both do
+      if (branch.sigma_min < 0.02) continue;
+      constexpr double doubt = 0.1;
+      const bool clear = (2 * pi - branch.joints.array().abs()).abs().minCoeff() > doubt;
+      if (clear) {
+        EXPECT_TRUE(branch.within_limits);
+        EXPECT_TRUE(options.limits.contains(branch.joints));
+      }
+      for (int j = 0; j < 6; ++j)
+        for (const double other : {branch.joints(j) - 2 * pi, branch.joints(j) + 2 * pi})
+          if (std::abs(other) < 2 * pi - doubt) {
+            EXPECT_LE(std::abs(branch.joints(j) - options.near(j)), std::abs(other - options.near(j)) + 2 * doubt);
+          }
+    }
+    // no turn: the joints themselves
+    const auto same = all_branches(form, arm, arm.pose(q), {.limits = robot.limits, .near = q});
+    const auto* nearest = same.nearest(q);
+    ASSERT_NE(nearest, nullptr);
+    EXPECT_LT((nearest->joints - q).cwiseAbs().maxCoeff(), 1e-5);
+  }
+}
+
+TEST(AllBranches, SayWhichAreWithinLimits) {
+  Rng rng(6);
+  const auto robot = robots::abb_irb120();
+  const ClosedForm form(robot.chain);
+  int within = 0, beyond = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto arm = as_made(robot.chain, rng);
+    const auto branches =
+        all_branches(form, arm, arm.pose(random_joints<6>(rng, robot.limits)), {.limits = robot.limits});
+    EXPECT_EQ(branches.reach, Reach::met);
+    for (const auto& branch : branches) {
+      EXPECT_EQ(branch.within_limits, robot.limits.contains(branch.joints));
+      ++(branch.within_limits ? within : beyond);
+      if (branch.within_limits) continue;
+      if (branch.sigma_min < 0.02) continue;
+      // no turn would bring it within
+      bool possible = true;
+      for (int j = 0; j < 6; ++j) {
+        bool any = false;
+        for (int k = -3; k <= 3; ++k) {
+          const double value = branch.joints(j) + 2 * pi * k;
+          any = any || (value > robot.limits.lower(j) + 0.1 && value < robot.limits.upper(j) - 0.1);
+        }
+        possible = possible && any;
+      }
+      EXPECT_FALSE(possible);
+    }
+    // the nearest is within limits
+    const auto* nearest = branches.nearest(JointVector<6>::Zero());
+    ASSERT_NE(nearest, nullptr);
+    EXPECT_TRUE(nearest->within_limits);
+  }
+  EXPECT_GT(within, 200);
+  EXPECT_GT(beyond, 200);
+}
+
+TEST(AllBranches, KeepTheHeldJointWhateverNearAndLimits) {
+  Rng rng(7);
+  const auto wam = robots::barrett_wam().chain;
+  const ClosedForm form(wam, HeldJoint{2, held_value});
+  BranchOptions<7> options;
+  options.near = JointVector<7>::Constant(6);
+  options.limits.lower(2) = 5;
+  const auto arm = as_made(wam, rng);
+  const auto branches = all_branches(form, arm, arm.pose({0.4, 0.7, held_value, 1.2, 0.3, -0.6, 0.2}), options);
+  EXPECT_GT(branches.count, 0);
+  EXPECT_EQ(branches.reach, Reach::beyond_limits);
+  for (const auto& branch : branches) {
+    EXPECT_EQ(branch.joints(2), held_value);
+    EXPECT_FALSE(branch.within_limits);
+  }
+  EXPECT_EQ(branches.nearest(JointVector<7>::Zero()), nullptr);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// what became of a target
+
+TEST(Reach, OfTargetsThatAreNoPose) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  const Isometry3 good = irb.pose({0.3, 0.4, -0.5, 0.6, 0.9, 0.8});
+  std::vector<Isometry3> bad(6, good);
+  bad[0].translation().y() = std::nan("");
+  bad[1].linear()(1, 2) = std::nan("");
+  bad[2].translation().x() = std::numeric_limits<double>::infinity();
+  bad[3].linear().col(0) *= -1;  // a reflection
+  bad[4].linear() *= 1 + 1e-6;
+  bad[5].linear().setZero();
+  for (const Isometry3& target : bad) {
+    const auto branches = all_branches(form, irb, target);
+    EXPECT_EQ(branches.reach, Reach::invalid_target);
+    EXPECT_EQ(branches.count, 0);
+    EXPECT_EQ(branches.begin(), branches.end());
+  }
+}
+
+TEST(Reach, ProvenOutWhereTheArmIsTooShort) {
+  Rng rng(8);
+  const auto expect_out = [&](const auto& nominal) {
+    const ClosedForm form(nominal);
+    const auto arm = as_made(nominal, rng);
+    Isometry3 target = nominal.pose(random_joints<6>(rng));
+    target.translation() = 10 * vernier_test::random_direction(rng);
+    const auto branches = all_branches(form, arm, target);
+    EXPECT_EQ(branches.reach, Reach::proven_out);
+    EXPECT_EQ(branches.count, 0);
+    EXPECT_GT(branches.margin, 8);  // m: none is longer than 2
+    EXPECT_LT(branches.margin, 10);
+    // what is no chain proves nothing
+    EXPECT_EQ(all_branches(form, UnevenJoints<6>{arm}, target).reach, Reach::not_found);
+  };
+  expect_out(robots::ur10().chain);
+  expect_out(robots::abb_irb120().chain);
+  expect_out(robots::puma560().chain);
+}
+
+/// A pose with the arm straight out, and the direction in which it is at the end of its reach.
+struct StraightOut {
+  JointVector<6> joints;
+  Isometry3 pose;
+  Vector3 outward;
+};
+
+/// @param wrist the link whose origin is farthest from axis 2
+StraightOut straight_out(const DhChain<6>& arm, const JointVector<6>& joints, int wrist) {
+  const auto links = arm.links(joints);
+  const Vector3 axis = links.axis.col(1);
+  Vector3 outward = links.origin.col(wrist) - links.point.col(1);
+  outward -= axis * axis.dot(outward);
+  return {joints, arm.pose(joints), outward.normalized()};
+}
+
+TEST(Reach, AMicrometreInsideAndOutsideTheReach) {
+  const auto expect_boundary = [&](const auto& chain, const StraightOut& at, bool all_out, const char* name) {
+    const ClosedForm form(chain);
+    EXPECT_LT(std::abs(form.distances(at.joints).elbow), 1e-12) << name;
+    const auto branches_at = [&](double beyond) {
+      Isometry3 target = at.pose;
+      target.translation() += beyond * at.outward;
+      const auto branches = all_branches(form, chain, target);
+      for (const auto& branch : branches)
+        EXPECT_LT(pose_difference(target, chain.pose(branch.joints)).norm(), 1e-9) << name;
+      return branches;
+    };
+    // two branches there, which differ by an angle whose cosine lacks the micrometre; or none
+    const auto inside = branches_at(-1e-6), outside = branches_at(1e-6);
+    const auto near_boundary = [&](const Branches<6>& branches) {
+      return std::count_if(branches.begin(), branches.end(), [&](const Branch<6>& branch) {
+        return std::abs(form.distances(branch.joints).elbow) < 0.02;
+      });
+    };
+    EXPECT_EQ(inside.reach, Reach::met) << name;
+    EXPECT_GE(near_boundary(inside), 2) << name;
+    EXPECT_EQ(near_boundary(inside) % 2, 0) << name;
+    EXPECT_EQ(near_boundary(outside), 0) << name;
+    double nearest = 9;
+    for (const auto& branch : inside) nearest = std::min(nearest, joint_difference<6>(at.joints, branch.joints));
+    EXPECT_GT(nearest, 1e-4) << name;
+    EXPECT_LT(nearest, 0.05) << name;
+    if (all_out) {
+      EXPECT_TRUE(outside.reach == Reach::not_found || outside.reach == Reach::proven_out) << name;
+      EXPECT_EQ(outside.count, 0) << name;
+      EXPECT_GT(outside.margin, 0) << name;
+    }
+  };
+  const auto irb = robots::abb_irb120().chain, ur10 = robots::ur10().chain;
+  const double straight = -std::atan2(0.302, 0.07);
+  for (const double q2 : {0.4, -0.7, 1.1}) {
+    expect_boundary(irb, straight_out(irb, {0.3, q2, straight, 0.6, 0.9, 0.8}, 3), true, "irb120");
+    // with its wrist on the other side, it is not straight
+    expect_boundary(ur10, straight_out(ur10, {0.3, q2, 0, 0.6, 0.9, 0.8}, 2), false, "ur10");
+  }
+}
+
+TEST(Reach, EachHasASentenceOfItsOwn) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  const Isometry3 good = irb.pose({0.3, 0.4, -0.5, 0.6, 0.9, 0.8});
+  const auto met = all_branches(form, irb, good);
+  BranchOptions<6> narrow;
+  narrow.limits.lower.setConstant(0.001);
+  narrow.limits.upper.setConstant(0.002);
+  const auto beyond = all_branches(form, irb, good, narrow);
+  Isometry3 away = good;
+  away.translation() *= 10 / away.translation().norm();
+  const auto out = all_branches(form, irb, away);
+  const auto lost = all_branches(form, UnevenJoints<6>{irb}, away);
+  away.translation().x() = std::nan("");
+  const auto invalid = all_branches(form, irb, away);
+  EXPECT_EQ(met.reach, Reach::met);
+  EXPECT_EQ(met.margin, 0);
+  EXPECT_EQ(beyond.reach, Reach::beyond_limits);
+  EXPECT_EQ(beyond.count, met.count);
+  EXPECT_EQ(out.reach, Reach::proven_out);
+  EXPECT_EQ(lost.reach, Reach::not_found);
+  EXPECT_EQ(invalid.reach, Reach::invalid_target);
+  std::set<std::string> sentences;
+  for (const auto& branches : {met, beyond, out, lost, invalid}) {
+    EXPECT_FALSE(branches.describe().empty());
+    sentences.insert(branches.describe());
+  }
+  EXPECT_EQ(sentences.size(), 5u);
+  EXPECT_NE(met.describe().find("8 branches"), std::string::npos) << met.describe();
+  EXPECT_NE(beyond.describe().find("limits exclude all 8"), std::string::npos) << beyond.describe();
+  EXPECT_NE(out.describe().find("mm farther away"), std::string::npos) << out.describe();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// singular targets, determinism
+
+TEST(AllBranches, MeetTargetsNextToSingularities) {
+  Rng rng(9);
+  const auto expect_met = [&](const auto& nominal, int joint, double at, const std::string& name) {
+    const ClosedForm form(nominal);
+    int lost = 0, targets = 0;
+    for (const double offset : {0.0, 1e-9, 1e-6, 1e-4, 1e-3}) {
+      for (int i = 0; i < 20; ++i) {
+        const auto arm = as_made(nominal, rng);
+        JointVector<6> q = random_joints<6>(rng);
+        q(joint) = at + offset;
+        const auto branches = all_branches(form, arm, arm.pose(q), {.near = q});
+        ++targets;
+        lost += branches.count == 0;
+        for (const auto& branch : branches)
+          EXPECT_LT(pose_difference(arm.pose(q), arm.pose(branch.joints)).norm(), 1e-9) << name;
+      }
+    }
+    EXPECT_LE(lost, targets / 20) << name;
+  };
+  expect_met(robots::ur10().chain, 4, 0, "ur10, wrist");
+  expect_met(robots::abb_irb120().chain, 4, 0, "irb120, wrist");
+  expect_met(robots::ur10().chain, 2, 0, "ur10, elbow");
+  expect_met(robots::abb_irb120().chain, 2, -std::atan2(0.302, 0.07), "irb120, elbow");
+}
+
+template <int N>
+bool same_bits(const Branches<N>& a, const Branches<N>& b) {
+  bool same = a.count == b.count && a.reach == b.reach && a.seeds_lost == b.seeds_lost && a.margin == b.margin;
+  for (int k = 0; same && k < a.count; ++k) {
+    const Branch<N>&x = a.branches[static_cast<std::size_t>(k)], &y = b.branches[static_cast<std::size_t>(k)];
+    const auto numbers = [](const Branch<N>& of) {
+      return Eigen::Vector4d(of.position_error, of.rotation_error, of.sigma_min, of.radius);
+    };
+    same = testing::same_bits(x.joints, y.joints) && testing::same_bits(numbers(x), numbers(y)) &&
+           x.singularities.values() == y.singularities.values() && x.proven == y.proven &&
+           x.iterations == y.iterations && x.within_limits == y.within_limits;
+  }
+  return same;
+}
+
+TEST(AllBranches, SameBitsOnTwoCallsAndNoAllocation) {
+  Rng rng(10);
+  const auto expect_pure = [&]<int N>(const auto& form, const auto& arm, const JointVector<N>& q) {
+    const Isometry3 target = arm.pose(q);
+    Isometry3 away = target;
+    away.translation().x() += 10;
+    for (const Isometry3& at : {target, away}) {
+      EXPECT_TRUE(same_bits<N>(all_branches(form, arm, at), all_branches(form, arm, at)));
+      EXPECT_EQ(vernier_test::allocations([&] { vernier_test::keep(all_branches(form, arm, at)); }), 0);
+      EXPECT_EQ(vernier_test::allocations([&] { vernier_test::keep(form.roots(at)); }), 0);
+    }
+  };
+  const auto irb = robots::abb_irb120().chain, ur10 = robots::ur10().chain;
+  const auto wam = robots::barrett_wam().chain;
+  for (int i = 0; i < 50; ++i) {
+    // every second one is next to a fold, where more is tried
+    JointVector<6> q = random_joints<6>(rng);
+    if (i % 2 == 1) q(2) = 1e-4;
+    if (i % 4 == 1) q(4) = 1e-4;
+    expect_pure(ClosedForm(ur10), as_made(ur10, rng), q);
+    expect_pure(ClosedForm(irb), as_made(irb, rng), q);
+    expect_pure(ClosedForm(ur10), UnevenJoints<6>{as_made(ur10, rng)}, q);
+    expect_pure(ClosedForm(wam, HeldJoint{2, held_value}), as_made(wam, rng), random_configuration<7>(rng, 2));
+  }
+}
+
+}  // namespace
+}  // namespace vernier::all_branches_test

@@ -1,0 +1,662 @@
+// Closed-form inverse kinematics: every arm of the catalogue and one of each family, random and singular poses.
+
+#include "vernier/kinematics/closed_form.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "branch_helpers.hpp"
+#include "complaint.hpp"
+#include "random_chains.hpp"
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vernier::closed_form_test {
+namespace {
+
+using namespace vernier::literals;
+using detail::ArmKind;
+using vernier_test::complaint;
+using vernier_test::joint_difference;
+using vernier_test::random_joints;
+
+constexpr double pi = std::numbers::pi;
+constexpr double exact = 1e-10;  // m, and entries of rotations
+/// A margin below this is a rounding error: the target is on the boundary.
+constexpr double rounding = 1e-12;
+
+template <int N, class Convention>
+ClosedForm<N> closed_form(const DhChain<N, Convention>& arm, HeldJoint held = {-1, 0}) {
+  if constexpr (N == 7) {
+    return ClosedForm<7>(arm, held);
+  } else {
+    return ClosedForm<6>(arm);
+  }
+}
+
+double difference(const Isometry3& a, const Isometry3& b) { return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff(); }
+
+/// What the roots of one target are like.
+struct Quality {
+  int roots = 0;          ///< that meet the target, by their margin
+  double residual = 0;    ///< worst of them
+  double generating = 9;  ///< distance of the nearest of them from the joints that made the target [rad]
+  double nearest = 9;     ///< smallest distance of two of them [rad]
+  bool in_range = true;   ///< moving joints in (-pi, pi]
+};
+
+template <class Arm, int N>
+Quality quality(const Arm& arm, const InverseRoots<N>& roots, const Isometry3& target, const JointVector<N>& q) {
+  Quality out;
+  for (const InverseRoot<N>& root : roots) {
+    out.in_range = out.in_range && (root.joints.array() > -pi).all() && (root.joints.array() <= pi).all();
+    if (root.margin > rounding) continue;
+    ++out.roots;
+    out.residual = std::max(out.residual, difference(arm.pose(root.joints), target));
+    out.generating = std::min(out.generating, joint_difference<N>(root.joints, q));
+    for (const InverseRoot<N>* other = roots.begin(); other != &root; ++other)
+      if (other->margin <= rounding)
+        out.nearest = std::min(out.nearest, joint_difference<N>(root.joints, other->joints));
+  }
+  return out;
+}
+
+/// The laws of random poses. @return how many roots there were of each number
+template <class Arm, int N>
+std::array<int, 17> expect_all_found(const Arm& arm, const ClosedForm<N>& form, int poses, const std::string& name,
+                                     double held_value = 0) {
+  Rng rng(11);
+  std::array<int, 17> counts{};
+  Quality worst;
+  worst.generating = 0;
+  for (int i = 0; i < poses; ++i) {
+    JointVector<N> q = random_joints<N>(rng);
+    if (form.held_joint() >= 0) q(form.held_joint()) = held_value;
+    const Isometry3 target = arm.pose(q);
+    const InverseRoots<N> roots = form.roots(target);
+    const Quality at = quality(arm, roots, target, q);
+    if (at.roots < 17) ++counts[static_cast<std::size_t>(at.roots)];
+    worst.roots = std::max(worst.roots, at.roots);
+    worst.residual = std::max(worst.residual, at.residual);
+    worst.generating = std::max(worst.generating, at.generating);
+    worst.nearest = std::min(worst.nearest, at.nearest);
+    worst.in_range = worst.in_range && at.in_range;
+  }
+  EXPECT_LT(worst.residual, exact) << name;
+  EXPECT_LT(worst.generating, 1e-6) << name;
+  EXPECT_GT(worst.nearest, 1e-7) << name;
+  EXPECT_TRUE(worst.in_range) << name;
+  EXPECT_LE(worst.roots, 8) << name;  // 16 in general; arms with a closed form of this kind have 8
+  return counts;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// arms
+
+struct Case {
+  std::string name;
+  DhChain<6> chain;
+  ArmKind kind;
+};
+
+constexpr DhRow wrist_4{.a = 0_mm, .alpha = 90_deg, .d = 302_mm}, wrist_5{.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
+    wrist_6{.a = 0_mm, .alpha = 0_deg, .d = 72_mm, .theta = 180_deg};
+
+/// An arm of the UR kind whose axes 3 and 4 may run against axis 2.
+DhChain<6> three_parallel(double alpha2, double alpha3) {
+  return DhChain<6>{{{
+      {.a = 0_mm, .alpha = 90_deg, .d = 127.3_mm},
+      {.a = -612_mm, .alpha = alpha2, .d = 20_mm},
+      {.a = -572.3_mm, .alpha = alpha3, .d = -35_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 163.941_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 115.7_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 92.2_mm},
+  }}};
+}
+
+/// An arm of every kind, and variants in which what is usually orthogonal, parallel or zero is not.
+const std::vector<Case>& cases() {
+  static const std::vector<Case> all = {
+      {"irb 120", robots::abb_irb120().chain, ArmKind::second_parallel_to_third},
+      {"puma 560", robots::puma560().chain, ArmKind::second_parallel_to_third},
+      {"offset shoulder, oblique first axis",
+       DhChain<6>{{{{.a = 50_mm, .alpha = -70_deg, .d = 290_mm},
+                    {.a = 270_mm, .alpha = 0_deg, .d = 40_mm, .theta = -90_deg},
+                    {.a = 70_mm, .alpha = -60_deg, .d = -15_mm},
+                    wrist_4,
+                    wrist_5,
+                    wrist_6}}},
+       ArmKind::second_parallel_to_third},
+      {"third against second",
+       DhChain<6>{{{{.a = 30_mm, .alpha = -90_deg, .d = 290_mm},
+                    {.a = 270_mm, .alpha = 180_deg, .d = 10_mm, .theta = -90_deg},
+                    {.a = 70_mm, .alpha = 90_deg, .d = 0_mm},
+                    wrist_4,
+                    wrist_5,
+                    wrist_6}}},
+       ArmKind::second_parallel_to_third},
+      {"oblique wrist",
+       DhChain<6>{{{{.a = 0_mm, .alpha = -90_deg, .d = 290_mm},
+                    {.a = 270_mm, .alpha = 0_deg, .d = 0_mm, .theta = -90_deg},
+                    {.a = 70_mm, .alpha = -90_deg, .d = 0_mm},
+                    {.a = 0_mm, .alpha = 60_deg, .d = 302_mm},
+                    {.a = 0_mm, .alpha = -50_deg, .d = 0_mm},
+                    wrist_6}}},
+       ArmKind::second_parallel_to_third},
+      {"first parallel to second",
+       DhChain<6>{{{{.a = 400_mm, .alpha = 0_deg, .d = 200_mm},
+                    {.a = 300_mm, .alpha = 90_deg, .d = 50_mm},
+                    {.a = 70_mm, .alpha = -90_deg, .d = 25_mm},
+                    wrist_4,
+                    wrist_5,
+                    wrist_6}}},
+       ArmKind::first_parallel_to_second},
+      {"second against first",
+       DhChain<6>{{{{.a = 400_mm, .alpha = 180_deg, .d = 200_mm},
+                    {.a = 300_mm, .alpha = 75_deg, .d = 50_mm},
+                    {.a = 70_mm, .alpha = -90_deg, .d = 0_mm},
+                    wrist_4,
+                    wrist_5,
+                    wrist_6}}},
+       ArmKind::first_parallel_to_second},
+      {"first meets second",
+       DhChain<6>{{{{.a = 0_mm, .alpha = -80_deg, .d = 300_mm},
+                    {.a = 100_mm, .alpha = 70_deg, .d = 250_mm},
+                    {.a = 60_mm, .alpha = -90_deg, .d = 0_mm},
+                    wrist_4,
+                    wrist_5,
+                    wrist_6}}},
+       ArmKind::first_meets_second},
+      {"second meets third",
+       DhChain<6>{{{{.a = 150_mm, .alpha = -80_deg, .d = 300_mm},
+                    {.a = 0_mm, .alpha = 90_deg, .d = 40_mm},
+                    {.a = 200_mm, .alpha = -90_deg, .d = 120_mm},
+                    wrist_4,
+                    wrist_5,
+                    wrist_6}}},
+       ArmKind::second_meets_third},
+      {"ur10", robots::ur10().chain, ArmKind::three_parallel},
+      {"three parallel, third against second", three_parallel(180_deg, 180_deg), ArmKind::three_parallel},
+      {"three parallel, third and fourth against second", three_parallel(180_deg, 0_deg), ArmKind::three_parallel},
+      {"three parallel, fourth against second", three_parallel(0_deg, 180_deg), ArmKind::three_parallel},
+      {"three parallel, oblique",
+       DhChain<6>{{{{.a = 40_mm, .alpha = 75_deg, .d = 127.3_mm},
+                    {.a = -612_mm, .alpha = 0_deg, .d = 0_mm},
+                    {.a = -572.3_mm, .alpha = 0_deg, .d = 0_mm},
+                    {.a = 0_mm, .alpha = 70_deg, .d = 163.941_mm},
+                    {.a = 0_mm, .alpha = -60_deg, .d = 115.7_mm},
+                    {.a = 0_mm, .alpha = 0_deg, .d = 92.2_mm}}}},
+       ArmKind::three_parallel},
+  };
+  return all;
+}
+
+/// The arm held by its tool: its joint i is joint 7 - i of the other, turned backwards. The inverse of a row of the
+/// standard convention is one of the modified convention.
+DhChain<6, ModifiedDh> mirror_image(const DhChain<6>& arm) {
+  std::array<DhRow, 6> rows;
+  for (int i = 0; i < 6; ++i) {
+    const DhRow& row = arm.row(5 - i);
+    rows[static_cast<std::size_t>(i)] = {.a = -row.a, .alpha = -row.alpha, .d = -row.d, .theta = -row.theta};
+  }
+  return DhChain<6, ModifiedDh>::from_rows(rows);
+}
+
+template <class Arm>
+detail::ClosedFormArm internals(const Arm& arm) {
+  return {detail::six_axes_of(arm, {-1, 0}), 1e-6};
+}
+
+/// Calls `f(name, chain)` for all arms and their mirror images.
+template <class F>
+void for_all_arms(const F& f) {
+  for (const Case& arm : cases()) {
+    f(arm.name, arm.chain);
+    f(arm.name + ", mirrored", mirror_image(arm.chain));
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// random poses
+
+TEST(ClosedForm, FindsAllThatCatalogueArmsDo) {
+  constexpr int poses = 20000;
+  expect_all_found(robots::ur10().chain, closed_form(robots::ur10().chain), poses, "ur10");
+  expect_all_found(robots::ur5().chain, closed_form(robots::ur5().chain), poses, "ur5");
+  expect_all_found(robots::puma560().chain, closed_form(robots::puma560().chain), poses, "puma560");
+  expect_all_found(robots::puma560_modified().chain, closed_form(robots::puma560_modified().chain), poses,
+                   "puma560_modified");
+  const auto counts =
+      expect_all_found(robots::abb_irb120().chain, closed_form(robots::abb_irb120().chain), poses, "irb120");
+  EXPECT_EQ(counts[8], poses);
+}
+
+TEST(ClosedForm, FindsAllThatTheWamDoesWithOneJointHeld) {
+  const auto wam = robots::barrett_wam().chain;
+  for (int joint = 0; joint < 7; ++joint) {
+    if (joint == 3) continue;
+    const ClosedForm form(wam, HeldJoint{joint, 0.3});
+    EXPECT_EQ(form.held_joint(), joint);
+    EXPECT_EQ(form.mirrored(), joint > 3);  // with a joint of the wrist held, the shoulder is the sphere
+    expect_all_found(wam, form, 20000, "joint " + std::to_string(joint + 1), 0.3);
+    Rng rng(1);
+    JointVector<7> q = random_joints<7>(rng);
+    q(joint) = 0.3;
+    for (const auto& root : form.roots(wam.pose(q))) EXPECT_EQ(root.joints(joint), 0.3);
+  }
+}
+
+TEST(ClosedForm, BothConventionsOfThePumaHaveTheSameRoots) {
+  const auto standard = robots::puma560().chain;
+  const ClosedForm one(standard), other(robots::puma560_modified().chain);
+  Rng rng(2);
+  for (int i = 0; i < 200; ++i) {
+    const Isometry3 target = standard.pose(random_joints<6>(rng));
+    const auto a = one.roots(target), b = other.roots(target);
+    ASSERT_EQ(a.count, b.count);
+    for (const auto& root : a) {
+      double nearest = 9;
+      for (const auto& same : b) nearest = std::min(nearest, joint_difference<6>(root.joints, same.joints));
+      EXPECT_LT(nearest, 1e-6);
+    }
+  }
+}
+
+TEST(ClosedForm, OfArmsBetweenFrames) {
+  Rng rng(3);
+  for (const Case& arm : cases()) {
+    Vector6 base, tool;
+    for (int i = 0; i < 6; ++i) {
+      base(i) = rng.uniform(-1, 1);
+      tool(i) = rng.uniform(-0.3, 0.3);
+    }
+    const Framed framed(arm.chain, FrameParameters(base), FrameParameters(tool));
+    expect_all_found(framed, ClosedForm(framed), 1000, arm.name);
+  }
+}
+
+TEST(ClosedForm, OfEveryKind) {
+  for (const Case& arm : cases()) {
+    EXPECT_EQ(internals(arm.chain).kind(), arm.kind) << arm.name;
+    EXPECT_FALSE(internals(arm.chain).mirrored()) << arm.name;
+  }
+  for_all_arms(
+      [](const std::string& name, const auto& chain) { expect_all_found(chain, closed_form(chain), 2000, name); });
+}
+
+TEST(ClosedForm, OfMirrorImages) {
+  Rng rng(4);
+  for (const Case& arm : cases()) {
+    const auto mirror = mirror_image(arm.chain);
+    const JointVector<6> q = random_joints<6>(rng);
+    EXPECT_LT(difference(mirror.pose(-q.reverse()), arm.chain.pose(q).inverse()), 1e-14) << arm.name;
+    const auto inside = internals(mirror);
+    EXPECT_TRUE(inside.mirrored()) << arm.name;
+    EXPECT_EQ(inside.kind(), arm.kind) << arm.name;
+  }
+}
+
+TEST(ClosedForm, ToleranceAdmitsArmsThatAreAlmostOfAKind) {
+  auto rows = robots::ur10().chain.rows();
+  rows[1].alpha = 1e-4;
+  const auto bent = DhChain<6>::from_rows(rows);
+  EXPECT_NE(complaint([&] { ClosedForm{bent}; }), "");
+  const ClosedForm<6> form(bent, 1e-3);
+  Rng rng(5);
+  for (int i = 0; i < 100; ++i) {
+    const JointVector<6> q = random_joints<6>(rng);
+    EXPECT_LT(quality(bent, form.roots(bent.pose(q)), bent.pose(q), q).residual, 1e-3);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// refusals
+
+TEST(ClosedForm, RefusesArmsThatHaveNoneAndSaysWhatMisses) {
+  Rng rng(6);
+  for (int i = 0; i < 20; ++i) {
+    const auto arm = vernier_test::random_chain<6>(rng, {.prismatic = 0, .hayati = false});
+    const std::string what = complaint([&] { ClosedForm{arm}; });
+    for (const char* part :
+         {"seen from the base", "seen from the tool", "miss a common point by", "mm", "from parallel"})
+      EXPECT_NE(what.find(part), std::string::npos) << what;
+  }
+  const auto identified = vernier_test::as_made(robots::ur10().chain, rng);
+  EXPECT_NE(complaint([&] { ClosedForm{identified}; }), "");
+}
+
+TEST(ClosedForm, RefusesAWristOnAnArmThatDoesNotBend) {
+  // Joint 4 of the WAM is its elbow: without it, two spheres are left.
+  const std::string what = complaint([] { ClosedForm(robots::barrett_wam().chain, HeldJoint{3, 0.3}); });
+  EXPECT_NE(what.find("the last three axes meet in a point, but the other three"), std::string::npos) << what;
+}
+
+TEST(ClosedForm, RefusesPrismaticJoints) {
+  auto rows = robots::abb_irb120().chain.rows();
+  rows[2].joint = JointType::prismatic;
+  const std::string what = complaint([&] { ClosedForm{DhChain<6>::from_rows(rows)}; });
+  EXPECT_NE(what.find("joint 3 is prismatic"), std::string::npos) << what;
+}
+
+TEST(ClosedForm, RefusesToHoldAJointThatIsNotThere) {
+  for (const int joint : {-1, 7, 100}) {
+    const std::string what = complaint([&] { ClosedForm(robots::barrett_wam().chain, HeldJoint{joint, 0}); });
+    EXPECT_NE(what.find("no joint " + std::to_string(joint + 1)), std::string::npos) << what;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// distances from singularities
+
+/// Jacobian of the moving joints.
+template <int N, class Convention>
+Eigen::Matrix<double, 6, 6> moving_jacobian(const DhChain<N, Convention>& arm, const ClosedForm<N>& form,
+                                            const JointVector<N>& q) {
+  const Jacobian<N> all = arm.jacobian(q);
+  Eigen::Matrix<double, 6, 6> out;
+  for (int j = 0, k = 0; j < N; ++j)
+    if (j != form.held_joint()) out.col(k++) = all.col(j);
+  return out;
+}
+
+/// The product of the three is the determinant of the Jacobian, but for a factor that the arm determines.
+template <int N, class Convention>
+void expect_factors_of_determinant(const DhChain<N, Convention>& arm, const ClosedForm<N>& form,
+                                   const std::string& name, double held_value = 0) {
+  Rng rng(7);
+  double products[500], determinants[500];
+  int widest = 0;
+  for (int i = 0; i < 500; ++i) {
+    JointVector<N> q = random_joints<N>(rng);
+    if (form.held_joint() >= 0) q(form.held_joint()) = held_value;
+    const SingularityDistances at = form.distances(q);
+    for (const double value : at.values()) EXPECT_LE(std::abs(value), 1 + 1e-12) << name;
+    products[i] = at.shoulder * at.elbow * at.wrist;
+    determinants[i] = moving_jacobian(arm, form, q).determinant();
+    if (std::abs(products[i]) > std::abs(products[widest])) widest = i;
+  }
+  const double ratio = determinants[widest] / products[widest];
+  double worst = 0;
+  for (int i = 0; i < 500; ++i)
+    worst = std::max(worst, std::abs(determinants[i] - ratio * products[i]) / std::abs(determinants[widest]));
+  EXPECT_LT(worst, 1e-9) << name;
+  EXPECT_GT(std::abs(products[widest]), 0.01) << name;
+}
+
+TEST(SingularityDistances, MultiplyToTheDeterminantOfTheJacobian) {
+  for_all_arms([](const std::string& name, const auto& chain) {
+    expect_factors_of_determinant(chain, closed_form(chain), name);
+  });
+  const auto wam = robots::barrett_wam().chain;
+  for (const int joint : {0, 1, 2, 4, 5, 6})
+    expect_factors_of_determinant(wam, ClosedForm(wam, HeldJoint{joint, 0.3}), "wam " + std::to_string(joint + 1), 0.3);
+}
+
+TEST(SingularityDistances, SignsNameTheBranch) {
+  Rng rng(8);
+  const auto expect_names = [&](const auto& chain, const char* name) {
+    const ClosedForm form(chain);
+    int full = 0;
+    for (int i = 0; i < 500; ++i) {
+      const auto roots = form.roots(chain.pose(random_joints<6>(rng)));
+      unsigned seen = 0;
+      for (const auto& root : roots) seen |= 1u << form.distances(root.joints).branch();
+      EXPECT_EQ(std::popcount(seen), roots.count) << name;
+      full += roots.count == 8;
+    }
+    EXPECT_GT(full, 50) << name;
+  };
+  expect_names(robots::ur10().chain, "ur10");
+  expect_names(robots::ur5().chain, "ur5");
+  expect_names(robots::abb_irb120().chain, "irb120");
+  expect_names(robots::puma560().chain, "puma560");
+  expect_names(robots::puma560_modified().chain, "puma560_modified");
+}
+
+TEST(SingularityDistances, NameTheNearestSingularity) {
+  const SingularityDistances at{.shoulder = -0.5, .elbow = 0.25, .wrist = -0.1};
+  EXPECT_EQ(at.branch(), 1 + 4);
+  EXPECT_EQ(at.nearest(), "wrist");
+  EXPECT_NEAR(at.nearest_angle(), std::asin(0.1), 1e-15);
+  EXPECT_EQ((SingularityDistances{.shoulder = 0.1, .elbow = 0.3, .wrist = 1}.nearest()), "shoulder");
+  EXPECT_EQ((SingularityDistances{.shoulder = 0.4, .elbow = -0.3, .wrist = 1}.nearest()), "elbow");
+  // the wrist of a UR arm is straight where joint 5 is, its elbow where joint 3 is
+  const ClosedForm form(robots::ur10().chain);
+  JointVector<6> q{0.3, -1.1, 0.8, 0.4, 0.02, 1};
+  EXPECT_EQ(form.distances(q).nearest(), "wrist");
+  EXPECT_NEAR(form.distances(q).nearest_angle(), 0.02, 1e-12);
+  EXPECT_NEAR(std::abs(form.distances(q).elbow), std::sin(0.8), 1e-12);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// singular poses
+
+enum Factor { shoulder, elbow, wrist };
+
+/// Turns one joint until a factor of the determinant is zero. @return whether there is such a value
+template <int N>
+bool make_singular(const ClosedForm<N>& form, Factor factor, JointVector<N>& q) {
+  constexpr int steps = 90;
+  for (int joint = N - 1; joint >= 0; --joint) {
+    if (joint == form.held_joint()) continue;
+    const auto value = [&](double x) {
+      JointVector<N> at = q;
+      at(joint) = x;
+      return form.distances(at).values()[static_cast<std::size_t>(factor)];
+    };
+    for (int k = 0; k < steps; ++k) {
+      double low = q(joint) + 2 * pi * k / steps, high = q(joint) + 2 * pi * (k + 1) / steps;
+      const double start = value(low);
+      if (std::abs(start - value(high)) < 1e-9 || start * value(high) > 0) continue;
+      for (int i = 0; i < 80; ++i) {
+        const double middle = 0.5 * (low + high);
+        (start * value(middle) > 0 ? low : high) = middle;
+      }
+      q(joint) = vernier_test::without_turns(low);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Roots at singular joint values that are also `near`: exact, and the generating ones among them. Where two roots
+/// meet, joints keep half of their digits.
+template <int N, class Convention>
+void expect_roots_at(const DhChain<N, Convention>& arm, const ClosedForm<N>& form, const JointVector<N>& q,
+                     const std::string& name, double generating) {
+  const Isometry3 target = arm.pose(q);
+  const auto roots = form.roots(target, q);
+  const Quality at = quality(arm, roots, target, q);
+  EXPECT_GE(at.roots, 1) << name;
+  EXPECT_LT(at.residual, exact) << name << " at " << q.transpose();
+  EXPECT_LT(at.generating, generating) << name << " at " << q.transpose();
+}
+
+constexpr double offsets[] = {0, 1e-12, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-3};
+
+TEST(SingularPoses, StraightWrists) {
+  Rng rng(9);
+  for_all_arms([&](const std::string& name, const auto& chain) {
+    const ClosedForm form(chain);
+    for (int i = 0; i < 20; ++i) {
+      JointVector<6> q = random_joints<6>(rng);
+      ASSERT_TRUE(make_singular(form, wrist, q)) << name;
+      for (const double offset : {0.0, 1e-12, 1e-4, 1e-3})
+        for (const double side : {-1.0, 1.0}) {
+          JointVector<6> off = q;
+          off(form.mirrored() ? 1 : 4) += side * offset;
+          expect_roots_at(chain, form, off, name + ", wrist off by " + std::to_string(side * offset * 1e9) + " nrad",
+                          offset > 1e-6 ? 1e-5 : 10);
+        }
+    }
+  });
+}
+
+TEST(SingularPoses, StraightWristsOfTheCatalogueAreWhereNearSays) {
+  Rng rng(13);
+  const auto expect_near = [&](const auto& chain, const char* name) {
+    const ClosedForm form(chain);
+    for (int i = 0; i < 20; ++i)
+      for (const double offset : {0.0, 1e-12, -1e-12}) {
+        JointVector<6> q = random_joints<6>(rng);
+        q(4) = offset;
+        expect_roots_at(chain, form, q, name, 1e-6);
+      }
+  };
+  expect_near(robots::ur10().chain, "ur10");
+  expect_near(robots::ur5().chain, "ur5");
+  expect_near(robots::abb_irb120().chain, "irb120");
+  expect_near(robots::puma560().chain, "puma560");
+}
+
+TEST(SingularPoses, StretchedElbows) {
+  Rng rng(10);
+  for_all_arms([&](const std::string& name, const auto& chain) {
+    const ClosedForm form(chain);
+    for (int i = 0; i < 20; ++i) {
+      JointVector<6> q = random_joints<6>(rng);
+      if (!make_singular(form, elbow, q) || std::abs(form.distances(q).wrist) < 0.01) continue;
+      for (const double offset : offsets) {
+        JointVector<6> off = q;
+        off(form.mirrored() ? 3 : 2) += offset;
+        expect_roots_at(chain, form, off, name + ", elbow", 1e-3);
+      }
+    }
+  });
+}
+
+TEST(SingularPoses, WristCentresOnShoulderSurfaces) {
+  Rng rng(11);
+  for_all_arms([&](const std::string& name, const auto& chain) {
+    const ClosedForm form(chain);
+    for (int i = 0; i < 20; ++i) {
+      JointVector<6> q = random_joints<6>(rng);
+      if (!make_singular(form, shoulder, q) || std::abs(form.distances(q).wrist) < 0.01) continue;
+      for (const double offset : offsets) {
+        JointVector<6> off = q;
+        off(form.mirrored() ? 4 : 1) += offset;
+        expect_roots_at(chain, form, off, name + ", shoulder", 1e-3);
+      }
+    }
+  });
+}
+
+TEST(SingularPoses, CommonAngles) {
+  const double common[] = {0, pi / 2, -pi / 2, pi};
+  const auto expect_met = [&](const auto& chain, const char* name) {
+    const ClosedForm form(chain);
+    int none = 0;
+    double residual = 0;
+    for (int code = 0; code < 4096; ++code) {
+      JointVector<6> q;
+      for (int j = 0; j < 6; ++j) q(j) = common[code >> (2 * j) & 3];
+      // near matters: with the wrist of a UR arm straight, q2 + q3 + q4 is arbitrary, but not every value is in reach
+      const Quality at = quality(chain, form.roots(chain.pose(q), q), chain.pose(q), q);
+      none += at.roots == 0;
+      residual = std::max(residual, at.residual);
+    }
+    EXPECT_EQ(none, 0) << name;
+    EXPECT_LT(residual, exact) << name;
+  };
+  expect_met(robots::ur10().chain, "ur10");
+  expect_met(robots::ur5().chain, "ur5");
+  expect_met(robots::abb_irb120().chain, "irb120");
+  expect_met(robots::puma560().chain, "puma560");
+  expect_met(robots::puma560_modified().chain, "puma560_modified");
+  for (const Case& arm : cases()) expect_met(arm.chain, arm.name.c_str());
+}
+
+TEST(SingularPoses, NearDecidesTheJointThatIsFree) {
+  // straight wrist: joints 4 and 6 turn about one axis
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  JointVector<6> q{0.3, 0.4, -0.5, 0.6, 0, 0.8};
+  for (const double value : {-2.0, 0.0, 1.25}) {
+    JointVector<6> near = JointVector<6>::Zero();
+    near(3) = value;
+    int straight = 0;
+    for (const auto& root : form.roots(irb.pose(q), near)) {
+      if (std::abs(root.joints(4)) > 1e-9) continue;
+      ++straight;
+      EXPECT_EQ(root.free, 1u << 3);
+      EXPECT_EQ(root.joints(3), value);
+      EXPECT_LT(difference(irb.pose(root.joints), irb.pose(q)), exact);
+    }
+    EXPECT_EQ(straight, 1);
+  }
+
+  // wrist centre on axis 1
+  q = {0.3, 0.4, -0.5, 0.6, 0.9, 0.8};
+  ASSERT_TRUE(make_singular(form, shoulder, q));
+  for (const double value : {-2.0, 0.0, 1.25}) {
+    JointVector<6> near = JointVector<6>::Zero();
+    near(0) = value;
+    const auto roots = form.roots(irb.pose(q), near);
+    EXPECT_GT(roots.count, 0);
+    for (const auto& root : roots) {
+      EXPECT_EQ(root.free, 1u);
+      EXPECT_EQ(root.joints(0), value);
+      EXPECT_LT(difference(irb.pose(root.joints), irb.pose(q)), exact);
+    }
+  }
+}
+
+TEST(SingularPoses, SamplesOnRequest) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  const JointVector<6> q{0.3, 0.4, -0.5, 0.6, 0.003, 0.8};
+  const auto plain = form.roots(irb.pose(q)), sampled = form.roots(irb.pose(q), q, 0.01);
+  EXPECT_GT(sampled.count, plain.count);
+  EXPECT_LE(sampled.count, detail::SixAxisRoots::capacity);
+  for (const auto& root : sampled) {
+    // a sample has joint 4 at some value and misses by no more than the width
+    EXPECT_LT(difference(irb.pose(root.joints), irb.pose(q)), root.margin > 0 ? 0.01 : exact);
+  }
+  const JointVector<6> regular{0.3, 0.4, -0.5, 0.6, 0.5, 0.8};
+  EXPECT_EQ(form.roots(irb.pose(regular)).count, form.roots(irb.pose(regular), q, 0.01).count);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// out of reach
+
+TEST(OutOfReach, MarginSaysByHowMuch) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  const double forearm = std::hypot(0.07, 0.302);
+  JointVector<6> q{0.3, 0.4, -std::atan2(0.302, 0.07), 0.6, 0.9, 0.8};
+  ASSERT_NEAR(form.distances(q).elbow, 0, 1e-12);
+  const Isometry3 stretched = irb.pose(q);
+  const Vector3 shoulder_point(0, 0, 0.29);
+  const Vector3 centre = stretched.translation() - 0.072 * stretched.linear().col(2);
+  const Vector3 outward = (centre - shoulder_point).normalized();
+  ASSERT_NEAR((centre - shoulder_point).norm(), 0.27 + forearm, 1e-12);
+  const auto roots_at = [&](double beyond) {
+    Isometry3 target = stretched;
+    target.translation() += beyond * outward;
+    return form.roots(target);
+  };
+  EXPECT_EQ(roots_at(-1e-6).count, 8);
+  for (const auto& root : roots_at(-1e-6)) EXPECT_EQ(root.margin, 0);
+  double before = 0;
+  for (const double beyond : {1e-6, 1e-4, 1e-3, 5e-3}) {
+    const auto roots = roots_at(beyond);
+    EXPECT_GT(roots.count, 0);
+    for (const auto& root : roots) {
+      EXPECT_GT(root.margin, before);
+      // the joints at the boundary come nearest
+      EXPECT_NEAR((irb.position(root.joints) - stretched.translation()).norm(), 0, 1e-2);
+    }
+    before = roots.begin()->margin;
+  }
+  const auto far = roots_at(0.5);
+  EXPECT_EQ(far.count, 0);
+  EXPECT_GT(far.nearest_margin, 0.05);
+  EXPECT_TRUE(std::isfinite(far.nearest_margin));
+}
+
+}  // namespace
+}  // namespace vernier::closed_form_test

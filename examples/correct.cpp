@@ -187,7 +187,8 @@ CorrectionReport correct_arm(const Settings& settings) {
       path = vn::correct_path(robot, roots, targets, options);
     }
   });
-  for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;
+  if (!settings.branches)
+    for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;
   report.before = path.before;
   report.after = path.after;
   vn::JointRows<N> commands(static_cast<vn::Index>(path.points.size()), N);
@@ -238,9 +239,13 @@ bool plot_deviation(const std::filesystem::path& path, const CorrectionReport& r
     before.y.push_back(report.rows[i].ends_only * 1e3);
     first = i + 1;
   }
+  bool any = false;
   for (support::Series* series : {&before, &after})
-    for (double& y : series->y)
+    for (double& y : series->y) {
       if (!(y > 0)) y = std::nan("");  // joint moves have no line
+      any = any || std::isfinite(y);
+    }
+  if (!any) return false;
   return support::plot_svg(path, "Deviation of the tool from its lines, as the model predicts", "target",
                            "deviation [mm]", {before, after}, {.log_y = true});
 }

@@ -62,9 +62,9 @@ TEST(CorrectPath, ObeysTheLawsOfPaths) {
     const Model arm = arm_off(seed);
     for (const auto& violation : ::vernier::testing::path_violations(correct, arm, rectangle(arm), options))
       ADD_FAILURE() << violation;
-    const Model lagging = arm_off(seed, 1.5e-5);
-    for (const auto& violation :
-         ::vernier::testing::path_violations(correct, lagging, rectangle(lagging), options, {.reversible = false}))
+    const Model lagging = arm_off(seed, 2e-5);
+    for (const auto& violation : ::vernier::testing::path_violations(correct, lagging, rectangle(lagging), options,
+                                                                     {.line_slack = 1.5, .reversible = false}))
       ADD_FAILURE() << "with hysteresis: " << violation;
   }
 }

@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/model_file.hpp"
@@ -54,7 +56,9 @@ TEST_F(Correct, TheActualArmGoesWhereTheNominalOneWould) {
   const CommandResult done = correct("--targets targets.csv --out commands.csv");
   ASSERT_EQ(done.exit_code, 0) << done.errors;
   EXPECT_NE(done.output.find("30 of 30 targets corrected"), std::string::npos) << done.output;
-  EXPECT_EQ(lines("commands.csv").at(0), "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,status,predicted_error_mm,gate");
+  EXPECT_EQ(lines("commands.csv").at(0),
+            "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,status,predicted_error_mm,gate,target,point,"
+            "predicted_rotation_mrad,deviation_mm,radius95_mm,singularity,singularity_deg");
   const auto commands = read_joints<6>(folder_ / "commands.csv");
   const auto after = positioning_errors(actual_, robot_.nominal(), commands, targets_);
   EXPECT_LT(after.position.maxCoeff(), 1e-6);
@@ -139,6 +143,67 @@ TEST_F(Correct, ATargetOutOfReachIsARowThatSaysSo) {
   EXPECT_EQ(report.at("corrected"), 28);
   EXPECT_EQ(report.at("missed_rows"), (std::vector<int>{4, 18}));
   EXPECT_GT(report.at("predicted_error").at("max_mm"), 1);
+}
+
+// Poses alone: the branch is chosen; linear moves are filled with points until the actual arm stays on its line.
+TEST_F(Correct, PosesAloneAndLinearMoves) {
+  const Isometry3 corner = robot_.nominal().pose(targets_.row(0).transpose());
+  std::string text = "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad,move\n";
+  const Vector3 rotation = log_so3(Matrix3(corner.linear()));
+  const Vector3 end = corner.translation() + Vector3(-0.06, 0.06, 0);
+  for (const auto& [point, move] : {std::pair(Vector3(corner.translation()), 'j'), std::pair(end, 'l')})
+    text += message(point.x() * 1e3, ',', point.y() * 1e3, ',', point.z() * 1e3, ',', rotation.x(), ',', rotation.y(),
+                    ',', rotation.z(), ',', move, '\n');
+  write_file(folder_ / "line.csv", text);
+  const CommandResult done =
+      correct("--targets line.csv --tolerance-mm 0.001 --start 0,0,0,0,1,0 --out commands.csv --json r.json");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_NE(done.output.find("Linear moves: the tool leaves their lines by"), std::string::npos) << done.output;
+  const auto commands = read_joints<6>(folder_ / "commands.csv");
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  EXPECT_EQ(report.at("targets"), 2);
+  EXPECT_EQ(report.at("met"), 2);
+  EXPECT_EQ(report.at("points"), commands.rows());
+  EXPECT_EQ(report.at("inserted"), commands.rows() - 2);
+  EXPECT_EQ(report.at("jumps"), 0);
+  EXPECT_GT(report.at("inserted"), 0);
+  EXPECT_LE(report.at("path").at("after_max_mm"), 0.001);
+  EXPECT_GT(report.at("path").at("before_max_mm"), 0.001);
+  EXPECT_LT((actual_.position(commands.row(0).transpose()) - corner.translation()).norm(), 1e-6);
+  EXPECT_LT((actual_.position(commands.bottomRows(1).transpose()) - end).norm(), 1e-6);
+  EXPECT_NE(lines("commands.csv").at(2).find(",2,inserted,"), std::string::npos);
+
+  const CommandResult all = correct("--targets line.csv --all-branches --out all.csv");
+  EXPECT_EQ(all.exit_code, 0) << all.errors;
+  const auto branches = read_joints<6>(folder_ / "all.csv");
+  EXPECT_GE(branches.rows(), 4);
+  for (Index i = 0; i < branches.rows(); ++i)
+    EXPECT_LT(std::min((actual_.position(branches.row(i).transpose()) - corner.translation()).norm(),
+                       (actual_.position(branches.row(i).transpose()) - end).norm()),
+              1e-8);
+}
+
+TEST_F(Correct, RefusesMovesAndStartsThatAreNone) {
+  write_file(folder_ / "bad.csv", "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad,move\n300,0,400,0,1,0,x\n");
+  const CommandResult move = correct("--targets bad.csv --out c.csv");
+  EXPECT_EQ(move.exit_code, 1);
+  EXPECT_NE(move.errors.find("bad.csv, line 2, column move: 'x', must be j"), std::string::npos) << move.errors;
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  const CommandResult start = correct("--targets targets.csv --start 1,2 --out c.csv");
+  EXPECT_EQ(start.exit_code, 2);
+  EXPECT_NE(start.errors.find("--start needs 6 values"), std::string::npos) << start.errors;
+  EXPECT_EQ(correct("--targets targets.csv --tolerance-mm 0 --out c.csv").exit_code, 2);
+}
+
+TEST_F(Correct, LinesThroughASingularityAreJumps) {
+  JointRows<6> ends(2, 6);
+  ends << 0.2, 0.3, 0.1, 0.4, -0.2, 0.1, 0.2, 0.3, 0.1, 0.4, 0.2, 0.1;  // joint 5 changes its sign
+  write_dataset(folder_ / "targets.csv", Dataset<6>(ends, PointRows::Zero(2, 3)));
+  const CommandResult done = correct("--targets targets.csv --linear --out commands.csv --json r.json");
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_NE(done.errors.find("1 of 2 moves are not as asked"), std::string::npos) << done.errors;
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "r.json")).at("jumps"), 1);
+  EXPECT_NE(lines("commands.csv").back().find(",jump,"), std::string::npos);
 }
 
 }  // namespace

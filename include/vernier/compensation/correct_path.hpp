@@ -29,9 +29,9 @@ template <int N>
 struct PathOptions {
   JointLimits<N> limits{};             ///< of the commands
   double tolerance = 0.05e-3;          ///< distance of the tool from the line of a linear move [m]
-  double rotation_tolerance = 0.1e-3;  ///< deviation of its orientation from the one in between [rad]
+  double rotation_tolerance = 0.2e-3;  ///< deviation of its orientation from the one in between [rad]
   double max_joint_step = 0.5;         ///< largest change of a joint between commands of a linear move [rad, m]
-  int max_inserted = 63;               ///< most points that are inserted in one linear move
+  int max_inserted = 127;              ///< most points that are inserted in one linear move
   JointVector<N> speed = JointVector<N>::Ones();  ///< of the joints in a joint move; their ratios choose the branch
   /// Each target outside the measured joint ranges, where the gate is 0, counts as so much joint motion in the choice
   /// of branches [rad at speed 1]: inside, the model predicts better.

@@ -36,16 +36,10 @@ Isometry3 pose_from(const Arm& arm, const JointVector<Arm::dof>& from, const Joi
   }
 }
 
-/// Where each joint turned round last: at a command, or before it where it goes on in its direction.
-template <int N>
-JointVector<N> last_reversal(const JointVector<N>& before, const JointVector<N>& command, const JointVector<N>& q) {
-  return ((q - command).array() * (command - before).array() > 0).select(before, command);
-}
-
 /// Largest distance from a line where a controller interpolates the nominal arm's pose between two commands, followed
 /// in small steps; infinite where it leaps.
 template <class Arm>
-double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& before, const JointVector<Arm::dof>& a,
+double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& coming, const JointVector<Arm::dof>& a,
                            const JointVector<Arm::dof>& b, const Isometry3& start, const Isometry3& end) {
   constexpr int steps = 16;
   const auto& nominal = nominal_of(arm);
@@ -63,9 +57,11 @@ double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& before, 
     const auto found = inverse_kinematics(nominal, between(first, last, s), q);
     if (found.status != IkStatus::converged) return std::numeric_limits<double>::infinity();
     q = found.joints;
-    worst = std::max(worst, (pose_from(arm, last_reversal<Arm::dof>(before, a, q), q).translation() -
-                             between(start, end, s).translation())
-                                .norm());
+    worst = std::max(
+        worst,
+        (pose_from(arm, JointVector<Arm::dof>(vernier::detail::approach_on_the_way(coming, a, q)), q).translation() -
+         between(start, end, s).translation())
+            .norm());
   }
   return worst;
 }
@@ -96,7 +92,7 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
   check(same, "a repeated call gives other commands");
 
   Index next = 0;
-  JointVector<N> before = options.start;
+  JointVector<N> before = options.start, coming = options.start;  // of the target before
   Index pieces = 0;
   for (const PathPoint<N>& p : path.points) {
     check(p.target == next, "a point belongs to target ", p.target, " where ", next, " is next");
@@ -111,18 +107,18 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
         const Isometry3& start = targets[static_cast<std::size_t>(next - 1)].pose;
         const PathPoint<N>* const first = &p - pieces;  // the point before the line
         const auto n = static_cast<double>(pieces);
-        JointVector<N> reversal = first->command;
+        JointVector<N> from = coming;
         for (const PathPoint<N>* piece = first; piece != &p; ++piece) {
           const JointVector<N>&a = piece->command, &b = (piece + 1)->command;
           const auto k = static_cast<double>(piece - first);
           const Isometry3 s = vernier::detail::pose_between(start, target.pose, k / n);
           const Isometry3 e = vernier::detail::pose_between(start, target.pose, (k + 1) / n);
           check((b - a).cwiseAbs().maxCoeff() <= options.max_joint_step, "target ", next, ": a joint leaps");
-          check(detail::deviation_from_line(arm, reversal, a, b, s, e) <= laws.line_slack * options.tolerance,
-                "target ", next, ": the tool leaves its line");
-          reversal = detail::last_reversal<N>(reversal, a, b);
+          check(detail::deviation_from_line(arm, from, a, b, s, e) <= laws.line_slack * options.tolerance, "target ",
+                next, ": the tool leaves its line");
+          from = vernier::detail::approach_on_the_way(from, a, b);
         }
-        before = reversal;
+        if (pieces > 1) before = from;
       }
       const Isometry3 there = detail::pose_from(arm, before, p.command);
       check((there.translation() - target.pose.translation()).norm() <= laws.position_tolerance, "target ", next,
@@ -130,6 +126,7 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
       if constexpr (N >= 6)
         check(log_so3(Matrix3(there.linear() * target.pose.linear().transpose())).norm() <= laws.rotation_tolerance,
               "target ", next, ": its orientation is missed");
+      coming = before;
       pieces = 0;
       ++next;
     }

@@ -43,7 +43,6 @@ struct PathGoal {
 struct PathBranch {
   PathJoints joints;
   int id;
-  double cost = 0;  ///< beside that of the move to it
 };
 
 /// What the path's solver has to know of an arm.
@@ -79,6 +78,7 @@ struct SolvedPoint {
   PointStatus status;
   double position_error, rotation_error;  ///< what is left [m, rad]
   double deviation = 0;                   ///< of the move to it from its line [m]; 0 for joint moves
+  PathJoints coming{};                    ///< joint values from which it is approached
   double ends_only = 0;                   ///< of the whole linear move, were its ends alone corrected [m]
 };
 
@@ -89,6 +89,12 @@ struct SolvedPath {
 };
 
 VERNIER_API SolvedPath solve_path(const PathArm& arm, const std::vector<PathGoal>& goals, const PathSettings& settings);
+
+/// The joint values from which an arm comes to q on its way from a command, as hysteresis counts: a joint that goes on
+/// in its direction still comes from where it came to the command; one that turned round comes from the command, beyond
+/// a transition in which its hysteresis turns round, too.
+/// @param coming  joint values from which it came to the command; not finite where unknown
+VERNIER_API PathJoints approach_on_the_way(const PathJoints& coming, const PathJoints& command, const PathJoints& q);
 
 /// A pose between two: positions linear, orientations about a fixed axis.
 VERNIER_API Isometry3 pose_between(const Isometry3& a, const Isometry3& b, double share) noexcept;

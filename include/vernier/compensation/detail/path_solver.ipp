@@ -20,13 +20,29 @@ VERNIER_IMPL Isometry3 pose_between(const Isometry3& a, const Isometry3& b, doub
   return out;
 }
 
+VERNIER_IMPL PathJoints approach_on_the_way(const PathJoints& coming, const PathJoints& command, const PathJoints& q) {
+  constexpr double transition = 0.05;  // rad: hysteresis of a gear has turned round
+  PathJoints out = command;
+  for (Index j = 0; j < q.size(); ++j) {
+    const double before = command(j) - coming(j), since = q(j) - command(j);
+    if (!std::isfinite(before)) continue;
+    if (before * since >= 0) {
+      out(j) = coming(j);
+    } else {
+      const double share = std::min(1.0, std::abs(since) / transition);
+      out(j) = q(j) - ((1 - share) * std::clamp(before, -transition, transition) + share * since);
+    }
+  }
+  return out;
+}
+
 /// A branch with its whole turns at one target, and the cheapest way to it.
 struct PathState {
   PathJoints joints;
   int id;
-  double cost, own_cost;  ///< of the way up to it; of being there
-  int from;               ///< index of the state before
-  bool jump;              ///< whether the move to it is not the one asked for
+  double cost;
+  int from;   ///< index of the state before
+  bool jump;  ///< whether the move to it is not the one asked for
 };
 
 inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
@@ -53,14 +69,6 @@ class PathSearch {
   bool within(const PathJoints& q) const {
     return (q.array() >= settings_.lower.array() - 1e-9).all() && (q.array() <= settings_.upper.array() + 1e-9).all();
   }
-  /// Where each joint turned round last: at a command, or before it where it goes on in its direction. What hysteresis
-  /// does depends on the way since.
-  PathJoints last_reversal(const PathJoints& before, const PathJoints& command, const PathJoints& q) const {
-    PathJoints out = command;
-    for (int j = 0; j < arm_.joints; ++j)
-      if ((q(j) - command(j)) * (command(j) - before(j)) > 0) out(j) = before(j);
-    return out;
-  }
   bool at_limit(const PathJoints& q) const {
     return ((q - settings_.lower).array() <= 1e-9).any() || ((settings_.upper - q).array() <= 1e-9).any();
   }
@@ -79,11 +87,11 @@ class PathSearch {
                                                     const PathGoal& end) const;
   VERNIER_API void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
                            const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
-  VERNIER_API double worst_ratio(const PathJoints& before, const PathJoints& a, const PathJoints& b,
+  VERNIER_API double worst_ratio(const PathJoints& coming, const PathJoints& a, const PathJoints& b,
                                  const Isometry3& from, const Isometry3& to, double& deviation) const;
-  VERNIER_API bool fill_line(const PathJoints& from, const PathJoints& near, const Isometry3& start,
-                             const Isometry3& end, int pieces, std::vector<SolvedPoint>& out, double& worst,
-                             double& deviation) const;
+  VERNIER_API bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
+                             const Isometry3& start, const Isometry3& end, int pieces, std::vector<SolvedPoint>& out,
+                             double& worst, double& deviation) const;
   VERNIER_API void move_to(Index target, const PathState& state, const SolvedPoint* before, SolvedPath& out) const;
 
   const PathArm& arm_;
@@ -94,11 +102,7 @@ class PathSearch {
 VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& near,
                                              std::vector<PathBranch>& out) const {
   if (!is_pose(goal.pose)) return Reach::invalid_target;
-  if (goal.joints.size() == 0) {
-    const Reach reach = arm_.branches(goal.pose, near, out);
-    for (PathBranch& branch : out) branch.cost = arm_.cost(branch.joints);
-    return reach;
-  }
+  if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
   PathJoints command = goal.joints, unknown = PathJoints::Constant(arm_.joints, std::nan(""));
   double errors[2];
   const bool met = arm_.correct(goal.pose, unknown, command, errors);
@@ -135,10 +139,11 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
   constexpr double jump_cost = 1e6;
   const auto add = [&](PathJoints joints, const PathBranch& branch, int from, bool jump) {
     const PathState& last = before[static_cast<std::size_t>(from)];
-    relax(out, {joints, branch.id, last.cost + duration(last.joints, joints) + branch.cost + (jump ? jump_cost : 0),
-                branch.cost, from, jump});
+    const double cost = goal.joints.size() > 0 ? 0 : arm_.cost(joints);
+    relax(out,
+          {joints, branch.id, last.cost + duration(last.joints, joints) + cost + (jump ? jump_cost : 0), from, jump});
   };
-  const bool linear = start != nullptr && goal.motion == Motion::linear;
+  const bool linear = start != nullptr && goal.motion == Motion::linear, first = before.front().from < 0;
   if (linear)
     for (std::size_t a = 0; a < before.size(); ++a)
       for (const PathBranch& branch : branches)
@@ -151,17 +156,17 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
       for (const PathBranch& branch : branches)
         if (const PathJoints joints = turned(branch.joints, before[a].joints); within(joints))
           add(joints, branch, static_cast<int>(a), jump);
-    // Another turn of a joint, with which the moves to come may fit: of the branches that are nearest.
+    // Another turn of a joint, with which the moves to come may fit, or which was measured: of the nearest branches.
     std::vector<PathState> nearest;
     for (const PathState& state : out)
       if (state.from == cheapest) nearest.push_back(state);
     std::stable_sort(nearest.begin(), nearest.end(), cheaper);
-    for (std::size_t k = 0; k < std::min<std::size_t>(nearest.size(), 2); ++k)
+    for (std::size_t k = 0; k < std::min<std::size_t>(nearest.size(), first ? nearest.size() : 2); ++k)
       for (int j = 0; j < arm_.joints; ++j)
         for (const double turn : {-2 * std::numbers::pi, 2 * std::numbers::pi}) {
           PathJoints other = nearest[k].joints;
           other(j) += turn;
-          if (within(other)) add(other, {other, nearest[k].id, nearest[k].own_cost}, cheapest, jump);
+          if (within(other)) add(other, {other, nearest[k].id}, cheapest, jump);
         }
   }
   if (out.size() > most_states) {
@@ -172,7 +177,7 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
 
 /// How far the tool is from a line where the controller interpolates between two commands, in units of the tolerances,
 /// and in space [m].
-VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& before, const PathJoints& a, const PathJoints& b,
+VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& coming, const PathJoints& a, const PathJoints& b,
                                             const Isometry3& from, const Isometry3& to, double& deviation) const {
   const Isometry3 first = arm_.nominal_pose(a), last = arm_.nominal_pose(b);
   double worst = 0;
@@ -181,7 +186,7 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& before, const Path
     if (!arm_.nominal_joints(pose_between(first, last, share), q) ||
         (q - a - share * (b - a)).cwiseAbs().maxCoeff() > settings_.max_joint_step)
       return std::numeric_limits<double>::infinity();
-    const Isometry3 there = arm_.pose(q, last_reversal(before, a, q)), wanted = pose_between(from, to, share);
+    const Isometry3 there = arm_.pose(q, approach_on_the_way(coming, a, q)), wanted = pose_between(from, to, share);
     const double off = (there.translation() - wanted.translation()).norm();
     const double turned = log_so3(Matrix3(there.linear() * wanted.linear().transpose())).norm();
     deviation = std::max(deviation, off);
@@ -192,10 +197,10 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& before, const Path
 
 /// Commands that divide a line into equal pieces, the last one at its end.
 /// @return whether all of them were found next to one another
-VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& from, const PathJoints& near, const Isometry3& start,
-                                        const Isometry3& end, int pieces, std::vector<SolvedPoint>& out, double& worst,
-                                        double& deviation) const {
-  PathJoints before = from, tracked = from, reversal = from;
+VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
+                                        const Isometry3& start, const Isometry3& end, int pieces,
+                                        std::vector<SolvedPoint>& out, double& worst, double& deviation) const {
+  PathJoints before = from, tracked = from, coming = coming_from;
   Isometry3 at = start;
   worst = deviation = 0;
   for (int k = 1; k <= pieces; ++k) {
@@ -207,14 +212,19 @@ VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& from, const PathJoints
       tracked = point.command;
     }
     double errors[2];
-    const PathJoints coming = last_reversal(reversal, before, point.command);
-    if (!arm_.correct(wanted, coming, point.command, errors) ||
-        (point.command - before).cwiseAbs().maxCoeff() > settings_.max_joint_step)
-      return false;
+    point.coming = approach_on_the_way(coming, before, point.command);
+    bool found = arm_.correct(wanted, point.coming, point.command, errors);
+    // the direction of a joint that hardly moves shows in the command only
+    const PathJoints now = approach_on_the_way(coming, before, point.command);
+    if (found && !now.isApprox(point.coming, 1e-12)) {
+      point.coming = now;
+      found = arm_.correct(wanted, point.coming, point.command, errors);
+    }
+    if (!found || (point.command - before).cwiseAbs().maxCoeff() > settings_.max_joint_step) return false;
     point.position_error = errors[0];
     point.rotation_error = errors[1];
-    worst = std::max(worst, worst_ratio(reversal, before, point.command, at, wanted, point.deviation));
-    reversal = coming;
+    worst = std::max(worst, worst_ratio(coming, before, point.command, at, wanted, point.deviation));
+    coming = point.coming;
     deviation = std::max(deviation, point.deviation);
     before = point.command;
     at = wanted;
@@ -228,6 +238,7 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
   const PathGoal& goal = goals_[static_cast<std::size_t>(target)];
   const PathJoints from = before != nullptr ? before->command : settings_.start;
   SolvedPoint point{state.joints, target, false, state.jump ? PointStatus::jump : PointStatus::met, 0, 0};
+  point.coming = from;
   double errors[2];
   const bool found = arm_.correct(goal.pose, from, point.command, errors);
   point.position_error = errors[0];
@@ -238,7 +249,7 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
       if (before != nullptr) point.status = PointStatus::jump;  // the line does not begin at its target
     } else {
       const Isometry3& start = goals_[static_cast<std::size_t>(target - 1)].pose;
-      const double ratio = worst_ratio(from, from, point.command, start, goal.pose, point.deviation);
+      const double ratio = worst_ratio(before->coming, from, point.command, start, goal.pose, point.deviation);
       point.ends_only = point.deviation;
       out.before = std::max(out.before, point.deviation);
       const double change = (point.command - from).cwiseAbs().maxCoeff();
@@ -246,14 +257,22 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
       int pieces = std::isfinite(ratio) ? static_cast<int>(std::ceil(std::sqrt(std::min(ratio, 1e6)))) : 8;
       pieces = std::max(pieces, static_cast<int>(std::ceil(change / settings_.max_joint_step)));
       if (pieces > 1) {
-        std::vector<SolvedPoint> line;
+        std::vector<SolvedPoint> line, finer;
         double worst = 0, deviation = 0;
         bool complete = false;
-        for (pieces = std::min(pieces, settings_.max_inserted + 1);;
-             pieces = std::min(2 * pieces, settings_.max_inserted + 1)) {
-          line.clear();
-          complete = fill_line(from, point.command, start, goal.pose, pieces, line, worst, deviation);
+        for (pieces = std::min(pieces, settings_.max_inserted + 1);;) {
+          double finer_worst = 0, finer_deviation = 0;
+          finer.clear();
+          const bool filled = fill_line(before->coming, from, point.command, start, goal.pose, pieces, finer,
+                                        finer_worst, finer_deviation);
+          if (filled && (!complete || finer_worst < worst)) {  // the ripple of gears does not shrink at once
+            line.swap(finer);
+            worst = finer_worst;
+            deviation = finer_deviation;
+            complete = true;
+          }
           if ((complete && worst <= 1) || pieces == settings_.max_inserted + 1) break;
+          pieces = std::min(2 * pieces, settings_.max_inserted + 1);
         }
         if (complete) {
           for (SolvedPoint& one : line) one.target = target;
@@ -282,7 +301,7 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
     if (std::isfinite(settings_.lower(j) + settings_.upper(j)))
       near(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
   if (started) near = settings_.start;
-  const std::vector<PathState> beginning{{near, 0, 0, 0, -1, false}};
+  const std::vector<PathState> beginning{{near, 0, 0, -1, false}};
 
   std::size_t last = n;
   for (std::size_t k = 0; k < n; ++k) {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "correction_report.hpp"
 #include "dispatch.hpp"
-#include "figures.hpp"
 #include "json_file.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/data/csv.hpp"
@@ -34,28 +34,6 @@ struct Settings {
   std::optional<double> temperature{};
   double tolerance_mm = 0.05, max_step_deg = 30;
   std::vector<double> start{};
-};
-
-/// One row of the output.
-struct Row {
-  std::vector<double> command;
-  vn::Index target;  ///< counted from 1
-  std::string kind, status;
-  double error, rotation, deviation, ends_only, gate;
-  vn::SingularityDistances singularities;
-  double radius = std::nan("");
-};
-
-/// What became of the targets.
-struct CorrectionReport {
-  std::string robot{};                  ///< name in the model
-  std::vector<vn::JointType> joints{};  ///< types of its joints
-  std::vector<Row> rows{};              ///< commands
-  vn::Index targets = 0;                ///< number of targets
-  bool linear = false;                  ///< whether there are linear moves
-  double before = 0, after = 0;         ///< largest deviation from them [m]
-  std::optional<double> temperature{};  ///< for which commands are corrected [deg C], where that matters
-  bool clamped = false;                 ///< whether the temperature asked for is not that
 };
 
 const char* words(vn::PointStatus status) {
@@ -122,50 +100,60 @@ void with_branches(const vn::CalibratedRobot<N>& robot, const Use& use) {
   use(nullptr);
 }
 
+/// The row of a target without any command.
+template <int N>
+support::CommandRow no_command(vn::Index target, vn::PointStatus status) {
+  const double none = std::nan("");
+  return {std::vector<double>(N, none), target, "target", words(status), none, none, 0, 0, 1, {}};
+}
+
 /// All branches of each target.
 template <int N, class Roots>
 void list_branches(const vn::CalibratedRobot<N>& robot, const Roots& roots,
-                   const std::vector<vn::PathTarget<N>>& targets, CorrectionReport& report) {
+                   const std::vector<vn::PathTarget<N>>& targets, support::CorrectionReport& report) {
   for (const auto& target : targets) {
     const vn::Index number = static_cast<vn::Index>(&target - targets.data()) + 1;
     vn::BranchOptions<N> options{.limits = robot.limits()};
     if (target.joints.allFinite()) options.near = target.joints;
     const vn::Branches<N> found = vn::all_branches(roots, robot, target.pose, options);
-    for (const auto& b : found)
+    std::vector<vn::Branch<N>> sorted(found.begin(), found.end());
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const auto& a, const auto& b) { return a.singularities.branch() < b.singularities.branch(); });
+    for (const auto& b : sorted) {
+      const auto links = robot.nominal().chain().links(b.joints);
+      std::vector<vn::Vector3> points;
+      for (int j = 0; j < N; ++j) points.push_back(robot.nominal().base() * vn::Vector3(links.point.col(j)));
+      points.push_back(robot.nominal().position(b.joints));
       report.rows.push_back({list(b.joints), number, vn::message("branch ", b.singularities.branch()),
                              words(b.within_limits ? vn::PointStatus::met : vn::PointStatus::beyond_limits),
-                             b.position_error, b.rotation_error, 0, 0, robot.gate(b.joints), b.singularities});
+                             b.position_error, b.rotation_error, 0, 0, robot.gate(b.joints), b.singularities, points});
+    }
     if (found.count == 0)
-      report.rows.push_back(
-          {std::vector<double>(N, std::nan("")),
-           number,
-           "target",
-           words(found.reach == vn::Reach::proven_out ? vn::PointStatus::proven_out : vn::PointStatus::not_found),
-           std::nan(""),
-           std::nan(""),
-           0,
-           0,
-           1,
-           {}});
+      report.rows.push_back(no_command<N>(number, found.reach == vn::Reach::proven_out ? vn::PointStatus::proven_out
+                                                  : found.reach == vn::Reach::invalid_target
+                                                      ? vn::PointStatus::invalid_target
+                                                      : vn::PointStatus::not_found));
   }
 }
 
 /// Corrects all targets.
 /// @throws vn::DataError on a malformed file
 template <int N>
-CorrectionReport correct_arm(const Settings& settings) {
+support::CorrectionReport correct_arm(const Settings& settings) {
   const vn::CalibratedRobot<N> saved = vn::load<N>(settings.model);
   const vn::CalibratedRobot<N> robot = settings.temperature ? saved.at_temperature(*settings.temperature) : saved;
   const std::vector<vn::PathTarget<N>> targets = read_targets(settings, robot);
-  CorrectionReport report{.robot = robot.name(),
-                          .joints = list(robot.nominal().chain().joint_types()),
-                          .targets = static_cast<vn::Index>(targets.size())};
+  support::CorrectionReport report{.robot = robot.name(),
+                                   .joints = list(robot.nominal().chain().joint_types()),
+                                   .targets = static_cast<vn::Index>(targets.size())};
   if (const vn::ThermalRates* thermal = robot.model().thermal()) {
     report.temperature = thermal->reference;
     report.clamped = settings.temperature && *settings.temperature != thermal->reference;
   } else if (settings.temperature) {
     report.clamped = true;
   }
+  report.temperature_given = settings.temperature.has_value();
+  report.branches = settings.branches;
   vn::PathOptions<N> options{.limits = robot.limits(),
                              .tolerance = settings.tolerance_mm * 1e-3,
                              .max_joint_step = settings.max_step_deg * std::numbers::pi / 180,
@@ -194,60 +182,23 @@ CorrectionReport correct_arm(const Settings& settings) {
   vn::JointRows<N> commands(static_cast<vn::Index>(path.points.size()), N);
   for (const auto& p : path.points) {
     commands.row(static_cast<vn::Index>(report.rows.size())) = p.command.transpose();
-    report.rows.push_back({list(p.command), p.target + 1, p.inserted ? "inserted" : "target", words(p.status),
-                           p.position_error, p.rotation_error, p.deviation, p.ends_only, p.gate, p.singularities});
+    report.rows.push_back({list(p.command),
+                           p.target + 1,
+                           p.inserted ? "inserted" : "target",
+                           words(p.status),
+                           p.position_error,
+                           p.rotation_error,
+                           p.deviation,
+                           p.ends_only,
+                           p.gate,
+                           p.singularities,
+                           {}});
   }
   if (settings.radius && !settings.branches && saved.estimate() != nullptr) {
     const std::vector<double> radii = robot.radii_95(commands);
     for (std::size_t i = 0; i < radii.size(); ++i) report.rows[i].radius = radii[i];
   }
   return report;
-}
-
-/// The commands as CSV: columns q1_rad .. (q1_m for a prismatic joint), then what became of each.
-std::string csv(const CorrectionReport& report) {
-  std::string text;
-  for (std::size_t j = 0; j < report.joints.size(); ++j)
-    text += vn::message("q", j + 1, report.joints[j] == vn::JointType::revolute ? "_rad," : "_m,");
-  text +=
-      "status,predicted_error_mm,gate,target,point,predicted_rotation_mrad,deviation_mm,radius95_mm,"
-      "singularity,singularity_deg\n";
-  for (const Row& row : report.rows) {
-    for (const double q : row.command) text += vn::message(q, ',');
-    text +=
-        vn::message(row.status, ',', row.error * 1e3, ',', row.gate, ',', row.target, ',', row.kind, ',',
-                    row.rotation * 1e3, ',', row.deviation * 1e3, ',', row.radius * 1e3, ',',
-                    row.singularities.nearest(), ',', row.singularities.nearest_angle() * 180 / std::numbers::pi, '\n');
-  }
-  return text;
-}
-
-/// Deviation of linear moves over the targets, before and after.
-bool plot_deviation(const std::filesystem::path& path, const CorrectionReport& report) {
-  support::Series before{"ends corrected alone", {}, {}, support::Style::steps}, after{"with inserted points", {}, {}};
-  double position = 0;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < report.rows.size(); ++i) {
-    if (report.rows[i].kind != "target") continue;
-    const auto pieces = static_cast<double>(i - first + 1);
-    for (std::size_t k = first; k <= i; ++k) {
-      position = static_cast<double>(report.rows[i].target - 1) + static_cast<double>(k - first + 1) / pieces;
-      after.x.push_back(position);
-      after.y.push_back(report.rows[k].deviation * 1e3);
-    }
-    before.x.push_back(position);
-    before.y.push_back(report.rows[i].ends_only * 1e3);
-    first = i + 1;
-  }
-  bool any = false;
-  for (support::Series* series : {&before, &after})
-    for (double& y : series->y) {
-      if (!(y > 0)) y = std::nan("");  // joint moves have no line
-      any = any || std::isfinite(y);
-    }
-  if (!any) return false;
-  return support::plot_svg(path, "Deviation of the tool from its lines, as the model predicts", "target",
-                           "deviation [mm]", {before, after}, {.log_y = true});
 }
 
 int run(support::Program& program) {
@@ -292,85 +243,19 @@ int run(support::Program& program) {
   if (settings.out.empty()) throw support::UsageError("--out is required");
   support::require_writable(settings.out);
 
-  const CorrectionReport report =
+  const support::CorrectionReport report =
       support::dispatch_dof(vn::saved_arm(settings.model).dof, [&](auto n) { return correct_arm<n()>(settings); });
-  vn::write_file(settings.out, csv(report));
+  vn::write_file(settings.out, support::correction_csv(report));
 
-  std::vector<vn::Index> missed, displaced;
-  vn::Index met = 0, extrapolated = 0, inserted = 0, not_found = 0, proven_out = 0, jumps = 0;
-  double mean = 0, largest = 0, counted = 0;
-  std::vector<bool> reached(static_cast<std::size_t>(report.targets) + 1, false);
-  for (const Row& row : report.rows) {
-    if (row.status == "converged" && row.kind != "inserted") reached[static_cast<std::size_t>(row.target)] = true;
-    if (std::isfinite(row.error)) {
-      mean += row.error * 1e3;
-      largest = std::max(largest, row.error * 1e3);
-      ++counted;
-    }
-    inserted += row.kind == "inserted" ? 1 : 0;
-    if (row.kind == "inserted") continue;
-    extrapolated += row.gate < 1 ? 1 : 0;
-    not_found += row.status == "not_found" ? 1 : 0;
-    proven_out += row.status == "proven_out" ? 1 : 0;
-    jumps += row.status == "jump" ? 1 : 0;
-    if (row.status == "jump" || row.status == "off_path") displaced.push_back(row.target);
-  }
-  mean /= std::max(counted, 1.0);
-  for (vn::Index i = 1; i <= report.targets; ++i) {
-    const bool moved = std::find(displaced.begin(), displaced.end(), i) != displaced.end();
-    met += reached[static_cast<std::size_t>(i)] ? 1 : 0;
-    if (!reached[static_cast<std::size_t>(i)] && !moved) missed.push_back(i);
-  }
-  fmt::print("{}: {} of {} targets corrected; the model predicts errors of {:.2g} mm (mean), {:.2g} mm (largest)\n",
-             report.robot, met, report.targets, mean, largest);
-  if (report.linear)
-    fmt::print(
-        "Linear moves: the tool leaves their lines by {:.2g} mm at most, with {} points inserted; by {:.2g} mm "
-        "without\n",
-        report.after * 1e3, inserted, report.before * 1e3);
-  if (report.temperature)
-    fmt::print("Corrected for {:.4g} deg C{}\n", *report.temperature,
-               report.clamped         ? ", the nearest that was measured"
-               : settings.temperature ? ""
-                                      : ", the mean of the measurements");
-  else if (report.clamped)
-    fmt::print("The model does not change with temperature; --temperature-c has no effect\n");
-  if (extrapolated > 0)
-    fmt::print("{} of them lie outside the measured joint ranges, where the learned part fades out\n", extrapolated);
+  const support::CorrectionTotals totals = support::totals(report);
+  support::print_correction(report, totals);
   fmt::print("Commands: {}\n", settings.out);
-  if (report.linear) {
-    const auto figure = std::filesystem::path(settings.out).replace_extension(".svg");
-    if (plot_deviation(figure, report)) fmt::print("Deviation along the path: {}\n", figure.string());
-  }
+  const auto figure = std::filesystem::path(settings.out).replace_extension(".svg");
+  if (support::draw_correction(figure, report)) fmt::print("Figure: {}\n", figure.string());
   if (!program.common().json.empty())
-    support::write_json(program.common().json,
-                        {{"robot", report.robot},
-                         {"targets", report.targets},
-                         {"points", report.rows.size()},
-                         {"inserted", inserted},
-                         {"corrected", met},
-                         {"met", met},
-                         {"not_found", not_found},
-                         {"proven_out", proven_out},
-                         {"jumps", jumps},
-                         {"missed_rows", missed},
-                         {"extrapolated", extrapolated},
-                         {"predicted_error", {{"mean_mm", mean}, {"max_mm", largest}}},
-                         {"max_residual_um", largest * 1e3},
-                         {"path", {{"before_max_mm", report.before * 1e3}, {"after_max_mm", report.after * 1e3}}}});
-  const auto rows = [](const std::vector<vn::Index>& numbers) {
-    std::string out;
-    for (std::size_t i = 0; i < numbers.size() && i < 5; ++i) out += fmt::format("{}{}", i ? ", " : "", numbers[i]);
-    return out + (numbers.size() > 5 ? ", ..." : "");
-  };
-  if (!missed.empty())
-    throw std::runtime_error(fmt::format("{} of {} targets cannot be met, their rows in {} say so: row {}",
-                                         missed.size(), report.targets, settings.out, rows(missed)));
-  if (!displaced.empty())
-    throw std::runtime_error(
-        fmt::format("{} of {} moves are not as asked: they leave their branch or their line; the "
-                    "rows in {} say so: target {}",
-                    displaced.size(), report.targets, settings.out, rows(displaced)));
+    support::write_json(program.common().json, support::correction_json(report, totals));
+  if (const std::string failure = support::correction_failure(report, totals, settings.out); !failure.empty())
+    throw std::runtime_error(failure);
   return 0;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 /// @file
-/// All of Vernier that needs Eigen alone. The library's own headers never include it.
+/// All of Vernier that needs Eigen alone, but for `kinematics/general_six_axis.hpp`, which few need and which takes long
+/// to compile. The library's own headers never include this one.
 
 #include "vernier/compensation/cartesian.hpp"
+#include "vernier/compensation/correct_path.hpp"
 #include "vernier/compensation/joint_space.hpp"
 #include "vernier/core/literals.hpp"
 #include "vernier/core/version.hpp"
@@ -13,6 +15,7 @@
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/identification/options.hpp"
+#include "vernier/kinematics/arm_angle_form.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/regression/back_propagation.hpp"

@@ -194,6 +194,48 @@ TEST_F(Csv, TargetsNeedJointsAlone) {
   EXPECT_DOUBLE_EQ(q(1, 1), -45 * degree);
 }
 
+TEST_F(Csv, ReadsTargetsOfAPath) {
+  const auto joints = vernier::read_targets<2>(file("q2_deg,q1_rad\n45,0.5\n-45,1\n"));
+  ASSERT_EQ(joints.size(), 2);
+  EXPECT_DOUBLE_EQ(joints.joints(0, 0), 0.5);
+  EXPECT_DOUBLE_EQ(joints.joints(1, 1), -45 * degree);
+  EXPECT_EQ(joints.positions.rows(), 0);
+  EXPECT_TRUE(joints.linear.empty());
+
+  const auto poses =
+      vernier::read_targets<2>(file("move,x_mm,y_mm,z_m,rx_rad,ry_rad,rz_deg\nj,1,2,3,0.1,0.2,45\n l ,4,5,6,0,0,0\n"));
+  ASSERT_EQ(poses.size(), 2);
+  EXPECT_EQ(poses.joints.rows(), 0);
+  EXPECT_EQ(poses.linear, (std::vector<bool>{false, true}));
+  EXPECT_LT((poses.positions.row(0) - Eigen::RowVector3d(0.001, 0.002, 3)).norm(), 1e-15);
+  EXPECT_LT((poses.orientations.row(0) - Eigen::RowVector3d(0.1, 0.2, 45 * degree)).norm(), 1e-15);
+
+  const auto both = vernier::read_targets<2>(file("q1_rad,q2_rad,x_mm,y_mm,z_mm\n0.1,0.2,1,2,3\n"));
+  EXPECT_EQ(both.joints.rows(), 1);
+  EXPECT_EQ(both.positions.rows(), 1);
+  EXPECT_EQ(both.orientations.rows(), 0);
+}
+
+TEST_F(Csv, MalformedTargetsAreNamed) {
+  const std::vector<std::pair<std::string, std::vector<const char*>>> files{
+      {"q1_rad\n1\n", {"no column q2_rad"}},
+      {"x_mm,y_mm\n1,2\n", {"no column z_mm"}},
+      {"x_mm,y_mm,z_mm,rx_rad\n1,2,3,4\n", {"no column ry_rad"}},
+      {"q1_rad,q2_rad,move\n1,2,j\n1,2,c\n", {"line 3", "move", "'c'", "j (joint move) or l (linear move)"}},
+      {"q1_rad,q2_rad,move\n1,2,\n", {"line 2", "move"}},
+      {"move,note\nj,a\n", {"no column q1_rad"}},
+  };
+  for (const auto& [content, words] : files) {
+    SCOPED_TRACE(content);
+    try {
+      (void)vernier::read_targets<2>(file(content));
+      ADD_FAILURE() << "no complaint";
+    } catch (const DataError& e) {
+      for (const char* word : words) EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    }
+  }
+}
+
 TEST_F(Csv, ReadsDistances) {
   const auto data = read_distances<2>(file("distance_mm,q2_deg,q1_rad\n1500,90,0.5\n\n2.5,0,1\n"));
   ASSERT_EQ(data.size(), 2);

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/error_model/error_model.hpp>
+#include <vernier/kinematics/all_branches.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/testing/kinematic_laws.hpp>
 
@@ -241,6 +242,35 @@ TEST(ErrorModel, WithoutCoverageHoldsEverywhere) {
     EXPECT_EQ(model.pose(q).matrix(), arm.pose(q).matrix());
   }
   EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(model, samples)));
+}
+
+// Nothing lies outside, and the sphere is no larger than the links: the stretched arm nearly touches it.
+TEST(ErrorModel, StaysWithinItsReach) {
+  vn::Rng rng(16);
+  for (int arm = 0; arm < 5; ++arm) {
+    const auto model = random_model(nominal, arm == 0 ? 1e-9 : 0.05, rng);
+    const vn::ReachSphere sphere = model.reach_sphere();
+    double farthest = 0;
+    for (int i = 0; i < 4000; ++i) {
+      vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+      if (i % 2 == 0) q = joints_in<6>(Zone::falling, rng);
+      farthest = std::max(farthest, (model.position(q) - sphere.centre).norm());
+    }
+    EXPECT_LE(farthest, sphere.radius);
+    EXPECT_GT(farthest, 0.6 * sphere.radius);
+    if (arm > 0) continue;
+    const double links = 0.29 + 0.27 + std::hypot(0.07, 0.0) + 0.302 + 0.072;
+    EXPECT_NEAR(sphere.radius, links + model.identified().tool().translation().norm(), 1e-5);
+
+    const vn::ClosedForm<6> closed_form(model.nominal());
+    vn::Isometry3 target = model.pose(vn::JointVector<6>::Zero());
+    target.translation() = sphere.centre + vn::Vector3(0, 0, sphere.radius + 1e-3);
+    const auto out = vn::all_branches(closed_form, model, target);
+    EXPECT_EQ(out.reach, vn::Reach::proven_out);
+    EXPECT_NEAR(out.margin, 1e-3, 1e-9);
+    target.translation().z() -= 2e-3;
+    EXPECT_EQ(vn::all_branches(closed_form, model, target).reach, vn::Reach::not_found);
+  }
 }
 
 TEST(ErrorModel, KnowsTheNominalArmInItsFrames) {

@@ -6,6 +6,9 @@
 #include <numbers>
 #include <string>
 #include <vernier/compensation/compensated.hpp>
+#include <vernier/core/rng.hpp>
+#include <vernier/core/so3.hpp>
+#include <vernier/evaluation/quantile.hpp>
 #include <vernier/evaluation/statistics.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>
@@ -37,6 +40,27 @@ TEST(ErrorStatistics, QuantilesInterpolate) {
   EXPECT_DOUBLE_EQ(e.p95, 6 + 0.85 * 2);
   // 0 .. 100 has its quantiles at their own names
   EXPECT_NEAR(ErrorStatistics::of(VectorX::LinSpaced(101, 100, 0)).p95, 95, 1e-12);
+}
+
+// Quantiles of the chi-square distribution (1, 2 and 3 degrees of freedom: 3.841459, 5.991465, 7.814728) where the
+// approximation by two moments is exact but for Wilson and Hilferty's, and shares of samples elsewhere.
+TEST(Radius95, ContainsNinetyFivePerCent) {
+  EXPECT_NEAR(radius_95(Matrix3::Identity()), std::sqrt(7.814728), 2e-3 * 2.8);
+  EXPECT_NEAR(radius_95(Vector3(4, 4, 0).asDiagonal()), 2 * std::sqrt(5.991465), 4e-3 * 4.9);
+  EXPECT_NEAR(radius_95(Vector3(0, 9, 0).asDiagonal()), 3 * std::sqrt(3.841459), 2e-2 * 5.9);
+  EXPECT_EQ(radius_95(Matrix3::Zero()), 0);
+  EXPECT_TRUE(std::isnan(radius_95(-Matrix3::Identity())));
+  Rng rng(5);
+  for (const Vector3& sigma : {Vector3(1, 2, 3), Vector3(1, 1, 4), Vector3(0.1, 2, 2)}) {
+    Matrix3 turn = exp_so3(Vector3(0.3, -0.5, 0.9));
+    const Matrix3 covariance = turn * sigma.cwiseAbs2().asDiagonal() * turn.transpose();
+    const double radius = radius_95(covariance);
+    int inside = 0;
+    constexpr int samples = 40000;
+    for (int i = 0; i < samples; ++i)
+      inside += (sigma.cwiseProduct(Vector3(rng.normal(), rng.normal(), rng.normal()))).norm() < radius;
+    EXPECT_NEAR(inside / double(samples), 0.95, 0.008) << sigma.transpose();
+  }
 }
 
 TEST(ErrorStatistics, OneErrorIsAllOfThem) {

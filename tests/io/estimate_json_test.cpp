@@ -82,6 +82,29 @@ TEST(EstimateJson, KeepsTheCovarianceInSinglePrecision) {
   }
 }
 
+// Each command comes from the one before it; a row that is not finite has no radius, and the next one no known
+// approach.
+TEST(EstimateJson, RadiiOfCommandsFollowFromTheCovariance) {
+  const auto arm = example(5);
+  JointRows<6> commands = sample_joints(robot.limits, 140, 9);
+  commands(70, 3) = std::nan("");
+  const std::vector<double> radii = arm.radii_95(commands);
+  ASSERT_EQ(radii.size(), 140u);
+  for (const Index i : {0, 1, 63, 64, 69, 71, 139}) {
+    const VectorX q = commands.row(i).transpose(), previous = i == 0 || i == 71
+                                                                  ? VectorX::Constant(6, std::nan(""))
+                                                                  : VectorX(commands.row(i - 1).transpose());
+    const Matrix6 covariance =
+        arm.estimate()->visit_covariance(q, arm.gate(commands.row(i).transpose()), 0, previous, 21);
+    const double expected = radius_95(covariance.topLeftCorner<3, 3>());
+    EXPECT_NEAR(radii[static_cast<std::size_t>(i)], expected, 1e-12 * expected) << i;
+  }
+  EXPECT_TRUE(std::isnan(radii[70]));
+
+  const CalibratedRobot<6> without("an arm", arm.model(), robot.limits, {});
+  EXPECT_THROW((void)without.radii_95(commands), std::invalid_argument);
+}
+
 // The files of arms with thousands of unknowns are below 10 MB; what is left out are correlations of the highest
 // orders.
 TEST(EstimateJson, LargeOnesAreThinned) {

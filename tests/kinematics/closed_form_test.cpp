@@ -701,5 +701,31 @@ TEST(OutOfReach, MarginSaysByHowMuch) {
   EXPECT_TRUE(std::isfinite(far.nearest_margin));
 }
 
+// Joint values and tool positions of a UR10 in the manufacturer's simulator, as published with the driver's calibration
+// tests (Universal_Robots_ROS2_Driver, ur_calibration/test/calibration_test.cpp).
+TEST(ClosedForm, AgreesWithTheSimulatorOfUniversalRobots) {
+  const auto arm = robots::ur10().chain;
+  const ClosedForm<6> form(arm);
+  const JointVector<6> joints[] = {{-1.60070020357240840, -1.72710019746888930, -2.20299989381890530,
+                                    -0.807999912892476860, 1.59510004520416260, -0.0309999624835413101},
+                                   {1.32645022869110107, 2.42600774765014648, 5.95157289505004883, 1.27409040927886963,
+                                    -0.541052166615621388, 0.122173048555850983}};
+  const Vector3 positions[] = {{-0.179925914147547, -0.606869755162764, 0.230789102067257},
+                               {0.399229880032804, 0.596883650693405, -0.667781904037628}};
+  for (int i = 0; i < 2; ++i) {
+    SCOPED_TRACE(i);
+    Isometry3 target = arm.pose(joints[i]);
+    EXPECT_LT((target.translation() - positions[i]).norm(), 1e-9);
+    target.translation() = positions[i];  // what the simulator printed
+    double nearest = 9;
+    for (const auto& root : form.roots(target)) {
+      EXPECT_EQ(root.margin, 0);
+      EXPECT_LT((arm.position(root.joints) - positions[i]).norm(), 1e-12);
+      nearest = std::min(nearest, joint_difference<6>(root.joints, joints[i]));
+    }
+    EXPECT_LT(nearest, 1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace vernier::closed_form_test

@@ -112,6 +112,16 @@ class ErrorModel {
   const Framed<Chain>& nominal() const { return nominal_; }
   /// The arm that is valid outside the measured joint ranges; null where `identified` is valid everywhere.
   const Arm* fallback() const { return outside_ ? &outside_->arm : nullptr; }
+  /// A sphere that contains every position of its tool, whatever the joints.
+  ReachSphere reach_sphere() const {
+    ReachSphere out = vernier::reach_sphere(identified_);
+    if (fallback() != nullptr) {  // positions are blended
+      const ReachSphere other = vernier::reach_sphere(*fallback());
+      out.radius = std::max(out.radius, other.radius) + (out.centre - other.centre).norm();
+    }
+    out.radius *= 1 + 1e-6;  // tilts are rotations to first order
+    return out;
+  }
   /// The measured joint ranges; null where `identified` is valid everywhere.
   const JointCoverage<dof>* coverage() const { return outside_ ? &outside_->coverage : nullptr; }
 

@@ -96,16 +96,16 @@ VERNIER_API std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& esti
   const Index n = joints.rows(), unknowns = estimate.arm.size();
   rows.resize(static_cast<std::size_t>(n));
   estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer);
-  MatrixX all(6 * n, unknowns), half = MatrixX::Zero(6 * n, unknowns);
+  MatrixX all(unknowns, 6 * n), half = MatrixX::Zero(unknowns, 6 * n);  // the rows of each pose are contiguous columns
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {
     rows[static_cast<std::size_t>(i)].expand(estimate.arm.group_sizes(), one);
-    all.middleRows(6 * i, 6) = one;
+    all.middleCols(6 * i, 6) = one.transpose();
   }
-  add_product(half, all, estimate.covariance);
+  add_product(half, estimate.covariance, all);
   std::vector<Matrix6> out;
   for (Index i = 0; i < n; ++i)
-    out.push_back(half.middleRows(6 * i, 6).lazyProduct(all.middleRows(6 * i, 6).transpose()));
+    out.push_back(half.middleCols(6 * i, 6).transpose().lazyProduct(all.middleCols(6 * i, 6)));
   return out;
 }
 

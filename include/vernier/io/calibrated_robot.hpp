@@ -128,6 +128,13 @@ class CalibratedRobot {
     return corrected_ ? std::min(corrected_->gate(q), model_.gate(q)) : model_.gate(q);
   }
 
+  /// A sphere that contains every position of its tool; none is known where a position error was learned.
+  ReachSphere reach_sphere() const {
+    ReachSphere out = model_.reach_sphere();
+    if (corrected_) out.radius = std::numeric_limits<double>::infinity();
+    return out;
+  }
+
   /// The pose the arm takes when commanded q.
   Isometry3 predict(const JointVector<N>& q) const noexcept { return pose(q); }
   /// The command that brings the arm where the nominal one would be at q, in the middle of both directions of approach.

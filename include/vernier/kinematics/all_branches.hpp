@@ -91,6 +91,8 @@ JointVector<N> nearest_turns(const JointVector<N>& joints, const JointVector<N>&
 /// @param model   any kinematic model near the nominal arm, e.g. by 1 mm and a few mrad
 /// @param target  base_T_tool in the frames of the model
 /// @param options limits, turns
+/// @return        the branches; where there are none, a target farther away than the arm is long is `proven_out`: of a
+///                geometric arm, and of a model that has `reach_sphere()`
 /// @complexity    the roots, and per branch three evaluations of pose and Jacobian; no allocation
 /// @cite Kantorovich and Akilov 1982
 template <BranchRoots Roots, KinematicModel M>
@@ -112,14 +114,9 @@ template <BranchRoots Roots, KinematicModel M>
       std::copy_n(at.jacobian.data() + 6 * moving.index[static_cast<std::size_t>(k)], 6, jacobian + 6 * k);
   };
   constexpr bool geometric = NominalArm<M>;
-  const detail::SixAxes axes = [&] {
-    if constexpr (geometric) {
-      HeldJoint held = moving.held;
-      if (held.joint >= 0 && roots.count > 0) held.value = roots.roots[0].joints(held.joint);
-      return detail::six_axes_of(model, held);
-    } else {
-      return nominal.axes();
-    }
+  const double length = [&] {
+    if constexpr (geometric) return detail::arm_length(detail::arm_axes(model));
+    return nominal.arm_length();
   }();
   const detail::BranchProblem problem{N,
                                       moving.index,
@@ -129,7 +126,7 @@ template <BranchRoots Roots, KinematicModel M>
                                       options.limits.upper.data(),
                                       options.near.data(),
                                       options.rotation_length,
-                                      detail::lipschitz_bound(axes, options.rotation_length)};
+                                      detail::lipschitz_bound(length, options.rotation_length)};
 
   detail::BranchSet found;
   for (const InverseRoot<N>& root : roots) found.refine(problem, root.joints.data(), root.margin);
@@ -157,11 +154,16 @@ template <BranchRoots Roots, KinematicModel M>
   } else {
     out.margin = roots.nearest_margin;
     for (const InverseRoot<N>& root : roots) out.margin = std::min(out.margin, root.margin);
+    double excess = 0;
     if constexpr (geometric) {
-      if (const double excess = detail::reach_excess(axes, target); excess > 0) {
-        out.reach = Reach::proven_out;
-        out.margin = excess;
-      }
+      excess = detail::reach_excess(detail::arm_axes(model), target);
+    } else if constexpr (requires { model.reach_sphere(); }) {
+      const ReachSphere sphere = model.reach_sphere();
+      excess = (target.translation() - sphere.centre).norm() - sphere.radius;
+    }
+    if (excess > 0) {
+      out.reach = Reach::proven_out;
+      out.margin = excess;
     }
   }
   return out;

@@ -83,29 +83,42 @@ struct MovingJoints {
   }
 };
 
+/// The axes of all joints of an arm at joint values.
+/// @throws std::invalid_argument for prismatic joints
+template <NominalArm Arm>
+ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Arm::dof>::Zero()) {
+  const auto framed = in_frames(arm);
+  const auto& chain = framed.model();
+  for (int i = 0; i < Arm::dof; ++i)
+    require(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
+  const auto links = chain.links(q);
+  ArmAxes out{ArmAxes::Columns(3, Arm::dof), ArmAxes::Columns(3, Arm::dof), framed.pose(q)};
+  for (int i = 0; i < Arm::dof; ++i) {
+    out.direction.col(i) = framed.base().linear() * links.axis.col(i);
+    out.point.col(i) = framed.base() * Vector3(links.point.col(i));
+  }
+  return out;
+}
+
 /// The axes of an arm's moving joints.
 /// @throws std::invalid_argument for a held joint that the arm does not have, and for prismatic joints
 template <NominalArm Arm>
 SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
   constexpr int N = Arm::dof;
   static_assert(N == 6 || N == 7, "closed forms move six joints; of seven, one is held");
-  const auto framed = in_frames(arm);
-  const auto& chain = framed.model();
   require(N == 6 ? held.joint < 0 : held.joint >= 0 && held.joint < N, "ClosedForm: no joint ", held.joint + 1,
           " to be held");
-  for (int i = 0; i < N; ++i)
-    require(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
   JointVector<N> q = JointVector<N>::Zero();
   if (held.joint >= 0) q(held.joint) = held.value;
-  const auto links = chain.links(q);
+  const ArmAxes all = arm_axes(arm, q);
   SixAxes out;
   const MovingJoints<N> moving(held);
   for (int k = 0; k < 6; ++k) {
     const int i = moving.index[static_cast<std::size_t>(k)];
-    out.direction.col(k) = framed.base().linear() * links.axis.col(i);
-    out.point.col(k) = framed.base() * Vector3(links.point.col(i));
+    out.direction.col(k) = all.direction.col(i);
+    out.point.col(k) = all.point.col(i);
   }
-  out.tool = framed.pose(q);
+  out.tool = all.tool;
   return out;
 }
 
@@ -133,12 +146,16 @@ class ClosedForm {
   template <NominalArm Arm>
     requires(N == 6 && Arm::dof == 6)
   explicit ClosedForm(const Arm& nominal, double tolerance = 1e-6)
-      : moving_(HeldJoint{-1, 0}), arm_(detail::six_axes_of(nominal, moving_.held), tolerance) {}
+      : moving_(HeldJoint{-1, 0}),
+        arm_(detail::six_axes_of(nominal, moving_.held), tolerance),
+        length_(detail::arm_length(detail::arm_axes(nominal))) {}
   /// The same with one of seven joints held.
   template <NominalArm Arm>
     requires(N == 7 && Arm::dof == 7)
   ClosedForm(const Arm& nominal, HeldJoint held, double tolerance = 1e-6)
-      : moving_(held), arm_(detail::six_axes_of(nominal, held), tolerance) {}
+      : moving_(held),
+        arm_(detail::six_axes_of(nominal, held), tolerance),
+        length_(detail::arm_length(detail::arm_axes(nominal))) {}
 
   /// All joint values with which the nominal arm is at a pose; does not allocate.
   /// @param target base_T_tool, a proper rigid motion
@@ -158,18 +175,19 @@ class ClosedForm {
   int held_joint() const { return moving_.held.joint; }
   /// Whether it is solved from the tool to the base.
   bool mirrored() const { return arm_.mirrored(); }
-  /// Axes of the six moving joints.
-  const detail::SixAxes& axes() const { return arm_.axes(); }
+  /// Sum of the lengths of its links [m].
+  double arm_length() const { return length_; }
 
  private:
   detail::MovingJoints<N> moving_;
   detail::ClosedFormArm arm_;
+  double length_;
 };
 
-/// Joint values of a nominal arm at a pose: what `all_branches` starts from. `ClosedForm` and `GeneralSixAxis` are
-/// such.
+/// Joint values of a nominal arm at a pose: what `all_branches` starts from. `ClosedForm`, `ArmAngleForm` and
+/// `GeneralSixAxis` are such.
 ///
-/// - `roots(target, near, width)`, `distances(q)`, `held_joint()`: see `ClosedForm`
+/// - `roots(target, near, width)`, `distances(q)`, `held_joint()`, `arm_length()`: see `ClosedForm`
 template <class S>
 concept BranchRoots = requires(const S& solver, const Isometry3& target, const JointVector<S::dof>& q) {
   { solver.roots(target, q, 0.0) }
@@ -177,6 +195,7 @@ concept BranchRoots = requires(const S& solver, const Isometry3& target, const J
   { solver.distances(q) }
   noexcept->std::same_as<SingularityDistances>;
   { solver.held_joint() } -> std::convertible_to<int>;
+  { solver.arm_length() } -> std::convertible_to<double>;
 };
 
 /// Of six joints.

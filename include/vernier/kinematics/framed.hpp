@@ -3,6 +3,8 @@
 /// @file
 /// Base and tool frames around any kinematic model.
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -221,6 +223,23 @@ class Framed {
   Model model_;
   FrameParameters base_, tool_;
 };
+
+/// A sphere that contains every position of a tool.
+struct ReachSphere {
+  Vector3 centre;  ///< base frame [m]
+  double radius;   ///< [m]; infinite where none is known
+};
+
+/// Around the first axis, by the lengths of all links: joint errors do not change them.
+template <class Model>
+ReachSphere reach_sphere(const Framed<Model>& arm) {
+  ReachSphere out{arm.base().translation(), arm.tool().translation().norm()};
+  for (int i = 0; i < Framed<Model>::dof; ++i) {
+    const DhRow& row = arm.chain().row(i);
+    out.radius += row.joint == JointType::revolute ? std::hypot(row.a, row.d) : std::numeric_limits<double>::infinity();
+  }
+  return out;
+}
 
 }  // namespace vernier
 

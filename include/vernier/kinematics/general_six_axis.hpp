@@ -25,11 +25,16 @@ class GeneralSixAxis {
   template <NominalArm Arm>
     requires(N == 6 && Arm::dof == 6)
   explicit GeneralSixAxis(const Arm& nominal)
-      : moving_(HeldJoint{-1, 0}), axes_(detail::six_axes_of(nominal, moving_.held)) {}
+      : moving_(HeldJoint{-1, 0}),
+        axes_(detail::six_axes_of(nominal, moving_.held)),
+        length_(detail::arm_length(detail::arm_axes(nominal))) {}
   /// The same with one of seven joints held.
   template <NominalArm Arm>
     requires(N == 7 && Arm::dof == 7)
-  GeneralSixAxis(const Arm& nominal, HeldJoint held) : moving_(held), axes_(detail::six_axes_of(nominal, held)) {}
+  GeneralSixAxis(const Arm& nominal, HeldJoint held)
+      : moving_(held),
+        axes_(detail::six_axes_of(nominal, held)),
+        length_(detail::arm_length(detail::arm_axes(nominal))) {}
 
   /// All joint values with which the nominal arm is at a pose. Does not allocate.
   /// @param target base_T_tool, a proper rigid motion
@@ -44,12 +49,13 @@ class GeneralSixAxis {
   }
   /// The joint that is held; -1 where all move.
   int held_joint() const { return moving_.held.joint; }
-  /// Axes of the six moving joints.
-  const detail::SixAxes& axes() const { return axes_; }
+  /// Sum of the lengths of its links [m].
+  double arm_length() const { return length_; }
 
  private:
   detail::MovingJoints<N> moving_;
   detail::SixAxes axes_;
+  double length_;
 };
 
 /// Of six joints.

@@ -63,9 +63,10 @@ struct BranchSet {
   VERNIER_API void complete(const BranchProblem& problem) noexcept;
 };
 
-/// Bound of the Lipschitz constant of the derivative of a geometric arm's error, rotations weighted as lengths.
+/// Bound of the Lipschitz constant of the derivative of the error of a geometric arm that is so long, rotations
+/// weighted as lengths.
 /// @cite Kantorovich and Akilov 1982
-VERNIER_API double lipschitz_bound(const SixAxes& arm, double rotation_length) noexcept;
+VERNIER_API double lipschitz_bound(double arm_length, double rotation_length) noexcept;
 /// Whether a target is finite and its linear part a rotation, to 1e-9.
 VERNIER_API bool is_pose(const Isometry3& target) noexcept;
 /// A sentence for a target.

@@ -28,7 +28,7 @@ struct BranchIterate {
 };
 
 /// Inverse of a matrix, by Gauss-Jordan elimination with row pivoting; entries that are not finite for a singular one.
-inline void invert(const Matrix6& matrix, Matrix6& out) noexcept {
+VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
   Matrix6 a = matrix;
   out.setIdentity();
   for (int k = 0; k < 6; ++k) {
@@ -80,9 +80,9 @@ VERNIER_IMPL bool is_pose(const Isometry3& target) noexcept {
          r.determinant() > 0;
 }
 
-VERNIER_IMPL double lipschitz_bound(const SixAxes& arm, double rotation_length) noexcept {
+VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) noexcept {
   // Each second derivative of a revolute arm is at most as long as the arm; twice that covers the rotation's logarithm.
-  return 2 * 6 * std::hypot(arm_length(arm), rotation_length);
+  return 2 * 6 * std::hypot(arm_length, rotation_length);
 }
 
 /// Newton's method, damped least squares where that does not converge. The last step is not evaluated where its square

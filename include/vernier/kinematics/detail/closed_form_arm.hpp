@@ -4,17 +4,10 @@
 /// Closed-form inverse kinematics of six revolute joints, from the lines of their axes.
 
 #include "vernier/kinematics/detail/six_axes.hpp"
+#include "vernier/kinematics/detail/wrist.hpp"
 #include "vernier/kinematics/singularities.hpp"
 
 namespace vernier::detail {
-
-/// Three joints whose axes meet in a point, as one rotation `R(k4, q4) R(k5, q5) R(k6, q6)`.
-struct Wrist {
-  Vector3 k4, k5, k6;
-  double alpha, beta;  ///< angles between k4 and k5, and k5 and k6 [rad]
-  double centre;       ///< joint 5 where k6 is nearest to k4 [rad]
-  Vector3 e6, f6;      ///< at right angles to k6, and to each other
-};
 
 /// What closed forms there are: axes of an arm, or of its mirror image (from the tool to the base), counted from 1.
 enum class ArmKind {

@@ -8,22 +8,19 @@
 
 namespace vernier::detail {
 
-inline constexpr double most_margin = 0.05;  // a target so far outside the nominal arm may be inside the real one
-inline constexpr double negligible_length = 1e-10;
-
 /// Lines as seen from an end of the arm.
 struct AxisLines {
   Vector3 h[6], o[6];
 
-  double angle(int i, int j) const { return std::atan2(h[i].cross(h[j]).norm(), h[i].dot(h[j])); }
+  VERNIER_API double angle(int i, int j) const { return std::atan2(h[i].cross(h[j]).norm(), h[i].dot(h[j])); }
   /// Angle between lines, whatever their directions.
-  double deviation(int i, int j) const {
+  VERNIER_API double deviation(int i, int j) const {
     const double a = angle(i, j);
     return std::min(a, std::numbers::pi - a);
   }
-  double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
+  VERNIER_API double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
   /// The point nearest to lines i..j, and the largest distance from one of them.
-  double meeting_point(int i, int j, Vector3& point) const {
+  VERNIER_API double meeting_point(int i, int j, Vector3& point) const {
     Matrix3 normal = Matrix3::Zero();
     Vector3 right = Vector3::Zero();
     for (int k = i; k <= j; ++k) {
@@ -38,21 +35,9 @@ struct AxisLines {
   }
 };
 
-inline Wrist wrist_of(const Vector3& k4, const Vector3& k5, const Vector3& k6) {
-  Wrist out{k4, k5, k6, 0, 0, 0, {}, {}};
-  out.alpha = std::atan2(k4.cross(k5).norm(), k4.dot(k5));
-  out.beta = std::atan2(k5.cross(k6).norm(), k5.dot(k6));
-  out.centre = std::atan2(k4.dot(k5.cross(k6)), k4.dot(k6) - k4.dot(k5) * k5.dot(k6));
-  Index least = 0;
-  k6.cwiseAbs().minCoeff(&least);
-  out.e6 = k6.cross(Vector3(Vector3::Unit(least))).normalized();
-  out.f6 = k6.cross(out.e6);
-  return out;
-}
-
 /// Sorts an arm, seen from one of its ends, into a family.
 /// @param why what keeps it out of each, where there is none
-inline bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std::string& why) {
+VERNIER_API bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std::string& why) {
   constexpr double apart = 0.05;  // rad: axes that have to be distinct
   Vector3 centre;
   const double spherical = lines.meeting_point(3, 5, centre);
@@ -129,85 +114,6 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   third_ = h_[1].dot(h_[2]) < 0 ? -1 : 1;
   fourth_ = h_[1].dot(h_[3]) < 0 ? -1 : 1;
   wrist_ = wrist_of(kind_ == ArmKind::three_parallel ? h_[1] : h_[3], h_[4], h_[5]);
-}
-
-inline constexpr int angle_samples = 8;         // of a joint whose value hardly matters
-inline constexpr double sampled_margin = 1e-3;  // marks them
-
-/// The one or two angles of a pair that are no further outside than allowed; next to a singularity samples all around.
-struct Candidates {
-  double angles[2 + angle_samples];
-  int count;
-  double margin;
-  bool any;
-
-  /// @param widest circle that counts as next to a singularity [m]
-  Candidates(const AnglePair& pair, double near, double widest = 0)
-      : angles{near, near}, count(1), margin(pair.margin), any(pair.any) {
-    if (margin > most_margin && !(margin * pair.radius < widest))
-      count = 0;
-    else
-      margin = std::min(margin, most_margin);
-    if (!any) {
-      angles[0] = pair.centre + pair.half;
-      angles[1] = pair.centre - pair.half;
-      if (margin == 0 && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
-    }
-    if (pair.radius >= widest) return;
-    margin = std::clamp(margin, sampled_margin, most_margin);
-    for (int k = 0; k < angle_samples; ++k)
-      angles[count++] = pair.centre + (k + 0.5) * 2 * std::numbers::pi / angle_samples;
-  }
-};
-
-/// Angles of a wrist whose rotation is given.
-struct WristAngles {
-  double q4[2 + angle_samples], q5[2 + angle_samples], q6[2 + angle_samples];
-  int count;
-  double margin;
-  bool any;
-};
-
-/// Joint 5 by the half-angle formula of spherical triangles, which keeps its digits where the wrist is nearly straight.
-/// @param widest angle from the straight wrist that counts as next to a singularity [rad]: then samples of joint 4, too
-inline WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation, double near4, double widest) noexcept {
-  const Vector3 axis = rotation * wrist.k6;
-  const double gamma = std::atan2(wrist.k4.cross(axis).norm(), wrist.k4.dot(axis));
-  const double a = wrist.alpha, b = wrist.beta;
-  const double numerator = std::sin(0.5 * (gamma - a + b)) * std::sin(0.5 * (gamma + a - b));
-  const double denominator = std::sin(0.5 * (a + b + gamma)) * std::sin(0.5 * (a + b - gamma));
-  const double half = 2 * std::atan2(std::sqrt(std::max(numerator, 0.0)), std::sqrt(std::max(denominator, 0.0)));
-  WristAngles out;
-  out.any = false;
-  out.margin = std::max({-numerator, -denominator, 0.0});
-  if (out.margin < 1e-15) out.margin = 0;
-  out.count = 0;
-  const auto add = [&](double q4, double q5, const Matrix3& r5) {
-    const Vector3 e = r5.transpose() * (rotation_about(wrist.k4, -q4) * (rotation * wrist.e6));
-    out.q4[out.count] = q4;
-    out.q5[out.count] = q5;
-    out.q6[out.count++] = std::atan2(wrist.f6.dot(e), wrist.e6.dot(e));
-  };
-  const int roots = out.margin > most_margin ? 0 : half > 1e-12 && half < std::numbers::pi - 1e-12 ? 2 : 1;
-  for (int k = 0; k < roots; ++k) {
-    const double q5 = wrist.centre + (k == 0 ? half : -half);
-    const Matrix3 r5 = rotation_about(wrist.k5, q5);
-    const AngleAbout q4 = angle_between(wrist.k4, r5 * wrist.k6, axis, 1e-11);
-    out.any = out.any || q4.any;
-    add(q4.any ? near4 : q4.angle, q5, r5);
-  }
-  if (roots > 0 && std::min(half, std::numbers::pi - half) < widest) {
-    out.margin = std::max(out.margin, sampled_margin);
-    const double q5 = wrist.centre + (half < 1 ? 0 : std::numbers::pi), q4 = out.q4[0];
-    const Matrix3 r5 = rotation_about(wrist.k5, q5);
-    for (int k = 0; k < angle_samples; ++k) add(q4 + (k + 0.5) * 2 * std::numbers::pi / angle_samples, q5, r5);
-  }
-  return out;
-}
-
-inline double wrapped_angle(double angle) noexcept {
-  const double out = angle - 2 * std::numbers::pi * std::nearbyint(angle / (2 * std::numbers::pi));
-  return out <= -std::numbers::pi ? std::numbers::pi : out;
 }
 
 VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const JointVector<6>& near,

@@ -15,17 +15,17 @@
 
 namespace vernier::detail {
 
-inline AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point.col(joint), arm.direction.col(joint)}; }
+VERNIER_API AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point.col(joint), arm.direction.col(joint)}; }
 
 /// Angle in (-pi, pi].
-inline double half_turn_angle(double angle) {
+VERNIER_API double half_turn_angle(double angle) {
   constexpr double pi = std::numbers::pi;
   const double out = std::remainder(angle, 2 * pi);
   return out > -pi ? out : pi;
 }
 
 /// Greatest difference of two joints, modulo turns [rad].
-inline double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
+VERNIER_API double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
   double out = 0;
   for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(half_turn_angle(a(i) - b(i))));
   return out;
@@ -33,7 +33,7 @@ inline double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
 
 /// Moves the origin to the middle of the axes and makes their distance from it the unit of length, that the equations
 /// of lengths, squares of lengths and directions weigh alike.
-inline void normalize_lengths(SixAxes& arm, Isometry3& target) {
+VERNIER_API void normalize_lengths(SixAxes& arm, Isometry3& target) {
   const auto nearest = [&](int i, const Vector3& to) {
     const AxisLine axis = axis_of(arm, i);
     return Vector3(axis.point + axis.direction * axis.direction.dot(to - axis.point));
@@ -58,7 +58,7 @@ inline void normalize_lengths(SixAxes& arm, Isometry3& target) {
 
 /// The same arm with each axis displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
 /// for every angle; displaced, they leave it regular, and Newton steps make up for it.
-inline SixAxes with_displaced_axes(SixAxes arm) {
+VERNIER_API SixAxes with_displaced_axes(SixAxes arm) {
   Rng rng;
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 3; ++k) {
@@ -164,7 +164,7 @@ VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointV
 }
 
 /// Whether the joints were new.
-inline bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
+VERNIER_API bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
   constexpr double same = 1e-5;  // rad
   for (const SixAxisRoot& root : roots)
     if (root_distance(root.joints, q) < same) return false;
@@ -225,7 +225,7 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
 VERNIER_IMPL SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept {
   Eigen::Matrix<double, 6, 6> columns;
   Isometry3 moved = Isometry3::Identity();
-  const double length = std::max(arm_length(arm), 1e-9);
+  const double length = std::max(arm_length({arm.direction, arm.point, arm.tool}), 1e-9);
   for (int i = 0; i < 6; ++i) {
     const Vector3 axis = moved.linear() * arm.direction.col(i), point = moved * Vector3(arm.point.col(i));
     columns.col(i) << point.cross(axis) / length, axis;

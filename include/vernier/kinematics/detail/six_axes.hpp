@@ -18,14 +18,21 @@ struct SixAxes {
   Isometry3 tool;                         ///< base_T_tool at joint values zero
 };
 
+/// The same of an arm of 6 or 7 revolute joints.
+struct ArmAxes {
+  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 7>;
+  Columns direction, point;
+  Isometry3 tool;
+};
+
 /// base_T_tool at joint values: the product of exponentials.
 /// @cite Brockett 1984; Lynch and Park 2017
 VERNIER_API Isometry3 pose_of(const SixAxes& arm, const JointVector<6>& q) noexcept;
 
 /// Bound of the distance of the tool from any axis point, in every configuration [m].
-VERNIER_API double arm_length(const SixAxes& arm) noexcept;
+VERNIER_API double arm_length(const ArmAxes& arm) noexcept;
 /// By how much a target lies farther away than the arm is long [m]; negative where it may be within reach.
-VERNIER_API double reach_excess(const SixAxes& arm, const Isometry3& target) noexcept;
+VERNIER_API double reach_excess(const ArmAxes& arm, const Isometry3& target) noexcept;
 
 /// Joint values that a solver found.
 struct SixAxisRoot {

@@ -18,28 +18,33 @@ VERNIER_IMPL Isometry3 pose_of(const SixAxes& arm, const JointVector<6>& q) noex
 
 /// Points of the axes, each as near to its neighbours as a few rounds of moving along the axis bring it. Any points
 /// give a bound; these give a tight one.
-VERNIER_API Eigen::Matrix<double, 3, 6> near_points(const SixAxes& arm) noexcept {
-  Eigen::Matrix<double, 3, 6> out = arm.point;
+VERNIER_API ArmAxes::Columns near_points(const ArmAxes& arm) noexcept {
+  ArmAxes::Columns out = arm.point;
+  const Index last = out.cols() - 1;
   for (int round = 0; round < 20; ++round)
-    for (int i = 0; i < 6; ++i) {
-      Vector3 to = i == 0 ? out.col(1) : i == 5 ? out.col(4) : Vector3(0.5 * (out.col(i - 1) + out.col(i + 1)));
+    for (Index i = 0; i <= last; ++i) {
+      const Vector3 to = i == 0      ? Vector3(out.col(1))
+                         : i == last ? Vector3(out.col(last - 1))
+                                     : Vector3(0.5 * (out.col(i - 1) + out.col(i + 1)));
       out.col(i) += arm.direction.col(i) * arm.direction.col(i).dot(to - out.col(i));
     }
   return out;
 }
 
-VERNIER_IMPL double arm_length(const SixAxes& arm) noexcept {
-  double out = (arm.tool.translation() - arm.point.col(5)).norm();
-  for (int i = 0; i < 5; ++i) out += (arm.point.col(i + 1) - arm.point.col(i)).norm();
+VERNIER_IMPL double arm_length(const ArmAxes& arm) noexcept {
+  const Index last = arm.point.cols() - 1;
+  double out = (arm.tool.translation() - arm.point.col(last)).norm();
+  for (Index i = 0; i < last; ++i) out += (arm.point.col(i + 1) - arm.point.col(i)).norm();
   return out;
 }
 
-VERNIER_IMPL double reach_excess(const SixAxes& arm, const Isometry3& target) noexcept {
-  // The point of axis 6 is fixed in the tool, that of axis 1 in the base; links between them have constant lengths.
-  const Eigen::Matrix<double, 3, 6> points = near_points(arm);
-  const Vector3 end = target * (arm.tool.inverse() * Vector3(points.col(5)));
+VERNIER_IMPL double reach_excess(const ArmAxes& arm, const Isometry3& target) noexcept {
+  // The point of the last axis is fixed in the tool, that of axis 1 in the base; links between have constant lengths.
+  const ArmAxes::Columns points = near_points(arm);
+  const Index last = points.cols() - 1;
+  const Vector3 end = target * (arm.tool.inverse() * Vector3(points.col(last)));
   double out = (end - points.col(0)).norm();
-  for (int i = 0; i < 5; ++i) out -= (points.col(i + 1) - points.col(i)).norm();
+  for (Index i = 0; i < last; ++i) out -= (points.col(i + 1) - points.col(i)).norm();
   return out;
 }
 

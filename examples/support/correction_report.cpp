@@ -1,0 +1,187 @@
+#include "correction_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "figures.hpp"
+#include "vernier/core/check.hpp"
+
+namespace support {
+namespace {
+
+namespace vn = vernier;
+
+/// Deviation of linear moves over the targets, before and after.
+bool draw_deviation(const std::filesystem::path& path, const CorrectionReport& report) {
+  Series before{"ends corrected alone", {}, {}}, after{"with inserted points", {}, {}};
+  double position = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < report.rows.size(); ++i) {
+    if (report.rows[i].kind != "target") continue;
+    const auto pieces = static_cast<double>(i - first + 1);
+    for (std::size_t k = first; k <= i; ++k) {
+      position = static_cast<double>(report.rows[i].target - 1) + static_cast<double>(k - first + 1) / pieces;
+      after.x.push_back(position);
+      after.y.push_back(report.rows[k].deviation * 1e3);
+    }
+    for (const double x : {position - 1, position}) {  // of the whole move
+      before.x.push_back(x);
+      before.y.push_back(report.rows[i].ends_only * 1e3);
+    }
+    first = i + 1;
+  }
+  bool any = false;
+  for (Series* series : {&before, &after})
+    for (double& y : series->y) {
+      if (!(y > 0)) y = std::nan("");  // joint moves have no line
+      any = any || std::isfinite(y);
+    }
+  if (!any) return false;
+  return plot_svg(path, "Deviation of the tool from its lines, as the model predicts", "target", "deviation [mm]",
+                  {before, after}, {.log_y = true});
+}
+
+/// The links of each branch of the first target, seen from the side: along the horizontal line from the base to the
+/// tool, at equal scales.
+bool draw_branches(const std::filesystem::path& path, const CorrectionReport& report) {
+  std::vector<Series> arms;
+  double low = 0, high = 0, left = 0, right = 0;
+  for (const CommandRow& row : report.rows) {
+    if (row.target != report.rows.front().target || row.links.empty()) continue;
+    const vn::Vector3 reach = row.links.back() - row.links.front();
+    const double length = std::hypot(reach.x(), reach.y());
+    Series arm{row.kind + (row.status == "converged" ? "" : ", beyond the limits"), {}, {}};
+    for (const vn::Vector3& point : row.links) {
+      const vn::Vector3 from = point - row.links.front();
+      arm.x.push_back(length > 0 ? (from.x() * reach.x() + from.y() * reach.y()) / length : from.x());
+      arm.y.push_back(from.z());
+      left = std::min(left, arm.x.back());
+      right = std::max(right, arm.x.back());
+      low = std::min(low, arm.y.back());
+      high = std::max(high, arm.y.back());
+    }
+    arms.push_back(arm);
+  }
+  if (arms.empty()) return false;
+  FigureOptions options;
+  const double scale = 1.1 * std::max((right - left) / (options.width - 250), (high - low) / (options.height - 120));
+  const double half_x = 0.5 * scale * (options.width - 250), half_y = 0.5 * scale * (options.height - 120);
+  options.x_range = {0.5 * (left + right) - half_x, 0.5 * (left + right) + half_x};
+  options.y_range = {0.5 * (low + high) - half_y, 0.5 * (low + high) + half_y};
+  return plot_svg(path, "All branches of the first target, seen from the side", "towards the tool [m]", "height [m]",
+                  arms, options);
+}
+
+}  // namespace
+
+CorrectionTotals totals(const CorrectionReport& report) {
+  CorrectionTotals out;
+  double counted = 0;
+  std::vector<bool> reached(static_cast<std::size_t>(report.targets) + 1, false), displaced = reached;
+  for (const CommandRow& row : report.rows) {
+    const auto target = static_cast<std::size_t>(row.target);
+    if (std::isfinite(row.error)) {
+      out.mean += row.error * 1e3;
+      out.largest = std::max(out.largest, row.error * 1e3);
+      ++counted;
+    }
+    if (row.status == "jump" || row.status == "off_path") displaced[target] = true;
+    out.inserted += row.kind == "inserted" ? 1 : 0;
+    if (row.kind == "inserted") continue;
+    if (row.status == "converged") reached[target] = true;
+    out.extrapolated += row.gate < 1 ? 1 : 0;
+    out.not_found += row.status == "not_found" ? 1 : 0;
+    out.proven_out += row.status == "proven_out" ? 1 : 0;
+    out.jumps += row.status == "jump" ? 1 : 0;
+  }
+  out.mean /= std::max(counted, 1.0);
+  for (vn::Index i = 1; i <= report.targets; ++i) {
+    const auto target = static_cast<std::size_t>(i);
+    out.met += reached[target] ? 1 : 0;
+    if (displaced[target])
+      out.displaced.push_back(i);
+    else if (!reached[target])
+      out.missed.push_back(i);
+  }
+  return out;
+}
+
+std::string correction_csv(const CorrectionReport& report) {
+  std::string text;
+  for (std::size_t j = 0; j < report.joints.size(); ++j)
+    text += vn::message("q", j + 1, report.joints[j] == vn::JointType::revolute ? "_rad," : "_m,");
+  text +=
+      "status,predicted_error_mm,gate,target,point,predicted_rotation_mrad,deviation_mm,radius95_mm,"
+      "singularity,singularity_deg\n";
+  for (const CommandRow& row : report.rows) {
+    for (const double q : row.command) text += vn::message(q, ',');
+    text +=
+        vn::message(row.status, ',', row.error * 1e3, ',', row.gate, ',', row.target, ',', row.kind, ',',
+                    row.rotation * 1e3, ',', row.deviation * 1e3, ',', row.radius * 1e3, ',',
+                    row.singularities.nearest(), ',', row.singularities.nearest_angle() * 180 / std::numbers::pi, '\n');
+  }
+  return text;
+}
+
+nlohmann::json correction_json(const CorrectionReport& report, const CorrectionTotals& totals) {
+  return {{"robot", report.robot},
+          {"targets", report.targets},
+          {"points", report.rows.size()},
+          {"inserted", totals.inserted},
+          {"corrected", totals.met},
+          {"met", totals.met},
+          {"not_found", totals.not_found},
+          {"proven_out", totals.proven_out},
+          {"jumps", totals.jumps},
+          {"missed_rows", totals.missed},
+          {"extrapolated", totals.extrapolated},
+          {"predicted_error", {{"mean_mm", totals.mean}, {"max_mm", totals.largest}}},
+          {"max_residual_um", totals.largest * 1e3},
+          {"path", {{"before_max_mm", report.before * 1e3}, {"after_max_mm", report.after * 1e3}}}};
+}
+
+void print_correction(const CorrectionReport& report, const CorrectionTotals& totals) {
+  fmt::print("{}: {} of {} targets corrected; the model predicts errors of {:.2g} mm (mean), {:.2g} mm (largest)\n",
+             report.robot, totals.met, report.targets, totals.mean, totals.largest);
+  if (report.linear)
+    fmt::print(
+        "Linear moves: the tool leaves their lines by {:.2g} mm at most, with {} points inserted; by {:.2g} mm "
+        "without\n",
+        report.after * 1e3, totals.inserted, report.before * 1e3);
+  if (report.temperature)
+    fmt::print("Corrected for {:.4g} deg C{}\n", *report.temperature,
+               report.clamped             ? ", the nearest that was measured"
+               : report.temperature_given ? ""
+                                          : ", the mean of the measurements");
+  else if (report.clamped)
+    fmt::print("The model does not change with temperature; --temperature-c has no effect\n");
+  if (totals.extrapolated > 0)
+    fmt::print("{} of them lie outside the measured joint ranges, where the learned part fades out\n",
+               totals.extrapolated);
+}
+
+std::string correction_failure(const CorrectionReport& report, const CorrectionTotals& totals,
+                               const std::string& file) {
+  const auto list = [](const std::vector<vn::Index>& numbers) {
+    std::string out;
+    for (std::size_t i = 0; i < numbers.size() && i < 5; ++i) out += fmt::format("{}{}", i ? ", " : "", numbers[i]);
+    return out + (numbers.size() > 5 ? ", ..." : "");
+  };
+  if (!totals.missed.empty())
+    return fmt::format("{} of {} targets cannot be met, their rows in {} say so: row {}", totals.missed.size(),
+                       report.targets, file, list(totals.missed));
+  if (!totals.displaced.empty())
+    return fmt::format(
+        "{} of {} moves are not as asked: they leave their branch or their line; the rows in {} say so: target {}",
+        totals.displaced.size(), report.targets, file, list(totals.displaced));
+  return {};
+}
+
+bool draw_correction(const std::filesystem::path& path, const CorrectionReport& report) {
+  if (report.branches) return draw_branches(path, report);
+  return report.linear && draw_deviation(path, report);
+}
+
+}  // namespace support

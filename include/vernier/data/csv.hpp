@@ -4,6 +4,7 @@
 /// Reading and writing measured poses and joint targets as comma-separated values, units in the column names.
 
 #include <algorithm>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <utility>
@@ -103,6 +104,20 @@ TargetRows<N> read_targets(const std::string& path, std::span<const JointType> j
   out.linear = std::move(linear);
   return out;
 }
+
+/// Poses that a file labels by whole numbers, e.g. repeated visits.
+struct LabelledPoses {
+  Eigen::MatrixXi labels{};        ///< n x labels
+  VectorX times{};                 ///< of measuring [s]; NaN where unknown
+  std::vector<Isometry3> poses{};  ///< n
+  bool oriented = false;           ///< whether the file has orientations; else they are the identity
+};
+
+/// Poses from a CSV file: columns x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, in the units of `read_dataset`,
+/// whole numbers in the columns `labels` and `optional` (0 where there is no such column), optionally time_s.
+/// @throws DataError naming file, line and column
+VERNIER_API LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
+                                              std::initializer_list<const char*> optional = {});
 
 /// Writes measured poses as `read_dataset` reads them, joints in rad, positions in mm, in digits that read back exactly
 /// (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written where they

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/so3.hpp"
+
 namespace vernier::detail {
 
 /// A column found by its stem, with the unit in its name.
@@ -287,3 +289,42 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows
 }
 
 }  // namespace vernier::detail
+
+namespace vernier {
+
+VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
+                                               std::initializer_list<const char*> optional) {
+  const detail::CsvTable table(path);
+  std::vector<detail::CsvColumn> columns;
+  for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, true));
+  LabelledPoses out;
+  out.oriented = table.find("rx", false) || table.find("ry", false) || table.find("rz", false);
+  if (out.oriented)
+    for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.require_column(axis, false));
+  const MatrixX values = table.numbers(columns);
+  out.labels.setZero(values.rows(), static_cast<Index>(labels.size() + optional.size()));
+  Index label = 0;
+  for (const auto& names : {labels, optional})
+    for (const char* name : names) {
+      const auto column = table.find_plain(name);
+      if (!column && label < static_cast<Index>(labels.size())) throw DataError(message(path, ": no column ", name));
+      const VectorX numbers = column ? VectorX(table.numbers({*column})) : VectorX(VectorX::Zero(values.rows()));
+      for (Index i = 0; i < numbers.size(); ++i) {
+        if (numbers(i) != std::floor(numbers(i))) table.fail_in_row(i, *column, numbers(i), ", must be a whole number");
+        out.labels(i, label) = static_cast<int>(numbers(i));
+      }
+      ++label;
+    }
+  const auto time = table.find_plain("time_s");
+  out.times = time ? VectorX(table.numbers({*time}))
+                   : VectorX(VectorX::Constant(values.rows(), std::numeric_limits<double>::quiet_NaN()));
+  for (Index i = 0; i < values.rows(); ++i) {
+    Isometry3 pose = Isometry3::Identity();
+    pose.translation() = values.row(i).head<3>().transpose();
+    if (out.oriented) pose.linear() = exp_so3(Vector3(values.row(i).tail<3>().transpose()));
+    out.poses.push_back(pose);
+  }
+  return out;
+}
+
+}  // namespace vernier

@@ -164,6 +164,7 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
                           : range("x", options.x_range);
   script += options.log_y ? log_axis("y", series, options.y_range, [](const Series& s) { return s.y; })
                           : range("y", options.y_range);
+  if (options.equal_axes) script += "set size ratio -1\n";
   std::string plots;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Series& s = series[k];

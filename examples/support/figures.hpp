@@ -32,8 +32,9 @@ struct FigureOptions {
   bool log_y = false;
   std::optional<std::pair<double, double>> x_range{};
   std::optional<std::pair<double, double>> y_range{};
-  int width = 900;   ///< [px]
-  int height = 540;  ///< [px]
+  int width = 900;          ///< [px]
+  int height = 540;         ///< [px]
+  bool equal_axes = false;  ///< one unit is as long on both axes
 };
 
 /// The palette has this many colours: those of Okabe and Ito, distinguishable by colour-blind readers too. 0 is black.

@@ -38,6 +38,7 @@ struct Iso9283Options {
 /// each visit's with respect to the mean (RP). What needs two visits (RP) or more is NaN without them.
 struct Iso9283Pose {
   int pose = 1;                            ///< its number
+  int direction = 0;                       ///< of approach, as in `Iso9283Visit`
   Index n = 0;                             ///< number of visits
   Isometry3 mean = Isometry3::Identity();  ///< barycentre of the positions, Karcher mean of the orientations
   double ap = 0;                           ///< distance of the barycentre from the command

@@ -158,7 +158,10 @@ VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, c
                                          const Iso9283Options& options) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double n = static_cast<double>(visited.positions.rows());
-  Iso9283Pose out{.pose = pose, .n = visited.positions.rows(), .mean = Isometry3::Identity()};
+  Iso9283Pose out{.pose = pose,
+                  .direction = visited.visits.front()->direction,
+                  .n = visited.positions.rows(),
+                  .mean = Isometry3::Identity()};
   out.mean.translation() = visited.positions.colwise().mean().transpose();
   out.ap_xyz = out.mean.translation() - command.translation();
   out.ap = out.ap_xyz.norm();

@@ -4,26 +4,15 @@
 /// Accuracy and repeatability of poses and distances from repeated visits, as ISO 9283 defines them.
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "vernier/core/types.hpp"
+#include "vernier/evaluation/iso9283_visit.hpp"
 
 namespace vernier {
-
-/// One measured visit of a commanded pose.
-struct Iso9283Visit {
-  int pose = 1;       ///< number of the commanded pose, P1 is 1
-  int cycle = 1;      ///< number of the cycle
-  int direction = 0;  ///< 1, 2, 3 in a test of several directions of approach; 0 elsewhere
-  /// Where the tool stood, in the frame of the commanded poses.
-  Isometry3 measured = Isometry3::Identity();
-  /// When that was measured [s]; NaN where unknown.
-  double time_s = std::numeric_limits<double>::quiet_NaN();
-};
 
 /// Settings of `iso9283`.
 struct Iso9283Options {
@@ -101,6 +90,8 @@ struct Iso9283 {
 
 /// Evaluates repeated visits as ISO 9283 does: AP, RP, AD, RD, vAP, dAP, dRP, and how the data depart from the norm.
 ///
+/// What data do not tell is not checked: load, speed, warm-up, the place of the cube.
+///
 /// AP compares with the command: unless the frame of the measurements is the robot's base, it contains the error of the
 /// registration, see `ap_registered`. One visit of a pose gives its error, which is no AP. AP, RP, AD, RD and the drift
 /// are those of one direction of approach: of direction 0, or else of the lowest number.
@@ -123,13 +114,11 @@ namespace detail {
 /// The rotation with the smallest sum of squared angles to some near each other; n >= 1.
 VERNIER_API Matrix3 karcher_mean(std::span<const Matrix3> rotations);
 /// Rotation vectors of rotations with respect to a reference, in the outer frame, n x 3.
-VERNIER_API PointRows rotation_vectors(std::span<const Matrix3> rotations, const Matrix3& reference);
+VERNIER_API PointRows rotation_vectors_from(std::span<const Matrix3> rotations, const Matrix3& reference);
 /// `mean(l) + 3 std(l)` of the distances l from the barycentre; NaN for one point.
 VERNIER_API double repeatability(const PointRows& points);
 /// Three standard deviations of each column; NaN for one row.
 VERNIER_API Vector3 three_deviations(const PointRows& values);
-/// Why this is no pose, in words; null where it is one.
-VERNIER_API const char* fault_of_pose(const Isometry3& pose, bool oriented);
 
 }  // namespace detail
 

@@ -5,13 +5,14 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/evaluation/detail/iso9283_visits.hpp"
 #include "vernier/evaluation/quantile.hpp"
 
 namespace vernier {
@@ -22,7 +23,7 @@ VERNIER_IMPL Matrix3 karcher_mean(std::span<const Matrix3> rotations) {
   Matrix3 mean = rotations.front();
   double last = std::numeric_limits<double>::infinity();
   for (;;) {
-    const Vector3 step = rotation_vectors(rotations, mean).colwise().mean().transpose();
+    const Vector3 step = rotation_vectors_from(rotations, mean).colwise().mean().transpose();
     if (!(step.norm() < last / 2)) break;  // only rounding is left
     last = step.norm();
     mean = exp_so3(step) * mean;
@@ -30,7 +31,7 @@ VERNIER_IMPL Matrix3 karcher_mean(std::span<const Matrix3> rotations) {
   return mean;
 }
 
-VERNIER_IMPL PointRows rotation_vectors(std::span<const Matrix3> rotations, const Matrix3& reference) {
+VERNIER_IMPL PointRows rotation_vectors_from(std::span<const Matrix3> rotations, const Matrix3& reference) {
   PointRows out(static_cast<Index>(rotations.size()), 3);
   for (std::size_t i = 0; i < rotations.size(); ++i)
     out.row(static_cast<Index>(i)) = log_so3(Matrix3(rotations[i] * reference.transpose())).transpose();
@@ -50,14 +51,6 @@ VERNIER_IMPL Vector3 three_deviations(const PointRows& values) {
   const Eigen::RowVector3d centre = values.colwise().mean();
   const PointRows centred = values.rowwise() - centre;
   return 3 * (centred.colwise().squaredNorm() / static_cast<double>(values.rows() - 1)).cwiseSqrt().transpose();
-}
-
-VERNIER_IMPL const char* fault_of_pose(const Isometry3& pose, bool oriented) {
-  if (!pose.translation().allFinite()) return "the position is not finite";
-  if (!oriented) return nullptr;
-  const Matrix3 r = pose.linear();
-  const bool rotation = (r * r.transpose() - Matrix3::Identity()).squaredNorm() < 1e-12 && r.determinant() > 0;
-  return rotation ? nullptr : "the orientation is not a rotation";
 }
 
 /// RP of visits that are drawn `counts` times, and its standard error by the influence of each visit.
@@ -104,56 +97,6 @@ VERNIER_API std::pair<double, double> repeatability_interval(const PointRows& po
           std::max(0.0, all.value - quantile_of_sorted(t, 0.025) * all.error)};
 }
 
-/// Visits of one pose from one direction, in sequence.
-struct VisitedPose {
-  std::vector<const Iso9283Visit*> visits;
-  PointRows positions{};
-  std::vector<Matrix3> rotations{};
-  bool timed = true;  ///< whether all times are known
-
-  explicit VisitedPose(std::vector<const Iso9283Visit*> all) : visits(std::move(all)) {
-    for (const auto* v : visits) timed = timed && std::isfinite(v->time_s);
-    std::sort(visits.begin(), visits.end(), [&](const Iso9283Visit* a, const Iso9283Visit* b) {
-      return timed && a->time_s != b->time_s ? a->time_s < b->time_s : a->cycle < b->cycle;
-    });
-    positions.resize(static_cast<Index>(visits.size()), 3);
-    for (std::size_t i = 0; i < visits.size(); ++i) {
-      positions.row(static_cast<Index>(i)) = visits[i]->measured.translation().transpose();
-      rotations.emplace_back(visits[i]->measured.linear());
-    }
-  }
-};
-
-/// By pose, then by direction.
-using VisitedPoses = std::map<int, std::map<int, VisitedPose>>;
-
-VERNIER_API VisitedPoses visited_poses(std::span<const Iso9283Visit> visits, std::span<const Isometry3> commanded,
-                                       bool oriented) {
-  require(!visits.empty(), "iso9283: no visits");
-  for (std::size_t k = 0; k < commanded.size(); ++k)
-    if (const char* fault = fault_of_pose(commanded[k], oriented))
-      require(false, "iso9283: commanded pose ", k + 1, ": ", fault);
-  std::map<int, std::map<int, std::map<int, const Iso9283Visit*>>> sorted;
-  for (const Iso9283Visit& v : visits) {
-    require(v.pose >= 1 && static_cast<std::size_t>(v.pose) <= commanded.size(), "iso9283: a visit of pose ", v.pose,
-            ", the commanded poses are 1 to ", commanded.size());
-    require(v.direction >= 0, "iso9283: pose ", v.pose, ", cycle ", v.cycle, ": direction ", v.direction,
-            ", must be 0 or more");
-    if (const char* fault = fault_of_pose(v.measured, oriented))
-      require(false, "iso9283: pose ", v.pose, ", cycle ", v.cycle, ": ", fault);
-    require(sorted[v.pose][v.direction].emplace(v.cycle, &v).second, "iso9283: pose ", v.pose, ", cycle ", v.cycle,
-            ", direction ", v.direction, " is there twice");
-  }
-  VisitedPoses out;
-  for (const auto& [pose, directions] : sorted)
-    for (const auto& [direction, cycles] : directions) {
-      std::vector<const Iso9283Visit*> all;
-      for (const auto& [cycle, visit] : cycles) all.push_back(visit);
-      out[pose].emplace(direction, VisitedPose(std::move(all)));
-    }
-  return out;
-}
-
 VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, const Isometry3& command,
                                          const Iso9283Options& options) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -180,7 +123,7 @@ VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, c
   const Matrix3 mean = karcher_mean(visited.rotations);
   out.mean.linear() = mean;
   out.ap_abc = log_so3(Matrix3(mean * command.linear().transpose()));
-  out.rp_abc = three_deviations(rotation_vectors(visited.rotations, mean));
+  out.rp_abc = three_deviations(rotation_vectors_from(visited.rotations, mean));
   return out;
 }
 
@@ -269,129 +212,6 @@ VERNIER_API Iso9283Drift drift_of(int pose, const VisitedPose& visited, const Is
   return out;
 }
 
-/// Sentences about poses, those of the same words joined.
-class Departures {
- public:
-  void add(int pose, const std::string& words) {
-    for (auto& [text, poses] : all_)
-      if (text == words) return poses.push_back(pose);
-    all_.push_back({words, {pose}});
-  }
-  std::vector<std::string> sentences() const {
-    std::vector<std::string> out;
-    for (const auto& [text, poses] : all_) {
-      std::string names = poses.size() == 1 ? "pose " : "poses ";
-      for (std::size_t i = 0; i < poses.size() && i < 5; ++i) names += message(i == 0 ? "" : ", ", poses[i]);
-      if (poses.size() > 5) names += message(", ... (", poses.size(), " in all)");
-      out.push_back(names + ": " + text);
-    }
-    return out;
-  }
-
- private:
-  std::vector<std::pair<std::string, std::vector<int>>> all_{};
-};
-
-/// Whether P1 is the centre, and P2 to P5 are on the diagonals of a diagonal plane of a cube, at 10 +- 2 % from their
-/// ends.
-VERNIER_API bool on_cube(std::span<const Isometry3> p) {
-  std::array<Vector3, 4> arm;
-  double mean = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    arm[k] = p[k + 1].translation() - p[0].translation();
-    mean += arm[k].norm() / 4;
-  }
-  const double tolerance = 0.05;  // 2 % of a diagonal is a twentieth of the distance from its middle
-  for (const Vector3& a : arm)
-    if (!(std::abs(a.norm() - mean) <= tolerance * mean)) return false;
-  const auto angle = [&](std::size_t i, std::size_t k) {
-    return std::atan2(arm[i].cross(arm[k]).norm(), arm[i].dot(arm[k]));
-  };
-  const double crossing = 2 * std::atan(std::numbers::sqrt2), between = angle(0, 1);
-  return angle(0, 2) > std::numbers::pi - tolerance && angle(1, 3) > std::numbers::pi - tolerance &&
-         std::min(std::abs(between - crossing), std::abs(between - (std::numbers::pi - crossing))) < tolerance;
-}
-
-/// Where times are known: cycles out of order, and poses reached from more than one other pose.
-VERNIER_API void check_sequence(std::span<const Iso9283Visit> visits, Departures& departures) {
-  std::vector<const Iso9283Visit*> sequence;
-  for (const Iso9283Visit& v : visits) {
-    if (!std::isfinite(v.time_s)) return;
-    sequence.push_back(&v);
-  }
-  std::stable_sort(sequence.begin(), sequence.end(),
-                   [](const Iso9283Visit* a, const Iso9283Visit* b) { return a->time_s < b->time_s; });
-  std::map<std::pair<int, int>, const Iso9283Visit*> last;
-  std::map<int, std::map<int, int>> before;
-  std::map<std::pair<int, int>, bool> told;
-  for (std::size_t i = 0; i < sequence.size(); ++i) {
-    const Iso9283Visit& v = *sequence[i];
-    const std::pair<int, int> key{v.pose, v.direction};
-    if (const Iso9283Visit*& previous = last[key]; previous != nullptr && previous->cycle > v.cycle && !told[key]) {
-      departures.add(v.pose, message("cycle ", v.cycle, " was measured after cycle ", previous->cycle));
-      told[key] = true;
-    }
-    last[key] = &v;
-    if (i > 0 && v.direction == 0) ++before[v.pose][sequence[i - 1]->pose];
-  }
-  for (const auto& [pose, from] : before)
-    if (from.size() > 1) {
-      std::string words;
-      for (const auto& [other, times] : from)
-        words += message(words.empty() ? "" : " and ", times, " times from pose ", other);
-      departures.add(pose, "reached " + words + ", the norm asks for one direction");
-    }
-}
-
-VERNIER_API std::vector<std::string> departures_of(std::span<const Iso9283Visit> visits, const VisitedPoses& visited,
-                                                   std::span<const Isometry3> commanded,
-                                                   const Iso9283Options& options) {
-  constexpr std::size_t cycles_of_norm = 30;
-  Departures departures;
-  std::vector<std::string> out;
-  if (commanded.size() != 5) out.push_back(message(commanded.size(), " commanded poses, the norm has 5"));
-  if (commanded.size() == 5 && !on_cube(commanded))
-    out.push_back(
-        "the commanded poses are not the centre of a cube and four points on the diagonals of a diagonal plane, 10 % "
-        "from their ends");
-  if (!options.orientations) out.push_back("no orientations were measured: AP, RP, AD, RD and vAP of positions only");
-  bool directed = false;
-  std::pair<std::size_t, int> fewest{visits.size() + 1, 0}, most{0, 0};
-  for (const auto& [pose, directions] : visited) {
-    directed = directed || directions.rbegin()->first > 0;
-    const std::size_t n = directions.begin()->second.visits.size();
-    if (n < fewest.first) fewest = {n, pose};
-    if (n > most.first) most = {n, pose};
-  }
-  if (fewest.first != most.first)
-    out.push_back(message("unequal numbers of cycles: ", fewest.first, " (pose ", fewest.second, ") to ", most.first,
-                          " (pose ", most.second, ")"));
-  for (int pose = 1; static_cast<std::size_t>(pose) <= commanded.size(); ++pose) {
-    const auto found = visited.find(pose);
-    if (found == visited.end()) {
-      departures.add(pose, "commanded, but not visited");
-      continue;
-    }
-    const auto& directions = found->second;
-    for (const auto& [direction, one] : directions) {
-      const std::string from = direction > 0 ? message("direction ", direction, ": ") : std::string();
-      if (one.visits.size() == 1)
-        departures.add(pose, from + "one visit only: AP is the error of that visit, and there is no RP");
-      else if (one.visits.size() < cycles_of_norm)
-        departures.add(pose, message(from, one.visits.size(), " cycles, the norm asks for ", cycles_of_norm));
-    }
-    const int states = static_cast<int>(directions.size()) - (directions.contains(0) ? 1 : 0);
-    if (directed && (states > 0 || pose == 1 || pose == 2 || pose == 4) && states != 3)
-      departures.add(
-          pose, message(states, states == 1 ? " direction" : " directions", " of approach, vAP of the norm needs 3"));
-    if (!directions.contains(0) && states > 0)
-      departures.add(pose, message("AP and RP are those of direction ", directions.begin()->first));
-  }
-  check_sequence(visits, departures);
-  for (std::string& sentence : departures.sentences()) out.push_back(std::move(sentence));
-  return out;
-}
-
 }  // namespace detail
 
 VERNIER_IMPL Iso9283 iso9283(std::span<const Iso9283Visit> visits, std::span<const Isometry3> commanded,
@@ -416,7 +236,7 @@ VERNIER_IMPL Iso9283 iso9283(std::span<const Iso9283Visit> visits, std::span<con
   if (visited.contains(2) && visited.contains(4))
     out.distance = detail::accuracy_of_distance(visited.at(2).begin()->second, visited.at(4).begin()->second,
                                                 command(2), command(4), options.orientations);
-  out.departures = detail::departures_of(visits, visited, commanded, options);
+  out.departures = detail::departures_of(visits, visited, commanded, options.orientations);
   return out;
 }
 

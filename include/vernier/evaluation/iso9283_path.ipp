@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/evaluation/detail/iso9283_visits.hpp"
 #include "vernier/evaluation/iso9283.hpp"
 
 namespace vernier {
@@ -90,7 +91,7 @@ VERNIER_API Iso9283PathPoint accuracy_at_point(double arc, const Isometry3& comm
   const Matrix3 mean = karcher_mean(rotations);
   out.mean.linear() = mean;
   out.at_abc = log_so3(Matrix3(mean * commanded.linear().transpose()));
-  out.rt_abc = three_deviations(rotation_vectors(rotations, mean));
+  out.rt_abc = three_deviations(rotation_vectors_from(rotations, mean));
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
-#include "vernier/evaluation/iso9283.hpp"
+#include "vernier/evaluation/detail/iso9283_visits.hpp"
 
 namespace vernier {
 

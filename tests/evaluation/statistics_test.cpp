@@ -45,8 +45,8 @@ TEST(ErrorStatistics, QuantilesInterpolate) {
 // Quantiles of the chi-square distribution (1, 2 and 3 degrees of freedom: 3.841459, 5.991465, 7.814728) where the
 // approximation by two moments is exact but for Wilson and Hilferty's, and shares of samples elsewhere.
 TEST(Radius95, ContainsNinetyFivePerCent) {
-  EXPECT_NEAR(radius_95(Matrix3::Identity()), std::sqrt(7.814728), 2e-3 * 2.8);
-  EXPECT_NEAR(radius_95(Vector3(4, 4, 0).asDiagonal()), 2 * std::sqrt(5.991465), 4e-3 * 4.9);
+  EXPECT_NEAR(radius_95(Matrix3::Identity()), std::sqrt(7.814728), 3e-3 * 2.8);
+  EXPECT_NEAR(radius_95(Vector3(4, 4, 0).asDiagonal()), 2 * std::sqrt(5.991465), 6e-3 * 4.9);
   EXPECT_NEAR(radius_95(Vector3(0, 9, 0).asDiagonal()), 3 * std::sqrt(3.841459), 2e-2 * 5.9);
   EXPECT_EQ(radius_95(Matrix3::Zero()), 0);
   EXPECT_TRUE(std::isnan(radius_95(-Matrix3::Identity())));

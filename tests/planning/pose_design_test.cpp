@@ -1,0 +1,143 @@
+#include "vernier/planning/pose_design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "complaint.hpp"
+#include "vernier/core/rng.hpp"
+
+namespace vernier {
+namespace {
+
+MatrixX random_rows(Index rows, Index unknowns, std::uint64_t seed) {
+  Rng rng(seed);
+  MatrixX out(rows, unknowns);
+  for (Index i = 0; i < rows; ++i)
+    for (Index j = 0; j < unknowns; ++j) out(i, j) = rng.normal() / (1 + 0.2 * static_cast<double>(j));
+  return out;
+}
+
+double log_det(const MatrixX& m) { return 2 * Eigen::LLT<MatrixX>(m).matrixLLT().diagonal().array().log().sum(); }
+
+MatrixX information(const MatrixX& rows, Index block, const std::vector<Index>& chosen, const MatrixX& measured) {
+  MatrixX out = MatrixX::Identity(rows.cols(), rows.cols());
+  if (measured.rows() > 0) out += measured.transpose() * measured;
+  for (const Index c : chosen) out += rows.middleRows(c * block, block).transpose() * rows.middleRows(c * block, block);
+  return out;
+}
+
+struct DesignCase {
+  Index block, measured;
+  DesignCriterion criterion;
+};
+
+class PoseDesignUpdates : public testing::TestWithParam<DesignCase> {};
+
+// Every choice is the best by determinants and inverses of whole matrices, and the curves are theirs.
+TEST_P(PoseDesignUpdates, EqualDenseRecomputation) {
+  const auto [block, of_measured, criterion] = GetParam();
+  constexpr Index n = 40, p = 30, count = 15;
+  const MatrixX rows = random_rows(n * block, p, 1), measured = random_rows(of_measured, p, 2),
+                region = random_rows(24, p, 3);
+  const PoseDesign design = design_poses(rows, block, measured, region, {count, criterion, {}});
+  ASSERT_EQ(design.chosen.size(), count);
+  const double start = log_det(information(rows, block, {}, measured));
+  const auto mean_variance = [&](const MatrixX& of) {
+    return (region * of.inverse() * region.transpose()).trace() / 8;
+  };
+  std::vector<Index> chosen;
+  for (Index k = 0;; ++k) {
+    const MatrixX now = information(rows, block, chosen, measured);
+    EXPECT_NEAR(design.log_det(k), log_det(now) - start, 1e-9 * (1 + std::abs(design.log_det(k))));
+    EXPECT_NEAR(design.region_variance(k), mean_variance(now), 1e-9 * (1 + mean_variance(now)));
+    if (k == count) break;
+    Index best = -1;
+    double reached = 0;
+    for (Index c = 0; c < n; ++c) {
+      if (std::find(chosen.begin(), chosen.end(), c) != chosen.end()) continue;
+      std::vector<Index> with = chosen;
+      with.push_back(c);
+      const MatrixX then = information(rows, block, with, measured);
+      const double value = criterion == DesignCriterion::information ? log_det(then) : -mean_variance(then);
+      if (best < 0 || value > reached) {
+        best = c;
+        reached = value;
+      }
+    }
+    EXPECT_EQ(design.chosen[static_cast<std::size_t>(k)], best) << "choice " << k;
+    chosen.push_back(best);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, PoseDesignUpdates,
+                         testing::Values(DesignCase{3, 0, DesignCriterion::information},
+                                         DesignCase{6, 0, DesignCriterion::information},
+                                         DesignCase{3, 20, DesignCriterion::information},
+                                         DesignCase{1, 50, DesignCriterion::information},
+                                         DesignCase{3, 0, DesignCriterion::region_variance},
+                                         DesignCase{6, 40, DesignCriterion::region_variance}));
+
+TEST(PoseDesign, ReachesNearlyTheBestOfAllChoices) {
+  constexpr Index n = 12, count = 5, block = 3, p = 8;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const MatrixX rows = random_rows(n * block, p, seed);
+    double best = 0;
+    for (unsigned set = 0; set < 1u << n; ++set) {
+      std::vector<Index> chosen;
+      for (Index c = 0; c < n; ++c)
+        if ((set >> c) & 1u) chosen.push_back(c);
+      if (chosen.size() == count) best = std::max(best, log_det(information(rows, block, chosen, {})));
+    }
+    const double reached = design_poses(rows, block, MatrixX(), {}, {.count = count, .coverage = {}}).log_det(count);
+    EXPECT_GE(reached, 0.99 * best) << "seed " << seed;
+    EXPECT_LE(reached, best * (1 + 1e-12));
+    const double bound = information_bound(rows, block, count);
+    EXPECT_GE(bound, best * (1 - 1e-12));
+    EXPECT_LE(bound, 1.1 * best);
+  }
+}
+
+TEST(PoseDesign, OfEqualCandidatesTakesTheFirst) {
+  const MatrixX one = random_rows(3, 6, 5);
+  MatrixX rows(30, 6);
+  for (Index c = 0; c < 10; ++c) rows.middleRows(3 * c, 3) = one;
+  EXPECT_EQ(design_poses(rows, 3, MatrixX(), {}, {.count = 4, .coverage = {}}).chosen,
+            (std::vector<Index>{0, 1, 2, 3}));
+}
+
+TEST(PoseDesign, CoversMissingBinsFirst) {
+  MatrixX rows = random_rows(30, 6, 6);
+  rows.bottomRows(3) *= 1e-3;  // the last candidate is of little use, but alone in its bin
+  Eigen::MatrixXi bins(10, 1);
+  bins << 0, 0, 0, 0, 0, 1, 1, 1, 1, 2;
+  Eigen::VectorXi missing(4);
+  missing << 1, 2, 1, 1;
+  const PoseDesign design = design_poses(rows, 3, MatrixX(), {}, {.count = 4, .coverage = {bins, missing}});
+  std::vector<int> in(3, 0);
+  for (const Index c : design.chosen) ++in[static_cast<std::size_t>(bins(c, 0))];
+  EXPECT_EQ(in, (std::vector<int>{1, 2, 1}));
+  EXPECT_EQ(design.missing, (Eigen::VectorXi(4) << 0, 0, 0, 1).finished());  // nothing lies in the last bin
+}
+
+TEST(PoseDesign, RefusesWhatDoesNotMatch) {
+  using vernier_test::complaint;
+  const MatrixX rows = random_rows(12, 4, 1);
+  const auto design = [&](Index block, Index count, const MatrixX& measured = {}, const MatrixX& region = {},
+                          DesignCriterion criterion = DesignCriterion::information) {
+    return complaint([&] { (void)design_poses(rows, block, measured, region, {count, criterion, {}}); });
+  };
+  EXPECT_EQ(design(3, 2), "");
+  EXPECT_EQ(design(5, 2), "design_poses: 12 rows are no multiple of 5");
+  EXPECT_EQ(design(3, 5), "design_poses: 5 of 4 candidates");
+  EXPECT_EQ(design(3, 1, random_rows(3, 5, 1)), "design_poses: measured rows of 5 unknowns, candidates of 4");
+  EXPECT_EQ(design(3, 1, {}, random_rows(3, 5, 1)), "design_poses: a region of 5 unknowns, candidates of 4");
+  EXPECT_EQ(design(3, 1, {}, {}, DesignCriterion::region_variance),
+            "design_poses: no region whose variance could be reduced");
+  EXPECT_NE(design(3, 1, MatrixX::Constant(3, 4, std::nan(""))), "");
+  EXPECT_EQ(complaint([&] { (void)information_bound(rows, 3, 9); }), "information_bound: 9 of 4 candidates");
+}
+
+}  // namespace
+}  // namespace vernier

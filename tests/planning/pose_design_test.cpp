@@ -41,7 +41,7 @@ TEST_P(PoseDesignUpdates, EqualDenseRecomputation) {
   constexpr Index n = 40, p = 30, count = 15;
   const MatrixX rows = random_rows(n * block, p, 1), measured = random_rows(of_measured, p, 2),
                 region = random_rows(24, p, 3);
-  const PoseDesign design = design_poses(rows, block, measured, region, {count, criterion, {}});
+  const PoseDesign design = design_poses(rows, block, {count, criterion, {}}, measured, region);
   ASSERT_EQ(design.chosen.size(), count);
   const double start = log_det(information(rows, block, {}, measured));
   const auto mean_variance = [&](const MatrixX& of) {
@@ -90,7 +90,7 @@ TEST(PoseDesign, ReachesNearlyTheBestOfAllChoices) {
         if ((set >> c) & 1u) chosen.push_back(c);
       if (chosen.size() == count) best = std::max(best, log_det(information(rows, block, chosen, {})));
     }
-    const double reached = design_poses(rows, block, MatrixX(), {}, {.count = count, .coverage = {}}).log_det(count);
+    const double reached = design_poses(rows, block, {.count = count, .coverage = {}}).log_det(count);
     EXPECT_GE(reached, 0.99 * best) << "seed " << seed;
     EXPECT_LE(reached, best * (1 + 1e-12));
     const double bound = information_bound(rows, block, count);
@@ -103,8 +103,7 @@ TEST(PoseDesign, OfEqualCandidatesTakesTheFirst) {
   const MatrixX one = random_rows(3, 6, 5);
   MatrixX rows(30, 6);
   for (Index c = 0; c < 10; ++c) rows.middleRows(3 * c, 3) = one;
-  EXPECT_EQ(design_poses(rows, 3, MatrixX(), {}, {.count = 4, .coverage = {}}).chosen,
-            (std::vector<Index>{0, 1, 2, 3}));
+  EXPECT_EQ(design_poses(rows, 3, {.count = 4, .coverage = {}}).chosen, (std::vector<Index>{0, 1, 2, 3}));
 }
 
 TEST(PoseDesign, CoversMissingBinsFirst) {
@@ -114,7 +113,7 @@ TEST(PoseDesign, CoversMissingBinsFirst) {
   bins << 0, 0, 0, 0, 0, 1, 1, 1, 1, 2;
   Eigen::VectorXi missing(4);
   missing << 1, 2, 1, 1;
-  const PoseDesign design = design_poses(rows, 3, MatrixX(), {}, {.count = 4, .coverage = {bins, missing}});
+  const PoseDesign design = design_poses(rows, 3, {.count = 4, .coverage = {bins, missing}});
   std::vector<int> in(3, 0);
   for (const Index c : design.chosen) ++in[static_cast<std::size_t>(bins(c, 0))];
   EXPECT_EQ(in, (std::vector<int>{1, 2, 1}));
@@ -126,7 +125,7 @@ TEST(PoseDesign, RefusesWhatDoesNotMatch) {
   const MatrixX rows = random_rows(12, 4, 1);
   const auto design = [&](Index block, Index count, const MatrixX& measured = {}, const MatrixX& region = {},
                           DesignCriterion criterion = DesignCriterion::information) {
-    return complaint([&] { (void)design_poses(rows, block, measured, region, {count, criterion, {}}); });
+    return complaint([&] { (void)design_poses(rows, block, {count, criterion, {}}, measured, region); });
   };
   EXPECT_EQ(design(3, 2), "");
   EXPECT_EQ(design(5, 2), "design_poses: 12 rows are no multiple of 5");

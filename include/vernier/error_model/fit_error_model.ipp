@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/periodogram.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
-#include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
@@ -69,16 +68,6 @@ VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInp
   return out;
 }
 
-/// The expected spectrum of each joint, with the lines of its drive.
-VERNIER_API std::vector<HarmonicSpectrum> spectra_of(const ErrorModelOptions& options, int joints) {
-  require(options.drives.empty() || options.drives.size() == static_cast<std::size_t>(joints),
-          "fit_error_model: drives of ", options.drives.size(), " joints for an arm of ", joints);
-  std::vector<HarmonicSpectrum> out(static_cast<std::size_t>(joints), options.spectrum);
-  for (std::size_t j = 0; j < options.drives.size(); ++j)
-    for (const HarmonicBand& line : lines_of(options.drives[j])) out[j].push_back(line);
-  return out;
-}
-
 VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input) {
   std::vector<Station> out = input.poses;
   out.insert(out.end(), input.distances.begin(), input.distances.end());
@@ -113,7 +102,8 @@ class ErrorModelFit {
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
       if (input_.nominal.revolute(j))
-        all.transmission[static_cast<std::size_t>(j)] = orders_of_joint(static_cast<std::size_t>(j));
+        all.transmission[static_cast<std::size_t>(j)] =
+            orders_of_joint(options_, spectra_, static_cast<std::size_t>(j), problem_.num_blocks());
     out.jointwise = all.size() > elastic.size() && add(estimate, "jointwise", all, true);
     if (out.jointwise) {
       steps(2);
@@ -138,7 +128,7 @@ class ErrorModelFit {
     out.without_approach = arms();
 
     JointTerms approached = problem_.arm.terms();
-    approached.hysteresis = {0.01, 0.3};
+    approached.hysteresis = hysteresis_widths();
     const bool hysteresis = options_.hysteresis && add(estimate, "approach", approached, true);
     if (hysteresis) steps(2);
     std::vector<FittedArm> without_tilt = arms();
@@ -192,25 +182,7 @@ class ErrorModelFit {
   }
 
   /// Expected sizes of the coefficients of some terms.
-  VERNIER_API VectorX prior_stds(const JointTerms& terms) const {
-    VectorX out(terms.size());
-    for (const JointTermBlock& block : terms.blocks())
-      for (Index k = 0; k < block.count; ++k) {
-        double& std = out(block.begin + k);
-        switch (block.kind) {
-          case JointTermBlock::Kind::gear_ratio: std = options_.gear_ratio_prior_std; break;
-          case JointTermBlock::Kind::coupling: std = options_.coupling_prior_std; break;
-          case JointTermBlock::Kind::gravity: std = options_.compliance_prior_std; break;
-          case JointTermBlock::Kind::hysteresis: std = options_.hysteresis_prior_std; break;
-          case JointTermBlock::Kind::tilt: std = options_.tilt_prior_std; break;
-          case JointTermBlock::Kind::transmission:
-            std = expected_std(spectra_[static_cast<std::size_t>(block.joint)],
-                               terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
-            break;
-        }
-      }
-    return out;
-  }
+  VERNIER_API VectorX prior_stds(const JointTerms& terms) const { return expected_sizes(terms, options_, spectra_); }
 
   /// Precisions of terms, those that were there before as they were, others 1.
   VERNIER_API static VectorX carried_over(const JointTerms& terms, const JointTerms& before,
@@ -281,22 +253,6 @@ class ErrorModelFit {
     for (const JointTermBlock& block : problem_.arm.terms().blocks())
       if (block.kind == JointTermBlock::Kind::gravity) return unknowns(block.begin, block.count);
     return {};
-  }
-
-  /// The highest order of harmonics: few poses determine none above 60, and are not predicted better with them.
-  VERNIER_API int highest_order() const {
-    return problem_.num_blocks() < 400 ? std::min(60, options_.harmonics) : options_.harmonics;
-  }
-
-  /// Orders of a joint's harmonics: of the expected spectrum, and, from 400 poses on, all lines of its drive.
-  VERNIER_API Fourier orders_of_joint(std::size_t joint) const {
-    Fourier out = orders_of(spectra_[joint], highest_order());
-    if (options_.drives.empty() || problem_.num_blocks() < 400) return out;
-    const Fourier lines = orders_of(lines_of(options_.drives[joint]), std::numeric_limits<int>::max());
-    std::vector<int> all;
-    std::set_union(out.orders.begin(), out.orders.end(), lines.orders.begin(), lines.orders.end(),
-                   std::back_inserter(all));
-    return {all};
   }
 
   /// The problem, linearised at its present values.

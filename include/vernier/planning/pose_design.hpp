@@ -41,19 +41,21 @@ struct PoseDesign {
 /// Unknowns are in units of their prior sizes, so the prior is N(0, I). With S the covariance given what was chosen,
 /// a candidate with rows A gains `log det(I + V)`, `V = A S A'`, of information, and reduces the sum of the region's
 /// variances by `tr((I + V)^-1 K K')`, `K = A S B'`. V and K are kept for each candidate and updated by the rows of the
-/// choice; S never is: `S = I - sum G G'`, and the columns `A G` are kept.
-/// @param rows     whitened rows of all candidates, `block` a candidate, one column an unknown; used as work space
+/// choices; S is never computed. Information never grows by other choices, so most candidates need no update.
+/// @param rows     whitened rows of all candidates, `block` a candidate, one column an unknown
 /// @param block    rows a candidate, 1 to 6
+/// @param options  how many, and by which criterion
 /// @param measured whitened rows of what was measured before; may have no rows
 /// @param region   rows of what is to be predicted, whose variance is meant, three a pose; may have no rows, unless the
 ///                 criterion is `region_variance`
-/// @param options  how many, and by which criterion
 /// @throws std::invalid_argument for sizes that do not match, or values that are not finite
-/// @complexity O(count n b^2 p) for n candidates of b rows and p unknowns; O(p^3 + n b p^2) more where there are
+/// @complexity at most O(count n b^2 p) for n candidates of b rows and p unknowns; O(p^3 + n b p^2) more where there
+/// are
 ///             measured rows, O(n b p r) more for `region_variance` over r rows
-/// @cite Chaloner and Verdinelli 1995 (criteria); Krause, Singh and Guestrin 2008 (greedy choice)
-VERNIER_API PoseDesign design_poses(MatrixX rows, Index block, const ConstMatrixRef& measured, MatrixX region,
-                                    const PoseDesignOptions& options);
+/// @cite Chaloner and Verdinelli 1995 (criteria); Minoux 1978 (lazy greedy choice)
+VERNIER_API PoseDesign design_poses(const ConstMatrixRef& rows, Index block, const PoseDesignOptions& options,
+                                    const ConstMatrixRef& measured = MatrixX(),
+                                    const ConstMatrixRef& region = MatrixX());
 
 /// A bound on the information of any choice: that of fractional weights `0 <= w <= 1` of sum `count`, plus what its
 /// gradient leaves. By concavity no choice of `count` candidates exceeds it. With many unknowns it is loose.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "vernier/core/check.hpp"
@@ -34,26 +34,110 @@ VERNIER_API SmallMatrix factor_of_sum(const ConstMatrixRef& v) {
   return out;
 }
 
-VERNIER_API double log_det_of_factor(const SmallMatrix& factor) { return 2 * factor.diagonal().array().log().sum(); }
+/// A design that grows. Of all rows chosen so far, P, it keeps the Cholesky factor F of `I + P P'`; a candidate with
+/// rows A then has `V = A A' - known' known`, `F known = P A'`, which is brought up to date where it is looked at.
+class GrowingDesign {
+  /// The columns of a candidate.
+  template <class M>
+  auto of(M& matrix, Index c) const {
+    return matrix.middleCols(c * block_, block_);
+  }
 
-/// Makes the columns of rows whose unknowns have the prior precision I + measured' measured such that it is I.
-VERNIER_API void account_for_measured(const ConstMatrixRef& measured, MatrixX& rows, MatrixX& region) {
+ public:
+  /// @param candidates p x n b, what the rows are transposed
+  /// @param region     p x r, likewise
+  VERNIER_API GrowingDesign(MatrixX candidates, MatrixX region, Index block, const PoseDesignOptions& options)
+      : columns_(std::move(candidates)),
+        region_(std::move(region)),
+        block_(block),
+        picks_(columns_.rows(), options.count * block),
+        factor_(MatrixX::Zero(options.count * block, options.count * block)),
+        known_(options.count * block, columns_.cols()),
+        known_region_(options.count * block, region_.cols()),
+        variance_(block, columns_.cols()),
+        level_(static_cast<std::size_t>(size()), 0),
+        region_variance_(region_.colwise().squaredNorm().transpose()) {
+    for (Index c = 0; c < size(); ++c) of(variance_, c) = of(columns_, c).transpose().lazyProduct(of(columns_, c));
+    if (options.criterion != DesignCriterion::region_variance) return;
+    to_region_.setZero(region_.cols(), columns_.cols());
+    add_transposed_product(to_region_, region_, columns_);
+  }
+
+  /// Number of candidates.
+  Index size() const { return columns_.cols() / block_; }
+  /// Whether V of a candidate is that of all choices.
+  bool up_to_date(Index c) const { return level_[static_cast<std::size_t>(c)] == chosen_; }
+  /// Brings V of some candidates up to date, all of which were last at the same time.
+  VERNIER_API void update(Index first, Index count) {
+    const Index from = level_[static_cast<std::size_t>(first)] * block_, rows = chosen_ * block_ - from;
+    MatrixX tail = solved(columns_.middleCols(first * block_, count * block_),
+                          known_.middleCols(first * block_, count * block_), from);
+    known_.block(from, first * block_, rows, count * block_) = tail;
+    for (Index c = 0; c < count; ++c) {
+      of(variance_, first + c) -= of(tail, c).transpose().lazyProduct(of(tail, c));
+      level_[static_cast<std::size_t>(first + c)] = chosen_;
+    }
+    if (to_region_.size() > 0)
+      add_transposed_product(to_region_.middleCols(first * block_, count * block_),
+                             known_region_.middleRows(from, rows), tail, -1);
+  }
+  /// Information of a candidate that is up to date [nat].
+  VERNIER_API double information(Index c) const {
+    return 2 * factor_of_sum(of(variance_, c)).diagonal().array().log().sum();
+  }
+  /// By how much it reduces the sum of the region's variances.
+  VERNIER_API double reduction(Index c) const {
+    const SmallMatrix factor = factor_of_sum(of(variance_, c));
+    SmallMatrix sum = of(to_region_, c).transpose().lazyProduct(of(to_region_, c));
+    factor.triangularView<Eigen::Lower>().solveInPlace(sum);
+    factor.triangularView<Eigen::Lower>().transpose().solveInPlace(sum);
+    return sum.trace();
+  }
+  /// Chooses a candidate that is up to date.
+  VERNIER_API void choose(Index c) {
+    const Index at = chosen_ * block_;
+    picks_.middleCols(at, block_) = of(columns_, c);
+    factor_.block(at, 0, block_, at) = of(known_, c).topRows(at).transpose();
+    factor_.block(at, at, block_, block_) = factor_of_sum(of(variance_, c));
+    ++chosen_;
+    if (region_.cols() == 0) return;
+    known_region_.middleRows(at, block_) = solved(region_, known_region_, at);
+    region_variance_ -= known_region_.middleRows(at, block_).colwise().squaredNorm().transpose();
+  }
+  /// Mean variance of the region's points, three rows each.
+  double region_variance() const { return 3 * region_variance_.sum() / static_cast<double>(region_.cols()); }
+
+ private:
+  /// Rows `from` .. of the solution of `F known = P' columns`, of which those before are known.
+  VERNIER_API MatrixX solved(const ConstMatrixRef& columns, const ConstMatrixRef& known, Index from) const {
+    const Index rows = chosen_ * block_ - from;
+    MatrixX out = MatrixX::Zero(rows, columns.cols());
+    add_transposed_product(out, picks_.middleCols(from, rows), columns);
+    add_product(out, factor_.block(from, 0, rows, from), known.topRows(from), -1);
+    solve_lower(factor_.block(from, from, rows, rows), out);
+    return out;
+  }
+
+  MatrixX columns_, region_;
+  Index block_, chosen_ = 0;
+  MatrixX picks_, factor_, known_, known_region_;
+  MatrixX variance_;          // V of each candidate, beside each other
+  MatrixX to_region_{};       // K of each candidate, likewise
+  std::vector<Index> level_;  // number of choices that V of each candidate knows
+  VectorX region_variance_;   // of each row
+};
+
+/// Solves for columns in which unknowns of the prior precision I + measured' measured have the prior precision I.
+VERNIER_API void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
   MatrixX precision = MatrixX::Identity(measured.cols(), measured.cols());
   add_transposed_product(precision, measured, measured);
   require(cholesky(precision), "design_poses: the measured rows are not usable");
-  for (MatrixX* part : {&rows, &region}) {
-    if (part->rows() == 0) continue;
-    MatrixX columns = part->transpose();
-    part->resize(0, 0);
-    solve_lower(precision, columns);
-    *part = columns.transpose();
-  }
+  solve_lower(precision, candidates);
+  solve_lower(precision, region);
 }
 
-}  // namespace detail
-
-VERNIER_IMPL PoseDesign design_poses(MatrixX rows, Index block, const ConstMatrixRef& measured, MatrixX region,
-                                     const PoseDesignOptions& options) {
+VERNIER_API void check_design(const ConstMatrixRef& rows, Index block, const ConstMatrixRef& measured,
+                              const ConstMatrixRef& region, const PoseDesignOptions& options) {
   require(block >= 1 && block <= 6, "design_poses: ", block, " rows a candidate, must be 1 to 6");
   require(rows.rows() % block == 0, "design_poses: ", rows.rows(), " rows are no multiple of ", block);
   const Index n = rows.rows() / block, p = rows.cols();
@@ -63,96 +147,83 @@ VERNIER_IMPL PoseDesign design_poses(MatrixX rows, Index block, const ConstMatri
   require(region.rows() == 0 || region.cols() == p, "design_poses: a region of ", region.cols(),
           " unknowns, candidates of ", p);
   require(region.rows() % 3 == 0, "design_poses: ", region.rows(), " rows of the region are no multiple of 3");
-  const bool by_region = options.criterion == DesignCriterion::region_variance;
-  require(!by_region || region.rows() > 0, "design_poses: no region whose variance could be reduced");
+  require(options.criterion != DesignCriterion::region_variance || region.rows() > 0,
+          "design_poses: no region whose variance could be reduced");
   require(rows.allFinite() && measured.allFinite() && region.allFinite(), "design_poses: a row is not finite");
   const Eigen::MatrixXi& bins = options.coverage.bins;
   require(bins.rows() == 0 || bins.rows() == n, "design_poses: bins of ", bins.rows(), " candidates, expected ", n);
   require(bins.size() == 0 || (bins.minCoeff() >= 0 && bins.maxCoeff() < options.coverage.missing.size()),
           "design_poses: a bin is not in 0 .. ", options.coverage.missing.size() - 1);
+}
 
-  if (measured.rows() > 0) detail::account_for_measured(measured, rows, region);
-  const Index of_candidates = rows.rows(), of_region = region.rows(), width = options.count * block;
+/// What a candidate offers; the greatest is chosen.
+struct DesignOffer {
+  int covered;  ///< missing bins
+  double gain;
+  Index candidate;
+
+  /// Of equals the first candidate comes first.
+  bool operator<(const DesignOffer& other) const {
+    if (covered != other.covered) return covered < other.covered;
+    if (gain != other.gain) return gain < other.gain;
+    return candidate > other.candidate;
+  }
+};
+
+}  // namespace detail
+
+VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, const PoseDesignOptions& options,
+                                     const ConstMatrixRef& measured, const ConstMatrixRef& region) {
+  detail::check_design(rows, block, measured, region, options);
+  const Eigen::MatrixXi& bins = options.coverage.bins;
+  const bool by_region = options.criterion == DesignCriterion::region_variance;
   PoseDesign out;
   out.missing = options.coverage.missing;
   out.log_det.setZero(options.count + 1);
-
-  MatrixX variance(of_candidates, block);  // V of each candidate below each other
-  for (Index c = 0; c < n; ++c) {
-    const auto own = rows.middleRows(c * block, block);
-    variance.middleRows(c * block, block) = own.lazyProduct(own.transpose());
-  }
-  VectorX region_variance = region.rowwise().squaredNorm();
-  const auto mean_variance = [&] { return 3 * region_variance.sum() / static_cast<double>(of_region); };
-  if (of_region > 0) {
+  MatrixX candidates = rows.transpose(),
+          to_predict = region.rows() > 0 ? MatrixX(region.transpose()) : MatrixX(rows.cols(), 0);
+  if (measured.rows() > 0) detail::account_for_measured(measured, candidates, to_predict);
+  detail::GrowingDesign design(std::move(candidates), std::move(to_predict), block, options);
+  if (region.rows() > 0) {
     out.region_variance.resize(options.count + 1);
-    out.region_variance(0) = mean_variance();
+    out.region_variance(0) = design.region_variance();
   }
-  MatrixX to_region;  // K of each candidate
-  if (by_region) {
-    to_region.setZero(of_candidates, of_region);
-    detail::add_product(to_region, rows, region.transpose());
-  }
-  MatrixX known(of_candidates, width), known_region(of_region, width);  // A G, B G
-  MatrixX cross(of_candidates, block), cross_region(of_region, block), own(block, p);
-  std::vector<bool> taken(static_cast<std::size_t>(n), false);
-
+  const auto covered = [&](Index c) {
+    int sum = 0;
+    for (Index k = 0; bins.rows() > 0 && k < bins.cols(); ++k) sum += out.missing(bins(c, k)) > 0 ? 1 : 0;
+    return sum;
+  };
+  const auto offer = [&](Index c) {
+    return detail::DesignOffer{covered(c), by_region ? design.reduction(c) : design.information(c), c};
+  };
+  std::vector<detail::DesignOffer> heap;
+  for (Index c = 0; c < design.size(); ++c) heap.push_back(offer(c));
+  std::make_heap(heap.begin(), heap.end());
   for (Index step = 0; step < options.count; ++step) {
-    Index best = -1;
-    int best_covered = -1;
-    double best_gain = -std::numeric_limits<double>::infinity();
-    for (Index c = 0; c < n; ++c) {
-      if (taken[static_cast<std::size_t>(c)]) continue;
-      int covered = 0;
-      for (Index k = 0; k < bins.cols() && bins.rows() > 0; ++k) covered += out.missing(bins(c, k)) > 0 ? 1 : 0;
-      if (covered < best_covered) continue;
-      const detail::SmallMatrix factor = detail::factor_of_sum(variance.middleRows(c * block, block));
-      double gain = 0;
-      if (by_region) {
-        detail::SmallMatrix sum =
-            to_region.middleRows(c * block, block).lazyProduct(to_region.middleRows(c * block, block).transpose());
-        factor.triangularView<Eigen::Lower>().solveInPlace(sum);
-        factor.triangularView<Eigen::Lower>().transpose().solveInPlace(sum);
-        gain = sum.trace();
-      } else {
-        gain = detail::log_det_of_factor(factor);
-      }
-      if (covered == best_covered && !(gain > best_gain)) continue;
-      best = c;
-      best_covered = covered;
-      best_gain = gain;
+    if (by_region && step > 0) {  // reductions may also grow by a choice
+      design.update(0, design.size());
+      for (detail::DesignOffer& of : heap) of = offer(of.candidate);
+      std::make_heap(heap.begin(), heap.end());
     }
-    taken[static_cast<std::size_t>(best)] = true;
+    // information and missing bins never grow by a choice, so offers of before are upper bounds
+    while (!design.up_to_date(heap.front().candidate)) {
+      std::pop_heap(heap.begin(), heap.end());
+      const Index c = heap.back().candidate;
+      design.update(c, 1);
+      heap.back() = offer(c);
+      std::push_heap(heap.begin(), heap.end());
+    }
+    std::pop_heap(heap.begin(), heap.end());
+    const Index best = heap.back().candidate;
+    heap.pop_back();
     out.chosen.push_back(best);
-    for (Index k = 0; k < bins.cols() && bins.rows() > 0; ++k) {
+    out.log_det(step + 1) = out.log_det(step) + design.information(best);
+    for (Index k = 0; bins.rows() > 0 && k < bins.cols(); ++k) {
       int& missing = out.missing(bins(best, k));
       missing = std::max(0, missing - 1);
     }
-    const detail::SmallMatrix factor = detail::factor_of_sum(variance.middleRows(best * block, block));
-    out.log_det(step + 1) = out.log_det(step) + detail::log_det_of_factor(factor);
-
-    // A S A_s' = A A_s' - (A G)(A_s G)', then one more block of A G
-    own = rows.middleRows(best * block, block);
-    const MatrixX own_known = known.block(best * block, 0, block, step * block);
-    const auto append = [&](const MatrixX& of_rows, MatrixX& of_known, MatrixX& product) {
-      if (of_rows.rows() == 0) return;
-      product.setZero();
-      detail::add_product(product, of_rows, own.transpose());
-      detail::add_product(product, of_known.leftCols(step * block), own_known.transpose(), -1);
-      factor.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(product);
-      of_known.middleCols(step * block, block) = product;
-    };
-    append(rows, known, cross);
-    append(region, known_region, cross_region);
-    for (Index c = 0; c < n; ++c) {
-      const auto part = cross.middleRows(c * block, block);
-      variance.middleRows(c * block, block) -= part.lazyProduct(part.transpose());
-    }
-    if (by_region) detail::add_product(to_region, cross, cross_region.transpose(), -1);
-    if (of_region > 0) {
-      region_variance -= cross_region.rowwise().squaredNorm();
-      out.region_variance(step + 1) = mean_variance();
-    }
+    design.choose(best);
+    if (region.rows() > 0) out.region_variance(step + 1) = design.region_variance();
   }
   return out;
 }

@@ -1,0 +1,187 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/planning/plan_measurements.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL Index PlannedMeasurements::enough(double share) const {
+  const auto n = static_cast<Index>(chosen.size());
+  constexpr Index ahead = 10;
+  for (Index k = 0; k + ahead <= n; ++k)
+    if (relative_error(k + ahead) > (1 - share) * relative_error(k)) return k;
+  return n;
+}
+
+namespace detail {
+
+/// Bins of each joint between the smallest and the largest value of the candidates.
+class JointBins {
+ public:
+  VERNIER_API JointBins(const MatrixX& candidates, double width) : width_(width), lower_(candidates.cols()) {
+    first_.push_back(0);
+    for (Index j = 0; j < candidates.cols(); ++j) {
+      lower_(j) = candidates.col(j).minCoeff();
+      const double range = candidates.col(j).maxCoeff() - lower_(j);
+      first_.push_back(first_.back() + std::max(1, static_cast<int>(std::ceil(range / width - 1e-9))));
+    }
+  }
+
+  int size() const { return first_.back(); }
+  /// Bin of a value of joint j; -1 outside all.
+  VERNIER_API int of(Index j, double q) const {
+    const int begin = first_[static_cast<std::size_t>(j)], end = first_[static_cast<std::size_t>(j) + 1];
+    const double at = std::floor((q - lower_(j)) / width_);
+    if (!(at >= 0) || at > end - begin) return -1;
+    return begin + std::min(static_cast<int>(at), end - begin - 1);
+  }
+  /// Bins of all joints of some configurations.
+  VERNIER_API Eigen::MatrixXi of_rows(const MatrixX& joints) const {
+    Eigen::MatrixXi out(joints.rows(), joints.cols());
+    for (Index i = 0; i < out.rows(); ++i)
+      for (Index j = 0; j < out.cols(); ++j) out(i, j) = of(j, joints(i, j));
+    return out;
+  }
+  VERNIER_API UncoveredBin named(int bin) const {
+    int joint = 0;
+    while (bin >= first_[static_cast<std::size_t>(joint) + 1]) ++joint;
+    const double from = lower_(joint) + width_ * (bin - first_[static_cast<std::size_t>(joint)]);
+    return {joint, {from, from + width_}};
+  }
+
+ private:
+  double width_;
+  VectorX lower_;
+  std::vector<int> first_;
+};
+
+/// Three of some points that register a frame best: the two farthest apart, and the one farthest from their line.
+VERNIER_API std::vector<Index> registering_points(const PointRows& points) {
+  const Index n = points.rows();
+  if (n < 3) return {};
+  std::vector<Index> out{0, 1, 2};
+  double farthest = -1;
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < i; ++j)
+      if (const double d = (points.row(i) - points.row(j)).squaredNorm(); d > farthest) {
+        farthest = d;
+        out = {j, i, 0};
+      }
+  const Vector3 from = points.row(out[0]).transpose(), along = points.row(out[1]).transpose() - from;
+  farthest = -1;
+  for (Index i = 0; i < n; ++i) {
+    if (i == out[0] || i == out[1]) continue;
+    const double d = along.cross(Vector3(points.row(i).transpose() - from)).squaredNorm();
+    if (!(d > farthest)) continue;
+    farthest = d;
+    out[2] = i;
+  }
+  return out;
+}
+
+/// Visits of the chosen configurations, see `PlannedMeasurements`.
+VERNIER_API std::vector<Index> planned_visits(const MatrixX& joints, const PointRows& positions,
+                                              const PlanOptions& options) {
+  std::vector<Index> first = registering_points(positions);
+  const auto fixed = static_cast<Index>(first.size());
+  std::vector<Index> rows = first;
+  for (Index i = 0; i < joints.rows(); ++i)
+    if (std::find(first.begin(), first.end(), i) == first.end()) rows.push_back(i);
+  MatrixX sorted(joints.rows(), joints.cols());
+  for (Index i = 0; i < joints.rows(); ++i) sorted.row(i) = joints.row(rows[static_cast<std::size_t>(i)]);
+  std::vector<Index> order = visiting_order(sorted, options.speeds, fixed);
+  for (Index& visit : order) visit = rows[static_cast<std::size_t>(visit)];
+  return with_check_visits(order, options.check_every);
+}
+
+VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, const PlanInput& input,
+                                                   const PlanOptions& options) {
+  options.errors.validate();
+  options.sensors.validate();
+  const Index n = input.candidates.rows();
+  require(options.count >= 1, "plan_measurements: count is ", options.count, ", must be at least 1");
+  require(n >= options.count, "plan_measurements: ", n, " candidates for ", options.count, " measurements");
+  require(input.candidates.allFinite() && input.measured.allFinite() && input.region.allFinite(),
+          "plan_measurements: a joint value is not finite");
+  require(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");
+  require(options.criterion != DesignCriterion::region_variance || input.region.rows() > 0,
+          "plan_measurements: no region whose variance could be reduced");
+  const PlannedCalibration planned{nominal,         options.geometry, options.errors,
+                                   options.sensors, options.oriented, options.count + input.measured.rows()};
+  const Index block = options.oriented ? 6 : 3;
+  const MatrixX rows = expected_rows(planned, input.candidates, input.candidates_previous);
+  MatrixX measured(0, rows.cols());
+  if (input.measured.rows() > 0) measured = expected_rows(planned, input.measured, input.measured_previous);
+
+  constexpr Index region_points = 150;
+  const MatrixX& of_region = input.region.rows() > 0 ? input.region : input.candidates;
+  const Index stride = std::max<Index>(1, of_region.rows() / region_points);
+  MatrixX points((of_region.rows() + stride - 1) / stride, of_region.cols());
+  for (Index i = 0; i < points.rows(); ++i) points.row(i) = of_region.row(i * stride);
+  PlannedCalibration positions = planned;
+  positions.oriented = false;
+  const MatrixX region = options.sensors.position_sigma * expected_rows(positions, points, MatrixX());
+
+  const JointBins bins(input.candidates, options.bin);
+  PoseDesignOptions design{.count = options.count, .criterion = options.criterion};
+  const Eigen::MatrixXi bins_of = bins.of_rows(input.candidates);
+  Eigen::VectorXi wanted = Eigen::VectorXi::Zero(bins.size());
+  for (Index c = 0; c < bins_of.size(); ++c) wanted(bins_of.data()[c]) = std::max(1, options.bin_count);
+  const Eigen::MatrixXi bins_measured = bins.of_rows(input.measured);
+  for (Index c = 0; c < bins_measured.size(); ++c)
+    if (const int bin = bins_measured.data()[c]; bin >= 0) wanted(bin) = std::max(0, wanted(bin) - 1);
+  if (options.bin_count > 0) design.coverage = {bins_of, wanted};
+  const PoseDesign found = design_poses(rows, block, design, measured, region);
+
+  PlannedMeasurements out;
+  out.chosen = found.chosen;
+  out.unknowns = rows.cols();
+  out.log_det = found.log_det;
+  out.relative_error = (found.region_variance / found.region_variance(options.count)).cwiseSqrt();
+  if (options.bound_iterations > 0 && measured.rows() == 0)
+    out.bound = information_bound(rows, block, options.count, options.bound_iterations);
+  MatrixX joints(options.count, input.candidates.cols());
+  for (Index i = 0; i < options.count; ++i) {
+    const Index c = out.chosen[static_cast<std::size_t>(i)];
+    joints.row(i) = input.candidates.row(c);
+    for (Index j = 0; j < joints.cols(); ++j) wanted(bins_of(c, j)) = 0;
+  }
+  if (options.bin_count > 0) wanted = found.missing;
+  for (int bin = 0; bin < bins.size(); ++bin)
+    if (wanted(bin) > 0) out.uncovered.push_back(bins.named(bin));
+  out.visits = planned_visits(joints, nominal.positions(joints), options);
+  return out;
+}
+
+VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const VectorX& lower, const VectorX& upper, Index n,
+                                     std::uint64_t seed, RejectionCounts& rejected) {
+  require(n >= 1, "sample_candidates: ", n, " candidates requested");
+  require(lower.allFinite() && upper.allFinite() && (lower.array() < upper.array()).all(),
+          "sample_candidates: the joint limits are not finite, or empty");
+  Rng rng(seed);
+  MatrixX out(n, lower.size());
+  constexpr Index attempts = 1000;
+  Index tried = 0;
+  for (Index i = 0; i < n;) {
+    for (Index j = 0; j < lower.size(); ++j) out(i, j) = rng.uniform(lower(j), upper(j));
+    const Rejection reason = scene.check(out.row(i).transpose());
+    ++rejected[static_cast<std::size_t>(reason)];
+    if (reason == Rejection::none) ++i;
+    ++tried;
+    if (tried < attempts * (i + 1)) continue;
+    const auto most = std::max_element(rejected.begin() + 1, rejected.end());
+    require(false, "sample_candidates: of ", tried, " configurations ", i, " can be measured; of the others ", *most,
+            " are ", name_of(static_cast<Rejection>(most - rejected.begin())));
+  }
+  rejected[0] = 0;
+  return out;
+}
+
+}  // namespace detail
+
+}  // namespace vernier

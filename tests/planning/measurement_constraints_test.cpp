@@ -1,0 +1,119 @@
+#include "vernier/planning/measurement_constraints.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "complaint.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/kinematics/dh_chain.hpp"
+
+namespace vernier {
+namespace {
+
+constexpr double half_turn = std::numbers::pi;
+
+/// Three links of 1 m in the plane x-y, stretched along x at zero; the tool looks along its z, which is that of the
+/// base.
+ArmGeometry planar_arm() {
+  const DhChain<3> chain{{{{.a = 1}, {.a = 1}, {.a = 1}}}};
+  return ArmGeometry(in_frames(chain));
+}
+
+Rejection checked(const MeasurementConstraints& constraints, const Vector3& q) {
+  return MeasurementScene(planar_arm(), constraints).check(q);
+}
+
+TEST(MeasurementConstraints, WithoutAnyAllIsPossible) { EXPECT_EQ(checked({}, {100, -3, 7}), Rejection::none); }
+
+TEST(MeasurementConstraints, JointLimitsWithAMargin) {
+  const MeasurementConstraints c{.lower = VectorX::Constant(3, -1), .upper = VectorX::Constant(3, 1)};
+  EXPECT_EQ(checked(c, {0.94, -0.94, 0}), Rejection::none);
+  EXPECT_EQ(checked(c, {0.96, 0, 0}), Rejection::joint_limits);
+  EXPECT_EQ(checked(c, {0, 0, -0.96}), Rejection::joint_limits);
+}
+
+TEST(MeasurementConstraints, TheToolStaysInItsBox) {
+  const MeasurementConstraints c{.tool_box = ToolBox{{2.5, -1, -0.1}, {3.5, 1, 0.1}}};
+  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked(c, {1, 0, 0}), Rejection::tool_box);
+}
+
+TEST(MeasurementConstraints, RangeOfTheTracker) {
+  const MeasurementConstraints c{.tracker = Tracker{.position = {10, 0, 0}, .min_range = 6.9, .max_range = 8}};
+  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked(c, {half_turn / 2, 0, 0}), Rejection::range);  // sqrt(109) m
+  EXPECT_EQ(checked({.tracker = Tracker{.position = {3.5, 0, 0}, .min_range = 1}}, {0, 0, 0}), Rejection::range);
+}
+
+TEST(MeasurementConstraints, AcceptanceOfTheReflector) {
+  // the reflector looks along the tool's x, the tracker stands on the axis of the stretched arm
+  MeasurementConstraints c{.tracker = Tracker{.position = {10, 0, 0}, .reflector_direction = {2, 0, 0}}};
+  c.tracker->acceptance = 0.5;
+  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked(c, {0, 0, 0.4}), Rejection::none);  // the beam turns a little, too
+  EXPECT_EQ(checked(c, {0, 0, 0.5}), Rejection::acceptance);
+  EXPECT_EQ(checked(c, {0, 0, half_turn}), Rejection::acceptance);
+  c.tracker->reflector_direction = {0, 0, 1};
+  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::acceptance);
+}
+
+TEST(MeasurementConstraints, LinksBlockTheBeam) {
+  MeasurementConstraints c{.tracker = Tracker{.position = {-5, 0, 0}, .beam_radius = 0.05},
+                           .link_radii = {0.1, 0.1, 0.1}};
+  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::line_of_sight);  // along its own links to the base
+  c.tracker->position = {3, 5, 0};
+  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
+  // folded once around a square: the tool at (0, 1), the tracker behind the first link
+  c.tracker->position = {0.5, -5, 0};
+  const Vector3 square{0, half_turn / 2, half_turn / 2};
+  EXPECT_EQ(checked(c, square), Rejection::line_of_sight);
+  c.tracker->position = {0.5, -5, 40};  // above it
+  EXPECT_EQ(checked(c, square), Rejection::none);
+  c.link_radii.clear();
+  c.tracker->position = {0.5, -5, 0};
+  EXPECT_EQ(checked(c, square), Rejection::none);
+}
+
+TEST(MeasurementConstraints, LinksCollide) {
+  MeasurementConstraints c{.link_radii = {0.1, 0.1, 0.1}};
+  EXPECT_EQ(checked(c, {0, half_turn / 2, half_turn / 2}), Rejection::none);
+  EXPECT_EQ(checked(c, {0, 2.4, 2.4}), Rejection::self_collision);  // the third link crosses the first
+  // next to each other all the time, but neighbours
+  EXPECT_EQ(checked(c, {0, 0, 2.9}), Rejection::none);
+  c.link_radii = {0.55, 0.1, 0.55};  // links whose neighbour in between is shorter than both always overlap
+  EXPECT_EQ(checked(c, {0, 0.1, 0.1}), Rejection::none);
+}
+
+TEST(MeasurementConstraints, DistancesOfSegmentsEqualAFineSearch) {
+  Rng rng(4);
+  const auto point = [&] { return Vector3(rng.normal(), rng.normal(), rng.normal()); };
+  for (int i = 0; i < 50; ++i) {
+    const Vector3 a = point(), b = point(), c = point(), d = i % 5 == 0 ? Vector3(c + 2 * (b - a)) : point();
+    double smallest = 1e9;
+    constexpr int steps = 400;
+    for (int s = 0; s <= steps; ++s)
+      for (int t = 0; t <= steps; ++t)
+        smallest = std::min(smallest, (a + (b - a) * s / steps - c - (d - c) * t / steps).norm());
+    const double found = segment_distance(a, b, c, d);
+    EXPECT_LE(found, smallest + 1e-12);
+    EXPECT_GE(found, smallest - 0.02);
+    EXPECT_NEAR(found, segment_distance(d, c, b, a), 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(segment_distance({0, 0, 0}, {0, 0, 0}, {3, 4, 0}, {3, 4, 0}), 5);
+  EXPECT_DOUBLE_EQ(segment_distance({0, 0, 0}, {0, 0, 0}, {-1, 1, 0}, {1, 1, 0}), 1);
+}
+
+TEST(MeasurementConstraints, RefusesWhatIsNotUsable) {
+  const auto complaint = [](const MeasurementConstraints& c) {
+    return vernier_test::complaint([&] { (void)MeasurementScene(planar_arm(), c); });
+  };
+  EXPECT_EQ(complaint({.lower = VectorX::Zero(2)}), "MeasurementScene: limits of 2 joints for an arm of 3");
+  EXPECT_EQ(complaint({.link_radii = {0.1}}), "MeasurementScene: radii of 1 links for an arm of 3");
+  EXPECT_EQ(complaint({.tool_box = ToolBox{{0, 0, 0}, {1, 0, 1}}}),
+            "MeasurementScene: the lower corner of the tool box is not below the upper one");
+  EXPECT_EQ(complaint({.tracker = Tracker{.acceptance = 0}}), "MeasurementScene: acceptance is 0, must be positive");
+}
+
+}  // namespace
+}  // namespace vernier

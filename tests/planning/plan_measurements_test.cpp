@@ -1,0 +1,217 @@
+#include "vernier/planning/plan_measurements.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <set>
+
+#include "complaint.hpp"
+#include "vernier/error_model/detail/expected_terms.hpp"
+#include "vernier/error_terms/joint_errors.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier {
+namespace {
+
+MeasurementCandidates<6> some_candidates(Index n, std::uint64_t seed) {
+  MeasurementCandidates<6> out;
+  out.joints = abb_irb120_operating_region().sample(robots::abb_irb120().chain, n, seed);
+  out.previous = out.joints;
+  out.previous.bottomRows(n - 1) = out.joints.topRows(n - 1);
+  return out;
+}
+
+PlanOptions few_harmonics(Index count) {
+  PlanOptions out{.count = count};
+  out.errors.harmonics = 6;
+  return out;
+}
+
+// Each column of the rows is the change of the pose by one prior size of one unknown, over the sensor's deviation.
+TEST(PlanMeasurements, RowsAreDerivativesOfThePose) {
+  const auto robot = robots::abb_irb120();
+  const MeasurementCandidates<6> at = some_candidates(5, 1);
+  detail::PlannedCalibration planned{
+      ArmGeometry(in_frames(robot.chain)), {.frames = Frames::base_and_tool}, {.harmonics = 4}, {}, true, 30};
+  const MatrixX rows = detail::expected_rows(planned, at.joints, at.previous);
+  const JointTerms terms = detail::allowed_terms(planned.nominal.chain(), planned.errors, 30);
+  const VectorX sizes = detail::expected_sizes(terms, planned.errors, detail::spectra_of(planned.errors, 6));
+  EXPECT_TRUE(terms.gear_ratio && terms.coupling && terms.gravity && terms.tilt && !terms.hysteresis.empty());
+  const Index geometric = rows.cols() - terms.size();
+  constexpr double step = 1e-3;  // prior sizes
+  for (Index k = 0; k < terms.size(); ++k) {
+    std::array<std::vector<Isometry3>, 2> ends;
+    for (const int sign : {0, 1}) {
+      VectorX coefficients = VectorX::Zero(terms.size());
+      coefficients(k) = (sign ? 1 : -1) * step * sizes(k);
+      const WithJointErrors<DhChain<6>> arm(robot.chain, JointErrors(terms, coefficients));
+      for (Index i = 0; i < 5; ++i) {
+        const JointVector<6> from = at.previous.row(i).transpose();
+        ends[static_cast<std::size_t>(sign)].push_back(arm.pose_from(from.data(), at.joints.row(i).transpose()));
+      }
+    }
+    for (Index i = 0; i < 5; ++i) {
+      const auto& low = ends[0][static_cast<std::size_t>(i)];
+      const auto& high = ends[1][static_cast<std::size_t>(i)];
+      Vector6 expected;
+      expected.head<3>() = (high.translation() - low.translation()) / (2 * step * planned.sensors.position_sigma);
+      expected.tail<3>() =
+          log_so3(Matrix3(high.linear() * low.linear().transpose())) / (2 * step * planned.sensors.orientation_sigma);
+      EXPECT_LT((rows.block(6 * i, geometric + k, 6, 1) - expected).norm(), 1e-5 * (1 + expected.norm()))
+          << terms.names()[static_cast<std::size_t>(k)] << ", pose " << i;
+    }
+  }
+  planned.oriented = false;
+  const MatrixX positions = detail::expected_rows(planned, at.joints, at.previous);
+  ASSERT_EQ(positions.rows(), 15);
+  for (Index i = 0; i < 5; ++i) EXPECT_EQ(positions.middleRows(3 * i, 3), rows.middleRows(6 * i, 3));
+}
+
+TEST(PlanMeasurements, MoreInformationThanByChanceAndTheFirstOnesAreThePlanOfFewer) {
+  const MeasurementCandidates<6> candidates = some_candidates(300, 2);
+  const auto chain = robots::abb_irb120().chain;
+  const auto plan = plan_measurements(chain, candidates, few_harmonics(40));
+  const auto fewer = plan_measurements(chain, candidates, few_harmonics(20));
+  EXPECT_TRUE(std::equal(fewer.chosen.begin(), fewer.chosen.end(), plan.chosen.begin()));
+  MeasurementCandidates<6> first = candidates;
+  first.joints.conservativeResize(40, 6);
+  first.previous.conservativeResize(40, 6);
+  const auto by_chance = plan_measurements(chain, first, few_harmonics(40));
+  EXPECT_GT(plan.log_det(40), by_chance.log_det(40) + 10);
+  for (Index k = 0; k < 40; ++k) {
+    EXPECT_GT(plan.log_det(k + 1), plan.log_det(k));
+    EXPECT_GE(plan.relative_error(k), plan.relative_error(k + 1));
+  }
+  EXPECT_DOUBLE_EQ(plan.relative_error(40), 1);
+  EXPECT_EQ(std::set<Index>(plan.chosen.begin(), plan.chosen.end()).size(), 40u);
+}
+
+TEST(PlanMeasurements, TheBoundHolds) {
+  PlanOptions options = few_harmonics(15);
+  const auto free = plan_measurements(robots::abb_irb120().chain, some_candidates(80, 3), options);
+  EXPECT_TRUE(std::isinf(free.bound));
+  options.bound_iterations = 30;
+  const auto plan = plan_measurements(robots::abb_irb120().chain, some_candidates(80, 3), options);
+  EXPECT_EQ(plan.chosen, free.chosen);
+  EXPECT_GE(plan.bound, plan.log_det(15));
+  EXPECT_LT(plan.bound, 1.2 * plan.log_det(15));
+}
+
+TEST(PlanMeasurements, ARegionIsPredictedBetterByAPlanForIt) {
+  const MeasurementCandidates<6> candidates = some_candidates(300, 4);
+  const auto chain = robots::abb_irb120().chain;
+  JointRows<6> region = some_candidates(60, 5).joints;
+  region.leftCols<3>() = 0.3 * region.leftCols<3>();
+  PlanOptions options = few_harmonics(30);
+  const auto variance = [&](const MeasurementPlan<6>& plan) {
+    const detail::PlannedCalibration planned{
+        ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, false, 30};
+    const MatrixX rows = detail::expected_rows(planned, plan.joints, MatrixX());
+    const MatrixX of_region = detail::expected_rows(planned, region, MatrixX());
+    const MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()) + rows.transpose() * rows;
+    return (of_region * information.llt().solve(of_region.transpose())).trace();
+  };
+  const double general = variance(plan_measurements(chain, candidates, options, {}, region));
+  options.criterion = DesignCriterion::region_variance;
+  EXPECT_LT(variance(plan_measurements(chain, candidates, options, {}, region)), 0.95 * general);
+}
+
+TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
+  MeasurementCandidates<6> candidates = some_candidates(60, 6);
+  const auto chain = robots::abb_irb120().chain;
+  const auto plan = plan_measurements(chain, candidates, few_harmonics(20));
+  MeasurementCandidates<6> measured;
+  measured.joints = plan.joints;
+  measured.previous.resize(20, 6);
+  for (Index i = 0; i < 20; ++i)
+    measured.previous.row(i) = candidates.previous.row(plan.chosen[static_cast<std::size_t>(i)]);
+  const auto more = plan_measurements(chain, candidates, few_harmonics(10), measured);
+  PlanOptions both = few_harmonics(30);
+  const auto at_once = plan_measurements(chain, candidates, both);
+  for (const Index c : more.chosen) EXPECT_EQ(std::find(plan.chosen.begin(), plan.chosen.end(), c), plan.chosen.end());
+  EXPECT_EQ(more.chosen, (std::vector<Index>(at_once.chosen.begin() + 20, at_once.chosen.end())));
+  EXPECT_NEAR(more.log_det(10), at_once.log_det(30) - at_once.log_det(20), 1e-6);
+}
+
+TEST(PlanMeasurements, VisitsRegisterFirstAndCheckRepeatedly) {
+  const auto chain = robots::abb_irb120().chain;
+  const auto plan = plan_measurements(chain, some_candidates(200, 7), few_harmonics(45));
+  ASSERT_EQ(plan.visits.size(), 45u + 3u);  // again after 20, after 40, at the end
+  EXPECT_EQ(plan.visits[20], plan.visits[0]);
+  EXPECT_EQ(plan.visits.back(), plan.visits[0]);
+  EXPECT_EQ(std::set<Index>(plan.visits.begin(), plan.visits.end()).size(), 45u);
+  const PointRows points = chain.positions(plan.joints);
+  double widest = 0;
+  for (Index i = 0; i < 45; ++i)
+    for (Index j = 0; j < i; ++j) widest = std::max(widest, (points.row(i) - points.row(j)).norm());
+  EXPECT_DOUBLE_EQ((points.row(plan.visits[0]) - points.row(plan.visits[1])).norm(), widest);
+  const Vector3 a = points.row(plan.visits[1]) - points.row(plan.visits[0]),
+                b = points.row(plan.visits[2]) - points.row(plan.visits[0]);
+  EXPECT_GT(a.cross(b).norm() / a.norm(), 0.3 * widest);  // far from the line of the other two
+}
+
+TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
+  const auto chain = robots::abb_irb120().chain;
+  PlanOptions options = few_harmonics(40);
+  options.bin_count = 1;
+  const auto covering = plan_measurements(chain, some_candidates(300, 8), options);
+  EXPECT_TRUE(covering.uncovered.empty());
+  options.count = 3;
+  const auto few = plan_measurements(chain, some_candidates(300, 8), options);
+  ASSERT_FALSE(few.uncovered.empty());
+  for (const UncoveredBin& bin : few.uncovered)
+    for (Index i = 0; i < 3; ++i)
+      EXPECT_FALSE(few.joints(i, bin.joint) >= bin.range.lower && few.joints(i, bin.joint) < bin.range.upper);
+}
+
+TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
+  const auto robot = robots::abb_irb120();
+  MeasurementConstraints constraints{.tool_box = ToolBox{{0, -0.4, 0.1}, {0.8, 0.4, 0.9}},
+                                     .tracker = Tracker{.position = {3, 0, 0.5}, .acceptance = 1}};
+  const auto found = sample_candidates(robot.chain, robot.limits, constraints, 200, 3);
+  EXPECT_EQ(found.joints, sample_candidates(robot.chain, robot.limits, constraints, 200, 3).joints);
+  for (Index i = 0; i < 200; ++i) {
+    const JointVector<6> q = found.joints.row(i).transpose();
+    const Isometry3 pose = robot.chain.pose(q);
+    EXPECT_TRUE((q.array() >= robot.limits.lower.array() + 0.05 - 1e-12).all());
+    EXPECT_TRUE((pose.translation().array() >= constraints.tool_box->lower.array()).all());
+    EXPECT_TRUE((pose.translation().array() <= constraints.tool_box->upper.array()).all());
+    const Vector3 beam = (constraints.tracker->position - pose.translation()).normalized();
+    EXPECT_GE(beam.dot(pose.linear().col(2)), std::cos(1.0) - 1e-12);
+  }
+  EXPECT_EQ(found.rejected[static_cast<std::size_t>(Rejection::none)], 0);
+  for (const Rejection r : {Rejection::joint_limits, Rejection::tool_box, Rejection::acceptance})
+    EXPECT_GT(found.rejected[static_cast<std::size_t>(r)], 0) << name_of(r);
+  EXPECT_EQ(found.rejected[static_cast<std::size_t>(Rejection::self_collision)], 0);
+
+  constraints.tool_box = ToolBox{{10, 10, 10}, {11, 11, 11}};
+  const std::string said =
+      vernier_test::complaint([&] { (void)sample_candidates(robot.chain, robot.limits, constraints, 200, 3); });
+  EXPECT_NE(said.find("of 1000 configurations 0 can be measured; of the others"), std::string::npos) << said;
+  EXPECT_NE(said.find("tool out of its box"), std::string::npos) << said;
+}
+
+TEST(PlanMeasurements, EnoughIsWhereTenMoreGainLittle) {
+  PlannedMeasurements plan;
+  plan.chosen.resize(30);
+  plan.relative_error = VectorX::LinSpaced(31, 4, 1);
+  EXPECT_EQ(plan.enough(), 30);
+  plan.relative_error.tail(16).setConstant(plan.relative_error(15));
+  EXPECT_EQ(plan.enough(), 15);
+}
+
+TEST(PlanMeasurements, RefusesWhatIsNotUsable) {
+  const auto complaint = [](const PlanOptions& options, Index n) {
+    return vernier_test::complaint(
+        [&] { (void)plan_measurements(robots::abb_irb120().chain, some_candidates(n, 1), options); });
+  };
+  EXPECT_EQ(complaint({.count = 11}, 10), "plan_measurements: 10 candidates for 11 measurements");
+  EXPECT_EQ(complaint({.count = 0}, 10), "plan_measurements: count is 0, must be at least 1");
+  EXPECT_EQ(complaint({.count = 2, .criterion = DesignCriterion::region_variance}, 10),
+            "plan_measurements: no region whose variance could be reduced");
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,84 @@
+#include "vernier/planning/visiting_order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "complaint.hpp"
+#include "vernier/core/rng.hpp"
+
+namespace vernier {
+namespace {
+
+MatrixX random_configurations(Index n, std::uint64_t seed) {
+  Rng rng(seed);
+  MatrixX out(n, 6);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < 6; ++j) out(i, j) = rng.uniform(-3, 3);
+  return out;
+}
+
+TEST(VisitingOrder, NearlyTheShortestOfAllPaths) {
+  double ratios = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const MatrixX joints = random_configurations(9, seed);
+    std::vector<Index> order(9);
+    std::iota(order.begin(), order.end(), Index{0});
+    double shortest = path_time(joints, order);
+    while (std::next_permutation(order.begin() + 1, order.end()))
+      shortest = std::min(shortest, path_time(joints, order));
+    const std::vector<Index> found = visiting_order(joints);
+    EXPECT_EQ(found.front(), 0);
+    std::vector<Index> sorted = found;
+    std::sort(sorted.begin(), sorted.end());
+    for (Index i = 0; i < 9; ++i) EXPECT_EQ(sorted[static_cast<std::size_t>(i)], i);
+    const double ratio = path_time(joints, found) / shortest;
+    EXPECT_GE(ratio, 1 - 1e-12);
+    EXPECT_LE(ratio, 1.15) << "seed " << seed;
+    ratios += ratio / 10;
+  }
+  EXPECT_LE(ratios, 1.05);
+}
+
+TEST(VisitingOrder, AStraightLineIsFollowed) {
+  MatrixX joints(6, 2);
+  joints << 0, 0, 3, 0, 1, 0, 5, 0, 2, 0, 4, 0;
+  EXPECT_EQ(visiting_order(joints), (std::vector<Index>{0, 2, 4, 1, 5, 3}));
+}
+
+TEST(VisitingOrder, TheSlowestJointDecides) {
+  MatrixX joints(2, 2);
+  joints << 0, 0, 1, 3;
+  EXPECT_DOUBLE_EQ(path_time(joints, {0, 1}), 3);
+  EXPECT_DOUBLE_EQ(path_time(joints, {0, 1}, Eigen::Vector2d(0.25, 2)), 4);
+}
+
+TEST(VisitingOrder, ShorterThanByChanceAndFirstRowsStay) {
+  const MatrixX joints = random_configurations(100, 3);
+  std::vector<Index> by_row(100);
+  std::iota(by_row.begin(), by_row.end(), Index{0});
+  const std::vector<Index> order = visiting_order(joints, VectorX(), 3);
+  EXPECT_EQ(std::vector<Index>(order.begin(), order.begin() + 3), (std::vector<Index>{0, 1, 2}));
+  EXPECT_LT(path_time(joints, order), 0.6 * path_time(joints, by_row));
+  EXPECT_EQ(order, visiting_order(joints, VectorX(), 3));
+}
+
+TEST(VisitingOrder, ChecksAreRepeated) {
+  EXPECT_EQ(with_check_visits({4, 1, 2, 3, 0}, 2), (std::vector<Index>{4, 1, 4, 2, 3, 4, 0, 4}));
+  EXPECT_EQ(with_check_visits({7}, 2), (std::vector<Index>{7}));
+}
+
+TEST(VisitingOrder, RefusesWhatIsNotUsable) {
+  using vernier_test::complaint;
+  const MatrixX joints = random_configurations(4, 1);
+  EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX::Ones(5)); }), "visiting_order: 5 speeds of 6 joints");
+  EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX::Zero(6)); }),
+            "visiting_order: a speed is not positive");
+  EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX(), 5); }),
+            "visiting_order: 5 of 4 rows are to stay first");
+  EXPECT_TRUE(visiting_order(MatrixX(0, 6)).empty());
+}
+
+}  // namespace
+}  // namespace vernier

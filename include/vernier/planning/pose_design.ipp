@@ -228,51 +228,83 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
   return out;
 }
 
+namespace detail {
+
+/// A concave function of weights, log det of the information, and its gradient.
+struct WeightedInformation {
+  double value;
+  VectorX gradient;
+};
+/// @param weighted  candidates with a weight
+/// @param weights   theirs
+/// @param of_all    whether the gradient is that of all candidates, or of the weighted ones alone
+VERNIER_API WeightedInformation weighted_information(const ConstMatrixRef& rows, Index block,
+                                                     const std::vector<Index>& weighted, const VectorX& weights,
+                                                     bool of_all) {
+  const Index p = rows.cols(), chosen = static_cast<Index>(weighted.size());
+  MatrixX columns(p, chosen * block);
+  for (Index k = 0; k < chosen; ++k)
+    columns.middleCols(k * block, block) =
+        std::sqrt(weights(k)) * rows.middleRows(weighted[static_cast<std::size_t>(k)] * block, block).transpose();
+  MatrixX information = MatrixX::Identity(p, p);
+  add_product(information, columns, columns.transpose());
+  require(cholesky(information), "information_bound: the rows are not usable");
+  const Index n = of_all ? rows.rows() / block : chosen;
+  columns.resize(p, n * block);
+  for (Index c = 0; c < n; ++c)
+    columns.middleCols(c * block, block) =
+        rows.middleRows((of_all ? c : weighted[static_cast<std::size_t>(c)]) * block, block).transpose();
+  solve_lower(information, columns);
+  WeightedInformation out{2 * information.diagonal().array().log().sum(), VectorX(n)};
+  for (Index c = 0; c < n; ++c) out.gradient(c) = columns.middleCols(c * block, block).squaredNorm();
+  return out;
+}
+
+/// Weights of at most one whose sum is that of `total`, in proportion to others where they are below one.
+VERNIER_API void share_out(double total, VectorX& weights) {
+  std::vector<bool> full(static_cast<std::size_t>(weights.size()), false);
+  for (bool clipped = true; clipped;) {
+    clipped = false;
+    double sum = 0;
+    for (Index c = 0; c < weights.size(); ++c) sum += full[static_cast<std::size_t>(c)] ? 0 : weights(c);
+    if (!(sum > 0)) return;
+    const double factor = total / sum;
+    for (Index c = 0; c < weights.size(); ++c) {
+      if (full[static_cast<std::size_t>(c)]) continue;
+      weights(c) *= factor;
+      if (weights(c) < 1) continue;
+      weights(c) = 1;
+      full[static_cast<std::size_t>(c)] = true;
+      total -= 1;
+      clipped = true;
+    }
+  }
+}
+
+}  // namespace detail
+
 VERNIER_IMPL double information_bound(const ConstMatrixRef& rows, Index block, Index count, int iterations) {
   require(block >= 1 && rows.rows() % block == 0, "information_bound: ", rows.rows(), " rows are no multiple of ",
           block);
-  const Index n = rows.rows() / block, p = rows.cols();
+  const Index n = rows.rows() / block;
   require(count >= 0 && count <= n, "information_bound: ", count, " of ", n, " candidates");
-  require(iterations >= 1, "information_bound: ", iterations, " iterations, must be at least 1");
-  const auto total = static_cast<double>(count);
-  VectorX weights = VectorX::Constant(n, total / static_cast<double>(std::max<Index>(n, 1)));
-  double best = std::numeric_limits<double>::infinity();
+  require(iterations >= 0, "information_bound: ", iterations, " iterations");
+  constexpr Index enough = 400;
+  const Index stride = std::max<Index>(1, n / std::max(enough, 4 * count));
+  std::vector<Index> weighted;
+  for (Index c = 0; c < n; c += stride) weighted.push_back(c);
+  const auto size = static_cast<Index>(weighted.size());
+  VectorX weights = VectorX::Constant(size, static_cast<double>(count) / static_cast<double>(std::max<Index>(size, 1)));
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    MatrixX columns(p, rows.rows());
-    for (Index r = 0; r < rows.rows(); ++r) columns.col(r) = std::sqrt(weights(r / block)) * rows.row(r).transpose();
-    MatrixX information = MatrixX::Identity(p, p);
-    detail::add_product(information, columns, columns.transpose());
-    require(detail::cholesky(information), "information_bound: the rows are not usable");
-    columns = rows.transpose();
-    detail::solve_lower(information, columns);
-    VectorX gradient(n);
-    for (Index c = 0; c < n; ++c) gradient(c) = columns.middleCols(c * block, block).squaredNorm();
-    VectorX largest = gradient;
-    std::nth_element(largest.begin(), largest.begin() + count, largest.end(), std::greater<>());
-    best = std::min(best,
-                    2 * information.diagonal().array().log().sum() + largest.head(count).sum() - weights.dot(gradient));
-    // clipped weights keep their one, the others share what is left in proportion
-    VectorX wanted = weights.cwiseProduct(gradient);
-    std::vector<bool> full(static_cast<std::size_t>(n), false);
-    double left = total;
-    for (bool clipped = true; clipped;) {
-      clipped = false;
-      double sum = 0;
-      for (Index c = 0; c < n; ++c) sum += full[static_cast<std::size_t>(c)] ? 0 : wanted(c);
-      if (!(sum > 0)) break;
-      const double factor = left / sum;
-      for (Index c = 0; c < n; ++c) {
-        if (full[static_cast<std::size_t>(c)]) continue;
-        weights(c) = factor * wanted(c);
-        if (weights(c) < 1) continue;
-        weights(c) = 1;
-        full[static_cast<std::size_t>(c)] = true;
-        left -= 1;
-        clipped = true;
-      }
-    }
+    const auto at = detail::weighted_information(rows, block, weighted, weights, false);
+    weights = weights.cwiseProduct(at.gradient);
+    detail::share_out(static_cast<double>(count), weights);
   }
-  return best;
+  auto at = detail::weighted_information(rows, block, weighted, weights, true);
+  double along = 0;
+  for (Index k = 0; k < size; ++k) along += weights(k) * at.gradient(weighted[static_cast<std::size_t>(k)]);
+  std::nth_element(at.gradient.begin(), at.gradient.begin() + count, at.gradient.end(), std::greater<>());
+  return at.value + at.gradient.head(count).sum() - along;
 }
 
 }  // namespace vernier

@@ -1,0 +1,219 @@
+// Which poses to measure: joint values for an arm that is to be calibrated, or the most useful rows of a measured file.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "cli.hpp"
+#include "dispatch.hpp"
+#include "json_file.hpp"
+#include "plan_figures.hpp"
+#include "robot_choice.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/split.hpp"
+#include "vernier/planning/plan_measurements.hpp"
+
+namespace {
+
+namespace vn = vernier;
+
+/// What the command line says.
+struct Settings {
+  std::string robot, data, region, from, held_out, out;
+  vn::Index count = 0, add = 0, choose = 0, test_every = 0, candidates = 5000;
+  std::vector<double> tracker{}, box{};
+  double acceptance_deg = 180, link_radius_mm = 0;
+  bool orientations = false, bound = false;
+  int cover = 0;
+};
+
+/// The rows to choose, in the order of the file; joints alone are looked at.
+template <int N>
+support::PlanOutcome choose_rows(const Settings& o, const vn::DescribedRobot<N>& robot, vn::PlanOptions& options) {
+  vn::Dataset<N> data = vn::read_dataset<N>(o.from, robot.arm.model().joint_types()), held_out;
+  if (o.test_every > 0) {
+    vn::Split<N> parts = vn::split_every(data, o.test_every);
+    data = std::move(parts.train);
+    held_out = std::move(parts.test);
+  }
+  options.oriented = data.has_orientations();
+  const auto plan = vn::plan_measurements(robot.arm, {data.joints(), data.previous(), {}}, options);
+  std::vector<vn::Index> rows = plan.chosen;
+  std::sort(rows.begin(), rows.end());
+  vn::write_dataset(o.out, data.rows(rows));
+  if (!o.held_out.empty()) vn::write_dataset(o.held_out, held_out);
+  return {plan, {}, plan.joints, data.joints(), robot.arm.positions(plan.joints), robot.arm.positions(data.joints()),
+          {},   0};
+}
+
+/// New poses, written in the order of their visits.
+template <int N>
+support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& robot, vn::PlanOptions& options,
+                              std::uint64_t seed) {
+  const auto types = robot.arm.model().joint_types();
+  vn::MeasurementConstraints constraints;
+  constexpr double mm = 1e-3;
+  if (!o.box.empty())
+    constraints.tool_box =
+        vn::ToolBox{mm * vn::Vector3(o.box[0], o.box[2], o.box[4]), mm * vn::Vector3(o.box[1], o.box[3], o.box[5])};
+  if (!o.tracker.empty())
+    constraints.tracker = vn::Tracker{.position = mm * vn::Vector3(o.tracker[0], o.tracker[1], o.tracker[2]),
+                                      .acceptance = o.acceptance_deg * std::numbers::pi / 180};
+  if (o.link_radius_mm > 0) constraints.link_radii.assign(N, mm * o.link_radius_mm);
+  vn::MeasurementCandidates<N> measured;
+  if (!o.data.empty()) {
+    const auto data = vn::read_dataset<N>(o.data, types);
+    measured = {data.joints(), data.previous(), {}};
+    options.oriented = options.oriented || data.has_orientations();
+  }
+  vn::JointRows<N> region(0, N);
+  if (!o.region.empty()) {
+    region = vn::read_joints<N>(o.region, types);
+    options.criterion = vn::DesignCriterion::region_variance;
+  }
+  const auto candidates = vn::sample_candidates(robot.arm, robot.limits, constraints, o.candidates, seed);
+  const auto plan = vn::plan_measurements(robot.arm, candidates, options, measured, region);
+
+  std::string text;
+  for (std::size_t j = 0; j < types.size(); ++j)
+    text += vn::message("q", j + 1, types[j] == vn::JointType::revolute ? "_rad," : "_m,");
+  text += "visit\n";
+  std::vector<bool> seen(plan.chosen.size(), false);
+  for (std::size_t i = 0; i < plan.visits.size(); ++i) {
+    const auto row = static_cast<std::size_t>(plan.visits[i]);
+    for (int j = 0; j < N; ++j) text += vn::message(plan.joints(plan.visits[i], j), ',');
+    text += seen[row] ? "check\n" : i < 3 ? "register\n" : "measure\n";
+    seen[row] = true;
+  }
+  vn::write_file(o.out, text);
+  return {plan,
+          plan.rejected,
+          plan.joints,
+          candidates.joints,
+          robot.arm.positions(plan.joints),
+          robot.arm.positions(candidates.joints),
+          {},
+          measured.joints.rows()};
+}
+
+template <int N>
+support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& description, std::uint64_t seed) {
+  const vn::DescribedRobot<N> robot = description.arm<N>();
+  vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}), .oriented = o.orientations};
+  options.errors.drives = robot.drives;
+  options.bin_count = o.cover;
+  options.bound_iterations = o.bound ? 30 : 0;
+  support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
+  const auto types = robot.arm.model().joint_types();
+  out.types.assign(types.begin(), types.end());
+  return out;
+}
+
+support::Json to_json(const Settings& o, const std::string& robot, const support::PlanOutcome& found) {
+  support::Json rejected = support::Json::object(), uncovered = support::Json::array();
+  for (std::size_t r = 1; r < vn::num_rejections; ++r)
+    rejected[vn::name_of(static_cast<vn::Rejection>(r))] = found.rejected[r];
+  for (const vn::UncoveredBin& bin : found.plan.uncovered)
+    uncovered.push_back({{"joint", bin.joint + 1}, {"lower", bin.range.lower}, {"upper", bin.range.upper}});
+  const auto list = [](const vn::VectorX& v) { return std::vector<double>(v.begin(), v.end()); };
+  return {{"robot", robot},
+          {"poses", found.plan.chosen.size()},
+          {"criterion", o.region.empty() ? "information" : "region_variance"},
+          {"candidates", found.candidates.rows()},
+          {"measured", found.measured},
+          {"unknowns", found.plan.unknowns},
+          {"rejected", rejected},
+          {"uncovered", uncovered},
+          {"chosen", found.plan.chosen},
+          {"visits", found.plan.visits},
+          {"information_nats", list(found.plan.log_det)},
+          {"bound_nats", found.plan.bound},
+          {"relative_error", list(found.plan.relative_error)},
+          {"enough", found.plan.enough()}};
+}
+
+int run(support::Program& program) {
+  Settings o;
+  CLI::App& app = program.app();
+  const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
+    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
+  };
+  option("--robot", o.robot, "name in the catalogue, or a JSON file", "NAME|FILE")->required();
+  auto* count = option("--count", o.count, "number of poses to plan", "N")->check(CLI::Range(3, 100000));
+  auto* data = option("--data", o.data, "poses measured so far: what they say is not measured again", "FILE");
+  auto* add =
+      option("--add", o.add, "number of poses to add to --data", "N")->check(CLI::Range(3, 100000))->needs(data);
+  auto* choose = option("--choose", o.choose, "choose so many rows of --from, by their joints alone", "N")
+                     ->check(CLI::Range(3, 100000));
+  auto* from = option("--from", o.from, "measured poses, as calibrate reads them", "FILE");
+  choose->needs(from)->excludes(count)->excludes(add);
+  count->excludes(add);
+  from->needs(choose);
+  auto* every = option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
+                    ->check(CLI::Range(2, 1000000))
+                    ->needs(from);
+  option("--held-out", o.held_out, "write those rows to this file", "FILE")->needs(every);
+  option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
+      ->delimiter(',')
+      ->expected(3)
+      ->excludes(choose);
+  app.add_option("--acceptance-deg", o.acceptance_deg, "largest angle between the beam and the tool's z axis")
+      ->check(CLI::Range(1.0, 180.0));
+  app.add_option("--link-radius-mm", o.link_radius_mm, "links so thick block the beam and must not collide; 0: neither")
+      ->check(CLI::Range(0.0, 1e4));
+  option("--box", o.box, "where the tool may be, in the base frame [mm]", "X0,X1,Y0,Y1,Z0,Z1")
+      ->delimiter(',')
+      ->expected(6)
+      ->excludes(choose);
+  option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
+      ->excludes(choose);
+  app.add_flag("--orientations", o.orientations, "orientations are measured, too");
+  app.add_option("--cover", o.cover, "poses in every 10 deg of every joint that can be reached, before anything else")
+      ->check(CLI::Range(0, 1000));
+  app.add_option("--candidates", o.candidates, "number of random poses to choose from")->check(CLI::Range(3, 1000000));
+  app.add_flag("--bound", o.bound, "compute how much information no choice exceeds");
+  program.parse("", "write the poses to this file", "FILE");
+  o.out = program.common().out;
+  if (o.out.empty()) throw support::UsageError("--out is required");
+  if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
+  support::require_writable(o.out);
+  if (!o.held_out.empty()) support::require_writable(o.held_out);
+  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  const support::PlanOutcome found =
+      support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed); });
+
+  const vn::PlannedMeasurements& plan = found.plan;
+  fmt::print("{}: {} poses of {} candidates, to determine {} unknowns\n", robot.name, plan.chosen.size(),
+             found.candidates.rows(), plan.unknowns);
+  for (std::size_t r = 1; r < vn::num_rejections; ++r)
+    if (found.rejected[r] > 0)
+      fmt::print("Not among the candidates: {} poses, {}\n", found.rejected[r],
+                 vn::name_of(static_cast<vn::Rejection>(r)));
+  fmt::print("Information about the unknowns: {:.1f} nats{}\n", plan.log_det(plan.log_det.size() - 1),
+             std::isfinite(plan.bound) ? fmt::format("; no choice of as many has more than {:.1f}", plan.bound) : "");
+  const vn::Index all = static_cast<vn::Index>(plan.chosen.size()), half = all / 2;
+  fmt::print("Predicted error with half of them, {}: {:.2f} times that with all\n", half, plan.relative_error(half));
+  if (plan.enough() < all)
+    fmt::print("From {} poses on, ten more reduce the predicted error by less than 2 %\n", plan.enough());
+  for (int j = 0; j < robot.dof(); ++j)
+    if (const std::string gaps = support::gaps_of(found, j); !gaps.empty())
+      fmt::print("Joint {} could be measured, but is not, in {}\n", j + 1, gaps);
+  if (o.choose == 0)
+    fmt::print("{} visits: the first three register the tracker, the first pose is visited {} times to see drift\n",
+               plan.visits.size(), std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));
+  fmt::print("Poses: {}\n", o.out);
+  if (!program.common().json.empty()) support::write_json(program.common().json, to_json(o, robot.name, found));
+  if (const std::string figures = support::draw_plan(o.out, found); !figures.empty())
+    fmt::print("Figures: {}\n", figures);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program("plan_poses", "Which poses to measure for a calibration.", argc, argv, run);
+}

@@ -1,0 +1,94 @@
+// Measures a virtual arm: an arm of the catalogue or of a file with drawn errors, at given joint values.
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <string>
+
+#include "cli.hpp"
+#include "dispatch.hpp"
+#include "robot_choice.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/simulation/error_sources.hpp"
+
+namespace {
+
+namespace vn = vernier;
+
+struct Settings {
+  std::string robot, poses;
+  double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02;
+  bool positions_only = false;
+};
+
+/// A number of some joint values: other poses have other noise, the same ones the same.
+std::uint64_t digest(const vn::MatrixX& joints) {
+  std::uint64_t out = 0;
+  for (vn::Index k = 0; k < joints.size(); ++k)
+    out = vn::child_seed(out, std::bit_cast<std::uint64_t>(joints.data()[k]));
+  return out;
+}
+
+template <int N>
+vn::Index simulate(const Settings& o, const vn::RobotDescription& description, const std::string& out,
+                   std::uint64_t seed) {
+  const vn::DescribedRobot<N> robot = description.arm<N>();
+  const auto types = robot.arm.model().joint_types();
+  const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types);
+  const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
+  const vn::JointErrorSizes sizes{.harmonics = 30, .ripple = 0.01e-3};
+  const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
+  // the sensor stands somewhere, the reflector is somewhere on the flange
+  vn::Rng rng(vn::child_seed(seed, 2));
+  const auto drawn = [&](double position, double rotation) {
+    vn::Isometry3 frame = vn::Isometry3::Identity();
+    for (int k = 0; k < 3; ++k) frame.translation()(k) = rng.uniform(-position, position);
+    frame.linear() = vn::exp_so3(vn::Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) * rotation);
+    return frame;
+  };
+  const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base(), tool = robot.arm.tool() * drawn(0.1, 1);
+  const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base,
+                                                            tool);
+  vn::JointVector<N> backlash = vn::JointVector<N>::Zero();
+  for (int j = 0; j < N; ++j)
+    if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = o.backlash_mrad * 1e-3;
+  const vn::MeasurementNoise noise{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, !o.positions_only};
+  vn::write_dataset(out, vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
+                                                   vn::child_seed(seed, digest(joints))));
+  return joints.rows();
+}
+
+int run(support::Program& program) {
+  Settings o;
+  CLI::App& app = program.app();
+  app.add_option("--robot", o.robot, "name in the catalogue, or a JSON file")
+      ->required()
+      ->type_name("NAME|FILE")
+      ->always_capture_default(false);
+  app.add_option("--poses", o.poses, "joints q1_rad.., visited in their order")
+      ->required()
+      ->type_name("FILE")
+      ->always_capture_default(false);
+  app.add_option("--noise-mm", o.noise_mm, "standard deviation of a position, per component")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--noise-mrad", o.noise_mrad, "of an orientation")->check(CLI::NonNegativeNumber);
+  app.add_option("--backlash-mrad", o.backlash_mrad, "half the play of every gear")->check(CLI::NonNegativeNumber);
+  app.add_flag("--positions-only", o.positions_only, "orientations are not measured");
+  program.parse("", "write the measured poses to this file", "FILE");
+  const std::string out = program.common().out;
+  if (out.empty()) throw support::UsageError("--out is required");
+  support::require_writable(out);
+  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  const vn::Index rows =
+      support::dispatch_dof(robot.dof(), [&](auto n) { return simulate<n()>(o, robot, out, program.common().seed); });
+  fmt::print("{} {}: {} poses of the virtual arm of seed {} measured: {}\n", robot.name,
+             o.positions_only ? "(positions)" : "(poses)", rows, program.common().seed, out);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program("simulate_measurements", "Measures a virtual arm with drawn errors.", argc, argv, run);
+}

@@ -106,7 +106,7 @@ support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& des
   vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}), .oriented = o.orientations};
   options.errors.drives = robot.drives;
   options.bin_count = o.cover;
-  options.bound_iterations = o.bound ? 30 : 0;
+  options.bound_iterations = o.bound ? 10 : 0;
   support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
   const auto types = robot.arm.model().joint_types();
   out.types.assign(types.begin(), types.end());

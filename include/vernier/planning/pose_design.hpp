@@ -58,17 +58,15 @@ VERNIER_API PoseDesign design_poses(const ConstMatrixRef& rows, Index block, con
                                     const ConstMatrixRef& region = MatrixX());
 
 /// A bound on the information of any choice, by concavity: log det at fractional weights `0 <= w <= 1` of sum `count`,
-/// plus the `count` largest entries of its gradient, less those that the weights have. Weights are of about 400
-/// candidates, or four times `count`; any give a bound. With many unknowns it is loose.
+/// plus the `count` largest entries of its gradient, less what the weights have of it. With many unknowns it is loose.
 /// @param rows       as for `design_poses`
 /// @param block      rows a candidate
 /// @param count      number of candidates that may be chosen
-/// @param iterations multiplicative updates of the weights
-/// @return the bound [nat]
+/// @param iterations multiplicative updates of the weights; the smallest bound of all is returned [nat]
 /// @throws std::invalid_argument for sizes that do not match
-/// @complexity O(iterations (p^3 + count b p^2) + n b p^2)
+/// @complexity O(iterations (p^3 + n b p^2))
 /// @cite Silvey, Titterington and Torsney 1978; Boyd and Vandenberghe 2004 (7.5)
-VERNIER_API double information_bound(const ConstMatrixRef& rows, Index block, Index count, int iterations = 30);
+VERNIER_API double information_bound(const ConstMatrixRef& rows, Index block, Index count, int iterations = 10);
 
 }  // namespace vernier
 

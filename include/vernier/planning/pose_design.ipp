@@ -235,28 +235,16 @@ struct WeightedInformation {
   double value;
   VectorX gradient;
 };
-/// @param weighted  candidates with a weight
-/// @param weights   theirs
-/// @param of_all    whether the gradient is that of all candidates, or of the weighted ones alone
-VERNIER_API WeightedInformation weighted_information(const ConstMatrixRef& rows, Index block,
-                                                     const std::vector<Index>& weighted, const VectorX& weights,
-                                                     bool of_all) {
-  const Index p = rows.cols(), chosen = static_cast<Index>(weighted.size());
-  MatrixX columns(p, chosen * block);
-  for (Index k = 0; k < chosen; ++k)
-    columns.middleCols(k * block, block) =
-        std::sqrt(weights(k)) * rows.middleRows(weighted[static_cast<std::size_t>(k)] * block, block).transpose();
-  MatrixX information = MatrixX::Identity(p, p);
+VERNIER_API WeightedInformation weighted_information(const ConstMatrixRef& rows, Index block, const VectorX& weights) {
+  MatrixX columns = rows.transpose();
+  for (Index c = 0; c < weights.size(); ++c) columns.middleCols(c * block, block) *= std::sqrt(weights(c));
+  MatrixX information = MatrixX::Identity(rows.cols(), rows.cols());
   add_product(information, columns, columns.transpose());
   require(cholesky(information), "information_bound: the rows are not usable");
-  const Index n = of_all ? rows.rows() / block : chosen;
-  columns.resize(p, n * block);
-  for (Index c = 0; c < n; ++c)
-    columns.middleCols(c * block, block) =
-        rows.middleRows((of_all ? c : weighted[static_cast<std::size_t>(c)]) * block, block).transpose();
+  columns = rows.transpose();
   solve_lower(information, columns);
-  WeightedInformation out{2 * information.diagonal().array().log().sum(), VectorX(n)};
-  for (Index c = 0; c < n; ++c) out.gradient(c) = columns.middleCols(c * block, block).squaredNorm();
+  WeightedInformation out{2 * information.diagonal().array().log().sum(), VectorX(weights.size())};
+  for (Index c = 0; c < weights.size(); ++c) out.gradient(c) = columns.middleCols(c * block, block).squaredNorm();
   return out;
 }
 
@@ -288,23 +276,18 @@ VERNIER_IMPL double information_bound(const ConstMatrixRef& rows, Index block, I
           block);
   const Index n = rows.rows() / block;
   require(count >= 0 && count <= n, "information_bound: ", count, " of ", n, " candidates");
-  require(iterations >= 0, "information_bound: ", iterations, " iterations");
-  constexpr Index enough = 400;
-  const Index stride = std::max<Index>(1, n / std::max(enough, 4 * count));
-  std::vector<Index> weighted;
-  for (Index c = 0; c < n; c += stride) weighted.push_back(c);
-  const auto size = static_cast<Index>(weighted.size());
-  VectorX weights = VectorX::Constant(size, static_cast<double>(count) / static_cast<double>(std::max<Index>(size, 1)));
+  require(iterations >= 1, "information_bound: ", iterations, " iterations, must be at least 1");
+  VectorX weights = VectorX::Constant(n, static_cast<double>(count) / static_cast<double>(std::max<Index>(n, 1)));
+  double best = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    const auto at = detail::weighted_information(rows, block, weighted, weights, false);
+    const auto at = detail::weighted_information(rows, block, weights);
+    VectorX largest = at.gradient;
+    std::nth_element(largest.begin(), largest.begin() + count, largest.end(), std::greater<>());
+    best = std::min(best, at.value + largest.head(count).sum() - weights.dot(at.gradient));
     weights = weights.cwiseProduct(at.gradient);
     detail::share_out(static_cast<double>(count), weights);
   }
-  auto at = detail::weighted_information(rows, block, weighted, weights, true);
-  double along = 0;
-  for (Index k = 0; k < size; ++k) along += weights(k) * at.gradient(weighted[static_cast<std::size_t>(k)]);
-  std::nth_element(at.gradient.begin(), at.gradient.begin() + count, at.gradient.end(), std::greater<>());
-  return at.value + at.gradient.head(count).sum() - along;
+  return best;
 }
 
 }  // namespace vernier

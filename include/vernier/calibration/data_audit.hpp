@@ -1,0 +1,98 @@
+#pragma once
+
+/// @file
+/// An audit of measured poses before any geometric fit: units, signs and zeros of joints, mirrored frames, rows that are
+/// swapped, shifted, duplicate or wrong, and a session that drifts.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/identification/detail/station.hpp"
+#include "vernier/kinematics/arm_geometry.hpp"
+
+namespace vernier {
+
+/// What is wrong with measured poses, or what they cannot tell.
+enum class FaultKind {
+  length_unit,             ///< measured positions are in another unit
+  joint_unit,              ///< joint angles are in degrees where radians are expected, or the other way round
+  joint_sign,              ///< a joint counts in the other direction
+  joint_zero,              ///< a joint counts from another zero
+  mirrored_frame,          ///< measured coordinates are left-handed
+  orientation_convention,  ///< orientations are no rotation vectors, or those of the inverse rotation
+  shifted_rows,            ///< joints and poses of some rows are off by one or more rows against each other
+  swapped_rows,            ///< the poses of two rows are exchanged
+  duplicate_rows,          ///< a measured pose occurs again, in all digits
+  outlier,                 ///< the pose of a row is not that of its joints
+  joints_read,             ///< joint values scatter about repeated commands: they were read, not commanded
+  approach_never_varies,   ///< a joint always comes from the same side
+  session_drift            ///< base and sensor move against each other while poses are measured
+};
+
+/// A word for each kind, as in its name: `joint_sign`.
+VERNIER_API std::string_view fault_name(FaultKind kind);
+
+/// One finding of an audit.
+struct DataFinding {
+  FaultKind kind;             ///< what it is
+  int joint = -1;             ///< the joint, from 0; -1 where no single joint is concerned
+  std::vector<Index> rows{};  ///< rows concerned, ascending, from 0; empty: all
+  /// How large it is: the factor of a unit, the zero [rad, m], the number of rows of a shift, the displacement of an
+  /// outlier or a drift [m; rad where orientations alone show it], the scatter of a reading [rad, m]; else 0.
+  double size = 0;
+  std::string message{};  ///< a sentence: what it is, where, and what to do
+};
+
+/// Options of `audit_data`.
+struct DataAuditOptions {
+  double smallest_zero = 0.008726646259971648;  ///< smallest error of a revolute joint's zero that is reported [rad]
+  double outlier_factor = 8;  ///< of a studentised residual (3 components), from where on a row is an outlier
+  double length_std = 2e-3;   ///< expected deviation of a length from its nominal value [m]
+  double angle_std = 3e-3;    ///< expected deviation of an angle from its nominal value [rad]
+};
+
+/// What an audit found.
+struct DataAudit {
+  std::vector<DataFinding> findings{};  ///< faults of all rows first
+  /// Position errors [m] of the nominal arm in robustly registered frames, after the correction of what was found.
+  ErrorStatistics registered{};
+
+  /// Whether there is a finding of a kind.
+  VERNIER_API bool has(FaultKind kind) const;
+  /// The findings as text, a line each.
+  VERNIER_API std::string summary() const;
+};
+
+namespace detail {
+
+/// See `vernier::audit_data`.
+VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const Station& data, const PointRows& rotation_vectors,
+                                 const DataAuditOptions& options);
+
+}  // namespace detail
+
+/// Looks for faults in measured poses before anything is fitted to them. Base and tool are registered robustly under
+/// each hypothesis on all rows (another unit, a reversed joint, ...), and the one with the smallest robust residuals
+/// holds where it halves them. Rows are then assessed by leave-one-out residuals of a robust fit of the geometry, kept
+/// near its nominal values.
+///
+/// What frames absorb is not reported: the zero of the first joint, the zero of the last one and, where positions alone
+/// were measured by a tool on the last axis, its sign. Faults of one kind at a time are told apart, not combinations.
+/// @param nominal the arm as designed; its frames are where the search starts, and may be wrong
+/// @param data    10 or more poses in the order of measuring
+/// @param options sizes of what is reported
+/// @throws std::invalid_argument for fewer poses or an unusable option
+/// @cite Rousseeuw and Leroy 1987
+template <NominalArm Arm>
+DataAudit audit_data(const Arm& nominal, const Dataset<Arm::dof>& data, const DataAuditOptions& options = {}) {
+  return detail::audit_data(ArmGeometry(in_frames(nominal)), detail::station_of(data, {}), data.orientations(),
+                            options);
+}
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/data_audit.ipp"
+#endif

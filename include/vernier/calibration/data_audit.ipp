@@ -1,0 +1,221 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/detail/audit_fit.hpp"
+#include "vernier/calibration/detail/audit_hypotheses.hpp"
+#include "vernier/calibration/detail/audit_rows.hpp"
+#include "vernier/calibration/detail/wording.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL std::string_view fault_name(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::length_unit: return "length_unit";
+    case FaultKind::joint_unit: return "joint_unit";
+    case FaultKind::joint_sign: return "joint_sign";
+    case FaultKind::joint_zero: return "joint_zero";
+    case FaultKind::mirrored_frame: return "mirrored_frame";
+    case FaultKind::orientation_convention: return "orientation_convention";
+    case FaultKind::shifted_rows: return "shifted_rows";
+    case FaultKind::swapped_rows: return "swapped_rows";
+    case FaultKind::duplicate_rows: return "duplicate_rows";
+    case FaultKind::outlier: return "outlier";
+    case FaultKind::joints_read: return "joints_read";
+    case FaultKind::approach_never_varies: return "approach_never_varies";
+    case FaultKind::session_drift: return "session_drift";
+  }
+  return "";
+}
+
+VERNIER_IMPL bool DataAudit::has(FaultKind kind) const {
+  return std::any_of(findings.begin(), findings.end(), [&](const DataFinding& f) { return f.kind == kind; });
+}
+
+VERNIER_IMPL std::string DataAudit::summary() const {
+  std::string out = findings.empty() ? "data audit: nothing found\n" : "data audit:\n";
+  for (const DataFinding& finding : findings) out += "  " + finding.message + "\n";
+  if (registered.n > 0)
+    out += message("  with registered frames the nominal arm is off by ", detail::brief(registered.median * 1e3),
+                   " mm (median), ", detail::brief(registered.max * 1e3), " mm (largest), ", registered.n, " rows\n");
+  return out;
+}
+
+namespace detail {
+
+/// The finding of a fault of all rows.
+VERNIER_API DataFinding global_finding(const HypothesisFit& found) {
+  const AuditHypothesis& h = found.hypothesis;
+  DataFinding out{*h.kind, h.joint};
+  const std::string joint = message("joint ", h.joint + 1);
+  switch (*h.kind) {
+    case FaultKind::length_unit:
+      out.size = h.factor;
+      out.message = "all rows: measured positions are " + brief(h.factor) +
+                    " times as large as the arm's: correct the unit of x, y, z";
+      break;
+    case FaultKind::joint_unit:
+      out.size = h.factor;
+      out.message = h.factor > 1 ? "all rows: joint angles look like degrees taken as radians: correct their unit"
+                                 : "all rows: joint angles look like radians taken as degrees: correct their unit";
+      break;
+    case FaultKind::joint_sign:
+      out.message = "all rows: " + joint + " counts in the other direction: reverse the sign of its column";
+      break;
+    case FaultKind::mirrored_frame:
+      out.message = "all rows: measured coordinates are left-handed: reverse one axis or exchange two";
+      break;
+    case FaultKind::orientation_convention:
+      out.size = h.convention;
+      out.message = "all rows: orientations look like " + convention_name(h.convention) +
+                    ": convert them to rotation vectors in radians";
+      break;
+    default: break;
+  }
+  return out;
+}
+
+VERNIER_API DataFinding zero_finding(const ArmGeometry& arm, int joint, double zero) {
+  DataFinding out{FaultKind::joint_zero, joint, {}, zero};
+  const bool revolute = arm.chain().revolute(joint);
+  out.message = message("all rows: joint ", joint + 1, " counts from a zero that is off by ",
+                        revolute ? brief(zero * 180 / std::numbers::pi) + " deg" : brief(zero * 1e3) + " mm",
+                        ": add that to its column, or correct the nominal ", revolute ? "theta" : "d");
+  return out;
+}
+
+/// A zero so small that other parameters of the chain hide it, or none: of the joint whose zero explains more than all
+/// expected deviations of the geometry.
+VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const AuditFit& frames, const AuditRows& rows,
+                                              const VectorX& std, double smallest_zero) {
+  const VectorX centre = nominal.parameters();
+  const AuditFit plain = audit_fit(frames.arm, centre, std, rows, 12);
+  std::vector<AuditFit> fits;
+  std::vector<int> joints;
+  for (int j = 1; j + 1 < nominal.joints(); ++j) {
+    VectorX freed = std;
+    freed(zero_parameter(nominal, j)) = std::numeric_limits<double>::infinity();
+    fits.push_back(audit_fit(plain.arm, centre, freed, rows, 12));
+    joints.push_back(j);
+  }
+  double sigma = plain.residuals.position_scale, turn = plain.residuals.rotation_scale;
+  for (const AuditFit& fit : fits) {
+    sigma = std::min(sigma, fit.residuals.position_scale);
+    turn = std::min(turn, fit.residuals.rotation_scale);
+  }
+  const auto cost = [&](const AuditFit& fit, int joint) {
+    double sum = 0;
+    const VectorX values = fit.arm.parameters();
+    const Index freed = joint < 0 ? -1 : zero_parameter(nominal, joint);
+    for (Index k = 6; k < values.size() - 6; ++k)
+      if (k != freed && std(k) > 0) sum += std::pow((values(k) - centre(k)) / std(k), 2);
+    for (Index i = 0; i < fit.residuals.position.rows(); ++i) {
+      sum += 16 * std::log1p(fit.residuals.position.row(i).squaredNorm() / (16 * sigma * sigma));
+      if (rows.oriented()) sum += 16 * std::log1p(fit.residuals.rotation.row(i).squaredNorm() / (16 * turn * turn));
+    }
+    return sum;
+  };
+  const double none = cost(plain, -1);
+  double best = std::numeric_limits<double>::infinity(), zero = 0;
+  int joint = -1;
+  for (std::size_t k = 0; k < fits.size(); ++k)
+    if (const double now = cost(fits[k], joints[k]); now < best) {
+      best = now;
+      joint = joints[k];
+      const Index parameter = zero_parameter(nominal, joint);
+      zero = fits[k].arm.parameters()(parameter) - centre(parameter);
+    }
+#ifdef AUDIT_DEBUG
+  std::printf("  small zero: joint %d zero %.3f deg, drop %.1f\n", joint, zero * 57.3, none - best);
+#endif
+  if (joint < 0 || none - best < 10 || !nominal.chain().revolute(joint) || std::abs(zero) < smallest_zero)
+    return {-1, 0};
+  return {joint, zero};
+}
+
+VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& data, const PointRows& rotation_vectors,
+                                  const DataAuditOptions& options) {
+  require(data.size() >= 10, "audit_data: ", data.size(), " poses, 10 or more are needed");
+  for (const auto& [value, name] : {std::pair<double, const char*>{options.smallest_zero, "smallest_zero"},
+                                    {options.outlier_factor, "outlier_factor"},
+                                    {options.length_std, "length_std"},
+                                    {options.angle_std, "angle_std"}})
+    require(value > 0 && std::isfinite(value), "audit_data: ", name, " is ", value, ", must be positive and finite");
+  DataAudit out;
+  AuditRows rows{data.joints(), *data.positions, data.orientations, rotation_vectors};
+  std::vector<Index> numbers(static_cast<std::size_t>(rows.size()));  // of the rows, in the data
+  std::iota(numbers.begin(), numbers.end(), Index{0});
+  ArmGeometry arm = nominal;
+
+  const AuditRows few = rows.rows(spread_rows(rows.size(), 200));
+  HypothesisFit found = best_hypothesis(nominal, few, options.smallest_zero);
+  const AuditResiduals all = audit_residuals(found.fit.arm, found.hypothesis.corrected(rows, nominal));
+  Index wrong = 0;
+  for (Index i = 0; i < rows.size(); ++i)
+    if (all.position.row(i).norm() > 8 * found.fit.residuals.score()) ++wrong;
+  std::optional<RowShift> shift;
+  if (wrong >= 4 || found.fit.residuals.score() > 0.01 * point_scatter(rows.positions))
+    shift = find_shift(nominal, rows, found.fit.residuals.score());
+  if (shift) {
+    AuditRows paired = rows.rows(shift->fitting);
+    for (std::size_t k = 0; k < shift->fitting.size(); ++k) {
+      const Index pose = shift->fitting[k] + shift->shifts[k];
+      paired.positions.row(static_cast<Index>(k)) = rows.positions.row(pose);
+      if (!rows.oriented()) continue;
+      paired.orientations[k] = rows.orientations[static_cast<std::size_t>(pose)];
+      paired.rotation_vectors.row(static_cast<Index>(k)) = rows.rotation_vectors.row(pose);
+    }
+    DataFinding finding{FaultKind::shifted_rows, -1, {}, static_cast<double>(shift->shift)};
+    for (Index i = shift->first; i < shift->end; ++i) finding.rows.push_back(i);
+    finding.message = message("rows ", shift->first, " to ", shift->end - 1, ": the pose of a row lies ",
+                              std::abs(shift->shift), shift->shift > 0 ? " rows below" : " rows above",
+                              " its joints: pair them again, a row was lost or added");
+    out.findings.push_back(std::move(finding));
+    rows = std::move(paired);
+    numbers = shift->fitting;
+    found = fit_hypothesis(nominal, rows.rows(spread_rows(rows.size(), 200)), {});
+  } else if (found.hypothesis.kind == FaultKind::joint_zero) {
+    out.findings.push_back(zero_finding(nominal, found.hypothesis.joint, found.zero));
+    VectorX values = nominal.parameters();
+    values(zero_parameter(nominal, found.hypothesis.joint)) += found.zero;
+    arm = nominal.with_parameters(values);
+  } else if (found.hypothesis.kind) {
+    out.findings.push_back(global_finding(found));
+    rows = found.hypothesis.corrected(rows, nominal);
+  }
+
+  VectorX std = audit_geometry_std(arm, rows.oriented(), options.length_std, options.angle_std);
+  if (out.findings.empty()) {
+    const auto [joint, zero] = small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), std,
+                                          options.smallest_zero);
+    if (joint >= 0) {
+      out.findings.push_back(zero_finding(nominal, joint, zero));
+      VectorX values = nominal.parameters();
+      values(zero_parameter(nominal, joint)) += zero;
+      arm = nominal.with_parameters(values);
+    }
+  }
+  const AuditFit frames =
+      audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
+  out.registered = ErrorStatistics::of(frames.residuals.position.rowwise().norm());
+  const AuditFit geometry = audit_fit(frames.arm, arm.parameters(), std, rows, 12);
+  audit_single_rows(geometry, std, rows, numbers, options.outlier_factor, out.findings);
+  if (data.times != nullptr) {
+    VectorX times(rows.size());
+    for (Index i = 0; i < times.size(); ++i) times(i) = (*data.times)(numbers[static_cast<std::size_t>(i)]);
+    audit_drift(geometry, std, rows, times, out.findings);
+  }
+  audit_duplicates(data, rotation_vectors, out.findings);
+  audit_joint_values(data, out.findings);
+  audit_approaches(data, out.findings);
+  return out;
+}
+
+}  // namespace detail
+}  // namespace vernier

@@ -1,0 +1,307 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vernier/calibration/detail/audit_fit.hpp"
+#include "vernier/core/so3.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL Station AuditRows::station() const {
+  Station out{.joint_values = joints.data(),
+              .samples = size(),
+              .dof = static_cast<int>(joints.cols()),
+              .positions = &positions};
+  out.orientations = orientations;
+  return out;
+}
+
+VERNIER_IMPL AuditRows AuditRows::rows(std::span<const Index> indices, Index shift) const {
+  const auto n = static_cast<Index>(indices.size());
+  AuditRows out{MatrixX(n, joints.cols()), PointRows(n, 3)};
+  out.rotation_vectors.resize(oriented() ? n : 0, 3);
+  for (Index i = 0; i < n; ++i) {
+    const Index row = indices[static_cast<std::size_t>(i)];
+    out.joints.row(i) = joints.row(row);
+    out.positions.row(i) = positions.row(row + shift);
+    if (!oriented()) continue;
+    out.orientations.push_back(orientations[static_cast<std::size_t>(row + shift)]);
+    out.rotation_vectors.row(i) = rotation_vectors.row(row + shift);
+  }
+  return out;
+}
+
+VERNIER_API double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Median of the norm of three standard normal components.
+constexpr double median_norm = 1.538172254;
+
+VERNIER_IMPL double robust_scale(const PointRows& residuals) {
+  const VectorX norms = residuals.rowwise().norm();
+  return std::max(median_of({norms.begin(), norms.end()}) / median_norm, 1e-9);
+}
+
+VERNIER_IMPL double AuditResiduals::score() const { return std::hypot(position_scale, 0.25 * rotation_scale); }
+
+VERNIER_API AuditResiduals residuals_of_poses(const std::vector<Isometry3>& poses, const AuditRows& rows) {
+  const Index n = rows.size();
+  AuditResiduals out{PointRows(n, 3), PointRows(rows.oriented() ? n : 0, 3)};
+  for (Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.position.row(i) = rows.positions.row(i) - poses[k].translation().transpose();
+    if (rows.oriented())
+      out.rotation.row(i) =
+          log_so3(Matrix3(rows.orientations[k] * poses[k].linear().transpose())).transpose();
+  }
+  out.position_scale = robust_scale(out.position);
+  if (rows.oriented()) out.rotation_scale = robust_scale(out.rotation);
+  return out;
+}
+
+VERNIER_IMPL AuditResiduals audit_residuals(const ArmGeometry& arm, const AuditRows& rows) {
+  return residuals_of_poses(arm.poses(rows.joints), rows);
+}
+
+VERNIER_IMPL VectorX audit_frames_std(const ArmGeometry& arm, bool oriented) {
+  constexpr double free = std::numeric_limits<double>::infinity();
+  VectorX out = VectorX::Zero(arm.num_parameters());
+  out.head<6>().setConstant(free);
+  out.tail<6>().head<3>().setConstant(free);
+  if (oriented) out.tail<3>().setConstant(free);
+  return out;
+}
+
+VERNIER_IMPL VectorX audit_geometry_std(const ArmGeometry& arm, bool oriented, double length_std, double angle_std) {
+  VectorX out = audit_frames_std(arm, oriented);
+  for (int j = 0; j < arm.joints(); ++j)
+    out.segment<5>(6 + 5 * j) << length_std, angle_std, length_std, angle_std, angle_std;
+  return out;
+}
+
+VERNIER_IMPL Index zero_parameter(const ArmGeometry& arm, int joint) {
+  return 6 + 5 * joint + (arm.chain().revolute(joint) ? 3 : 2);
+}
+
+/// Free columns, and the precisions of their priors.
+struct AuditColumns {
+  std::vector<Index> free;
+  VectorX precision;
+
+  VERNIER_API explicit AuditColumns(const ConstVectorRef& std) {
+    for (Index k = 0; k < std.size(); ++k)
+      if (std(k) > 0) free.push_back(k);
+    precision.resize(static_cast<Index>(free.size()));
+    for (Index k = 0; k < precision.size(); ++k) {
+      const double s = std(free[static_cast<std::size_t>(k)]);
+      precision(k) = std::isfinite(s) ? 1 / (s * s) : 1e-4;  // 100 m or rad: keeps degenerate directions where they are
+    }
+  }
+  Index size() const { return precision.size(); }
+};
+
+/// Whitened Jacobian of the free columns, six (or three) rows a pose, unweighted.
+VERNIER_API MatrixX audit_jacobian(const PosesAndJacobians& at, const AuditColumns& columns, bool oriented,
+                                   const AuditResiduals& residuals) {
+  const Index n = at.jacobians.rows(), values = oriented ? 6 : 3;
+  MatrixX out(values * n, columns.size());
+  for (Index c = 0; c < columns.size(); ++c)
+    for (Index v = 0; v < values; ++v) {
+      const double scale = v < 3 ? residuals.position_scale : residuals.rotation_scale;
+      const Index from = 6 * columns.free[static_cast<std::size_t>(c)] + v;
+      for (Index i = 0; i < n; ++i) out(values * i + v, c) = at.jacobians(i, from) / scale;
+    }
+  return out;
+}
+
+VERNIER_API VectorX audit_whitened(const AuditResiduals& residuals) {
+  const Index n = residuals.position.rows(), values = residuals.rotation.rows() > 0 ? 6 : 3;
+  VectorX out(values * n);
+  for (Index i = 0; i < n; ++i) {
+    out.segment<3>(values * i) = residuals.position.row(i).transpose() / residuals.position_scale;
+    if (values == 6)
+      out.segment<3>(values * i + 3) = residuals.rotation.row(i).transpose() / residuals.rotation_scale;
+  }
+  return out;
+}
+
+/// Weights of Cauchy's loss, positions and orientations apart.
+VERNIER_API VectorX audit_weights(const VectorX& whitened) {
+  constexpr double tuning = 4;
+  VectorX out(whitened.size());
+  for (Index k = 0; k + 3 <= whitened.size(); k += 3)
+    out.segment<3>(k).setConstant(1 / (1 + whitened.segment<3>(k).squaredNorm() / (tuning * tuning)));
+  return out;
+}
+
+VERNIER_API double audit_cost(const VectorX& whitened, const VectorX& precision, const VectorX& deviation) {
+  double sum = (precision.array() * deviation.array().square()).sum();
+  for (Index k = 0; k + 3 <= whitened.size(); k += 3) sum += 16 * std::log1p(whitened.segment<3>(k).squaredNorm() / 16);
+  return sum;
+}
+
+VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& centre, const ConstVectorRef& std,
+                                const AuditRows& rows, int iterations) {
+  const AuditColumns columns(std);
+  AuditFit out{start, audit_residuals(start, rows)};
+  VectorX values = start.parameters();
+  const auto deviation = [&](const VectorX& at) {
+    VectorX d(columns.size());
+    for (Index k = 0; k < d.size(); ++k) {
+      const Index p = columns.free[static_cast<std::size_t>(k)];
+      d(k) = std::isfinite(std(p)) ? at(p) - centre(p) : 0;
+    }
+    return d;
+  };
+  PosesAndJacobians at;
+  double damping = 0;
+  for (int round = 0; round < iterations; ++round) {
+    out.arm.poses_and_parameter_jacobians(rows.joints, at);
+    const MatrixX jacobian = audit_jacobian(at, columns, rows.oriented(), out.residuals);
+    const VectorX whitened = audit_whitened(out.residuals), weights = audit_weights(whitened);
+    const VectorX from = deviation(values);
+    MatrixX weighted = weights.asDiagonal() * jacobian;
+    MatrixX normal = jacobian.transpose() * weighted;
+    const VectorX right =
+        weighted.transpose() * whitened - (columns.precision.array() * from.array()).matrix();
+    normal.diagonal() += columns.precision;
+    const VectorX diagonal = normal.diagonal();
+    const double before = audit_cost(whitened, columns.precision, from);
+    const double old_score = out.residuals.score();
+    bool better = false;
+    for (int attempt = 0; attempt < 5 && !better; ++attempt) {
+      normal.diagonal() = diagonal * (1 + damping);
+      const VectorX step = normal.ldlt().solve(right);
+      VectorX next = values;
+      for (Index k = 0; k < step.size(); ++k) next(columns.free[static_cast<std::size_t>(k)]) += step(k);
+      if (!next.allFinite()) break;
+      const ArmGeometry arm = out.arm.with_parameters(next);
+      AuditResiduals residuals = audit_residuals(arm, rows);
+      AuditResiduals old_scales = residuals;
+      old_scales.position_scale = out.residuals.position_scale;
+      old_scales.rotation_scale = out.residuals.rotation_scale;
+      if (audit_cost(audit_whitened(old_scales), columns.precision, deviation(next)) <= before) {
+        better = true;
+        damping = damping > 1e-6 ? damping * 0.1 : 0;
+        out = {arm, std::move(residuals)};
+        values = next;
+      } else {
+        damping = std::max(10 * damping, 1e-3);
+      }
+    }
+    if (!better || std::abs(out.residuals.score() - old_score) < 1e-3 * old_score) break;
+  }
+  return out;
+}
+
+VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const ConstVectorRef& std,
+                                                 const AuditRows& rows) {
+  const AuditColumns columns(std);
+  PosesAndJacobians at;
+  fit.arm.poses_and_parameter_jacobians(rows.joints, at);
+  const bool oriented = rows.oriented();
+  const MatrixX jacobian = audit_jacobian(at, columns, oriented, fit.residuals);
+  const VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened);
+  MatrixX normal = jacobian.transpose() * (weights.asDiagonal() * jacobian);
+  normal.diagonal() += columns.precision;
+  const Eigen::LLT<MatrixX> factor(normal);
+  const MatrixX whitening = factor.matrixL().solve(jacobian.transpose());
+  std::vector<LeftOut> out(static_cast<std::size_t>(rows.size()));
+  const Index values = oriented ? 6 : 3;
+  std::vector<double> factors[2];
+  for (Index i = 0; i < rows.size(); ++i) {
+    LeftOut& row = out[static_cast<std::size_t>(i)];
+    for (Index part = 0; part < values; part += 3) {
+      const Index k = values * i + part;
+      const auto of_row = whitening.middleCols(k, 3);
+      const Matrix3 h = of_row.transpose() * of_row;
+      const Matrix3 rest = Matrix3::Identity() * (1 + 1e-9) - weights(k) * h;
+      const Eigen::LDLT<Matrix3> kept(rest);
+      const Vector3 r = kept.solve(Vector3(whitened.segment<3>(k)));
+      const Matrix3 covariance = Matrix3::Identity() + kept.solve(h);
+      const Matrix3 weight = covariance.inverse();
+      const double t = std::sqrt(std::max(0.0, r.dot(weight * r)));
+      factors[part / 3].push_back(t);
+      if (part == 0) {
+        row.position = r.norm() * fit.residuals.position_scale;
+        row.position_factor = t;
+        row.position_weight = weight / (fit.residuals.position_scale * fit.residuals.position_scale);
+      } else {
+        row.rotation = r.norm() * fit.residuals.rotation_scale;
+        row.rotation_factor = t;
+      }
+    }
+  }
+  const double position = median_norm / std::max(median_of(factors[0]), 1e-9);
+  const double rotation = oriented ? median_norm / std::max(median_of(factors[1]), 1e-9) : 1;
+  for (LeftOut& row : out) {
+    row.position_factor *= position;
+    row.rotation_factor *= rotation;
+    row.position_weight *= position * position;
+  }
+  return out;
+}
+
+VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std, const AuditRows& rows,
+                                  const ConstVectorRef& times) {
+  BaseTrend out;
+  const Index n = rows.size(), values = rows.oriented() ? 6 : 3;
+  const int joints = fit.arm.joints();
+  const double first = times.minCoeff(), span = times.maxCoeff() - first;
+  const AuditColumns columns(std);
+  const Index geometry = columns.size(), harmonics = 4 * joints, all = 6 + geometry + harmonics;
+  if (!(span > 0) || values * n < 2 * all) return out;
+  PosesAndJacobians at;
+  fit.arm.poses_and_parameter_jacobians(rows.joints, at);
+  MatrixX design(values * n, all);
+  design.middleCols(6, geometry) = audit_jacobian(at, columns, rows.oriented(), fit.residuals);
+  const Vector3 mean = rows.positions.colwise().mean().transpose();
+  std::vector<Eigen::Matrix<double, 6, 6>> motions(static_cast<std::size_t>(n));
+  VectorX sigma(6);
+  sigma << Vector3::Constant(fit.residuals.position_scale), Vector3::Constant(fit.residuals.rotation_scale);
+  for (Index i = 0; i < n; ++i) {
+    Eigen::Matrix<double, 6, 6>& motion = motions[static_cast<std::size_t>(i)];
+    motion.setIdentity();
+    motion.topRightCorner<3, 3>() = -skew(Vector3(rows.positions.row(i).transpose() - mean));
+    const double t = (times(i) - first) / span - 0.5;
+    for (Index v = 0; v < values; ++v) design.row(values * i + v).head<6>() = t / sigma(v) * motion.row(v);
+    for (int j = 0; j < joints; ++j)
+      for (Index v = 0; v < values; ++v) {
+        const double column = at.jacobians(i, 6 * zero_parameter(fit.arm, j) + v) / sigma(v), q = rows.joints(i, j);
+        design.row(values * i + v).segment<4>(6 + geometry + 4 * j)
+            << column * std::cos(q), column * std::sin(q), column * std::cos(2 * q), column * std::sin(2 * q);
+      }
+  }
+  VectorX precision(all);
+  precision << VectorX::Constant(6, 1e-9), columns.precision, VectorX::Constant(harmonics, 1 / (3e-3 * 3e-3));
+  VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened), solution;
+  Eigen::Matrix<double, 6, 6> covariance;
+  double scale = 1;
+  for (int round = 0; round < 3; ++round) {
+    MatrixX normal = design.transpose() * (weights.asDiagonal() * design);
+    normal.diagonal() += precision / (scale * scale);
+    const Eigen::LDLT<MatrixX> factor(normal);
+    solution = factor.solve(design.transpose() * weights.cwiseProduct(whitened));
+    covariance = factor.solve(MatrixX::Identity(all, 6)).topRows<6>();
+    const VectorX left = whitened - design * solution;
+    std::vector<double> norms;
+    for (Index k = 0; k + 3 <= left.size(); k += 3) norms.push_back(left.segment<3>(k).norm());
+    scale = median_of(norms) / median_norm;
+    weights = audit_weights(left / scale);
+  }
+  const double dof = static_cast<double>(values * n) / std::max(1.0, static_cast<double>(values * n - all));
+  out.motion = solution.head<6>();
+  out.chi_square = out.motion.dot(covariance.ldlt().solve(out.motion)) / (scale * scale * dof);
+  double sum = 0;
+  for (const Eigen::Matrix<double, 6, 6>& motion : motions) sum += (motion * out.motion).head<3>().squaredNorm();
+  out.displacement = std::sqrt(sum / static_cast<double>(n));
+  return out;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,61 @@
+#pragma once
+
+/// @file
+/// Hypotheses on what is wrong with all rows of measured poses, for the audit of data.
+
+#include <optional>
+
+#include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/detail/audit_fit.hpp"
+
+namespace vernier::detail {
+
+/// A fault of all rows.
+struct AuditHypothesis {
+  std::optional<FaultKind> kind{};  ///< none: nothing is wrong
+  int joint = -1;                   ///< of a sign or a zero
+  double factor = 1;                ///< of measured lengths or joint angles, to be divided out
+  double zero = 0;                  ///< where the search for a joint's zero starts [rad, m]
+  int convention = 0;               ///< of orientations, see `convention_name`
+
+  /// The rows without the fault.
+  VERNIER_API AuditRows corrected(const AuditRows& rows, const ArmGeometry& arm) const;
+};
+
+/// What values that are no rotation vectors are, in words.
+VERNIER_API std::string convention_name(int convention);
+
+/// A hypothesis, and the frames that fit the rows best under it.
+struct HypothesisFit {
+  AuditHypothesis hypothesis;
+  AuditFit fit;
+  double zero = 0;  ///< of its joint [rad, m]
+};
+
+/// Registers frames, and a joint's zero where the hypothesis says so.
+VERNIER_API HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const AuditRows& rows,
+                                         const AuditHypothesis& hypothesis);
+
+/// The hypothesis that halves the robust residuals and makes them smallest, or that nothing is wrong.
+VERNIER_API HypothesisFit best_hypothesis(const ArmGeometry& nominal, const AuditRows& rows, double smallest_zero);
+
+/// Joints and poses that are off by some rows against each other: the pose of row i lies in row i + shift.
+struct RowShift {
+  Index first = 0, end = 0;  ///< rows concerned
+  Index shift = 0;
+  double score = 0;          ///< of the rows that fit [m]
+  std::vector<Index> fitting{};  ///< rows that have a pose, ascending
+  std::vector<Index> shifts{};   ///< of each of them
+};
+
+/// A shift by up to three rows, of all rows or from some row on, if there is one.
+VERNIER_API std::optional<RowShift> find_shift(const ArmGeometry& nominal, const AuditRows& rows, double best_score);
+
+/// At most `count` rows at equal distances.
+VERNIER_API std::vector<Index> spread_rows(Index rows, Index count);
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/detail/audit_hypotheses.ipp"
+#endif

@@ -1,0 +1,197 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "vernier/calibration/detail/audit_hypotheses.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/identification/frames.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL std::string convention_name(int convention) {
+  switch (convention) {
+    case 1: return "rotation vectors of the inverse rotation";
+    case 2: return "rotation vectors in degrees";
+    case 3: return "roll, pitch and yaw angles in radians (about fixed x, y, z)";
+    case 4: return "roll, pitch and yaw angles in degrees (about fixed x, y, z)";
+    case 5: return "Euler angles in radians (about moving x, y, z)";
+    case 6: return "Euler angles in degrees (about moving x, y, z)";
+    default: return "rotation vectors";
+  }
+}
+
+VERNIER_API Matrix3 rotation_by_convention(int convention, const Vector3& v) {
+  const Vector3 angles = convention % 2 == 0 ? Vector3(v * std::numbers::pi / 180) : v;
+  const auto about = [&](int axis) { return exp_so3(Vector3(angles(axis) * Vector3::Unit(axis))); };
+  if (convention == 1) return exp_so3(v).transpose();
+  if (convention == 2) return exp_so3(angles);
+  if (convention <= 4) return about(2) * about(1) * about(0);
+  return about(0) * about(1) * about(2);
+}
+
+VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const ArmGeometry& arm) const {
+  AuditRows out = rows;
+  if (!kind) return out;
+  switch (*kind) {
+    case FaultKind::length_unit: out.positions /= factor; break;
+    case FaultKind::joint_unit:
+      for (int j = 0; j < arm.joints(); ++j)
+        if (arm.chain().revolute(j)) out.joints.col(j) /= factor;
+      break;
+    case FaultKind::joint_sign: out.joints.col(joint) *= -1; break;
+    case FaultKind::mirrored_frame: {
+      out.positions.col(0) *= -1;
+      const Vector3 mirror(-1, 1, 1);
+      if (convention == 1)
+        for (Matrix3& r : out.orientations) r = mirror.asDiagonal() * r * mirror.asDiagonal();
+      break;
+    }
+    case FaultKind::orientation_convention:
+      for (std::size_t i = 0; i < out.orientations.size(); ++i)
+        out.orientations[i] =
+            rotation_by_convention(convention, rows.rotation_vectors.row(static_cast<Index>(i)).transpose());
+      break;
+    default: break;
+  }
+  return out;
+}
+
+VERNIER_IMPL std::vector<Index> spread_rows(Index rows, Index count) {
+  const Index n = std::min(rows, count);
+  std::vector<Index> out(static_cast<std::size_t>(n));
+  for (Index i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] = i * rows / n;
+  return out;
+}
+
+VERNIER_IMPL HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const AuditRows& rows,
+                                          const AuditHypothesis& hypothesis) {
+  const AuditRows corrected = hypothesis.corrected(rows, nominal);
+  VectorX std = audit_frames_std(nominal, rows.oriented()), values = nominal.parameters();
+  const VectorX centre = values;
+  const bool zero = hypothesis.kind == FaultKind::joint_zero;
+  const Index parameter = zero ? zero_parameter(nominal, hypothesis.joint) : 0;
+  if (zero) {
+    std(parameter) = std::numeric_limits<double>::infinity();
+    values(parameter) += hypothesis.zero;
+  }
+  const ArmGeometry start = starting_frames(nominal.with_parameters(values), corrected.station(), true, true);
+  HypothesisFit out{hypothesis, audit_fit(start, centre, std, corrected, 20)};
+  if (zero) out.zero = out.fit.arm.parameters()(parameter) - centre(parameter);
+  return out;
+}
+
+VERNIER_API double point_scatter(const PointRows& points) {
+  const Eigen::RowVector3d mean = points.colwise().mean();
+  return robust_scale(points.rowwise() - mean);
+}
+
+VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const AuditRows& rows, double smallest_zero) {
+  HypothesisFit best = fit_hypothesis(nominal, rows, {});
+  const double none = best.fit.residuals.score();
+  const auto attempt = [&](const AuditHypothesis& hypothesis) {
+    HypothesisFit fit = fit_hypothesis(nominal, rows, hypothesis);
+    if (hypothesis.kind == FaultKind::joint_zero && nominal.chain().revolute(hypothesis.joint)) {
+      fit.zero = std::remainder(fit.zero, 2 * std::numbers::pi);
+      if (std::abs(fit.zero) < smallest_zero) return;
+    }
+    // lengths in the unit that the arm has
+    if (const double score = fit.fit.residuals.score(); score < 0.5 * none && score < best.fit.residuals.score())
+      best = std::move(fit);
+  };
+  const double expected = point_scatter(nominal.positions(rows.joints)), measured = point_scatter(rows.positions);
+  const bool gross = none > 0.02 * std::min(expected, measured);
+  if (gross) {
+    for (const double factor : {1000.0, 100.0, 1000 / 25.4, 25.4, 10.0, 0.1, 1 / 25.4, 25.4e-3, 0.01, 0.001})
+      if (const double ratio = measured / expected / factor; ratio > 0.3 && ratio < 3)
+        attempt({.kind = FaultKind::length_unit, .factor = factor});
+    for (const double factor : {180 / std::numbers::pi, std::numbers::pi / 180})
+      attempt({.kind = FaultKind::joint_unit, .factor = factor});
+  }
+  for (int j = 0; j < nominal.joints(); ++j) {
+    attempt({.kind = FaultKind::joint_sign, .joint = j});
+    if (j == 0 || j + 1 == nominal.joints()) continue;  // the frames absorb these zeros
+    attempt({.kind = FaultKind::joint_zero, .joint = j});
+    if (gross && nominal.chain().revolute(j))
+      for (const double zero : {-0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0})
+        attempt({.kind = FaultKind::joint_zero, .joint = j, .zero = zero * std::numbers::pi});
+  }
+  attempt({.kind = FaultKind::mirrored_frame});
+  if (rows.oriented()) {
+    attempt({.kind = FaultKind::mirrored_frame, .convention = 1});
+    for (int convention = 1; convention <= 6; ++convention)
+      attempt({.kind = FaultKind::orientation_convention, .convention = convention});
+  }
+  return best;
+}
+
+VERNIER_IMPL std::optional<RowShift> find_shift(const ArmGeometry& nominal, const AuditRows& rows, double best_score) {
+  constexpr Index most = 3;
+  const Index n = rows.size();
+  const auto range = [&](Index first, Index end) {
+    std::vector<Index> all;
+    for (const Index k : spread_rows(end - first, 200)) all.push_back(first + k);
+    return all;
+  };
+  const double spread = point_scatter(rows.positions);
+  std::optional<HypothesisFit> best;
+  for (const auto& [first, end] : {std::pair<Index, Index>{0, n}, {0, n / 2}, {n / 2, n}, {n / 4, 3 * n / 4}})
+    for (Index shift = -most; shift <= most; ++shift) {
+      const std::vector<Index> block = range(std::max(first, -shift), std::min(end, n - shift));
+      if (block.size() < 8) continue;
+      HypothesisFit fit = fit_hypothesis(nominal, rows.rows(block, shift), {});
+      if (!best || fit.fit.residuals.score() < best->fit.residuals.score()) best = std::move(fit);
+    }
+  if (!best || best->fit.residuals.score() > std::min(0.1 * spread, 1.5 * best_score)) return std::nullopt;
+
+  // cost of each row under each shift, capped where it does not fit at all
+  const double limit = 8 * best->fit.residuals.score();
+  MatrixX cost = MatrixX::Ones(n, 2 * most + 1);
+  for (Index shift = -most; shift <= most; ++shift) {
+    std::vector<Index> all;
+    for (Index i = std::max<Index>(0, -shift); i < std::min(n, n - shift); ++i) all.push_back(i);
+    if (all.empty()) continue;
+    const AuditResiduals residuals = audit_residuals(best->fit.arm, rows.rows(all, shift));
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto row = static_cast<Index>(k);
+      double size = residuals.position.row(row).norm();
+      if (rows.oriented()) size = std::max(size, 0.25 * residuals.rotation.row(row).norm());
+      cost(all[k], shift + most) = std::min(1.0, std::pow(size / limit, 2));
+    }
+  }
+  const double unshifted = cost.col(most).sum();
+  double least = std::numeric_limits<double>::infinity();
+  Index before = 0, after = 0, change = 0;
+  for (Index a = 0; a <= 2 * most; ++a)
+    for (Index b = 0; b <= 2 * most; ++b) {
+      if (a == b) {
+        if (const double sum = cost.col(a).sum(); sum < least) least = sum, before = after = a, change = 0;
+        continue;
+      }
+      double sum = cost.col(b).sum();
+      for (Index r = 0; r < n; ++r) {
+        if (r > 0 && sum < least - 1e-9) least = sum, before = a, after = b, change = r;
+        sum += cost(r, a) - cost(r, b);
+      }
+    }
+  if ((before == most && after == most) || least > unshifted - 5 || least > 0.3 * static_cast<double>(n))
+    return std::nullopt;
+  RowShift out;
+  out.score = best->fit.residuals.score();
+  const bool whole = before == after, tail = after != most;
+  out.first = whole || !tail || before != most ? 0 : change;
+  out.end = whole || tail ? n : change;
+  out.shift = (tail ? after : before) - most;
+  for (Index i = 0; i < n; ++i) {
+    const Index shift = (i < change ? before : after) - most;
+    if (i + shift < 0 || i + shift >= n) continue;
+    out.fitting.push_back(i);
+    out.shifts.push_back(shift);
+  }
+  return out;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "vernier/calibration/detail/audit_rows.hpp"
+#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/so3.hpp"
+
+namespace vernier::detail {
+
+/// "row 3", "rows 3, 5 and 8", "rows 3, 5, ... (12 rows)".
+VERNIER_API std::string name_rows(const std::vector<Index>& rows) {
+  std::string out = rows.size() == 1 ? "row " : "rows ";
+  const std::size_t shown = rows.size() > 10 ? 10 : rows.size();
+  for (std::size_t k = 0; k < shown; ++k)
+    out += message(k == 0 ? "" : k + 1 == rows.size() ? " and " : ", ", rows[k]);
+  if (shown < rows.size()) out += message(", ... (", rows.size(), " rows)");
+  return out;
+}
+
+VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& std, const AuditRows& rows,
+                                    const std::vector<Index>& numbers, double factor,
+                                    std::vector<DataFinding>& findings) {
+  const std::vector<LeftOut> left = leave_out_rows(geometry, std, rows);
+  std::vector<Index> wrong;
+  for (Index i = 0; i < rows.size(); ++i) {
+    const LeftOut& row = left[static_cast<std::size_t>(i)];
+    if (row.position_factor > factor || row.rotation_factor > factor) wrong.push_back(i);
+  }
+  // which pairs fit when their poses are exchanged
+  const auto exchanged = [&](Index joints, Index pose) {
+    const Index index[] = {joints};
+    const AuditResiduals r = audit_residuals(geometry.arm, rows.rows(index, pose - joints));
+    const Vector3 error = r.position.row(0).transpose();
+    const LeftOut& row = left[static_cast<std::size_t>(joints)];
+    const bool fits = std::sqrt(error.dot(row.position_weight * error)) < factor;
+    const bool turned = rows.oriented() && r.rotation.row(0).norm() > 2 * factor * geometry.residuals.rotation_scale;
+    return fits && !turned;
+  };
+  std::vector<bool> paired(wrong.size(), false);
+  if (wrong.size() <= 200)
+    for (std::size_t a = 0; a < wrong.size(); ++a)
+      for (std::size_t b = a + 1; b < wrong.size() && !paired[a]; ++b) {
+        if (paired[b] || !exchanged(wrong[a], wrong[b]) || !exchanged(wrong[b], wrong[a])) continue;
+        paired[a] = paired[b] = true;
+        const Index first = numbers[static_cast<std::size_t>(wrong[a])], second =
+            numbers[static_cast<std::size_t>(wrong[b])];
+        findings.push_back({FaultKind::swapped_rows, -1, {first, second},
+                            left[static_cast<std::size_t>(wrong[a])].position,
+                            message("rows ", first, " and ", second, ": their poses are exchanged: swap them")});
+      }
+  DataFinding outliers{FaultKind::outlier};
+  bool by_position = false;
+  double turn = 0;
+  for (std::size_t k = 0; k < wrong.size(); ++k) {
+    if (paired[k]) continue;
+    const LeftOut& row = left[static_cast<std::size_t>(wrong[k])];
+    outliers.rows.push_back(numbers[static_cast<std::size_t>(wrong[k])]);
+    if (row.position_factor > factor) {
+      by_position = true;
+      outliers.size = std::max(outliers.size, row.position);
+    }
+    if (row.rotation_factor > factor) turn = std::max(turn, row.rotation);
+  }
+  if (outliers.rows.empty()) return;
+  if (!by_position) outliers.size = turn;
+  std::string by = by_position ? brief(outliers.size * 1e3) + " mm" : "";
+  if (turn > 0) by += (by.empty() ? "" : " and ") + brief(turn * 180 / std::numbers::pi) + " deg";
+  outliers.message = name_rows(outliers.rows) + ": the pose is not that of the joints, off by up to " + by +
+                     ": check the entries, measure again or leave them out";
+  findings.push_back(std::move(outliers));
+}
+
+VERNIER_IMPL void audit_drift(const AuditFit& geometry, const ConstVectorRef& std, const AuditRows& rows,
+                              const ConstVectorRef& times, std::vector<DataFinding>& findings) {
+  const BaseTrend trend = base_trend(geometry, std, rows, times);
+#ifdef AUDIT_DEBUG
+  std::printf("  trend: chi2 %.1f displacement %.3f mm scale %.3f mm\n", trend.chi_square, trend.displacement * 1e3,
+              geometry.residuals.position_scale * 1e3);
+#endif
+  if (trend.chi_square < 60 || trend.displacement < 0.5 * geometry.residuals.position_scale) return;
+  findings.push_back({FaultKind::session_drift, -1, {}, trend.displacement,
+                      "all rows: base and sensor move against each other by " + brief(trend.displacement * 1e3) +
+                          " mm from the first row to the last: look for a loose mount or warm-up, measure again, or "
+                          "let the drift be estimated"});
+}
+
+VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotation_vectors,
+                                   std::vector<DataFinding>& findings) {
+  const Index n = data.size();
+  const auto before = [&](Index a, Index b) {
+    for (Index c = 0; c < 3; ++c)
+      if ((*data.positions)(a, c) != (*data.positions)(b, c)) return (*data.positions)(a, c) < (*data.positions)(b, c);
+    if (rotation_vectors.rows() == n)
+      for (Index c = 0; c < 3; ++c)
+        if (rotation_vectors(a, c) != rotation_vectors(b, c)) return rotation_vectors(a, c) < rotation_vectors(b, c);
+    return false;
+  };
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), before);
+  std::vector<DataFinding> found;
+  for (std::size_t a = 0; a < order.size();) {
+    std::size_t b = a + 1;
+    while (b < order.size() && !before(order[a], order[b])) ++b;
+    if (b - a > 1) {
+      DataFinding finding{FaultKind::duplicate_rows, -1, {order.begin() + static_cast<std::ptrdiff_t>(a),
+                                                          order.begin() + static_cast<std::ptrdiff_t>(b)}};
+      bool same = true;
+      for (const Index row : finding.rows)
+        same = same && data.joints().row(row) == data.joints().row(finding.rows.front());
+      finding.message = name_rows(finding.rows) +
+                        (same ? ": joints and pose are the same in all digits: leave out all but one"
+                              : ": the same pose in all digits at different joints: the sensor was not read again, "
+                                "measure these rows again or leave them out");
+      found.push_back(std::move(finding));
+    }
+    a = b;
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.rows < b.rows; });
+  findings.insert(findings.end(), found.begin(), found.end());
+}
+
+VERNIER_IMPL void audit_joint_values(const Station& data, std::vector<DataFinding>& findings) {
+  std::vector<int> read;
+  double scatter = 0;
+  for (int j = 0; j < data.dof; ++j) {
+    std::vector<double> values(static_cast<std::size_t>(data.size())), gaps;
+    for (Index i = 0; i < data.size(); ++i) values[static_cast<std::size_t>(i)] = data.joints()(i, j);
+    std::sort(values.begin(), values.end());
+    for (std::size_t k = 0; k + 1 < values.size(); ++k) gaps.push_back(values[k + 1] - values[k]);
+    std::sort(gaps.begin(), gaps.end());
+    // gaps inside the groups of one command are far smaller than those between commands
+    const auto m = static_cast<double>(gaps.size());
+    for (auto k = static_cast<std::size_t>(0.4 * m); k < static_cast<std::size_t>(0.97 * m); ++k) {
+      const double inside = gaps[k], median_inside = gaps[k / 2];
+      if (gaps[k + 1] < 4 * inside || !(median_inside > 1e-9) || inside > 5e-3) continue;
+      read.push_back(j);
+      scatter = std::max(scatter, inside);
+      break;
+    }
+  }
+  if (read.empty()) return;
+  std::string names;
+  for (std::size_t k = 0; k < read.size(); ++k)
+    names += message(k == 0 ? "" : k + 1 == read.size() ? " and " : ", ", read[k] + 1);
+  findings.push_back({FaultKind::joints_read, read.size() == 1 ? read.front() : -1, {}, scatter,
+                      message("all rows: values of joint", read.size() == 1 ? " " : "s ", names,
+                              " scatter about repeated commands: they were read, not commanded: a model fitted to "
+                              "them corrects readings, use the commands if commands are to be corrected")});
+}
+
+VERNIER_IMPL void audit_approaches(const Station& data, std::vector<DataFinding>& findings) {
+  if (data.previous_values == nullptr) return;
+  for (int j = 0; j < data.dof; ++j) {
+    Index up = 0, down = 0;
+    for (Index i = 0; i < data.size(); ++i) {
+      const double move = data.joints()(i, j) - data.previous()(i, j);
+      if (move > 1e-6) ++up;
+      if (move < -1e-6) ++down;
+    }
+    if (std::min(up, down) > 0 || std::max(up, down) < 25) continue;
+    findings.push_back({FaultKind::approach_never_varies, j, {}, 0,
+                        message("all rows: joint ", j + 1, " always comes from ", up > 0 ? "below" : "above",
+                                ": its hysteresis cannot be told from its zero, approach some poses from the other "
+                                "side if commands will be")});
+  }
+}
+
+}  // namespace vernier::detail

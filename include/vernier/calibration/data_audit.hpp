@@ -47,7 +47,7 @@ struct DataFinding {
 
 /// Options of `audit_data`.
 struct DataAuditOptions {
-  double smallest_zero = 0.008726646259971648;  ///< smallest error of a revolute joint's zero that is reported [rad]
+  double smallest_zero = 0.017453292519943295;  ///< smallest error of a revolute joint's zero that is reported [rad]
   double outlier_factor = 8;  ///< of a studentised residual (3 components), from where on a row is an outlier
   double length_std = 2e-3;   ///< expected deviation of a length from its nominal value [m]
   double angle_std = 3e-3;    ///< expected deviation of an angle from its nominal value [rad]

@@ -93,13 +93,13 @@ VERNIER_API DataFinding zero_finding(const ArmGeometry& arm, int joint, double z
 /// A zero so small that other parameters of the chain hide it, or none: of the joint whose zero explains more than all
 /// expected deviations of the geometry.
 VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const AuditFit& frames, const AuditRows& rows,
-                                              const VectorX& std, double smallest_zero) {
+                                              const VectorX& stds, double smallest_zero) {
   const VectorX centre = nominal.parameters();
-  const AuditFit plain = audit_fit(frames.arm, centre, std, rows, 12);
+  const AuditFit plain = audit_fit(frames.arm, centre, stds, rows, 12);
   std::vector<AuditFit> fits;
   std::vector<int> joints;
   for (int j = 1; j + 1 < nominal.joints(); ++j) {
-    VectorX freed = std;
+    VectorX freed = stds;
     freed(zero_parameter(nominal, j)) = std::numeric_limits<double>::infinity();
     fits.push_back(audit_fit(plain.arm, centre, freed, rows, 12));
     joints.push_back(j);
@@ -114,7 +114,7 @@ VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const 
     const VectorX values = fit.arm.parameters();
     const Index freed = joint < 0 ? -1 : zero_parameter(nominal, joint);
     for (Index k = 6; k < values.size() - 6; ++k)
-      if (k != freed && std(k) > 0) sum += std::pow((values(k) - centre(k)) / std(k), 2);
+      if (k != freed && stds(k) > 0) sum += std::pow((values(k) - centre(k)) / stds(k), 2);
     for (Index i = 0; i < fit.residuals.position.rows(); ++i) {
       sum += 16 * std::log1p(fit.residuals.position.row(i).squaredNorm() / (16 * sigma * sigma));
       if (rows.oriented()) sum += 16 * std::log1p(fit.residuals.rotation.row(i).squaredNorm() / (16 * turn * turn));
@@ -134,7 +134,7 @@ VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const 
 #ifdef AUDIT_DEBUG
   std::printf("  small zero: joint %d zero %.3f deg, drop %.1f\n", joint, zero * 57.3, none - best);
 #endif
-  if (joint < 0 || none - best < 10 || !nominal.chain().revolute(joint) || std::abs(zero) < smallest_zero)
+  if (joint < 0 || none - best < 15 || !nominal.chain().revolute(joint) || std::abs(zero) < smallest_zero)
     return {-1, 0};
   return {joint, zero};
 }
@@ -190,9 +190,9 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
     rows = found.hypothesis.corrected(rows, nominal);
   }
 
-  VectorX std = audit_geometry_std(arm, rows.oriented(), options.length_std, options.angle_std);
+  VectorX stds = audit_geometry_std(arm, rows.oriented(), options.length_std, options.angle_std);
   if (out.findings.empty()) {
-    const auto [joint, zero] = small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), std,
+    const auto [joint, zero] = small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), stds,
                                           options.smallest_zero);
     if (joint >= 0) {
       out.findings.push_back(zero_finding(nominal, joint, zero));
@@ -204,15 +204,28 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
   const AuditFit frames =
       audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
   out.registered = ErrorStatistics::of(frames.residuals.position.rowwise().norm());
-  const AuditFit geometry = audit_fit(frames.arm, arm.parameters(), std, rows, 12);
-  audit_single_rows(geometry, std, rows, numbers, options.outlier_factor, out.findings);
+  AuditFit geometry = audit_fit(frames.arm, arm.parameters(), stds, rows, 12);
   if (data.times != nullptr) {
     VectorX times(rows.size());
     for (Index i = 0; i < times.size(); ++i) times(i) = (*data.times)(numbers[static_cast<std::size_t>(i)]);
-    audit_drift(geometry, std, rows, times, out.findings);
+    const BaseTrend trend = base_trend(geometry, stds, rows, times);
+#ifdef AUDIT_DEBUG
+    std::printf("  trend: chi2 %.1f displacement %.3f mm scale %.3f mm\n", trend.chi_square, trend.displacement * 1e3,
+                trend.scale * 1e3);
+#endif
+    if (trend.chi_square > 60 && trend.displacement > trend.scale) {
+      out.findings.push_back(
+          {FaultKind::session_drift, -1, {}, trend.displacement,
+           "all rows: base and sensor move against each other by " + brief(trend.displacement * 1e3) +
+               " mm from the first row to the last: look for a loose mount or warm-up, measure again, or let the "
+               "drift be estimated"});
+      rows = without_trend(rows, trend, times);
+      geometry = audit_fit(geometry.arm, arm.parameters(), stds, rows, 12);
+    }
   }
+  audit_single_rows(geometry, stds, rows, numbers, options.outlier_factor, out.findings);
   audit_duplicates(data, rotation_vectors, out.findings);
-  audit_joint_values(data, out.findings);
+  audit_joint_values(rows.joints, out.findings);
   audit_approaches(data, out.findings);
   return out;
 }

@@ -68,24 +68,29 @@ VERNIER_API Index zero_parameter(const ArmGeometry& arm, int joint);
 /// Iteratively reweighted least squares (Cauchy's loss) with priors.
 /// @param start   where it starts
 /// @param centre  nominal values of the parameters
-/// @param std     of each parameter, see `audit_frames_std`
-VERNIER_API AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& centre, const ConstVectorRef& std,
+/// @param stds     of each parameter, see `audit_frames_std`
+VERNIER_API AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& centre, const ConstVectorRef& stds,
                                const AuditRows& rows, int iterations);
 
 /// Every row left out of a fit at its solution.
-VERNIER_API std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const ConstVectorRef& std, const AuditRows& rows);
+VERNIER_API std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const ConstVectorRef& stds, const AuditRows& rows);
 
 /// A trend of the base over time.
 struct BaseTrend {
   Vector6 motion = Vector6::Zero();  ///< from the first to the last row, about the mean position [m, rad]
+  Vector3 centre = Vector3::Zero();  ///< mean position [m]
   double chi_square = 0;             ///< of its six values
   double displacement = 0;           ///< root mean square over the measured positions [m]
+  double scale = 0;                  ///< robust scale of what is left, per component [m]
 };
 
-/// A linear trend of the base over `times`, estimated together with the parameters of the fit and joint errors of
-/// orders 1 and 2.
-VERNIER_API BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std, const AuditRows& rows,
+/// A linear trend of the base over `times`, estimated together with the parameters of the fit and joint errors of low
+/// orders: one a forty rows, at most eight.
+VERNIER_API BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& stds, const AuditRows& rows,
                                  const ConstVectorRef& times);
+
+/// The rows as if base and sensor had stood still.
+VERNIER_API AuditRows without_trend(const AuditRows& rows, const BaseTrend& trend, const ConstVectorRef& times);
 
 }  // namespace vernier::detail
 

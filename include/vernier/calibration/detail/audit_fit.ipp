@@ -94,12 +94,12 @@ struct AuditColumns {
   std::vector<Index> free;
   VectorX precision;
 
-  VERNIER_API explicit AuditColumns(const ConstVectorRef& std) {
-    for (Index k = 0; k < std.size(); ++k)
-      if (std(k) > 0) free.push_back(k);
+  VERNIER_API explicit AuditColumns(const ConstVectorRef& stds) {
+    for (Index k = 0; k < stds.size(); ++k)
+      if (stds(k) > 0) free.push_back(k);
     precision.resize(static_cast<Index>(free.size()));
     for (Index k = 0; k < precision.size(); ++k) {
-      const double s = std(free[static_cast<std::size_t>(k)]);
+      const double s = stds(free[static_cast<std::size_t>(k)]);
       precision(k) = std::isfinite(s) ? 1 / (s * s) : 1e-4;  // 100 m or rad: keeps degenerate directions where they are
     }
   }
@@ -146,16 +146,16 @@ VERNIER_API double audit_cost(const VectorX& whitened, const VectorX& precision,
   return sum;
 }
 
-VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& centre, const ConstVectorRef& std,
+VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& centre, const ConstVectorRef& stds,
                                 const AuditRows& rows, int iterations) {
-  const AuditColumns columns(std);
+  const AuditColumns columns(stds);
   AuditFit out{start, audit_residuals(start, rows)};
   VectorX values = start.parameters();
   const auto deviation = [&](const VectorX& at) {
     VectorX d(columns.size());
     for (Index k = 0; k < d.size(); ++k) {
       const Index p = columns.free[static_cast<std::size_t>(k)];
-      d(k) = std::isfinite(std(p)) ? at(p) - centre(p) : 0;
+      d(k) = std::isfinite(stds(p)) ? at(p) - centre(p) : 0;
     }
     return d;
   };
@@ -200,9 +200,9 @@ VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& 
   return out;
 }
 
-VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const ConstVectorRef& std,
+VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const ConstVectorRef& stds,
                                                  const AuditRows& rows) {
-  const AuditColumns columns(std);
+  const AuditColumns columns(stds);
   PosesAndJacobians at;
   fit.arm.poses_and_parameter_jacobians(rows.joints, at);
   const bool oriented = rows.oriented();
@@ -248,14 +248,16 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
   return out;
 }
 
-VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std, const AuditRows& rows,
+VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& stds, const AuditRows& rows,
                                   const ConstVectorRef& times) {
   BaseTrend out;
   const Index n = rows.size(), values = rows.oriented() ? 6 : 3;
   const int joints = fit.arm.joints();
   const double first = times.minCoeff(), span = times.maxCoeff() - first;
-  const AuditColumns columns(std);
-  const Index geometry = columns.size(), harmonics = 4 * joints, all = 6 + geometry + harmonics;
+  const AuditColumns columns(stds);
+  const Index geometry = columns.size();
+  const Index orders = std::clamp<Index>((values * n / 2 - 6 - geometry) / (2 * joints), 0, std::clamp<Index>(n / 40, 1, 8));
+  const Index per_joint = 2 * orders, harmonics = per_joint * joints, all = 6 + geometry + harmonics;
   if (!(span > 0) || values * n < 2 * all) return out;
   PosesAndJacobians at;
   fit.arm.poses_and_parameter_jacobians(rows.joints, at);
@@ -274,8 +276,12 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
     for (int j = 0; j < joints; ++j)
       for (Index v = 0; v < values; ++v) {
         const double column = at.jacobians(i, 6 * zero_parameter(fit.arm, j) + v) / sigma(v), q = rows.joints(i, j);
-        design.row(values * i + v).segment<4>(6 + geometry + 4 * j)
-            << column * std::cos(q), column * std::sin(q), column * std::cos(2 * q), column * std::sin(2 * q);
+        for (Index k = 0; k < orders; ++k) {
+          const double angle = static_cast<double>(k + 1) * q;
+          const Index at_order = 6 + geometry + per_joint * j + 2 * k;
+          design(values * i + v, at_order) = column * std::cos(angle);
+          design(values * i + v, at_order + 1) = column * std::sin(angle);
+        }
       }
   }
   VectorX precision(all);
@@ -297,10 +303,29 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   }
   const double dof = static_cast<double>(values * n) / std::max(1.0, static_cast<double>(values * n - all));
   out.motion = solution.head<6>();
+  out.scale = scale * fit.residuals.position_scale;
   out.chi_square = out.motion.dot(covariance.ldlt().solve(out.motion)) / (scale * scale * dof);
+  out.centre = mean;
   double sum = 0;
   for (const Eigen::Matrix<double, 6, 6>& motion : motions) sum += (motion * out.motion).head<3>().squaredNorm();
   out.displacement = std::sqrt(sum / static_cast<double>(n));
+  return out;
+}
+
+VERNIER_IMPL AuditRows without_trend(const AuditRows& rows, const BaseTrend& trend, const ConstVectorRef& times) {
+  AuditRows out = rows;
+  const double first = times.minCoeff(), span = times.maxCoeff() - first;
+  for (Index i = 0; i < rows.size(); ++i) {
+    const Vector6 motion = ((times(i) - first) / span - 0.5) * trend.motion;
+    const Matrix3 back = exp_so3(Vector3(-motion.tail<3>()));
+    const Vector3 position = rows.positions.row(i).transpose();
+    out.positions.row(i) =
+        (trend.centre + back * (position - trend.centre) - motion.head<3>()).transpose();
+    if (rows.oriented()) {
+      Matrix3& turned = out.orientations[static_cast<std::size_t>(i)];
+      turned = back * turned;
+    }
+  }
   return out;
 }
 

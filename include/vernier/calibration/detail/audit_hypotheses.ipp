@@ -44,9 +44,10 @@ VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const A
       break;
     case FaultKind::joint_sign: out.joints.col(joint) *= -1; break;
     case FaultKind::mirrored_frame: {
-      out.positions.col(0) *= -1;
+      const bool turned = convention == 3;  // the orientations are mirrored, too
+      out.positions.col(turned ? 0 : convention) *= -1;
       const Vector3 mirror(-1, 1, 1);
-      if (convention == 1)
+      if (turned)
         for (Matrix3& r : out.orientations) r = mirror.asDiagonal() * r * mirror.asDiagonal();
       break;
     }
@@ -70,16 +71,16 @@ VERNIER_IMPL std::vector<Index> spread_rows(Index rows, Index count) {
 VERNIER_IMPL HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const AuditRows& rows,
                                           const AuditHypothesis& hypothesis) {
   const AuditRows corrected = hypothesis.corrected(rows, nominal);
-  VectorX std = audit_frames_std(nominal, rows.oriented()), values = nominal.parameters();
+  VectorX stds = audit_frames_std(nominal, rows.oriented()), values = nominal.parameters();
   const VectorX centre = values;
   const bool zero = hypothesis.kind == FaultKind::joint_zero;
   const Index parameter = zero ? zero_parameter(nominal, hypothesis.joint) : 0;
   if (zero) {
-    std(parameter) = std::numeric_limits<double>::infinity();
+    stds(parameter) = std::numeric_limits<double>::infinity();
     values(parameter) += hypothesis.zero;
   }
   const ArmGeometry start = starting_frames(nominal.with_parameters(values), corrected.station(), true, true);
-  HypothesisFit out{hypothesis, audit_fit(start, centre, std, corrected, 20)};
+  HypothesisFit out{hypothesis, audit_fit(start, centre, stds, corrected, 20)};
   if (zero) out.zero = out.fit.arm.parameters()(parameter) - centre(parameter);
   return out;
 }
@@ -98,9 +99,10 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
       fit.zero = std::remainder(fit.zero, 2 * std::numbers::pi);
       if (std::abs(fit.zero) < smallest_zero) return;
     }
-    // lengths in the unit that the arm has
-    if (const double score = fit.fit.residuals.score(); score < 0.5 * none && score < best.fit.residuals.score())
-      best = std::move(fit);
+    // half a turn of a joint's zero may be the same as another joint's sign, which is simpler
+    const auto weight = [](const HypothesisFit& of) { return std::abs(of.zero) > 0.5 ? 1.3 : 1.0; };
+    const double score = fit.fit.residuals.score();
+    if (score < 0.5 * none && weight(fit) * score < weight(best) * best.fit.residuals.score()) best = std::move(fit);
   };
   const double expected = point_scatter(nominal.positions(rows.joints)), measured = point_scatter(rows.positions);
   const bool gross = none > 0.02 * std::min(expected, measured);
@@ -121,7 +123,7 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
   }
   attempt({.kind = FaultKind::mirrored_frame});
   if (rows.oriented()) {
-    attempt({.kind = FaultKind::mirrored_frame, .convention = 1});
+    for (int axis = 1; axis <= 3; ++axis) attempt({.kind = FaultKind::mirrored_frame, .convention = axis});
     for (int convention = 1; convention <= 6; ++convention)
       attempt({.kind = FaultKind::orientation_convention, .convention = convention});
   }
@@ -188,6 +190,8 @@ VERNIER_IMPL std::optional<RowShift> find_shift(const ArmGeometry& nominal, cons
   for (Index i = 0; i < n; ++i) {
     const Index shift = (i < change ? before : after) - most;
     if (i + shift < 0 || i + shift >= n) continue;
+    // next to the change a pose may be missing
+    if (!whole && std::abs(i - change) <= most + 1 && cost(i, shift + most) >= 1) continue;
     out.fitting.push_back(i);
     out.shifts.push_back(shift);
   }

@@ -10,23 +10,19 @@ namespace vernier::detail {
 
 /// Rows whose pose is not that of their joints, and pairs of rows whose poses are exchanged.
 /// @param geometry a robust fit of the geometry
-/// @param std      of its parameters
+/// @param stds      of its parameters
 /// @param numbers  of the rows, in the data
 /// @param factor   studentised residual from which on a row is an outlier
-VERNIER_API void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& std, const AuditRows& rows,
+VERNIER_API void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
                                    const std::vector<Index>& numbers, double factor,
                                    std::vector<DataFinding>& findings);
-
-/// Motion of the base over time.
-VERNIER_API void audit_drift(const AuditFit& geometry, const ConstVectorRef& std, const AuditRows& rows,
-                             const ConstVectorRef& times, std::vector<DataFinding>& findings);
 
 /// Poses that occur again in all digits.
 VERNIER_API void audit_duplicates(const Station& data, const PointRows& rotation_vectors,
                                   std::vector<DataFinding>& findings);
 
 /// Joint values that scatter about repeated commands.
-VERNIER_API void audit_joint_values(const Station& data, std::vector<DataFinding>& findings);
+VERNIER_API void audit_joint_values(const MatrixX& joints, std::vector<DataFinding>& findings);
 
 /// Joints that always come from the same side.
 VERNIER_API void audit_approaches(const Station& data, std::vector<DataFinding>& findings);

@@ -22,10 +22,10 @@ VERNIER_API std::string name_rows(const std::vector<Index>& rows) {
   return out;
 }
 
-VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& std, const AuditRows& rows,
+VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
                                     const std::vector<Index>& numbers, double factor,
                                     std::vector<DataFinding>& findings) {
-  const std::vector<LeftOut> left = leave_out_rows(geometry, std, rows);
+  const std::vector<LeftOut> left = leave_out_rows(geometry, stds, rows);
   std::vector<Index> wrong;
   for (Index i = 0; i < rows.size(); ++i) {
     const LeftOut& row = left[static_cast<std::size_t>(i)];
@@ -75,20 +75,6 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
   findings.push_back(std::move(outliers));
 }
 
-VERNIER_IMPL void audit_drift(const AuditFit& geometry, const ConstVectorRef& std, const AuditRows& rows,
-                              const ConstVectorRef& times, std::vector<DataFinding>& findings) {
-  const BaseTrend trend = base_trend(geometry, std, rows, times);
-#ifdef AUDIT_DEBUG
-  std::printf("  trend: chi2 %.1f displacement %.3f mm scale %.3f mm\n", trend.chi_square, trend.displacement * 1e3,
-              geometry.residuals.position_scale * 1e3);
-#endif
-  if (trend.chi_square < 60 || trend.displacement < 0.5 * geometry.residuals.position_scale) return;
-  findings.push_back({FaultKind::session_drift, -1, {}, trend.displacement,
-                      "all rows: base and sensor move against each other by " + brief(trend.displacement * 1e3) +
-                          " mm from the first row to the last: look for a loose mount or warm-up, measure again, or "
-                          "let the drift be estimated"});
-}
-
 VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotation_vectors,
                                    std::vector<DataFinding>& findings) {
   const Index n = data.size();
@@ -125,12 +111,11 @@ VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotatio
   findings.insert(findings.end(), found.begin(), found.end());
 }
 
-VERNIER_IMPL void audit_joint_values(const Station& data, std::vector<DataFinding>& findings) {
+VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFinding>& findings) {
   std::vector<int> read;
   double scatter = 0;
-  for (int j = 0; j < data.dof; ++j) {
-    std::vector<double> values(static_cast<std::size_t>(data.size())), gaps;
-    for (Index i = 0; i < data.size(); ++i) values[static_cast<std::size_t>(i)] = data.joints()(i, j);
+  for (int j = 0; j < static_cast<int>(joints.cols()); ++j) {
+    std::vector<double> values(joints.col(j).begin(), joints.col(j).end()), gaps;
     std::sort(values.begin(), values.end());
     for (std::size_t k = 0; k + 1 < values.size(); ++k) gaps.push_back(values[k + 1] - values[k]);
     std::sort(gaps.begin(), gaps.end());

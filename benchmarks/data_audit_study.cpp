@@ -1,9 +1,10 @@
 // What the audit of data finds: measured poses with one planted fault each, and false alarms on subsets of measured
 // poses and on simulated files.
 //
-//   data_audit_study FOLDER [FILES [SUBSETS]]
+//   data_audit_study FOLDER [FILES [SUBSETS [SIZE]]]
 //
 // FOLDER has ur10_random_poses.csv, ur5_grid.csv and wam_grid.csv. FILES (1000) have a fault each, SUBSETS (1000) none.
+// SIZE (1) multiplies the sizes of planted faults.
 
 #include <cstdio>
 #include <cstdlib>
@@ -26,12 +27,10 @@ using vn::FaultKind, vn::Index;
 
 namespace {
 
-constexpr FaultKind kinds[] = {FaultKind::length_unit,     FaultKind::joint_unit,
-                               FaultKind::joint_sign,      FaultKind::joint_zero,
-                               FaultKind::mirrored_frame,  FaultKind::orientation_convention,
-                               FaultKind::shifted_rows,    FaultKind::swapped_rows,
-                               FaultKind::duplicate_rows,  FaultKind::outlier,
-                               FaultKind::joints_read,     FaultKind::approach_never_varies,
+constexpr FaultKind kinds[] = {FaultKind::length_unit,  FaultKind::joint_unit,     FaultKind::joint_sign,
+                               FaultKind::joint_zero,   FaultKind::mirrored_frame, FaultKind::orientation_convention,
+                               FaultKind::shifted_rows, FaultKind::swapped_rows,   FaultKind::duplicate_rows,
+                               FaultKind::outlier,      FaultKind::joints_read,    FaultKind::approach_never_varies,
                                FaultKind::session_drift};
 
 struct Count {
@@ -55,8 +54,7 @@ std::vector<Index> draw_rows(const vn::Dataset<N>& data, vn::Rng& rng) {
     std::sort(rows.begin(), rows.end());
   } else {
     rows.resize(static_cast<std::size_t>(n));
-    std::iota(rows.begin(), rows.end(),
-              static_cast<Index>(rng.below(static_cast<std::uint64_t>(data.size() - n + 1))));
+    std::iota(rows.begin(), rows.end(), static_cast<Index>(rng.below(static_cast<std::uint64_t>(data.size() - n + 1))));
   }
   return rows;
 }
@@ -149,18 +147,19 @@ void simulate(const Chain& chain, int files, Totals& totals) {
   limits.upper.setConstant(2);
   for (int k = 0; k < files; ++k) {
     const std::uint64_t seed = rng();
-    const vn::Framed actual(vn::WithJointErrors<Chain>(
-                                vn::with_geometric_errors(chain, {.length_max = 1e-3, .angle_max = 2e-3}, seed),
-                                vn::draw_joint_errors(chain, {}, seed + 1)),
-                            vn::FrameParameters(vn::Vector6{2, -1, 0.5, 0.3, -0.2, 1.5}).isometry(),
-                            vn::FrameParameters(vn::Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry());
+    const vn::Framed actual(
+        vn::WithJointErrors<Chain>(vn::with_geometric_errors(chain, {.length_max = 1e-3, .angle_max = 2e-3}, seed),
+                                   vn::draw_joint_errors(chain, {}, seed + 1)),
+        vn::FrameParameters(vn::Vector6{2, -1, 0.5, 0.3, -0.2, 1.5}).isometry(),
+        vn::FrameParameters(vn::Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry());
     const auto n = static_cast<Index>(40 * std::pow(12, rng.uniform()));
-    const auto data = vn::measure(actual, vn::sample_joints(limits, n, seed + 2),
-                                  {0.03e-3, 0.1e-3, rng.sign() > 0}, seed + 3);
+    const auto data =
+        vn::measure(actual, vn::sample_joints(limits, n, seed + 2), {0.03e-3, 0.1e-3, rng.sign() > 0}, seed + 3);
     const vn::DataAudit audit = vn::audit_data(chain, data);
     ++totals.simulated;
     totals.simulated_alarms += !audit.findings.empty();
-    if (!audit.findings.empty() && std::getenv("VERBOSE") != nullptr) std::printf("simulated\n%s", audit.summary().c_str());
+    if (!audit.findings.empty() && std::getenv("VERBOSE") != nullptr)
+      std::printf("simulated\n%s", audit.summary().c_str());
   }
 }
 
@@ -168,15 +167,26 @@ void simulate(const Chain& chain, int files, Totals& totals) {
 
 int main(int argc, char** argv) try {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: data_audit_study FOLDER [FILES [SUBSETS]]\n");
+    std::fprintf(stderr, "usage: data_audit_study FOLDER [FILES [SUBSETS [SIZE]]]\n");
     return 2;
   }
   const std::string folder = argv[1];
   const int files = argc > 2 ? std::atoi(argv[2]) : 1000, subsets = argc > 3 ? std::atoi(argv[3]) : 1000;
   Totals totals;
-  const vn::PlantedSizes rigid;
-  const vn::PlantedSizes cable{.effect = 20e-3, .zero_min = 0.07, .outlier_min = 25e-3, .outlier_max = 0.2,
-                               .drift_min = 20e-3, .drift_max = 60e-3};
+  const double size = argc > 4 ? std::atof(argv[4]) : 1;
+  const auto sized = [&](vn::PlantedSizes sizes) {
+    for (double* value :
+         {&sizes.effect, &sizes.zero_min, &sizes.outlier_min, &sizes.outlier_max, &sizes.drift_min, &sizes.drift_max})
+      *value *= size;
+    return sizes;
+  };
+  const vn::PlantedSizes rigid = sized({});
+  const vn::PlantedSizes cable = sized({.effect = 20e-3,
+                                        .zero_min = 0.07,
+                                        .outlier_min = 25e-3,
+                                        .outlier_max = 0.2,
+                                        .drift_min = 20e-3,
+                                        .drift_max = 60e-3});
   study("UR10", folder + "/ur10_random_poses.csv", vn::robots::ur10().chain, rigid, files - 2 * (files / 3),
         subsets - 2 * (subsets / 3), totals);
   study("UR5", folder + "/ur5_grid.csv", vn::robots::ur5().chain, rigid, files / 3, subsets / 3, totals);

@@ -3,6 +3,7 @@
 /// @file
 /// Robots, calibrated models, reports and searches under way as JSON: needs nlohmann-json beside Eigen.
 
+#include "vernier/io/audit_json.hpp"
 #include "vernier/io/iso9283_json.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/report_json.hpp"

@@ -18,13 +18,13 @@ namespace vernier {
 
 /// Sizes of planted faults.
 struct PlantedSizes {
-  double effect = 5e-3;       ///< of a sign or zero: mean displacement that frames do not absorb, at least [m]
-  double zero_min = 0.0349;   ///< of a joint's zero [rad]
-  double zero_max = 0.35;     ///< [rad]
-  double outlier_min = 5e-3;  ///< displacement of an outlier, or distance of swapped poses [m]
-  double outlier_max = 50e-3; ///< [m]
-  double drift_min = 2e-3;    ///< displacement from the first row to the last [m]
-  double drift_max = 10e-3;   ///< [m]
+  double effect = 5e-3;        ///< of a sign or zero: mean displacement that frames do not absorb, at least [m]
+  double zero_min = 0.0349;    ///< of a joint's zero [rad]
+  double zero_max = 0.35;      ///< [rad]
+  double outlier_min = 5e-3;   ///< displacement of an outlier, or distance of swapped poses [m]
+  double outlier_max = 50e-3;  ///< [m]
+  double drift_min = 2e-3;     ///< displacement from the first row to the last [m]
+  double drift_max = 10e-3;    ///< [m]
 };
 
 /// Measured poses with a fault, and what an audit should find.
@@ -45,8 +45,7 @@ struct Planted {
       return finding.size == size && !finding.rows.empty() && std::abs(finding.rows.front() - rows.front()) <= 3;
     if (kind == FaultKind::length_unit || kind == FaultKind::joint_unit)
       return std::abs(finding.size / size - 1) < 1e-6;
-    if (kind == FaultKind::joint_zero)
-      return std::abs(finding.size - size) < 0.25 * std::abs(size) + 0.01;
+    if (kind == FaultKind::joint_zero) return std::abs(finding.size - size) < 0.25 * std::abs(size) + 0.01;
     return std::includes(finding.rows.begin(), finding.rows.end(), rows.begin(), rows.end());
   }
 };
@@ -131,9 +130,7 @@ std::optional<Planted<Chain::dof>> plant(const Chain& chain, const Dataset<Chain
         return changed();
       }
       return std::nullopt;
-    case FaultKind::mirrored_frame:
-      positions.col(below(3)) *= -1;
-      return changed();
+    case FaultKind::mirrored_frame: positions.col(below(3)) *= -1; return changed();
     case FaultKind::orientation_convention: {
       if (!oriented) return std::nullopt;
       const Index which = below(4);
@@ -231,8 +228,7 @@ std::optional<Planted<Chain::dof>> plant(const Chain& chain, const Dataset<Chain
       for (Index i = 0; i < n; ++i) {
         const double t = (data.times()(i) - first) / span;
         const Matrix3 turn = exp_so3(Vector3(t * out.size * about));  // an arm of a metre
-        positions.row(i) =
-            (mean + turn * (positions.row(i).transpose() - mean) + t * out.size * along).transpose();
+        positions.row(i) = (mean + turn * (positions.row(i).transpose() - mean) + t * out.size * along).transpose();
         if (oriented) orientations.row(i) = log_so3(Matrix3(turn * data.orientation(i))).transpose();
       }
       return changed();

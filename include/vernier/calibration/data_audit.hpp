@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// An audit of measured poses before any geometric fit: units, signs and zeros of joints, mirrored frames, rows that are
-/// swapped, shifted, duplicate or wrong, and a session that drifts.
+/// An audit of measured poses before any geometric fit: units, signs and zeros of joints, mirrored frames, rows that
+/// are swapped, shifted, duplicate or wrong, and a session that drifts.
 
 #include <string>
 #include <string_view>
@@ -48,7 +48,7 @@ struct DataFinding {
 /// Options of `audit_data`.
 struct DataAuditOptions {
   double smallest_zero = 0.017453292519943295;  ///< smallest error of a revolute joint's zero that is reported [rad]
-  double outlier_factor = 8;  ///< of a studentised residual (3 components), from where on a row is an outlier
+  double outlier_factor = 9;  ///< of a studentised residual (3 components), from where on a row is an outlier
   double length_std = 2e-3;   ///< expected deviation of a length from its nominal value [m]
   double angle_std = 3e-3;    ///< expected deviation of an angle from its nominal value [rad]
 };

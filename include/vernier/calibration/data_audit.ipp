@@ -131,9 +131,6 @@ VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const 
       const Index parameter = zero_parameter(nominal, joint);
       zero = fits[k].arm.parameters()(parameter) - centre(parameter);
     }
-#ifdef AUDIT_DEBUG
-  std::printf("  small zero: joint %d zero %.3f deg, drop %.1f\n", joint, zero * 57.3, none - best);
-#endif
   if (joint < 0 || none - best < 15 || !nominal.chain().revolute(joint) || std::abs(zero) < smallest_zero)
     return {-1, 0};
   return {joint, zero};
@@ -192,8 +189,8 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
 
   VectorX stds = audit_geometry_std(arm, rows.oriented(), options.length_std, options.angle_std);
   if (out.findings.empty()) {
-    const auto [joint, zero] = small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), stds,
-                                          options.smallest_zero);
+    const auto [joint, zero] =
+        small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), stds, options.smallest_zero);
     if (joint >= 0) {
       out.findings.push_back(zero_finding(nominal, joint, zero));
       VectorX values = nominal.parameters();
@@ -201,21 +198,19 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
       arm = nominal.with_parameters(values);
     }
   }
-  const AuditFit frames =
-      audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
+  const AuditFit frames = audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
   out.registered = ErrorStatistics::of(frames.residuals.position.rowwise().norm());
   AuditFit geometry = audit_fit(frames.arm, arm.parameters(), stds, rows, 12);
   if (data.times != nullptr) {
     VectorX times(rows.size());
     for (Index i = 0; i < times.size(); ++i) times(i) = (*data.times)(numbers[static_cast<std::size_t>(i)]);
     const BaseTrend trend = base_trend(geometry, stds, rows, times);
-#ifdef AUDIT_DEBUG
-    std::printf("  trend: chi2 %.1f displacement %.3f mm scale %.3f mm\n", trend.chi_square, trend.displacement * 1e3,
-                trend.scale * 1e3);
-#endif
-    if (trend.chi_square > 60 && trend.displacement > trend.scale) {
+    if (trend.chi_square > 40 && trend.displacement > 0.3 * trend.scale) {
       out.findings.push_back(
-          {FaultKind::session_drift, -1, {}, trend.displacement,
+          {FaultKind::session_drift,
+           -1,
+           {},
+           trend.displacement,
            "all rows: base and sensor move against each other by " + brief(trend.displacement * 1e3) +
                " mm from the first row to the last: look for a loose mount or warm-up, measure again, or let the "
                "drift be estimated"});

@@ -53,7 +53,7 @@ struct AuditFit {
 struct LeftOut {
   double position = 0, rotation = 0;                ///< residuals [m, rad]
   double position_factor = 0, rotation_factor = 0;  ///< studentised norms of three components; median 1.54
-  Matrix3 position_weight = Matrix3::Zero();  ///< inverse covariance of the prediction's error, scaled likewise
+  Matrix3 position_weight = Matrix3::Zero();        ///< inverse covariance of the prediction's error, scaled likewise
 };
 
 /// Which parameters of an arm are fitted: a standard deviation about the nominal value each, infinite for free ones,

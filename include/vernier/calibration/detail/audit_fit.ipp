@@ -57,8 +57,7 @@ VERNIER_API AuditResiduals residuals_of_poses(const std::vector<Isometry3>& pose
     const auto k = static_cast<std::size_t>(i);
     out.position.row(i) = rows.positions.row(i) - poses[k].translation().transpose();
     if (rows.oriented())
-      out.rotation.row(i) =
-          log_so3(Matrix3(rows.orientations[k] * poses[k].linear().transpose())).transpose();
+      out.rotation.row(i) = log_so3(Matrix3(rows.orientations[k] * poses[k].linear().transpose())).transpose();
   }
   out.position_scale = robust_scale(out.position);
   if (rows.oriented()) out.rotation_scale = robust_scale(out.rotation);
@@ -125,8 +124,7 @@ VERNIER_API VectorX audit_whitened(const AuditResiduals& residuals) {
   VectorX out(values * n);
   for (Index i = 0; i < n; ++i) {
     out.segment<3>(values * i) = residuals.position.row(i).transpose() / residuals.position_scale;
-    if (values == 6)
-      out.segment<3>(values * i + 3) = residuals.rotation.row(i).transpose() / residuals.rotation_scale;
+    if (values == 6) out.segment<3>(values * i + 3) = residuals.rotation.row(i).transpose() / residuals.rotation_scale;
   }
   return out;
 }
@@ -168,8 +166,7 @@ VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& 
     const VectorX from = deviation(values);
     MatrixX weighted = weights.asDiagonal() * jacobian;
     MatrixX normal = jacobian.transpose() * weighted;
-    const VectorX right =
-        weighted.transpose() * whitened - (columns.precision.array() * from.array()).matrix();
+    const VectorX right = weighted.transpose() * whitened - (columns.precision.array() * from.array()).matrix();
     normal.diagonal() += columns.precision;
     const VectorX diagonal = normal.diagonal();
     const double before = audit_cost(whitened, columns.precision, from);
@@ -256,7 +253,8 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   const double first = times.minCoeff(), span = times.maxCoeff() - first;
   const AuditColumns columns(stds);
   const Index geometry = columns.size();
-  const Index orders = std::clamp<Index>((values * n / 2 - 6 - geometry) / (2 * joints), 0, std::clamp<Index>(n / 40, 1, 8));
+  const Index orders =
+      std::clamp<Index>((values * n / 2 - 6 - geometry) / (2 * joints), 0, std::clamp<Index>(n / 40, 1, 8));
   const Index per_joint = 2 * orders, harmonics = per_joint * joints, all = 6 + geometry + harmonics;
   if (!(span > 0) || values * n < 2 * all) return out;
   PosesAndJacobians at;
@@ -319,8 +317,7 @@ VERNIER_IMPL AuditRows without_trend(const AuditRows& rows, const BaseTrend& tre
     const Vector6 motion = ((times(i) - first) / span - 0.5) * trend.motion;
     const Matrix3 back = exp_so3(Vector3(-motion.tail<3>()));
     const Vector3 position = rows.positions.row(i).transpose();
-    out.positions.row(i) =
-        (trend.centre + back * (position - trend.centre) - motion.head<3>()).transpose();
+    out.positions.row(i) = (trend.centre + back * (position - trend.centre) - motion.head<3>()).transpose();
     if (rows.oriented()) {
       Matrix3& turned = out.orientations[static_cast<std::size_t>(i)];
       turned = back * turned;

@@ -43,7 +43,7 @@ VERNIER_API HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Audi
 struct RowShift {
   Index first = 0, end = 0;  ///< rows concerned
   Index shift = 0;
-  double score = 0;          ///< of the rows that fit [m]
+  double score = 0;              ///< of the rows that fit [m]
   std::vector<Index> fitting{};  ///< rows that have a pose, ascending
   std::vector<Index> shifts{};   ///< of each of them
 };

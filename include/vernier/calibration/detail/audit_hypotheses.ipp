@@ -101,8 +101,12 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
     }
     // half a turn of a joint's zero may be the same as another joint's sign, which is simpler
     const auto weight = [](const HypothesisFit& of) { return std::abs(of.zero) > 0.5 ? 1.3 : 1.0; };
-    const double score = fit.fit.residuals.score();
-    if (score < 0.5 * none && weight(fit) * score < weight(best) * best.fit.residuals.score()) best = std::move(fit);
+    // as measured: dividing lengths makes residuals small, too
+    const auto score = [](const HypothesisFit& of) {
+      return of.fit.residuals.score() *
+             (of.hypothesis.kind == FaultKind::length_unit ? std::max(1.0, of.hypothesis.factor) : 1.0);
+    };
+    if (score(fit) < 0.5 * none && weight(fit) * score(fit) < weight(best) * score(best)) best = std::move(fit);
   };
   const double expected = point_scatter(nominal.positions(rows.joints)), measured = point_scatter(rows.positions);
   const bool gross = none > 0.02 * std::min(expected, measured);

@@ -9,6 +9,7 @@
 #include "vernier/calibration/detail/audit_rows.hpp"
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/evaluation/quantile.hpp"
 
 namespace vernier::detail {
 
@@ -16,20 +17,30 @@ namespace vernier::detail {
 VERNIER_API std::string name_rows(const std::vector<Index>& rows) {
   std::string out = rows.size() == 1 ? "row " : "rows ";
   const std::size_t shown = rows.size() > 10 ? 10 : rows.size();
-  for (std::size_t k = 0; k < shown; ++k)
-    out += message(k == 0 ? "" : k + 1 == rows.size() ? " and " : ", ", rows[k]);
+  for (std::size_t k = 0; k < shown; ++k) out += message(k == 0 ? "" : k + 1 == rows.size() ? " and " : ", ", rows[k]);
   if (shown < rows.size()) out += message(", ... (", rows.size(), " rows)");
   return out;
 }
 
 VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
-                                    const std::vector<Index>& numbers, double factor,
+                                    const std::vector<Index>& numbers, double least_factor,
                                     std::vector<DataFinding>& findings) {
   const std::vector<LeftOut> left = leave_out_rows(geometry, stds, rows);
   std::vector<Index> wrong;
+  // what the model lacks makes longer tails than noise has
+  constexpr double p90_of_normal = 2.5003;
+  VectorX by_position_factor(rows.size()), by_rotation_factor(rows.size());
+  for (Index i = 0; i < rows.size(); ++i) {
+    by_position_factor(i) = left[static_cast<std::size_t>(i)].position_factor;
+    by_rotation_factor(i) = left[static_cast<std::size_t>(i)].rotation_factor;
+  }
+  const auto limit = [&](const VectorX& factors) {
+    return least_factor * std::max(1.0, quantile(factors, 0.9) / p90_of_normal);
+  };
+  const double factor = limit(by_position_factor), rotation_limit = limit(by_rotation_factor);
   for (Index i = 0; i < rows.size(); ++i) {
     const LeftOut& row = left[static_cast<std::size_t>(i)];
-    if (row.position_factor > factor || row.rotation_factor > factor) wrong.push_back(i);
+    if (row.position_factor > factor || row.rotation_factor > rotation_limit) wrong.push_back(i);
   }
   // which pairs fit when their poses are exchanged
   const auto exchanged = [&](Index joints, Index pose) {
@@ -38,7 +49,8 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
     const Vector3 error = r.position.row(0).transpose();
     const LeftOut& row = left[static_cast<std::size_t>(joints)];
     const bool fits = std::sqrt(error.dot(row.position_weight * error)) < factor;
-    const bool turned = rows.oriented() && r.rotation.row(0).norm() > 2 * factor * geometry.residuals.rotation_scale;
+    const bool turned =
+        rows.oriented() && r.rotation.row(0).norm() > 2 * rotation_limit * geometry.residuals.rotation_scale;
     return fits && !turned;
   };
   std::vector<bool> paired(wrong.size(), false);
@@ -47,9 +59,11 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
       for (std::size_t b = a + 1; b < wrong.size() && !paired[a]; ++b) {
         if (paired[b] || !exchanged(wrong[a], wrong[b]) || !exchanged(wrong[b], wrong[a])) continue;
         paired[a] = paired[b] = true;
-        const Index first = numbers[static_cast<std::size_t>(wrong[a])], second =
-            numbers[static_cast<std::size_t>(wrong[b])];
-        findings.push_back({FaultKind::swapped_rows, -1, {first, second},
+        const Index first = numbers[static_cast<std::size_t>(wrong[a])],
+                    second = numbers[static_cast<std::size_t>(wrong[b])];
+        findings.push_back({FaultKind::swapped_rows,
+                            -1,
+                            {first, second},
                             left[static_cast<std::size_t>(wrong[a])].position,
                             message("rows ", first, " and ", second, ": their poses are exchanged: swap them")});
       }
@@ -64,7 +78,7 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
       by_position = true;
       outliers.size = std::max(outliers.size, row.position);
     }
-    if (row.rotation_factor > factor) turn = std::max(turn, row.rotation);
+    if (row.rotation_factor > rotation_limit) turn = std::max(turn, row.rotation);
   }
   if (outliers.rows.empty()) return;
   if (!by_position) outliers.size = turn;
@@ -94,8 +108,10 @@ VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotatio
     std::size_t b = a + 1;
     while (b < order.size() && !before(order[a], order[b])) ++b;
     if (b - a > 1) {
-      DataFinding finding{FaultKind::duplicate_rows, -1, {order.begin() + static_cast<std::ptrdiff_t>(a),
-                                                          order.begin() + static_cast<std::ptrdiff_t>(b)}};
+      DataFinding finding{
+          FaultKind::duplicate_rows,
+          -1,
+          {order.begin() + static_cast<std::ptrdiff_t>(a), order.begin() + static_cast<std::ptrdiff_t>(b)}};
       bool same = true;
       for (const Index row : finding.rows)
         same = same && data.joints().row(row) == data.joints().row(finding.rows.front());
@@ -118,14 +134,19 @@ VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFind
     std::vector<double> values(joints.col(j).begin(), joints.col(j).end()), gaps;
     std::sort(values.begin(), values.end());
     for (std::size_t k = 0; k + 1 < values.size(); ++k) gaps.push_back(values[k + 1] - values[k]);
+    const std::vector<double> in_order = gaps;
     std::sort(gaps.begin(), gaps.end());
-    // gaps inside the groups of one command are far smaller than those between commands
-    const auto m = static_cast<double>(gaps.size());
-    for (auto k = static_cast<std::size_t>(0.4 * m); k < static_cast<std::size_t>(0.97 * m); ++k) {
-      const double inside = gaps[k], median_inside = gaps[k / 2];
-      if (gaps[k + 1] < 4 * inside || !(median_inside > 1e-9) || inside > 5e-3) continue;
+    // readings of one command lie close together, three or more commands far apart
+    for (std::size_t k = gaps.size() * 2 / 5; k + 2 < gaps.size(); ++k) {
+      if (gaps[k + 1] < 4 * gaps[k] || gaps[k / 2] < 1e-9) continue;
+      double width = 0, widest = 0;
+      for (const double gap : in_order) {
+        width = gap > gaps[k] ? 0 : width + gap;
+        widest = std::max(widest, width);
+      }
+      if (widest > 0.2 * gaps[k + 1] || widest > 0.02) continue;
       read.push_back(j);
-      scatter = std::max(scatter, inside);
+      scatter = std::max(scatter, widest);
       break;
     }
   }
@@ -133,7 +154,10 @@ VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFind
   std::string names;
   for (std::size_t k = 0; k < read.size(); ++k)
     names += message(k == 0 ? "" : k + 1 == read.size() ? " and " : ", ", read[k] + 1);
-  findings.push_back({FaultKind::joints_read, read.size() == 1 ? read.front() : -1, {}, scatter,
+  findings.push_back({FaultKind::joints_read,
+                      read.size() == 1 ? read.front() : -1,
+                      {},
+                      scatter,
                       message("all rows: values of joint", read.size() == 1 ? " " : "s ", names,
                               " scatter about repeated commands: they were read, not commanded: a model fitted to "
                               "them corrects readings, use the commands if commands are to be corrected")});
@@ -149,7 +173,10 @@ VERNIER_IMPL void audit_approaches(const Station& data, std::vector<DataFinding>
       if (move < -1e-6) ++down;
     }
     if (std::min(up, down) > 0 || std::max(up, down) < 25) continue;
-    findings.push_back({FaultKind::approach_never_varies, j, {}, 0,
+    findings.push_back({FaultKind::approach_never_varies,
+                        j,
+                        {},
+                        0,
                         message("all rows: joint ", j + 1, " always comes from ", up > 0 ? "below" : "above",
                                 ": its hysteresis cannot be told from its zero, approach some poses from the other "
                                 "side if commands will be")});

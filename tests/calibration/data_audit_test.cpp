@@ -1,0 +1,243 @@
+// The audit of data: every kind of fault planted in simulated files and, where VERNIER_DATA_DIR names them, in measured
+// ones; clean files; what frames absorb.
+
+#include "vernier/calibration/data_audit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "planted_faults.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::data_audit_test {
+namespace {
+
+using Chain = DhChain<6>;
+const Chain ur5 = robots::ur5().chain;
+
+constexpr FaultKind every_kind[] = {
+    FaultKind::length_unit,  FaultKind::joint_unit,     FaultKind::joint_sign,
+    FaultKind::joint_zero,   FaultKind::mirrored_frame, FaultKind::orientation_convention,
+    FaultKind::shifted_rows, FaultKind::swapped_rows,   FaultKind::duplicate_rows,
+    FaultKind::outlier,      FaultKind::joints_read,    FaultKind::approach_never_varies,
+    FaultKind::session_drift};
+
+/// An arm with geometric and joint errors, measured with noise.
+Dataset<6> clean_file(Index n, std::uint64_t seed, bool oriented = true) {
+  JointLimits<6> limits;
+  limits.lower.setConstant(-2);
+  limits.upper.setConstant(2);
+  const Chain off = with_geometric_errors(ur5, {.length_max = 1e-3, .angle_max = 2e-3}, seed);
+  const Framed actual(WithJointErrors<Chain>(off, draw_joint_errors(ur5, {}, seed + 1)),
+                      FrameParameters(Vector6{2, -1, 0.5, 0.3, -0.2, 1.5}).isometry(),
+                      FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry());
+  return measure(actual, sample_joints(limits, n, seed + 2),
+                 {.position = 0.03e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed + 3);
+}
+
+std::string words(const DataAudit& audit) { return audit.summary(); }
+
+/// The fault is named, and nothing else but an outlier that follows from it.
+template <int N>
+void expect_named(const Planted<N>& planted, const DataAudit& audit) {
+  bool named = false;
+  for (const DataFinding& finding : audit.findings) {
+    const bool is = planted.is(finding);
+    named = named || is;
+    const bool follows = planted.kind == FaultKind::duplicate_rows && finding.kind == FaultKind::outlier;
+    EXPECT_TRUE(is || follows) << fault_name(planted.kind) << ": " << finding.message;
+  }
+  EXPECT_TRUE(named) << fault_name(planted.kind) << " of joint " << planted.joint << ", size " << planted.size << '\n'
+                     << words(audit);
+}
+
+TEST(DataAudit, NamesEveryPlantedFault) {
+  for (const bool oriented : {true, false}) {
+    Rng rng(3);
+    for (const FaultKind kind : every_kind)
+      for (std::uint64_t k = 0; k < 3; ++k) {
+        const auto planted = plant(ur5, clean_file(60 + 60 * static_cast<Index>(k), 10 * k, oriented), kind, {}, rng);
+        if (planted) expect_named(*planted, audit_data(ur5, planted->data));
+      }
+  }
+}
+
+TEST(DataAudit, FindsNothingInCleanFiles) {
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    const DataAudit audit = audit_data(ur5, clean_file(40 + 10 * static_cast<Index>(k), 100 + 10 * k, k % 2 == 0));
+    EXPECT_TRUE(audit.findings.empty()) << k << words(audit);
+    EXPECT_LT(audit.registered.median, 6e-3);
+    EXPECT_EQ(audit.registered.n, 40 + 10 * static_cast<Index>(k));
+  }
+}
+
+TEST(DataAudit, FramesAbsorbTheZeroOfTheFirstAndTheLastJoint) {
+  const Dataset<6> data = clean_file(80, 5);
+  for (const int joint : {0, 5}) {
+    JointRows<6> joints = data.joints();
+    joints.col(joint).array() += 0.7;
+    const DataAudit audit = audit_data(ur5, Dataset<6>(joints, data.positions(), data.orientations()));
+    EXPECT_TRUE(audit.findings.empty()) << words(audit);
+  }
+}
+
+TEST(DataAudit, StatesTheSizeOfAZero) {
+  const Dataset<6> data = clean_file(100, 6);
+  JointRows<6> joints = data.joints();
+  joints.col(2).array() -= 0.05;
+  const DataAudit audit = audit_data(ur5, Dataset<6>(joints, data.positions(), data.orientations()));
+  ASSERT_EQ(audit.findings.size(), 1u) << words(audit);
+  EXPECT_EQ(audit.findings[0].kind, FaultKind::joint_zero);
+  EXPECT_EQ(audit.findings[0].joint, 2);
+  EXPECT_NEAR(audit.findings[0].size, 0.05, 6e-3);  // the arm's own zeros are off by 2 mrad
+}
+
+TEST(DataAudit, KeepsAZeroThatArmsHaveToItself) {
+  const Dataset<6> data = clean_file(100, 6);
+  JointRows<6> joints = data.joints();
+  joints.col(2).array() -= 0.008;
+  EXPECT_FALSE(audit_data(ur5, Dataset<6>(joints, data.positions())).has(FaultKind::joint_zero));
+  const DataAudit audit = audit_data(ur5, Dataset<6>(joints, data.positions()),
+                                     {.smallest_zero = 0.004, .length_std = 1e-3, .angle_std = 1e-3});
+  EXPECT_TRUE(audit.has(FaultKind::joint_zero)) << words(audit);
+}
+
+TEST(DataAudit, AnswersInTheRowsOfTheFileBehindALostRow) {
+  // a lost row and, further down, an outlier: rows are named as they are in the file
+  const Dataset<6> data = clean_file(120, 7);
+  PointRows positions(119, 3);
+  positions << data.positions().topRows(30), data.positions().bottomRows(89);
+  positions.row(80) += Eigen::RowVector3d(0, 0.05, 0);
+  const DataAudit audit = audit_data(ur5, Dataset<6>(data.joints().topRows(119), positions));
+  ASSERT_TRUE(audit.has(FaultKind::shifted_rows)) << words(audit);
+  ASSERT_TRUE(audit.has(FaultKind::outlier)) << words(audit);
+  for (const DataFinding& finding : audit.findings) {
+    if (finding.kind == FaultKind::shifted_rows) {
+      EXPECT_EQ(finding.rows.front(), 30);
+      EXPECT_EQ(finding.rows.back(), 118);
+      EXPECT_EQ(finding.size, -1);
+    }
+    // the pose of row 80 belongs to the joints of row 81
+    if (finding.kind == FaultKind::outlier) EXPECT_EQ(finding.rows, std::vector<Index>{81});
+  }
+}
+
+TEST(DataAudit, ToleratesManyOutliers) {
+  const auto spoilt = with_outliers(clean_file(100, 8), 0.2, 0.1, 1);
+  const DataAudit audit = audit_data(ur5, spoilt.data);
+  ASSERT_EQ(audit.findings.size(), 1u) << words(audit);
+  EXPECT_EQ(audit.findings[0].kind, FaultKind::outlier);
+  EXPECT_EQ(audit.findings[0].rows, spoilt.rows);
+  EXPECT_NEAR(audit.findings[0].size, 0.1, 0.01);
+}
+
+TEST(DataAudit, DoesNotDependOnTheGuessOfTheFrames) {
+  const Dataset<6> data = clean_file(80, 9);
+  const Framed<Chain> guessed(ur5, FrameParameters(Vector6{1, 2, 3, 1, 0, 2}).isometry(),
+                              FrameParameters(Vector6{0, 0, 0.3, 0, 1, 0}).isometry());
+  EXPECT_TRUE(audit_data(guessed, data).findings.empty());
+  EXPECT_NEAR(audit_data(guessed, data).registered.median, audit_data(ur5, data).registered.median, 2e-5);
+}
+
+TEST(DataAudit, SaysWhatToDo) {
+  const Dataset<6> data = clean_file(60, 11);
+  PointRows positions = data.positions();
+  positions.row(17) += Eigen::RowVector3d(0.1, 0, 0);
+  const std::string text = audit_data(ur5, Dataset<6>(data.joints(), positions)).summary();
+  EXPECT_NE(text.find("row 17: the pose is not that of the joints"), std::string::npos) << text;
+  EXPECT_NE(text.find("measure again"), std::string::npos) << text;
+  EXPECT_NE(audit_data(ur5, data).summary().find("nothing found"), std::string::npos);
+}
+
+TEST(DataAudit, EveryKindHasAName) {
+  for (const FaultKind kind : every_kind) EXPECT_FALSE(fault_name(kind).empty());
+  EXPECT_EQ(fault_name(FaultKind::joint_sign), "joint_sign");
+}
+
+TEST(DataAudit, RefusesWhatItCannotAssess) {
+  EXPECT_THROW(audit_data(ur5, clean_file(9, 1)), std::invalid_argument);
+  EXPECT_THROW(audit_data(ur5, Dataset<6>()), std::invalid_argument);
+  const Dataset<6> data = clean_file(40, 1);
+  EXPECT_NO_THROW(audit_data(ur5, clean_file(10, 1)));
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    EXPECT_THROW(audit_data(ur5, data, {.smallest_zero = bad}), std::invalid_argument);
+    EXPECT_THROW(audit_data(ur5, data, {.outlier_factor = bad}), std::invalid_argument);
+    EXPECT_THROW(audit_data(ur5, data, {.length_std = bad}), std::invalid_argument);
+    EXPECT_THROW(audit_data(ur5, data, {.angle_std = bad}), std::invalid_argument);
+  }
+}
+
+TEST(DataAudit, AnArmThatDoesNotMoveIsNoFault) {
+  // poses of one configuration determine nothing, and nothing may be invented
+  const Dataset<6> one = clean_file(1, 1);
+  JointRows<6> joints = one.joints().replicate(20, 1);
+  PointRows positions = one.positions().replicate(20, 1);
+  Rng rng(1);
+  for (Index i = 0; i < 20; ++i)
+    for (Index c = 0; c < 3; ++c) positions(i, c) += 1e-5 * rng.normal();
+  const DataAudit audit = audit_data(ur5, Dataset<6>(joints, positions));
+  for (const DataFinding& finding : audit.findings) EXPECT_EQ(finding.kind, FaultKind::outlier) << finding.message;
+}
+
+// ---------------------------------------------------------------------------------------------- measured robots
+
+const char* measured_folder() {
+  const char* folder = std::getenv("VERNIER_DATA_DIR");
+  return folder != nullptr && *folder != '\0' ? folder : nullptr;
+}
+
+/// One fault of each kind in 150 rows of a measured file.
+template <class AnyChain>
+void audit_measured(const AnyChain& chain, const std::string& file, const PlantedSizes& sizes) {
+  constexpr int N = AnyChain::dof;
+  const Dataset<N> data = read_dataset<N>(std::string(measured_folder()) + "/" + file);
+  Rng rng(5);
+  int planted_files = 0, named_files = 0;
+  for (const FaultKind kind : every_kind) {
+    std::vector<Index> rows = rng.permutation(data.size());
+    rows.resize(150);
+    std::sort(rows.begin(), rows.end());
+    EXPECT_TRUE(audit_data(chain, data.rows(rows)).findings.empty());
+    const auto planted = plant(chain, data.rows(rows), kind, sizes, rng);
+    if (!planted) continue;
+    const DataAudit audit = audit_data(chain, planted->data);
+    ++planted_files;
+    named_files += std::any_of(audit.findings.begin(), audit.findings.end(),
+                               [&](const DataFinding& finding) { return planted->is(finding); });
+  }
+  EXPECT_GE(planted_files, 12);
+  EXPECT_GE(named_files, planted_files - 1);
+}
+
+TEST(DataAuditOfMeasuredPoses, Ur10) {
+  if (measured_folder() == nullptr) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
+  audit_measured(robots::ur10().chain, "ur10_random_poses.csv", {});
+}
+
+TEST(DataAuditOfMeasuredPoses, Ur5) {
+  if (measured_folder() == nullptr) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
+  audit_measured(robots::ur5().chain, "ur5_grid.csv", {});
+}
+
+TEST(DataAuditOfMeasuredPoses, Wam) {
+  if (measured_folder() == nullptr) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
+  audit_measured(robots::barrett_wam().chain, "wam_grid.csv",
+                 {.effect = 20e-3,
+                  .zero_min = 0.07,
+                  .outlier_min = 25e-3,
+                  .outlier_max = 0.2,
+                  .drift_min = 20e-3,
+                  .drift_max = 60e-3});
+}
+
+}  // namespace
+}  // namespace vernier::data_audit_test

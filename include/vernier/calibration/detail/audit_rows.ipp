@@ -27,7 +27,7 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
                                     std::vector<DataFinding>& findings) {
   const std::vector<LeftOut> left = leave_out_rows(geometry, stds, rows);
   std::vector<Index> wrong;
-  // what the model lacks makes longer tails than noise has
+  // what the model lacks makes longer tails than noise has; more than a tenth of outliers, too, hence the bound
   constexpr double p90_of_normal = 2.5003;
   VectorX by_position_factor(rows.size()), by_rotation_factor(rows.size());
   for (Index i = 0; i < rows.size(); ++i) {
@@ -35,7 +35,7 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
     by_rotation_factor(i) = left[static_cast<std::size_t>(i)].rotation_factor;
   }
   const auto limit = [&](const VectorX& factors) {
-    return least_factor * std::max(1.0, quantile(factors, 0.9) / p90_of_normal);
+    return least_factor * std::clamp(quantile(factors, 0.9) / p90_of_normal, 1.0, 2.0);
   };
   const double factor = limit(by_position_factor), rotation_limit = limit(by_rotation_factor);
   for (Index i = 0; i < rows.size(); ++i) {

@@ -51,6 +51,9 @@ struct RowShift {
 /// A shift by up to three rows, of all rows or from some row on, if there is one.
 VERNIER_API std::optional<RowShift> find_shift(const ArmGeometry& nominal, const AuditRows& rows, double best_score);
 
+/// A robust scale of the distances of points from their mean [m].
+VERNIER_API double point_scatter(const PointRows& points);
+
 /// At most `count` rows at equal distances.
 VERNIER_API std::vector<Index> spread_rows(Index rows, Index count);
 

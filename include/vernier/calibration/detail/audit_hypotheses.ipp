@@ -85,7 +85,7 @@ VERNIER_IMPL HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const Audi
   return out;
 }
 
-VERNIER_API double point_scatter(const PointRows& points) {
+VERNIER_IMPL double point_scatter(const PointRows& points) {
   const Eigen::RowVector3d mean = points.colwise().mean();
   return robust_scale(points.rowwise() - mean);
 }

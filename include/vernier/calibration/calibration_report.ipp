@@ -222,10 +222,16 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
       out.push_back(detail::describe_drift(drift[s], drift.size() > 1 ? message(" of station ", s + 1) : ""));
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (std::string lines = detail::describe_lines(joints[j], j + 1); !lines.empty()) out.push_back(std::move(lines));
-  for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, joints, oriented));
+  for (std::string& sentence : next()) out.push_back(std::move(sentence));
   if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size())
     out.push_back(message(weak - advice.size(), advice.empty() ? "" : " more",
                           " parameters are weakly determined and regularised around nominal."));
+  return out;
+}
+
+VERNIER_IMPL std::vector<std::string> CalibrationReport::next() const {
+  std::vector<std::string> out;
+  for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, joints, oriented));
   return out;
 }
 

@@ -22,8 +22,8 @@ namespace vernier {
 
 namespace detail {
 
-/// Whether an error lies within the 95 % ellipsoid of a covariance.
-VERNIER_API bool within_ellipsoid(const Vector3& error, const Matrix3& covariance);
+/// An error in standard deviations of a covariance (Mahalanobis' distance).
+VERNIER_API double normalised_error(const Vector3& error, const Matrix3& covariance);
 
 /// Transmission of a joint: sampled over its measured ranges, and its spectrum.
 VERNIER_API void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out);
@@ -162,24 +162,27 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     for (Index i = 0; i < data.size(); ++i) gates(i) = calibration.coverage(data.joints(i));
     return gates;
   });
-  out.ellipsoid_coverage =
-      detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
-        VectorX gates(data.size()), within(data.size());
-        for (Index i = 0; i < data.size(); ++i) gates(i) = errors.models[s].gate(data.joints(i));
-        const std::vector<Matrix6> covariances =
-            errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
-        const std::vector<Isometry3> poses = detail::visited_poses(errors.models[s], data, true, {});
-        const Matrix3 turn =
-            errors.models[s].identified().base().linear() * errors.model().identified().base().linear().transpose();
-        for (Index i = 0; i < data.size(); ++i) {
-          const auto row = static_cast<std::size_t>(i);
-          Vector3 error = poses[row].translation() - data.position(i);
-          if (deployed != nullptr && !deployed->on_geometry)
-            error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
-          within(i) = detail::within_ellipsoid(error, covariances[row].template topLeftCorner<3, 3>());
-        }
-        return within;
-      }).mean();
+  out.normalised_errors = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
+    VectorX gates(data.size()), normalised(data.size());
+    for (Index i = 0; i < data.size(); ++i) gates(i) = errors.models[s].gate(data.joints(i));
+    const std::vector<Matrix6> covariances =
+        errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
+    const std::vector<Isometry3> poses = detail::visited_poses(errors.models[s], data, true, {});
+    const Matrix3 turn =
+        errors.models[s].identified().base().linear() * errors.model().identified().base().linear().transpose();
+    for (Index i = 0; i < data.size(); ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      Vector3 error = poses[row].translation() - data.position(i);
+      if (deployed != nullptr && !deployed->on_geometry)
+        error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
+      normalised(i) = detail::normalised_error(error, covariances[row].template topLeftCorner<3, 3>());
+    }
+    return normalised;
+  });
+  // 95 % of chi squared with 3 degrees of freedom
+  out.ellipsoid_coverage = (out.normalised_errors.array() <= std::sqrt(7.8147)).template cast<double>().mean();
+  out.left_out_errors = errors.left_out_errors;
+  out.left_out_rows = errors.left_out_rows;
   const VectorX &geometry = out.stage("geometry").position, &of_chosen = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, of_chosen(i) - geometry(i));

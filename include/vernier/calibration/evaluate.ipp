@@ -1,13 +1,14 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "vernier/calibration/evaluate.hpp"
 
 namespace vernier::detail {
 
-VERNIER_IMPL bool within_ellipsoid(const Vector3& error, const Matrix3& covariance) {
-  return error.dot(covariance.inverse() * error) <= 7.8147;  // 95 % of chi squared with 3 degrees of freedom
+VERNIER_IMPL double normalised_error(const Vector3& error, const Matrix3& covariance) {
+  return std::sqrt(error.dot(covariance.inverse() * error));
 }
 
 VERNIER_IMPL void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {

@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// Text in HTML: escaped, and numbers in it.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vernier/core/api.hpp"
+
+namespace vernier::detail {
+
+/// A text for the content of an element or a quoted attribute: `&<>"'` escaped, control characters and what is no UTF-8
+/// replaced.
+VERNIER_API std::string html_escape(std::string_view text);
+/// JSON for a script element: no `<` is left, which JSON has in strings alone, so nothing in it ends the element.
+VERNIER_API std::string script_escape(std::string_view json);
+/// A whole number of tenths, without a decimal that is zero.
+VERNIER_API std::string tenths(double value);
+/// A number with some decimals.
+VERNIER_API std::string fixed(double value, int decimals);
+/// The hexadecimal digits of a digest in base 64, as content security policies write it.
+VERNIER_API std::string base64_of_hex(std::string_view hex);
+
+/// One cell of a table: a text, escaped by `html_table`, or a number.
+struct HtmlTable {
+  std::string caption{};                         ///< above it; empty for none
+  std::vector<std::string> head{};               ///< of the columns
+  std::vector<std::vector<std::string>> rows{};  ///< the first cell of each is its heading
+  bool numbers = true;                           ///< all but the first column are right-aligned
+};
+/// A table whose headings have scopes; empty without rows.
+VERNIER_API std::string html_table(const HtmlTable& table);
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/io/detail/html.ipp"
+#endif

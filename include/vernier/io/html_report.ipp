@@ -1,0 +1,130 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/sha256.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/io/detail/html.hpp"
+#include "vernier/io/detail/pose_view.hpp"
+#include "vernier/io/detail/report_page.hpp"
+#include "vernier/io/detail/report_sections.hpp"
+#include "vernier/io/html_report.hpp"
+#include "vernier/io/report_json.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
+  const Index n = errors.size();
+  require(n > 0, "MeanInterval: no errors");
+  const double mean = errors.mean();
+  if (n < 5) return {mean, 0, std::numeric_limits<double>::infinity()};
+  // the quantile of Student's t at 0.975, expanded about that of the normal distribution
+  const double z = 1.9599639845400545, v = static_cast<double>(n - 1), z2 = z * z;
+  const double t = z * (1 + (z2 + 1) / (4 * v) + ((5 * z2 + 16) * z2 + 3) / (96 * v * v) +
+                        (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * v * v * v) +
+                        ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / (92160 * v * v * v * v));
+  const double half = t * std::sqrt((errors.array() - mean).square().sum() / v / static_cast<double>(n));
+  return {mean, std::max(0.0, mean - half), mean + half};
+}
+
+VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std::string& robot) {
+  ReportInput out;
+  out.robot = robot;
+  out.stages = report.stages;
+  out.after = report.chosen;
+  out.train_poses = report.train_poses;
+  out.sentences = report.verdict();
+  const std::vector<std::string> remarks = report.remarks();
+  out.sentences.insert(out.sentences.end(), remarks.begin(), remarks.end());
+  out.ellipsoid_coverage = report.ellipsoid_coverage;
+  out.poses.normalised = report.normalised_errors;
+  out.poses.gates = report.gates;
+  out.joints = report.joints;
+  out.parameters = report.identification.parameters;
+  out.correlated = report.identification.strongly_correlated();
+  out.drift = report.drift;
+  out.advice = report.next();
+  out.left_out = report.left_out_errors.size();
+  if (out.left_out > 0) {
+    const double sigma = quantile(report.left_out_errors, 0.5) / 1.5382;  // the median of the norm of three components
+    for (Index k = 0; k < out.left_out; ++k)
+      if (report.left_out_errors(k) > 4 * sigma)
+        out.suspects.push_back({message(report.left_out_rows[static_cast<std::size_t>(k)], " of those learned from"),
+                                report.left_out_errors(k), report.left_out_errors(k) / sigma});
+  }
+  out.results = to_json(report, robot).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return out;
+}
+
+VERNIER_IMPL std::string report_html(const ReportInput& input) {
+  using namespace detail;
+  const Index n = stage_of(input, input.after).position.size(), m = input.poses.positions.rows();
+  for (const StageErrors& stage : input.stages)
+    require(stage.position.size() == n && (stage.rotation.size() == 0 || stage.rotation.size() == n),
+            "report_html: stage '", stage.key, "' has ", stage.position.size(), " errors, expected ", n);
+  require(m == 0 || m == n, "report_html: ", m, " poses for ", n, " errors");
+  const auto fits = [&](const char* what, auto size) {
+    require(size == 0 || static_cast<Index>(size) == n, "report_html: ", size, ' ', what, " of ", n, " poses");
+  };
+  fits("rows of joints", input.poses.joints.rows());
+  fits("files", input.poses.file.size());
+  fits("row numbers", input.poses.row.size());
+  fits("normalised errors", input.poses.normalised.size());
+  fits("gates", input.poses.gates.size());
+  fits("times", input.times.size());
+  require(input.joints.empty() || input.poses.joints.cols() == 0 ||
+              static_cast<Index>(input.joints.size()) == input.poses.joints.cols(),
+          "report_html: ", input.joints.size(), " joints, poses have ", input.poses.joints.cols());
+
+  const PoseView view = pose_view(input);
+  std::string tables;
+  for (std::size_t k = 0; k < input.tables.size(); ++k) {
+    const ReportTable& table = input.tables[k];
+    tables += section(message("table-", k + 1), table.title,
+                      (table.note.empty() ? "" : "<p>" + html_escape(table.note) + "</p>\n") +
+                          html_table({.head = table.head, .rows = table.rows}));
+  }
+  const std::string sections[] = {
+      verdict_section(input),     audit_section(input),    errors_section(input),     tables,
+      poses_section(input, view), coverage_section(input), parameters_section(input), joints_section(input),
+      suspects_section(input),    drift_section(input),    advice_section(input),     provenance_section(input)};
+  static constexpr const char* names[][2] = {{"verdict", "Verdict"},
+                                             {"audit", "Data audit"},
+                                             {"errors", "Before and after"},
+                                             {"", ""},
+                                             {"poses", "Errors in space"},
+                                             {"where", "Where it is good"},
+                                             {"parameters", "Parameters"},
+                                             {"joints", "Joints"},
+                                             {"suspects", "Suspect rows"},
+                                             {"drift", "Drift"},
+                                             {"next", "Next"},
+                                             {"provenance", "Provenance"}};
+  const auto hash = [](std::string_view text) { return "'sha256-" + base64_of_hex(sha256(text)) + "'"; };
+  const std::string name = html_escape(input.title) + ": " + html_escape(input.robot);
+  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  out += "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src " + hash(report_style) +
+         "; script-src " + hash(report_script) + "; base-uri 'none'; form-action 'none'\">\n";
+  out +=
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + name + "</title>\n<style>";
+  out += report_style;
+  out += "</style>\n</head>\n<body>\n<header><h1>" + name + "</h1></header>\n<nav aria-label=\"sections\">";
+  for (std::size_t k = 0; k < std::size(sections); ++k)
+    if (*names[k][0] != 0 && !sections[k].empty())
+      out += message("<a href=\"#", names[k][0], "\">", names[k][1], "</a> ");
+  out += "</nav>\n<main>\n";
+  for (const std::string& one : sections) out += one;
+  out += "</main>\n";
+  if (!view.shown.empty())
+    out += "<script type=\"application/json\" id=\"points\">" + script_escape(poses_json(input, view)) + "</script>\n";
+  out += "<script type=\"application/json\" id=\"data\">" +
+         script_escape(input.results.empty() ? std::string("{}") : input.results) + "</script>\n<script>";
+  out += report_script;
+  return out + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace vernier

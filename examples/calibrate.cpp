@@ -14,6 +14,7 @@
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "progress.hpp"
+#include "report_page.hpp"
 #include "robot_choice.hpp"
 #include "vernier/ceres.hpp"
 #include "vernier/data/csv.hpp"
@@ -31,10 +32,10 @@ using Paths = std::vector<std::string>;
 constexpr vn::Index prior_generations = 15;
 
 struct Options {
-  std::string robot, model, save, date, split, priors = "default", loss = "huber", free, prior;
+  std::string robot, model, save, date, split, priors = "default", loss = "huber", free, prior, report;
   Paths data, test, distances;
   vn::Index test_every = 5, train_rows = 0;
-  double test_fraction = 0.2, distance_sigma_mm = 0.03;
+  double test_fraction = 0.2, distance_sigma_mm = 0.03, accept_mm = 0;
   bool positions_only = false, no_approach = false;
   vn::CalibrateOptions calibrate{};
 };
@@ -112,9 +113,40 @@ vn::ArmPrior read_prior(const std::string& file) {
   return out;
 }
 
+/// What a page shows of a calibration: poses with their rows in the files, and which files were read.
+template <int N>
+vn::ReportInput page_of(const vn::CalibrationReport& report, const vn::DescribedRobot<N>& robot, const Options& o,
+                        const std::vector<vn::Dataset<N>>& train, const std::vector<vn::Dataset<N>>& test,
+                        const std::vector<vn::Distances<N>>& distances) {
+  const auto types = robot.arm.chain().joint_types();
+  vn::ReportInput held_out;
+  std::vector<std::string> learned_from;
+  for (std::size_t s = 0; s < o.data.size(); ++s) {
+    const vn::Dataset<N> all = vn::read_dataset<N>(o.data[s], types);
+    for (const vn::Index row : support::rows_of(all, train[s]))
+      learned_from.push_back(fmt::format("{} of {}", row, o.data[s]));
+    held_out.provenance.inputs.push_back(support::file_read(o.data[s], all.size()));
+    if (!o.test.empty()) held_out.provenance.inputs.push_back(support::file_read(o.test[s], test[s].size()));
+    support::add_poses(held_out, robot.arm, test[s], o.test.empty() ? o.data[s] : o.test[s],
+                       support::rows_of(o.test.empty() ? all : test[s], test[s]));
+  }
+  for (std::size_t d = 0; d < distances.size(); ++d)
+    held_out.provenance.inputs.push_back(support::file_read(o.distances[d], distances[d].size()));
+  for (const std::string& file : {o.prior, o.robot})
+    if (std::filesystem::is_regular_file(file)) held_out.provenance.inputs.push_back(support::file_read(file, 0));
+  vn::ReportInput page = vn::report_input(report, robot.name, learned_from);
+  held_out.poses.normalised = page.poses.normalised;
+  held_out.poses.gates = page.poses.gates;
+  page.poses = std::move(held_out.poses);
+  page.times = std::move(held_out.times);
+  page.provenance = std::move(held_out.provenance);
+  if (o.accept_mm > 0) page.accept = o.accept_mm * 1e-3;
+  return page;
+}
+
 template <int N>
 vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, const Options& o,
-                                    const vn::FitOptions& fit, std::string& rule) {
+                                    const vn::FitOptions& fit, std::string& rule, vn::ReportInput& page) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::ArmPrior> prior;
   if (!o.prior.empty()) prior = read_prior<N>(o.prior);
@@ -140,6 +172,7 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
   const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
   if (!o.save.empty())
     vn::save(o.save, calibration, {.name = robot.name, .limits = robot.limits, .data_file = names, .date = o.date});
+  if (!o.report.empty()) page = page_of<N>(report, robot, o, train, test, distances);
   return report;
 }
 
@@ -156,8 +189,9 @@ int run_calibration(support::Program& program, Options& o) {
   const vn::ThreadExecutor executor(program.common().threads);
   const vn::FitOptions fit{.seed = program.common().seed, .executor = executor, .observer = count};
   std::string rule;
+  vn::ReportInput page;
   const vn::CalibrationReport report =
-      support::dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, o, fit, rule); });
+      support::dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, o, fit, rule, page); });
   progress.finish();
 
   fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
@@ -174,6 +208,11 @@ int run_calibration(support::Program& program, Options& o) {
       "Figures: {}\n",
       report.fit_seconds, report.evaluation_seconds * 1e6, folder.string());
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
+  if (!o.report.empty()) {
+    page.rule = rule;
+    support::write_report(program, o.report, page, o.date, o.save);
+    fmt::print("Report: {}\n", o.report);
+  }
   return 0;
 }
 
@@ -306,6 +345,12 @@ int run(support::Program& program) {
   auto* train = option("--train", o.train_rows, "learn from the first N rows of a seeded shuffle of the others", "N")
                     ->check(CLI::Range(1, 100000000).description(""));
   option("--save", o.save, "write the calibrated model to this file, for correct", "FILE");
+  auto* report = option("--report", o.report, "write the results as one HTML page that needs nothing else", "FILE");
+  app.add_option("--accept-mm", o.accept_mm, "with --report: the largest mean held-out error that is accepted [mm]")
+      ->type_name("MM")
+      ->check(CLI::Range(1e-6, 1e3).description(""))
+      ->always_capture_default(false)
+      ->needs(report);
   app.add_option("--loss", o.loss, "squared, or huber or cauchy, which tolerate outliers")
       ->type_name("LOSS")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}).description(""));
@@ -344,6 +389,7 @@ int run(support::Program& program) {
       ->excludes(split)
       ->excludes(train)
       ->excludes(prior)
+      ->excludes(report)
       ->needs(free);
   free->needs(model);
   program.parse("calibrate_out");
@@ -353,6 +399,7 @@ int run(support::Program& program) {
   if (!o.test.empty() && o.test.size() != o.data.size())
     throw support::UsageError(fmt::format("{} files of --test for {} of --data", o.test.size(), o.data.size()));
   if (!o.save.empty()) support::require_writable(o.save);
+  if (!o.report.empty()) support::require_writable(o.report);
   if (*fraction && o.split.empty()) o.split = "random";
   vn::SensorModel& sensors = o.calibrate.sensors;
   sensors.loss = losses.at(o.loss);

@@ -51,6 +51,23 @@ void Program::parse(const std::string& default_out, const char* out_description,
   if (!common_.json.empty()) require_writable(common_.json);
 }
 
+std::string Program::command_line() const {
+  std::string out = name_;
+  for (int i = 1; i < argc_; ++i) {
+    const std::string word = argv_[i];
+    const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`&|;<>()*?[]#~!{}") == std::string::npos;
+    out += ' ';
+    if (plain) {
+      out += word;
+      continue;
+    }
+    out += '\'';
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    out += '\'';
+  }
+  return out;
+}
+
 std::filesystem::path Program::output_folder() const {
   std::error_code error;
   std::filesystem::create_directories(common_.out, error);

@@ -44,6 +44,8 @@ class Program {
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
   const std::string& name() const { return name_; }
+  /// As it was typed, words with spaces and the like in quotes.
+  std::string command_line() const;
 
   /// Adds the common options, reads the command line, and makes sure that the JSON file can be written before any
   /// work is done.

@@ -131,9 +131,9 @@ TEST(HtmlReport, HasItsSectionsInOrder) {
     EXPECT_NE(page.find(message("<a href=\"#", id, "\">")), std::string::npos) << id;
     at = found;
   }
-  for (const char* words :
-       {"Nothing was found.", "absorbed by p2", "99th percentile", "17", "of those learned from",
-        sha256("poses").c_str(), "calibrate --data poses.csv", "prefers-color-scheme", "@media print"})
+  for (const std::string& words : std::vector<std::string>{
+           "Nothing was found.", "absorbed by p2", "99th percentile", "of those learned from", sha256("poses"),
+           sha256("model"), "calibrate --data poses.csv", "prefers-color-scheme", "@media print"})
     EXPECT_TRUE(has(page, words)) << words;
 }
 
@@ -234,7 +234,7 @@ TEST(HtmlReport, NumbersEqualThoseOfTheJson) {
     EXPECT_EQ(poses.at("row").at(i), 5 * row);
     EXPECT_NEAR(poses.at("after").at(i), input.stages[2].position(row) * 1e6, 0.5);
     EXPECT_NEAR(poses.at("before").at(i), input.stages[0].position(row) * 1e6, 0.5);
-    EXPECT_NEAR(poses.at("xyz").at(3 * i + 2), input.poses.positions(row, 2) * 1e4, 0.5);
+    EXPECT_NEAR(poses.at("xyz").at(3 * i + 2), input.poses.positions(row, 2) * 1e3, 0.5);
     EXPECT_NEAR(poses.at("joints").at(6 * i + 4), input.poses.joints(row, 4) * 18000 / std::numbers::pi, 0.5);
   }
 }

@@ -108,9 +108,11 @@ struct MeanInterval {
 
 /// The report of an assessment: stages, joints, parameters, drift, advice and all results as JSON, but the poses and
 /// where it comes from.
-/// @param report the assessment
-/// @param robot  its name
-VERNIER_API ReportInput report_input(const CalibrationReport& report, const std::string& robot);
+/// @param report     the assessment
+/// @param robot      its name
+/// @param train_rows names of the training poses, one station after the other; by default their numbers
+VERNIER_API ReportInput report_input(const CalibrationReport& report, const std::string& robot,
+                                     const std::vector<std::string>& train_rows = {});
 
 /// The page. It asks for nothing from elsewhere, which its content security policy states, and can be read without its
 /// script, in print and in the dark. The same values make the same bits. Every text in it is escaped. Of more than

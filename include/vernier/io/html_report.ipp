@@ -31,7 +31,8 @@ VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
   return {mean, std::max(0.0, mean - half), mean + half};
 }
 
-VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std::string& robot) {
+VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std::string& robot,
+                                      const std::vector<std::string>& train_rows) {
   ReportInput out;
   out.robot = robot;
   out.stages = report.stages;
@@ -51,10 +52,12 @@ VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std
   out.left_out = report.left_out_errors.size();
   if (out.left_out > 0) {
     const double sigma = quantile(report.left_out_errors, 0.5) / 1.5382;  // the median of the norm of three components
-    for (Index k = 0; k < out.left_out; ++k)
-      if (report.left_out_errors(k) > 4 * sigma)
-        out.suspects.push_back({message(report.left_out_rows[static_cast<std::size_t>(k)], " of those learned from"),
-                                report.left_out_errors(k), report.left_out_errors(k) / sigma});
+    for (Index k = 0; k < out.left_out; ++k) {
+      if (!(report.left_out_errors(k) > 4 * sigma)) continue;
+      const auto row = static_cast<std::size_t>(report.left_out_rows[static_cast<std::size_t>(k)]);
+      out.suspects.push_back({row < train_rows.size() ? train_rows[row] : message(row, " of those learned from"),
+                              report.left_out_errors(k), report.left_out_errors(k) / sigma});
+    }
   }
   out.results = to_json(report, robot).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return out;

@@ -40,7 +40,7 @@ inline constexpr std::string_view report_script = R"js('use strict';
     canvas.width = Math.round(w * ratio); canvas.height = Math.round(h * ratio);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, w, h);
-    var ink = getComputedStyle(canvas).color, m = rotation(), scale = 0.29 * Math.min(w, 1.6 * h) / data.half, i;
+    var ink = getComputedStyle(canvas).color, m = rotation(), scale = 0.25 * Math.min(w, 1.5 * h) / data.half, i;
     seen = []; order = [];
     for (i = 0; i < n; ++i) {
       var p = [0, 1, 2].map(function (k) { return data.xyz[3 * i + k] - data.centre[k]; }), q = apply(m, p);

@@ -100,11 +100,10 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
       if (std::abs(fit.zero) < smallest_zero) return;
     }
     // half a turn of a joint's zero may be the same as another joint's sign, which is simpler
-    const auto weight = [](const HypothesisFit& of) { return std::abs(of.zero) > 0.5 ? 1.3 : 1.0; };
-    // as measured: dividing lengths makes residuals small, too
+    const auto weight = [](const HypothesisFit& of) { return std::abs(of.zero) > 0.5 ? 2.5 : 1.0; };
+    // in the unit of the measured positions: dividing lengths makes residuals small, too
     const auto score = [](const HypothesisFit& of) {
-      return of.fit.residuals.score() *
-             (of.hypothesis.kind == FaultKind::length_unit ? std::max(1.0, of.hypothesis.factor) : 1.0);
+      return of.fit.residuals.score() * (of.hypothesis.kind == FaultKind::length_unit ? of.hypothesis.factor : 1.0);
     };
     if (score(fit) < 0.5 * none && weight(fit) * score(fit) < weight(best) * score(best)) best = std::move(fit);
   };

@@ -40,7 +40,7 @@ void Program::parse(const std::string& default_out, const char* out_description,
   app_.add_option("--json", common_.json, "write the results to this file")
       ->type_name("FILE")
       ->always_capture_default(false);
-  app_.add_option("--out", common_.out, out_description)->type_name(out_type);
+  if (out_description != nullptr) app_.add_option("--out", common_.out, out_description)->type_name(out_type);
   app_.add_option("--seed", common_.seed, "of everything random")
       ->type_name("S")
       ->check(CLI::NonNegativeNumber.description(""));  // else -1 would wrap around

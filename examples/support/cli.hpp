@@ -50,7 +50,8 @@ class Program {
   /// Adds the common options, reads the command line, and makes sure that the JSON file can be written before any
   /// work is done.
   /// @param default_out folder for figures where the user names none
-  /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there
+  /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there; null:
+  ///        there is no such option
   /// @throws CLI::ParseError, which `run_program` turns into help or exit code 2
   /// @throws std::runtime_error where the JSON file cannot be written
   void parse(const std::string& default_out, const char* out_description = "folder for the figures",

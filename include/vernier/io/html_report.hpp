@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vernier/calibration/calibration_report.hpp"
+#include "vernier/calibration/verify_calibration.hpp"
 
 namespace vernier {
 
@@ -95,17 +96,6 @@ struct ReportInput {
   std::string results{};                              ///< all results as JSON text, as the program writes them
 };
 
-/// Mean of n >= 2 errors, with the 95 % interval of their expectation by Student's t: `mean +- t s / sqrt(n)`. Errors
-/// are taken to be independent. With fewer than 5 the interval is infinite.
-struct MeanInterval {
-  double mean = 0;   ///< of the errors, in their unit
-  double lower = 0;  ///< not below 0
-  double upper = 0;  ///< likewise
-
-  /// @throws std::invalid_argument without errors
-  VERNIER_API static MeanInterval of(const ConstVectorRef& errors);
-};
-
 /// The report of an assessment: stages, joints, parameters, drift, advice and all results as JSON, but the poses and
 /// where it comes from.
 /// @param report     the assessment
@@ -113,6 +103,9 @@ struct MeanInterval {
 /// @param train_rows names of the training poses, one station after the other; by default their numbers
 VERNIER_API ReportInput report_input(const CalibrationReport& report, const std::string& robot,
                                      const std::vector<std::string>& train_rows = {});
+
+/// The report of a yearly check, likewise: verdict, errors, joint by joint, registration, advice.
+VERNIER_API ReportInput report_input(const VerificationReport& report, const std::string& robot);
 
 /// The page. It asks for nothing from elsewhere, which its content security policy states, and can be read without its
 /// script, in print and in the dark. The same values make the same bits. Every text in it is escaped. Of more than

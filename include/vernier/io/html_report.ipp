@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/sha256.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"
 #include "vernier/io/detail/report_page.hpp"
@@ -16,20 +16,6 @@
 #include "vernier/io/report_json.hpp"
 
 namespace vernier {
-
-VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
-  const Index n = errors.size();
-  require(n > 0, "MeanInterval: no errors");
-  const double mean = errors.mean();
-  if (n < 5) return {mean, 0, std::numeric_limits<double>::infinity()};
-  // the quantile of Student's t at 0.975, expanded about that of the normal distribution
-  const double z = 1.9599639845400545, v = static_cast<double>(n - 1), z2 = z * z;
-  const double t = z * (1 + (z2 + 1) / (4 * v) + ((5 * z2 + 16) * z2 + 3) / (96 * v * v) +
-                        (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * v * v * v) +
-                        ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / (92160 * v * v * v * v));
-  const double half = t * std::sqrt((errors.array() - mean).square().sum() / v / static_cast<double>(n));
-  return {mean, std::max(0.0, mean - half), mean + half};
-}
 
 VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std::string& robot,
                                       const std::vector<std::string>& train_rows) {
@@ -59,6 +45,53 @@ VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std
                               report.left_out_errors(k), report.left_out_errors(k) / sigma});
     }
   }
+  out.results = to_json(report, robot).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return out;
+}
+
+VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const std::string& robot) {
+  using detail::brief;
+  ReportInput out;
+  out.robot = robot;
+  out.title = "Check of a calibration";
+  out.headline = report.verdict();
+  out.stages = stages_of(report);
+  out.before = out.stages.front().key;
+  out.after = out.stages.back().key;
+  out.held_out = false;
+  if (report.registration) out.rule = "the frames registered from the same poses";
+  out.accept = report.options.accept;
+  out.poses.normalised = report.normalised;
+  out.ellipsoid_coverage = (report.normalised.array() <= std::sqrt(7.8147)).cast<double>().mean();
+  ReportTable joints{"Joint by joint",
+                     message("Changes of zero and of transmission once a turn, each joint looked at alone; p is the "
+                             "probability of a change as large by chance. A change is named at the level of ",
+                             brief(100 * report.options.level), " % for all tests together."),
+                     {"joint", "zero moved by", "+- (95 %)", "unit", "p", "p once a turn", "verdict"},
+                     {}};
+  for (std::size_t j = 0; j < report.joints.size(); ++j) {
+    const JointCheck& joint = report.joints[j];
+    joints.rows.push_back({message(j + 1), joint.determined ? detail::fixed(joint.zero_change * 1e3, 4) : "",
+                           joint.determined ? detail::fixed(1.96 * joint.zero_std * 1e3, 4) : "",
+                           report.joint_types[j] == JointType::revolute ? "mrad" : "mm",
+                           joint.determined ? brief(joint.zero_p) : "", brief(joint.once_p),
+                           joint.zero_changed           ? "zero changed"
+                           : joint.transmission_changed ? "transmission changed"
+                           : joint.determined           ? "as calibrated"
+                                                        : "not determined"});
+  }
+  out.tables.push_back(std::move(joints));
+  if (report.registration) {
+    ReportTable frames{"Registration", "How the arm stands now against the calibration.", {"what", ""}, {}};
+    std::string text = report.registration->summary();
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      frames.rows.push_back({text.substr(at, end - at), ""});
+      at = end + 1;
+    }
+    out.tables.push_back(std::move(frames));
+  }
+  out.advice = report.advice();
   out.results = to_json(report, robot).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return out;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/calibration/calibration_report.hpp"
+#include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/registration/reregister.hpp"
 
 namespace vernier {
@@ -29,6 +30,16 @@ VERNIER_API nlohmann::ordered_json to_json(const CalibrationReport& report, cons
 /// `contradiction`, the statistic behind), `held` and `remarks` in words.
 /// Callers include <nlohmann/json.hpp>.
 VERNIER_API nlohmann::ordered_json to_json(const ReregistrationReport& report);
+
+/// The outcome of a check: `valid`, `consistent`, `verdict`, the `stages` as_fitted and (where base or tool was)
+/// registered, `chi_square`, `dof`, `p_value`, each of the `joints` [mrad, mm], the rows set `aside`, `registration` as
+/// above or null, `advice`. Callers include <nlohmann/json.hpp>.
+/// @param report the outcome
+/// @param robot  name of the arm
+VERNIER_API nlohmann::ordered_json to_json(const VerificationReport& report, const std::string& robot);
+
+/// Position and orientation errors of a check: `as_fitted`, and `registered` where base or tool was.
+VERNIER_API std::vector<StageErrors> stages_of(const VerificationReport& report);
 
 }  // namespace vernier
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "vernier/error_terms/drive_lines.hpp"
@@ -117,6 +118,46 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) 
             {"contradiction", report.contradiction}}},
           {"held", report.held},
           {"remarks", report.remarks()}};
+}
+
+VERNIER_IMPL std::vector<StageErrors> stages_of(const VerificationReport& report) {
+  if (!report.registration) return {{"as_fitted", "as fitted", report.errors, report.rotations}};
+  return {{"as_fitted", "as fitted", report.as_fitted, {}},
+          {"registered", "registered", report.errors, report.rotations}};
+}
+
+VERNIER_IMPL nlohmann::ordered_json to_json(const VerificationReport& report, const std::string& robot) {
+  using Json = nlohmann::ordered_json;
+  Json joints = Json::array();
+  for (std::size_t j = 0; j < report.joints.size(); ++j) {
+    const JointCheck& joint = report.joints[j];
+    joints.push_back({{"joint", j + 1},
+                      {"unit", report.joint_types[j] == JointType::revolute ? "mrad" : "mm"},
+                      {"determined", joint.determined},
+                      {"zero_change", joint.determined ? Json(joint.zero_change * 1e3) : Json()},
+                      {"zero_std", joint.determined ? Json(joint.zero_std * 1e3) : Json()},
+                      {"zero_p", joint.zero_p},
+                      {"once_p", joint.once_p},
+                      {"zero_changed", joint.zero_changed},
+                      {"transmission_changed", joint.transmission_changed}});
+  }
+  return {{"robot", robot},
+          {"valid", report.valid},
+          {"consistent", report.consistent},
+          {"verdict", report.verdict()},
+          {"poses", report.poses},
+          {"stages", stages_to_json(stages_of(report))},
+          {"mean_mm", report.mean_error * 1e3},
+          {"mean_upper_mm", std::isfinite(report.mean_upper) ? Json(report.mean_upper * 1e3) : Json()},
+          {"accept_mm", report.options.accept ? Json(*report.options.accept * 1e3) : Json()},
+          {"level", report.options.level},
+          {"chi_square", report.chi_square},
+          {"dof", report.dof},
+          {"p_value", report.p_value},
+          {"joints", joints},
+          {"aside", report.aside},
+          {"registration", report.registration ? to_json(*report.registration) : Json()},
+          {"advice", report.advice()}};
 }
 
 }  // namespace vernier

@@ -10,6 +10,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/version.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
+#include "vernier/evaluation/mean_interval.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/detail/html.hpp"
@@ -98,7 +99,7 @@ VERNIER_API std::string look_at(const ReportInput& input) {
   else if (input.times.size() > 0 &&
            rank_correlation(input.times, stage_of(input, input.after).position).p_value < 0.001)
     all.emplace_back("drift", "The errors depend on when a pose was measured.");
-  if (!input.advice.empty()) all.emplace_back("next", "More poses would determine what is weakly determined.");
+  if (!input.advice.empty()) all.emplace_back("next", "See what to do next.");
   std::string out;
   for (std::size_t k = 0; k < all.size() && k < 5; ++k)
     out += message("<li><a href=\"#", all[k].first, "\">", html_escape(all[k].second), "</a></li>\n");
@@ -127,8 +128,8 @@ VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
   out += std::isfinite(interval.upper)
              ? message("95 % interval ", brief(interval.lower), " to ", brief(interval.upper), " mm")
              : std::string("too few poses for an interval");
-  out += message("), 95 % of the poses within ", brief(e.p95), " mm, largest ", brief(e.max), " mm; before ",
-                 brief(was.mean), " mm.", decision, "</p>\n");
+  out += message("), 95 % of the poses within ", brief(e.p95), " mm, largest ", brief(e.max), " mm",
+                 input.before == input.after ? "." : message("; before ", brief(was.mean), " mm."), decision, "</p>\n");
   out += paragraph(message("Of ", e.n, input.held_out ? " held-out poses" : " poses",
                            input.rule.empty() ? "" : " (" + input.rule + ")",
                            input.train_poses > 0 ? message(", fitted to ", input.train_poses, " others") : "",
@@ -419,7 +420,7 @@ VERNIER_IMPL std::string drift_section(const ReportInput& input) {
 }
 
 VERNIER_IMPL std::string advice_section(const ReportInput& input) {
-  return section("next", "What to measure next", bullets(input.advice));
+  return section("next", input.held_out ? "What to measure next" : "What to do", bullets(input.advice));
 }
 
 VERNIER_IMPL std::string provenance_section(const ReportInput& input) {

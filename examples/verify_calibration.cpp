@@ -1,0 +1,106 @@
+// Is a calibration still valid? A saved model and a few fresh poses in; a verdict out.
+
+#include <fmt/format.h>
+
+#include <ctime>
+#include <filesystem>
+
+#include "cli.hpp"
+#include "dispatch.hpp"
+#include "json_file.hpp"
+#include "report_page.hpp"
+#include "vernier/calibration/verify_calibration.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/io.hpp"
+
+namespace {
+
+namespace vn = vernier;
+
+struct Options {
+  std::string model, data, report, date;
+  bool registered = false, tool = false, positions_only = false, no_approach = false;
+  double accept_mm = 0, level = 0.05;
+};
+
+template <int N>
+int verify_arm(const support::Program& program, const Options& o) {
+  const vn::CalibratedRobot<N> robot = vn::load<N>(o.model);
+  if (robot.estimate() == nullptr)
+    throw support::UsageError(o.model + ": has no covariance, an older program saved it; calibrate that arm again");
+  const auto types = robot.nominal().chain().joint_types();
+  vn::Dataset<N> data = vn::read_dataset<N>(o.data, types);
+  if (o.no_approach) data = data.without_approach();
+  vn::PointRows learned(robot.learned() != nullptr ? data.size() : 0, 3);
+  for (vn::Index i = 0; i < learned.rows(); ++i) learned.row(i) = robot.learned()->error(data.joints(i)).transpose();
+  vn::VerifyOptions options{.base = !o.registered, .tool = o.tool, .level = o.level};
+  if (o.accept_mm > 0) options.accept = o.accept_mm * 1e-3;
+  options.sensors.use_orientations = !o.positions_only;
+  const vn::VerificationReport report =
+      vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
+
+  fmt::print("{}, calibrated {} from {} rows of {}; {} poses of {}\n\n", robot.name(), robot.provenance().date,
+             robot.provenance().rows, robot.provenance().data_file, data.size(), o.data);
+  if (report.registration) fmt::print("{}\n", report.registration->summary());
+  fmt::print("Errors [mm]\n\n{}\n{}", vn::stage_table(vn::stages_of(report)), report.summary());
+  const support::Json json = vn::to_json(report, robot.name());
+  if (!program.common().json.empty()) support::write_json(program.common().json, json);
+  if (!o.report.empty()) {
+    vn::ReportInput page = vn::report_input(report, robot.name());
+    std::vector<vn::Index> rows(static_cast<std::size_t>(data.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<vn::Index>(i);
+    support::add_poses(page, robot.nominal().chain(), data, o.data, rows);
+    page.provenance.inputs = {support::file_read(o.data, data.size())};
+    support::write_report(program, o.report, page, o.date, o.model);
+    fmt::print("Report: {}\n", o.report);
+  }
+  return report.valid ? 0 : 1;
+}
+
+int run(support::Program& program) {
+  Options o;
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  o.date = fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+  CLI::App& app = program.app();
+  const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
+    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
+  };
+  option("--model", o.model, "the calibrated model, as saved by calibrate", "FILE")->required();
+  option("--data", o.data, "fresh measured poses, columns as for calibrate; 10 to 30 of them, joints moved widely",
+         "FILE")
+      ->required();
+  auto* registered =
+      app.add_flag("--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
+  app.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")
+      ->excludes(registered);
+  app.add_option("--accept-mm", o.accept_mm,
+                 "the calibration is valid as long as its mean position error does not exceed this [mm]; else as long "
+                 "as no change is significant")
+      ->type_name("MM")
+      ->check(CLI::Range(1e-6, 1e3).description(""))
+      ->always_capture_default(false);
+  app.add_option("--level", o.level, "probability of a false alarm about an arm that has not changed")
+      ->type_name("P")
+      ->check(CLI::Range(1e-6, 0.5).description(""));
+  app.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
+  app.add_flag("--no-approach", o.no_approach,
+               "rows are not in the order of measuring: no hysteresis by the direction of approach");
+  option("--report", o.report, "write the results as one HTML page that needs nothing else", "FILE");
+  option("--date", o.date, "date written into the report", "DATE");
+  program.parse("", nullptr);
+  if (!o.report.empty()) support::require_writable(o.report);
+  return support::dispatch_dof(vn::saved_arm(o.model).dof, [&](auto n) { return verify_arm<n()>(program, o); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program(
+      "verify_calibration",
+      "Is a calibration still valid? A saved model and a few fresh poses in; base frame, errors, which joint has "
+      "changed, a verdict and what to do out. Exit code 0: valid. 1: not valid, or no answer, which a line on standard "
+      "error explains. 2: wrong usage.",
+      argc, argv, run);
+}

@@ -1,0 +1,157 @@
+#pragma once
+
+/// @file
+/// The yearly check: whether a calibration still holds, from a few fresh poses.
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vernier/error_model/error_model.hpp"
+#include "vernier/error_model/error_model_estimate.hpp"
+#include "vernier/registration/reregister.hpp"
+
+namespace vernier {
+
+/// How a calibration is checked.
+struct VerifyOptions {
+  bool base = true;     ///< the sensor was set up anew, or the arm moved: the base is registered first
+  bool tool = false;    ///< the tool was remounted: it is registered, too; else a turned probe is a change of the arm
+  double level = 0.05;  ///< probability of a false alarm about an arm that has not changed, in (0, 1)
+  /// Largest mean position error that is accepted [m]. Without one a calibration is valid as long as no change is
+  /// significant; with one, as long as the upper end of the 95 % interval of the mean error does not exceed it.
+  std::optional<double> accept{};
+  SensorModel sensors{};  ///< of the check; a sensor worse than that of the calibration adds its noise
+
+  /// @throws std::invalid_argument naming the value
+  VERNIER_API void validate() const;
+};
+
+/// What a check says of one joint.
+struct JointCheck {
+  bool determined = false;    ///< whether the poses tell its zero from what was registered
+  double zero_change = 0;     ///< estimated change of its zero, everything else unchanged [rad, m]
+  double zero_std = 0;        ///< standard deviation of that, the uncertainty of the calibration included
+  double zero_p = 1;          ///< probability of a change as large by chance, this joint looked at alone
+  double once_p = 1;          ///< the same of a change of its transmission once a turn: cosine and sine of its angle
+  bool zero_changed = false;  ///< whether its zero is named as changed
+  bool transmission_changed = false;  ///< whether its transmission is
+};
+
+/// The outcome of a check.
+struct VerificationReport {
+  bool valid = false;       ///< whether the calibration still holds, see `VerifyOptions::accept`
+  bool consistent = false;  ///< whether no change is significant
+  Index poses = 0;          ///< number of poses
+  double chi_square = 0;    ///< of all residuals, whitened by their predicted covariance, less what was registered
+  Index dof = 0;            ///< its degrees of freedom
+  double p_value = 1;       ///< probability of a larger one by chance
+  std::vector<JointCheck> joints{};                    ///< one a joint
+  std::vector<JointType> joint_types{};                ///< of the arm
+  std::optional<ReregistrationReport> registration{};  ///< how base and tool have moved, where they were registered
+  VectorX as_fitted{};                                 ///< position errors in the frames of the calibration [m]
+  VectorX errors{};                                    ///< the same after registration [m]
+  VectorX rotations{};         ///< orientation errors then [rad]; empty where they were not used
+  VectorX normalised{};        ///< position errors in standard deviations of their predicted ellipsoids
+  std::vector<Index> aside{};  ///< rows that contradict all others, left out of all tests
+  double mean_error = 0;       ///< mean of `errors` but those aside [m]
+  double mean_upper = 0;       ///< upper end of its 95 % interval by Student's t [m]
+  VerifyOptions options{};     ///< as given
+
+  /// One sentence: whether the calibration is still valid, and if not, what has changed.
+  VERNIER_API std::string verdict() const;
+  /// What to do, a sentence each.
+  VERNIER_API std::vector<std::string> advice() const;
+  /// Both, and a line a joint, as text [mm, mrad].
+  VERNIER_API std::string summary() const;
+};
+
+namespace detail {
+
+/// What a check needs of the arm, in its new frames: modelled poses, what was learned taken off, and what they depend
+/// on.
+struct VerificationInput {
+  const Station& data;                               ///< the measured poses
+  const ErrorModelEstimate& estimate;                ///< of the arm where it stands now
+  std::vector<Isometry3> poses;                      ///< as modelled, with their approach
+  MatrixX jacobians;                                 ///< geometric Jacobians, 6 x joints each, side by side
+  std::vector<Isometry3> poses_as_fitted;            ///< in the frames of the calibration
+  VectorX gates;                                     ///< share of the joint-wise terms
+  std::vector<JointType> joint_types;                ///< of the arm
+  std::optional<ReregistrationReport> registration;  ///< where base or tool was registered
+};
+VERNIER_API VerificationReport verify(const VerificationInput& input, const VerifyOptions& options);
+
+}  // namespace detail
+
+/// Checks whether a calibration still holds. Base and, where asked for, tool are registered first. What is left is
+/// compared with the covariance that the calibration itself predicts: of its parameters, which all poses share, and of
+/// each visit. A chi-square of everything, and one of each joint's zero and of each joint's transmission once a turn,
+/// are tested at the given level together (Bonferroni). Of several joints the one that explains most is named first,
+/// and the others are tested again beside it.
+///
+/// The zero of a first joint that the base follows cannot be told from it and is not determined.
+/// @param model    as calibrated
+/// @param estimate what its calibration estimated, see `CalibratedRobot::estimate`
+/// @param data     n >= 3 fresh poses, measured positions or poses
+/// @param options  what was set up anew, the level, the accuracy asked for
+/// @param learned  n x 3, the position error that was learned on top of the model at these poses, in its base frame
+/// [m],
+///                 taken off its positions; no rows for none
+/// @throws std::invalid_argument for unusable options, too few poses, or poses that do not determine the registration
+/// @complexity O(n u^2 + n^3) for u unknowns of the calibration
+/// @cite Koch 1999
+template <class Chain>
+VerificationReport verify_calibration(const ErrorModel<Chain>& model, const ErrorModelEstimate& estimate,
+                                      const Dataset<Chain::dof>& data, const VerifyOptions& options = {},
+                                      const PointRows& learned = PointRows(0, 3)) {
+  constexpr int N = Chain::dof;
+  options.validate();
+  require(data.size() >= 3, "verify_calibration: ", data.size(), " poses, at least 3 are needed");
+  require(learned.rows() == 0 || learned.rows() == data.size(), "verify_calibration: ", learned.rows(),
+          " learned errors of ", data.size(), " poses");
+  const auto types = model.nominal().chain().joint_types();
+  std::optional<ReregistrationReport> registration;
+  ErrorModel<Chain> now = model;
+  if (options.base || options.tool) {
+    ReregisterOptions free{.base = options.base, .tool = options.tool};
+    // orientations that are turned may be the zero of the last joint: no probe is taken to be remounted unasked
+    if (!options.tool) free.contradiction_threshold = std::numeric_limits<double>::infinity();
+    auto found = reregister(model, data, free, options.sensors);
+    require(found.determined, "verify_calibration: the poses do not determine where the arm stands; measure more");
+    now = found.model;
+    registration = std::move(static_cast<ReregistrationReport&>(found));
+  }
+  const detail::Station station = detail::station_of(data, options.sensors);
+  const ErrorModelEstimate here = estimate.of_arm(FittedArm::of(now.identified()));
+  detail::VerificationInput input{station, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
+  input.jacobians.resize(6, N * data.size());
+  input.gates.resize(data.size());
+  const Matrix3 turn = now.identified().base().linear() * model.identified().base().linear().transpose();
+  for (Index i = 0; i < data.size(); ++i) {
+    const JointVector<N> q = data.joints(i), previous = data.previous().row(i).transpose();
+    const Vector3 error = learned.rows() > 0 ? Vector3(learned.row(i).transpose()) : Vector3(Vector3::Zero());
+    const auto warm = [&](const ErrorModel<Chain>& arm) {
+      return data.temperatures().size() > 0 ? arm.at_temperature(data.temperatures()(i)) : arm;
+    };
+    const ErrorModel<Chain> arm = warm(now), before = warm(model);
+    PoseAndJacobian<N> at = arm.approached_from(previous).pose_and_jacobian(q);
+    Isometry3 then = before.approached_from(previous).pose(q);
+    at.pose.translation() -= turn * error;
+    then.translation() -= error;
+    input.poses.push_back(at.pose);
+    input.poses_as_fitted.push_back(then);
+    std::copy_n(at.jacobian.data(), 6 * N, input.jacobians.data() + 6 * N * i);
+    input.gates(i) = model.gate(q);
+  }
+  return detail::verify(input, options);
+}
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/verify_calibration.ipp"
+#endif

@@ -1,0 +1,344 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/calibration/verify_calibration.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/evaluation/chi_square.hpp"
+#include "vernier/evaluation/mean_interval.hpp"
+#include "vernier/evaluation/quantile.hpp"
+#include "vernier/least_squares/row_block.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL void VerifyOptions::validate() const {
+  require(level > 0 && level < 1, "VerifyOptions: level ", level, " must lie in (0, 1)");
+  require(!accept || (*accept > 0 && std::isfinite(*accept)), "VerifyOptions: accept ", accept.value_or(0),
+          " must be positive");
+  sensors.validate();
+}
+
+namespace detail {
+
+/// Residuals that are whitened, and what was registered taken off: a test of further columns is a projection.
+struct WhitenedResiduals {
+  VectorX residual;     ///< m
+  MatrixX columns;      ///< m x k: of changes to be tested, whitened alike
+  VectorX informative;  ///< k: share of each column that what was registered leaves over
+  Index dof = 0;        ///< of the residual
+};
+
+/// Takes off what columns explain, by modified Gram-Schmidt, twice; columns that depend on others are left out.
+/// @return number of columns that were taken off
+VERNIER_API Index take_off(MatrixX nuisance, VectorX& residual, MatrixX& columns) {
+  Index rank = 0;
+  for (Index k = 0; k < nuisance.cols(); ++k) {
+    const double before = nuisance.col(k).norm();
+    VectorX axis = nuisance.col(k);
+    for (int pass = 0; pass < 2; ++pass)
+      for (Index j = 0; j < rank; ++j) axis -= nuisance.col(j).dot(axis) * nuisance.col(j);
+    if (!(axis.norm() > 1e-7 * before)) continue;
+    axis.normalize();
+    nuisance.col(rank++) = axis;
+    residual -= axis.dot(residual) * axis;
+    columns -= axis * (axis.transpose() * columns).eval();
+  }
+  return rank;
+}
+
+/// Chi-square of some columns together, and how many of them are independent.
+struct ColumnTest {
+  double chi_square = 0;
+  Index rank = 0;
+};
+VERNIER_API ColumnTest test_columns(const WhitenedResiduals& of, const std::vector<Index>& which) {
+  MatrixX columns(of.residual.size(), static_cast<Index>(which.size())), none(of.residual.size(), 0);
+  Index used = 0;
+  for (const Index k : which)
+    if (of.informative(k) > 1e-3) columns.col(used++) = of.columns.col(k);
+  columns.conservativeResize(Eigen::NoChange, used);
+  VectorX residual = of.residual;
+  const Index rank = take_off(columns, residual, none);
+  return {of.residual.squaredNorm() - residual.squaredNorm(), rank};
+}
+
+/// Covariance of the residuals of some poses: that of the calibration's unknowns, which they share, and of each visit.
+VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const VerifyOptions& options, Index values,
+                                        std::vector<Matrix6>& visits) {
+  const Station& data = input.data;
+  const Index n = data.size(), unknowns = input.estimate.arm.size();
+  const VectorX temperatures = data.temperatures != nullptr ? *data.temperatures : VectorX();
+  visits = input.estimate.visit_covariances(data.joints(), input.gates, 0, data.previous(), temperatures);
+  std::vector<RowBlock> blocks(static_cast<std::size_t>(n));
+  VectorX warmer = VectorX::Zero(n);
+  if (temperatures.size() > 0 && input.estimate.mean_temperature != 0)
+    warmer = temperatures.array() - input.estimate.mean_temperature;
+  input.estimate.arm.linearise(0, data.joints(), data.previous(), blocks.data(), true, warmer);
+  MatrixX rows(values * n, unknowns), half = MatrixX::Zero(values * n, unknowns);
+  Rows6 one(6, unknowns);
+  for (Index i = 0; i < n; ++i) {
+    blocks[static_cast<std::size_t>(i)].expand(input.estimate.arm.group_sizes(), one);
+    rows.middleRows(values * i, values) = one.topRows(values);
+  }
+  add_product(half, rows, input.estimate.covariance);
+  MatrixX out = MatrixX::Zero(values * n, values * n);
+  add_product(out, half, rows.transpose());
+  // a sensor worse than that of the calibration, whose noise is in that of a visit
+  const auto excess = [](double now, double then) { return std::max(0.0, now * now - then * then); };
+  const double position = excess(options.sensors.position_sigma, input.estimate.position_sigma),
+               orientation = excess(options.sensors.orientation_sigma, input.estimate.orientation_sigma);
+  for (Index i = 0; i < n; ++i) {
+    Matrix6& visit = visits[static_cast<std::size_t>(i)];
+    visit.diagonal().head<3>().array() += position;
+    visit.diagonal().tail<3>().array() += orientation;
+    out.block(values * i, values * i, values, values) = visit.topLeftCorner(values, values);
+  }
+  return out;
+}
+
+/// Tests of everything and of each joint, some rows left out.
+VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covariance, const VectorX& residual,
+                          const MatrixX& registered, const MatrixX& changes, Index values, VerificationReport& out) {
+  const Index n = input.data.size(), joints = static_cast<Index>(out.joint_types.size());
+  std::vector<Index> kept;
+  for (Index i = 0; i < n; ++i)
+    if (std::find(out.aside.begin(), out.aside.end(), i) == out.aside.end())
+      for (Index k = 0; k < values; ++k) kept.push_back(values * i + k);
+  MatrixX factor = covariance(kept, kept);
+  require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
+  MatrixX all(static_cast<Index>(kept.size()), 1 + registered.cols() + changes.cols());
+  all << residual(kept), registered(kept, Eigen::all), changes(kept, Eigen::all);
+  solve_lower(factor, all);
+  WhitenedResiduals whitened{all.col(0), all.rightCols(changes.cols()), {}, 0};
+  const VectorX lengths = whitened.columns.colwise().norm().transpose();
+  const Index rank = take_off(all.middleCols(1, registered.cols()), whitened.residual, whitened.columns);
+  whitened.informative = whitened.columns.colwise().norm().transpose().cwiseQuotient(lengths.cwiseMax(1e-300));
+  out.chi_square = whitened.residual.squaredNorm();
+  out.dof = static_cast<Index>(kept.size()) - rank;
+  out.p_value = out.dof > 0 ? chi_square_tail(out.chi_square, static_cast<double>(out.dof)) : 1;
+
+  out.joints.assign(static_cast<std::size_t>(joints), {});
+  const auto columns_of = [&](Index j, bool once) {
+    return once ? std::vector<Index>{joints + 2 * j, joints + 2 * j + 1} : std::vector<Index>{j};
+  };
+  Index tests = 0;
+  for (Index j = 0; j < joints; ++j) {
+    JointCheck& joint = out.joints[static_cast<std::size_t>(j)];
+    joint.determined = whitened.informative(j) > 1e-3;
+    const bool revolute = out.joint_types[static_cast<std::size_t>(j)] == JointType::revolute;
+    if (joint.determined) {
+      ++tests;
+      const double information = whitened.columns.col(j).squaredNorm();
+      joint.zero_change = -whitened.columns.col(j).dot(whitened.residual) / information;
+      joint.zero_std = 1 / std::sqrt(information);
+      joint.zero_p = chi_square_tail(std::pow(joint.zero_change / joint.zero_std, 2), 1);
+    }
+    if (!revolute) continue;
+    const ColumnTest once = test_columns(whitened, columns_of(j, true));
+    if (once.rank == 0) continue;
+    ++tests;
+    joint.once_p = chi_square_tail(once.chi_square, static_cast<double>(once.rank));
+  }
+  // Forward selection: the most significant change first, the others beside those that were named.
+  std::vector<Index> named;
+  const double limit = 0.5 * out.options.level / static_cast<double>(std::max<Index>(tests, 1));
+  for (Index round = 0; round < joints; ++round) {
+    const ColumnTest before = test_columns(whitened, named);
+    double best = limit;
+    Index joint = -1;
+    bool once = false;
+    for (Index j = 0; j < joints; ++j)
+      for (const bool turn : {false, true}) {
+        JointCheck& check = out.joints[static_cast<std::size_t>(j)];
+        if (check.zero_changed || check.transmission_changed) continue;
+        if (turn && out.joint_types[static_cast<std::size_t>(j)] != JointType::revolute) continue;
+        std::vector<Index> together = named;
+        for (const Index k : columns_of(j, turn)) together.push_back(k);
+        const ColumnTest with = test_columns(whitened, together);
+        if (with.rank == before.rank) continue;
+        const double p = chi_square_tail(std::max(0.0, with.chi_square - before.chi_square),
+                                         static_cast<double>(with.rank - before.rank));
+        if (!(p < best)) continue;
+        best = p;
+        joint = j;
+        once = turn;
+      }
+    if (joint < 0) break;
+    JointCheck& check = out.joints[static_cast<std::size_t>(joint)];
+    (once ? check.transmission_changed : check.zero_changed) = true;
+    for (const Index k : columns_of(joint, once)) named.push_back(k);
+  }
+  out.consistent = out.p_value >= 0.5 * out.options.level && named.empty();
+}
+
+VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const VerifyOptions& options) {
+  const Station& data = input.data;
+  const Index n = data.size(), joints = data.dof, values = data.oriented() ? 6 : 3;
+  VerificationReport out;
+  out.poses = n;
+  out.joint_types = input.joint_types;
+  out.options = options;
+  out.registration = input.registration;
+  const Vector3 probe = input.registration ? input.registration->motion.probe : Vector3(Vector3::Zero());
+  const FrameUpdate update{options.base, false, options.tool, static_cast<int>(joints),
+                           data.oriented() && input.registration && input.registration->probe_turned};
+  VectorX residual(values * n);
+  MatrixX registered(values * n, update.size()), changes(values * n, 3 * joints);
+  out.as_fitted.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const Isometry3& pose = input.poses[row];
+    residual.segment<3>(values * i) = pose.translation() - data.position(i);
+    if (values == 6)
+      residual.segment<3>(values * i + 3) =
+          log_so3(pose.linear() * exp_so3(probe) * data.orientations[row].transpose());
+    const double* jacobian = input.jacobians.data() + 6 * joints * i;
+    registered.middleRows(values * i, values) = update.columns(pose, jacobian).topRows(values);
+    const Eigen::Map<const Rows6> columns(jacobian, 6, joints);
+    for (Index j = 0; j < joints; ++j) {
+      const double q = data.joints()(i, j);
+      changes.col(j).segment(values * i, values) = columns.col(j).head(values);
+      changes.col(joints + 2 * j).segment(values * i, values) = std::cos(q) * columns.col(j).head(values);
+      changes.col(joints + 2 * j + 1).segment(values * i, values) = std::sin(q) * columns.col(j).head(values);
+    }
+    out.as_fitted(i) = (input.poses_as_fitted[row].translation() - data.position(i)).norm();
+  }
+  std::vector<Matrix6> visits;
+  const MatrixX covariance = residual_covariance(input, options, values, visits);
+
+  // Each position by itself, in the frames where most of them agree.
+  out.errors.resize(n);
+  out.normalised.resize(n);
+  if (values == 6) out.rotations.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    const Vector3 error = residual.segment<3>(values * i);
+    MatrixX factor = visits[static_cast<std::size_t>(i)].topLeftCorner<3, 3>(), whitened = error;
+    require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
+    solve_lower(factor, whitened);
+    out.errors(i) = error.norm();
+    out.normalised(i) = whitened.norm();
+    if (values == 6) out.rotations(i) = residual.segment<3>(values * i + 3).norm();
+  }
+  test_all(input, covariance, residual, registered, changes, values, out);
+  if (!out.consistent) {  // a reflector that was bumped is no change of the arm
+    const double typical = quantile(out.normalised, 0.5);
+    std::vector<Index> far;
+    for (Index i = 0; i < n; ++i)
+      if (out.normalised(i) > std::max(4.5, 6 * typical)) far.push_back(i);
+    if (!far.empty() && static_cast<Index>(far.size()) <= std::max<Index>(1, n / 10) &&
+        n - static_cast<Index>(far.size()) >= 3) {
+      out.aside = far;
+      test_all(input, covariance, residual, registered, changes, values, out);
+    }
+  }
+  std::vector<double> counted;
+  for (Index i = 0; i < n; ++i)
+    if (std::find(out.aside.begin(), out.aside.end(), i) == out.aside.end()) counted.push_back(out.errors(i));
+  const MeanInterval mean =
+      MeanInterval::of(Eigen::Map<const VectorX>(counted.data(), static_cast<Index>(counted.size())));
+  out.mean_error = mean.mean;
+  out.mean_upper = mean.upper;
+  out.valid = options.accept ? mean.upper <= *options.accept : out.consistent;
+  return out;
+}
+
+/// The joints that are named, and how far their zeros moved.
+VERNIER_API std::string named_changes(const VerificationReport& report) {
+  std::string out;
+  for (std::size_t j = 0; j < report.joints.size(); ++j) {
+    const JointCheck& joint = report.joints[j];
+    if (!joint.zero_changed && !joint.transmission_changed) continue;
+    out += out.empty() ? "" : "; ";
+    if (joint.zero_changed)
+      out +=
+          message("the zero of joint ", j + 1, " moved by ", brief(joint.zero_change * 1e3), " +- ",
+                  brief(1.96 * joint.zero_std * 1e3), report.joint_types[j] == JointType::revolute ? " mrad" : " mm");
+    else
+      out += message("the transmission of joint ", j + 1, " changed");
+  }
+  return out;
+}
+
+}  // namespace detail
+
+VERNIER_IMPL std::string VerificationReport::verdict() const {
+  using detail::brief;
+  const std::string changes = detail::named_changes(*this),
+                    chi = message("chi-square ", brief(chi_square), " of ", dof, " degrees of freedom, p = ",
+                                  p_value < 1e-4 ? std::string("below 0.0001") : brief(p_value));
+  std::string out = valid ? "The calibration is still valid" : "The calibration is no longer valid";
+  if (options.accept)
+    out += message(": mean error ", brief(mean_error * 1e3), " mm, at most ", brief(mean_upper * 1e3),
+                   " mm, accepted up to ", brief(*options.accept * 1e3), " mm");
+  if (consistent) {
+    out += message(options.accept ? "; " : ": ", "errors are as predicted (", chi, ')');
+  } else {
+    out += message(options.accept ? "; " : ": ",
+                   changes.empty() ? std::string("errors are larger than predicted, of no single joint") : changes,
+                   " (", chi, ')');
+  }
+  if (!aside.empty()) {
+    out += message(", row", aside.size() > 1 ? "s" : "");
+    for (const Index row : aside) out += message(' ', row);
+    out += " set aside";
+  }
+  return out + ".";
+}
+
+VERNIER_IMPL std::vector<std::string> VerificationReport::advice() const {
+  std::vector<std::string> out;
+  if (!aside.empty()) out.push_back("Measure the rows again that were set aside: they contradict all others.");
+  if (valid && registration && options.base)
+    out.push_back(
+        "Commands in the frame of this measurement need the base as it is now: calibrate --model MODEL "
+        "--free base.");
+  if (!valid) {
+    bool zeros_alone = false, transmission = false;
+    for (const JointCheck& joint : joints) {
+      zeros_alone = zeros_alone || joint.zero_changed;
+      transmission = transmission || joint.transmission_changed;
+    }
+    if (zeros_alone && !transmission)
+      out.push_back(
+          "Estimate the zeros of the joints again: calibrate --model MODEL --free base,offsets; then check "
+          "again.");
+    else
+      out.push_back("Calibrate again, with the earlier model as the prior: calibrate --prior MODEL.");
+    if (!registration)
+      out.push_back("If the sensor or the arm was set up anew, check without --registered.");
+    else if (!options.tool)
+      out.push_back("If the tool was remounted, check again with --tool-remounted.");
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (!joints[j].determined)
+      out.push_back(
+          message("These poses cannot tell a change of the zero of joint ", j + 1, " from a motion of base or tool."));
+  return out;
+}
+
+VERNIER_IMPL std::string VerificationReport::summary() const {
+  using detail::brief;
+  std::string out = verdict() + "\n\njoint  zero moved by  +- (95 %)         p  p once a turn\n";
+  char line[160];
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const JointCheck& joint = joints[j];
+    if (joint.determined)
+      std::snprintf(line, sizeof line, "%5d%12.4f %s%11.4f%10.2g%15.2g%s\n", static_cast<int>(j + 1),
+                    joint.zero_change * 1e3, joint_types[j] == JointType::revolute ? "mrad" : "mm  ",
+                    1.96 * joint.zero_std * 1e3, joint.zero_p, joint.once_p,
+                    joint.zero_changed || joint.transmission_changed ? "  changed" : "");
+    else
+      std::snprintf(line, sizeof line, "%5d  not determined                   %15.2g%s\n", static_cast<int>(j + 1),
+                    joint.once_p, joint.transmission_changed ? "  changed" : "");
+    out += line;
+  }
+  out += "\n";
+  for (const std::string& sentence : advice()) out += sentence + "\n";
+  return out;
+}
+
+}  // namespace vernier

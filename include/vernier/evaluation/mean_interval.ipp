@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vernier/core/check.hpp"
+#include "vernier/evaluation/mean_interval.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
+  const Index n = errors.size();
+  require(n > 0, "MeanInterval: no errors");
+  const double mean = errors.mean();
+  if (n < 5) return {mean, 0, std::numeric_limits<double>::infinity()};
+  // the quantile of Student's t at 0.975, expanded about that of the normal distribution
+  const double z = 1.9599639845400545, v = static_cast<double>(n - 1), z2 = z * z;
+  const double t = z * (1 + (z2 + 1) / (4 * v) + ((5 * z2 + 16) * z2 + 3) / (96 * v * v) +
+                        (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * v * v * v) +
+                        ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / (92160 * v * v * v * v));
+  const double half = t * std::sqrt((errors.array() - mean).square().sum() / v / static_cast<double>(n));
+  return {mean, std::max(0.0, mean - half), mean + half};
+}
+
+}  // namespace vernier

@@ -1,0 +1,201 @@
+// The yearly check, on simulated arms that have changed in known ways or not at all.
+
+#include "vernier/calibration/verify_calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "complaint.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/ceres/solver.hpp"
+#include "vernier/evaluation/chi_square.hpp"
+#include "vernier/evaluation/mean_interval.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
+#include "vernier/simulation/sampling.hpp"
+
+namespace vernier::verify_test {
+namespace {
+
+using vernier_test::complaint;
+using Chain = DhChain<6>;
+using Arm = Framed<WithJointErrors<Chain>>;
+
+constexpr MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.1e-3};
+const Robot<6> robot = robots::abb_irb120();
+
+JointRows<6> poses_of(Index n, std::uint64_t seed) {
+  return abb_irb120_operating_region().sample(robot.chain, n, seed);
+}
+
+Arm actual() {
+  return Arm({with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4),
+              draw_joint_errors(robot.chain, {.gear_ratio = 0, .coupling = 0}, 5)},
+             FrameParameters(Vector6{2, -1, 0.5, 0.1, -0.2, 1.5}),
+             FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}));
+}
+
+/// An arm whose joint zeros have moved, elsewhere perhaps.
+Arm changed(const JointVector<6>& zeros, const Isometry3& base = Isometry3::Identity()) {
+  const Arm arm = actual();
+  auto p = arm.chain().parameters();
+  for (int i = 0; i < 6; ++i) p(5 * i + 3) += zeros(i);
+  return Arm(WithJointErrors<Chain>(arm.chain().with_parameters(p), arm.model().joint_errors()),
+             Isometry3(base * arm.base()), arm.tool());
+}
+
+const Calibration<Chain>& calibration() {
+  static const auto made = calibrate(robot.chain, measure(actual(), poses_of(250, 1), noise, 2),
+                                     {.errors = {.harmonics = 4}, .remainder = {.on_error_model = false}});
+  return made;
+}
+
+VerificationReport check(const Arm& arm, Index n, std::uint64_t seed, const VerifyOptions& options = {},
+                         bool oriented = true) {
+  MeasurementNoise of_check = noise;
+  of_check.with_orientations = oriented;
+  const auto data = measure(arm, poses_of(n, 1000 + seed), of_check, 2000 + seed);
+  return verify_calibration(calibration().model(), calibration().errors, data, options);
+}
+
+const Isometry3 elsewhere = FrameParameters(Vector6{0.4, 1.3, -0.2, 0.3, -0.1, 2}).isometry();
+
+TEST(VerifyCalibration, AnUnchangedArmIsValid) {
+  int valid = 0, registered = 0, elsewhere_valid = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    valid += check(actual(), 20, seed).valid;
+    registered += check(actual(), 20, seed, {.base = false}).valid;
+    elsewhere_valid += check(changed(JointVector<6>::Zero(), elsewhere), 12, seed, {}, seed % 2 == 0).valid;
+  }
+  EXPECT_GE(valid, 95);
+  EXPECT_GE(registered, 95);
+  EXPECT_GE(elsewhere_valid, 95);
+}
+
+TEST(VerifyCalibration, NamesTheJointWhoseZeroMoved) {
+  for (int joint = 1; joint < 6; ++joint) {
+    int named = 0;
+    double sum = 0, squares = 0;
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const VerificationReport report = check(changed(0.3e-3 * JointVector<6>::Unit(joint), elsewhere), 25, seed);
+      EXPECT_FALSE(report.valid) << joint << ' ' << seed;
+      int others = 0;
+      for (int j = 0; j < 6; ++j) {
+        const JointCheck& one = report.joints[static_cast<std::size_t>(j)];
+        others += j != joint && (one.zero_changed || one.transmission_changed);
+      }
+      const JointCheck& of = report.joints[static_cast<std::size_t>(joint)];
+      named += of.zero_changed && others == 0;
+      sum += of.zero_change / 10;
+      squares += std::pow((of.zero_change - 0.3e-3) / of.zero_std, 2) / 10;
+      EXPECT_NE(report.verdict().find(message("the zero of joint ", joint + 1, " moved by")), std::string::npos)
+          << report.verdict();
+    }
+    EXPECT_GE(named, 9) << joint + 1;
+    EXPECT_NEAR(sum, 0.3e-3, 0.08e-3) << joint + 1;
+    EXPECT_LT(squares, 3.5) << joint + 1;  // a mean of ten squares, that share the calibration's own error
+  }
+}
+
+// The zero of the last joint and a probe that was turned on its flange look alike.
+TEST(VerifyCalibration, ARemountedToolTakesTheZeroOfTheLastJoint) {
+  const VerificationReport free = check(changed(0.3e-3 * JointVector<6>::Unit(5)), 25, 3, {.tool = true});
+  EXPECT_TRUE(free.valid) << free.verdict();
+  EXPECT_FALSE(free.joints[5].determined);
+}
+
+TEST(VerifyCalibration, AFreedBaseTakesTheZeroOfTheFirstJoint) {
+  const Arm arm = changed(0.3e-3 * JointVector<6>::Unit(0));
+  const VerificationReport free = check(arm, 25, 3);
+  EXPECT_TRUE(free.valid) << free.verdict();
+  EXPECT_FALSE(free.joints[0].determined);
+  ASSERT_TRUE(free.registration);
+  const VerificationReport held = check(arm, 25, 3, {.base = false});
+  EXPECT_FALSE(held.valid);
+  EXPECT_TRUE(held.joints[0].zero_changed) << held.summary();
+  EXPECT_FALSE(held.registration);
+}
+
+TEST(VerifyCalibration, ABaseThatMovedIsNoticedOnlyWhereItIsHeld) {
+  const Arm arm = changed(JointVector<6>::Zero(), FrameParameters(Vector6{1e-3, 0, 0, 0, 0, 0}).isometry());
+  EXPECT_TRUE(check(arm, 20, 4).valid);
+  const VerificationReport held = check(arm, 20, 4, {.base = false});
+  EXPECT_FALSE(held.valid);
+  EXPECT_NEAR(held.errors.mean(), 1e-3, 0.1e-3);
+  EXPECT_EQ(held.errors, held.as_fitted);
+}
+
+TEST(VerifyCalibration, NamesATransmissionThatChanged) {
+  int named = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Arm arm = changed(JointVector<6>::Zero(), elsewhere);
+    const JointRows<6> joints = poses_of(40, 500 + seed);
+    JointRows<6> reached = joints;
+    reached.col(2).array() += 0.4e-3 * (joints.col(2).array() + 0.7).cos();
+    const auto seen = measure(arm, reached, noise, 600 + seed);
+    const VerificationReport report = verify_calibration(calibration().model(), calibration().errors,
+                                                         Dataset<6>(joints, seen.positions(), seen.orientations()));
+    EXPECT_FALSE(report.valid);
+    named += report.joints[2].transmission_changed || report.joints[2].zero_changed;
+  }
+  EXPECT_GE(named, 9);
+}
+
+TEST(VerifyCalibration, SetsARowAsideThatContradictsAllOthers) {
+  auto data = measure(actual(), poses_of(30, 77), noise, 78);
+  PointRows positions = data.positions();
+  positions(11, 2) += 4e-3;
+  const auto bumped = Dataset<6>(data.joints(), positions, data.orientations());
+  const VerificationReport report = verify_calibration(calibration().model(), calibration().errors, bumped);
+  EXPECT_EQ(report.aside, std::vector<Index>{11});
+  EXPECT_TRUE(report.valid) << report.verdict();
+  EXPECT_NE(report.verdict().find("row 11 set aside"), std::string::npos) << report.verdict();
+}
+
+TEST(VerifyCalibration, WithALimitTheErrorDecides) {
+  const Arm arm = changed(0.3e-3 * JointVector<6>::Unit(1), elsewhere);
+  const VerificationReport loose = check(arm, 25, 1, {.accept = 0.5e-3}),
+                           tight = check(arm, 25, 1, {.accept = 0.05e-3});
+  EXPECT_TRUE(loose.valid);
+  EXPECT_FALSE(loose.consistent);
+  EXPECT_FALSE(tight.valid);
+  EXPECT_NE(loose.verdict().find("accepted up to 0.5 mm"), std::string::npos) << loose.verdict();
+}
+
+// What is reported equals its definition: errors of the registered model.
+TEST(VerifyCalibration, ErrorsAreThoseOfTheRegisteredModel) {
+  const auto data = measure(changed(JointVector<6>::Zero(), elsewhere), poses_of(15, 9), noise, 10);
+  const VerificationReport report = verify_calibration(calibration().model(), calibration().errors, data);
+  const auto registered = reregister(calibration().model(), data);
+  EXPECT_EQ(report.errors.size(), 15);
+  EXPECT_TRUE(report.errors.isApprox(position_errors(registered.model, data), 1e-12));
+  EXPECT_TRUE(report.as_fitted.isApprox(position_errors(calibration().model(), data), 1e-12));
+  EXPECT_EQ(report.dof, 6 * 15 - 6);
+  const VerificationReport positions =
+      verify_calibration(calibration().model(), calibration().errors, data.without_orientations());
+  EXPECT_EQ(positions.dof, 3 * 15 - 6);
+  EXPECT_EQ(positions.rotations.size(), 0);
+  EXPECT_EQ(VectorX(verify_calibration(calibration().model(), calibration().errors, data).errors), report.errors);
+}
+
+TEST(VerifyCalibration, RefusesWhatItCannotCheck) {
+  const auto refuses = [](const Dataset<6>& data, const VerifyOptions& options, const char* words) {
+    const std::string said =
+        complaint([&] { (void)verify_calibration(calibration().model(), calibration().errors, data, options); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  const auto data = measure(actual(), poses_of(10, 9), noise, 10);
+  refuses(data, {.level = 0}, "level 0 must lie in (0, 1)");
+  refuses(data, {.accept = -1.0}, "accept -1 must be positive");
+  refuses(data.rows(std::array<Index, 2>{0, 1}), {}, "2 poses, at least 3 are needed");
+  const std::string said = complaint(
+      [&] { (void)verify_calibration(calibration().model(), calibration().errors, data, {}, PointRows::Zero(3, 3)); });
+  EXPECT_NE(said.find("3 learned errors of 10 poses"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace vernier::verify_test

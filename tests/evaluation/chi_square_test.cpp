@@ -1,0 +1,58 @@
+#include "vernier/evaluation/chi_square.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "complaint.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/evaluation/mean_interval.hpp"
+
+namespace vernier::chi_square_test {
+namespace {
+
+using vernier_test::complaint;
+
+// One degree of freedom is a squared normal value, two an exponential, and any even number a finite sum.
+TEST(ChiSquare, EqualsClosedForms) {
+  for (const double x : {1e-8, 0.01, 0.5, 1.0, 2.9, 3.1, 7.8147, 30.0, 120.0, 700.0}) {
+    EXPECT_NEAR(chi_square_tail(x, 1), std::erfc(std::sqrt(x / 2)), 1e-12 * chi_square_tail(x, 1) + 1e-15) << x;
+    EXPECT_NEAR(chi_square_tail(x, 2), std::exp(-x / 2), 1e-11 * std::exp(-x / 2) + 1e-15) << x;
+    for (const int half : {3, 20, 150}) {
+      double term = 1, sum = 0;
+      for (int k = 0; k < half; ++k) {
+        sum += term;
+        term *= x / 2 / (k + 1);
+      }
+      const double expected = sum * std::exp(-x / 2);
+      EXPECT_NEAR(chi_square_tail(x, 2 * half), expected, 1e-10 * expected + 1e-13) << x << ' ' << half;
+    }
+  }
+  EXPECT_NEAR(chi_square_tail(7.814727903251179, 3), 0.05, 1e-12);
+  EXPECT_EQ(chi_square_tail(0, 3), 1);
+  EXPECT_EQ(chi_square_tail(std::numeric_limits<double>::infinity(), 3), 0);
+  EXPECT_NE(complaint([] { (void)chi_square_tail(1, 0); }).find("0 degrees of freedom"), std::string::npos);
+  EXPECT_NE(complaint([] { (void)chi_square_tail(-1, 2); }).find("-1 must not be negative"), std::string::npos);
+}
+
+// Quantiles of Student's t from tables.
+TEST(MeanInterval, IsThatOfStudent) {
+  for (const auto& [n, t] :
+       {std::pair<Index, double>{5, 2.776445}, {6, 2.570582}, {10, 2.262157}, {31, 2.042272}, {1001, 1.962339}}) {
+    Rng rng(static_cast<std::uint64_t>(n));
+    VectorX errors(n);
+    for (double& e : errors) e = 10 + rng.normal();
+    const double sd = std::sqrt((errors.array() - errors.mean()).square().sum() / static_cast<double>(n - 1));
+    const MeanInterval interval = MeanInterval::of(errors);
+    EXPECT_NEAR((interval.upper - interval.mean) / (sd / std::sqrt(static_cast<double>(n))), t, 3e-3) << n;
+    EXPECT_NEAR(interval.upper - interval.mean, interval.mean - interval.lower, 1e-12) << n;
+  }
+  EXPECT_TRUE(std::isinf(MeanInterval::of(VectorX::Ones(4)).upper));
+  EXPECT_EQ(MeanInterval::of(VectorX::Unit(9, 2)).lower, 0);
+  EXPECT_NE(complaint([] { (void)MeanInterval::of(VectorX()); }).find("no errors"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier::chi_square_test

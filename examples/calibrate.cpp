@@ -124,10 +124,10 @@ vn::ReportInput page_of(const vn::CalibrationReport& report, const vn::Described
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     const vn::Dataset<N> all = vn::read_dataset<N>(o.data[s], types);
     for (const vn::Index row : support::rows_of(all, train[s]))
-      learned_from.push_back(fmt::format("{} of {}", row, o.data[s]));
+      learned_from.push_back(fmt::format("{} of {}", row, file_name(o.data[s])));
     held_out.provenance.inputs.push_back(support::file_read(o.data[s], all.size()));
     if (!o.test.empty()) held_out.provenance.inputs.push_back(support::file_read(o.test[s], test[s].size()));
-    support::add_poses(held_out, robot.arm, test[s], o.test.empty() ? o.data[s] : o.test[s],
+    support::add_poses(held_out, robot.arm, test[s], file_name(o.test.empty() ? o.data[s] : o.test[s]),
                        support::rows_of(o.test.empty() ? all : test[s], test[s]));
   }
   for (std::size_t d = 0; d < distances.size(); ++d)

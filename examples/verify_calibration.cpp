@@ -49,7 +49,7 @@ int verify_arm(const support::Program& program, const Options& o) {
     vn::ReportInput page = vn::report_input(report, robot.name());
     std::vector<vn::Index> rows(static_cast<std::size_t>(data.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<vn::Index>(i);
-    support::add_poses(page, robot.nominal().chain(), data, o.data, rows);
+    support::add_poses(page, robot.nominal().chain(), data, std::filesystem::path(o.data).filename().string(), rows);
     page.provenance.inputs = {support::file_read(o.data, data.size())};
     support::write_report(program, o.report, page, o.date, o.model);
     fmt::print("Report: {}\n", o.report);

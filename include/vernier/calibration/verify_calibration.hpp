@@ -54,12 +54,13 @@ struct VerificationReport {
   std::optional<ReregistrationReport> registration{};  ///< how base and tool have moved, where they were registered
   VectorX as_fitted{};                                 ///< position errors in the frames of the calibration [m]
   VectorX errors{};                                    ///< the same after registration [m]
-  VectorX rotations{};         ///< orientation errors then [rad]; empty where they were not used
-  VectorX normalised{};        ///< position errors in standard deviations of their predicted ellipsoids
-  std::vector<Index> aside{};  ///< rows that contradict all others, left out of all tests
-  double mean_error = 0;       ///< mean of `errors` but those aside [m]
-  double mean_upper = 0;       ///< upper end of its 95 % interval by Student's t [m]
-  VerifyOptions options{};     ///< as given
+  VectorX rotations{};            ///< orientation errors then [rad]; empty where they were not used
+  VectorX rotations_as_fitted{};  ///< in the frames of the calibration, likewise
+  VectorX normalised{};           ///< position errors in standard deviations of their predicted ellipsoids
+  std::vector<Index> aside{};     ///< rows that contradict all others, left out of all tests
+  double mean_error = 0;          ///< mean of `errors` but those aside [m]
+  double mean_upper = 0;          ///< upper end of its 95 % interval by Student's t [m]
+  VerifyOptions options{};        ///< as given
 
   /// One sentence: whether the calibration is still valid, and if not, what has changed.
   VERNIER_API std::string verdict() const;

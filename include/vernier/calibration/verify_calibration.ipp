@@ -24,6 +24,9 @@ VERNIER_IMPL void VerifyOptions::validate() const {
 
 namespace detail {
 
+/// A change is not determined where registration takes more than all but this share of its effect.
+inline constexpr double least_informative = 0.02;
+
 /// Residuals that are whitened, and what was registered taken off: a test of further columns is a projection.
 struct WhitenedResiduals {
   VectorX residual;     ///< m
@@ -59,7 +62,7 @@ VERNIER_API ColumnTest test_columns(const WhitenedResiduals& of, const std::vect
   MatrixX columns(of.residual.size(), static_cast<Index>(which.size())), none(of.residual.size(), 0);
   Index used = 0;
   for (const Index k : which)
-    if (of.informative(k) > 1e-3) columns.col(used++) = of.columns.col(k);
+    if (of.informative(k) > least_informative) columns.col(used++) = of.columns.col(k);
   columns.conservativeResize(Eigen::NoChange, used);
   VectorX residual = of.residual;
   const Index rank = take_off(columns, residual, none);
@@ -128,7 +131,7 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
   Index tests = 0;
   for (Index j = 0; j < joints; ++j) {
     JointCheck& joint = out.joints[static_cast<std::size_t>(j)];
-    joint.determined = whitened.informative(j) > 1e-3;
+    joint.determined = whitened.informative(j) > least_informative;
     const bool revolute = out.joint_types[static_cast<std::size_t>(j)] == JointType::revolute;
     if (joint.determined) {
       ++tests;
@@ -189,6 +192,7 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
   VectorX residual(values * n);
   MatrixX registered(values * n, update.size()), changes(values * n, 3 * joints);
   out.as_fitted.resize(n);
+  if (values == 6) out.rotations_as_fitted.resize(n);
   for (Index i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
     const Isometry3& pose = input.poses[row];
@@ -206,6 +210,9 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
       changes.col(joints + 2 * j + 1).segment(values * i, values) = std::sin(q) * columns.col(j).head(values);
     }
     out.as_fitted(i) = (input.poses_as_fitted[row].translation() - data.position(i)).norm();
+    if (values == 6)
+      out.rotations_as_fitted(i) =
+          log_so3(input.poses_as_fitted[row].linear() * data.orientations[row].transpose()).norm();
   }
   std::vector<Matrix6> visits;
   const MatrixX covariance = residual_covariance(input, options, values, visits);

@@ -69,17 +69,18 @@ struct ReportProvenance {
 
 /// Everything that a report shows: plain values. What is empty is left out.
 struct ReportInput {
-  std::string robot{};                                ///< name of the arm
-  std::string title = "Calibration";                  ///< what this is the report of
-  std::string headline{};                             ///< first sentence of the verdict; the errors follow
-  std::vector<StageErrors> stages{};                  ///< position errors of the poses [m], orientation errors [rad]
-  std::string before = "frames";                      ///< key of the stage before
-  std::string after{};                                ///< key of the stage that is deployed
-  bool held_out = true;                               ///< whether the poses are none that the model was fitted to
-  std::string rule{};                                 ///< how they were held out, in words
-  Index train_poses = 0;                              ///< number of poses it was fitted to
-  std::optional<double> accept{};                     ///< largest mean position error that is accepted [m]
-  std::vector<std::string> sentences{};               ///< the verdict in detail
+  std::string robot{};                   ///< name of the arm
+  std::string title = "Calibration";     ///< what this is the report of
+  std::string headline{};                ///< first sentence of the verdict; the errors follow
+  std::vector<StageErrors> stages{};     ///< position errors of the poses [m], orientation errors [rad]
+  std::string before = "frames";         ///< key of the stage before
+  std::string after{};                   ///< key of the stage that is deployed
+  bool held_out = true;                  ///< whether the poses are none that the model was fitted to
+  std::string rule{};                    ///< how they were held out, in words
+  Index train_poses = 0;                 ///< number of poses it was fitted to
+  std::optional<double> accept{};        ///< largest mean position error that is accepted [m]
+  std::optional<bool> passed{};          ///< whether the headline is good news; by default as `accept` decides
+  std::vector<std::string> sentences{};  ///< the verdict in detail
   std::optional<std::vector<ReportFinding>> audit{};  ///< findings in the data; without a value no audit was made
   ReportPoses poses{};                                ///< whose errors are shown, as many as the stages have
   std::vector<ReportTable> tables{};                  ///< of this kind of report

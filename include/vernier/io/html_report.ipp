@@ -60,7 +60,7 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
   out.after = out.stages.back().key;
   out.held_out = false;
   if (report.registration) out.rule = "the frames registered from the same poses";
-  out.accept = report.options.accept;
+  out.passed = report.valid;
   out.poses.normalised = report.normalised;
   out.ellipsoid_coverage = (report.normalised.array() <= std::sqrt(7.8147)).cast<double>().mean();
   ReportTable joints{"Joint by joint",

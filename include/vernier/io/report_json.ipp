@@ -122,7 +122,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) 
 
 VERNIER_IMPL std::vector<StageErrors> stages_of(const VerificationReport& report) {
   if (!report.registration) return {{"as_fitted", "as fitted", report.errors, report.rotations}};
-  return {{"as_fitted", "as fitted", report.as_fitted, {}},
+  return {{"as_fitted", "as fitted", report.as_fitted, report.rotations_as_fitted},
           {"registered", "registered", report.errors, report.rotations}};
 }
 

@@ -23,12 +23,12 @@ VERNIER_API std::string fixed(double value, int decimals);
 /// The hexadecimal digits of a digest in base 64, as content security policies write it.
 VERNIER_API std::string base64_of_hex(std::string_view hex);
 
-/// One cell of a table: a text, escaped by `html_table`, or a number.
+/// A table; its texts are escaped by `html_table`.
 struct HtmlTable {
   std::string caption{};                         ///< above it; empty for none
   std::vector<std::string> head{};               ///< of the columns
   std::vector<std::vector<std::string>> rows{};  ///< the first cell of each is its heading
-  bool numbers = true;                           ///< all but the first column are right-aligned
+  bool numbers = true;                           ///< columns of numbers are right-aligned
 };
 /// A table whose headings have scopes; empty without rows.
 VERNIER_API std::string html_table(const HtmlTable& table);

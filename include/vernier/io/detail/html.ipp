@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "vernier/core/check.hpp"
 #include "vernier/io/detail/html.hpp"
 
 namespace vernier::detail {
@@ -104,13 +105,22 @@ VERNIER_IMPL std::string html_table(const HtmlTable& table) {
   if (table.rows.empty()) return "";
   std::string out = table.numbers ? "<div class=\"wide\"><table class=\"num\">\n" : "<div class=\"wide\"><table>\n";
   if (!table.caption.empty()) out += "<caption>" + html_escape(table.caption) + "</caption>\n";
+  // columns of text among numbers are left-aligned
+  std::vector<const char*> kind(table.head.size(), "");
+  for (const auto& row : table.rows)
+    for (std::size_t k = 1; k < row.size() && k < kind.size() && table.numbers; ++k)
+      if (!row[k].empty() && row[k].find_first_of("0123456789") > 1) kind[k] = " class=\"text\"";
+  const auto cell = [&](std::size_t k, const std::string& text) {
+    return message("<td", k < kind.size() ? kind[k] : "", ">", html_escape(text), "</td>");
+  };
   out += "<thead><tr>";
-  for (const std::string& cell : table.head) out += "<th scope=\"col\">" + html_escape(cell) + "</th>";
+  for (std::size_t k = 0; k < table.head.size(); ++k)
+    out += message("<th scope=\"col\"", kind[k], ">", html_escape(table.head[k]), "</th>");
   out += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      out += k == 0 ? "<th scope=\"row\">" + html_escape(row[k]) + "</th>" : "<td>" + html_escape(row[k]) + "</td>";
+      out += k == 0 ? "<th scope=\"row\">" + html_escape(row[k]) + "</th>" : cell(k, row[k]);
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";

@@ -151,7 +151,7 @@ h3{font-size:1rem;margin:1.2rem 0 .3rem}a{color:var(--link)}p{margin:.4rem 0;max
 nav a{margin-right:.9rem;white-space:nowrap}.wide{overflow-x:auto}
 table{border-collapse:collapse;margin:.5rem 0;font-variant-numeric:tabular-nums}caption{text-align:left;color:var(--faint)}
 th,td{padding:.15rem .7rem .15rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
-.num td,.num thead th+th{text-align:right}th{font-weight:600}tbody th{font-weight:400}
+.num td,.num thead th+th{text-align:right}.num td.text,.num thead th.text{text-align:left}th{font-weight:600}tbody th{font-weight:400}
 svg.chart{width:100%;max-width:760px;height:auto;display:block}svg.legend{width:100%;max-width:640px;height:auto;display:block}
 .three{display:grid;grid-template-columns:repeat(3,1fr);gap:.5rem}svg.flat{width:100%;height:auto;background:var(--panel)}
 .live .three{display:none}.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(400px,1fr));gap:.5rem 1rem}

@@ -121,6 +121,7 @@ VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
                                       : "not decided, the limit lies within the interval",
                        "</strong>.");
   }
+  if (input.passed) kind = *input.passed ? "yes" : "no";
   std::string out =
       message("<p class=\"verdict ", kind, "\">", html_escape(input.headline), input.headline.empty() ? "" : " ",
               input.held_out ? "Held-out position error" : "Position error", " <strong data-value=\"", e.mean, "\">",
@@ -163,8 +164,8 @@ VERNIER_IMPL std::string errors_section(const ReportInput& input) {
   int colour = 0;
   for (const StageErrors& stage : input.stages) {
     const ErrorStatistics e = ErrorStatistics::of(stage.position * 1e3);
-    table.rows.push_back({stage.title + (stage.key == input.after ? " (deployed)" : ""), fixed(e.mean, 4),
-                          fixed(e.rms, 4), fixed(e.max, 4), fixed(e.min, 4), fixed(e.p95, 4)});
+    table.rows.push_back({stage.title + (input.held_out && stage.key == input.after ? " (deployed)" : ""),
+                          fixed(e.mean, 4), fixed(e.rms, 4), fixed(e.max, 4), fixed(e.min, 4), fixed(e.p95, 4)});
     if (oriented) table.rows.back().push_back(stage.rotation.size() > 0 ? fixed(stage.rotation.mean() * 1e3, 4) : "");
     if (stage.key != input.before && stage.key != "geometry" && stage.key != input.after) continue;
     ChartSeries series{.title = stage.title, .colour = colour++};

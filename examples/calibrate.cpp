@@ -16,6 +16,7 @@
 #include "progress.hpp"
 #include "report_page.hpp"
 #include "robot_choice.hpp"
+#include "vernier/calibration/data_audit.hpp"
 #include "vernier/ceres.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
@@ -113,6 +114,19 @@ vn::ArmPrior read_prior(const std::string& file) {
   return out;
 }
 
+/// Looks for faults in the files of poses and prints them, before a calibration may refuse them.
+template <int N>
+std::vector<vn::DataAudit> audit_files(const vn::DescribedRobot<N>& robot, const Options& o) {
+  std::vector<vn::DataAudit> out;
+  for (const std::string& file : o.data) {
+    const vn::Dataset<N> data = vn::read_dataset<N>(file, robot.arm.chain().joint_types());
+    constexpr vn::Index fewest = 10;
+    out.push_back(data.size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, data));
+    if (!out.back().findings.empty()) fmt::print("{}: {}\n", file, out.back().summary());
+  }
+  return out;
+}
+
 /// What a page shows of a calibration: poses with their rows in the files, and which files were read.
 template <int N>
 vn::ReportInput page_of(const vn::CalibrationReport& report, const vn::DescribedRobot<N>& robot, const Options& o,
@@ -146,8 +160,10 @@ vn::ReportInput page_of(const vn::CalibrationReport& report, const vn::Described
 
 template <int N>
 vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, const Options& o,
-                                    const vn::FitOptions& fit, std::string& rule, vn::ReportInput& page) {
+                                    const vn::FitOptions& fit, std::string& rule, vn::ReportInput& page,
+                                    std::vector<vn::DataAudit>& audits) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
+  audits = audit_files(robot, o);
   std::optional<vn::ArmPrior> prior;
   if (!o.prior.empty()) prior = read_prior<N>(o.prior);
   const auto types = robot.arm.chain().joint_types();
@@ -172,7 +188,10 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
   const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
   if (!o.save.empty())
     vn::save(o.save, calibration, {.name = robot.name, .limits = robot.limits, .data_file = names, .date = o.date});
-  if (!o.report.empty()) page = page_of<N>(report, robot, o, train, test, distances);
+  if (!o.report.empty()) {
+    page = page_of<N>(report, robot, o, train, test, distances);
+    page.audit = support::audit_rows(o.data, audits);
+  }
   return report;
 }
 
@@ -190,8 +209,9 @@ int run_calibration(support::Program& program, Options& o) {
   const vn::FitOptions fit{.seed = program.common().seed, .executor = executor, .observer = count};
   std::string rule;
   vn::ReportInput page;
+  std::vector<vn::DataAudit> audits;
   const vn::CalibrationReport report =
-      support::dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, o, fit, rule, page); });
+      support::dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, o, fit, rule, page, audits); });
   progress.finish();
 
   fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
@@ -200,7 +220,11 @@ int run_calibration(support::Program& program, Options& o) {
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), rule);
   if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
   fmt::print("\n{}", report.summary());
-  if (!program.common().json.empty()) support::write_json(program.common().json, vn::to_json(report, robot.name));
+  if (!program.common().json.empty()) {
+    support::Json json = vn::to_json(report, robot.name);
+    for (const vn::DataAudit& audit : audits) json["audit"].push_back(vn::to_json(audit));
+    support::write_json(program.common().json, json);
+  }
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
   fmt::print(

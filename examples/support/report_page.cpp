@@ -1,9 +1,28 @@
 #include "report_page.hpp"
 
+#include <algorithm>
+
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/sha256.hpp"
 
 namespace support {
+
+std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& files,
+                                               const std::vector<vernier::DataAudit>& audits) {
+  constexpr std::size_t most = 5;  // rows that are named
+  std::vector<vernier::ReportFinding> out;
+  for (std::size_t k = 0; k < audits.size(); ++k)
+    for (const vernier::DataFinding& finding : audits[k].findings) {
+      std::string rows;
+      for (std::size_t i = 0; i < std::min(most, finding.rows.size()); ++i)
+        rows += vernier::message(i > 0 ? ", " : "", finding.rows[i]);
+      if (finding.rows.size() > most) rows += vernier::message(" and ", finding.rows.size() - most, " more");
+      if (rows.empty()) rows = "all";
+      out.push_back({std::string(vernier::fault_name(finding.kind)),
+                     audits.size() > 1 ? vernier::message(rows, " of ", files[k]) : rows, finding.message});
+    }
+  return out;
+}
 
 vernier::ReportFile file_read(const std::string& path, vernier::Index rows) {
   return {path, rows, vernier::sha256(vernier::read_file(path))};

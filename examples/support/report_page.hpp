@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "vernier/calibration/data_audit.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/io/html_report.hpp"
@@ -55,6 +56,10 @@ void add_poses(vernier::ReportInput& report, const auto& nominal, const vernier:
     report.times(before + i) = data.times()(i);
   }
 }
+
+/// The findings of audits, one a file.
+std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& files,
+                                               const std::vector<vernier::DataAudit>& audits);
 
 /// A file that was read, with the digest of its bytes.
 vernier::ReportFile file_read(const std::string& path, vernier::Index rows);

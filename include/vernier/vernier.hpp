@@ -4,6 +4,7 @@
 /// All of Vernier that needs Eigen alone, but for `kinematics/general_six_axis.hpp`, which few need and which takes long
 /// to compile. The library's own headers never include this one.
 
+#include "vernier/calibration/data_audit.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/compensation/joint_space.hpp"
@@ -20,6 +21,7 @@
 #include "vernier/identification/options.hpp"
 #include "vernier/kinematics/arm_angle_form.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/planning/plan_measurements.hpp"
 #include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/regression/back_propagation.hpp"
 #include "vernier/regression/elm.hpp"

@@ -32,9 +32,9 @@ CommandResult run(const TemporaryFolder& folder, const std::string& program, con
 Framed<DhChain<6>> arm(const JointVector<6>& zeros = JointVector<6>::Zero()) {
   auto p = with_geometric_errors(robots::abb_irb120().chain, {}, 7).parameters();
   for (int i = 0; i < 6; ++i) p(5 * i + 3) += zeros(i);
-  return {robots::abb_irb120().chain.with_parameters(p),
-          FrameParameters(Vector6{2.1, -1.3, 0.4, 0.02, -0.03, 2.2}).isometry(),
-          FrameParameters(Vector6{0.01, 0.02, 0.12, 0.3, 0, 0}).isometry()};
+  return Framed<DhChain<6>>(robots::abb_irb120().chain.with_parameters(p),
+                            FrameParameters(Vector6{2.1, -1.3, 0.4, 0.02, -0.03, 2.2}),
+                            FrameParameters(Vector6{0.01, 0.02, 0.12, 0.3, 0, 0}));
 }
 
 Dataset<6> seen(const Framed<DhChain<6>>& actual, Index n, std::uint64_t seed) {
@@ -57,7 +57,7 @@ struct Reported {
 
   Reported() {
     write_dataset(folder / "poses.csv", seen(arm(), 150, 1));
-    Json robot{{"name", "<script>alert(1)</script>"}, {"joints", Json::array()}};
+    Json robot{{"name", "<script>alert(1)</script>"}, {"convention", "standard"}, {"joints", Json::array()}};
     const DhChain<6> chain = robots::abb_irb120().chain;
     for (int i = 0; i < 6; ++i)
       robot["joints"].push_back({{"a_mm", chain.row(i).a * 1e3},

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// All of Vernier that needs Eigen alone, but for `kinematics/general_six_axis.hpp`, which few need and which takes long
-/// to compile. The library's own headers never include this one.
+/// All of Vernier that needs Eigen alone, but for `kinematics/general_six_axis.hpp`, which few need and which takes
+/// long to compile. The library's own headers never include this one.
 
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/compensation/cartesian.hpp"

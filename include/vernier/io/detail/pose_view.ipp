@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"

@@ -427,9 +427,9 @@ Json measured_robot(const std::string& robot, const std::string& file) {
   const char* data = std::getenv("VERNIER_DATA_DIR");
   if (data == nullptr || *data == '\0') return {};
   const TemporaryFolder folder("calibrate");
-  const CommandResult done =
-      run(folder, "calibrate",
-          "--robot " + robot + " --data '" + std::string(data) + "/" + file + "' --test-every 5 --json r.json --report r.html");
+  const CommandResult done = run(folder, "calibrate",
+                                 "--robot " + robot + " --data '" + std::string(data) + "/" + file +
+                                     "' --test-every 5 --json r.json --report r.html");
   EXPECT_EQ(done.exit_code, 0) << done.errors;
   EXPECT_LE(std::filesystem::file_size(folder / "r.html"), 600000u);
   return Json::parse(read_file(folder / "r.json")).at("stages");

@@ -140,14 +140,14 @@ VERNIER_IMPL std::string pose_projections(const ReportInput& input, const PoseVi
       if (!paths[c].empty())
         out += message("<path fill=\"none\" stroke-linecap=\"round\" stroke=\"", error_colours[c], "\" stroke-width=\"",
                        12 + 2 * c, "\" d=\"", paths[c], "\"/>\n");
-    out += message("<path class=\"grid\" stroke-width=\"4\" d=\"M20 1000h", std::llround(round / bounds.half * room),
+    out += message("<path class=\"bar\" stroke-width=\"6\" d=\"M20 1000h", std::llround(round / bounds.half * room),
                    "\"/><text class=\"big\" x=\"20\" y=\"1045\">", brief(round * 1e3), " mm</text></svg>\n");
   }
   return out + "</div>\n";
 }
 
 VERNIER_IMPL std::string error_legend(double clip) {
-  std::string out = "<svg class=\"legend\" viewBox=\"0 0 640 44\" role=\"img\" aria-label=\"colours of errors\">\n";
+  std::string out = "<svg class=\"legend\" viewBox=\"0 0 680 44\" role=\"img\" aria-label=\"colours of errors\">\n";
   for (std::size_t c = 0; c < error_colours.size(); ++c) {
     const long long x = 12 + 78 * static_cast<long long>(c);
     out += message("<circle cx=\"", x, "\" cy=\"14\" r=\"", 4 + c / 2, "\" fill=\"", error_colours[c],

@@ -154,19 +154,19 @@ th,td{padding:.15rem .7rem .15rem 0;text-align:left;vertical-align:top;border-bo
 .num td,.num thead th+th{text-align:right}.num td.text,.num thead th.text{text-align:left}th{font-weight:600}tbody th{font-weight:400}
 svg.chart{width:100%;max-width:760px;height:auto;display:block}svg.legend{width:100%;max-width:640px;height:auto;display:block}
 .three{display:grid;grid-template-columns:repeat(3,1fr);gap:.5rem}svg.flat{width:100%;height:auto;background:var(--panel)}
-.live .three{display:none}.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(400px,1fr));gap:.5rem 1rem}
+.live .three,.live .plain{display:none}.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(400px,1fr));gap:.5rem 1rem}
 canvas{display:block;width:100%;height:420px;background:var(--panel);color:var(--ink);touch-action:none;cursor:grab}
 button{font:inherit;padding:.2rem .8rem;border:1px solid var(--rule);background:var(--panel);color:var(--ink)}
 button[aria-pressed=true]{background:var(--ink);color:var(--paper)}
 .tick{font:12px system-ui,sans-serif;fill:var(--faint)}.mid{text-anchor:middle}.end{text-anchor:end}
 .big{font:34px system-ui,sans-serif;fill:var(--faint)}
-.grid{stroke:var(--rule);fill:none}.line{fill:none;stroke-width:1.6}.sticks{fill:none;stroke-width:1.2}
+.grid{stroke:var(--rule);fill:none}.bar{stroke:var(--faint);fill:none}.line{fill:none;stroke-width:1.6}.sticks{fill:none;stroke-width:1.2}
 .key{fill:none;stroke-width:4}.band{stroke:none;opacity:.3}
 .c0{stroke:var(--c0)}.c1{stroke:var(--c1)}.c2{stroke:var(--c2)}.c3{stroke:var(--c3)}.c4{stroke:var(--c4)}.c5{stroke:var(--c5)}
 .band.c0{fill:var(--c0)}.band.c1{fill:var(--c1)}.band.c2{fill:var(--c2)}.band.c3{fill:var(--c3)}
 code{overflow-wrap:anywhere}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--rule:#bbb;--panel:#fff;--link:#000}
-nav,#view{display:none}.live .three{display:grid}section{break-inside:avoid-page}body{max-width:none;font-size:11pt}}
+nav,#view{display:none}.live .three{display:grid}.live .plain{display:block}section{break-inside:avoid-page}body{max-width:none;font-size:11pt}}
 )css";
 
 }  // namespace vernier::detail

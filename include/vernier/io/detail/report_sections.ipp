@@ -196,7 +196,7 @@ VERNIER_IMPL std::string poses_section(const ReportInput& input, const PoseView&
       "aria-pressed=\"true\">after</button> <output id=\"picked\"></output></p>\n";
   out += "<div id=\"scale-before\" hidden>" + error_legend(view.before_clip) + "</div>\n<div id=\"scale-after\">" +
          error_legend(view.after_clip) + "</div>\n</div>\n";
-  out += pose_projections(input, view) + "<div class=\"three\">" + error_legend(view.after_clip) + "</div>\n";
+  out += pose_projections(input, view) + "<div class=\"plain\">" + error_legend(view.after_clip) + "</div>\n";
   return section("poses", "Errors in space", out);
 }
 

@@ -97,12 +97,13 @@ VERNIER_API VerificationReport verify(const VerificationInput& input, const Veri
 /// The zero of a first joint that the base follows cannot be told from it and is not determined.
 /// @param model    as calibrated
 /// @param estimate what its calibration estimated, see `CalibratedRobot::estimate`
-/// @param data     n >= 3 fresh poses, measured positions or poses
+/// @param data     3 to 1000 fresh poses, measured positions or poses
 /// @param options  what was set up anew, the level, the accuracy asked for
 /// @param learned  n x 3, the position error that was learned on top of the model at these poses, in its base frame
 /// [m],
 ///                 taken off its positions; no rows for none
-/// @throws std::invalid_argument for unusable options, too few poses, or poses that do not determine the registration
+/// @throws std::invalid_argument for unusable options, too few or too many poses, or poses that do not determine the
+/// registration
 /// @complexity O(n u^2 + n^3) for u unknowns of the calibration
 /// @cite Koch 1999
 template <class Chain>
@@ -112,6 +113,8 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   constexpr int N = Chain::dof;
   options.validate();
   require(data.size() >= 3, "verify_calibration: ", data.size(), " poses, at least 3 are needed");
+  require(data.size() <= 1000, "verify_calibration: ", data.size(),
+          " poses, at most 1000 are taken: their covariance is dense");
   require(learned.rows() == 0 || learned.rows() == data.size(), "verify_calibration: ", learned.rows(),
           " learned errors of ", data.size(), " poses");
   const auto types = model.nominal().chain().joint_types();

@@ -192,6 +192,7 @@ TEST(VerifyCalibration, RefusesWhatItCannotCheck) {
   refuses(data, {.level = 0}, "level 0 must lie in (0, 1)");
   refuses(data, {.accept = -1.0}, "accept -1 must be positive");
   refuses(data.rows(std::array<Index, 2>{0, 1}), {}, "2 poses, at least 3 are needed");
+  refuses(measure(actual(), poses_of(1001, 9), noise, 10), {}, "1001 poses, at most 1000");
   const std::string said = complaint(
       [&] { (void)verify_calibration(calibration().model(), calibration().errors, data, {}, PointRows::Zero(3, 3)); });
   EXPECT_NE(said.find("3 learned errors of 10 poses"), std::string::npos) << said;

@@ -78,7 +78,9 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   EXPECT_EQ(keys(c.json), (std::vector<std::string>{
                               "robot", "train_rows", "test_rows", "stages", "chosen", "mean_temperature_c", "blocks",
                               "learners", "prior", "parameters", "identifiability", "spectrum", "drift", "gated_rows",
-                              "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict"}));
+                              "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict", "audit"}));
+  ASSERT_EQ(c.json.at("audit").size(), 1u);  // one file
+  EXPECT_TRUE(c.json.at("audit").at(0).at("findings").empty());
   EXPECT_TRUE(c.json.at("prior").is_null());
   ASSERT_EQ(c.json.at("learners").size(), 6u);  // three on geometry, three on the error model
   for (const Json& learner : c.json.at("learners"))

@@ -163,9 +163,9 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
                                     const vn::FitOptions& fit, std::string& rule, vn::ReportInput& page,
                                     std::vector<vn::DataAudit>& audits) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
-  audits = audit_files(robot, o);
   std::optional<vn::ArmPrior> prior;
   if (!o.prior.empty()) prior = read_prior<N>(o.prior);
+  audits = audit_files(robot, o);
   const auto types = robot.arm.chain().joint_types();
   std::vector<vn::Dataset<N>> train, test;
   std::string names;
@@ -220,11 +220,9 @@ int run_calibration(support::Program& program, Options& o) {
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), rule);
   if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
   fmt::print("\n{}", report.summary());
-  if (!program.common().json.empty()) {
-    support::Json json = vn::to_json(report, robot.name);
-    for (const vn::DataAudit& audit : audits) json["audit"].push_back(vn::to_json(audit));
-    support::write_json(program.common().json, json);
-  }
+  support::Json json = vn::to_json(report, robot.name);
+  for (const vn::DataAudit& audit : audits) json["audit"].push_back(vn::to_json(audit));
+  if (!program.common().json.empty()) support::write_json(program.common().json, json);
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
   fmt::print(
@@ -234,6 +232,7 @@ int run_calibration(support::Program& program, Options& o) {
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
   if (!o.report.empty()) {
     page.rule = rule;
+    page.results = json.dump(-1, ' ', false, support::Json::error_handler_t::replace);
     support::write_report(program, o.report, page, o.date, o.save);
     fmt::print("Report: {}\n", o.report);
   }

@@ -245,7 +245,7 @@ TEST(CorrectPath, SaysWhatCannotBeMet) {
       options);
   ASSERT_EQ(path.points.size(), 5u);
   EXPECT_EQ(path.points[0].status, PointStatus::met);
-  EXPECT_EQ(path.points[1].status, PointStatus::not_found);  // the model bounds no reach
+  EXPECT_EQ(path.points[1].status, PointStatus::proven_out);
   EXPECT_FALSE(path.points[1].command.allFinite());
   EXPECT_EQ(path.points[2].status, PointStatus::invalid_target);
   EXPECT_EQ(path.points[3].status, PointStatus::invalid_target);

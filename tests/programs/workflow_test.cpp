@@ -23,7 +23,7 @@ TEST(Workflow, FromATableToAReportInFiveCommands) {
     return done.output;
   };
   const Robot<6> arm = robots::abb_irb120();
-  nlohmann::json table{{"name", "my arm"}, {"joints", nlohmann::json::array()}};
+  nlohmann::json table{{"name", "my arm"}, {"convention", "standard"}, {"joints", nlohmann::json::array()}};
   for (int i = 0; i < 6; ++i)
     table["joints"].push_back({{"a_mm", arm.chain.row(i).a * 1e3},
                                {"alpha_deg", arm.chain.row(i).alpha * 180 / std::numbers::pi},

@@ -24,7 +24,7 @@ struct BranchOptions {
   JointVector<N> near = JointVector<N>::Zero();
   /// So near to a singularity of the nominal arm's shoulder or wrist, branches may lie anywhere around it [m, rad]: a
   /// few times what the model differs from the nominal arm.
-  double near_singularity = 0.004;
+  double near_singularity = 0.01;
   double rotation_length = 0.3;  ///< 1 rad of rotation weighs as many metres in `sigma_min` and `radius` [m]
 };
 

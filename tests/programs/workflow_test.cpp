@@ -29,31 +29,33 @@ TEST(Workflow, FromATableToAReportInFiveCommands) {
                                {"alpha_deg", arm.chain.row(i).alpha * 180 / std::numbers::pi},
                                {"d_mm", arm.chain.row(i).d * 1e3},
                                {"theta_deg", arm.chain.row(i).theta * 180 / std::numbers::pi},
-                               {"min_deg", arm.limits.lower(i) * 180 / std::numbers::pi},
-                               {"max_deg", arm.limits.upper(i) * 180 / std::numbers::pi}});
+                               {"lower_deg", arm.limits.lower(i) * 180 / std::numbers::pi},
+                               {"upper_deg", arm.limits.upper(i) * 180 / std::numbers::pi}});
   write_file(folder / "my_arm.json", table.dump());
+  write_file(folder / "targets.csv",
+             "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n0,20,10,0,60,0\n10,25,5,0,60,10\n-30,0,-20,40,-50,0\n");
 
   run("plan_poses' --robot my_arm.json --count 60 --candidates 500 --orientations --out poses.csv");
   run("simulate_measurements' --robot my_arm.json --poses poses.csv --out measured.csv");
   const std::string calibrated =
       run("calibrate' --robot my_arm.json --data measured.csv --test-every 5 --save model.json --report report.html "
           "--json report.json --out figures");
-  run("correct' --model model.json --targets poses.csv --out commands.csv");
+  run("correct' --model model.json --targets targets.csv --out commands.csv");
   run("plan_poses' --robot my_arm.json --data measured.csv --add 5 --candidates 300 --out more.csv");
 
   EXPECT_NE(calibrated.find("Report: report.html"), std::string::npos);
   EXPECT_EQ(read_file(folder / "report.html").rfind("<!DOCTYPE html>", 0), 0u);
   const auto report = nlohmann::json::parse(read_file(folder / "report.json"));
   EXPECT_TRUE(report.contains("audit"));
-  const auto planned = read_joints<6>(folder / "poses.csv"), commands = read_joints<6>(folder / "commands.csv"),
-             more = read_joints<6>(folder / "more.csv");
+  const auto planned = read_joints<6>(folder / "poses.csv"), targets = read_joints<6>(folder / "targets.csv"),
+             commands = read_joints<6>(folder / "commands.csv"), more = read_joints<6>(folder / "more.csv");
   EXPECT_GE(planned.rows(), 60);
-  EXPECT_EQ(commands.rows(), planned.rows());
+  ASSERT_EQ(commands.rows(), targets.rows());
   EXPECT_GE(more.rows(), 5);
   // a corrected command is another one, nearby, and takes the model where the nominal arm was to be
   const auto robot = load<6>(folder / "model.json");
-  for (Index i = 0; i < planned.rows(); ++i) {
-    const JointVector<6> target = planned.row(i).transpose(), command = commands.row(i).transpose();
+  for (Index i = 0; i < targets.rows(); ++i) {
+    const JointVector<6> target = targets.row(i).transpose(), command = commands.row(i).transpose();
     EXPECT_GT((command - target).norm(), 1e-6);
     EXPECT_LT((command - target).norm(), 0.2);
     EXPECT_LT((robot.position(command) - robot.nominal().position(target)).norm(), 1e-3);

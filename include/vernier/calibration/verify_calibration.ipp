@@ -201,7 +201,8 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
       residual.segment<3>(values * i + 3) =
           log_so3(pose.linear() * exp_so3(probe) * data.orientations[row].transpose());
     const double* jacobian = input.jacobians.data() + 6 * joints * i;
-    registered.middleRows(values * i, values) = update.columns(pose, jacobian).topRows(values);
+    if (registered.cols() > 0)
+      registered.middleRows(values * i, values) = update.columns(pose, jacobian).topRows(values);
     const Eigen::Map<const Rows6> columns(jacobian, 6, joints);
     for (Index j = 0; j < joints; ++j) {
       const double q = data.joints()(i, j);

@@ -38,8 +38,8 @@ VERNIER_IMPL std::optional<Iso9283Cube> largest_iso9283_cube(const Vector3& lowe
   for (int i = -half; i <= half; ++i)
     for (int j = -half; j <= half; ++j)
       for (int k = -half; k <= half; ++k) places.emplace_back(Vector3(i, j, k) / (2 * half));
-  std::stable_sort(places.begin(), places.end(),
-                   [](const Vector3& a, const Vector3& b) { return a.squaredNorm() < b.squaredNorm(); });
+  const auto key = [](const Vector3& a) { return std::array{a.squaredNorm(), a.x(), a.y(), a.z()}; };
+  std::sort(places.begin(), places.end(), [&](const Vector3& a, const Vector3& b) { return key(a) < key(b); });
   for (int k = edges; k >= 1; --k) {
     const double edge = (upper - lower).minCoeff() * k / edges;
     const Vector3 play = (upper - lower).array() - edge;

@@ -102,7 +102,7 @@ VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotatio
   };
   std::vector<Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), before);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return before(a, b) || (a < b && !before(b, a)); });
   std::vector<DataFinding> found;
   for (std::size_t a = 0; a < order.size();) {
     std::size_t b = a + 1;

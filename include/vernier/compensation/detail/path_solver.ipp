@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "vernier/compensation/detail/path_solver.hpp"
+#include "vernier/core/argsort.hpp"
 #include "vernier/core/so3.hpp"
 
 namespace vernier::detail {
@@ -46,6 +47,16 @@ struct PathState {
 };
 
 inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
+
+/// The cheapest first; of equals in their order.
+VERNIER_API std::vector<PathState> by_cost(const std::vector<PathState>& states) {
+  VectorX costs(static_cast<Index>(states.size()));
+  for (Index i = 0; i < costs.size(); ++i) costs(i) = states[static_cast<std::size_t>(i)].cost;
+  std::vector<PathState> out;
+  out.reserve(states.size());
+  for (const Index i : argsort(costs)) out.push_back(states[static_cast<std::size_t>(i)]);
+  return out;
+}
 
 /// Chooses branches and whole turns over a path, then commands.
 class PathSearch {
@@ -160,7 +171,7 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
     std::vector<PathState> nearest;
     for (const PathState& state : out)
       if (state.from == cheapest) nearest.push_back(state);
-    std::stable_sort(nearest.begin(), nearest.end(), cheaper);
+    nearest = by_cost(nearest);
     for (std::size_t k = 0; k < std::min<std::size_t>(nearest.size(), first ? nearest.size() : 2); ++k)
       for (int j = 0; j < arm_.joints; ++j)
         for (const double turn : {-2 * std::numbers::pi, 2 * std::numbers::pi}) {
@@ -170,7 +181,7 @@ VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, cons
         }
   }
   if (out.size() > most_states) {
-    std::stable_sort(out.begin(), out.end(), cheaper);
+    out = by_cost(out);
     out.resize(most_states);
   }
 }

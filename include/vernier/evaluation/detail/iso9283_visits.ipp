@@ -112,8 +112,9 @@ VERNIER_API void check_sequence(std::span<const Iso9283Visit> visits, Departures
     if (!std::isfinite(v.time_s)) return;
     sequence.push_back(&v);
   }
-  std::stable_sort(sequence.begin(), sequence.end(),
-                   [](const Iso9283Visit* a, const Iso9283Visit* b) { return a->time_s < b->time_s; });
+  std::sort(sequence.begin(), sequence.end(), [](const Iso9283Visit* a, const Iso9283Visit* b) {
+    return a->time_s < b->time_s || (a->time_s == b->time_s && a < b);
+  });
   std::map<std::pair<int, int>, const Iso9283Visit*> last;
   std::map<int, std::map<int, int>> before;
   std::map<std::pair<int, int>, bool> told;

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/data_finding.hpp"
 #include "vernier/calibration/detail/audit_fit.hpp"
 
 namespace vernier::detail {

@@ -3,7 +3,7 @@
 /// @file
 /// Checks of single rows, of time and of joint values, for the audit of data. Each appends what it finds.
 
-#include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/data_finding.hpp"
 #include "vernier/calibration/detail/audit_fit.hpp"
 
 namespace vernier::detail {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "vernier/io/html_report.hpp"
+#include "vernier/io/report_input.hpp"
 
 namespace vernier::detail {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "vernier/io/detail/pose_view.hpp"
-#include "vernier/io/html_report.hpp"
+#include "vernier/io/report_input.hpp"
 
 namespace vernier::detail {
 

@@ -40,7 +40,9 @@ struct Iso9283Pose {
   Vector3 ap_xyz = Vector3::Zero();  ///< barycentre minus command
   Vector3 ap_abc = Vector3::Zero();  ///< likewise, angles
   double rp = 0;                     ///< mean distance from the barycentre plus three of its standard deviations
-  double rp_low = 0, rp_high = 0;    ///< 95 % interval of RP by the bootstrap-t; NaN for less than three visits
+  double rp_low = 0;                 ///< lower end of the 95 % interval of RP by the bootstrap-t; NaN for fewer than
+                                     ///< three visits
+  double rp_high = 0;                ///< upper end, likewise
   Vector3 rp_xyz = Vector3::Zero();  ///< three standard deviations
   Vector3 rp_abc = Vector3::Zero();  ///< likewise, angles
 };
@@ -48,12 +50,15 @@ struct Iso9283Pose {
 /// Accuracy (AD) and repeatability (RD) of the distance between two poses of a cycle, P2 and P4 [m, rad]. Per axis and
 /// angle they are those of absolute differences.
 struct Iso9283Distance {
-  int first = 2, second = 4;                                   ///< numbers of the poses
-  Index n = 0;                                                 ///< number of cycles that have both
-  double ad = 0;                                               ///< mean measured minus commanded distance
-  double rd = 0;                                               ///< three standard deviations; NaN for one cycle
-  Vector3 ad_xyz = Vector3::Zero(), ad_abc = Vector3::Zero();  ///< AD of each axis and angle
-  Vector3 rd_xyz = Vector3::Zero(), rd_abc = Vector3::Zero();  ///< RD of each axis and angle
+  int first = 2;                     ///< number of the one pose
+  int second = 4;                    ///< number of the other
+  Index n = 0;                       ///< number of cycles that have both
+  double ad = 0;                     ///< mean measured minus commanded distance
+  double rd = 0;                     ///< three standard deviations; NaN for one cycle
+  Vector3 ad_xyz = Vector3::Zero();  ///< AD of each axis
+  Vector3 ad_abc = Vector3::Zero();  ///< AD of each angle
+  Vector3 rd_xyz = Vector3::Zero();  ///< RD of each axis
+  Vector3 rd_abc = Vector3::Zero();  ///< RD of each angle
 };
 
 /// Multi-directional pose accuracy variation: the largest difference between the means of two directions of approach.
@@ -68,12 +73,14 @@ struct Iso9283Variation {
 struct Iso9283Drift {
   /// Some visits in sequence.
   struct Group {
-    double time_s = 0;      ///< mean time of measuring; NaN where unknown
-    double ap = 0, rp = 0;  ///< as in `Iso9283Pose`
+    double time_s = 0;  ///< mean time of measuring; NaN where unknown
+    double ap = 0;      ///< as in `Iso9283Pose`
+    double rp = 0;      ///< likewise
   };
   int pose = 1;                 ///< its number
   std::vector<Group> groups{};  ///< at least two
-  double dap = 0, drp = 0;      ///< largest change of AP and RP since the first group [m]
+  double dap = 0;               ///< largest change of AP since the first group [m]
+  double drp = 0;               ///< that of RP [m]
 };
 
 /// Result of `iso9283`.

@@ -31,11 +31,11 @@ struct ToolBox {
 
 /// What a configuration to be measured has to obey.
 struct MeasurementConstraints {
-  VectorX lower{};             ///< lower joint limits [rad, m]; empty: none
-  VectorX upper{};             ///< upper ones, likewise
-  double joint_margin = 0.05;  ///< distance kept from them [rad, m]
-  std::optional<ToolBox> tool_box{};
-  std::optional<Tracker> tracker{};
+  VectorX lower{};                    ///< lower joint limits [rad, m]; empty: none
+  VectorX upper{};                    ///< upper ones, likewise
+  double joint_margin = 0.05;         ///< distance kept from them [rad, m]
+  std::optional<ToolBox> tool_box{};  ///< where the tool may be; empty: anywhere
+  std::optional<Tracker> tracker{};   ///< what has to see the reflector; empty: nothing
   /// Radii of the links [m], one a joint: link i is a capsule from the origin of frame i - 1 to that of frame i. Empty:
   /// links hide nothing and touch nothing.
   std::vector<double> link_radii{};

@@ -129,7 +129,12 @@ template <BranchRoots Roots, KinematicModel M>
                                       detail::lipschitz_bound(length, options.rotation_length)};
 
   detail::BranchSet found;
-  for (const InverseRoot<N>& root : roots) found.refine(problem, root.joints.data(), root.margin);
+  const auto refine = [&](bool sampled) {
+    for (const InverseRoot<N>& root : roots)
+      if (root.sampled == sampled) found.refine(problem, root.joints.data(), root.margin);
+  };
+  refine(false);
+  if (found.may_be_incomplete()) refine(true);
   found.complete(problem);
   out.count = found.count;
   out.seeds_lost = found.seeds_lost;

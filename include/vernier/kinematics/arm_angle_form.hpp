@@ -56,7 +56,7 @@ class ArmAngleForm {
     out.nearest_margin = from.nearest_margin;
     for (int r = 0; r < from.count; ++r) {
       const detail::SphericalArmRoot& root = from.roots[static_cast<std::size_t>(r)];
-      out.roots[static_cast<std::size_t>(r)] = {root.joints, root.margin, root.free};
+      out.roots[static_cast<std::size_t>(r)] = {root.joints, root.margin, root.free, root.sampled};
     }
     return out;
   }

@@ -28,6 +28,7 @@ struct InverseRoot {
   double margin;  ///< 0; positive where the target is out of reach: its relative distance from a boundary of the
                   ///< arm, whose joint values these are
   unsigned free;  ///< bit i: the value of joint i is arbitrary there (a singularity), others follow from it
+  bool sampled;   ///< a sample around the singularity of a spherical wrist, see `ClosedForm::roots`
 };
 
 /// All joint values of one target; a range of `InverseRoot`.
@@ -72,6 +73,7 @@ struct MovingJoints {
       InverseRoot<N>& to = out.roots[static_cast<std::size_t>(r)];
       to.margin = root.margin;
       to.free = 0;
+      to.sampled = root.sampled;
       if (held.joint >= 0) to.joints(held.joint) = held.value;
       for (int k = 0; k < 6; ++k) {
         const int joint = index[static_cast<std::size_t>(k)];

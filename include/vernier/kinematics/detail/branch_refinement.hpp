@@ -3,6 +3,7 @@
 /// @file
 /// Newton's method from the roots of a nominal arm to the branches of a real one.
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -53,9 +54,13 @@ struct BranchSet {
   std::array<double, most_branch_joints>
       stalled[max_stalled];  ///< where Newton's method came from seeds that were lost
   int stalled_count = 0;
-  bool suspicious =
-      false;  ///< whether some may be missing: a seed beyond a boundary, lost, or not alone at its solution
+  bool suspicious = false;  ///< whether a seed was beyond a boundary, lost, or not alone at its solution
 
+  /// Whether some may be missing: branches come in pairs, and may change their number next to a singularity.
+  bool may_be_incomplete() const {
+    return suspicious || count % 2 != 0 ||
+           std::any_of(branches.begin(), branches.begin() + count, [](const auto& b) { return b.sigma_min < 0.0005; });
+  }
   /// Adds the branch to which Newton's method leads.
   /// @param margin of the seed, see `SixAxisRoot`
   VERNIER_API void refine(const BranchProblem& problem, const double* seed, double margin) noexcept;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,6 +23,7 @@ struct BranchIterate {
   Matrix6 jacobian, inverse;
   Vector6 error;  ///< what lacks to the target [m]
   double position_error, rotation_error;
+  double moved;  ///< from where the inverse was computed [rad]
 
   bool accepted() const { return position_error < accepted_error && rotation_error < accepted_error; }
 };
@@ -85,33 +86,50 @@ VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) n
   return 2 * 6 * std::hypot(arm_length, rotation_length);
 }
 
-/// Newton's method, damped least squares where that does not converge. The last step is not evaluated where its square
-/// proves that nothing is left.
+/// Newton's method, damped least squares where that does not converge. The last step takes the inverse of the step
+/// before, and is not evaluated, where the Lipschitz bound proves that nothing is left.
+/// @param damped whether damped least squares are tried
 /// @return whether the target is met
-VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations) noexcept {
-  constexpr double longest_step = 0.3, last_step = 2e-7;  // rad
+VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
+                            bool damped = true) noexcept {
+  constexpr double longest_step = 0.3;                  // rad
+  constexpr double negligible = 1e-2 * accepted_error;  // m
   double start[most_branch_joints];
   std::copy_n(q, problem.joints, start);
   double before = std::numeric_limits<double>::infinity();
+  const auto advance = [&](const Vector6& step) {
+    for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += step(i);
+    at.moved += step.norm();
+  };
+  const auto finish = [&](double left) {
+    at.position_error = std::min(at.position_error, left);
+    at.rotation_error = std::min(at.rotation_error, left / problem.rotation_length);
+    return true;
+  };
+  at.moved = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 8; ++k) {
     evaluate_iterate(problem, q, at);
     ++iterations;
     const double size = at.error.norm();
     if (!(size < 2 * before)) break;
     before = size;
+    if (at.moved < 1e-3) {
+      const Vector6 step = at.inverse * at.error;
+      const double length = step.norm(), left = problem.lipschitz * (at.moved + length) * length;
+      if (left < negligible) {
+        advance(step);
+        return finish(left);
+      }
+    }
     invert(at.jacobian, at.inverse);
+    at.moved = 0;
     const Vector6 step = at.inverse * at.error;
     const double largest = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) break;
-    const double shorten = std::min(1.0, longest_step / largest);
-    for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += shorten * step(i);
-    if (largest < last_step) {
-      const double left = 0.5 * problem.lipschitz * step.squaredNorm();
-      at.position_error = std::min(at.position_error, left);
-      at.rotation_error = std::min(at.rotation_error, left / problem.rotation_length);
-      return true;
-    }
+    advance(std::min(1.0, longest_step / largest) * step);
+    if (const double left = 0.5 * problem.lipschitz * step.squaredNorm(); left < negligible) return finish(left);
   }
+  if (!damped) return false;
 
   // near a singularity
   double lower[most_branch_joints], upper[most_branch_joints], jacobian[36];
@@ -132,6 +150,7 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
   iterations += found.iterations;
   evaluate_iterate(problem, q, at);
   invert(at.jacobian, at.inverse);
+  at.moved = (at.inverse * at.error).norm();
   ++iterations;
   return at.accepted();
 }
@@ -176,9 +195,9 @@ VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const 
   for (int k = 0; k < 4; ++k) direction = (power * direction).normalized();
   out.sigma_min = 1 / (bound * std::sqrt(direction.dot(once * direction)));
 
-  const double step = (at.inverse * at.error).norm() + 1e-15 * bound;
+  const double step = at.moved + 1e-15 * bound;
   const double h = bound * problem.lipschitz * step;
-  out.radius = h < 0.5 ? (1 + std::sqrt(1 - 2 * h)) / (bound * problem.lipschitz) : 0;
+  out.radius = h < 0.5 ? (1 + std::sqrt(1 - 2 * h)) / (bound * problem.lipschitz) - at.moved : 0;
   return true;
 }
 
@@ -215,7 +234,8 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
   BranchIterate at;
   evaluate_iterate(problem, from, at);
   if (!at.jacobian.allFinite()) return;
-  const Eigen::JacobiSVD<Matrix6> svd(at.jacobian, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // singular vectors by the symmetric problem, for a third of what a decomposition of J takes
+  const Eigen::SelfAdjointEigenSolver<Matrix6> right(at.jacobian.transpose() * at.jacobian);
   constexpr double h = 1e-4, wide = 0.25 * std::numbers::pi;
   double start[most_branch_joints], q[most_branch_joints];
   std::copy_n(from, problem.joints, start);
@@ -224,9 +244,15 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     std::copy_n(start, problem.joints, q);
     for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += by * v(i);
   };
-  for (int direction = 5; direction >= 4 && svd.singularValues()(direction) < near_fold; --direction) {
-    const Vector6 u = svd.matrixU().col(direction);
-    v = svd.matrixV().col(direction);
+  for (int direction = 0; direction < 2; ++direction) {
+    v = right.eigenvectors().col(direction);
+    Vector6 u = at.jacobian * v;
+    const double sigma = u.norm();
+    if (!(sigma < near_fold)) break;
+    if (sigma < 1e-6)
+      u = Eigen::SelfAdjointEigenSolver<Matrix6>(at.jacobian * at.jacobian.transpose()).eigenvectors().col(direction);
+    else
+      u /= sigma;
     BranchIterate ahead, behind;
     displace(h);
     evaluate_iterate(problem, q, ahead);
@@ -234,15 +260,14 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     evaluate_iterate(problem, q, behind);
     const double curvature = u.dot((ahead.jacobian - behind.jacobian) * v) / (2 * h);
     // the other solution; where the seed stalled, it is at the vertex, and both sides may have one
-    const double twin =
-        met ? -2 * svd.singularValues()(direction) / curvature : std::sqrt(2 * std::abs(u.dot(at.error) / curvature));
+    const double twin = met ? -2 * sigma / curvature : std::sqrt(2 * std::abs(u.dot(at.error) / curvature));
     displace(twin);
     if (met && std::abs(twin) < 0.3 && is_known(set, problem, q, 0.5 * std::abs(twin))) continue;
     for (const double by : {twin, met ? 0.5 * twin : -twin, 2 * twin, 0.15, -0.15, wide, -wide}) {
       if (!(std::abs(by) < 2)) continue;
       displace(by);
       int iterations = 3;
-      if (!solve_near(problem, q, at, iterations)) continue;
+      if (!solve_near(problem, q, at, iterations, met)) continue;
       double turned[most_branch_joints];
       std::copy_n(q, problem.joints, turned);
       bool same = true;
@@ -256,7 +281,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
 }
 
 VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
-  const double near_fold = suspicious || count % 2 != 0 ? 0.05 : 0.01;  // m/rad
+  const double near_fold = may_be_incomplete() ? 0.05 : 0.005;  // m/rad
   for (int b = 0; b < count; ++b) {
     const FoundBranch& from = branches[static_cast<std::size_t>(b)];
     if (from.sigma_min < near_fold) cross_folds(*this, problem, from.q, true, near_fold);

@@ -120,11 +120,12 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
                                                double width) const noexcept {
   SixAxisRoots out;
   const auto nearby = [&](int i) { return near(mirrored_ ? 5 - i : i); };
-  const auto emit = [&](const double(&q)[6], double margin, unsigned free) {
+  const auto emit = [&](const double(&q)[6], double margin, unsigned free, bool sampled = false) {
     if (out.count >= SixAxisRoots::capacity) return;
     SixAxisRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
     root.margin = margin;
     root.free = 0;
+    root.sampled = sampled;
     for (int i = 0; i < 6; ++i) {
       const int joint = mirrored_ ? 5 - i : i;
       root.joints(joint) = wrapped_angle(q[i]);
@@ -151,7 +152,8 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     const WristAngles end = solve_wrist(wrist_, to_wrist.transpose() * rotation, nearby(3), width);
     missed(end.margin);
     for (int k = 0; k < end.count; ++k)
-      emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin), free | (end.any ? 8u : 0u));
+      emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin_of(k)),
+           free | (end.any ? 8u : 0u), k >= end.exact);
   };
 
   switch (kind_) {
@@ -234,7 +236,7 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
                 angle_between(h_[1], p_[1] + rotation_about(h_[2], q3) * p_[2], u, negligible_length);
             const double q2 = second.any ? nearby(1) : second.angle;
             emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
-                 std::max({firsts.margin, end.margin, thirds.margin}),
+                 std::max({firsts.margin, end.margin_of(m), thirds.margin}),
                  (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u));
           }
         }

@@ -40,7 +40,8 @@ struct SixAxisRoot {
   /// By how much the target lies beyond a boundary of the arm, relative to that boundary: 0 for a root, positive for
   /// the joint values at the boundary that come nearest.
   double margin = 0;
-  unsigned free = 0;  ///< bit i: every value of joint i would do as well, given that others follow
+  unsigned free = 0;     ///< bit i: every value of joint i would do as well, given that others follow
+  bool sampled = false;  ///< of a spherical wrist next to its singularity
 };
 
 /// All joint values that a solver found for one target.

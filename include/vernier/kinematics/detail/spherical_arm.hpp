@@ -18,6 +18,7 @@ struct SphericalArmRoot {
   JointVector<7> joints;
   double margin;
   unsigned free;
+  bool sampled;
 };
 
 /// All of one target.

@@ -80,7 +80,8 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
         const double q[] = {begin.q4[k], begin.q5[k], begin.q6[k], q4, end.q4[m], end.q5[m], end.q6[m]};
         SphericalArmRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
         for (int j = 0; j < 7; ++j) root.joints(j) = wrapped_angle(q[j]);
-        root.margin = std::max({elbows.margin, begin.margin, end.margin});
+        root.margin = std::max({elbows.margin, begin.margin, end.margin_of(m)});
+        root.sampled = m >= end.exact;
         root.free = (begin.any ? 1u : 0u) | (elbows.any ? 8u : 0u) | (end.any ? 16u : 0u);
       }
   }

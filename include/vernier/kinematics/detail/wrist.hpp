@@ -3,6 +3,8 @@
 /// @file
 /// Three joints whose axes meet in a point, and what else closed forms of whole arms share.
 
+#include <algorithm>
+
 #include "vernier/core/types.hpp"
 
 namespace vernier::detail {
@@ -40,8 +42,11 @@ struct Candidates {
 struct WristAngles {
   double q4[2 + angle_samples], q5[2 + angle_samples], q6[2 + angle_samples];
   int count;
-  double margin;
+  int exact;      ///< so many of them; the others are samples
+  double margin;  ///< of the exact ones
   bool any;
+
+  double margin_of(int k) const { return k < exact ? margin : std::max(margin, sampled_margin); }
 };
 
 /// The angles of a wrist for a rotation.

@@ -66,8 +66,8 @@ VERNIER_IMPL WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation
     out.any = out.any || q4.any;
     add(q4.any ? near4 : q4.angle, q5, r5);
   }
+  out.exact = out.count;
   if (roots > 0 && std::min(half, std::numbers::pi - half) < widest) {
-    out.margin = std::max(out.margin, sampled_margin);
     const double q5 = wrist.centre + (half < 1 ? 0 : std::numbers::pi), q4 = out.q4[0];
     const Matrix3 r5 = rotation_about(wrist.k5, q5);
     for (int k = 0; k < angle_samples; ++k) add(q4 + (k + 0.5) * 2 * std::numbers::pi / angle_samples, q5, r5);

@@ -187,7 +187,12 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
                                          o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search));
   const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
   if (!o.save.empty())
-    vn::save(o.save, calibration, {.name = robot.name, .limits = robot.limits, .data_file = names, .date = o.date});
+    vn::save(o.save, calibration,
+             {.name = robot.name,
+              .limits = robot.limits,
+              .data_file = names,
+              .date = o.date,
+              .held_out_error = report.stage(report.chosen).position.mean()});
   if (!o.report.empty()) {
     page = page_of<N>(report, robot, o, train, test, distances);
     page.audit = support::audit_rows(o.data, audits);

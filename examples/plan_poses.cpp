@@ -15,6 +15,7 @@
 #include "robot_choice.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
+#include "vernier/io/model_file.hpp"
 #include "vernier/planning/plan_measurements.hpp"
 
 namespace {
@@ -23,13 +24,17 @@ namespace vn = vernier;
 
 /// What the command line says.
 struct Settings {
-  std::string robot, data, region, from, held_out, out;
+  std::string robot, data, model, region, from, held_out, out;
   vn::Index count = 0, add = 0, choose = 0, test_every = 0, candidates = 5000;
-  std::vector<double> tracker{}, box{};
+  std::vector<double> tracker{}, box{}, region_box{};
   double acceptance_deg = 180, link_radius_mm = 0;
   bool orientations = false, bound = false;
   int cover = 0;
 };
+
+vn::ToolBox tool_box(const std::vector<double>& mm) {
+  return {1e-3 * vn::Vector3(mm[0], mm[2], mm[4]), 1e-3 * vn::Vector3(mm[1], mm[3], mm[5])};
+}
 
 /// The rows to choose, in the order of the file; joints alone are looked at.
 template <int N>
@@ -46,8 +51,9 @@ support::PlanOutcome choose_rows(const Settings& o, const vn::DescribedRobot<N>&
   std::sort(rows.begin(), rows.end());
   vn::write_dataset(o.out, data.rows(rows));
   if (!o.held_out.empty()) vn::write_dataset(o.held_out, held_out);
-  return {plan, {}, plan.joints, data.joints(), robot.arm.positions(plan.joints), robot.arm.positions(data.joints()),
-          {},   0};
+  return {
+      plan, {}, plan.joints, data.joints(), robot.arm.positions(plan.joints), robot.arm.positions(data.joints()), {},
+      0,    0};
 }
 
 /// New poses, written in the order of their visits.
@@ -57,9 +63,7 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   const auto types = robot.arm.model().joint_types();
   vn::MeasurementConstraints constraints;
   constexpr double mm = 1e-3;
-  if (!o.box.empty())
-    constraints.tool_box =
-        vn::ToolBox{mm * vn::Vector3(o.box[0], o.box[2], o.box[4]), mm * vn::Vector3(o.box[1], o.box[3], o.box[5])};
+  if (!o.box.empty()) constraints.tool_box = tool_box(o.box);
   if (!o.tracker.empty())
     constraints.tracker = vn::Tracker{.position = mm * vn::Vector3(o.tracker[0], o.tracker[1], o.tracker[2]),
                                       .acceptance = o.acceptance_deg * std::numbers::pi / 180};
@@ -70,13 +74,25 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
     measured = {data.joints(), data.previous(), {}};
     options.oriented = options.oriented || data.has_orientations();
   }
+  vn::Framed<vn::DhChain<N>> arm = robot.arm;
+  double left_out_error = 0;
+  if (!o.model.empty()) {
+    const auto model = vn::load<N>(o.model);
+    arm = vn::Framed<vn::DhChain<N>>(model.identified().model().chain(), robot.arm.base_frame(),
+                                     model.identified().tool_frame());
+    left_out_error = model.provenance().left_out_error;
+  }
   vn::JointRows<N> region(0, N);
   if (!o.region.empty()) {
     region = vn::read_joints<N>(o.region, types);
-    options.criterion = vn::DesignCriterion::region_variance;
+  } else if (!o.region_box.empty()) {
+    vn::MeasurementConstraints inside;
+    inside.tool_box = tool_box(o.region_box);
+    region = vn::sample_candidates(arm, robot.limits, inside, 200, seed + 1).joints;
   }
-  const auto candidates = vn::sample_candidates(robot.arm, robot.limits, constraints, o.candidates, seed);
-  const auto plan = vn::plan_measurements(robot.arm, candidates, options, measured, region);
+  if (region.rows() > 0) options.criterion = vn::DesignCriterion::region_variance;
+  const auto candidates = vn::sample_candidates(arm, robot.limits, constraints, o.candidates, seed);
+  const auto plan = vn::plan_measurements(arm, candidates, options, measured, region);
 
   std::string text;
   for (std::size_t j = 0; j < types.size(); ++j)
@@ -94,10 +110,11 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
           plan.rejected,
           plan.joints,
           candidates.joints,
-          robot.arm.positions(plan.joints),
-          robot.arm.positions(candidates.joints),
+          arm.positions(plan.joints),
+          arm.positions(candidates.joints),
           {},
-          measured.joints.rows()};
+          measured.joints.rows(),
+          left_out_error};
 }
 
 template <int N>
@@ -122,7 +139,7 @@ support::Json to_json(const Settings& o, const std::string& robot, const support
   const auto list = [](const vn::VectorX& v) { return std::vector<double>(v.begin(), v.end()); };
   return {{"robot", robot},
           {"poses", found.plan.chosen.size()},
-          {"criterion", o.region.empty() ? "information" : "region_variance"},
+          {"criterion", o.region.empty() && o.region_box.empty() ? "information" : "region_variance"},
           {"candidates", found.candidates.rows()},
           {"measured", found.measured},
           {"unknowns", found.plan.unknowns},
@@ -133,6 +150,7 @@ support::Json to_json(const Settings& o, const std::string& robot, const support
           {"information_nats", list(found.plan.log_det)},
           {"bound_nats", found.plan.bound},
           {"relative_error", list(found.plan.relative_error)},
+          {"predicted_error_mm", list(1e3 * found.predicted_errors())},
           {"enough", found.plan.enough()}};
 }
 
@@ -145,6 +163,9 @@ int run(support::Program& program) {
   option("--robot", o.robot, "name in the catalogue, or a JSON file", "NAME|FILE")->required();
   auto* count = option("--count", o.count, "number of poses to plan", "N")->check(CLI::Range(3, 100000));
   auto* data = option("--data", o.data, "poses measured so far: what they say is not measured again", "FILE");
+  option("--model", o.model, "what calibrate saved of --data: plans at that arm, with its error of left-out poses",
+         "FILE")
+      ->needs(data);
   auto* add =
       option("--add", o.add, "number of poses to add to --data", "N")->check(CLI::Range(3, 100000))->needs(data);
   auto* choose = option("--choose", o.choose, "choose so many rows of --from, by their joints alone", "N")
@@ -169,8 +190,14 @@ int run(support::Program& program) {
       ->delimiter(',')
       ->expected(6)
       ->excludes(choose);
-  option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
-      ->excludes(choose);
+  auto* region = option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
+                     ->excludes(choose);
+  option("--region-box", o.region_box, "likewise, as a box of tool positions in the base frame [mm]",
+         "X0,X1,Y0,Y1,Z0,Z1")
+      ->delimiter(',')
+      ->expected(6)
+      ->excludes(choose)
+      ->excludes(region);
   app.add_flag("--orientations", o.orientations, "orientations are measured, too");
   app.add_option("--cover", o.cover, "poses in every 10 deg of every joint that can be reached, before anything else")
       ->check(CLI::Range(0, 1000));
@@ -197,6 +224,11 @@ int run(support::Program& program) {
              std::isfinite(plan.bound) ? fmt::format("; no choice of as many has more than {:.1f}", plan.bound) : "");
   const vn::Index all = static_cast<vn::Index>(plan.chosen.size()), half = all / 2;
   fmt::print("Predicted error with half of them, {}: {:.2f} times that with all\n", half, plan.relative_error(half));
+  if (const vn::VectorX errors = found.predicted_errors(); errors.size() > 0)
+    fmt::print(
+        "Error of poses that were left out of the {} measured ones: {:.3f} mm (rms); after half of the new ones about "
+        "{:.3f} mm, after all about {:.3f} mm\n",
+        found.measured, errors(0) * 1e3, errors(half) * 1e3, errors(all) * 1e3);
   if (plan.enough() < all)
     fmt::print("From {} poses on, ten more reduce the predicted error by less than 2 %\n", plan.enough());
   for (int j = 0; j < robot.dof(); ++j)

@@ -27,30 +27,45 @@ std::vector<double> counted(std::size_t n) {
   return out;
 }
 
+/// Stages that figures of poses show, each in a colour of its own throughout: before, geometry alone, joint-wise, and
+/// what is deployed.
+std::vector<std::pair<const StageErrors*, int>> shown_stages(const vernier::CalibrationReport& report) {
+  std::vector<std::pair<const StageErrors*, int>> out;
+  for (const StageErrors& stage : report.stages) {
+    const int colour = stage.key == "frames"        ? 0
+                       : stage.key == "geometry"    ? 1
+                       : stage.key == "jointwise"   ? 2
+                       : stage.key == report.chosen ? 3
+                                                    : -1;
+    if (colour >= 0) out.emplace_back(&stage, colour);
+  }
+  return out;
+}
+
 void draw_stages(const std::filesystem::path& folder, const std::string& robot,
-                 const std::vector<StageErrors>& stages) {
+                 const vernier::CalibrationReport& report) {
   std::vector<std::string> titles;
-  Series mean{"mean", counted(stages.size()), {}, Style::lines, 1}, p95{"95 %", mean.x, {}, Style::lines, 2};
-  std::vector<Sample> samples;
-  std::vector<Series> poses;
-  for (const StageErrors& stage : stages) {
-    const std::vector<double> mm = scaled(stage.position, 1e3);
+  Series mean{"mean", {}, {}, Style::points, 2}, p95{"95 %", {}, {}, Style::points, 1};
+  for (const StageErrors& stage : report.stages) {
     const auto e = ErrorStatistics::of(stage.position * 1e3);
-    const std::size_t plus = stage.title.find(" + ");  // short, for it stands beside the stage it builds on
-    titles.push_back(plus == std::string::npos ? stage.title : stage.title.substr(plus + 1));
+    titles.push_back(stage.title);
     mean.y.push_back(e.mean);
     p95.y.push_back(e.p95);
-    samples.push_back({stage.title, mm});
-    if (stage.key == "frames" || stage.key == "geometry" || stage.key == "jointwise")
-      poses.push_back({stage.key == "frames" ? "before: nominal links" : "after: " + stage.title, counted(mm.size()),
-                       mm, Style::points});
   }
-  bars_svg(folder / "stages.svg", robot + ": held-out position error of each stage", "position error [mm]", titles,
+  dots_svg(folder / "stages.svg", robot + ": held-out position error after each stage", "position error [mm]", titles,
            {mean, p95});
+  std::vector<Sample> samples;
+  std::vector<Series> poses;
+  for (const auto& [stage, colour] : shown_stages(report)) {
+    const std::vector<double> mm = scaled(stage->position, 1e3);
+    const std::string name = colour == 0 ? "before: nominal links" : "after: " + stage->title;
+    samples.push_back({name, mm, colour});
+    poses.push_back({name, counted(mm.size()), mm, Style::points, colour});
+  }
   plot_svg(folder / "distribution.svg", robot + ": cumulative distribution of held-out errors", "position error [mm]",
-           "share of poses [%]", cumulative(samples));
+           "share of poses [%]", cumulative(samples), {.log_x = true});
   plot_svg(folder / "poses.svg", robot + ": each held-out pose, before and after", "held-out pose",
-           "position error [mm]", poses);
+           "position error [mm]", poses, {.log_y = true});
 }
 
 }  // namespace
@@ -82,7 +97,7 @@ void draw_drift(const std::filesystem::path& folder, const std::string& robot,
 
 void draw_calibration(const std::filesystem::path& folder, const std::string& robot,
                       const vernier::CalibrationReport& report) {
-  draw_stages(folder, robot, report.stages);
+  draw_stages(folder, robot, report);
   draw_drift(folder, robot, report.drift);
   std::vector<Series> ranges;
   vernier::Index trials = 0;
@@ -92,17 +107,19 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
     const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;
     const std::string name = fmt::format("joint {}", j + 1), x_label = name + (joint.revolute ? " [deg]" : " [mm]");
     const std::vector<double> held_out = scaled(joint.held_out, unit), angle = scaled(joint.angle, unit);
+    std::vector<Series> errors;
+    for (const auto& [stage, colour] : shown_stages(report))
+      if (colour > 0) errors.push_back({stage->title, held_out, scaled(stage->position, 1e3), Style::points, colour});
     plot_svg(folder / fmt::format("errors_along_joint_{}.svg", j + 1),
-             fmt::format("{}: held-out errors along {}", robot, name), x_label, "position error [mm]",
-             {{"geometry", held_out, scaled(report.stage("geometry").position, 1e3), Style::points},
-              {"joint-wise", held_out, scaled(report.stage("jointwise").position, 1e3), Style::points}});
+             fmt::format("{}: held-out errors along {}", robot, name), x_label, "position error [mm]", errors,
+             {.log_y = true});
     const vernier::VectorX margin = 1.96 * joint.transmission_std;
     if ((margin.array() > 0).any())
       plot_svg(folder / fmt::format("transmission_{}.svg", j + 1),
                fmt::format("{}: transmission error of {}, mean subtracted", robot, name), x_label, "joint error [mrad]",
                {{"joint error", angle, scaled(joint.transmission, 1e3), Style::lines, 2},
-                {"95 % band", angle, scaled(vernier::VectorX(joint.transmission + margin), 1e3), Style::dashed, 1},
-                {"", angle, scaled(vernier::VectorX(joint.transmission - margin), 1e3), Style::dashed, 1}});
+                {"95 % band", angle, scaled(vernier::VectorX(joint.transmission + margin), 1e3), Style::dashed, 2},
+                {"", angle, scaled(vernier::VectorX(joint.transmission - margin), 1e3), Style::dashed, 2}});
     if (!joint.spectrum.empty()) {
       Series amplitude{"amplitude", {}, {}, Style::points, 2}, limit{"above noise", {}, {}, Style::dashed, 0};
       for (const vernier::HarmonicEstimate& one : joint.spectrum) {
@@ -116,11 +133,11 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
     }
     const double row = static_cast<double>(j + 1);
     for (std::size_t k = 0; k < joint.measured_ranges.size(); ++k)
-      ranges.push_back({k == 0 ? name : "",
+      ranges.push_back({"",
                         {joint.measured_ranges[k].first * unit, joint.measured_ranges[k].second * unit},
                         {row, row},
                         Style::lines,
-                        static_cast<int>(j) % palette_size});
+                        2});
   }
   plot_svg(folder / "joint_ranges.svg", robot + ": measured joint ranges", "joint value [deg, mm]", "joint", ranges,
            {.y_range = std::pair{0.0, static_cast<double>(report.joints.size() + 1)}});

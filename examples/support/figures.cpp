@@ -25,7 +25,6 @@ namespace {
 
 constexpr std::array<const char*, palette_size> palette{"#000000", "#E69F00", "#56B4E9", "#009E73",
                                                         "#D55E00", "#0072B2", "#CC79A7"};
-constexpr std::array<std::size_t, palette_size> bar_colours{5, 1, 3, 4, 2, 6, 0};  // black is heavy in areas
 
 const char* colour(const Series& series, std::size_t position) {
   return palette[(series.colour < 0 ? position : static_cast<std::size_t>(series.colour)) % palette.size()];
@@ -206,38 +205,6 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
   return draw(path, script + "plot " + plots + "\n");
 }
 
-bool bars_svg(const std::filesystem::path& path, const std::string& title, const std::string& y_label,
-              const std::vector<std::string>& labels, const std::vector<Series>& series, const FigureOptions& options) {
-  vernier::require(!labels.empty() && !series.empty(), "bars_svg: nothing to draw in ", path.string());
-  std::string script = preamble(title, y_label, options);
-  script +=
-      "set style data histograms\nset style histogram clustered gap 1\n"
-      "set style fill solid 1 noborder\nset boxwidth 0.9\nset xtics scale 0\nunset grid\n"
-      "set grid back ytics linetype 1 linewidth 0.5 linecolor rgb '#dddddd'\n";
-  script += options.log_y     ? log_axis("y", series, options.y_range, [](const Series& s) { return s.y; })
-            : options.y_range ? range("y", options.y_range)
-                              : "set yrange [0:*]\n";
-  script += "$data << EOD\n";
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    std::string label = labels[i];
-    std::replace_if(
-        label.begin(), label.end(), [](char c) { return c == '"' || c == '\n' || c == '\\'; }, ' ');
-    fmt::format_to(std::back_inserter(script), "\"{}\"", label);
-    for (const Series& s : series) {
-      vernier::require(s.y.size() == labels.size(), "bars_svg: series '", s.name, "' has ", s.y.size(), " heights for ",
-                       labels.size(), " labels");
-      script += std::isfinite(s.y[i]) ? fmt::format(" {}", s.y[i]) : " ?";
-    }
-    script += "\n";
-  }
-  script += "EOD\nplot ";
-  for (std::size_t k = 0; k < series.size(); ++k)
-    fmt::format_to(std::back_inserter(script), "{}$data using {}{} linecolor rgb '{}' {}", k == 0 ? "" : ", ", k + 2,
-                   k == 0 ? ":xtic(1)" : "", colour(series[k], bar_colours[k % bar_colours.size()]),
-                   series[k].name.empty() ? "notitle" : "title " + quoted(series[k].name));
-  return draw(path, script + "\n");
-}
-
 bool intervals_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
                    const std::vector<Interval>& intervals) {
   vernier::require(!intervals.empty(), "intervals_svg: nothing to draw in ", path.string());
@@ -256,6 +223,32 @@ bool intervals_svg(const std::filesystem::path& path, const std::string& title, 
               script + fmt::format("plot $data using 1:2:3 with xerrorbars pointtype 7 pointsize 0.9 linewidth 1.8 "
                                    "linecolor rgb '{}'\n",
                                    palette[5]));
+}
+
+bool dots_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+              const std::vector<std::string>& labels, const std::vector<Series>& series) {
+  vernier::require(!labels.empty() && !series.empty(), "dots_svg: nothing to draw in ", path.string());
+  const auto rows = static_cast<int>(labels.size());
+  std::string script = preamble(title, "", {.height = 150 + 30 * rows}), ticks, plots;
+  for (int i = 0; i < rows; ++i)
+    ticks += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(labels[static_cast<std::size_t>(i)]), -i);
+  script += fmt::format("set xlabel {} offset 0,0.4\nset yrange [{}:0.6]\nset ytics ({}) scale 0\n", quoted(x_label),
+                        -rows + 0.4, ticks);
+  script += log_axis("x", series, {}, [](const Series& s) { return s.y; });
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    vernier::require(series[k].y.size() == labels.size(), "dots_svg: series '", series[k].name, "' has ",
+                     series[k].y.size(), " values for ", rows, " labels");
+    fmt::format_to(std::back_inserter(script), "$data{} << EOD\n", k);
+    for (int i = 0; i < rows; ++i)
+      if (const double value = series[k].y[static_cast<std::size_t>(i)]; std::isfinite(value) && value > 0)
+        fmt::format_to(std::back_inserter(script), "{} {} {:.3g}\n", value, -i, value);
+    script += "EOD\n";
+    fmt::format_to(std::back_inserter(plots),
+                   "{}$data{} using 1:2 with points pointtype 7 pointsize {} linecolor rgb '{}' title {}",
+                   k == 0 ? "" : ", ", k, k == 0 ? 1.1 : 0.7, colour(series[k], k), quoted(series[k].name));
+    if (k == 0) plots += ", $data0 using 1:2:3 with labels offset 0,0.9 notitle";
+  }
+  return draw(path, script + "plot " + plots + "\n");
 }
 
 std::vector<Series> histogram(const std::vector<Sample>& samples, int bins, bool log, std::optional<double> smallest) {

@@ -47,12 +47,6 @@ inline constexpr int palette_size = 7;
 bool plot_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
               const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options = {});
 
-/// Draws groups of bars: one group a label, one colour a series, whose y are the heights, one a label.
-/// @throws as `plot_svg`
-bool bars_svg(const std::filesystem::path& path, const std::string& title, const std::string& y_label,
-              const std::vector<std::string>& labels, const std::vector<Series>& series,
-              const FigureOptions& options = {});
-
 /// A value and what surrounds it.
 struct Interval {
   std::string name;
@@ -64,6 +58,13 @@ struct Interval {
 /// @throws as `plot_svg`
 bool intervals_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
                    const std::vector<Interval>& intervals);
+
+/// Draws points below each other, one row a label, the first one at the top, on a logarithmic axis; the values of the
+/// first series are written beside its points.
+/// @param series y: one value a label; their x are not used
+/// @throws as `plot_svg`
+bool dots_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+              const std::vector<std::string>& labels, const std::vector<Series>& series);
 
 /// Values of one kind, to be counted.
 struct Sample {

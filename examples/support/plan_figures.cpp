@@ -59,12 +59,16 @@ std::string draw_plan(const std::filesystem::path& out, const PlanOutcome& found
                 {.y_range = {{0.4, static_cast<double>(found.joints.cols()) + 0.9}}}))
     return {};
   Series error{"", {}, {}};
-  for (vernier::Index k = 3; k < found.plan.relative_error.size(); ++k) {
-    error.x.push_back(static_cast<double>(k));
-    error.y.push_back(found.plan.relative_error(k));
+  const vernier::VectorX predicted = found.predicted_errors();
+  const bool known = predicted.size() > 0;
+  for (vernier::Index k = known ? 0 : 3; k < found.plan.relative_error.size(); ++k) {
+    error.x.push_back(static_cast<double>(found.measured + k));
+    error.y.push_back(known ? 1e3 * predicted(k) : found.plan.relative_error(k));
   }
-  plot_svg(named("error"), "Predicted error, relative to that of all planned poses", "number of poses",
-           "relative error", {error}, {.log_y = true});
+  plot_svg(named("error"),
+           known ? "Expected error: of poses left out now, reduced as predicted"
+                 : "Predicted error, relative to that of all planned poses",
+           "number of poses", known ? "rms position error [mm]" : "relative error", {error}, {.log_y = true});
   const auto view = [&](const char* name, const char* title, int up, const char* label) {
     for (auto [series, points, step] :
          {std::tuple(&possible, &found.reachable, stride), std::tuple(&chosen, &found.points, vernier::Index{1})}) {

@@ -19,6 +19,14 @@ struct PlanOutcome {
   vernier::PointRows points{}, reachable{};  ///< tool points of both [m]
   std::vector<vernier::JointType> types{};   ///< of the joints
   vernier::Index measured = 0;               ///< number of poses measured before
+  double left_out_error = 0;                 ///< of the model of those, rms of poses left out [m]; 0: unknown
+
+  /// Expected rms position error after 0, 1, .. of the chosen poses [m]: what left-out poses show now, reduced as the
+  /// plan predicts. Empty where it is unknown now.
+  vernier::VectorX predicted_errors() const {
+    if (left_out_error == 0) return {};
+    return plan.relative_error * (left_out_error / plan.relative_error(0));
+  }
 };
 
 /// The ranges of a joint (from 0) that candidates reach and the plan does not, in words; empty for none.

@@ -28,7 +28,7 @@ CalibratedRobot<6> example(bool learned) {
   const auto robot = robots::abb_irb120();
   const auto actual = with_geometric_errors(robot.chain, {}, 3);
   const Isometry3 base = frame(1.2, -0.4, 0.05, 0.1, -0.7, 2.0), tool = frame(0, 0.01, 0.109, 0, 0.02, 0);
-  const Provenance from{"poses.csv", 120, "2024-05-01", "commanded", "positions", 3e-5};
+  const Provenance from{"poses.csv", 120, "2024-05-01", "commanded", "positions", 3e-5, 8e-5, 7e-5};
   if (!learned) return {"an arm", Model(robot.chain, Model::Arm(actual, base, tool)), robot.limits, from};
   const JointRows<6> joints = sample_joints(robot.limits, 80, 5);
   JointTerms terms(6);

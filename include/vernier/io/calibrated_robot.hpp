@@ -4,6 +4,7 @@
 /// A calibrated arm as one closed value: everything that is needed to correct its commands, saved and loaded as JSON.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -29,6 +30,8 @@ struct Provenance {
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
   std::string measured = "poses";    ///< what was measured: poses, or positions
   double position_sigma = 0;         ///< of a visit, per component, as estimated from the data [m]; 0: unknown
+  double left_out_error = 0;         ///< rms position error of poses that were left out in turn [m]; 0: unknown
+  double held_out_error = 0;         ///< mean position error of poses it was not fitted to [m]; 0: unknown
 
   /// Equal in every entry.
   bool operator==(const Provenance&) const = default;
@@ -266,6 +269,7 @@ struct RobotInfo {
   std::string data_file{};           ///< name of the file of measured poses
   std::string date{};                ///< of the calibration
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
+  double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
 };
 
 /// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
@@ -280,10 +284,12 @@ ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
 template <int N, class Convention>
 CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
                                                 const RobotInfo<N>& info = {}) {
-  auto robot =
-      CalibratedRobot<N, Convention>(info.name, calibration.model(), info.limits,
-                                     {info.data_file, calibration.poses, info.date, info.joints,
-                                      calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma});
+  const VectorX& left_out = calibration.errors.left_out_errors;
+  auto robot = CalibratedRobot<N, Convention>(
+      info.name, calibration.model(), info.limits,
+      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
+       calibration.errors.position_sigma, left_out.size() > 0 ? std::sqrt(left_out.array().square().mean()) : 0,
+       info.held_out_error});
   const LearnedRemainder<N>* learned = calibration.deployed();
   if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
   return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);

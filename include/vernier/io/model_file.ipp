@@ -317,6 +317,12 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   out["provenance"] = {{"data_file", from.data_file}, {"rows", from.rows},
                        {"date", from.date},           {"joints", from.joints},
                        {"measured", from.measured},   {"position_sigma_m", from.position_sigma}};
+  const auto add_known = [&](const char* key, double error) {
+    require(std::isfinite(error), "save: ", key, " is not finite");
+    if (error > 0) out["provenance"][key] = error;
+  };
+  add_known("left_out_error_m", from.left_out_error);
+  add_known("held_out_error_m", from.held_out_error);
   out["joints"] = std::move(joints);
   out["arm"] = arm_to_json(model.identified);
   if (model.fallback) {
@@ -380,9 +386,11 @@ VERNIER_IMPL ModelData read_model(const std::string& path, int joints, bool modi
   const auto one_of = [&](const char* key, const auto& names) {
     return std::string(names[static_cast<std::size_t>(named(from.at(key), names))]);
   };
+  const auto known = [&](const char* key) { return from.has(key) ? from.at(key).number() : 0; };
   Provenance provenance{any_text(from.at("data_file")),     static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
                         any_text(from.at("date")),          one_of("joints", joint_readings),
-                        one_of("measured", measured_names), from.at("position_sigma_m").number()};
+                        one_of("measured", measured_names), from.at("position_sigma_m").number(),
+                        known("left_out_error_m"),          known("held_out_error_m")};
   const ChainTable nominal(std::move(rows), modified);
   ModelData out{root.at("name").text(),
                 nominal,

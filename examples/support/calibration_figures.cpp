@@ -60,7 +60,8 @@ void draw_stages(const std::filesystem::path& folder, const std::string& robot,
     const std::vector<double> mm = scaled(stage->position, 1e3);
     const std::string name = colour == 0 ? "before: nominal links" : "after: " + stage->title;
     samples.push_back({name, mm, colour});
-    poses.push_back({name, counted(mm.size()), mm, Style::points, colour});
+    if (colour != 2 || stage->key == report.chosen)
+      poses.push_back({name, counted(mm.size()), mm, Style::points, colour});
   }
   plot_svg(folder / "distribution.svg", robot + ": cumulative distribution of held-out errors", "position error [mm]",
            "share of poses [%]", cumulative(samples), {.log_x = true});
@@ -109,7 +110,8 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
     const std::vector<double> held_out = scaled(joint.held_out, unit), angle = scaled(joint.angle, unit);
     std::vector<Series> errors;
     for (const auto& [stage, colour] : shown_stages(report))
-      if (colour > 0) errors.push_back({stage->title, held_out, scaled(stage->position, 1e3), Style::points, colour});
+      if (colour == 1 || stage->key == report.chosen)
+        errors.push_back({stage->title, held_out, scaled(stage->position, 1e3), Style::points, colour});
     plot_svg(folder / fmt::format("errors_along_joint_{}.svg", j + 1),
              fmt::format("{}: held-out errors along {}", robot, name), x_label, "position error [mm]", errors,
              {.log_y = true});

@@ -234,7 +234,16 @@ bool dots_svg(const std::filesystem::path& path, const std::string& title, const
     ticks += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(labels[static_cast<std::size_t>(i)]), -i);
   script += fmt::format("set xlabel {} offset 0,0.4\nset yrange [{}:0.6]\nset ytics ({}) scale 0\n", quoted(x_label),
                         -rows + 0.4, ticks);
-  script += log_axis("x", series, {}, [](const Series& s) { return s.y; });
+  double lower = std::numeric_limits<double>::infinity(), upper = 0;
+  for (const Series& s : series)
+    for (const double value : s.y)
+      if (std::isfinite(value) && value > 0) {
+        lower = std::min(lower, value);
+        upper = std::max(upper, value);
+      }
+  // room for the values on the left
+  script += log_axis("x", series, std::pair{lower * std::pow(lower / upper, 0.15), upper * 1.15},
+                     [](const Series& s) { return s.y; });
   for (std::size_t k = 0; k < series.size(); ++k) {
     vernier::require(series[k].y.size() == labels.size(), "dots_svg: series '", series[k].name, "' has ",
                      series[k].y.size(), " values for ", rows, " labels");
@@ -246,7 +255,7 @@ bool dots_svg(const std::filesystem::path& path, const std::string& title, const
     fmt::format_to(std::back_inserter(plots),
                    "{}$data{} using 1:2 with points pointtype 7 pointsize {} linecolor rgb '{}' title {}",
                    k == 0 ? "" : ", ", k, k == 0 ? 1.1 : 0.7, colour(series[k], k), quoted(series[k].name));
-    if (k == 0) plots += ", $data0 using 1:2:3 with labels offset 0,0.9 notitle";
+    if (k == 0) plots += ", $data0 using 1:2:3 with labels right offset -1.2,0 notitle";
   }
   return draw(path, script + "plot " + plots + "\n");
 }

@@ -6,8 +6,8 @@
 ///
 /// `VERNIER_API` stands before the declaration of such a function, `VERNIER_IMPL` before its definition:
 ///
-///     VERNIER_API Isometry3 register_points(const PointRows& from, const PointRows& to);  // in frames.hpp
-///     VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) { ... }  // in frames.ipp
+///     VERNIER_API Isometry3 register_points(const PointRows& from, const PointRows& to);  // in .hpp
+///     VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) { ... }  // in .ipp
 /// `VERNIER_TEMPLATE_API` stands before a function template of which the library has instances.
 ///
 /// Header-only, the first two make a function template with a default argument: callers notice nothing, and a compiler

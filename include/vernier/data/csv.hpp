@@ -105,6 +105,18 @@ TargetRows<N> read_targets(const std::string& path, std::span<const JointType> j
   return out;
 }
 
+/// A file of comma-separated values as text, e.g. to add columns to it.
+struct CsvText {
+  std::string file{};                            ///< its name
+  std::vector<std::string> header{};             ///< names of the columns
+  std::vector<std::vector<std::string>> rows{};  ///< cells, as many in each row as the header has
+  std::vector<Index> lines{};                    ///< number of the line of each row, from 1
+};
+
+/// Header and cells of a CSV file, blank lines left out.
+/// @throws DataError naming file and line
+VERNIER_API CsvText read_csv_text(const std::string& path);
+
 /// Poses that a file labels by whole numbers, e.g. repeated visits.
 struct LabelledPoses {
   Eigen::MatrixXi labels{};        ///< n x labels

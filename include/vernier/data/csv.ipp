@@ -3,7 +3,6 @@
 #include "vernier/data/csv.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "vernier/core/so3.hpp"
+#include "vernier/data/detail/text_lines.hpp"
 
 namespace vernier::detail {
 
@@ -27,29 +27,14 @@ struct CsvColumn {
 class CsvTable {
  public:
   explicit CsvTable(const std::string& path) : file_(path) {
-    try {
-      content_ = read_file(path);
-    } catch (const std::invalid_argument& e) {
-      throw DataError(e.what());
-    }
-    std::string_view rest = content_;
-    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-    std::size_t number = 0;
-    while (!rest.empty()) {
-      const std::size_t end = rest.find_first_of("\n");
-      std::string_view line = rest.substr(0, end);
-      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-      ++number;
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-      if (line.find('\0') != std::string_view::npos)
-        throw DataError(message(file_, ", line ", number, ": binary data, not text"));
-      if (header_.empty()) {
-        header_ = cells(line);
-        header_line_ = number;
-      } else {
-        lines_.push_back({number, line});
+    content_ = text_of(path);
+    for (const TextLine& line : text_lines(file_, content_)) {
+      if (!header_.empty()) {
+        lines_.push_back(line);
+        continue;
       }
+      header_ = cells(line.text);
+      header_line_ = line.number;
     }
     if (header_.empty()) throw DataError(message(file_, ": empty, a header line with column names is missing"));
   }
@@ -115,60 +100,52 @@ class CsvTable {
     if (lines_.empty()) throw DataError(message(file_, ": a header, but no rows of data"));
     MatrixX out(static_cast<Index>(lines_.size()), static_cast<Index>(columns.size()));
     for (std::size_t row = 0; row < lines_.size(); ++row) {
-      const auto& [number, line] = lines_[row];
-      const auto fields = cells(line);
-      if (fields.size() != header_.size())
-        throw DataError(
-            message(file_, ", line ", number, ": ", fields.size(), " values, the header has ", header_.size()));
+      const auto fields = fields_of(lines_[row]);
       for (std::size_t k = 0; k < columns.size(); ++k)
         out(static_cast<Index>(row), static_cast<Index>(k)) =
-            value(fields[columns[k].index], number, columns[k].name) * columns[k].factor;
+            value(fields[columns[k].index], lines_[row].number, columns[k].name) * columns[k].factor;
+    }
+    return out;
+  }
+
+  /// Header and rows as they are.
+  CsvText text() const {
+    CsvText out{file_, {header_.begin(), header_.end()}, {}, {}};
+    for (const TextLine& line : lines_) {
+      const auto fields = fields_of(line);
+      out.rows.emplace_back(fields.begin(), fields.end());
+      out.lines.push_back(static_cast<Index>(line.number));
     }
     return out;
   }
 
  private:
+  std::vector<std::string_view> fields_of(const TextLine& line) const {
+    auto out = cells(line.text);
+    if (out.size() != header_.size())
+      throw DataError(
+          message(file_, ", line ", line.number, ": ", out.size(), " values, the header has ", header_.size()));
+    return out;
+  }
+
   static std::vector<std::string_view> cells(std::string_view line) {
     std::vector<std::string_view> out;
     for (;;) {
       const std::size_t comma = line.find(',');
-      std::string_view cell = line.substr(0, comma);
-      const std::size_t first = cell.find_first_not_of(" \t"), last = cell.find_last_not_of(" \t");
-      out.push_back(first == std::string_view::npos ? std::string_view{} : cell.substr(first, last - first + 1));
+      out.push_back(trimmed(line.substr(0, comma)));
       if (comma == std::string_view::npos) return out;
       line.remove_prefix(comma + 1);
     }
   }
 
-  static std::string printable(std::string_view cell) {
-    std::string out;
-    for (const char c : cell.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
-    return out + (cell.size() > 40 ? "..." : "");
-  }
-
   double value(std::string_view cell, std::size_t line, const std::string& column) const {
-    const auto where = [&] { return message(file_, ", line ", line, ", column ", column, ": "); };
-    if (cell.empty()) throw DataError(where() + "no value");
-    std::string_view digits = cell;
-    if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
-    double out = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
-    if (error == std::errc::result_out_of_range) throw DataError(where() + "'" + printable(cell) + "' is out of range");
-    if (error != std::errc{} || end != digits.data() + digits.size())
-      throw DataError(where() + "'" + printable(cell) + "' is not a number");
-    if (!std::isfinite(out)) throw DataError(where() + "'" + printable(cell) + "' is not finite");
-    if (std::abs(out) > 1e9) throw DataError(where() + "'" + printable(cell) + "' is beyond any joint or length (1e9)");
-    return out;
+    return number_in(cell, '.', [&] { return message(file_, ", line ", line, ", column ", column, ": "); });
   }
 
-  struct Line {
-    std::size_t number;
-    std::string_view text;
-  };
   std::string file_, content_;
   std::vector<std::string_view> header_;
   std::size_t header_line_ = 0;  // counted from 1
-  std::vector<Line> lines_;
+  std::vector<TextLine> lines_;
 };
 
 /// Columns q1 .. qN behind a prefix: angles, or lengths for prismatic joints. Refuses a file with more joints, and
@@ -291,6 +268,8 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows
 }  // namespace vernier::detail
 
 namespace vernier {
+
+VERNIER_IMPL CsvText read_csv_text(const std::string& path) { return detail::CsvTable(path).text(); }
 
 VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
                                                std::initializer_list<const char*> optional) {

@@ -1,38 +1,11 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include "vernier/core/check.hpp"
 #include "vernier/identification/frames.hpp"
 
 namespace vernier {
-
-namespace detail {
-
-using Svd3 = Eigen::JacobiSVD<Matrix3, Eigen::NoQRPreconditioner>;
-
-}  // namespace detail
-
-VERNIER_IMPL Matrix3 nearest_rotation(const Matrix3& matrix) {
-  const detail::Svd3 svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-  return u * svd.matrixV().transpose();
-}
-
-VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) {
-  require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
-          " points");
-  const Vector3 from_mean = from.colwise().mean().transpose(), to_mean = to.colwise().mean().transpose();
-  Matrix3 sum = Matrix3::Zero();
-  for (Index i = 0; i < from.rows(); ++i)
-    sum += (to.row(i).transpose() - to_mean) * (from.row(i).transpose() - from_mean).transpose();
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = nearest_rotation(sum);
-  out.translation() = to_mean - out.linear() * from_mean;
-  return out;
-}
 
 VERNIER_IMPL Vector3 trilaterate(const PointRows& points, const VectorX& distances) {
   const Index n = points.rows();
@@ -46,7 +19,7 @@ VERNIER_IMPL Vector3 trilaterate(const PointRows& points, const VectorX& distanc
     scatter += centred * centred.transpose();
     right += centred * (distances(i) * distances(i) - centred.squaredNorm());
   }
-  detail::Svd3 svd(scatter, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::JacobiSVD<Matrix3, Eigen::NoQRPreconditioner> svd(scatter, Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(1e-12);
   return mean - 0.5 * svd.solve(right);
 }

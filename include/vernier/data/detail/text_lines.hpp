@@ -1,0 +1,47 @@
+#pragma once
+
+/// @file
+/// Lines, cells and numbers of text files, and what is said of those that are not.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vernier/core/function_ref.hpp"
+#include "vernier/core/types.hpp"
+
+namespace vernier::detail {
+
+/// A line of a file.
+struct TextLine {
+  std::size_t number;     ///< counted from 1
+  std::string_view text;  ///< without the end of the line
+};
+
+/// The content of a file.
+/// @throws DataError where it cannot be read
+VERNIER_API std::string text_of(const std::string& path);
+
+/// The lines that are not blank, without a byte-order mark; CRLF is accepted.
+/// @param file    its name, for messages
+/// @param content the text, which must outlive the lines
+/// @throws DataError on binary data
+VERNIER_API std::vector<TextLine> text_lines(const std::string& file, std::string_view content);
+
+/// A cell without blanks around it.
+VERNIER_API std::string_view trimmed(std::string_view cell);
+
+/// A cell as it may stand in a message: short, and plain characters alone.
+VERNIER_API std::string printable(std::string_view cell);
+
+/// The number in a cell, finite and of a size that joints and lengths have.
+/// @param decimal the decimal point
+/// @param where   what a message begins with
+/// @throws DataError
+VERNIER_API double number_in(std::string_view cell, char decimal, FunctionRef<std::string()> where);
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/data/detail/text_lines.ipp"
+#endif

@@ -1,0 +1,110 @@
+#pragma once
+
+#include "vernier/data/point_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/data/detail/text_lines.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// The index of a column that may be there once; -1 where it is not.
+VERNIER_API Index column_index(const std::vector<std::string>& columns, std::string_view name) {
+  const auto found = std::find(columns.begin(), columns.end(), name);
+  if (found == columns.end()) return -1;
+  require(std::find(found + 1, columns.end(), name) == columns.end(), "PointTableFormat: column ", name,
+          " is there twice");
+  return found - columns.begin();
+}
+
+/// The cells of a line; between blanks, or between separators.
+VERNIER_API std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+  std::vector<std::string_view> out;
+  if (separator == ' ') {
+    for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t", begin)) != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
+      out.push_back(line.substr(begin, end - begin));
+      begin = end;
+    }
+    return out;
+  }
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    out.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return out;
+    line.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace detail
+
+VERNIER_IMPL PointTableFormat PointTableFormat::spatial_analyzer(double unit) {
+  return {.columns = {"collection", "group", "name", "x", "y", "z"},
+          .separator = ' ',
+          .decimal = '.',
+          .comment = "//",
+          .header_lines = 0,
+          .unit = unit};
+}
+
+VERNIER_IMPL double length_unit(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, double>, 6> units{
+      {{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}}};
+  for (const auto& [known, size] : units)
+    if (known == name) return size;
+  detail::throw_invalid_argument({detail::MessagePart(
+      message("no unit of lengths is called '", detail::printable(name), "'; there are um, mm, cm, m, in, ft"))});
+}
+
+VERNIER_IMPL PointTable read_point_table(const std::string& path, const PointTableFormat& format) {
+  const std::size_t width = format.columns.size();
+  const Index name = detail::column_index(format.columns, "name");
+  std::array<Index, 3> axes{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    axes[k] = detail::column_index(format.columns, std::array{"x", "y", "z"}[k]);
+    require(axes[k] >= 0, "PointTableFormat: no column ", std::array{"x", "y", "z"}[k]);
+  }
+  require(format.separator != format.decimal, "PointTableFormat: '", format.decimal,
+          "' is both the separator and the decimal point");
+  require(format.unit > 0, "PointTableFormat: unit is ", format.unit, ", must be positive");
+
+  PointTable out{path, {}, {}, PointRows(0, 3)};
+  const std::string content = detail::text_of(path);
+  std::vector<double> values;
+  for (const detail::TextLine& line : detail::text_lines(path, content)) {
+    if (static_cast<Index>(line.number) <= format.header_lines) continue;
+    if (!format.comment.empty() && detail::trimmed(line.text).starts_with(format.comment)) continue;
+    const auto cells = detail::cells_of(line.text, format.separator);
+    if (cells.size() != width)
+      throw DataError(message(path, ", line ", line.number, ": ", cells.size(),
+                              cells.size() == 1 ? " cell, " : " cells, ", width, " columns are declared, separated by ",
+                              format.separator == ' '    ? std::string("blanks")
+                              : format.separator == '\t' ? std::string("tabs")
+                                                         : message("'", format.separator, "'"),
+                              ": '", detail::printable(detail::trimmed(line.text)), "'"));
+    for (const Index axis : axes) {
+      const auto at = static_cast<std::size_t>(axis);
+      const double value = detail::number_in(cells[at], format.decimal, [&] {
+        return message(path, ", line ", line.number, ", column ", format.columns[at], ": ");
+      });
+      values.push_back(value * format.unit);
+    }
+    if (name >= 0) {
+      const std::string_view cell = cells[static_cast<std::size_t>(name)];
+      if (cell.empty()) throw DataError(message(path, ", line ", line.number, ", column name: no value"));
+      out.names.emplace_back(cell);
+    }
+    out.lines.push_back(static_cast<Index>(line.number));
+  }
+  if (out.lines.empty()) throw DataError(message(path, ": no points"));
+  out.points = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+      values.data(), static_cast<Index>(out.lines.size()), 3);
+  return out;
+}
+
+}  // namespace vernier

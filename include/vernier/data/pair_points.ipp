@@ -82,10 +82,11 @@ struct PairSearch {
   /// Frames from short runs of poses and points, by ascending residuals.
   std::vector<PointFrames> starts() const {
     constexpr std::size_t max_runs = 24, kept = 40;
-    const std::size_t n = most_pairs(), shortest = std::clamp(2 * n / 3, min_pairs, std::size_t{12});
+    const std::size_t n = most_pairs();
     std::vector<PointFrames> out;
     std::vector<PointPair> run;
-    for (const std::size_t length : {shortest, std::clamp(n / 3, shortest, std::size_t{60})}) {
+    for (const std::size_t length :
+         {std::clamp(n / 3, min_pairs, std::size_t{12}), std::clamp(n / 2, min_pairs, std::size_t{60})}) {
       const std::size_t last = (by_order ? flanges.size() : n) - length, count = std::min(last + 1, max_runs);
       for (std::size_t r = 0; r < count; ++r) {
         const std::size_t first = count == 1 ? 0 : r * last / (count - 1);
@@ -94,10 +95,9 @@ struct PairSearch {
           for (std::size_t k = first; k < first + length; ++k)
             run.push_back(by_order ? PointPair{static_cast<Index>(k), static_cast<Index>(k) + shift} : given[k]);
           if (run.front().point < 0 || run.back().point >= points.rows()) continue;
-          out.push_back(fit_point_frames(flanges, points, run));
+          out.push_back(fit_point_frames(flanges, points, run, 5));
         }
       }
-      if (length == n) break;
     }
     std::erase_if(out, [](const PointFrames& one) { return !std::isfinite(one.rms); });
     std::sort(out.begin(), out.end(), [](const PointFrames& a, const PointFrames& b) { return a.rms < b.rms; });
@@ -143,8 +143,12 @@ struct PairSearch {
       set_frames(found, fit_point_frames(flanges, points, found.pairs));
       std::vector<double> distances;
       for (const PointPair& pair : found.pairs) distances.push_back(distance(found, pair.row, pair.point));
-      found.median = middle_of(distances);
-      const double limit = wide ? widest : std::clamp(6 * found.median, smallest, widest);
+      std::sort(distances.begin(), distances.end());
+      const std::size_t n = distances.size();
+      found.median = distances[n / 2];
+      // what the fit has made of nine unknowns is missing in few residuals
+      const double typical = distances[9 * n / 10] * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 3));
+      const double limit = wide ? widest : std::clamp(std::min(2 * typical, 6 * found.median), smallest, widest);
       std::vector<PointPair> pairs = aligned(found, limit);
       const bool grown = pairs.size() > found.pairs.size(), same = pairs == found.pairs && limit == found.limit;
       found.limit = limit;
@@ -224,11 +228,11 @@ VERNIER_API std::pair<PairingProof, std::optional<PairSearch::Found>> prove(cons
   proof.spread_ratio = point_spread(search.points) / point_spread(positions);
   proof.status = PairingStatus::unrelated;
   std::vector<double> factors{1};
-  for (const double unit : {1e3, 25.4, 1 / 0.0254, 10.0, 100.0, 12.0, 304.8, 1 / 0.3048, 30.48, 2.54, 1e6})
+  for (const double unit : {1e3, 25.4, 1 / 0.0254, 10.0, 100.0, 304.8, 1e6})
     for (const double factor : {unit, 1 / unit}) factors.push_back(factor);
   // the reflector's offset, too, spreads points
   std::erase_if(factors,
-                [&](double factor) { return !(std::abs(std::log(proof.spread_ratio / factor)) < std::log(4)); });
+                [&](double factor) { return !(std::abs(std::log(proof.spread_ratio / factor)) < std::log(3)); });
   for (const double factor : factors)
     for (const double sign : {1.0, -1.0}) {
       PairSearch changed = search;

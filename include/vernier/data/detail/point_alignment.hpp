@@ -24,8 +24,9 @@ struct PointFrames {
 /// The frames with the smallest sum of squared distances of at least six pairs: Gauss-Newton from two closed forms, the
 /// affine map (in which rotation, translation and offset are linear) and rigid registration without an offset. An
 /// offset that the orientations do not determine is small.
+/// @param max_steps of Gauss-Newton; few suffice to see whether pairs belong together
 VERNIER_API PointFrames fit_point_frames(std::span<const Isometry3> flanges, const PointRows& points,
-                                         std::span<const PointPair> pairs);
+                                         std::span<const PointPair> pairs, int max_steps = 20);
 
 /// The pairs in ascending rows and points with the smallest sum of costs, where each row and each point without a
 /// partner costs 1/2. Pairs of cost 1 or more are not made.

@@ -39,12 +39,12 @@ VERNIER_API Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, con
 
 /// Gauss-Newton from a rotation of the base.
 VERNIER_API PointFrames refined_frames(std::span<const Isometry3> flanges, const PointRows& points,
-                                       std::span<const PointPair> pairs, const Matrix3& start) {
+                                       std::span<const PointPair> pairs, const Matrix3& start, int max_steps) {
   constexpr double offset_weight = 1e-6;  // a prior of little: an offset of 1 m is worth 1 mm at every point
   const auto n = static_cast<double>(pairs.size());
   PointFrames frames;
   frames.base.linear() = start;
-  for (int round = 0; round < 20; ++round) {
+  for (int step_number = 0; step_number < max_steps; ++step_number) {
     Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
     Eigen::Matrix<double, 9, 1> right = Eigen::Matrix<double, 9, 1>::Zero();
     for (const PointPair& pair : pairs) {
@@ -77,14 +77,15 @@ VERNIER_API PointFrames refined_frames(std::span<const Isometry3> flanges, const
 }
 
 VERNIER_IMPL PointFrames fit_point_frames(std::span<const Isometry3> flanges, const PointRows& points,
-                                          std::span<const PointPair> pairs) {
+                                          std::span<const PointPair> pairs, int max_steps) {
   PointRows from(static_cast<Index>(pairs.size()), 3), to(static_cast<Index>(pairs.size()), 3);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     from.row(static_cast<Index>(k)) = flanges[static_cast<std::size_t>(pairs[k].row)].translation().transpose();
     to.row(static_cast<Index>(k)) = points.row(pairs[k].point);
   }
-  const PointFrames affine = refined_frames(flanges, points, pairs, affine_base_rotation(flanges, points, pairs));
-  const PointFrames rigid = refined_frames(flanges, points, pairs, register_points(from, to).linear());
+  const PointFrames affine =
+      refined_frames(flanges, points, pairs, affine_base_rotation(flanges, points, pairs), max_steps);
+  const PointFrames rigid = refined_frames(flanges, points, pairs, register_points(from, to).linear(), max_steps);
   return rigid.rms < affine.rms || !std::isfinite(affine.rms) ? rigid : affine;
 }
 

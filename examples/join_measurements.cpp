@@ -1,0 +1,228 @@
+// Commanded joints and a tracker's table of points in, measured poses as one CSV file out.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli.hpp"
+#include "dispatch.hpp"
+#include "json_file.hpp"
+#include "robot_choice.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/pair_points.hpp"
+
+namespace {
+
+namespace vn = vernier;
+
+/// What the command line says.
+struct Settings {
+  std::string joints, points, out, robot, key, preset, unit, separator, decimal, comment;
+  std::vector<std::string> columns{};
+  vn::Index header_lines = 0;
+  bool leave_out = false;
+};
+
+vn::PointTableFormat format_of(const Settings& o) {
+  const auto one = [](const std::string& text, const char* option) {
+    if (text == "tab") return '\t';
+    if (text == "space") return ' ';
+    if (text.size() != 1) throw support::UsageError(std::string(option) + " takes one character, or tab or space");
+    return text.front();
+  };
+  const double unit = vn::length_unit(o.unit);
+  vn::PointTableFormat format{.unit = unit};
+  if (o.preset == "sa") format = vn::PointTableFormat::spatial_analyzer(unit);
+  if (o.preset.empty() && (o.columns.empty() || o.separator.empty()))
+    throw support::UsageError("the layout of --points is not guessed: --preset, or --columns and --separator");
+  if (!o.columns.empty()) format.columns = o.columns;
+  if (!o.separator.empty()) format.separator = one(o.separator, "--separator");
+  if (!o.decimal.empty()) format.decimal = one(o.decimal, "--decimal");
+  if (!o.comment.empty()) format.comment = o.comment;
+  format.header_lines = o.header_lines;
+  return format;
+}
+
+/// @throws UsageError for a format that cannot be
+vn::PointTable read_points(const Settings& o) {
+  const vn::PointTableFormat format = format_of(o);
+  try {
+    return vn::read_point_table(o.points, format);
+  } catch (const vn::DataError&) {
+    throw;
+  } catch (const std::invalid_argument& e) {
+    throw support::UsageError(e.what());
+  }
+}
+
+/// Poses of the nominal flange at all rows.
+std::vector<vn::Isometry3> flanges_of(const Settings& o) {
+  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  return support::dispatch_dof(robot.dof(), [&](auto n) {
+    const auto arm = robot.arm<n()>().arm;
+    const auto joints = vn::read_joints<n()>(o.joints, arm.model().joint_types());
+    std::vector<vn::Isometry3> out;
+    for (vn::Index i = 0; i < joints.rows(); ++i) out.push_back(arm.pose(joints.row(i).transpose()));
+    return out;
+  });
+}
+
+/// Columns with the joints, as in read_dataset.
+std::vector<std::size_t> joint_columns(const std::vector<std::string>& header) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < header.size(); ++k)
+    if (header[k].size() > 2 && header[k][0] == 'q' && header[k][1] >= '1' && header[k][1] <= '9' &&
+        header[k].find('_') != std::string::npos)
+      out.push_back(k);
+  return out;
+}
+
+/// The rows of the joints' file that have a point, as they are, with the point and the lines of both. Where rows are
+/// left out, the others keep the joints from which they were approached, and their times.
+std::string joined(const vn::CsvText& commanded, const vn::PointTable& table, const vn::Pairing& pairing) {
+  const auto column = [&](const char* name) {
+    return std::find(commanded.header.begin(), commanded.header.end(), name) - commanded.header.begin();
+  };
+  const auto has = [&](const char* name) {
+    return column(name) < static_cast<std::ptrdiff_t>(commanded.header.size());
+  };
+  for (const char* name :
+       {"x_mm", "y_mm", "z_mm", "x_m", "y_m", "z_m", "x_um", "y_um", "z_um", "joints_line", "points_line"})
+    if (has(name))
+      throw vn::DataError(vn::message(commanded.file, ": has a column ", name, " already; name it otherwise"));
+  const auto joints = joint_columns(commanded.header);
+  if (joints.empty()) throw vn::DataError(commanded.file + ": no columns q1_rad .. in the header");
+  const bool gaps = pairing.pairs.size() < commanded.rows.size();
+  bool approached = false;
+  for (const std::string& name : commanded.header) approached = approached || name.starts_with("from_q");
+  const bool add_approach = gaps && !approached, add_time = gaps && !has("time_s");
+  const auto segment = static_cast<std::size_t>(has("segment") ? column("segment") : 0);
+
+  std::string out;
+  for (const std::string& name : commanded.header) out += name + ',';
+  for (const std::size_t k : joints)
+    if (add_approach) out += "from_" + commanded.header[k] + ',';
+  if (add_time) out += "time_s,";
+  out += "x_mm,y_mm,z_mm,joints_line,points_line\n";
+  for (const vn::PointPair& pair : pairing.pairs) {
+    const auto row = static_cast<std::size_t>(pair.row);
+    for (const std::string& cell : commanded.rows[row]) out += cell + ',';
+    // an approach that is unknown is written as no motion
+    const bool known = row > 0 && (!has("segment") || commanded.rows[row][segment] == commanded.rows[row - 1][segment]);
+    for (const std::size_t k : joints)
+      if (add_approach) out += commanded.rows[known ? row - 1 : row][k] + ',';
+    if (add_time) out += vn::message(pair.row, ',');
+    for (int k = 0; k < 3; ++k) out += vn::message(1e3 * table.points(pair.point, k), ',');
+    out += vn::message(commanded.lines[row], ',', table.lines[static_cast<std::size_t>(pair.point)], '\n');
+  }
+  return out;
+}
+
+const char* name_of(vn::PairingFault::Kind kind) {
+  switch (kind) {
+    case vn::PairingFault::Kind::missing: return "missing";
+    case vn::PairingFault::Kind::additional: return "additional";
+    case vn::PairingFault::Kind::swapped: return "swapped";
+    case vn::PairingFault::Kind::out_of_order: return "out_of_order";
+    default: return "misfit";
+  }
+}
+
+support::Json to_json(const vn::Pairing& pairing, const vn::CsvText& commanded, const vn::PointTable& table) {
+  support::Json faults = support::Json::array();
+  for (const vn::PairingFault& fault : pairing.faults)
+    faults.push_back({{"kind", name_of(fault.kind)}, {"text", vn::describe(fault, commanded, table)}});
+  support::Json out{{"rows", commanded.rows.size()},
+                    {"points", table.lines.size()},
+                    {"pairs", pairing.pairs.size()},
+                    {"faults", faults}};
+  if (pairing.proof) {
+    const vn::PairingProof& proof = *pairing.proof;
+    out["proof"] = {{"median_mm", 1e3 * proof.median},
+                    {"limit_mm", 1e3 * proof.limit},
+                    {"scale", proof.scale},
+                    {"indistinct", proof.indistinct},
+                    {"offset_mm", {1e3 * proof.offset.x(), 1e3 * proof.offset.y(), 1e3 * proof.offset.z()}}};
+  }
+  return out;
+}
+
+int run(support::Program& program) {
+  Settings o;
+  CLI::App& app = program.app();
+  const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
+    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
+  };
+  option("--joints", o.joints, "commanded joints, columns q1_rad .. in the order of measuring", "FILE")->required();
+  option("--points", o.points, "measured points, as the tracker's program exported them", "FILE")->required();
+  option("--unit", o.unit, "of the points: um, mm, cm, m, in, ft", "UNIT")
+      ->required()
+      ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}).description(""));
+  option("--preset", o.preset, "layout of --points: sa, ASCII points of SpatialAnalyzer", "NAME")
+      ->check(CLI::IsMember({"sa"}).description(""));
+  option("--columns", o.columns, "columns of --points: name, x, y, z; other words are skipped", "NAME,...")
+      ->delimiter(',');
+  option("--separator", o.separator, "between the columns: a character, tab, or space for any number of blanks", "C");
+  option("--decimal", o.decimal, "decimal point of --points; . without it", "C");
+  option("--comment", o.comment, "lines that begin so are skipped", "TEXT");
+  app.add_option("--header-lines", o.header_lines, "so many lines at the beginning are skipped")
+      ->check(CLI::Range(0, 1000));
+  option("--key", o.key, "column of --joints with the names of the points; without it they pair by order", "COLUMN");
+  option("--robot", o.robot,
+         "name in the catalogue, or a JSON file: its nominal kinematics prove the order, or check the names, the unit "
+         "and the frame",
+         "NAME|FILE");
+  app.add_flag("--leave-out", o.leave_out,
+               "write the pairs that are proven although something is wrong: rows and points without a partner are "
+               "left out, swapped ones exchanged");
+  program.parse("", "write the measured poses to this file", "FILE");
+  o.out = program.common().out;
+  if (o.out.empty()) throw support::UsageError("--out is required");
+  if (o.key.empty() && o.robot.empty())
+    throw support::UsageError("--key pairs by name; without it --robot is needed to prove the order");
+  const vn::PointTable table = read_points(o);
+  support::require_writable(o.out);
+
+  const vn::CsvText commanded = vn::read_csv_text(o.joints);
+  vn::Pairing pairing;
+  if (o.key.empty()) {
+    pairing = vn::pair_by_order(flanges_of(o), table.points);
+  } else {
+    pairing = vn::pair_by_name(commanded, o.key, table);
+    if (!o.robot.empty()) pairing = vn::check_pairs(pairing, flanges_of(o), table.points);
+  }
+  if (pairing.proof && pairing.proof->status != vn::PairingStatus::proven)
+    throw vn::DataError(o.points + ": " + vn::describe(*pairing.proof));
+  for (const vn::PairingFault& fault : pairing.faults) fmt::print("{}\n", vn::describe(fault, commanded, table));
+  fmt::print("{} pairs of {} rows and {} points, by {}\n", pairing.pairs.size(), commanded.rows.size(),
+             table.lines.size(), o.key.empty() ? "order" : "name");
+  if (pairing.proof) {
+    fmt::print("Distance from the nominal arm: median {:.2f} mm; points more than {:.2f} mm away are found\n",
+               pairing.proof->median * 1e3, pairing.proof->limit * 1e3);
+    if (pairing.proof->indistinct > 0)
+      fmt::print("{} poses are so near the one before that their exchange would not be seen\n",
+                 pairing.proof->indistinct);
+  } else {
+    fmt::print("Neither unit nor frame are checked without --robot\n");
+  }
+  if (!program.common().json.empty()) support::write_json(program.common().json, to_json(pairing, commanded, table));
+  if (pairing.pairs.empty()) throw vn::DataError(o.points + ": no point has a pose");
+  if (!pairing.faults.empty() && !o.leave_out)
+    throw vn::DataError(vn::message(o.points, ": ", pairing.faults.size(), " departures from ", o.joints,
+                                    ", listed above; with --leave-out the other rows are written"));
+  vn::write_file(o.out, joined(commanded, table, pairing));
+  fmt::print("Measured poses: {}\n", o.out);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program(
+      "join_measurements",
+      "Commanded joints and the points that a tracker measured there in, measured poses as calibrate reads them out.",
+      argc, argv, run);
+}

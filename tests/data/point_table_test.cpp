@@ -54,7 +54,7 @@ TEST_F(PointTables, DecimalCommaOtherColumnsAndUnits) {
   EXPECT_EQ(length_unit("um"), 1e-6);
   EXPECT_EQ(length_unit("cm"), 1e-2);
   EXPECT_EQ(length_unit("m"), 1);
-  EXPECT_EQ(length_unit("ft"), 12 * length_unit("in"));
+  EXPECT_DOUBLE_EQ(length_unit("ft"), 12 * length_unit("in"));
 }
 
 TEST_F(PointTables, EachDamageHasItsLine) {

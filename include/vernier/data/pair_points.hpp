@@ -41,8 +41,8 @@ struct PairingFault {
     out_of_order,  ///< a point in another place
     misfit,        ///< a point in its place that is too far from where the arm was
   } kind = Kind::missing;
-  IndexRange rows{};    ///< poses concerned; of additional points those before and after
-  IndexRange points{};  ///< points concerned; of missing ones those before and after
+  IndexRange rows{};    ///< poses concerned, of swapped points both; of additional points those before and after
+  IndexRange points{};  ///< points of these poses, or those additional; of missing ones those before and after
   Index count = 1;      ///< how many are missing or additional; fewer than concerned where several fit as well
   double distance = 0;  ///< of a misfit: from where the arm was to the point [m]
 };
@@ -90,11 +90,12 @@ VERNIER_API Pairing pair_by_name(const CsvText& commanded, const std::string& ke
 VERNIER_API Pairing check_pairs(const Pairing& pairing, std::span<const Isometry3> flanges, const PointRows& points);
 
 /// Pairs poses and points by their order, and proves it with the nominal arm. Short runs of both are registered
-/// rigidly, with an unknown offset of the reflector, under all shifts; from the frames that explain most, rows and
-/// points are aligned by dynamic programming with gaps (Needleman and Wunsch), and registered again. So missing,
-/// additional, swapped and misplaced points are found, where their distance from the right place exceeds
-/// `PairingProof::limit`, six times the median distance of the nominal arm from the points. Unless the outcome is
-/// `proven` there are no pairs.
+/// rigidly, with an unknown offset of the reflector, under all shifts; from the frames that explain most, both are
+/// aligned by dynamic programming with gaps (Needleman and Wunsch), and registered again. So missing, additional,
+/// swapped and misplaced points are found, where their distance from the right place exceeds `PairingProof::limit`:
+/// three times the 90 % quantile, at most six times the median, of the distances of the points from the nominal arm.
+/// Unless the outcome is `proven` there are no pairs. With fewer than twelve poses a fault is often in the way of any
+/// proof.
 /// @param flanges poses of the nominal flange, in the order of measuring
 /// @param points  measured points, n x 3 [m]
 /// @throws std::invalid_argument for more than 10^8 rows times points

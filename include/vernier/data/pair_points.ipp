@@ -148,7 +148,7 @@ struct PairSearch {
       found.median = distances[n / 2];
       // what the fit has made of nine unknowns is missing in few residuals
       const double typical = distances[9 * n / 10] * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 3));
-      const double limit = wide ? widest : std::clamp(std::min(2 * typical, 6 * found.median), smallest, widest);
+      const double limit = wide ? widest : std::clamp(std::min(3 * typical, 6 * found.median), smallest, 2 * widest);
       std::vector<PointPair> pairs = aligned(found, limit);
       const bool grown = pairs.size() > found.pairs.size(), same = pairs == found.pairs && limit == found.limit;
       found.limit = limit;

@@ -1,4 +1,5 @@
-# The headers, the compiled libraries, and a package for find_package(vernier [COMPONENTS io ceres cholmod tbb mpi]).
+# The headers, the compiled libraries, and packages: for find_package(vernier [COMPONENTS io ceres cholmod tbb mpi]), for
+# pkg-config (vernier, header-only, and vernier-compiled), and for Debian (cpack -G DEB).
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -45,3 +46,36 @@ install(FILES "${PROJECT_BINARY_DIR}/vernierConfig.cmake" "${PROJECT_BINARY_DIR}
         cmake/FindCHOLMOD.cmake
         DESTINATION "${vernier_package_dir}")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+# vernier_install_pc(<name> <description> <flags> <libraries>): for who compiles with pkg-config; the C++ standard is theirs
+function(vernier_install_pc vernier_pc_name vernier_pc_description vernier_pc_cflags vernier_pc_libs)
+  set(folder "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig"
+             OUTPUT_VARIABLE vernier_pc_prefix)
+  configure_file(cmake/vernier.pc.in "${PROJECT_BINARY_DIR}/${vernier_pc_name}.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/${vernier_pc_name}.pc" DESTINATION "${folder}")
+endfunction()
+if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}" AND NOT IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}")
+  vernier_install_pc(vernier "${PROJECT_DESCRIPTION}" "" "")
+  if(VERNIER_COMPILED)
+    vernier_install_pc(vernier-compiled "${PROJECT_DESCRIPTION} (definitions in a library)" " -DVERNIER_COMPILED"
+                       "-L\${libdir} -lvernier_compiled ")
+  endif()
+endif()
+
+if(PROJECT_IS_TOP_LEVEL)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_NAME libvernier-dev)
+  set(CPACK_PACKAGE_CONTACT "Vernier maintainers")
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
+  # each is needed by the component of its name alone
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "nlohmann-json3-dev (>= 3.9), libceres-dev (>= 2.0)")
+  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libsuitesparse-dev, libtbb-dev, mpi-default-dev, cmake (>= 3.25)")
+  if(NOT VERNIER_COMPILED)
+    set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
+  endif()
+  include(CPack)
+endif()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, with what runs in parallel,
-# and with everything; header-only, with the compiled libraries, and both in one program.
+# and with everything; header-only, with the compiled libraries, and both in one program; from the Debian package, and
+# with pkg-config.
 # usage: tests/consumer/run.sh [BUILD FOLDER]
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -64,13 +65,52 @@ install() {
     "${@:2}"
   quietly "$build/install.log" cmake --build "$build/package"
   quietly "$build/install.log" cmake --install "$build/package"
+  if [[ $1 == prefix ]] && command -v dpkg-deb >/dev/null; then
+    (cd "$build/package" && quietly "$build/deb.log" cpack -G DEB -B "$build/deb")
+  fi
   rm -rf "$build/package"
+}
+
+# unpack: the Debian package, as a root of its own. What it says it needs must be what it needs.
+unpack() {
+  local package field
+  package=$(echo "$build"/deb/libvernier-dev_*.deb)
+  for field in 'Depends: libeigen3-dev' 'Recommends: nlohmann-json3-dev.*libceres-dev' \
+    'Suggests: libsuitesparse-dev, libtbb-dev' "Version: $(cat "$build/version")"; do
+    dpkg-deb --field "$package" | grep -q "^$field" || fail "$(basename "$package"): does not say '$field'"
+  done
+  dpkg-deb -x "$package" "$build/root"
+  printf '%-14s %-17s %s\n' debian unpacked "$(basename "$package")"
+}
+
+# compile_with_pc PREFIX: as who has no CMake compiles; header-only a unit, with the library a program
+compile_with_pc() {
+  local flags libs
+  export PKG_CONFIG_PATH=$1/lib/pkgconfig
+  read -r -a flags <<<"$(pkg-config --cflags vernier)"
+  quietly "$build/pc.log" g++ -std=c++20 "${flags[@]}" -c "$here/library.cpp" -o "$build/library.o"
+  read -r -a flags <<<"$(pkg-config --cflags vernier-compiled)"
+  read -r -a libs <<<"$(pkg-config --libs vernier-compiled)"
+  quietly "$build/pc.log" g++ -std=c++20 "${flags[@]}" "$here/main.cpp" -o "$build/with_pc" "${libs[@]}"
+  [[ $(pkg-config --modversion vernier) == $(cat "$build/version") ]] || fail "vernier.pc has another version"
+  printf '%-14s %-17s ' pkg-config bare
+  "$build/with_pc"
 }
 
 # The headers are installed by a build that knows none of the libraries: the package is the same, but for what is
 # compiled.
 install bare -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_parallel[@]}"
 install prefix
+
+sed -n 's/^#define VERNIER_VERSION_[A-Z]* *//p' "$root/include/vernier/core/version.hpp" | paste -sd. >"$build/version"
+whole=$build/prefix
+if [[ -d $build/deb ]]; then
+  unpack
+  whole=$build/root/usr
+fi
+if command -v pkg-config >/dev/null; then
+  compile_with_pc "$whole"
+fi
 
 bare=("-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_parallel[@]}")
 for project in in_tree fetch_content installed; do
@@ -79,7 +119,7 @@ done
 consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
 consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json
 consume installed header_only "io;ceres;cholmod;tbb;mpi"
-consume installed compiled "io;ceres;cholmod;tbb;mpi"
+consume installed compiled "io;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
 consume in_tree compiled "" $no_ceres $no_json "${no_parallel[@]}"
 consume installed mixed ""
 

@@ -11,6 +11,7 @@
 #include "vernier/core/literals.hpp"
 #include "vernier/core/version.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/data/pair_points.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/iso9283.hpp"

@@ -77,7 +77,7 @@ unpack() {
   package=$(echo "$build"/deb/libvernier-dev_*.deb)
   for field in 'Depends: libeigen3-dev' 'Recommends: nlohmann-json3-dev.*libceres-dev' \
     'Suggests: libsuitesparse-dev, libtbb-dev' "Version: $(cat "$build/version")"; do
-    dpkg-deb --field "$package" | grep -q "^$field" || fail "$(basename "$package"): does not say '$field'"
+    dpkg-deb --field "$package" | grep "^$field" >/dev/null || fail "$(basename "$package"): does not say '$field'"
   done
   dpkg-deb -x "$package" "$build/root"
   printf '%-14s %-17s %s\n' debian unpacked "$(basename "$package")"

@@ -23,8 +23,6 @@ struct PlanOptions {
   IdentifyOptions geometry{.frames = Frames::base_and_tool};  ///< geometry that will be identified
   ErrorModelOptions errors{};                                 ///< joint errors that may be fitted
   SensorModel sensors{};                                      ///< accuracy of the measurements
-  /// Standard deviation of a visit over that of the sensor: what a model fitted to few poses leaves acts as noise, too.
-  double noise_factor = 4;
   bool oriented = false;                     ///< whether orientations are measured, and not positions alone
   double bin = 10 * std::numbers::pi / 180;  ///< width of the bins of each joint [rad, m]
   int bin_count = 0;                         ///< measurements wanted in each bin that candidates reach

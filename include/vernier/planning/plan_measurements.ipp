@@ -103,11 +103,6 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
                                                    const PlanOptions& options) {
   options.errors.validate();
   options.sensors.validate();
-  require(std::isfinite(options.noise_factor) && options.noise_factor > 0, "plan_measurements: noise_factor is ",
-          options.noise_factor, ", must be positive");
-  SensorModel visit = options.sensors;
-  visit.position_sigma *= options.noise_factor;
-  visit.orientation_sigma *= options.noise_factor;
   const Index n = input.candidates.rows();
   require(options.count >= 1, "plan_measurements: count is ", options.count, ", must be at least 1");
   require(n >= options.count, "plan_measurements: ", n, " candidates for ", options.count, " measurements");
@@ -116,8 +111,8 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   require(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");
   require(options.criterion != DesignCriterion::region_variance || input.region.rows() > 0,
           "plan_measurements: no region whose variance could be reduced");
-  const PlannedCalibration planned{nominal, options.geometry, options.errors,
-                                   visit,   options.oriented, options.count + input.measured.rows()};
+  const PlannedCalibration planned{nominal,         options.geometry, options.errors,
+                                   options.sensors, options.oriented, options.count + input.measured.rows()};
   const Index block = options.oriented ? 6 : 3;
   const MatrixX rows = expected_rows(planned, input.candidates, input.candidates_previous);
   MatrixX measured(0, rows.cols());
@@ -130,7 +125,7 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   for (Index i = 0; i < points.rows(); ++i) points.row(i) = of_region.row(i * stride);
   PlannedCalibration positions = planned;
   positions.oriented = false;
-  const MatrixX region = visit.position_sigma * expected_rows(positions, points, MatrixX());
+  const MatrixX region = options.sensors.position_sigma * expected_rows(positions, points, MatrixX());
 
   const JointBins bins(input.candidates, options.bin);
   PoseDesignOptions design{.count = options.count, .criterion = options.criterion};

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <variant>
+
+#include "vernier/compensation/concepts.hpp"
+#include "vernier/core/atomic_file.hpp"
+#include "vernier/core/sha256.hpp"
+#include "vernier/core/version.hpp"
+#include "vernier/io/detail/c_code.hpp"
+#include "vernier/io/detail/c_tables.hpp"
+#include "vernier/io/export_c.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// @throws std::invalid_argument on a name that cannot begin names in C
+VERNIER_API void require_identifier(const std::string& name) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  bool valid = !name.empty() && letter(name.front());
+  for (const char c : name) valid = valid && (letter(c) || (c >= '0' && c <= '9') || c == '_');
+  require(valid, "c_source: the name '", c_text(name),
+          "' is no C identifier: letters, digits and underscores, a letter first");
+}
+
+/// What an arm has, in the words of the C functions.
+VERNIER_API std::set<std::string> c_features(const ModelData& model) {
+  std::set<std::string> out;
+  const auto add = [&](const char* feature, bool present) {
+    if (present) out.insert(feature);
+  };
+  using Kind = JointTermBlock::Kind;
+  const auto add_terms = [&](const FittedArm& arm) {
+    for (const JointTermBlock& block : arm.errors.terms().blocks()) {
+      add("linear", block.kind == Kind::gear_ratio || block.kind == Kind::coupling);
+      add("gravity", block.kind == Kind::gravity);
+      add("hysteresis", block.kind == Kind::hysteresis);
+      add("tilt", block.kind == Kind::tilt);
+      add("harmonics", block.kind == Kind::transmission);
+    }
+  };
+  add_terms(model.identified);
+  if (model.fallback) add_terms(*model.fallback);
+  for (const DhRow& row : model.nominal.rows()) add("prismatic", row.joint == JointType::prismatic);
+  add("modified", model.nominal.modified());
+  add("oriented", model.nominal.joints() >= 6);  // as CorrectionTarget::automatic
+  add("fallback", model.fallback.has_value());
+  add("learned", model.learned.has_value());
+  add("gates", model.fallback || model.learned);
+  add("links", out.contains("gravity") || out.contains("tilt"));
+  add("log", out.contains("oriented") || out.contains("fallback"));
+  add("exp", out.contains("tilt") || out.contains("fallback"));
+  if (!model.learned) return out;
+  const HiddenLayer& layer = std::get_if<FittedNetwork>(&model.learned->function)->layer;
+  constexpr const char* maps[] = {"map_raw", "map_sines_and_cosines", "map_products"};
+  constexpr const char* activations[] = {"sigmoid", "tanh", "sine", "radial_basis"};
+  out.insert(maps[static_cast<int>(layer.input_map)]);
+  out.insert(activations[static_cast<int>(layer.activation)]);
+  add("sines", layer.input_map != InputMap::raw);
+  return out;
+}
+
+/// What the file says about itself, and its macros.
+VERNIER_API std::string c_preamble(const ModelData& model, const CExport& options) {
+  const Provenance& from = model.provenance;
+  const CorrectionOptions correction;
+  const std::string version = message(VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH);
+  const std::string hash = options.hash.empty() ? sha256(model_to_json(model).dump(1) + "\n") : options.hash;
+  const auto row = [](const char* what, const std::string& value) { return message(" * ", what, c_text(value), "\n"); };
+  std::string out = message("/* ", c_text(model.name), ": a calibrated arm, written by Vernier ", version, "\n *\n");
+  out += row("model, SHA-256:  ", hash);
+  out += row("calibrated:      ", from.date);
+  out += row("from:            ", message(from.rows, " ", from.measured, " of ", from.data_file));
+  out += row("joint values:    ", from.joints);
+  out += row("held-out error:  ", options.held_out_error ? message(*options.held_out_error * 1e3, " mm in the mean")
+                                                         : std::string("not stated"));
+  if (model.thermal)
+    out +=
+        row("temperature:     ", message(model.thermal->reference, " deg C; how the arm changes with it is left out"));
+  out += R"( *
+ * C99 and C++11. All functions are static inline; to compile a library of them, define $$_API as empty:
+ *   cc -O2 -shared -fPIC -D$$_API= -x c THIS_FILE -o $.so -lm
+ * Do not correct commands that a controller corrects already. */
+#ifndef $$_H
+#define $$_H
+
+#include <math.h>
+
+#ifndef $$_API
+#define $$_API static inline
+#endif
+
+)";
+  const auto define = [&](const char* what, const std::string& value) {
+    out += message("#define $$_", what, " ", value, "\n");
+  };
+  const auto quoted = [](const std::string& text) { return '"' + c_text(text) + '"'; };
+  define("JOINTS", message(model.nominal.joints()));
+  define("MODEL_NAME", quoted(model.name));
+  define("MODEL_HASH", quoted(hash));
+  define("MODEL_DATE", quoted(from.date));
+  define("VERNIER_VERSION", quoted(version));
+  if (options.held_out_error) define("HELD_OUT_ERROR", c_number(*options.held_out_error) + " /* mean [m] */");
+  if (model.thermal) define("TEMPERATURE", c_number(model.thermal->reference) + " /* [deg C] */");
+  define("POSITION_TOLERANCE", c_number(correction.position_tolerance) + " /* of a correction [m] */");
+  define("ROTATION_TOLERANCE", c_number(correction.rotation_tolerance) + " /* [rad] */");
+  out += "\n/* What $_correct returns. */\n";
+  define("MET", "0");
+  define("STALLED", "1");
+  define("LIMITS", "2");
+  return out + "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
+}
+
+VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options) {
+  require_identifier(options.name);
+  if (const auto* kernels = model.learned ? std::get_if<FittedKernels>(&model.learned->function) : nullptr)
+    require(false, "c_source: the position error that was learned is a sum of ", kernels->centres.rows(),
+            " kernels (kernel ELM, Gaussian process), which is not written as C source; networks are");
+  const int joints = model.nominal.joints(), lanes = (joints + 1) / 2 * 2;  // vectors hold an even number
+  const bool oriented = joints >= 6;
+
+  std::string out = c_preamble(model, options);
+  out += c_declarations();
+  out += "\n/* ---- private from here on ---- */\n\n";
+  const auto define = [&](const char* what, const std::string& value) {
+    out += message("#define $$_", what, "_ ", value, "\n");
+  };
+  define("LANES", message(lanes));
+  define("EVALUATIONS", message(CorrectionOptions{}.max_iterations));
+  define("ROTATION_LENGTH", c_number(oriented ? IkOptions<6>{}.rotation_length : 0));
+  const FittedNetwork* network = model.learned ? std::get_if<FittedNetwork>(&model.learned->function) : nullptr;
+  if (network != nullptr) {
+    define("FEATURES", message(network->layer.features(joints)));
+    define("NODES", message(network->layer.nodes));
+  }
+  out += c_types();
+  out += "\n/* ---- tables ---- */\n\n";
+  std::vector<int> prismatic;
+  std::string limits = "static const double $_limits_[2 * $$_JOINTS] = {\n";
+  for (int i = 0; i < joints; ++i) {
+    prismatic.push_back(model.nominal.revolute(i) ? 0 : 1);
+    const auto limit = [](double value, const char* infinite) {
+      return std::isinf(value) ? std::string(infinite) : c_number(value);
+    };
+    limits += message("    ", limit(model.lower(i), "-HUGE_VAL"), ", ", limit(model.upper(i), "HUGE_VAL"), ",\n");
+  }
+  out += limits + "};\n@if prismatic\n" + c_table("$_prismatic_", prismatic) + "@end\n";
+  out += c_chain_table("$_nominal_rows_", model.nominal);
+  out += c_arm_tables("$_arm_", "$_identified_", model.identified, lanes);
+  if (model.fallback) {
+    out += c_arm_tables("$_arm_", "$_outside_", *model.fallback, lanes);
+    out += c_coverage_tables("$_coverage_", "$_coverage_of_model_", model.coverage);
+  }
+  if (network != nullptr) {
+    out += c_network_tables("$_", *network);
+    out += c_coverage_tables("$_coverage_", "$_coverage_of_learned_", model.learned->coverage);
+  }
+  out += c_functions();
+  out += "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
+  return fill_in(out, options.name, c_features(model));
+}
+
+}  // namespace detail
+
+VERNIER_IMPL std::string c_source(const std::string& model_file, CExport options) {
+  const SavedArm arm = saved_arm(model_file);
+  options.hash = sha256(read_file(model_file));
+  return detail::c_source(detail::read_model(model_file, arm.dof, arm.modified), options);
+}
+
+}  // namespace vernier

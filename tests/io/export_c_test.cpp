@@ -4,8 +4,11 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "complaint.hpp"
 #include "random_chains.hpp"
@@ -13,6 +16,8 @@
 #include "temporary_folder.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/sha256.hpp"
+#include "vernier/io/detail/c_code.hpp"
+#include "vernier/io/detail/c_tables.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -82,7 +87,8 @@ CalibratedRobot<N, Convention> with_everything(const DhChain<N, Convention>& cha
   const auto robot = geometric(chain, limits);
   const auto& arm = robot.identified();
   const typename Model::Arm inside({arm.chain(), joint_errors(chain, false)}, tracker, probe);
-  const typename Model::Arm outside({chain, joint_errors(chain, true)}, frame(2.21, -1.4, 0.35, 0.1, -0.7, 2.01), probe);
+  const typename Model::Arm outside({chain, joint_errors(chain, true)}, frame(2.21, -1.4, 0.35, 0.1, -0.7, 2.01),
+                                    probe);
   return robot.with_model(Model(chain, inside, outside, coverage), robot.provenance());
 }
 
@@ -223,22 +229,20 @@ class ExportC : public testing::Test {
   }
 
   template <int N, class Convention>
-  Differences expect_equal(const CalibratedRobot<N, Convention>& robot, Index n = 10000, Index corrections = 2000) {
+  void expect_equal(const CalibratedRobot<N, Convention>& robot, Index n = 10000, Index corrections = 2000) {
     const Compiled<N> c(folder_, c_source(robot));
     const Differences found = compare(robot, c, n, corrections);
     EXPECT_LT(found.pose, 1e-13);
     EXPECT_LT(found.jacobian, 1e-11);  // slopes of harmonics are multiplied by their orders
-    EXPECT_LT(found.command, 1e-9);
-    EXPECT_LT(found.error, 1e-9);
+    // Where there are more joints than equations, rounding alone moves a command along the null space of the Jacobian.
+    const bool redundant = N == 7 || N == 4;
+    EXPECT_LT(found.command, redundant ? 1e-5 : 1e-9);
+    EXPECT_LT(found.error, redundant ? 1e-7 : 1e-9);
     EXPECT_GT(found.met, corrections / 2);
     EXPECT_EQ(found.statuses, 0);
     if (robot.model().fallback() != nullptr) {
       EXPECT_GT(std::min({found.inside, found.between, found.outside}), n / 20);
     }
-    std::printf("pose %.1e jacobian %.1e command %.1e gates %d %d %d met %d other %d statuses %d\n", found.pose,
-                found.jacobian, found.command, int(found.inside), int(found.between), int(found.outside),
-                int(found.met), int(found.other), int(found.statuses));
-    return found;
   }
 
   testing_support::TemporaryFolder folder_{"export_c"};
@@ -279,7 +283,165 @@ TEST_F(ExportC, OfWhatWasLearnedEqualsTheLibrary) {
   for (const RidgeElm& learner : {RidgeElm{.activation = Activation::tanh, .input_map = InputMap::sine_cosine_products},
                                   RidgeElm{.activation = Activation::radial_basis, .input_map = InputMap::raw},
                                   RidgeElm{.activation = Activation::sine, .input_map = InputMap::raw}})
-    expect_equal(with_learned(geometry, learner), 2000, 200);
+    expect_equal(with_learned(geometry, learner), 1000, 100);
+}
+
+/// Headers of the models that the compilers and sanitizers look at, and a program that calls everything.
+class ExportedFiles : public ExportC {
+ protected:
+  void SetUp() override {
+    ExportC::SetUp();
+    const auto six = robots::abb_irb120();
+    Rng rng(6);
+    const JointLimits<4> limits{JointVector<4>::Constant(-1), JointVector<4>::Constant(1)};
+    const auto sliding = vernier_test::random_chain<4>(rng, {.prismatic = 0.5});
+    const auto simple = geometric(six.chain, {});
+    plain_ = c_source(CalibratedRobot<6>("an */ \"arm\" ?\?/ $ \\", simple.model(), {}, simple.provenance()));
+    full_ = c_source(with_learned(with_everything(six.chain, six.limits), {.hidden_nodes = 8}));
+    sliding_ = c_source(with_everything(sliding, limits));
+    write_file(folder_ / "main.c", R"C(
+#include "arm.h"
+#include <stdio.h>
+
+static double uniform(unsigned *state) {
+  *state = *state * 1664525u + 1013904223u;
+  return (double)(*state >> 8) / 16777216.0 * 6.6 - 3.3;
+}
+
+int main(void) {
+  unsigned state = 1;
+  double sum = 0;
+  int i, k, counts[3] = {0, 0, 0};
+  for (i = 0; i < 300; ++i) {
+    double q[ARM_JOINTS], previous[ARM_JOINTS], command[ARM_JOINTS], T[12], J[6 * ARM_JOINTS], error;
+    const double *from = i % 3 ? previous : 0;
+    for (k = 0; k < ARM_JOINTS; ++k) {
+      q[k] = uniform(&state);
+      previous[k] = uniform(&state);
+    }
+    arm_pose(q, from, T);
+    arm_jacobian(q, from, J);
+    arm_nominal_pose(q, T);
+    ++counts[arm_correct(T, q, from, command, i % 2 ? &error : 0)];
+    sum += arm_gate(q) + T[3] + J[0] + command[0];
+  }
+  printf("%d met, %d not, %s %s %g\n", counts[ARM_MET], counts[ARM_STALLED] + counts[ARM_LIMITS], ARM_MODEL_HASH,
+         ARM_MODEL_DATE, sum);
+  return 0;
+}
+)C");
+    write_file(folder_ / "library.c", "#include \"arm.h\"\n");
+  }
+
+  testing_support::CommandResult run(const std::string& command) {
+    return run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
+  }
+
+  std::string plain_, full_, sliding_;
+};
+
+TEST_F(ExportedFiles, CompileWithoutAWarningAndNeedTheMathematicalLibraryAlone) {
+  std::vector<std::string> left_out;
+  for (const char* compiler :
+       {"gcc -std=c99", "g++ -std=c++11 -x c++", "clang -std=c99", "clang++ -std=c++11 -x c++"}) {
+    const std::string program = std::string(compiler).substr(0, std::string(compiler).find(' '));
+    if (!have(program.c_str(), folder_)) {
+      left_out.push_back(program);
+      continue;
+    }
+    for (const std::string& source : {plain_, full_}) {
+      write_file(folder_ / "arm.h", source);
+      const auto included = run(message(compiler, ' ', strict, " -fsyntax-only main.c"));
+      EXPECT_EQ(included.exit_code, 0) << compiler << '\n' << included.errors;
+      const auto library =
+          run(message(compiler, ' ', strict, " -fno-stack-protector -DARM_API= -c library.c -o arm.o"));
+      ASSERT_EQ(library.exit_code, 0) << compiler << '\n' << library.errors;
+      std::istringstream symbols(run("nm -u arm.o").output);
+      const std::set<std::string> known{"atan2", "cos", "exp", "floor", "sin", "sincos", "sqrt", "tanh"};
+      for (std::string u, name; symbols >> u >> name;) EXPECT_TRUE(known.contains(name)) << compiler << ": " << name;
+      const auto defined = run("nm --defined-only --extern-only arm.o");
+      EXPECT_EQ(std::count(defined.output.begin(), defined.output.end(), '\n'), 5) << defined.output;
+    }
+  }
+  if (!left_out.empty()) GTEST_SKIP() << left_out.front() << " is not here; the other compilers were content";
+}
+
+TEST_F(ExportedFiles, AreCleanUnderSanitizers) {
+  if (run("echo 'int main(void) { return 0; }' >empty.c; gcc -fsanitize=address,undefined empty.c -o empty && ./empty")
+          .exit_code != 0)
+    GTEST_SKIP() << "gcc has no sanitizers here";
+  for (const std::string& source : {full_, sliding_}) {
+    write_file(folder_ / "arm.h", source);
+    const auto done = run(
+        message("gcc -std=c99 -fsanitize=address,undefined -fno-sanitize-recover=all main.c -o main -lm && ./main"));
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    EXPECT_EQ(done.errors, "");
+    EXPECT_NE(done.output.find(" met, "), std::string::npos) << done.output;
+  }
+}
+
+TEST_F(ExportC, StatesWhereItComesFrom) {
+  const auto chain = robots::abb_irb120();
+  const auto robot = geometric(chain.chain, chain.limits);
+  const auto path = folder_ / "m.json";
+  save(path, robot);
+  const std::string source = c_source(robot, {.held_out_error = 1.25e-4});
+  const auto has = [](const std::string& text, const std::string& line) {
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  };
+  has(source, "#define ARM_MODEL_HASH \"" + sha256(read_file(path)) + "\"\n");
+  has(source, "#define ARM_MODEL_DATE \"2024-05-01\"\n");
+  has(source, "#define ARM_HELD_OUT_ERROR 0.000125 /* mean [m] */\n");
+  has(source, "#define ARM_JOINTS 6\n");
+  has(source, " * from:            120 poses of poses.csv\n");
+  EXPECT_EQ(c_source(path, {.held_out_error = 1.25e-4}), source);  // the file is the same arm
+  has(c_source(robot, {.name = "cell3_Left"}), "\nCELL3_LEFT_API int cell3_Left_correct(");
+  EXPECT_EQ(c_source(robot).find("HELD_OUT_ERROR"), std::string::npos);
+
+  const CalibratedRobot<6> warm("warm", robot.model().with_thermal({22, 20, 25, VectorX::Constant(42, 1e-5)}),
+                                robot.limits(), robot.provenance());
+  has(c_source(warm.at_temperature(24.5)), "#define ARM_TEMPERATURE 24.5 /* [deg C] */\n");
+  has(c_source(warm), "22 deg C; how the arm changes with it is left out");
+}
+
+TEST_F(ExportC, RefusesWhatHasNoSource) {
+  const auto chain = robots::abb_irb120();
+  const auto robot = geometric(chain.chain, chain.limits);
+  const JointRows<6> joints = sample_joints(robot.limits(), 30, 6);
+  const KernelPredictor<6, 3> kernels(Kernel::matern_5_2, InputMap::raw,
+                                      {VectorX::Constant(6, 0.01), VectorX::Constant(6, 0.9)}, joints,
+                                      1e-4 * joints.leftCols<3>(), Vector3(1e-5, 0, -2e-5));
+  const auto learned = robot.with_learned(kernels, JointCoverage<6>::covering(joints));
+  EXPECT_EQ(
+      vernier_test::complaint([&] { c_source(learned); }),
+      "c_source: the position error that was learned is a sum of 30 kernels (kernel ELM, Gaussian process), which "
+      "is not written as C source; networks are");
+  for (const char* name : {"", "3arm", "my arm", "_arm", "arm;", "\xc3\xa4rm"})
+    EXPECT_NE(vernier_test::complaint([&] { c_source(robot, {.name = name}); }).find("is no C identifier"),
+              std::string::npos)
+        << name;
+  const CalibratedRobot<6> broken("an arm", robot.model(),
+                                  {JointVector<6>::Constant(std::nan("")), robot.limits().upper}, {});
+  EXPECT_EQ(vernier_test::complaint([&] { c_source(broken); }), "c_source: a value of the model is nan");
+  EXPECT_THROW(c_source(folder_ / "none.json"), std::exception);
+}
+
+TEST(CNumbers, AreTheSameDoublesAgain) {
+  Rng rng(3);
+  for (int i = 0; i < 1000; ++i) {
+    const double value = rng.normal() * std::pow(10, rng.uniform(-300, 300));
+    EXPECT_EQ(std::stod(detail::c_number(value)), value);
+  }
+  EXPECT_EQ(detail::c_number(0.1), "0.10000000000000001");
+  EXPECT_EQ(detail::c_number(-2), "-2");
+}
+
+// A feature that is absent takes its lines along, whatever is around.
+TEST(CText, IsFilledIn) {
+  const char* text = "a $_b $$_C\n@if one\n1\n@if two\n2\n@end\n@if !two\nnot 2\n@end\n@end\nend\n";
+  EXPECT_EQ(detail::fill_in(text, "x", {"one"}), "a x_b X_C\n1\nnot 2\nend\n");
+  EXPECT_EQ(detail::fill_in(text, "x", {"two"}), "a x_b X_C\nend\n");
+  EXPECT_EQ(detail::fill_in(text, "x", {"one", "two"}), "a x_b X_C\n1\n2\nend\n");
 }
 
 }  // namespace

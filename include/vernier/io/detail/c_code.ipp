@@ -60,7 +60,7 @@ $$_API double $_gate(const double q[$$_JOINTS]);
 @if !oriented
  * The orientation of T is ignored: the arm has fewer than six joints.
 @end
- * `error`, unless it is 0, becomes the distance from T that is left [m].
+ * `error`, unless it is 0, becomes the distance from T that is left [m]. `q` may be `seed` or `previous`.
  * Returns $$_MET, $$_STALLED (the iterations ran out) or $$_LIMITS (out of reach or beyond the limits).
  * To correct the command of a program, q0: $_nominal_pose(q0, T); $_correct(T, q0, previous, q, &error); */
 $$_API int $_correct(const double T[12], const double seed[$$_JOINTS], const double *previous, double q[$$_JOINTS],
@@ -431,6 +431,16 @@ static inline void $_add_hysteresis_(const $_arm_ *arm, const double *q, const d
 @end
 @if harmonics
 
+/* Turns unit vectors on by others, or by themselves. */
+static inline void $_turn_all_(double *c, double *s, const double *by_c, const double *by_s) {
+  int i;
+  for (i = 0; i < $$_LANES_; ++i) {
+    const double next = c[i] * by_c[i] - s[i] * by_s[i];
+    s[i] = s[i] * by_c[i] + c[i] * by_s[i];
+    c[i] = next;
+  }
+}
+
 /* Functions of single joints, all joints side by side: the unit vector of each angle is turned from order to order. */
 static inline void $_add_harmonics_(const $_arm_ *arm, const double *q, double *joints, double *rate) {
   double c1[$$_LANES_], s1[$$_LANES_], c[$$_LANES_], s[$$_LANES_], value[$$_LANES_], slope[$$_LANES_];
@@ -445,36 +455,25 @@ static inline void $_add_harmonics_(const $_arm_ *arm, const double *q, double *
   }
   for (k = 0; k < arm->orders; ++k, of += 2 * $$_LANES_) {
     const double at = arm->order[k];
-    int gap = arm->order[k] - order;
-    if (gap == 1) {
-      for (i = 0; i < $$_LANES_; ++i) {
-        const double next = c[i] * c1[i] - s[i] * s1[i];
-        s[i] = s[i] * c1[i] + c[i] * s1[i];
-        c[i] = next;
-      }
-    } else {
+    int gap = arm->order[k] - order; /* c and s are those of `order` */
+    if (gap > 0) {
       double cp[$$_LANES_], sp[$$_LANES_];
       for (i = 0; i < $$_LANES_; ++i) {
         cp[i] = c1[i];
         sp[i] = s1[i];
       }
       for (; gap > 0; gap >>= 1) { /* powers of two */
-        for (i = 0; i < $$_LANES_; ++i) {
-          const double next = c[i] * cp[i] - s[i] * sp[i], square = cp[i] * cp[i] - sp[i] * sp[i];
-          if (gap & 1) {
-            s[i] = s[i] * cp[i] + c[i] * sp[i];
-            c[i] = next;
-          }
-          sp[i] = 2 * cp[i] * sp[i];
-          cp[i] = square;
-        }
+        if (gap & 1) $_turn_all_(c, s, cp, sp);
+        if (gap > 1) $_turn_all_(cp, sp, cp, sp);
       }
     }
-    order = arm->order[k];
+    order = arm->order[k] + 1;
     for (i = 0; i < $$_LANES_; ++i) {
-      const double a = of[i], b = of[$$_LANES_ + i];
-      value[i] += a * c[i] + b * s[i];
-      slope[i] += at * (b * c[i] - a * s[i]);
+      const double a = of[i], b = of[$$_LANES_ + i], cosine = c[i], sine = s[i];
+      value[i] += a * cosine + b * sine;
+      slope[i] += at * (b * cosine - a * sine);
+      c[i] = cosine * c1[i] - sine * s1[i];
+      s[i] = sine * c1[i] + cosine * s1[i];
     }
   }
   for (i = 0; i < $$_JOINTS; ++i) {
@@ -717,7 +716,15 @@ static inline void $_blend_(double gate, const double *slope, const double *near
 @end
 @if learned
 
-/* The learned position error, and its derivative as columns of three. */
+static inline void $_accumulate_(int first, double factor, const double *terms, double *sums) {
+  int j;
+  if (first)
+    for (j = 0; j < $$_FEATURES_; ++j) sums[j] = factor * terms[j];
+  else
+    for (j = 0; j < $$_FEATURES_; ++j) sums[j] += factor * terms[j];
+}
+
+/* The learned position error, and its derivative as columns of three; 0 for none. */
 static inline void $_learned_(const double *q, double *y, double *slope) {
   double x[$$_FEATURES_], gradient[3 * $$_FEATURES_];
   int i, j, k, o;
@@ -754,9 +761,14 @@ static inline void $_learned_(const double *q, double *y, double *slope) {
     const double *w = $_nodes_ + k * ($$_FEATURES_ + 4), bias = w[$$_FEATURES_], *beta = w + $$_FEATURES_ + 1;
     double z = 0, dz;
 @if radial_basis
-    for (j = 0; j < $$_FEATURES_; ++j) z += (x[j] - w[j]) * (x[j] - w[j]);
+    double apart[$$_FEATURES_];
+    for (j = 0; j < $$_FEATURES_; ++j) {
+      apart[j] = x[j] - w[j];
+      z += apart[j] * apart[j];
+    }
     z = exp(-bias * bias * z);
     dz = -2 * bias * bias * z;
+    w = apart;
 @end
 @if !radial_basis
     for (j = 0; j < $$_FEATURES_; ++j) z += w[j] * x[j];
@@ -775,17 +787,11 @@ static inline void $_learned_(const double *q, double *y, double *slope) {
     z = sin(z);
 @end
     for (o = 0; o < 3; ++o) {
-      const double effect = beta[o] * dz;
-      double *g = gradient + o * $$_FEATURES_;
       y[o] += beta[o] * z;
-@if radial_basis
-      for (j = 0; j < $$_FEATURES_; ++j) g[j] = (k ? g[j] : 0) + effect * (x[j] - w[j]);
-@end
-@if !radial_basis
-      for (j = 0; j < $$_FEATURES_; ++j) g[j] = (k ? g[j] : 0) + effect * w[j];
-@end
+      if (slope) $_accumulate_(k == 0, beta[o] * dz, w, gradient + o * $$_FEATURES_);
     }
   }
+  if (!slope) return;
   for (o = 0; o < 3; ++o) {
     double *g = gradient + o * $$_FEATURES_;
     for (j = 0; j < $$_FEATURES_; ++j) g[j] *= $_feature_factor_[j];
@@ -818,7 +824,7 @@ static inline void $_learned_(const double *q, double *y, double *slope) {
 static inline void $_at_(const double *q, const double *previous, double *frame, double *J) {
 @if fallback
   double slope[$$_JOINTS], near_frame[12], columns[6 * $$_JOINTS], *near_J = J ? columns : 0;
-  const double gate = $_gate_at_(&$_coverage_of_model_, q, slope);
+  const double gate = $_gate_at_(&$_coverage_of_model_, q, J ? slope : 0);
   if (gate >= 1) {
     $_arm_at_(&$_identified_, q, previous, frame, J);
   } else {
@@ -835,10 +841,10 @@ static inline void $_at_(const double *q, const double *previous, double *frame,
 @if learned
   {
     double gradient[$$_JOINTS], error[3], rate[3 * $$_JOINTS];
-    const double share = $_gate_at_(&$_coverage_of_learned_, q, gradient);
+    const double share = $_gate_at_(&$_coverage_of_learned_, q, J ? gradient : 0);
     int i, j;
     if (share == 0) return;
-    $_learned_(q, error, rate);
+    $_learned_(q, error, J ? rate : 0);
     for (j = 0; j < 3; ++j) frame[9 + j] -= share * error[j];
     for (i = 0; J && i < $$_JOINTS; ++i)
       for (j = 0; j < 3; ++j) J[6 * i + j] -= share * rate[3 * i + j] + error[j] * gradient[i];

@@ -1,0 +1,69 @@
+// A calibrated model in; one C header that predicts and corrects as the library does out.
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli.hpp"
+#include "json_file.hpp"
+#include "vernier/core/atomic_file.hpp"
+#include "vernier/core/data_error.hpp"
+#include "vernier/io/export_c.hpp"
+#include "vernier/io/json.hpp"
+
+namespace {
+
+namespace vn = vernier;
+
+/// Mean held-out error of the stage that is deployed [m], from the results that calibrate wrote.
+/// @throws vn::DataError where they are those of another calibration, or of none
+double held_out_error(const std::string& results, const std::string& model) {
+  const nlohmann::json document = vn::read_json(results), saved = vn::read_json(model);
+  const vn::JsonNode root(document, results), arm(saved, model);
+  const auto of = [](const std::string& name, std::int64_t rows) {
+    return vn::message("'", name, "', ", rows, " rows");
+  };
+  const std::string here = of(root.at("robot").text(), root.at("train_rows").integer(0, INT32_MAX)),
+                    there = of(arm.at("name").text(), arm.at("provenance").at("rows").integer(0, INT32_MAX));
+  if (here != there) root.fail("are results of another calibration: " + here + "; the model: " + there);
+  return 1e-3 * root.at("stages").at(root.at("chosen").text()).at("mean_mm").number();
+}
+
+int run(support::Program& program) {
+  std::string model, results, name = "arm";
+  CLI::App& app = program.app();
+  app.add_option("--model", model, "calibrated model that calibrate saved")->required()->type_name("FILE");
+  app.add_option("--results", results, "what calibrate wrote by --json: its held-out error becomes a macro")
+      ->type_name("FILE");
+  app.add_option("--name", name, "what all names in the file begin with")->type_name("NAME")->capture_default_str();
+  program.parse("", "write the C header to this file", "FILE");
+  const std::string out = program.common().out;
+  if (out.empty()) throw support::UsageError("--out is required");
+  support::require_writable(out);
+
+  vn::CExport options{.name = name};
+  if (!results.empty()) options.held_out_error = held_out_error(results, model);
+  const std::string source = vn::c_source(model, options);
+  vn::write_file(out, source);
+  std::string capitals = name;
+  for (char& letter : capitals) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  fmt::print("{}: {} kB\nA library of it: cc -O2 -shared -fPIC -D{}_API= -x c {} -o {}.so -lm\n", out,
+             (source.size() + 500) / 1000, capitals, out, name);
+  if (!program.common().json.empty()) {
+    support::Json json{{"file", out}, {"name", name}, {"bytes", source.size()}};
+    if (options.held_out_error) json["held_out_error_mm"] = *options.held_out_error * 1e3;
+    support::write_json(program.common().json, json);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program("export_c",
+                              "A calibrated model in; one C header that predicts poses and corrects commands out.",
+                              argc, argv, run);
+}

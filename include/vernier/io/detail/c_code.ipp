@@ -824,7 +824,7 @@ static inline void $_learned_(const double *q, double *y, double *slope) {
 static inline void $_at_(const double *q, const double *previous, double *frame, double *J) {
 @if fallback
   double slope[$$_JOINTS], near_frame[12], columns[6 * $$_JOINTS], *near_J = J ? columns : 0;
-  const double gate = $_gate_at_(&$_coverage_of_model_, q, J ? slope : 0);
+  const double gate = $_gate_at_(&$_coverage_of_model_, q, slope);
   if (gate >= 1) {
     $_arm_at_(&$_identified_, q, previous, frame, J);
   } else {
@@ -841,7 +841,7 @@ static inline void $_at_(const double *q, const double *previous, double *frame,
 @if learned
   {
     double gradient[$$_JOINTS], error[3], rate[3 * $$_JOINTS];
-    const double share = $_gate_at_(&$_coverage_of_learned_, q, J ? gradient : 0);
+    const double share = $_gate_at_(&$_coverage_of_learned_, q, gradient);
     int i, j;
     if (share == 0) return;
     $_learned_(q, error, J ? rate : 0);

@@ -16,7 +16,8 @@ int main(void) {
     status = arm_correct(T, program, previous, command, &error);
     previous = command; /* hysteresis: the arm comes from there */
     for (i = 0; i < ARM_JOINTS; ++i) printf("%10.6f", command[i]);
-    printf("  %s, %.4f mm left\n", status == ARM_MET ? "met" : status == ARM_STALLED ? "stalled" : "limits", error * 1e3);
+    printf("  %s, %.4f mm left\n",
+           status == ARM_MET ? "met" : status == ARM_STALLED ? "stalled" : "limits", error * 1e3);
   }
   return 0;
 }

@@ -4,6 +4,7 @@
 /// Robots, calibrated models, reports and searches under way as JSON: needs nlohmann-json beside Eigen.
 
 #include "vernier/io/audit_json.hpp"
+#include "vernier/io/export_c.hpp"
 #include "vernier/io/iso9283_json.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/report_json.hpp"

@@ -10,3 +10,4 @@
 #include "vernier/io/report_json.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/io/search_state.hpp"
+#include "vernier/io/ur_calibration.hpp"

@@ -18,7 +18,8 @@ namespace vernier {
 template <int N>
 struct DescribedRobot {
   std::string name;                  ///< its name
-  Framed<DhChain<N>> arm;            ///< the chain; its base frame is identity, or the first row of a modified chain
+  Framed<DhChain<N>> arm;            ///< the chain between its base and tool frames; what precedes the first joint of a
+                                     ///< modified chain is part of the base frame
   JointLimits<N> limits{};           ///< joint limits
   std::vector<JointDrive> drives{};  ///< gears and encoders, one a joint; may be empty
 };
@@ -30,7 +31,10 @@ struct RobotDescription {
   std::vector<DhRow> rows{};                        ///< one a joint [m, rad]
   std::vector<std::pair<double, double>> limits{};  ///< lower and upper, one a joint [rad, m]; infinite where not given
 
-  std::vector<JointDrive> drives{};  ///< gears and encoders, one a joint
+  std::vector<JointDrive> drives{};           ///< gears and encoders, one a joint
+  Isometry3 base = Isometry3::Identity();     ///< frame in which the first row stands
+  Isometry3 tool = Isometry3::Identity();     ///< tool frame after the last row
+  std::vector<std::string> joint_names = {};  ///< one a joint; may be empty
 
   /// Of an arm of the catalogue.
   template <int N, class Convention>
@@ -47,10 +51,10 @@ struct RobotDescription {
   /// Number of joints.
   int dof() const { return static_cast<int>(rows.size()); }
 
-  /// The arm without a type, in the standard convention; a modified chain is converted exactly.
+  /// The arm without a type, in the standard convention, between its frames; a modified chain is converted exactly.
   VERNIER_API ArmGeometry geometry() const;
 
-  /// The arm with N fixed, in the standard convention.
+  /// The arm with N fixed, in the standard convention, between its frames.
   /// @throws std::invalid_argument unless N is `dof()`
   template <int N>
   DescribedRobot<N> arm() const {

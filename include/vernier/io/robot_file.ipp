@@ -54,7 +54,8 @@ VERNIER_API void read_joint(const JsonNode& joint, RobotDescription& robot) {
 
 VERNIER_IMPL ArmGeometry RobotDescription::geometry() const {
   const detail::ChainTable chain(rows, modified);
-  return modified ? detail::to_standard(chain) : ArmGeometry(chain, {}, {});
+  const ArmGeometry inner = modified ? detail::to_standard(chain) : ArmGeometry(chain, {}, {});
+  return inner.with_frames(base * inner.base().isometry(), tool);
 }
 
 VERNIER_IMPL RobotDescription load_robot(const std::string& path) {

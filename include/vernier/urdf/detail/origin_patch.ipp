@@ -1,0 +1,158 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "vernier/core/check.hpp"
+#include "vernier/urdf/detail/origin_patch.hpp"
+#include "vernier/urdf/detail/roll_pitch_yaw.hpp"
+#include "vernier/urdf/detail/urdf_document.hpp"
+
+namespace vernier::detail {
+
+/// A start or end tag, by its bytes.
+struct XmlTag {
+  std::size_t begin, end;  ///< of `<` and behind `>`
+  std::string_view name;
+  bool closing, empty;  ///< `</name>`, `<name/>`
+};
+
+/// The next tag of a text that is known to be XML; none where there is no more.
+VERNIER_API std::optional<XmlTag> next_tag(std::string_view text, std::size_t from) {
+  constexpr std::pair<std::string_view, std::string_view> passed[] = {
+      {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}};
+  for (std::size_t at = text.find('<', from); at != std::string_view::npos; at = text.find('<', at)) {
+    const std::string_view here = text.substr(at);
+    const auto* other = std::find_if(std::begin(passed), std::end(passed),
+                                     [&](const auto& marks) { return here.starts_with(marks.first); });
+    if (other != std::end(passed)) {
+      const std::size_t end = text.find(other->second, at + other->first.size());
+      if (end == std::string_view::npos) return std::nullopt;
+      at = end + other->second.size();
+      continue;
+    }
+    std::size_t end = at + 1;
+    for (char quote = 0; end < text.size(); ++end) {
+      const char c = text[end];
+      if (quote != 0) {
+        if (c == quote) quote = 0;
+      } else if (c == '"' || c == '\'') {
+        quote = c;
+      } else if (c == '>') {
+        break;
+      }
+    }
+    if (end >= text.size()) return std::nullopt;
+    const bool closing = here.starts_with("</");
+    std::string_view name = text.substr(at + (closing ? 2 : 1), end - at - (closing ? 2 : 1));
+    name = name.substr(0, name.find_first_of(" \t\r\n/"));
+    return XmlTag{at, end + 1, name, closing, text[end - 1] == '/'};
+  }
+  return std::nullopt;
+}
+
+/// Where the value of an attribute of a tag is; none where it has no such attribute.
+VERNIER_API std::optional<std::pair<std::size_t, std::size_t>> attribute_value(std::string_view text, const XmlTag& tag,
+                                                                               std::string_view name) {
+  for (std::size_t at = tag.begin + 1 + tag.name.size(); at < tag.end;) {
+    at = text.find_first_not_of(" \t\r\n", at);
+    const std::size_t name_end = text.find_first_of(" \t\r\n=>", at);
+    if (name_end >= tag.end || text[name_end] == '>') break;
+    const std::size_t open = text.find_first_of("\"'", name_end);
+    if (open >= tag.end) break;
+    const std::size_t close = text.find(text[open], open + 1);
+    if (text.substr(at, name_end - at) == name) return std::pair{open + 1, close};
+    at = close + 1;
+  }
+  return std::nullopt;
+}
+
+/// Replacements of bytes, in order.
+struct TextPatch {
+  std::size_t begin, end;
+  std::string content;
+};
+
+/// What makes an origin of a joint's element between two tags.
+/// @param joint the joint's start tag
+/// @param origin its origin, if it has one
+VERNIER_API void patch_origin(std::string_view text, const XmlTag& joint, const std::optional<XmlTag>& origin,
+                              const Isometry3& frame, std::vector<TextPatch>& patches) {
+  const auto three = [](const Vector3& v) {
+    return exact_number(v.x()) + " " + exact_number(v.y()) + " " + exact_number(v.z());
+  };
+  const std::string xyz = three(frame.translation()), rpy = three(roll_pitch_yaw(frame.linear()));
+  if (!origin) {
+    const std::size_t next = text.find_first_not_of(" \t\r\n", joint.end);
+    const std::string space(text.substr(joint.end, next - joint.end));
+    patches.push_back({joint.end, joint.end, space + "<origin xyz=\"" + xyz + "\" rpy=\"" + rpy + "\"/>"});
+    return;
+  }
+  std::vector<TextPatch> here;
+  std::string missing;
+  for (const auto& [name, value] : {std::pair<const char*, const std::string&>{"xyz", xyz}, {"rpy", rpy}}) {
+    if (const auto place = attribute_value(text, *origin, name))
+      here.push_back({place->first, place->second, value});
+    else
+      missing += std::string(" ") + name + "=\"" + value + "\"";
+  }
+  const std::size_t behind_name = origin->begin + 1 + origin->name.size();
+  if (!missing.empty()) here.push_back({behind_name, behind_name, missing});
+  std::sort(here.begin(), here.end(), [](const TextPatch& a, const TextPatch& b) { return a.begin < b.begin; });
+  patches.insert(patches.end(), here.begin(), here.end());
+}
+
+VERNIER_IMPL std::string exact_number(double value) {
+  std::string out = message(value == 0 ? 0.0 : value);  // not -0
+  const std::size_t exponent = out.find('e');
+  if (exponent != std::string::npos && out.find('.') == std::string::npos) out.insert(exponent, ".0");
+  return out;
+}
+
+VERNIER_IMPL std::string with_origins(const std::string& text,
+                                      const std::vector<std::pair<std::string, Isometry3>>& origins,
+                                      const std::vector<std::string>& comment) {
+  const UrdfDocument document = read_urdf_document(text, "the URDF");
+  std::vector<TextPatch> patches;
+  std::size_t number = 0;  // of the next joint
+  int depth = 0;           // 1 inside of the robot
+  const Isometry3* frame = nullptr;
+  std::optional<XmlTag> joint, origin;
+  for (std::optional<XmlTag> tag = next_tag(text, 0); tag; tag = next_tag(text, tag->end)) {
+    if (depth == 0 && !tag->closing && !comment.empty()) {
+      std::string lines;
+      for (std::string line : comment) {
+        for (std::size_t dash = line.find("--"); dash != std::string::npos; dash = line.find("--", dash))
+          line.insert(dash + 1, " ");
+        lines += "\n       " + line;
+      }
+      patches.push_back({tag->end, tag->end, "\n  <!-- " + lines.substr(8) + " -->"});
+    }
+    if (depth == 1 && !tag->closing && tag->name == "joint") {
+      const std::string& name = document.joints.at(number++).name;
+      const auto found = std::find_if(origins.begin(), origins.end(), [&](const auto& of) { return of.first == name; });
+      frame = found == origins.end() ? nullptr : &found->second;
+      joint = tag;
+      origin.reset();
+    }
+    if (depth == 2 && !tag->closing && tag->name == "origin" && joint) origin = tag;
+    if (depth == 2 && tag->closing && joint && tag->name == "joint") {
+      if (frame != nullptr) patch_origin(text, *joint, origin, *frame, patches);
+      joint.reset();
+    }
+    if (tag->closing)
+      --depth;
+    else if (!tag->empty)
+      ++depth;
+  }
+  std::string out;
+  std::size_t done = 0;
+  for (const TextPatch& patch : patches) {
+    out.append(text, done, patch.begin - done).append(patch.content);
+    done = patch.end;
+  }
+  return out.append(text, done);
+}
+
+}  // namespace vernier::detail

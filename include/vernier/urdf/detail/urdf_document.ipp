@@ -1,0 +1,212 @@
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "vernier/core/data_error.hpp"
+#include "vernier/io/json.hpp"
+#include "vernier/urdf/detail/roll_pitch_yaw.hpp"
+#include "vernier/urdf/detail/urdf_document.hpp"
+
+namespace vernier::detail {
+
+/// An element of a URDF file, for messages that name file, line and what it is about.
+class UrdfElement {
+ public:
+  UrdfElement(const tinyxml2::XMLElement& element, const std::string& file) : element_(&element), file_(&file) {}
+
+  template <class... Parts>
+  [[noreturn]] void fail(const Parts&... parts) const {
+    throw DataError(message(*file_, ", line ", element_->GetLineNum(), ": ", parts...));
+  }
+  int line() const { return element_->GetLineNum(); }
+  const tinyxml2::XMLElement* child(const char* name) const { return element_->FirstChildElement(name); }
+  /// A child that may be there once.
+  const tinyxml2::XMLElement* only_child(const char* name, const std::string& owner) const {
+    const tinyxml2::XMLElement* found = child(name);
+    if (found != nullptr && found->NextSiblingElement(name) != nullptr)
+      UrdfElement(*found->NextSiblingElement(name), *file_).fail(owner, " has two elements '", name, "'");
+    return found;
+  }
+  /// An attribute that must be there, not empty.
+  VERNIER_API std::string text(const char* attribute, const std::string& owner) const {
+    const char* value = element_->Attribute(attribute);
+    if (value == nullptr || *value == '\0') fail(owner, " has no ", attribute);
+    return value;
+  }
+  /// Three numbers.
+  VERNIER_API Vector3 vector(const char* attribute, const Vector3& otherwise, const std::string& owner) const {
+    const char* value = element_->Attribute(attribute);
+    if (value == nullptr) return otherwise;
+    Vector3 out;
+    Index count = 0;
+    for (std::string_view rest = value;; ++count) {
+      const std::size_t first = rest.find_first_not_of(" \t\r\n");
+      if (first == std::string_view::npos) break;
+      rest.remove_prefix(first);
+      const std::size_t end = std::min(rest.find_first_of(" \t\r\n"), rest.size());
+      const double number = this->number(rest.substr(0, end), attribute, owner);
+      if (count < 3) out(count) = number;
+      rest.remove_prefix(end);
+    }
+    if (count != 3) fail(attribute, " of ", owner, " has ", count, " numbers, must have 3");
+    return out;
+  }
+  /// A number; 0 where there is none, as URDF has it.
+  VERNIER_API double limit(const char* attribute, const std::string& owner) const {
+    const char* value = element_->Attribute(attribute);
+    return value == nullptr ? 0 : number(value, attribute, owner);
+  }
+
+ private:
+  VERNIER_API double number(std::string_view word, const char* attribute, const std::string& owner) const {
+    const std::string_view unsigned_word = word.starts_with('+') ? word.substr(1) : word;
+    double value = 0;
+    const auto [end, error] = std::from_chars(unsigned_word.data(), unsigned_word.data() + unsigned_word.size(), value);
+    if (word.find("${") != std::string_view::npos)
+      fail(attribute, " of ", owner, " is a xacro expression: run xacro first");
+    if (error != std::errc{} || end != unsigned_word.data() + unsigned_word.size() || !std::isfinite(value))
+      fail(attribute, " of ", owner, ": '", quotable(word), "' is not a number");
+    constexpr double largest = 1000;
+    if (std::abs(value) > largest) fail(attribute, " of ", owner, ": ", value, " is beyond any length or angle");
+    return value;
+  }
+
+  const tinyxml2::XMLElement* element_;
+  const std::string* file_;
+};
+
+/// What URDF does not have: document types, includes, xacro; nesting beyond reason.
+VERNIER_API void refuse_foreign(const tinyxml2::XMLNode& node, const std::string& file, int depth) {
+  constexpr int deepest = 50;
+  for (const tinyxml2::XMLNode* child = node.FirstChild(); child != nullptr; child = child->NextSibling()) {
+    const auto fail = [&](const std::string& what) {
+      throw DataError(message(file, ", line ", child->GetLineNum(), ": ", what));
+    };
+    if (child->ToUnknown() != nullptr) fail("a document type or entity declaration; only plain XML is read");
+    const tinyxml2::XMLElement* element = child->ToElement();
+    if (element == nullptr) continue;
+    const std::string_view name = element->Name();
+    if (name.starts_with("xacro:")) fail("'" + quotable(name) + "' is of xacro: run xacro first");
+    if (name.ends_with(":include")) fail("'" + quotable(name) + "': other files are not included");
+    if (depth >= deepest) fail(message("nested deeper than ", deepest));
+    refuse_foreign(*element, file, depth + 1);
+  }
+}
+
+VERNIER_API UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const std::string& file) {
+  const UrdfElement element(xml, file);
+  UrdfJoint out;
+  out.line = element.line();
+  out.name = element.text("name", "a joint");
+  const std::string owner = "joint '" + quotable(out.name) + "'";
+  out.type = element.text("type", owner);
+  constexpr std::string_view types[] = {"revolute", "continuous", "prismatic", "fixed", "floating", "planar"};
+  if (std::find(std::begin(types), std::end(types), out.type) == std::end(types))
+    element.fail(owner, ": type '", quotable(out.type), "' is unknown");
+  for (auto [which, link] : {std::pair{"parent", &out.parent}, {"child", &out.child}}) {
+    const tinyxml2::XMLElement* found = element.only_child(which, owner);
+    if (found == nullptr) element.fail(owner, " has no ", which);
+    *link = UrdfElement(*found, file).text("link", message("the ", which, " of ", owner));
+  }
+  if (const auto* found = element.only_child("origin", owner)) {
+    const UrdfElement origin(*found, file);
+    out.origin.translation() = origin.vector("xyz", Vector3::Zero(), owner);
+    out.origin.linear() = from_roll_pitch_yaw(origin.vector("rpy", Vector3::Zero(), owner));
+  }
+  if (const auto* found = element.only_child("axis", owner); found != nullptr && out.moves()) {
+    const UrdfElement axis(*found, file);
+    out.axis = axis.vector("xyz", Vector3::UnitX(), owner);
+    if (!(out.axis.norm() > 1e-6)) axis.fail("the axis of ", owner, " is zero");
+    out.axis.normalize();
+  }
+  if (const auto* found = element.only_child("limit", owner); found != nullptr && out.type != "continuous") {
+    const UrdfElement limit(*found, file);
+    out.lower = limit.limit("lower", owner);
+    out.upper = limit.limit("upper", owner);
+    out.limited = out.lower < out.upper;
+    if (!out.limited && out.moves()) out.ignored.push_back("its limit, whose upper value is not above the lower one,");
+  }
+  out.mimics = element.child("mimic") != nullptr;
+  for (const char* name : {"safety_controller", "calibration"})
+    if (element.child(name) != nullptr) out.ignored.push_back(message("<", name, ">"));
+  return out;
+}
+
+/// One parent a link, all links there, no cycle.
+VERNIER_API void check_tree(const UrdfDocument& document, const std::string& file) {
+  std::map<std::string, const UrdfJoint*> above;  // by child; null for one that nothing is above
+  for (const std::string& link : document.links) above[link] = nullptr;
+  for (const UrdfJoint& joint : document.joints) {
+    const auto fail = [&](const auto&... parts) {
+      throw DataError(message(file, ", line ", joint.line, ": joint '", quotable(joint.name), "': ", parts...));
+    };
+    for (const std::string* link : {&joint.parent, &joint.child})
+      if (!above.contains(*link)) fail("link '", quotable(*link), "' is missing");
+    const UrdfJoint*& other = above[joint.child];
+    if (other != nullptr)
+      fail("link '", quotable(joint.child), "' has another parent, by joint '", quotable(other->name), "'");
+    other = &joint;
+  }
+  std::map<std::string, int> seen;  // in which walk
+  int walk = 0;
+  for (const std::string& start : document.links) {
+    ++walk;
+    for (const std::string* link = &start;;) {
+      int& when = seen[*link];
+      if (when == walk) throw DataError(file + ": link '" + quotable(*link) + "' is above itself, a cycle of joints");
+      if (when != 0) break;
+      when = walk;
+      const UrdfJoint* joint = above[*link];
+      if (joint == nullptr) break;
+      link = &joint->parent;
+    }
+  }
+}
+
+VERNIER_IMPL UrdfDocument read_urdf_document(const std::string& text, const std::string& file) {
+  constexpr std::size_t largest = 16u << 20u;
+  if (text.size() > largest) throw DataError(message(file, ": ", text.size(), " bytes, more than ", largest));
+  tinyxml2::XMLDocument xml;
+  if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    const std::string_view what = xml.ErrorName();
+    if (xml.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT) throw DataError(file + ": empty, not URDF");
+    if (xml.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) throw DataError(file + ": nested too deeply");
+    throw DataError(message(file, ", line ", xml.ErrorLineNum(), ": not valid XML (", what, ")"));
+  }
+  refuse_foreign(xml, file, 0);
+  const tinyxml2::XMLElement* root = xml.RootElement();
+  if (root == nullptr || std::string_view(root->Name()) != "robot")
+    throw DataError(file + ": not URDF, its outermost element is not 'robot'");
+  if (root->NextSiblingElement() != nullptr)
+    UrdfElement(*root->NextSiblingElement(), file).fail("a second root element");
+  UrdfDocument out;
+  out.name = UrdfElement(*root, file).text("name", "the robot");
+  std::map<std::string, int> links, joints;  // line of each name
+  const auto once = [&](std::map<std::string, int>& names, const std::string& name, const char* what, int line) {
+    const auto [at, fresh] = names.emplace(name, line);
+    if (!fresh)
+      throw DataError(
+          message(file, ", line ", line, ": ", what, " '", quotable(name), "' is also in line ", at->second));
+  };
+  for (const auto* link = root->FirstChildElement("link"); link != nullptr; link = link->NextSiblingElement("link")) {
+    out.links.push_back(UrdfElement(*link, file).text("name", "a link"));
+    once(links, out.links.back(), "link", link->GetLineNum());
+  }
+  for (const auto* joint = root->FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    out.joints.push_back(read_urdf_joint(*joint, file));
+    once(joints, out.joints.back().name, "joint", joint->GetLineNum());
+  }
+  if (out.links.empty()) throw DataError(file + ": has no links");
+  check_tree(out, file);
+  return out;
+}
+
+}  // namespace vernier::detail

@@ -1,5 +1,5 @@
-# The headers, the compiled libraries, and packages: for find_package(vernier [COMPONENTS io ceres cholmod tbb mpi]), for
-# pkg-config (vernier, header-only, and vernier-compiled), and for Debian (cpack -G DEB).
+# The headers, the compiled libraries, and packages: for find_package(vernier [COMPONENTS io urdf ceres cholmod tbb mpi]),
+# for pkg-config (vernier, header-only, and vernier-compiled), and for Debian (cpack -G DEB).
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)

@@ -28,3 +28,15 @@ if(orocos_kdl_FOUND)
   target_include_directories(vernier_kdl SYSTEM INTERFACE ${orocos_kdl_INCLUDE_DIRS})
   target_link_libraries(vernier_kdl INTERFACE ${orocos_kdl_LIBRARIES} Eigen3::Eigen)
 endif()
+
+# kdl_parser on urdfdom, the peers that URDF files are compared with, as vernier_kdl_parser; their packages name their
+# libraries in as many ways as there are releases.
+find_path(KDL_PARSER_INCLUDE_DIR kdl_parser/kdl_parser.hpp)
+find_library(KDL_PARSER_LIBRARY kdl_parser)
+find_library(URDFDOM_MODEL_LIBRARY urdfdom_model)
+mark_as_advanced(KDL_PARSER_INCLUDE_DIR KDL_PARSER_LIBRARY URDFDOM_MODEL_LIBRARY)
+if(TARGET vernier_kdl AND KDL_PARSER_INCLUDE_DIR AND KDL_PARSER_LIBRARY AND URDFDOM_MODEL_LIBRARY)
+  add_library(vernier_kdl_parser INTERFACE)
+  target_include_directories(vernier_kdl_parser SYSTEM INTERFACE "${KDL_PARSER_INCLUDE_DIR}")
+  target_link_libraries(vernier_kdl_parser INTERFACE "${KDL_PARSER_LIBRARY}" "${URDFDOM_MODEL_LIBRARY}" vernier_kdl)
+endif()

@@ -1,10 +1,10 @@
-# vernier::vernier (Eigen and threads), header-only; vernier::io, ::ceres, ::cholmod, ::tbb and ::mpi add a library each. INTERFACE
-# targets without a flag: they ask for C++20 and nothing else.
+# vernier::vernier (Eigen and threads), header-only; vernier::io, ::ceres, ::cholmod, ::tbb and ::mpi add a library each,
+# ::urdf two to those of io. INTERFACE targets without a flag: they ask for C++20 and nothing else.
 #
 # vernier::compiled is the same with the definitions of the .ipp files in a static library, and vernier::compiled_io,
-# ::compiled_ceres and ::compiled_cholmod are likewise. Where Vernier is embedded they are built only if something links them.
+# ::compiled_urdf, ::compiled_ceres and ::compiled_cholmod are likewise. Where Vernier is embedded they are built only if something links them.
 
-set(vernier_components io ceres cholmod tbb mpi)
+set(vernier_components io urdf ceres cholmod tbb mpi)
 list(JOIN vernier_components "|" vernier_component_regex)
 
 file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp"
@@ -79,6 +79,11 @@ function(vernier_add_component component)
   if(NOT component STREQUAL "vernier")
     target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled)
   endif()
+  foreach(library IN LISTS arg_LINK)  # components that this one is built on
+    if(library MATCHES "^vernier::(.+)$" AND TARGET vernier::compiled_${CMAKE_MATCH_1})
+      target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled_${CMAKE_MATCH_1})
+    endif()
+  endforeach()
   if(TARGET vernier_internal)
     target_link_libraries(vernier_${compiled} PRIVATE $<BUILD_INTERFACE:vernier_internal>)
   endif()
@@ -106,6 +111,8 @@ endfunction()
 
 vernier_add_component(vernier HEADERS ${vernier_headers} LINK Eigen3::Eigen Threads::Threads)
 vernier_add_component(io HEADERS ${vernier_io_headers} LINK vernier::vernier nlohmann_json::nlohmann_json)
+vernier_add_component(urdf HEADERS ${vernier_urdf_headers}
+                      LINK vernier::io nlohmann_json::nlohmann_json tinyxml2::tinyxml2 yaml-cpp::yaml-cpp)
 vernier_add_component(ceres HEADERS ${vernier_ceres_headers} LINK vernier::vernier Ceres::ceres)
 vernier_add_component(cholmod HEADERS ${vernier_cholmod_headers} LINK vernier::vernier CHOLMOD::CHOLMOD)
 vernier_add_component(tbb HEADERS ${vernier_tbb_headers} LINK vernier::vernier TBB::tbb)

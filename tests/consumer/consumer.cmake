@@ -1,4 +1,4 @@
-# The user's program, with the components named in CONSUMER_COMPONENTS (any of io, ceres, cholmod, tbb, mpi), header-only, or with
+# The user's program, with the components named in CONSUMER_COMPONENTS (any of io, urdf, ceres, cholmod, tbb, mpi), header-only, or with
 # the compiled libraries, or both in one program.
 
 set(CONSUMER_COMPONENTS "" CACHE STRING "Components of Vernier the program uses")

@@ -9,6 +9,9 @@
 #ifdef CONSUMER_IO
 #include <vernier/io/robot_file.hpp>
 #endif
+#ifdef CONSUMER_URDF
+#include <vernier/urdf.hpp>
+#endif
 #ifdef CONSUMER_CERES
 #include <vernier/ceres/solver.hpp>
 #include <vernier/identification/identify.hpp>
@@ -63,6 +66,13 @@ int main() {
 #endif
 #ifdef CONSUMER_IO
   right = right && vn::RobotDescription::of(vn::robots::ur10()).dof() == 6;
+#endif
+#ifdef CONSUMER_URDF
+  const char* urdf =
+      "<robot name='one'><link name='a'/><link name='b'/><joint name='j' type='continuous'><parent link='a'/>"
+      "<child link='b'/></joint></robot>";
+  right = right && vn::parse_urdf(urdf, "one.urdf").robot.dof() == 1;
+  right = right && vn::UrKinematics::of(vn::RobotDescription::of(vn::robots::ur10()).geometry(), "").hash.empty();
 #endif
 #ifdef CONSUMER_CERES
   const auto chain = vn::robots::abb_irb120().chain;

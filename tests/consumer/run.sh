@@ -56,6 +56,7 @@ refuse() {
 # Where a program does not ask for a library, that library is not looked for.
 no_ceres=-DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON
 no_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
+no_urdf=(-DCMAKE_DISABLE_FIND_PACKAGE_tinyxml2=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON)
 no_parallel=(-DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON)
 
 # install PREFIX CMAKE ARG...
@@ -99,7 +100,7 @@ compile_with_pc() {
 
 # The headers are installed by a build that knows none of the libraries: the package is the same, but for what is
 # compiled.
-install bare -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_parallel[@]}"
+install bare -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
 install prefix
 
 sed -n 's/^#define VERNIER_VERSION_[A-Z]* *//p' "$root/include/vernier/core/version.hpp" | paste -sd. >"$build/version"
@@ -112,15 +113,16 @@ if command -v pkg-config >/dev/null; then
   compile_with_pc "$whole"
 fi
 
-bare=("-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_parallel[@]}")
+bare=("-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}")
 for project in in_tree fetch_content installed; do
   consume $project header_only "" "${bare[@]}"
 done
-consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
-consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json
-consume installed header_only "io;ceres;cholmod;tbb;mpi"
-consume installed compiled "io;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
-consume in_tree compiled "" $no_ceres $no_json "${no_parallel[@]}"
+consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_urdf[@]}" "${no_parallel[@]}"
+consume installed header_only urdf "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
+consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}"
+consume installed header_only "io;urdf;ceres;cholmod;tbb;mpi"
+consume installed compiled "io;urdf;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
+consume in_tree compiled "" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
 consume installed mixed ""
 
 # A program whose Eigen types have another alignment than the library's does not link.
@@ -136,5 +138,7 @@ printf '%-14s %-17s %s\n' installed refused "another alignment of Eigen's types"
 
 refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
 refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres
+refuse "find_package for module yaml-cpp called with REQUIRED" -DCONSUMER_COMPONENTS=urdf \
+  -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
 refuse "find_package for module TBB called with REQUIRED" -DCONSUMER_COMPONENTS=tbb "${no_parallel[@]}"
 refuse "find_package for module MPI called with REQUIRED" -DCONSUMER_COMPONENTS=mpi "${no_parallel[@]}"

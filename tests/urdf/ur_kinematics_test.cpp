@@ -1,0 +1,161 @@
+// The kinematics files of Universal Robots' driver.
+#include "vernier/urdf/ur_kinematics.hpp"
+
+#include <gtest/gtest.h>
+
+#include "complaint.hpp"
+#include "random_chains.hpp"
+#include "replaced.hpp"
+#include "temporary_folder.hpp"
+#include "ur_published.hpp"
+#include "urdf_samples.hpp"
+#include "vernier/core/atomic_file.hpp"
+#include "vernier/io/ur_calibration.hpp"
+
+namespace vernier::ur_kinematics_test {
+namespace {
+
+class UrKinematicsFile : public testing::Test {
+ protected:
+  UrKinematics read(const std::string& text) const {
+    write_file(path_, text);
+    return read_ur_kinematics(path_);
+  }
+  RobotDescription calibrated(const vernier_test::UrDeltaSet& set) const {
+    const std::string conf = (folder_ / "calibration.conf").string();
+    write_file(conf, set.conf());
+    return read_ur_calibration(conf, vernier_test::ur_nominal(set));
+  }
+  testing_support::TemporaryFolder folder_{"ur_kinematics"};
+  std::string path_ = (folder_ / "kinematics.yaml").string();
+};
+
+/// What a URDF with these values as its origins gives.
+Isometry3 described_pose(const std::array<Vector6, 6>& values, const JointVector<6>& q) {
+  Isometry3 pose = Isometry3::Identity();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Vector6& v = values[i];
+    pose = pose * Eigen::Translation3d(v.head<3>()) * Eigen::AngleAxisd(v(5), Vector3::UnitZ()) *
+           Eigen::AngleAxisd(v(4), Vector3::UnitY()) * Eigen::AngleAxisd(v(3), Vector3::UnitX()) *
+           Eigen::AngleAxisd(q(static_cast<Index>(i)), Vector3::UnitZ());
+  }
+  return pose;
+}
+
+/// The numbers of a file, by its lines alone.
+std::array<Vector6, 6> values_in(const std::string& text) {
+  std::array<Vector6, 6> out;
+  std::size_t at = text.find("\nkinematics:");
+  for (Vector6& values : out)
+    for (int k = 0; k < 6; ++k) {
+      const char* names[] = {"    x: ", "    y: ", "    z: ", "    roll: ", "    pitch: ", "    yaw: "};
+      at = text.find(names[k], at) + std::string(names[k]).size();
+      values(k) = std::stod(text.substr(at));
+    }
+  return out;
+}
+
+// The published exporter writes angles of Rx Ry Rz, which the description reads as those of Rz Ry Rx; that slip is what
+// the second half measures, so that the tolerance of the first half is known to see it.
+TEST_F(UrKinematicsFile, IsExactForPublishedCalibrations) {
+  Rng rng(1);
+  for (const auto& set : vernier_test::ur_delta_sets()) {
+    const RobotDescription nominal = vernier_test::ur_nominal(set);
+    const UrKinematics exact = UrKinematics::of(calibrated(set).geometry(), "calib_1");
+    const std::string text = exact.text({});
+    const std::array<Vector6, 6> values = values_in(text);
+    std::array<Vector6, 6> slipped;
+    for (std::size_t i = 0; i < 6; ++i)
+      slipped[i] << exact.origins[i].translation(), exact.origins[i].linear().eulerAngles(0, 1, 2);
+    const auto back = read(text).robot("again").arm<6>().arm;
+    double worst = 0, worst_back = 0, slip = 0;
+    for (int sample = 0; sample < 1000; ++sample) {
+      const JointVector<6> q = vernier_test::random_joints<6>(rng);
+      const Eigen::Matrix4d truth = vernier_test::ur_controller_pose(nominal, set, q).cast<double>();
+      const auto distance = [&](const Isometry3& pose) { return (pose.matrix() - truth).cwiseAbs().maxCoeff(); };
+      worst = std::max(worst, distance(described_pose(values, q)));
+      worst_back = std::max(worst_back, distance(back.pose(q)));
+      slip = std::max(slip, (described_pose(slipped, q).translation() - truth.topRightCorner<3, 1>()).norm());
+    }
+    EXPECT_LE(worst, 1e-12) << set.name;
+    EXPECT_LE(worst_back, 1e-12) << set.name;
+    EXPECT_GT(slip, 1e-6) << set.name;
+    EXPECT_LT(slip, 1e-4) << set.name;
+    RecordProperty(std::string("slip_mm_") + set.name, message(slip * 1e3));
+  }
+}
+
+TEST_F(UrKinematicsFile, TheNominalUr10IsThePublishedFile) {
+  const UrKinematics kinematics = UrKinematics::of(RobotDescription::of(robots::ur10()).geometry(), "calib_2");
+  const std::array<Vector6, 6> values = values_in(kinematics.text({}));
+  constexpr double quarter = std::numbers::pi / 2;
+  const double expected[6][6] = {{0, 0, 0.1273, 0, 0, 0},        {0, 0, 0, quarter, 0, 0},
+                                 {-0.612, 0, 0, 0, 0, 0},        {-0.5723, 0, 0.163941, 0, 0, 0},
+                                 {0, -0.1157, 0, quarter, 0, 0}, {0, 0.0922, 0, -quarter, 0, 0}};
+  for (std::size_t i = 0; i < 6; ++i)
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(values[i](k), expected[i][k], 1e-15) << i << k;
+}
+
+TEST_F(UrKinematicsFile, OfAUrdfAreItsJointOrigins) {
+  const UrdfChain chain = parse_urdf(vernier_test::ur_like_urdf(), "in", "base_link", "tool0");
+  const UrKinematics kinematics = UrKinematics::of(chain, chain.robot.geometry(), "calib_3");
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_LE((kinematics.origins[i].matrix() - chain.origins[i + 1].matrix()).cwiseAbs().maxCoeff(), 1e-14) << i;
+  EXPECT_NE(vernier_test::complaint([] {
+              const UrdfChain abb = parse_urdf(vernier_test::abb_like_urdf(), "in", "base_link", "tool0");
+              (void)UrKinematics::of(abb, abb.robot.geometry(), "");
+            }).find("joint 'joint_2' does not turn about its z axis"),
+            std::string::npos);
+  EXPECT_NE(vernier_test::complaint([] {
+              const UrdfChain seven = parse_urdf(vernier_test::seven_axis_urdf(), "in");
+              (void)UrKinematics::of(seven, seven.robot.geometry(), "");
+            }).find("7 joints move, must be 6"),
+            std::string::npos);
+  EXPECT_NE(vernier_test::complaint([] {
+              (void)UrKinematics::of(RobotDescription::of(robots::barrett_wam()).geometry(), "");
+            }).find("not an arm of six revolute joints"),
+            std::string::npos);
+}
+
+TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
+  const std::string published =
+      "kinematics:\n  shoulder:\n    x: 0\n    y: 0\n    z: 0.1273\n    roll: -0\n    pitch: 0\n    yaw: -0\n"
+      "  upper_arm: {x: 0, y: 0, z: 0, roll: 1.570796327, pitch: 0, yaw: -0}\n"
+      "  forearm: {x: -0.612, y: 0, z: 0, roll: -0, pitch: 0, yaw: -0}\n"
+      "  wrist_1: {x: -0.5723, y: 0, z: 0.163941, roll: -0, pitch: 0, yaw: -0}\n"
+      "  wrist_2: {x: 0, y: -0.1157, z: -2.373046667922381e-11, roll: 1.570796327, pitch: 0, yaw: -0}\n"
+      "  wrist_3: {x: 0, y: 0.0922, z: -1.891053610911353e-11, roll: 1.570796326589793, pitch: 3.141592653589793, "
+      "yaw: 3.141592653589793}\n  hash: calib_17452164853672886207\n";
+  const UrKinematics kinematics = read(published);
+  EXPECT_EQ(kinematics.hash, "calib_17452164853672886207");
+  Rng rng(2);
+  const auto arm = kinematics.robot("ur10").arm<6>().arm;
+  for (int i = 0; i < 100; ++i) {
+    const JointVector<6> q = vernier_test::random_joints<6>(rng);
+    EXPECT_LE((arm.pose(q).matrix() - robots::ur10().chain.pose(q).matrix()).cwiseAbs().maxCoeff(), 5e-9);
+  }
+  EXPECT_EQ(read(kinematics.text({})).hash, kinematics.hash);
+
+  const auto expect = [&](const std::string& from, const std::string& to, const std::string& what) {
+    const std::string told = vernier_test::complaint([&] { read(testing_support::replaced(published, from, to)); });
+    EXPECT_NE(told.find(what), std::string::npos) << told;
+    EXPECT_NE(told.find("kinematics.yaml"), std::string::npos) << told;
+    EXPECT_EQ(told.find('\n'), std::string::npos) << told;
+  };
+  expect("kinematics", "dynamics", "key 'kinematics' is missing");
+  expect("  shoulder", "  - shoulder", "not valid YAML");
+  expect(published, "", "must be a map of keys");
+  expect("  forearm", "  fore", "key 'kinematics.forearm' is missing");
+  expect("x: -0.612,", "", "line 10: key 'kinematics.forearm.x' is missing");
+  expect("x: -0.612", "x: -0.6l2", "line 10: 'kinematics.forearm.x': '-0.6l2' is not a number");
+  expect("x: -0.612", "x: -612000", "is beyond any length or angle");
+  expect("x: -0.612", "x: .inf", "'.inf' is not a number");
+  expect("x: -0.612", "x: [1]", "'kinematics.forearm.x' must be a number");
+  expect("x: -0.612", "x: -0.612, x: -0.6", "key 'kinematics.forearm.x' is given twice");
+  expect("{x: -0.612, y: 0, z: 0, roll: -0, pitch: 0, yaw: -0}", "5", "'kinematics.forearm' must be a map of keys");
+  expect("hash: calib_17452164853672886207", "hash: {}", "'kinematics.hash' must be a text");
+  EXPECT_NE(vernier_test::complaint([&] { (void)read_ur_kinematics(path_ + "x"); }).find("yamlx"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier::ur_kinematics_test

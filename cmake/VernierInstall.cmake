@@ -73,7 +73,7 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
   # each is needed by the component of its name alone
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "nlohmann-json3-dev (>= 3.9), libceres-dev (>= 2.0)")
-  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libsuitesparse-dev, libtbb-dev, mpi-default-dev, cmake (>= 3.25)")
+  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libsuitesparse-dev, libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev, mpi-default-dev, cmake (>= 3.25)")
   if(NOT VERNIER_COMPILED)
     set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
   endif()

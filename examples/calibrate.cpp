@@ -33,7 +33,8 @@ using Paths = std::vector<std::string>;
 constexpr vn::Index prior_generations = 15;
 
 struct Options {
-  std::string robot, model, save, date, split, priors = "default", loss = "huber", free, prior, report;
+  support::RobotOptions robot;
+  std::string model, save, date, split, priors = "default", loss = "huber", free, prior, report;
   Paths data, test, distances;
   vn::Index test_every = 5, train_rows = 0;
   double test_fraction = 0.2, distance_sigma_mm = 0.03, accept_mm = 0;
@@ -146,8 +147,8 @@ vn::ReportInput page_of(const vn::CalibrationReport& report, const vn::Described
   }
   for (std::size_t d = 0; d < distances.size(); ++d)
     held_out.provenance.inputs.push_back(support::file_read(o.distances[d], distances[d].size()));
-  for (const std::string& file : {o.prior, o.robot})
-    if (std::filesystem::is_regular_file(file)) held_out.provenance.inputs.push_back(support::file_read(file, 0));
+  if (!o.prior.empty()) held_out.provenance.inputs.push_back(support::file_read(o.prior, 0));
+  for (const std::string& file : o.robot.files()) held_out.provenance.inputs.push_back(support::file_read(file, 0));
   vn::ReportInput page = vn::report_input(report, robot.name, learned_from);
   held_out.poses.normalised = page.poses.normalised;
   held_out.poses.gates = page.poses.gates;
@@ -338,9 +339,7 @@ int run(support::Program& program) {
   const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
     return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
   };
-  auto* robot =
-      option("--robot", o.robot, "name in the catalogue (abb_irb120, ur10, ur5, barrett_wam, puma560), or a JSON file",
-             "NAME|FILE");
+  auto* robot = o.robot.add_to(app);
   option("--data", o.data,
          "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s, segment (a new "
          "number: the "

@@ -24,7 +24,8 @@ namespace vn = vernier;
 
 /// What the command line says.
 struct Settings {
-  std::string robot, data, model, region, from, held_out, out;
+  support::RobotOptions robot;
+  std::string data, model, region, from, held_out, out;
   vn::Index count = 0, add = 0, choose = 0, test_every = 0, candidates = 5000;
   std::vector<double> tracker{}, box{}, region_box{};
   double acceptance_deg = 180, link_radius_mm = 0;
@@ -160,7 +161,7 @@ int run(support::Program& program) {
   const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
     return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
   };
-  option("--robot", o.robot, "name in the catalogue, or a JSON file", "NAME|FILE")->required();
+  o.robot.add_to(app)->required();
   auto* count = option("--count", o.count, "number of poses to plan", "N")->check(CLI::Range(3, 100000));
   auto* data = option("--data", o.data, "poses measured so far: what they say is not measured again", "FILE");
   option("--model", o.model, "what calibrate saved of --data: plans at that arm, with its error of left-out poses",

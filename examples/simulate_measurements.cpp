@@ -17,7 +17,8 @@ namespace {
 namespace vn = vernier;
 
 struct Settings {
-  std::string robot, poses;
+  support::RobotOptions robot;
+  std::string poses;
   double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02;
   bool positions_only = false;
 };
@@ -62,10 +63,7 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
 int run(support::Program& program) {
   Settings o;
   CLI::App& app = program.app();
-  app.add_option("--robot", o.robot, "name in the catalogue, or a JSON file")
-      ->required()
-      ->type_name("NAME|FILE")
-      ->always_capture_default(false);
+  o.robot.add_to(app)->required();
   app.add_option("--poses", o.poses, "joints q1_rad.., visited in their order")
       ->required()
       ->type_name("FILE")

@@ -3,6 +3,7 @@
 /// @file
 /// The arm a program works on: one of the catalogue, or one described in a file.
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,30 @@ namespace support {
 /// The names that `choose_robot` knows.
 std::vector<std::string> catalogue_names();
 
-/// An arm of the catalogue by its name, or the one that a JSON file describes.
-/// @throws UsageError for a name that is neither
+/// The options that name an arm.
+struct RobotOptions {
+  std::string robot;           ///< name in the catalogue, or a file
+  std::string base_link;       ///< of a URDF file: where the chain begins; empty: the root
+  std::string tip_link;        ///< likewise: where it ends; empty: the only link without a child
+  std::string ur_calibration;  ///< factory calibration of an arm of Universal Robots; empty: none
+
+  /// Adds them to a command line.
+  /// @return `--robot`
+  CLI::Option* add_to(CLI::App& app);
+  /// Whether the arm is in a URDF file.
+  bool is_urdf() const;
+  /// The files that it is read from.
+  std::vector<std::string> files() const;
+};
+
+/// An arm of the catalogue by its name, or the one that a file describes: JSON, URDF (.urdf), or the kinematics file of
+/// Universal Robots' driver (.yaml). What was ignored in it is printed.
+/// @throws UsageError for a name that is neither, options that do not belong together, or a kind of file that this
+/// build
+///         cannot read
 /// @throws vernier::DataError on a file that does not describe an arm
+vernier::RobotDescription choose_robot(const RobotOptions& options);
+/// The same of a name alone.
 vernier::RobotDescription choose_robot(const std::string& name_or_file);
 
 }  // namespace support

@@ -1,0 +1,208 @@
+// Measured poses in; the arm's calibrated geometry out, as its URDF file or as the kinematics file of Universal Robots'
+// driver, with what it loses against the full model.
+
+#include <fmt/format.h>
+
+#include <ctime>
+#include <optional>
+
+#include "cli.hpp"
+#include "dispatch.hpp"
+#include "json_file.hpp"
+#include "robot_choice.hpp"
+#include "vernier/ceres.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/split.hpp"
+#include "vernier/io/report_json.hpp"
+#include "vernier/urdf.hpp"
+
+namespace {
+
+namespace vn = vernier;
+
+struct Settings {
+  support::RobotOptions robot;
+  std::string data, urdf, ur_kinematics, ur_hash = "calib_unknown", date;
+  vn::Index test_every = 5;
+  bool with_base = false, with_tool = false, positions_only = false;
+};
+
+/// A file to be written.
+struct ExportedFile {
+  std::string path, text;
+  vn::ErrorStatistics error;  ///< of held-out poses [m]
+};
+
+struct Outcome {
+  vn::CalibrationReport report;
+  std::vector<ExportedFile> files;
+  vn::ErrorStatistics designed, full;  ///< errors of held-out poses, as designed and by the chosen stage [m]
+};
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// Errors of held-out poses by an arm as a file has it, base and tool registered by the training poses.
+template <int N>
+vn::ErrorStatistics error_of(const vn::RobotDescription& exported, const vn::Split<N>& data,
+                             const vn::CalibrateOptions& options) {
+  vn::IdentifyOptions frames = options.geometry;
+  frames.geometry = false;
+  const auto registered = vn::identify(exported.arm<N>().arm, data.train, frames, options.sensors);
+  return vn::prediction_error(registered.model, data.test);
+}
+
+template <int N>
+Outcome export_arm(const Settings& o, const vn::RobotDescription& description,
+                   const std::optional<vn::UrdfChain>& chain, const vn::FitOptions& fit) {
+  const vn::DescribedRobot<N> robot = description.arm<N>();
+  const vn::Dataset<N> data = vn::read_dataset<N>(o.data, robot.arm.chain().joint_types());
+  const vn::Split<N> split = vn::split_every(data, o.test_every);
+  if (split.train.size() < 2 || split.test.size() < 1)
+    throw vn::CalibrationFailure(o.data + ": too few rows; an export needs many poses, and held-out ones");
+  vn::CalibrateOptions options;
+  options.arm_name = robot.name;
+  options.station_names = {o.data};
+  options.sensors.use_orientations = !o.positions_only;
+  options.errors.drives = robot.drives;
+  options.remainder.on_geometry = true;
+  const auto calibration = vn::calibrate(robot.arm, split.train, options, fit);
+
+  Outcome out;
+  out.report = vn::evaluate(calibration, split.test, robot.limits);
+  out.designed = vn::ErrorStatistics::of(out.report.stage("frames").position);
+  out.full = vn::ErrorStatistics::of(out.report.stage(out.report.chosen).position);
+  // The geometry that was identified alone: that of the error model leans on the terms that no file can hold.
+  const vn::ArmGeometry identified(calibration.geometry.model.identified());
+  const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : robot.arm.base_frame(),
+                                                          o.with_tool ? identified.tool() : robot.arm.tool_frame());
+  vn::ExportNote note{robot.name, file_name(o.data), o.date, split.train.size(), out.report.chosen, out.full, {}};
+  if (!o.urdf.empty()) {
+    const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
+    const vn::RobotDescription read_back = vn::parse_urdf(as_file(), o.urdf, chain->base_link, chain->tip_link).robot;
+    note.error_exported = error_of<N>(read_back, split, options);
+    out.files.push_back({o.urdf, as_file(), note.error_exported});
+  }
+  if (!o.ur_kinematics.empty()) {
+    const vn::UrKinematics kinematics =
+        chain ? vn::UrKinematics::of(*chain, geometry, o.ur_hash) : vn::UrKinematics::of(geometry, o.ur_hash);
+    note.error_exported = error_of<N>(kinematics.robot(robot.name), split, options);
+    out.files.push_back({o.ur_kinematics, kinematics.text(note), note.error_exported});
+  }
+  return out;
+}
+
+void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& out) {
+  fmt::print("{}: {} joints\n{} poses to learn from, {} held out: every row i with i % {} = 0, counted from 0\n\n",
+             robot.name, robot.dof(), out.report.train_poses, out.report.test_poses(), o.test_every);
+  fmt::print("{:<42} {:>8} {:>8} {:>8}\n", "Position errors of held-out poses [mm]", "mean", "95 %", "max");
+  const auto row = [](const std::string& name, const vn::ErrorStatistics& e) {
+    fmt::print("{:<42} {:>8.3f} {:>8.3f} {:>8.3f}\n", name, e.mean * 1e3, e.p95 * 1e3, e.max * 1e3);
+  };
+  row("as designed", out.designed);
+  for (const ExportedFile& file : out.files) row(file.path, file.error);
+  row(fmt::format("full model ({})", out.report.chosen), out.full);
+  const double exported = out.files.front().error.mean;
+  if (out.full.mean < 0.9 * exported)
+    fmt::print(
+        "\nThe files hold geometry alone. With the full model (calibrate --save, then correct) the mean error is "
+        "{:.1f} times smaller.\n",
+        exported / out.full.mean);
+  fmt::print(
+      "\nThe base frame is {}, the tool frame is {}. Base and tool of these errors are registered by the training "
+      "poses.\nWho uses these files must not be sent commands corrected by the full model: they would be "
+      "corrected twice.\n",
+      o.with_base ? "the fitted one, that of the sensor" : "as it was",
+      o.with_tool ? "the fitted one, what was measured" : "as it was");
+  if (!o.ur_kinematics.empty())
+    fmt::print("{}: hash {}; the controller keeps its own calibration, and computes joint values by that.\n",
+               o.ur_kinematics, o.ur_hash);
+  for (const ExportedFile& file : out.files) fmt::print("Written: {}\n", file.path);
+}
+
+support::Json to_json(const vn::ErrorStatistics& e) {
+  return {{"mean_mm", e.mean * 1e3}, {"p95_mm", e.p95 * 1e3}, {"max_mm", e.max * 1e3}};
+}
+
+int run(support::Program& program) {
+  Settings o;
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  o.date = fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+  CLI::App& app = program.app();
+  const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
+    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
+  };
+  o.robot.add_to(app)->required();
+  option("--data", o.data, "measured poses, columns as for calibrate", "FILE")->required();
+  app.add_option("--test-every", o.test_every, "hold out every K-th row of the data")
+      ->type_name("K")
+      ->check(CLI::Range(2, 1000000).description(""));
+  option("--urdf", o.urdf, "write the file of --robot (URDF) with the calibrated origins of its joints to this file",
+         "FILE");
+  auto* kinematics = option("--ur-kinematics", o.ur_kinematics,
+                            "write the kinematics file of Universal Robots' driver to this file", "FILE");
+  app.add_option(
+         "--ur-hash", o.ur_hash,
+         "of the controller's kinematics, as in the file that ur_calibration wrote; the driver warns of another")
+      ->type_name("HASH")
+      ->needs(kinematics);
+  app.add_flag("--with-base", o.with_base, "write the base frame, too: that of the sensor");
+  app.add_flag("--with-tool", o.with_tool,
+               "write the tool frame, too: the point that was measured becomes the tip link");
+  app.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
+  option("--date", o.date, "date written into the files", "DATE");
+  program.parse("", nullptr);
+
+  if (o.urdf.empty() && o.ur_kinematics.empty())
+    throw support::UsageError("nothing to write: one of --urdf and --ur-kinematics is required");
+  if (!o.urdf.empty() && !o.robot.is_urdf())
+    throw support::UsageError(
+        "--urdf writes joint origins into the file of --robot, which must be a URDF file (.urdf)");
+  if (o.with_tool && !o.ur_kinematics.empty())
+    throw support::UsageError("--with-tool: the kinematics file of --ur-kinematics ends at the flange, it has no tool");
+  if (o.ur_hash.empty() || o.ur_hash.size() > 64 ||
+      o.ur_hash.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
+          std::string::npos)
+    throw support::UsageError("--ur-hash takes up to 64 letters, digits and underscores, like calib_1234");
+  for (const std::string* file : {&o.urdf, &o.ur_kinematics})
+    if (!file->empty()) support::require_writable(*file);
+
+  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  std::optional<vn::UrdfChain> chain;
+  if (o.robot.is_urdf()) chain = vn::read_urdf(o.robot.robot, o.robot.base_link, o.robot.tip_link);
+  if (o.with_tool && chain && chain->moving.back() + 1 == static_cast<int>(chain->joints.size()))
+    throw support::UsageError("--with-tool: link '" + chain->tip_link +
+                              "' is behind no fixed joint, which could hold the tool");
+  const vn::ThreadExecutor executor(program.common().threads);
+  const vn::FitOptions fit{.seed = program.common().seed, .executor = executor};
+  const Outcome out = support::dispatch_dof(robot.dof(), [&](auto n) { return export_arm<n()>(o, robot, chain, fit); });
+  for (const ExportedFile& file : out.files) vn::write_file(file.path, file.text);
+  print(o, robot, out);
+  if (!program.common().json.empty()) {
+    support::Json json{{"robot", robot.name},
+                       {"train_rows", out.report.train_poses},
+                       {"test_rows", out.report.test_poses()},
+                       {"chosen", out.report.chosen},
+                       {"as_designed", to_json(out.designed)},
+                       {"full", to_json(out.full)},
+                       {"files", support::Json::array()}};
+    for (const ExportedFile& file : out.files) {
+      json["files"].push_back(to_json(file.error));
+      json["files"].back()["file"] = file.path;
+    }
+    support::write_json(program.common().json, json);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return support::run_program(
+      "export_robot",
+      "Measured poses in; the arm's calibrated geometry out, as URDF or as the kinematics file of Universal Robots' "
+      "driver. Such files hold geometry alone, so it is identified alone; errors at held-out poses, with the files and "
+      "with the full model, are printed and written into them.",
+      argc, argv, run);
+}

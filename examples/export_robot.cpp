@@ -56,9 +56,9 @@ Outcome export_arm(const Settings& o, const vn::RobotDescription& description,
                    const std::optional<vn::UrdfChain>& chain, const vn::FitOptions& fit) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const vn::Dataset<N> data = vn::read_dataset<N>(o.data, robot.arm.chain().joint_types());
-  const vn::Split<N> split = vn::split_every(data, o.test_every);
-  if (split.train.size() < 2 || split.test.size() < 1)
+  if (data.size() <= o.test_every)
     throw vn::CalibrationFailure(o.data + ": too few rows; an export needs many poses, and held-out ones");
+  const vn::Split<N> split = vn::split_every(data, o.test_every);
   vn::CalibrateOptions options;
   options.arm_name = robot.name;
   options.station_names = {o.data};

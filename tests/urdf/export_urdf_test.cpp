@@ -108,7 +108,7 @@ TEST(ExportUrdf, TheCommentSaysWhatItIsAndHowGood) {
   const std::string out = export_urdf(chain, chain.robot.geometry(), note());
   for (const char* words :
        {"geometry of my - - arm, calibrated by Vernier ", "2026-01-02", "fitted to 80 poses", "of 20 held-out poses",
-        "this file mean 0.123 mm", "full model (jointwise) mean 0.061 mm", "corrected twice"})
+        "this file: mean 0.123 mm", "full model (jointwise): mean 0.061 mm", "corrected twice"})
     EXPECT_NE(out.find(words), std::string::npos) << words;
   const std::string twice = export_urdf(parse_urdf(out, "again"), chain.robot.geometry(), note());
   EXPECT_EQ(parse_urdf(twice, "twice").robot.rows, chain.robot.rows);

@@ -21,8 +21,8 @@ VERNIER_IMPL std::vector<std::string> ExportNote::lines() const {
                   VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH, ", ", plain(date)),
           message("fitted to ", fitted_poses, " poses of ", plain(data), "; position errors of ", error_full.n,
                   " held-out poses:"),
-          message("this file ", error(error_exported)),
-          message("full model (", plain(full_model), ") ", error(error_full)),
+          message("this file: ", error(error_exported)),
+          message("full model (", plain(full_model), "): ", error(error_full)),
           "Do not send commands that were corrected by that model to whatever uses this file: they would be corrected "
           "twice."};
 }

@@ -1,0 +1,158 @@
+// Runs export_robot on measurements of a virtual arm that is described by a URDF file.
+
+#include <gtest/gtest.h>
+
+#ifdef VERNIER_HAS_URDF
+
+#include <nlohmann/json.hpp>
+
+#include "random_chains.hpp"
+#include "replaced.hpp"
+#include "run_command.hpp"
+#include "temporary_folder.hpp"
+#include "ur_published.hpp"
+#include "urdf_samples.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/split.hpp"
+#include "vernier/evaluation/statistics.hpp"
+#include "vernier/urdf.hpp"
+
+namespace vernier::export_robot_test {
+namespace {
+
+const std::string from_urdf = "--robot arm.urdf --base-link base_link --tip-link tool0 ";
+
+/// Eighty poses of a virtual arm, measured in a tracker's frame with a tool.
+class ExportRobot : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new testing_support::TemporaryFolder("export_robot");
+    write_file(*folder_ / "arm.urdf", vernier_test::ur_like_urdf());
+    write_file(*folder_ / "calibration.conf", vernier_test::ur_delta_sets()[0].conf());
+    Rng rng(1);
+    std::string poses = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad\n";
+    for (int i = 0; i < 80; ++i)
+      for (int j = 0; j < 6; ++j) poses += message(rng.uniform(-2.5, 2.5), j < 5 ? "," : "\n");
+    write_file(*folder_ / "poses.csv", poses);
+    measured_ = run("simulate_measurements", from_urdf +
+                                                 "--poses poses.csv --noise-mm 0.01 --noise-mrad 0.02 "
+                                                 "--backlash-mrad 0 --out measured.csv --seed 3");
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override { ASSERT_EQ(measured_.exit_code, 0) << measured_.errors; }
+
+  static testing_support::CommandResult run(const std::string& program, const std::string& arguments) {
+    return testing_support::run_command(
+        "cd '" + folder_->path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + program + "' " + arguments,
+        folder_->path());
+  }
+  static nlohmann::json results() { return nlohmann::json::parse(read_file(*folder_ / "out.json")); }
+  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
+
+  static testing_support::TemporaryFolder* folder_;
+  static testing_support::CommandResult measured_;
+};
+testing_support::TemporaryFolder* ExportRobot::folder_ = nullptr;
+testing_support::CommandResult ExportRobot::measured_{};
+
+// With base and tool in it, the file alone says where the tracker saw the arm.
+TEST_F(ExportRobot, AUrdfWithItsFramesPredictsHeldOutPoses) {
+  const auto done =
+      run("export_robot", from_urdf + "--data measured.csv --urdf whole.urdf --with-base --with-tool --json out.json");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  const auto arm = read_urdf(path("whole.urdf"), "base_link", "tool0").robot.arm<6>().arm;
+  const Split<6> split = split_every(read_dataset<6>(path("measured.csv")), 5);
+  const ErrorStatistics error = prediction_error(arm, split.test);
+  const nlohmann::json json = results();
+  EXPECT_EQ(json["train_rows"], 64);
+  EXPECT_EQ(json["test_rows"], 16);
+  // what the virtual arm has beside geometry is in the full model alone
+  EXPECT_LT(error.mean * 1e3, 0.5 * json["as_designed"]["mean_mm"].get<double>());
+  EXPECT_LT(json["full"]["mean_mm"].get<double>(), error.mean * 1e3);
+  EXPECT_LT(rotation_errors(arm, split.test).mean(), 2e-3);
+  EXPECT_NEAR(json["files"][0]["mean_mm"].get<double>(), error.mean * 1e3, 1e-3);
+  EXPECT_NE(done.output.find("The base frame is the fitted one"), std::string::npos) << done.output;
+}
+
+TEST_F(ExportRobot, BothFilesHoldTheSameGeometryAndItsErrors) {
+  const auto done =
+      run("export_robot", from_urdf +
+                              "--data measured.csv --urdf out.urdf --ur-kinematics out.yaml --ur-hash calib_77 "
+                              "--date 2026-02-03 --json out.json");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  const std::string urdf = read_file(path("out.urdf")), yaml = read_file(path("out.yaml"));
+  const nlohmann::json json = results();
+  const auto mm = [&](const char* stage) {
+    return message(std::round(json[stage]["mean_mm"].get<double>() * 1e3) / 1e3);
+  };
+  EXPECT_NEAR(json["files"][0]["mean_mm"].get<double>(), json["files"][1]["mean_mm"].get<double>(), 1e-6);
+  for (const std::string& text : {urdf, yaml}) {
+    EXPECT_NE(text.find("geometry of ur_like, calibrated by Vernier"), std::string::npos);
+    EXPECT_NE(text.find("2026-02-03"), std::string::npos);
+    EXPECT_NE(text.find("fitted to 64 poses of measured.csv; position errors of 16 held-out poses:"),
+              std::string::npos);
+    EXPECT_NE(text.find("full model (" + json["chosen"].get<std::string>() + "): mean " + mm("full") + " mm"),
+              std::string::npos)
+        << text;
+  }
+  EXPECT_NE(yaml.find("  hash: calib_77\n"), std::string::npos);
+  EXPECT_NE(urdf.find("<geometry><mesh filename=\"package://arm/base.dae\"/></geometry>"), std::string::npos);
+
+  // frames are nominal: the first joint stands where it stood
+  const UrdfChain chain = parse_urdf(urdf, "out.urdf", "base_link_inertia", "tool0");
+  EXPECT_EQ(chain.origins[0].translation(), Vector3(0, 0, 0.1273));
+  EXPECT_EQ(chain.origins[7].matrix(),
+            parse_urdf(vernier_test::ur_like_urdf(), "in", "base_link_inertia", "tool0").origins[7].matrix());
+  const auto arm = chain.robot.arm<6>().arm, same = read_ur_kinematics(path("out.yaml")).robot("ur").arm<6>().arm;
+  Rng rng(2);
+  for (int i = 0; i < 100; ++i) {
+    const JointVector<6> q = vernier_test::random_joints<6>(rng);
+    EXPECT_LE((arm.pose(q).matrix() - same.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  }
+}
+
+TEST_F(ExportRobot, TheFactoryCalibrationIsANominalArm) {
+  const auto done = run("export_robot",
+                        "--robot ur10 --ur-calibration calibration.conf --data measured.csv --ur-kinematics "
+                        "factory.yaml --json out.json");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  const nlohmann::json json = results();
+  EXPECT_LT(json["files"][0]["mean_mm"].get<double>(), 0.5 * json["as_designed"]["mean_mm"].get<double>());
+  EXPECT_EQ(read_ur_kinematics(path("factory.yaml")).hash, "calib_unknown");
+  const auto again = run("simulate_measurements", "--robot factory.yaml --poses poses.csv --out again.csv");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+}
+
+TEST_F(ExportRobot, MisuseIsOneLine) {
+  const auto expect = [&](const std::string& program, const std::string& arguments, int code, const std::string& what) {
+    const auto done = run(program, arguments);
+    EXPECT_EQ(done.exit_code, code) << arguments << done.errors;
+    EXPECT_TRUE(done.one_line_of_errors()) << done.errors;
+    EXPECT_NE(done.errors.find(what), std::string::npos) << done.errors;
+  };
+  const std::string data = "--data measured.csv ", both = from_urdf + data;
+  write_file(path("few.csv"), "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,x_mm,y_mm,z_mm\n0,0,0,0,0,0,1,2,3\n");
+  write_file(path("half.urdf"), vernier_test::ur_like_urdf().substr(0, 1000));
+  expect("export_robot", both, 2, "one of --urdf and --ur-kinematics is required");
+  expect("export_robot", "--robot ur10 --urdf out.urdf " + data, 2, "must be a URDF file (.urdf)");
+  expect("export_robot", "--robot ur10 --base-link base --ur-kinematics o.yaml " + data, 2, "are of a URDF file");
+  expect("export_robot", both + "--ur-calibration calibration.conf --urdf o.urdf", 2, "--ur-calibration is for arms");
+  expect("export_robot", "--robot arm.urdf --urdf o.urdf " + data, 1,
+         "which link is the tip? There are 'base', 'tool0'");
+  expect("export_robot", "--robot half.urdf --urdf o.urdf " + data, 1, "half.urdf, line ");
+  expect("export_robot", both + "--ur-kinematics o.yaml --with-tool", 2, "it has no tool");
+  expect("export_robot", both + "--ur-kinematics o.yaml --ur-hash 'a: b'", 2, "--ur-hash takes up to 64 letters");
+  expect("export_robot", both + "--urdf no/such/folder.urdf", 1, "cannot be written");
+  expect("export_robot", from_urdf + "--data few.csv --urdf o.urdf", 1, "few.csv: too few rows");
+  expect("export_robot",
+         "--robot arm.urdf --base-link base_link --tip-link wrist_3_link --with-tool --urdf o.urdf " + data, 2,
+         "link 'wrist_3_link' is behind no fixed joint");
+  expect("calibrate", "--robot other.urdf " + data, 1, "other.urdf");
+  EXPECT_FALSE(std::filesystem::exists(path("o.urdf")));
+  EXPECT_FALSE(std::filesystem::exists(path("o.yaml")));
+}
+
+}  // namespace
+}  // namespace vernier::export_robot_test
+
+#endif

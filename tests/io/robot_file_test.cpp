@@ -119,5 +119,21 @@ TEST_F(RobotFile, ComplaintsNameFileAndKey) {
   EXPECT_EQ(complaint("{\"name\": \"x\", \"name\": \"y\"}"), file + ": key 'name' is given twice");
 }
 
+TEST(RobotDescriptionFrames, AreAroundTheChain) {
+  Isometry3 base = Isometry3::Identity(), tool = Isometry3::Identity();
+  base.translate(Vector3(1, 2, 3)).rotate(Eigen::AngleAxisd(0.4, Vector3::UnitX()));
+  tool.translate(Vector3(0.1, 0, 0.2)).rotate(Eigen::AngleAxisd(-0.7, Vector3::UnitY()));
+  const JointVector<6> q{0.1, -1.2, 1.3, -0.4, 0.5, 0.6};
+  for (RobotDescription robot :
+       {RobotDescription::of(robots::puma560()), RobotDescription::of(robots::puma560_modified())}) {
+    const Isometry3 plain = robot.arm<6>().arm.pose(q);
+    robot.base = base;
+    robot.tool = tool;
+    EXPECT_LE((robot.arm<6>().arm.pose(q).matrix() - (base * plain * tool).matrix()).norm(), 1e-14);
+    EXPECT_LE((robot.geometry().poses(MatrixX(q.transpose())).front().matrix() - (base * plain * tool).matrix()).norm(),
+              1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace vernier::robot_file_test

@@ -146,6 +146,36 @@ TEST(ExportUrdf, AnotherToolNeedsAFixedJoint) {
             std::string::npos);
 }
 
+// Whatever is accepted is written back as it is meant; everything else is refused, by no other exception.
+TEST(ExportUrdf, DamagedBytesAreRefusedOrExportedRightly) {
+  Rng rng(4);
+  const std::string pieces = "<>/\"'=! -?&;#[]ax0.e\n\t";
+  int accepted = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Sample sample = samples()[static_cast<std::size_t>(i) % 3];
+    std::string text = sample.text;
+    for (int damage = 0; damage <= i % 3; ++damage) {
+      const auto at = static_cast<std::size_t>(rng.uniform() * static_cast<double>(text.size()));
+      const char piece = pieces[static_cast<std::size_t>(rng.uniform() * static_cast<double>(pieces.size()))];
+      if (i % 4 == 0)
+        text.erase(at, 1 + static_cast<std::size_t>(rng.uniform() * 40));
+      else if (i % 4 == 1)
+        text.insert(at, 1, piece);
+      else
+        text[at] = piece;
+    }
+    try {
+      const UrdfChain chain = parse_urdf(text, "in", sample.base, sample.tip);
+      const ArmGeometry arm = moved(chain, rng, 1e-3, false);
+      const UrdfChain back = parse_urdf(export_urdf(chain, arm, note()), "out", sample.base, sample.tip);
+      EXPECT_LE(worst_difference(arm, back.robot.geometry(), rng, 2), 1e-11) << text;
+      ++accepted;
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  EXPECT_GT(accepted, 150);
+}
+
 TEST(ExactNumber, HasAPointWhereItHasAnExponent) {
   EXPECT_EQ(detail::exact_number(0.1), "0.1");
   EXPECT_EQ(detail::exact_number(-0.0), "0");

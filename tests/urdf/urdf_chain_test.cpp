@@ -96,6 +96,7 @@ TEST(UrdfChain, DamageIsNamedInOneLine) {
   expect("joints", "not valid XML");
   expect(good.substr(0, good.size() / 2), "not valid XML");
   expect(with("</robot>", ""), "not valid XML");
+  expect(with("<child link=\"link_1\"/>", "</child link=\"link_1\"/>"), "line 7: not valid XML (start and end tags");
   expect(with("<robot name=\"seven\">", "<robot>"), "line 2: the robot has no name");
   expect("<model name='x'/>", "outermost element is not 'robot'");
   expect(good + "<robot name='second'/>", "a second root element");

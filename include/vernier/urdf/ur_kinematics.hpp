@@ -21,7 +21,6 @@ namespace vernier {
 ///
 /// with URDF's roll, pitch, yaw (Rz(yaw) Ry(pitch) Rx(roll)). They begin at the controller's base frame (`base`, and
 /// `base_link_inertia` of the description: `base_link` turned half round) and end at the flange, `tool0`.
-/// @cite UniversalRobotsDriver
 struct UrKinematics {
   /// Of shoulder, upper_arm, forearm, wrist_1, wrist_2, wrist_3: parent_T_joint.
   std::array<Isometry3, 6> origins{};

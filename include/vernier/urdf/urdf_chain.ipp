@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "vernier/core/atomic_file.hpp"
@@ -23,21 +25,13 @@ VERNIER_API std::string listed(const std::vector<std::string>& names) {
   return names.size() > most ? message(out, ", ... (", names.size(), ")") : out;
 }
 
-/// The joint above a link; null above the root.
-VERNIER_API const UrdfJoint* joint_above(const UrdfDocument& document, const std::string& link) {
-  const auto found = std::find_if(document.joints.begin(), document.joints.end(),
-                                  [&](const UrdfJoint& joint) { return joint.child == link; });
-  return found == document.joints.end() ? nullptr : &*found;
-}
-
 /// The only link that is an end of the tree.
 /// @param root whether that without a parent, else that without a child
 VERNIER_API std::string only_end(const UrdfDocument& document, bool root, const std::string& file) {
+  std::set<std::string> inner;
+  for (const UrdfJoint& joint : document.joints) inner.insert(root ? joint.child : joint.parent);
   std::vector<std::string> ends = document.links;
-  std::erase_if(ends, [&](const std::string& link) {
-    return std::any_of(document.joints.begin(), document.joints.end(),
-                       [&](const UrdfJoint& joint) { return (root ? joint.child : joint.parent) == link; });
-  });
+  std::erase_if(ends, [&](const std::string& link) { return inner.contains(link); });
   if (ends.size() != 1)
     throw DataError(message(file, ": which link is the ", root ? "base" : "tip", "? There are ", listed(ends)));
   return ends.front();
@@ -49,15 +43,17 @@ VERNIER_API std::vector<const UrdfJoint*> joints_between(const UrdfDocument& doc
   for (const std::string* link : {&base, &tip})
     if (std::find(document.links.begin(), document.links.end(), *link) == document.links.end())
       throw DataError(file + ": there is no link '" + quotable(*link) + "'; there are " + listed(document.links));
+  std::map<std::string, const UrdfJoint*> above;
+  for (const UrdfJoint& joint : document.joints) above[joint.child] = &joint;
   std::vector<const UrdfJoint*> out;
   std::vector<std::string> passed;
   for (std::string link = tip; link != base;) {
-    const UrdfJoint* joint = joint_above(document, link);
-    if (joint == nullptr)
+    const auto found = above.find(link);
+    if (found == above.end())
       throw DataError(file + ": link '" + quotable(tip) + "' is not behind link '" + quotable(base) +
                       "'; it is behind " + (passed.empty() ? "none" : listed(passed)));
-    out.push_back(joint);
-    link = joint->parent;
+    out.push_back(found->second);
+    link = found->second->parent;
     passed.push_back(link);
   }
   std::reverse(out.begin(), out.end());

@@ -13,6 +13,7 @@
 #include "vernier/io/json.hpp"
 #include "vernier/urdf/detail/roll_pitch_yaw.hpp"
 #include "vernier/urdf/detail/urdf_document.hpp"
+#include "vernier/urdf/detail/xml_tags.hpp"
 
 namespace vernier::detail {
 
@@ -181,6 +182,7 @@ VERNIER_IMPL UrdfDocument read_urdf_document(const std::string& text, const std:
     throw DataError(message(file, ", line ", xml.ErrorLineNum(), ": not valid XML (", what, ")"));
   }
   refuse_foreign(xml, file, 0);
+  require_nested_tags(text, file);
   const tinyxml2::XMLElement* root = xml.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "robot")
     throw DataError(file + ": not URDF, its outermost element is not 'robot'");

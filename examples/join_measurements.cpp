@@ -20,7 +20,8 @@ namespace vn = vernier;
 
 /// What the command line says.
 struct Settings {
-  std::string joints, points, out, robot, key, preset, unit, separator, decimal, comment;
+  support::RobotOptions robot;
+  std::string joints, points, out, key, preset, unit, separator, decimal, comment;
   std::vector<std::string> columns{};
   vn::Index header_lines = 0;
   bool leave_out = false;
@@ -171,17 +172,16 @@ int run(support::Program& program) {
   app.add_option("--header-lines", o.header_lines, "so many lines at the beginning are skipped")
       ->check(CLI::Range(0, 1000));
   option("--key", o.key, "column of --joints with the names of the points; without it they pair by order", "COLUMN");
-  option("--robot", o.robot,
-         "name in the catalogue, or a JSON file: its nominal kinematics prove the order, or check the names, the unit "
-         "and the frame",
-         "NAME|FILE");
+  o.robot.add_to(app)->description(
+      "name in the catalogue, or a file: its nominal kinematics prove the order, or check the names, the unit and the "
+      "frame");
   app.add_flag("--leave-out", o.leave_out,
                "write the pairs that are proven although something is wrong: rows and points without a partner are "
                "left out, swapped ones exchanged");
   program.parse("", "write the measured poses to this file", "FILE");
   o.out = program.common().out;
   if (o.out.empty()) throw support::UsageError("--out is required");
-  if (o.key.empty() && o.robot.empty())
+  if (o.key.empty() && o.robot.robot.empty())
     throw support::UsageError("--key pairs by name; without it --robot is needed to prove the order");
   const vn::PointTable table = read_points(o);
   support::require_writable(o.out);
@@ -192,7 +192,7 @@ int run(support::Program& program) {
     pairing = vn::pair_by_order(flanges_of(o), table.points);
   } else {
     pairing = vn::pair_by_name(commanded, o.key, table);
-    if (!o.robot.empty()) pairing = vn::check_pairs(pairing, flanges_of(o), table.points);
+    if (!o.robot.robot.empty()) pairing = vn::check_pairs(pairing, flanges_of(o), table.points);
   }
   if (pairing.proof && pairing.proof->status != vn::PairingStatus::proven)
     throw vn::DataError(o.points + ": " + vn::describe(*pairing.proof));

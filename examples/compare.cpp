@@ -14,12 +14,16 @@
 #include <new>
 #include <set>
 #include <thread>
+#include <tuple>
 
 #include "cli.hpp"
 #include "comparison.hpp"
 #include "figures.hpp"
 #include "progress.hpp"
+#include "ranks.hpp"
+#include "results.hpp"
 #include "vernier/core/argsort.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 
@@ -28,23 +32,32 @@ namespace {
 namespace vn = vernier;
 using namespace support;
 
-/// Outcomes of a whole grid.
+/// Outcomes of a whole grid. Several ranks share what is missing; in the end the first has it all.
 class Grid {
  public:
-  Grid(const Plan& plan, Results& results) : plan_(plan) {
+  /// @throws std::runtime_error where ranks differ in what they were given
+  Grid(const Plan& plan, const Results& results, const Ranks& ranks) : plan_(plan), ranks_(ranks) {
     for (std::size_t p = 0; p < plan.problems.size(); ++p)
       for (const vn::Index poses : plan.poses)
         for (const std::uint64_t seed : plan.seeds)
           for (std::size_t m = 0; m < plan.methods.size(); ++m) cells_.push_back({p, m, poses, seed});
-    outcomes_.resize(cells_.size());
-    for (std::size_t c = 0; c < cells_.size(); ++c) outcomes_[c] = results.find(plan, cells_[c]);
+    std::string keys, there;
+    for (const Cell& cell : cells_) {
+      outcomes_.push_back(results.find(plan, cell));
+      keys += cell_key(plan, cell);
+      there += outcomes_.back() ? '1' : '0';
+    }
+    for (const std::string& digest : ranks.gather(vn::sha256(keys)))
+      if (digest != vn::sha256(keys)) throw std::runtime_error("ranks read different files of the same name");
+    const std::vector<std::string> known = ranks.gather(there);
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      if (std::all_of(known.begin(), known.end(), [&](const std::string& of) { return of[c] == '0'; }))
+        missing_.push_back(c);
   }
 
   std::size_t cells() const { return cells_.size(); }
-  std::size_t missing() const {
-    return static_cast<std::size_t>(
-        std::count_if(outcomes_.begin(), outcomes_.end(), [](const auto& o) { return !o.has_value(); }));
-  }
+  /// Of all ranks.
+  std::size_t missing() const { return missing_.size(); }
 
   std::size_t failed() const {
     return static_cast<std::size_t>(
@@ -54,38 +67,8 @@ class Grid {
   /// Computes what is missing, several cells at a time; what is done is kept whatever happens next, and what failed is
   /// not, so that it is tried again.
   void compute_missing(Results& results, int threads) {
-    ProgressBar bar("cells", static_cast<vn::Index>(cells_.size()));
-    std::atomic<std::size_t> next = 0;
-    std::mutex mutex;
-    std::exception_ptr broken;
-    const auto work = [&] {
-      for (std::size_t c; (c = next++) < cells_.size();) {
-        if (outcomes_[c]) continue;
-        Outcome outcome;
-        try {
-          outcome = compute(plan_, cells_[c]);
-        } catch (const std::bad_alloc&) {
-          outcome.failure = "out of memory";
-        } catch (const std::exception& error) {
-          outcome.failure = error.what();
-        }
-        const std::lock_guard lock(mutex);
-        try {
-          if (!outcome.failed()) results.add(plan_, cells_[c], outcome);
-        } catch (...) {
-          if (!broken) broken = std::current_exception();
-          next = cells_.size();
-          return;
-        }
-        outcomes_[c] = std::move(outcome);
-        bar.update(static_cast<vn::Index>(cells_.size() - missing()), plan_.methods[cells_[c].method].text);
-      }
-    };
-    std::vector<std::thread> others;
-    for (int t = 1; t < threads; ++t) others.emplace_back(work);
-    work();
-    for (std::thread& other : others) other.join();
-    if (broken) std::rethrow_exception(broken);
+    ranks_.together([&] { compute(share(), results, threads); });
+    if (ranks_.many()) collect(results);
   }
 
   /// Outcomes of one method on one problem, by seed.
@@ -98,9 +81,80 @@ class Grid {
   }
 
  private:
+  /// This rank's share. Dealt like cards, cells of one method after another, so that each rank has as many slow ones.
+  std::vector<std::size_t> share() const {
+    std::vector<std::size_t> order = missing_, out;
+    if (ranks_.many())
+      std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const auto rank_of = [&](std::size_t c) {
+          return std::tuple(cells_[c].method, cells_[c].problem, cells_[c].poses, c);
+        };
+        return rank_of(a) < rank_of(b);
+      });
+    for (std::size_t k = 0; k < order.size(); ++k)
+      if (static_cast<int>(k % static_cast<std::size_t>(ranks_.count())) == ranks_.rank()) out.push_back(order[k]);
+    return out;
+  }
+
+  void compute(const std::vector<std::size_t>& cells, Results& results, int threads) {
+    ProgressBar bar(ranks_.many() ? "cells of the first rank" : "cells", static_cast<vn::Index>(cells.size()));
+    std::atomic<std::size_t> next = 0;
+    vn::Index done = 0;
+    std::mutex mutex;
+    std::exception_ptr broken;
+    const auto work = [&] {
+      for (std::size_t k; (k = next++) < cells.size();) {
+        const std::size_t c = cells[k];
+        Outcome outcome;
+        try {
+          outcome = support::compute(plan_, cells_[c]);
+        } catch (const std::bad_alloc&) {
+          outcome.failure = "out of memory";
+        } catch (const std::exception& error) {
+          outcome.failure = error.what();
+        }
+        const std::lock_guard lock(mutex);
+        try {
+          if (!outcome.failed()) results.add(plan_, cells_[c], outcome);
+        } catch (...) {
+          if (!broken) broken = std::current_exception();
+          next = cells.size();
+          return;
+        }
+        outcomes_[c] = std::move(outcome);
+        bar.update(++done, plan_.methods[cells_[c].method].text);
+      }
+    };
+    std::vector<std::thread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(work);
+    work();
+    for (std::thread& other : others) other.join();
+    if (broken) std::rethrow_exception(broken);
+  }
+
+  /// Sends what the other ranks have to the first, which keeps it; then their own files are not needed any more.
+  void collect(Results& results) {
+    Json mine = Json::array();
+    for (std::size_t c = 0; c < cells_.size() && !ranks_.first(); ++c)
+      if (outcomes_[c]) mine.push_back({c, to_json(*outcomes_[c])});
+    const std::vector<std::string> all = ranks_.gather(mine.dump(-1, ' ', false, Json::error_handler_t::replace));
+    ranks_.together([&] {
+      for (std::size_t r = 1; r < all.size() && ranks_.first(); ++r)
+        for (const nlohmann::json& one : nlohmann::json::parse(all[r])) {
+          const auto c = one[0].get<std::size_t>();
+          if (outcomes_[c]) continue;
+          outcomes_[c] = outcome_from_json(one[1]);
+          if (!outcomes_[c]->failed()) results.add(plan_, cells_[c], *outcomes_[c]);
+        }
+    });
+    if (!ranks_.first()) results.remove();
+  }
+
   const Plan& plan_;
+  const Ranks& ranks_;
   std::vector<Cell> cells_;
   std::vector<std::optional<Outcome>> outcomes_;
+  std::vector<std::size_t> missing_;  // cells
 };
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -334,17 +388,25 @@ void list() {
   print("searches, for elm, ridge_elm and var_pro_elm", search_names());
 }
 
-int body(Program& program) {
+/// What is asked for.
+struct Request {
   Plan plan;
+  bool planned = false, listed = false;
+  std::vector<std::filesystem::path> merged;
+  std::filesystem::path results;
+};
+
+Request read_command_line(Program& program) {
+  Request out;
   Problem problem;
-  std::string plan_file, results_file, name;
+  Plan& plan = out.plan;
+  std::string plan_file;
   std::vector<std::string> methods;
-  bool listed = false;
   CLI::App& app = program.app();
   app.add_option("plan", plan_file, "the whole grid as a JSON file, in place of the options up to --nodes")
       ->type_name("PLAN.json")
       ->always_capture_default(false);
-  app.add_flag("--list", listed, "all methods, and how they are written");
+  app.add_flag("--list", out.listed, "all methods, and how they are written");
   app.add_option("--methods", methods, "what to compare, see --list")->type_name("M,...")->delimiter(',');
   app.add_option("--robot", problem.robot, "an arm of the catalogue, or a JSON file")->type_name("R");
   app.add_option("--errors", problem.errors, "of a simulated arm; full: joint errors too")->type_name("geometric|full");
@@ -359,32 +421,64 @@ int body(Program& program) {
   app.add_option("--seconds", plan.seconds, "of every search and iterative fit instead; 0: by evaluations")
       ->type_name("T");
   app.add_option("--nodes", plan.nodes, "of hidden layers")->type_name("H");
-  app.add_option("--results", results_file, "file that keeps every cell; a run goes on where another one stopped")
+  app.add_option("--results", out.results, "file that keeps every cell; a run goes on where another one stopped")
       ->type_name("FILE")
       ->default_str("OUT/results.jsonl")
       ->always_capture_default(false);
+  app.add_option("--merge", out.merged, "add the cells of these results files first; without a plan that is all")
+      ->type_name("FILE...")
+      ->always_capture_default(false);
   program.parse("compare_out");
-  if (listed) {
-    list();
-    return 0;
-  }
   if (!plan_file.empty() && !methods.empty()) throw UsageError("a plan and --methods exclude each other");
+  out.planned = !plan_file.empty() || !methods.empty();
+  if (out.listed) return out;
+  if (!out.planned && out.merged.empty()) throw UsageError("--methods or a plan is needed; --list names all methods");
   if (!plan_file.empty()) {
     plan = Plan::read(plan_file);
   } else {
-    if (methods.empty()) throw UsageError("--methods or a plan is needed; --list names all methods");
     for (const std::string& m : methods) plan.methods.push_back(Method::parse(m));
     problem.name = problem.measured() ? problem.data.stem().string() : problem.robot;
     plan.problems.push_back(problem);
-    plan.prepare();
   }
-  const std::filesystem::path folder = program.output_folder();
-  Results results(results_file.empty() ? folder / "results.jsonl" : std::filesystem::path(results_file));
-  Grid grid(plan, results);
-  fmt::print("{} cells, {} of them to be computed\n\n", grid.cells(), grid.missing());
-  std::fflush(stdout);
-  grid.compute_missing(results, program.common().threads);
+  if (out.planned) plan.prepare();
+  if (out.results.empty()) out.results = program.output_folder() / "results.jsonl";
+  return out;
+}
 
+int compare(Program& program, const Ranks& ranks) {
+  Request request;
+  std::optional<Results> opened;
+  ranks.together([&] { request = read_command_line(program); });
+  if (request.listed) {
+    list();
+    return 0;
+  }
+  // the first rank takes in what others left, before these begin anew
+  ranks.together([&] {
+    if (!ranks.first()) return;
+    if (!request.merged.empty()) {
+      for (const std::string& sentence : merge_results(request.merged, request.results)) fmt::print("{}\n", sentence);
+    }
+    if (request.planned) opened.emplace(request.results);
+  });
+  if (!request.planned) return 0;
+  ranks.together([&] {
+    if (!ranks.first()) opened.emplace(request.results, ranks.rank());
+  });
+  const Plan& plan = request.plan;
+  Results& results = *opened;
+  Grid grid(plan, results, ranks);
+  if (const std::size_t here = grid.cells() - grid.missing(); !request.merged.empty() && results.size() > here)
+    fmt::print("{} of the cells in it belong to other plans\n", results.size() - here);
+  fmt::print("{} cells, {} of them to be computed{}\n\n", grid.cells(), grid.missing(),
+             ranks.many() ? fmt::format(" by {} ranks", ranks.count()) : "");
+  std::fflush(stdout);
+  // a rank is a processor, unless it is said otherwise
+  const bool alone = !ranks.many() || program.app().count("--threads") > 0;
+  grid.compute_missing(results, alone ? program.common().threads : 1);
+  if (!ranks.first()) return 0;
+
+  const std::filesystem::path folder = program.output_folder();
   for (std::size_t p = 0; p < plan.problems.size(); ++p)
     for (const vn::Index poses : plan.poses) print_table(grid, plan, p, poses);
   fmt::print(
@@ -402,11 +496,22 @@ int body(Program& program) {
   return 0;
 }
 
+int body(Program& program) {
+  const Ranks ranks;
+  try {
+    return compare(program, ranks);
+  } catch (...) {
+    if (ranks.first()) throw;
+    return 0;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   return support::run_program("compare",
                               "Learners and searches on equal terms: the same poses, budget and seeds for all, on\n"
-                              "simulated or measured arms. A run that was stopped goes on where it was.",
+                              "simulated or measured arms. A run that was stopped goes on where it was; under mpirun\n"
+                              "the ranks share the work.",
                               argc, argv, body);
 }

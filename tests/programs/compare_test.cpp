@@ -179,7 +179,7 @@ TEST(Compare, RefusesWhatItDoesNotKnow) {
   refused("--methods elm --robot ur10", 2, "only the abb_irb120 has an operating region");
   refused("--methods elm --poses 0", 2, "simulated poses need a number");
   refused("--methods elm --evaluations 10", 2, "evaluations is 10");
-  refused("plan.json", 2, "the plan has no member 'seed'");
+  refused("plan.json", 2, "key 'seed' is unknown");
   refused("missing.json", 1, "missing.json");
   refused("--methods elm --results none.jsonl", 1, "none.jsonl, line 1: no result of a comparison");
 }

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <span>
 
 #include "cli.hpp"
@@ -27,16 +25,6 @@ namespace {
 
 namespace vn = vernier;
 using vn::Index;
-
-bool known(const std::vector<Named>& names, const std::string& name) {
-  return std::any_of(names.begin(), names.end(), [&](const Named& n) { return name == n.name; });
-}
-
-std::string all_of(const std::vector<Named>& names) {
-  std::string out;
-  for (const Named& n : names) out += (out.empty() ? "" : ", ") + std::string(n.name);
-  return out;
-}
 
 /// Independent streams of a seed.
 enum Stream : std::uint64_t { train_stream = 1, test_stream, noise_stream, error_stream, subset_stream, fit_stream };
@@ -166,7 +154,7 @@ class Computation {
   }
 
   vn::VectorX errors_after(const Identified& registered, Convergence& record) const {
-    const bool alone = known(classical_names(), method_.learner);
+    const bool alone = method_.classical();
     const std::string& base = alone ? method_.learner : method_.base;
     const auto errors = [&](const auto& model) {
       return alone ? vn::position_errors(model, samples_.test) : errors_after_learning(model, record);
@@ -199,116 +187,7 @@ class Computation {
   vn::SensorModel sensors_{.loss = samples_.framed ? vn::Loss::huber : vn::Loss::squared};
 };
 
-/// What decides the outcome of a cell.
-std::string key(const Plan& plan, const Cell& cell) {
-  const Problem& p = plan.problems[cell.problem];
-  const Method& m = plan.methods[cell.method];
-  Json out{{"robot", std::filesystem::path(p.robot).filename().string()}};
-  if (p.measured()) {
-    out["data"] = p.data.filename().string();
-    out["split"] = p.split;
-  } else {
-    out["errors"] = p.errors;
-    out["region"] = p.region;
-    out["noise_mm"] = p.noise_mm;
-  }
-  if (!p.fingerprint.empty()) out["fingerprint"] = p.fingerprint;
-  out["method"] = m.text;
-  out["poses"] = cell.poses;
-  out["seed"] = cell.seed;
-  if (!m.search.empty() || plan.seconds > 0)
-    plan.seconds > 0 ? out["seconds_allowed"] = plan.seconds : out["evaluations"] = plan.evaluations;
-  out["nodes"] = plan.nodes;
-  return out.dump();
-}
-
-constexpr const char* numbers[] = {"mean", "median", "rms", "p95", "max", "before", "seconds", "learned_from"};
-
-std::vector<double*> fields(Outcome& o) {
-  return {&o.mean, &o.median, &o.rms, &o.p95, &o.max, &o.before, &o.seconds, &o.learned_from};
-}
-
 }  // namespace
-
-const std::vector<Named>& classical_names() {
-  static const std::vector<Named> names{
-      {"none", "the arm as designed, in the sensor's frame"},
-      {"geometry", "Denavit-Hartenberg parameters identified"},
-      {"jointwise", "geometry, compliance and functions of single joints, solved together"},
-      {"approach", "the same with hysteresis by the direction of approach, the drift of the session taken off"},
-  };
-  return names;
-}
-
-Method Method::parse(const std::string& text) {
-  Method out{.text = text};
-  std::string rest = text;
-  for (const char* base : {"geometry", "jointwise"})
-    if (rest.starts_with(base + std::string("+"))) {
-      out.base = base;
-      rest = rest.substr(out.base.size() + 1);
-      break;
-    }
-  if (const auto at = rest.find('@'); at != std::string::npos) {
-    out.map = rest.substr(at + 1);
-    rest = rest.substr(0, at);
-    if (out.map != "raw" && out.map != "sincos" && out.map != "products")
-      throw UsageError("'" + text + "': no input map is called '" + out.map + "'; there are raw, sincos, products");
-  }
-  if (const auto colon = rest.find(':'); colon != std::string::npos) {
-    out.search = rest.substr(0, colon);
-    rest = rest.substr(colon + 1);
-    if (!known(search_names(), out.search))
-      throw UsageError("'" + text + "': no search is called '" + out.search + "'; there are " + all_of(search_names()));
-  }
-  out.learner = rest;
-  const bool classical = known(classical_names(), rest);
-  if (!classical && !known(learner_names(), rest))
-    throw UsageError("'" + text + "': no learner is called '" + rest + "'; there are " + all_of(classical_names()) +
-                     " and " + all_of(learner_names()));
-  if (classical && (!out.base.empty() || !out.map.empty() || !out.search.empty()))
-    throw UsageError("'" + text + "': " + rest + " stands alone");
-  constexpr const char* tunable[] = {"elm", "ridge_elm", "var_pro_elm"};
-  if (!out.search.empty() && std::find(std::begin(tunable), std::end(tunable), rest) == std::end(tunable))
-    throw UsageError("'" + text + "': only elm, ridge_elm and var_pro_elm can be searched for");
-  return out;
-}
-
-Plan Plan::read(const std::filesystem::path& path) {
-  const Json document = read_json(path);
-  Plan plan;
-  const auto fail = [&](const std::string& what) { throw UsageError(path.string() + ": " + what); };
-  const auto only = [&](const Json& object, const std::string& where, std::initializer_list<const char*> names) {
-    if (!object.is_object()) fail(where + " must be an object");
-    for (const auto& [name, value] : object.items())
-      if (std::find(names.begin(), names.end(), name) == names.end()) fail(where + " has no member '" + name + "'");
-  };
-  try {
-    only(document, "the plan", {"problems", "methods", "poses", "seeds", "evaluations", "seconds", "nodes"});
-    for (const Json& p : document.at("problems")) {
-      only(p, "a problem", {"name", "robot", "errors", "region", "noise_mm", "data", "split"});
-      Problem problem;
-      problem.robot = p.value("robot", problem.robot);
-      problem.errors = p.value("errors", problem.errors);
-      problem.region = p.value("region", problem.region);
-      problem.noise_mm = p.value("noise_mm", 0.0);
-      if (p.contains("data")) problem.data = path.parent_path() / p.at("data").get<std::string>();
-      problem.split = p.value("split", problem.split);
-      problem.name = p.value("name", problem.robot);
-      plan.problems.push_back(problem);
-    }
-    for (const Json& m : document.at("methods")) plan.methods.push_back(Method::parse(m.get<std::string>()));
-    if (document.contains("poses")) plan.poses = document.at("poses").get<std::vector<Index>>();
-    if (document.contains("seeds")) plan.seeds = document.at("seeds").get<std::vector<std::uint64_t>>();
-    plan.evaluations = document.value("evaluations", plan.evaluations);
-    plan.seconds = document.value("seconds", plan.seconds);
-    plan.nodes = document.value("nodes", plan.nodes);
-  } catch (const Json::exception& error) {
-    fail(std::string("a member is missing or of another kind (") + error.what() + ")");
-  }
-  plan.prepare();
-  return plan;
-}
 
 void Plan::prepare() {
   const auto check = [](bool holds, const auto&... parts) {
@@ -347,62 +226,6 @@ Outcome compute(const Plan& plan, const Cell& cell, vn::ObserverRef observer) {
   return with_arm(choose_robot(plan.problems[cell.problem].robot), [&]<int N>(const vn::DescribedRobot<N>& robot) {
     return Computation<N>(plan, cell, robot, observer).run();
   });
-}
-
-Results::Results(const std::filesystem::path& path) : path_(path) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error)) {
-    const std::string text = vn::read_file(path);
-    std::size_t begin = 0, line = 1;
-    for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1, ++line) {
-      const Json entry = Json::parse(text.substr(begin, end - begin), nullptr, false);
-      if (!entry.is_object() || !entry.contains("cell") || !entry.contains("outcome"))
-        throw std::invalid_argument(vn::message(path.string(), ", line ", line, ": no result of a comparison"));
-      Outcome outcome;
-      const Json& of = entry["outcome"];
-      const auto all = fields(outcome);
-      for (std::size_t k = 0; k < all.size(); ++k) *all[k] = of.value(numbers[k], 0.0);
-      if (of.contains("quantiles")) outcome.quantiles = of["quantiles"].get<std::vector<double>>();
-      if (of.contains("convergence")) {
-        const auto& c = of["convergence"];
-        outcome.convergence = {c["evaluations"].get<std::vector<double>>(), c["seconds"].get<std::vector<double>>(),
-                               c["best"].get<std::vector<double>>()};
-      }
-      known_.emplace_back(entry["cell"].dump(), outcome);
-    }
-    if (begin < text.size()) vn::write_file(path, std::string_view(text).substr(0, begin));  // cut off in its middle
-    std::sort(known_.begin(), known_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  }
-  require_writable(path);
-}
-
-std::optional<Outcome> Results::find(const Plan& plan, const Cell& cell) const {
-  const std::string wanted = key(plan, cell);
-  const auto at = std::lower_bound(known_.begin(), known_.end(), wanted,
-                                   [](const auto& entry, const std::string& k) { return entry.first < k; });
-  if (at == known_.end() || at->first != wanted) return {};
-  return at->second;
-}
-
-void Results::add(const Plan& plan, const Cell& cell, const Outcome& outcome) {
-  const std::string of = key(plan, cell);
-  Json entry{{"cell", Json::parse(of)}, {"outcome", Json::object()}};
-  Json& to = entry["outcome"];
-  Outcome copy = outcome;
-  const auto all = fields(copy);
-  for (std::size_t k = 0; k < all.size(); ++k) to[numbers[k]] = *all[k];
-  if (!outcome.quantiles.empty()) to["quantiles"] = outcome.quantiles;
-  if (!outcome.convergence.best.empty())
-    to["convergence"] = {{"evaluations", outcome.convergence.evaluations},
-                         {"seconds", outcome.convergence.seconds},
-                         {"best", outcome.convergence.best}};
-  std::ofstream file(path_, std::ios::app | std::ios::binary);
-  file << entry.dump() << '\n';
-  file.flush();
-  if (!file) throw std::runtime_error(path_.string() + ": a result could not be written");
-  known_.insert(std::lower_bound(known_.begin(), known_.end(), of,
-                                 [](const auto& e, const std::string& k) { return e.first < k; }),
-                {of, outcome});
 }
 
 }  // namespace support

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +39,8 @@ struct Method {
 
   /// @throws UsageError naming the part that is not known
   static Method parse(const std::string& text);
+  /// Whether nothing is learned.
+  bool classical() const;
   bool operator==(const Method&) const = default;
 };
 
@@ -53,8 +54,9 @@ struct Plan {
   double seconds = 0;                 ///< of every fit that can be longer or shorter; 0: by evaluations
   int nodes = 65;                     ///< of hidden layers
 
-  /// From a JSON file, prepared.
-  /// @throws UsageError naming what is wrong; and as `prepare`
+  /// From a JSON file; its values are for `prepare` to check.
+  /// @throws UsageError naming what is wrong
+  /// @throws vernier::DataError on what is no JSON, or larger than JSON files may be
   static Plan read(const std::filesystem::path& path);
   /// Checks everything that can be checked before any work, measured poses too, and takes the files' fingerprints.
   /// @throws UsageError where something is missing or not known, or more poses are asked for than there are
@@ -102,23 +104,5 @@ const std::vector<Named>& classical_names();
 
 /// Computes a cell: the same bits for the same plan, times apart.
 Outcome compute(const Plan& plan, const Cell& cell, vernier::ObserverRef observer = {});
-
-/// The outcomes so far, one line of JSON each in a file that only grows; a cell is known by all that decides its
-/// outcome, so plans may share a file.
-class Results {
- public:
-  /// Opens the file, or begins it. A last line that was cut off is dropped.
-  /// @throws std::runtime_error where it cannot be written, or a line in it is none of ours
-  explicit Results(const std::filesystem::path& path);
-
-  std::optional<Outcome> find(const Plan& plan, const Cell& cell) const;
-  /// Appends at once.
-  /// @param outcome one that did not fail: failures are to be tried again
-  void add(const Plan& plan, const Cell& cell, const Outcome& outcome);
-
- private:
-  std::filesystem::path path_;
-  std::vector<std::pair<std::string, Outcome>> known_;  // sorted by key
-};
 
 }  // namespace support

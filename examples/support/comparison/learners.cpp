@@ -121,23 +121,6 @@ class Learning {
 
 }  // namespace
 
-const std::vector<Named>& learner_names() {
-  static const std::vector<Named> names{
-      {"elm", "extreme learning machine as in the paper: minimum-norm output weights, raw angles"},
-      {"ridge_elm", "the same with a ridge chosen by leave-one-out; sines and cosines"},
-      {"var_pro_elm", "hidden layer trained by variable projection; sines and cosines"},
-      {"bp_lm", "back-propagation network, Levenberg-Marquardt; sines and cosines"},
-      {"bp_adam", "the same by Adam"},
-      {"kernel_elm", "kernel ELM, length scale and ridge by leave-one-out; raw angles"},
-      {"gp", "Gaussian process, a length scale an input by marginal likelihood; raw angles"},
-      {"os_elm", "online sequential ELM, here in one batch; sines and cosines"},
-      {"op_elm", "ELM pruned by leave-one-out; sines and cosines"},
-      {"trig", "tensor products of sines and cosines of all angles, ridge by degree"},
-      {"bagged", "20 ridge ELMs, each on 60 % of the poses"},
-  };
-  return names;
-}
-
 template <int N>
 LearnedErrors<N> learn(const Method& method, const Plan& plan, const vernier::JointRows<N>& joints,
                        const vernier::PointRows& errors, const vernier::FitOptions& options, Convergence& record) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "comparison.hpp"
 #include "vernier/search/cma_es.hpp"
 #include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
@@ -28,26 +27,6 @@ namespace vn = vernier;
 constexpr int population = 50;
 
 }  // namespace
-
-const std::vector<Named>& search_names() {
-  static const std::vector<Named> names{
-      {"random", "points drawn at random: what every other search has to beat"},
-      {"pso", "PSO as in the paper: falling inertia, particles may leave the box"},
-      {"pso_clamped", "the same, particles kept in the box"},
-      {"pso_constriction", "PSO with Clerc's constriction, a ring of neighbours, kept in the box"},
-      {"spso2011", "standard PSO 2011"},
-      {"ga", "binary genetic algorithm with the paper's constants"},
-      {"real_ga", "real-coded genetic algorithm: SBX, polynomial mutation"},
-      {"de", "differential evolution, rand/1/bin"},
-      {"lshade", "L-SHADE"},
-      {"cmaes", "CMA-ES"},
-#ifdef VERNIER_HAS_PAGMO
-      {"pagmo_pso", "pagmo2's particle swarm, generation by generation"},
-      {"pagmo_gaco", "pagmo2's ant colony"},
-#endif
-  };
-  return names;
-}
 
 vn::SearchResult run_search(const std::string& name, const AnyObjective& objective, const vn::Box& box,
                             vn::Index evaluations, std::uint64_t seed, vn::ObserverRef observer) {

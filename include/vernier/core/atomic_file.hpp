@@ -3,6 +3,7 @@
 /// @file
 /// Files written atomically: whole, or as they were before.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -15,8 +16,10 @@ namespace vernier {
 VERNIER_API void write_file(const std::string& path, std::string_view content);
 
 /// The whole of a file.
+/// @param path the file
+/// @param most bytes that it may have: what else is read, such as a device without end, would fill the memory
 /// @throws std::invalid_argument naming the file and the reason
-VERNIER_API std::string read_file(const std::string& path);
+VERNIER_API std::string read_file(const std::string& path, std::size_t most = std::size_t{1} << 30);
 
 }  // namespace vernier
 

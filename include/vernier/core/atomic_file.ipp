@@ -28,7 +28,7 @@ VERNIER_IMPL void write_file(const std::string& path, std::string_view content) 
   if (std::rename(beside.c_str(), path.c_str()) != 0) fail("cannot be replaced");
 }
 
-VERNIER_IMPL std::string read_file(const std::string& path) {
+VERNIER_IMPL std::string read_file(const std::string& path, std::size_t most) {
   const auto fail = [&](const char* what) {
     throw std::invalid_argument(path + ": " + (what != nullptr ? what : std::strerror(errno)));
   };
@@ -37,10 +37,12 @@ VERNIER_IMPL std::string read_file(const std::string& path) {
   if (in == nullptr) fail(errno != 0 ? nullptr : "cannot be opened");
   std::string content;
   char buffer[1 << 14];
-  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, in)) > 0;) content.append(buffer, n);
+  for (std::size_t n; content.size() <= most && (n = std::fread(buffer, 1, sizeof buffer, in)) > 0;)
+    content.append(buffer, n);
   const bool failed = std::ferror(in) != 0, folder = errno == EISDIR;
   std::fclose(in);
   if (failed) fail(folder ? "is a folder, not a file" : "could not be read");
+  if (content.size() > most) fail(("has more than " + std::to_string(most >> 20) + " MiB").c_str());
   return content;
 }
 

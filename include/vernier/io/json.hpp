@@ -24,9 +24,15 @@ VERNIER_API std::string quotable(std::string_view text, std::size_t limit = 60);
 
 }  // namespace detail
 
+/// A JSON text; callers include <nlohmann/json.hpp>.
+/// @param content the text
+/// @param file    its name in messages
+/// @throws DataError naming the file, and where it is not JSON the line and column; also for a duplicate key, for
+/// nesting deeper than 32, and for a text of more than 64 MiB
+VERNIER_API nlohmann::json parse_json(std::string_view content, const std::string& file);
+
 /// The content of a JSON file; callers include <nlohmann/json.hpp>.
-/// @throws DataError naming the file, and where it is not JSON the line and column; also for a duplicate key or for
-/// nesting deeper than 32
+/// @throws DataError as `parse_json`
 VERNIER_API nlohmann::json read_json(const std::string& path);
 
 /// A value in a JSON file with its path, so that every error names file and key. Refers to a document that outlives it.

@@ -14,6 +14,8 @@ namespace vernier {
 
 namespace detail {
 
+inline constexpr std::size_t largest_json = std::size_t{64} << 20;  // bytes
+
 VERNIER_IMPL std::string quotable(std::string_view text, std::size_t limit) {
   std::string out;
   for (const char c : text.substr(0, limit)) out += c >= ' ' && c <= '~' ? c : '?';
@@ -22,14 +24,20 @@ VERNIER_IMPL std::string quotable(std::string_view text, std::size_t limit) {
 
 }  // namespace detail
 
-VERNIER_IMPL nlohmann::json read_json(const std::string& file) {
+VERNIER_IMPL nlohmann::json read_json(const std::string& path) {
   std::string content;
   try {
-    content = read_file(file);
+    content = read_file(path, detail::largest_json);
   } catch (const std::invalid_argument& e) {
     throw DataError(e.what());
   }
-  if (content.find_first_not_of(" \t\r\n") == std::string::npos) throw DataError(file + ": empty, not JSON");
+  return parse_json(content, path);
+}
+
+VERNIER_IMPL nlohmann::json parse_json(std::string_view content, const std::string& file) {
+  if (content.size() > detail::largest_json)
+    throw DataError(message(file, ": has more than ", detail::largest_json >> 20, " MiB"));
+  if (content.find_first_not_of(" \t\r\n") == std::string_view::npos) throw DataError(file + ": empty, not JSON");
   constexpr int deepest = 32;
   std::vector<std::set<std::string>> keys;
   const auto watch = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
@@ -46,8 +54,8 @@ VERNIER_IMPL nlohmann::json read_json(const std::string& file) {
   } catch (const nlohmann::json::parse_error& e) {
     const std::size_t at = std::min(e.byte > 0 ? e.byte - 1 : 0, content.size());
     const auto line = 1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    const std::size_t start = at == 0 ? std::string::npos : content.rfind('\n', at - 1);
-    const std::size_t column = start == std::string::npos ? at + 1 : at - start;
+    const std::size_t start = at == 0 ? std::string_view::npos : content.rfind('\n', at - 1);
+    const std::size_t column = start == std::string_view::npos ? at + 1 : at - start;
     throw DataError(message(file, ", line ", line, ", column ", column,
                             at == content.size() ? ": the file ends here, but its JSON does not" : ": not valid JSON"));
   } catch (const nlohmann::json::exception& e) {  // a number no double can hold

@@ -127,5 +127,17 @@ TEST_F(AtomicFile, ReadingSaysWhatIsWrong) {
             folder.string() + ": is a folder, not a file");
 }
 
+TEST_F(AtomicFile, ReadingEndsWhereAFileIsTooLarge) {
+  constexpr std::size_t most = std::size_t{1} << 20;
+  const fs::path path = folder / "large.csv";
+  vn::write_file(path, std::string(most, 'a'));
+  EXPECT_EQ(vn::read_file(path, most).size(), most);
+  vn::write_file(path, std::string(most + 1, 'a'));
+  EXPECT_EQ(thrown<std::invalid_argument>([&] { (void)vn::read_file(path, most); }),
+            path.string() + ": has more than 1 MiB");
+  EXPECT_EQ(thrown<std::invalid_argument>([&] { (void)vn::read_file("/dev/zero", most); }),
+            "/dev/zero: has more than 1 MiB");
+}
+
 }  // namespace
 }  // namespace atomic_file_test

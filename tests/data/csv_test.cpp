@@ -306,6 +306,33 @@ TEST_F(Csv, AMissingFileAndAFolderAreNamed) {
   }
 }
 
+// What is no table does not fill the memory.
+TEST_F(Csv, LimitsOfSize) {
+  const auto said = [](const std::string& path) -> std::string {
+    try {
+      (void)read_joints<2>(path);
+    } catch (const DataError& e) {
+      return e.what();
+    }
+    return "nothing";
+  };
+  std::string commas = "q1_rad,q2_rad", values = "1,2";
+  for (int k = 2; k < 1000; ++k) {
+    commas += ",";
+    values += ",x";
+  }
+  EXPECT_EQ(said(file(commas + "\n" + values + "\n")), "nothing");
+  const std::string wide = file(commas + ",\n");
+  EXPECT_EQ(said(wide), wide + ", line 1: has 1001 values, more than 1000");
+  const std::string wide_row = file(commas + "\n" + values + "\n" + values + ",3\n");
+  EXPECT_EQ(said(wide_row), wide_row + ", line 3: has 1001 values, more than 1000");
+  std::string rows = "q1_rad,q2_rad\n";
+  for (int k = 0; k <= 1'000'000; ++k) rows += "1\n";
+  const std::string long_file = file(rows);
+  EXPECT_EQ(said(long_file), long_file + ": has more than 1000000 rows");
+  EXPECT_EQ(said("/dev/zero"), "/dev/zero: has more than 256 MiB");
+}
+
 struct Malformed {
   const char* what;
   std::string content;

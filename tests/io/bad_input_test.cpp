@@ -335,6 +335,7 @@ TEST(BadInput, MissingFilesAndFolders) {
   EXPECT_EQ(complaint([&] { (void)load<6>(missing); }), missing.string() + ": No such file or directory");
   EXPECT_EQ(complaint([&] { (void)load_robot(folder.path()); }), folder.path().string() + ": is a folder, not a file");
   EXPECT_EQ(complaint([&] { (void)load<6>(folder.path()); }), folder.path().string() + ": is a folder, not a file");
+  EXPECT_EQ(complaint([&] { (void)load_robot("/dev/zero"); }), "/dev/zero: has more than 32 MiB");
 }
 
 }  // namespace

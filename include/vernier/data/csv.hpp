@@ -45,7 +45,8 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 
 /// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg; _mm or _m for prismatic joints), x_mm, y_mm, z_mm
 /// (or _m), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg). Any column order; other columns are ignored;
-/// blank lines, CRLF and a byte-order mark are accepted.
+/// blank lines, CRLF and a byte-order mark are accepted. All CSV files: at most 256 MiB, 1,000 columns, a million
+/// rows.
 ///
 /// Rows are taken to be in the order of measuring, each approached from the row before; where a column `segment` (a
 /// number) changes, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint values from which each

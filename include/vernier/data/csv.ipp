@@ -2,6 +2,7 @@
 
 #include "vernier/data/csv.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -23,13 +24,20 @@ struct CsvColumn {
   double factor;  ///< to m or rad
 };
 
+// What a file may have, so that one that is no table does not fill the memory.
+inline constexpr std::ptrdiff_t most_columns = 1000;
+inline constexpr std::size_t most_rows = 1'000'000;
+
 /// The lines of a file, its numbers by column name. Quotes are not part of the format.
 class CsvTable {
  public:
   explicit CsvTable(const std::string& path) : file_(path) {
     content_ = text_of(path);
     for (const TextLine& line : text_lines(file_, content_)) {
+      if (const auto n = 1 + std::count(line.text.begin(), line.text.end(), ','); n > most_columns)
+        throw DataError(message(file_, ", line ", line.number, ": has ", n, " values, more than ", most_columns));
       if (!header_.empty()) {
+        if (lines_.size() == most_rows) throw DataError(message(file_, ": has more than ", most_rows, " rows"));
         lines_.push_back(line);
         continue;
       }

@@ -27,12 +27,12 @@ VERNIER_API std::string quotable(std::string_view text, std::size_t limit = 60);
 /// A JSON text; callers include <nlohmann/json.hpp>.
 /// @param content the text
 /// @param file    its name in messages
-/// @throws DataError naming the file, and where it is not JSON the line and column; also for a duplicate key, for
-/// nesting deeper than 32, and for a text of more than 64 MiB
+/// @throws DataError naming the file, and where it is not JSON the line and column; also for a duplicate key or for
+/// nesting deeper than 32
 VERNIER_API nlohmann::json parse_json(std::string_view content, const std::string& file);
 
 /// The content of a JSON file; callers include <nlohmann/json.hpp>.
-/// @throws DataError as `parse_json`
+/// @throws DataError as `parse_json`, and for a file of more than 32 MiB
 VERNIER_API nlohmann::json read_json(const std::string& path);
 
 /// A value in a JSON file with its path, so that every error names file and key. Refers to a document that outlives it.

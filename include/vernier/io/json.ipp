@@ -14,7 +14,7 @@ namespace vernier {
 
 namespace detail {
 
-inline constexpr std::size_t largest_json = std::size_t{64} << 20;  // bytes
+inline constexpr std::size_t largest_json = std::size_t{32} << 20;  // bytes
 
 VERNIER_IMPL std::string quotable(std::string_view text, std::size_t limit) {
   std::string out;
@@ -35,8 +35,6 @@ VERNIER_IMPL nlohmann::json read_json(const std::string& path) {
 }
 
 VERNIER_IMPL nlohmann::json parse_json(std::string_view content, const std::string& file) {
-  if (content.size() > detail::largest_json)
-    throw DataError(message(file, ": has more than ", detail::largest_json >> 20, " MiB"));
   if (content.find_first_not_of(" \t\r\n") == std::string_view::npos) throw DataError(file + ": empty, not JSON");
   constexpr int deepest = 32;
   std::vector<std::set<std::string>> keys;

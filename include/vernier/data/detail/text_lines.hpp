@@ -18,7 +18,7 @@ struct TextLine {
   std::string_view text;  ///< without the end of the line
 };
 
-/// The content of a file.
+/// The content of a file of at most 256 MiB.
 /// @throws DataError where it cannot be read
 VERNIER_API std::string text_of(const std::string& path);
 

@@ -14,7 +14,8 @@ namespace vernier::detail {
 
 VERNIER_IMPL std::string text_of(const std::string& path) {
   try {
-    return read_file(path);
+    constexpr std::size_t largest = std::size_t{256} << 20;  // bytes
+    return read_file(path, largest);
   } catch (const std::invalid_argument& e) {
     throw DataError(e.what());
   }

@@ -1,0 +1,8 @@
+// Rows of joints, of six.
+#include "reader_fuzz.hpp"
+#include "vernier/data/csv.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return vernier::fuzz::read_as_file(data, size,
+                                     [](const std::string& path) { static_cast<void>(vernier::read_joints<6>(path)); });
+}

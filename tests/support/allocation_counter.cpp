@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <cstdlib>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define VERNIER_TEST_ADDRESS_SANITIZER 1
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define VERNIER_TEST_SANITIZER 1
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define VERNIER_TEST_ADDRESS_SANITIZER 1
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define VERNIER_TEST_SANITIZER 1
 #endif
 #endif
 
@@ -20,7 +20,7 @@ constinit thread_local long counted = 0;
 
 long vernier_test::allocation_count() { return counted; }
 
-#ifdef VERNIER_TEST_ADDRESS_SANITIZER
+#ifdef VERNIER_TEST_SANITIZER
 
 // The sanitizer owns the allocation functions and offers a hook instead.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -53,16 +54,17 @@ inline void check_complaint(const std::string& said) {
     if (c < ' ' || c > '~') finding("a complaint that is not one printable line", said);
 }
 
-/// Gives the bytes to a reader. It may refuse them with DataError, or Refused; anything else it throws is a finding.
+/// Gives the bytes to a reader. It may refuse them with DataError, or one of Refused; anything else it throws is a
+/// finding.
 /// @param read takes the path of a file
-template <class Refused = DataError, class Read>
+template <class... Refused, class Read>
 int read_as_file(const std::uint8_t* data, std::size_t size, const Read& read) {
   const InputFile file(data, size);
   try {
     read(file.path());
-  } catch (const DataError& error) {
-    check_complaint(error.what());
-  } catch (const Refused& error) {
+  } catch (const std::exception& error) {
+    if (dynamic_cast<const DataError*>(&error) == nullptr && (... && (dynamic_cast<const Refused*>(&error) == nullptr)))
+      throw;
     check_complaint(error.what());
   }
   return 0;

@@ -289,6 +289,22 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/estimate/variance_factor", 0), "no variance");
   reader.expect_refused(with("/estimate/geometric/0/parameter", "d9"), "a parameter of another arm");
   reader.expect_refused(with("/estimate/geometric/0/scale", 0), "an unknown without unit");
+  reader.expect_refused(with("/estimate/geometric", std::vector<Json>(100, valid["estimate"]["geometric"][0])),
+                        "more unknowns than twice the parameters");
+  Json huge = valid;  // a covariance that no memory holds
+  Json& transmission = huge["arm"]["joint_errors"]["transmission"];
+  for (Json& joint : transmission) {
+    joint["orders"] = Json::array();
+    for (int order = 1; order <= 1000; ++order) joint["orders"].push_back(order);
+    joint["coefficients_rad"] = std::vector<double>(2000, 0);
+  }
+  const std::size_t few = valid["arm"]["joint_errors"]["coefficients"].get<std::size_t>() - 8;
+  huge["arm"]["joint_errors"]["coefficients"] = few + 12000;
+  huge["estimate"]["coefficient_scales"] = std::vector<double>(few + 12000, 1);
+  huge["estimate"]["coefficient_prior_stds"] = std::vector<double>(few + 12000, 1);
+  huge["estimate"]["stds_in_scales"] = std::vector<double>(few + 12002, 1);
+  EXPECT_NE(reader.complaint(huge.dump()).find(message("estimate: has ", few + 12002, " unknowns, more than 10000")),
+            std::string::npos);
   reader.expect_refused(with("/estimate/geometric/0/prior_std", -1), "a prior narrower than none");
   reader.expect_refused(with("/estimate/coefficient_scales/3", 0), "a coefficient without unit");
   reader.expect_refused(with("/estimate/stds_in_scales/3", -1), "a negative deviation");

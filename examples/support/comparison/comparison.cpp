@@ -207,6 +207,9 @@ void Plan::prepare() {
     check(p.measured() || p.region == "full" || p.robot == "abb_irb120", p.name,
           ": only the abb_irb120 has an operating region; say \"region\": \"full\"");
   }
+  const double cells = static_cast<double>(problems.size() * methods.size()) * static_cast<double>(poses.size()) *
+                       static_cast<double>(seeds.size());
+  check(cells <= 1e7, "the grid has ", cells, " cells, more than ten million");
   for (const Index n : poses) check(n >= 0 && n <= 1000000, "poses: ", n, " is none (0 stands for all measured ones)");
   for (const Problem& p : problems)
     check(p.measured() || std::find(poses.begin(), poses.end(), 0) == poses.end(), p.name,

@@ -147,6 +147,8 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
   const std::vector<std::string> names = arm.geometry.parameter_names();
   std::vector<GeometricUnknown> unknowns;
   const JsonNode geometric = node.at("geometric");
+  if (geometric.size() > 2 * names.size())  // itself and its rate a kelvin
+    geometric.fail(message("has ", geometric.size(), " entries, the arm has ", names.size(), " parameters"));
   for (std::size_t k = 0; k < geometric.size(); ++k) {
     const JsonNode one = geometric.at(k);
     const auto name = std::find(names.begin(), names.end(), one.at("parameter").text());
@@ -155,6 +157,8 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
                         precision_of(one.at("prior_std")), one.has("per_kelvin")});
   }
   const Index terms = arm.errors.terms().size(), size = static_cast<Index>(unknowns.size()) + terms;
+  constexpr Index most = 10000;  // whose covariance takes 800 MB; nine joints up to order 500 have fewer
+  if (size > most) node.fail(message("has ", size, " unknowns, more than ", most));
   const VectorX scales = node.at("coefficient_scales").numbers(static_cast<std::size_t>(terms));
   const JsonNode prior_stds = node.at("coefficient_prior_stds");
   prior_stds.require_size(static_cast<std::size_t>(terms));

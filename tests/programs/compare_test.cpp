@@ -181,6 +181,13 @@ TEST(Compare, RefusesWhatItDoesNotKnow) {
   refused("--methods elm --evaluations 10", 2, "evaluations is 10");
   refused("plan.json", 2, "key 'seed' is unknown");
   refused("missing.json", 1, "missing.json");
+  Json endless = Json::parse(R"({"problems": [{}], "methods": ["elm"]})");
+  endless["poses"] = std::vector<int>(4000, 10);
+  endless["seeds"] = std::vector<int>(4000, 1);
+  std::ofstream(folder / "endless.json") << endless.dump();
+  refused("endless.json", 2, "the grid has more than ten million cells");
+  std::ofstream(folder / "twice.json") << R"({"problems": [{}], "methods": ["elm"], "methods": ["gp"]})";
+  refused("twice.json", 1, "key 'methods' is given twice");
   refused("--methods elm --results none.jsonl", 1, "none.jsonl, line 1: no result of a comparison");
 }
 

@@ -209,7 +209,7 @@ void Plan::prepare() {
   }
   const double cells = static_cast<double>(problems.size() * methods.size()) * static_cast<double>(poses.size()) *
                        static_cast<double>(seeds.size());
-  check(cells <= 1e7, "the grid has ", cells, " cells, more than ten million");
+  check(cells <= 1e7, "the grid has more than ten million cells");
   for (const Index n : poses) check(n >= 0 && n <= 1000000, "poses: ", n, " is none (0 stands for all measured ones)");
   for (const Problem& p : problems)
     check(p.measured() || std::find(poses.begin(), poses.end(), 0) == poses.end(), p.name,

@@ -112,7 +112,7 @@ TEST(CompareRanks, FailuresAreTold) {
   EXPECT_EQ(lines_of(read_file(folder / "r.jsonl")).size(), 2u);
 }
 
-// The second of three ranks is killed after two cells. What is done is on disk, and a rerun by other ranks, or by none,
+// The second of three ranks is killed after its first cell. What is done is on disk, and a rerun by other ranks, or by none,
 // computes the rest alone.
 TEST(CompareRanks, GoOnAfterADeath) {
   const std::string grid =
@@ -122,7 +122,7 @@ TEST(CompareRanks, GoOnAfterADeath) {
 if [ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" != 1 ]; then exec "$@"; fi
 "$@" &
 rank=$!
-until [ "$(cat r.jsonl.rank1 2>/dev/null | wc -l)" -ge 2 ]; do sleep 0.01; done
+while kill -0 $rank && [ "$(cat r.jsonl.rank1 2>/dev/null | wc -l)" -lt 1 ]; do sleep 0.01; done
 kill -9 $rank
 wait $rank
 )sh";
@@ -135,7 +135,7 @@ wait $rank
     const std::string text = read_file(folder / name);
     whole += static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
-  ASSERT_GE(whole, 2u);
+  ASSERT_GE(whole, 1u);
   ASSERT_LT(whole, 20u);
   const CommandResult rest = ranks(2, folder, grid + "--results r.jsonl");
   ASSERT_EQ(rest.exit_code, 0) << rest.errors;

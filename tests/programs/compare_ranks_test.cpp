@@ -112,8 +112,8 @@ TEST(CompareRanks, FailuresAreTold) {
   EXPECT_EQ(lines_of(read_file(folder / "r.jsonl")).size(), 2u);
 }
 
-// The second of three ranks is killed after its first cell. What is done is on disk, and a rerun by other ranks, or by none,
-// computes the rest alone.
+// The second of three ranks is killed after its first cell. What is done is on disk, and a rerun by other ranks, or by
+// none, computes the rest alone.
 TEST(CompareRanks, GoOnAfterADeath) {
   const std::string grid =
       "--methods pso:elm,geometry --poses 200 --seeds 1,2,3,4,5,6,7,8,9,10 --evaluations 3000 --nodes 30 ";

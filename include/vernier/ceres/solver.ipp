@@ -32,9 +32,9 @@ class CeresProblem {
     } else {
       for (Index row = 0; row < rows_.residuals.size();) {
         const auto i = static_cast<std::size_t>(row);
-        const bool distance = problem_.station_of(rows_.block[i]).lengths != nullptr;
-        const Index count = distance ? 1 : 3;
-        const double threshold = (*thresholds)[distance ? 2 : rows_.of_orientation[i] ? 1 : 0];
+        const bool projected = problem_.station_of(rows_.block[i]).projected();
+        const Index count = projected ? 1 : 3;
+        const double threshold = (*thresholds)[projected ? 2 : rows_.of_orientation[i] ? 1 : 0];
         ceres_problem.AddResidualBlock(new Rows(*this, row, count), loss(threshold), steps_.data());
         row += count;
       }

@@ -12,6 +12,7 @@
 
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/data/contacts.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/distances.hpp"
 
@@ -131,6 +132,18 @@ struct LabelledPoses {
 /// @throws DataError naming file, line and column
 VERNIER_API LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
                                               std::initializer_list<const char*> optional = {});
+
+/// Contacts from a CSV file, a row a touch: columns q1 .. qN as in `read_dataset`; `contact_id`, which of the objects is
+/// touched (any text); `kind`, plane, ball or socket; of balls radius_mm (of the ball and the probe's tip together);
+/// optionally offset_mm, for planes and sockets: the height of a face above the first one of the same contact, or the
+/// distance of a socket from the first one along a bar. A cell of a length may be empty where it does not apply.
+/// @param path        the file
+/// @param joints      number of joints
+/// @param joint_types as in `read_dataset`
+/// @return            in the order of their first touches
+/// @throws DataError naming file, and line and column or the contact
+VERNIER_API std::vector<Contact> read_contacts(const std::string& path, int joints,
+                                               std::span<const JointType> joint_types = {});
 
 /// Writes measured poses as `read_dataset` reads them, joints in rad, positions in mm, in digits that read back exactly
 /// (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written where they

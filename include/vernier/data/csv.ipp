@@ -127,6 +127,18 @@ class CsvTable {
     return out;
   }
 
+  /// A column of numbers, NaN where a cell is empty.
+  VectorX optional_numbers(const CsvColumn& column) const {
+    VectorX out = VectorX::Constant(static_cast<Index>(lines_.size()), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t row = 0; row < lines_.size(); ++row) {
+      const auto fields = cells(lines_[row].text);
+      if (column.index < fields.size() && !fields[column.index].empty())
+        out(static_cast<Index>(row)) =
+            value(fields[column.index], lines_[row].number, column.name) * column.factor;
+    }
+    return out;
+  }
+
  private:
   std::vector<std::string_view> fields_of(const TextLine& line) const {
     auto out = cells(line.text);
@@ -310,6 +322,69 @@ VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::ini
     pose.translation() = values.row(i).head<3>().transpose();
     if (out.oriented) pose.linear() = exp_so3(Vector3(values.row(i).tail<3>().transpose()));
     out.poses.push_back(pose);
+  }
+  return out;
+}
+
+VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joints,
+                                                std::span<const JointType> joint_types) {
+  const detail::CsvTable table(path);
+  const MatrixX q = table.numbers(detail::joint_columns(table, joints, joint_types));
+  const auto text_column = [&](const char* name) {
+    const auto column = table.find_plain(name);
+    if (!column) throw DataError(message(path, ": no column ", name));
+    return *column;
+  };
+  const detail::CsvColumn id_column = text_column("contact_id"), kind_column = text_column("kind");
+  const std::vector<std::string> ids = table.texts(id_column), kinds = table.texts(kind_column);
+  const auto radius_column = table.find("radius", true), offset_column = table.find("offset", true);
+  const VectorX none = VectorX::Constant(q.rows(), std::numeric_limits<double>::quiet_NaN());
+  const VectorX radii = radius_column ? table.optional_numbers(*radius_column) : none;
+  const VectorX offsets = offset_column ? table.optional_numbers(*offset_column) : none;
+
+  struct Object {
+    std::string name;
+    ContactKind kind;
+    std::vector<Index> rows;
+  };
+  std::vector<Object> objects;
+  VectorX known(q.rows());
+  for (Index i = 0; i < q.rows(); ++i) {
+    const std::string &id = ids[static_cast<std::size_t>(i)], &word = kinds[static_cast<std::size_t>(i)];
+    if (id.empty()) table.fail_in_row(i, id_column, "no name of what is touched");
+    ContactKind kind = ContactKind::plane;
+    for (const ContactKind k : {ContactKind::ball, ContactKind::socket})
+      if (word == name_of(k)) kind = k;
+    if (word != name_of(kind)) table.fail_in_row(i, kind_column, "'", word, "', must be plane, ball or socket");
+    Object* object = nullptr;
+    for (Object& o : objects)
+      if (o.name == id) object = &o;
+    if (object == nullptr) object = &objects.emplace_back(Object{id, kind, {}});
+    if (object->kind != kind)
+      table.fail_in_row(i, kind_column, "contact ", id, " is a ", word, " here, and a ", name_of(object->kind),
+                        " above");
+    object->rows.push_back(i);
+    const bool ball = kind == ContactKind::ball;
+    if (ball && std::isnan(radii(i)))
+      throw DataError(message(path, ": contact ", id, ": a ball needs its radius, in a column radius_mm"));
+    if (ball && !(radii(i) > 0)) table.fail_in_row(i, *radius_column, "a radius must be positive");
+    if (ball && !std::isnan(offsets(i)) && offsets(i) != 0)
+      table.fail_in_row(i, *offset_column, "a ball has a radius, but no offset");
+    if (!ball && !std::isnan(radii(i))) table.fail_in_row(i, *radius_column, "a ", word, " has no radius");
+    known(i) = ball ? radii(i) : std::isnan(offsets(i)) ? 0 : offsets(i);
+  }
+  std::vector<Contact> out;
+  for (const Object& object : objects) {
+    const auto n = static_cast<Index>(object.rows.size());
+    MatrixX of_joints(n, joints);
+    VectorX of_known(n);
+    detail::copy_rows(q, object.rows, of_joints);
+    detail::copy_rows(known, object.rows, of_known);
+    try {
+      out.emplace_back(object.name, object.kind, std::move(of_joints), std::move(of_known));
+    } catch (const std::invalid_argument& e) {
+      throw DataError(message(path, ": ", std::string(e.what())));
+    }
   }
   return out;
 }

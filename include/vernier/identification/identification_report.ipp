@@ -3,27 +3,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "vernier/identification/detail/wording.hpp"
 #include "vernier/identification/identification_report.hpp"
 
 namespace vernier {
-
-namespace detail {
-
-/// A number with some digits behind the point.
-inline std::string fixed_digits(double value, int digits) {
-  char buffer[48];
-  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-  return buffer;
-}
-
-/// Texts joined by commas.
-inline std::string comma_list(const std::vector<std::string>& texts) {
-  std::string out;
-  for (const auto& text : texts) out += (out.empty() ? "" : ", ") + text;
-  return out;
-}
-
-}  // namespace detail
 
 VERNIER_IMPL std::vector<std::string> IdentificationReport::names(ParameterState state) const {
   std::vector<std::string> out;

@@ -38,11 +38,11 @@ class CalibrationProblem {
 
   Loss loss() const { return loss_; }
   Index num_blocks() const { return static_cast<Index>(blocks_.size()); }
-  /// The first blocks, on which models are validated: positions where there are any, else distances.
+  /// The first blocks, on which models are validated: measured positions where there are any, else all.
   Index num_validation_blocks() const { return validation_blocks_; }
   const Station& station_of(Index block) const { return stations_[static_cast<std::size_t>(at(block).station)]; }
   int station_index(Index block) const { return at(block).station; }
-  /// Measured values: three a position, six a pose, one a distance.
+  /// Measured values: three a position, six a pose, one a distance or a height.
   VERNIER_API Index measured_values() const;
   /// Joint values of all samples, blocks x joints.
   VERNIER_API MatrixX joints() const;
@@ -95,8 +95,8 @@ class CalibrationProblem {
   VERNIER_API std::array<double, 2> reweight();
   /// All weights one.
   VERNIER_API void reset_weights();
-  /// Thresholds of the loss at the present residuals, of unit weights: of positions, orientations, distances; 0 where
-  /// there are none.
+  /// Thresholds of the loss at the present residuals, of unit weights: of positions, orientations, and single numbers
+  /// (distances, heights); 0 where there are none.
   VERNIER_API std::array<double, 3> thresholds() const;
 
   /// Levenberg-Marquardt, undamped until a step fails; a robust loss is reweighted before every step.

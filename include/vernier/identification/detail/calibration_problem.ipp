@@ -20,7 +20,7 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
   for (std::size_t s = 0; s < stations_.size(); ++s)
     for (Index i = 0; i < stations_[s].size(); ++i) blocks_.push_back({static_cast<int>(s), i, {1, 1}});
   for (const Station& station : stations_)
-    if (station.lengths == nullptr) validation_blocks_ += station.size();
+    if (station.positions != nullptr) validation_blocks_ += station.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
 }
 
@@ -185,13 +185,17 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
 }
 
 /// Residual of a sample, not whitened: model minus measured; and what maps rates of the model to rates of the residual.
-/// @param along of a distance, the direction from the fixed point to the tool point
+/// @param along of a single number, the direction in which it is measured: from the fixed point to the tool point, or
+///              normal to the plane
 VERNIER_API Vector6 measured_residual(const Station& station, Index row, const Isometry3& modelled, Vector3& along,
                                       Matrix3& rotation_rate) {
   Vector6 out = Vector6::Zero();
   if (station.lengths != nullptr) {
     along = modelled.translation().normalized();
     out(0) = modelled.translation().norm() - (*station.lengths)(row);
+  } else if (station.projected()) {
+    along = Vector3::UnitZ();
+    out(0) = modelled.translation().z() - station.height(row);
   } else {
     out.head<3>() = modelled.translation() - station.position(row);
   }
@@ -204,13 +208,13 @@ VERNIER_API Vector6 measured_residual(const Station& station, Index row, const I
   return out;
 }
 
-/// Scales rows by the sensor's precision; of a distance the position rows are projected to the line of sight first.
+/// Scales rows by the sensor's precision; of a single number the position rows are projected to its direction first.
 VERNIER_API void whiten_rows(const Station& station, const Vector3& along, double position, const Matrix3& orientation,
                              Rows6& rows) {
-  const bool distance = station.lengths != nullptr, oriented = station.oriented();
+  const bool projected = station.projected(), oriented = station.oriented();
   for (Index k = 0; k < rows.cols(); ++k) {
     double* column = rows.col(k).data();
-    if (distance) {
+    if (projected) {
       column[0] = position * (along(0) * column[0] + along(1) * column[1] + along(2) * column[2]);
       column[1] = column[2] = 0;
     } else {
@@ -353,12 +357,12 @@ VERNIER_IMPL void CalibrationProblem::reset_weights() {
   for (Block& block : blocks_) block.weight = {1, 1};
 }
 
-/// Thresholds of norms of residuals: of positions, orientations, distances.
+/// Thresholds of norms of residuals: of positions, orientations, single numbers.
 VERNIER_API std::array<double, 3> loss_thresholds(const CalibrationProblem& problem, const MatrixX& norms) {
   std::array<std::vector<double>, 3> kinds;
   for (Index b = 0; b < problem.num_blocks(); ++b) {
     const Station& station = problem.station_of(b);
-    kinds[station.lengths != nullptr ? 2 : 0].push_back(norms(b, 0));
+    kinds[station.projected() ? 2 : 0].push_back(norms(b, 0));
     if (station.oriented()) kinds[1].push_back(norms(b, 1));
   }
   return {robust_threshold(std::move(kinds[0]), 3), robust_threshold(std::move(kinds[1]), 3),
@@ -377,7 +381,7 @@ VERNIER_IMPL std::array<double, 2> CalibrationProblem::reweight() {
   for (Index b = 0; b < num_blocks(); ++b) {
     Block& block = blocks_[static_cast<std::size_t>(b)];
     const Station& station = station_of(b);
-    const double position = thresholds[station.lengths != nullptr ? 2 : 0];
+    const double position = thresholds[station.projected() ? 2 : 0];
     if (position > 0) block.weight[0] = robust_weight(loss_, norms(b, 0), position);
     if (station.oriented() && thresholds[1] > 0) block.weight[1] = robust_weight(loss_, norms(b, 1), thresholds[1]);
   }

@@ -5,13 +5,14 @@
 
 #include <vector>
 
+#include "vernier/data/contacts.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/distances.hpp"
 #include "vernier/identification/sensor_model.hpp"
 
 namespace vernier::detail {
 
-/// What was measured from one place, poses or distances, and how well. Refers to the measurements.
+/// What was measured from one place, poses or distances, or touched, and how well. Refers to the measurements.
 struct Station {
   const double* joint_values;               ///< n x dof, by columns
   Index samples;                            ///< n
@@ -19,10 +20,13 @@ struct Station {
   const double* previous_values = nullptr;  ///< n x dof, by columns: from where it was approached; null for unknown
   const VectorX* times = nullptr;           ///< n, when it was measured; or null
   const VectorX* temperatures = nullptr;    ///< n [deg C]; or null
-  const PointRows* positions = nullptr;     ///< n, or null for distances
-  const VectorX* lengths = nullptr;         ///< n distances, or null
+  const PointRows* positions = nullptr;     ///< n, or null where none were measured
+  const VectorX* lengths = nullptr;         ///< n distances from the origin of the station's frame, or null
+  const VectorX* heights = nullptr;         ///< n heights above the plane z = 0 of that frame, or null
+  double height_sign = 1;                   ///< of heights: -1 where they count down
+  bool on_axis = false;                     ///< heights are those of points on the z axis: x = y = 0, too
   std::vector<Matrix3> orientations{};      ///< n, or empty where they are not used
-  double position_sigma = 1;                ///< of a position, per component, or of a distance [m]
+  double position_sigma = 1;                ///< of a position, per component, of a distance or a height [m]
   double orientation_sigma = 1;             ///< [rad]
   double joint_sigma = 0;                   ///< of the joint readings [rad, m]; 0: exact
 
@@ -33,9 +37,14 @@ struct Station {
   /// Joint values from which samples were approached [rad, m], n x dof; no rows where unknown.
   Eigen::Map<const MatrixX> previous() const { return {previous_values, previous_values ? samples : 0, dof}; }
   bool oriented() const { return !orientations.empty(); }
+  /// Whether a sample is one number: the position's component along some direction.
+  bool projected() const { return lengths != nullptr || (heights != nullptr && !on_axis); }
   /// Measured values of a sample.
-  Index values() const { return positions == nullptr ? 1 : oriented() ? 6 : 3; }
-  Vector3 position(Index i) const { return positions->row(i).transpose(); }
+  Index values() const { return projected() ? 1 : oriented() ? 6 : 3; }
+  double height(Index i) const { return height_sign * (*heights)(i); }
+  Vector3 position(Index i) const {
+    return positions != nullptr ? Vector3(positions->row(i).transpose()) : Vector3(0, 0, height(i));
+  }
 };
 
 /// Rotation matrices of rotation vectors.
@@ -68,6 +77,10 @@ Station station_of(const Distances<N>& data, const SensorModel& sensors) {
           .position_sigma = sensors.distance_sigma,
           .joint_sigma = sensors.joint_sigma};
 }
+
+/// Touches as a station whose frame is that of the object: the plane z = 0, the centre of a ball, a socket, the axis z
+/// of a bar. Refers to the contact.
+VERNIER_API Station station_of(const Contact& contact, const SensorModel& sensors);
 
 }  // namespace vernier::detail
 

@@ -13,4 +13,15 @@ VERNIER_IMPL std::vector<Matrix3> rotations(const PointRows& rotation_vectors) {
   return out;
 }
 
+VERNIER_IMPL Station station_of(const Contact& contact, const SensorModel& sensors) {
+  Station out{.joint_values = contact.joints().data(),
+              .samples = contact.size(),
+              .dof = static_cast<int>(contact.joints().cols()),
+              .position_sigma = sensors.contact_sigma,
+              .joint_sigma = sensors.joint_sigma};
+  (contact.kind() == ContactKind::ball ? out.lengths : out.heights) = &contact.known();
+  out.on_axis = contact.kind() == ContactKind::socket;
+  return out;
+}
+
 }  // namespace vernier::detail

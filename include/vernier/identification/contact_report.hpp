@@ -1,0 +1,59 @@
+#pragma once
+
+/// @file
+/// The outcome of an identification from contacts: what was touched, and what touches cannot observe.
+
+#include <string>
+#include <vector>
+
+#include "vernier/data/contacts.hpp"
+#include "vernier/identification/calibrated.hpp"
+#include "vernier/identification/identification_report.hpp"
+
+namespace vernier {
+
+/// An object that was touched, as estimated, in the base frame of the nominal arm.
+struct TouchedObject {
+  std::string name;   ///< its name
+  ContactKind kind;   ///< what it is
+  Index touches = 0;  ///< number of touches
+  Vector3 point;      ///< of a plane the point nearest to the middle of its touches; centre of a ball; first socket [m]
+  Vector3 direction;  ///< normal of a plane, direction of a bar of sockets, unit vectors; zero for one without
+  double rms = 0;     ///< of the residuals of its touches, per measured value [m]
+};
+
+/// Everything of an identification from contacts but the model. `rms_before` and `rms_after` are those of touches, per
+/// measured value: across a face or a ball, or a component of the distance from a socket.
+///
+/// Contacts observe the arm relative to what it touches. A direction in the space of all unknowns (base, objects, tool,
+/// chain) is unobservable where its singular value is zero: it changes no touch.
+struct ContactReport : IdentificationReport {
+  std::vector<TouchedObject> objects{};  ///< what was touched
+  bool scale_observable = true;          ///< whether a known length, or a joint that slides, determines the arm's scale
+  VectorX singular_values{};  ///< of touches that lie on their objects, with respect to all unknowns in steps of
+                              ///< expected sizes, largest first
+  Index unobservable = 0;     ///< number of unobservable directions: zero singular values
+  Index missing = 0;  ///< how many directions of the arm measured positions at the same joints would determine, but
+                      ///< these contacts do not, apart from base and scale; above 0: touch more, or other, objects
+
+  /// What contacts do not observe, a sentence each.
+  VERNIER_API std::vector<std::string> unobserved() const;
+  /// The outcome in plain words, a few lines.
+  VERNIER_API std::string summary() const;
+};
+
+/// An arm identified from contacts, in the base frame of the nominal one.
+template <KinematicModel Model>
+struct IdentifiedByContacts : ContactReport {
+  Calibrated<Model> model;  ///< usable as any kinematic model
+
+  /// Joins the two.
+  IdentifiedByContacts(ContactReport report, const Calibrated<Model>& arm)
+      : ContactReport(std::move(report)), model(arm) {}
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/contact_report.ipp"
+#endif

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "vernier/core/check.hpp"
+#include "vernier/identification/detail/contact_frames.hpp"
+#include "vernier/identification/frames.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL std::vector<Index> contact_unknowns(const Contact& contact) {
+  if (contact.kind() == ContactKind::plane) return {2, 3, 4};
+  if (contact.kind() == ContactKind::socket && contact.has_length()) return {0, 1, 2, 3, 4};
+  return {0, 1, 2};
+}
+
+/// The normal of a plane through points at some heights above it; its sign follows from the heights where they differ.
+VERNIER_API Vector3 fitted_normal(const PointRows& points, const VectorX& heights) {
+  Matrix3 scatter = Matrix3::Zero();
+  Vector3 rise = Vector3::Zero();
+  const Vector3 middle = points.colwise().mean().transpose();
+  const double mean_height = heights.mean();
+  for (Index i = 0; i < points.rows(); ++i) {
+    Vector3 mean = Vector3::Zero();  // of the face that i is on
+    double count = 0;
+    for (Index k = 0; k < points.rows(); ++k)
+      if (heights(k) == heights(i)) {
+        mean += points.row(k).transpose();
+        ++count;
+      }
+    const Vector3 from_mean = points.row(i).transpose() - mean / count;
+    scatter += from_mean * from_mean.transpose();
+    rise += (heights(i) - mean_height) * (points.row(i).transpose() - middle);
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3> axes(scatter);
+  const Vector3 normal = axes.eigenvectors().col(0);
+  return normal.dot(rise) < 0 ? Vector3(-normal) : normal;
+}
+
+/// The smallest rotation that takes a unit vector with z >= 0 to the z axis.
+VERNIER_API Matrix3 rotation_to_z(const Vector3& direction) {
+  const Vector3 axis = direction.cross(Vector3::UnitZ());
+  const double sine = axis.norm();
+  return sine > 0 ? exp_so3(Vector3(axis * (std::atan2(sine, direction.z()) / sine))) : Matrix3(Matrix3::Identity());
+}
+
+VERNIER_IMPL ArmGeometry contact_arm(const ArmGeometry& arm, const Contact& contact, Station& station) {
+  const PointRows points = arm.with_frames({}, arm.tool()).positions(contact.joints());
+  const Vector3 middle = points.colwise().mean().transpose();
+  Isometry3 base = Isometry3::Identity();
+  if (contact.kind() == ContactKind::ball) {
+    base.translation() = -trilaterate(points, contact.known());
+    return arm.with_frames(FrameParameters(base), arm.tool());
+  }
+  Vector3 direction = Vector3::UnitZ();
+  if (contact.kind() == ContactKind::plane) {
+    direction = fitted_normal(points, contact.known());
+  } else if (contact.has_length()) {
+    direction = ((points.rowwise() - middle.transpose()).transpose() *
+                 VectorX(contact.known().array() - contact.known().mean()))
+                    .normalized();
+  }
+  station.height_sign = direction.z() < 0 ? -1 : 1;
+  base.linear() = rotation_to_z(station.height_sign * direction);
+  base.translation() = Vector3(0, 0, station.height_sign * contact.known().mean()) - base.linear() * middle;
+  if (contact.kind() == ContactKind::plane) base.translation().head<2>().setZero();
+  return arm.with_frames(FrameParameters(base), arm.tool());
+}
+
+VERNIER_IMPL void require_spread(const ArmGeometry& arm, const Contact& contact) {
+  if (contact.kind() != ContactKind::plane) return;
+  const PointRows points = arm.positions(contact.joints());
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  const Eigen::Vector2d mean = points.leftCols<2>().colwise().mean().transpose();
+  for (Index i = 0; i < points.rows(); ++i) {
+    const Eigen::Vector2d from_mean = points.row(i).head<2>().transpose() - mean;
+    scatter += from_mean * from_mean.transpose();
+  }
+  const Eigen::Vector2d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues();
+  const double width = std::sqrt(std::max(squares(0), 0.0) / static_cast<double>(points.rows()));
+  const double length = std::sqrt(squares(1) / static_cast<double>(points.rows()));
+  require(width > std::max(1e-3, 0.02 * length), "contact ", contact.name(),
+          ": all touches of the plane are along a line (", std::round(width * 1e4) / 10, " mm across, ",
+          std::round(length * 1e4) / 10, " mm along), which does not determine its normal; spread them over the plane");
+}
+
+VERNIER_IMPL MatrixX touching_joints(const ArmGeometry& arm, const Station& station) {
+  MatrixX joints = station.joints();
+  PosesAndJacobians at;
+  const Index n = joints.rows(), dof = joints.cols();
+  MatrixX columns(3, dof);
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    arm.poses_and_parameter_jacobians(joints, at);
+    const PointRows points = arm.positions(joints);
+    for (Index i = 0; i < n; ++i) {
+      for (int j = 0; j < static_cast<int>(dof); ++j) {  // a joint adds to a parameter of its row
+        const Index k = 6 + 5 * j + static_cast<int>(arm.chain().revolute(j) ? DhParameter::theta : DhParameter::d);
+        for (int r = 0; r < 3; ++r) columns(r, j) = at.jacobians.data()[(6 * k + r) * n + i];
+      }
+      const Vector3 point = points.row(i).transpose();
+      MatrixX rows = columns;
+      VectorX residual(3);
+      if (station.projected()) {
+        const Vector3 along = station.lengths != nullptr ? Vector3(point.normalized()) : Vector3(Vector3::UnitZ());
+        rows = along.transpose() * columns;
+        residual.resize(1);
+        residual(0) = along.dot(point) - (station.lengths != nullptr ? (*station.lengths)(i) : station.height(i));
+      } else {
+        residual = point - station.position(i);
+      }
+      MatrixX gram = rows * rows.transpose();
+      gram.diagonal().array() += 1e-12 * gram.trace();
+      const VectorX step = rows.transpose() * VectorX(gram.partialPivLu().solve(residual));
+      if (step.allFinite() && step.norm() < 0.5) joints.row(i) -= step.transpose();
+    }
+  }
+  return joints;
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file
+/// The steps of an identification from contacts, whatever the number of joints.
+
+#include <span>
+
+#include "vernier/identification/contact_report.hpp"
+#include "vernier/identification/options.hpp"
+#include "vernier/identification/sensor_model.hpp"
+
+namespace vernier::detail {
+
+/// A geometry identified from contacts, and its report.
+struct GeometryByContacts {
+  ArmGeometry arm;
+  ContactReport report;
+};
+
+/// See `vernier::identify_by_contacts`.
+VERNIER_API GeometryByContacts identify_geometry_by_contacts(const ArmGeometry& nominal,
+                                                             std::span<const Contact> contacts,
+                                                             const IdentifyOptions& options,
+                                                             const SensorModel& sensors);
+
+}  // namespace vernier::detail
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/identification/detail/contact_identification.ipp"
+#endif

@@ -133,8 +133,8 @@ struct LabelledPoses {
 VERNIER_API LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
                                               std::initializer_list<const char*> optional = {});
 
-/// Contacts from a CSV file, a row a touch: columns q1 .. qN as in `read_dataset`; `contact_id`, which of the objects is
-/// touched (any text); `kind`, plane, ball or socket; of balls radius_mm (of the ball and the probe's tip together);
+/// Contacts from a CSV file, a row a touch: columns q1 .. qN as in `read_dataset`; `contact_id`, which of the objects
+/// is touched (any text); `kind`, plane, ball or socket; of balls radius_mm (of the ball and the probe's tip together);
 /// optionally offset_mm, for planes and sockets: the height of a face above the first one of the same contact, or the
 /// distance of a socket from the first one along a bar. A cell of a length may be empty where it does not apply.
 /// @param path        the file

@@ -133,8 +133,7 @@ class CsvTable {
     for (std::size_t row = 0; row < lines_.size(); ++row) {
       const auto fields = cells(lines_[row].text);
       if (column.index < fields.size() && !fields[column.index].empty())
-        out(static_cast<Index>(row)) =
-            value(fields[column.index], lines_[row].number, column.name) * column.factor;
+        out(static_cast<Index>(row)) = value(fields[column.index], lines_[row].number, column.name) * column.factor;
     }
     return out;
   }

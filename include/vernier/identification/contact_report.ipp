@@ -11,8 +11,9 @@ VERNIER_IMPL std::vector<std::string> ContactReport::unobserved() const {
   std::vector<std::string> out{
       "the base frame (6 directions): contacts are relative to the arm; base_x .. base_rz stay nominal"};
   if (!scale_observable)
-    out.push_back("the scale of the arm (1 direction): no contact has a known length; the lengths of its links, taken "
-                  "together, stay nominal");
+    out.push_back(
+        "the scale of the arm (1 direction): no contact has a known length; the lengths of its links, taken "
+        "together, stay nominal");
   std::string rotations;
   for (const auto& p : parameters)
     if (p.state == ParameterState::not_identifiable && !p.name.starts_with("base_")) {

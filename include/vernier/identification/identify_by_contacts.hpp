@@ -27,10 +27,9 @@ namespace vernier {
 /// @complexity     O(n u^2) an iteration for n touches and u unknowns
 /// @cite           Meggiolaro, Scriffignano and Dubowsky 2000; Ikits and Hollerbach 1997; MacKay 1992
 template <NominalArm Arm>
-IdentifiedByContacts<ChainOf<Arm>> identify_by_contacts(
-    const Arm& nominal, std::span<const Contact> contacts,
-    const IdentifyOptions& options = {.frames = Frames::tool},
-    const SensorModel& sensors = {.loss = Loss::squared}) {
+IdentifiedByContacts<ChainOf<Arm>> identify_by_contacts(const Arm& nominal, std::span<const Contact> contacts,
+                                                        const IdentifyOptions& options = {.frames = Frames::tool},
+                                                        const SensorModel& sensors = {.loss = Loss::squared}) {
   const Framed<ChainOf<Arm>> arm = in_frames(nominal);
   const detail::GeometryByContacts found =
       detail::identify_geometry_by_contacts(ArmGeometry(arm), contacts, options, sensors);

@@ -216,8 +216,8 @@ class ContactIdentification {
       if (unknowns[k].precision > 0) chain.push_back(static_cast<Index>(k));
     if (chain.empty()) return;
     const NormalEquations normal = problem_.normal_equations();
-    problem_.arm.set_precisions(scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(),
-                                             problem_.measured_values(), chain));
+    problem_.arm.set_precisions(
+        scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(), problem_.measured_values(), chain));
   }
 
   /// Of the residuals, per measured value, of one contact or of all [m].
@@ -248,8 +248,7 @@ class ContactIdentification {
       count += contact.size();
     }
     const PointRows points = arm.positions(joints);
-    const Station ideal{
-        .joint_values = joints.data(), .samples = count, .dof = arm.joints(), .positions = &points};
+    const Station ideal{.joint_values = joints.data(), .samples = count, .dof = arm.joints(), .positions = &points};
     std::vector<GeometricUnknown> unknowns;
     for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, plan_.scales(k), 0});
     for (const GeometricUnknown& unknown : unknowns_of_arm()) unknowns.push_back(unknown);
@@ -337,7 +336,8 @@ class ContactIdentification {
     std::vector<Index> of_arm;
     for (std::size_t k = 0; k < estimated.size(); ++k)
       if (estimated[k].station < 0) of_arm.push_back(static_cast<Index>(k));
-    if (unit.inverse.size() > 0) report.covariance.resize(static_cast<Index>(of_arm.size()), static_cast<Index>(of_arm.size()));
+    if (unit.inverse.size() > 0)
+      report.covariance.resize(static_cast<Index>(of_arm.size()), static_cast<Index>(of_arm.size()));
     for (std::size_t i = 0; i < of_arm.size(); ++i) {
       const GeometricUnknown& u = estimated[static_cast<std::size_t>(of_arm[i])];
       ParameterEstimate& p = report.parameters[static_cast<std::size_t>(u.parameter)];
@@ -383,8 +383,8 @@ class ContactIdentification {
         local = arm.positions(contact(c).joints()).colwise().mean().transpose();
         local.z() = 0;
       }
-      TouchedObject object{contact(c).name(), contact(c).kind(),  contact(c).size(),
-                           out_of * local,    Vector3::Zero(), residual_rms(problem_, c)};
+      TouchedObject object{contact(c).name(), contact(c).kind(), contact(c).size(),
+                           out_of * local,    Vector3::Zero(),   residual_rms(problem_, c)};
       if (contact_unknowns(contact(c)) != std::vector<Index>{0, 1, 2})
         object.direction = problem_.station_of(first_block(c)).height_sign * out_of.linear().col(2);
       report.objects.push_back(std::move(object));

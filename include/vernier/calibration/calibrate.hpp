@@ -48,13 +48,14 @@ inline std::string name_of(const std::vector<std::string>& names, std::size_t k,
 /// @param options   of all steps
 /// @param fit       seed and observer of what is learned, executor of that and of the error model
 /// @param search    of priors, see `fit_error_model`
-/// @throws std::invalid_argument on an unusable option or no measurements
+/// @param contacts  what the tool point of the poses touched; enters the error model, beside poses only
+/// @throws std::invalid_argument on an unusable option or no measurements, or contacts without poses
 /// @throws CalibrationFailure for data that do not fit the arm or do not support a calibration, with the reason, unless
 ///         `refuse_implausible` is off
 template <NominalArm Arm, RangeOf<Dataset<Arm::dof>> Stations, RangeOf<Distances<Arm::dof>> Wires>
 Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, const Wires& distances,
                                     const CalibrateOptions& options = {}, const FitOptions& fit = {},
-                                    PriorSearch search = {}) {
+                                    PriorSearch search = {}, std::span<const Contact> contacts = {}) {
   using Chain = ChainOf<Arm>;
   constexpr int N = Chain::dof;
   const Framed<Chain> nominal = in_frames(arm);
@@ -84,6 +85,10 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
                                         detail::station_of(wires[d], options.sensors),
                                         detail::name_of(options.distance_names, d, "distances"));
 
+  if (!frames.empty() && options.refuse_implausible && !options.errors.tool_per_station)
+    for (const Contact& contact : contacts)
+      detail::require_plausible_contact(ArmGeometry(frames.front().identified()), contact);
+
   const auto began = std::chrono::steady_clock::now();
   const auto identified = [&](const IdentifyOptions& of_geometry) {
     return poses.empty() ? identify(nominal, wires.front(), of_geometry, options.sensors)
@@ -96,7 +101,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
   if (options.refuse_implausible) detail::require_usable(geometry, "identifying the geometry");
   ErrorModelOptions of_errors = options.errors;
   of_errors.executor = fit.executor;
-  FittedErrorModel<Chain> errors = fit_error_model(geometry, poses, wires, of_errors, options.sensors, search);
+  FittedErrorModel<Chain> errors =
+      fit_error_model(geometry, poses, wires, of_errors, options.sensors, search, contacts);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
 
   Calibration<Chain> out{std::move(frames), std::move(geometry), std::move(errors)};
@@ -113,7 +119,9 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
     residuals.insert(residuals.end(), e.begin(), e.end());
   }
   for (const auto& data : wires) out.distances += data.size();
-  JointRows<N> measured(out.poses + out.distances, N);
+  Index touches = 0;
+  for (const Contact& contact : contacts) touches += contact.size();
+  JointRows<N> measured(out.poses + out.distances + touches, N);
   Index at = 0;
   const auto append = [&](const auto& data) {
     measured.middleRows(at, data.size()) = data.joints();
@@ -121,6 +129,7 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
   };
   for (const auto& data : poses) append(data);
   for (const auto& data : wires) append(data);
+  for (const Contact& contact : contacts) append(contact);
   out.coverage = JointCoverage<N>::covering(measured);
   for (int i = 0; i < N; ++i)
     out.coverage.periodic[static_cast<std::size_t>(i)] = nominal.model().row(i).joint == JointType::revolute;

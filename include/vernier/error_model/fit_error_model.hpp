@@ -27,6 +27,7 @@ struct ErrorModelInput {
   ChainTable nominal;      ///< for the torques of gravity
   std::vector<Station> poses;
   std::vector<Station> distances;
+  std::span<const Contact> contacts{};
 };
 
 /// A fitted error model without its type; a vector has one arm a station.
@@ -54,17 +55,19 @@ VERNIER_API ErrorModelOutput fit_error_model(const ErrorModelInput& input, const
 /// @param sensors   accuracy of the measurements, and the loss
 /// @param search    optimises the priors of the joint errors, e.g. a metaheuristic; by default their sizes follow from
 ///                  evidence
-/// @throws std::invalid_argument on an unusable option or no measurements
+/// @param contacts  what the tool point of the poses touched, objects whose places need not be known; beside poses only
+/// @throws std::invalid_argument on an unusable option or no measurements, or contacts without poses
 /// @complexity O(n u^2 / 6) an iteration for n poses and u unknowns, memory O(u^2)
 template <int N, class Convention, RangeOf<Dataset<N>> Stations, RangeOf<Distances<N>> Wires>
 FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
                                                          const Stations& stations, const Wires& distances,
                                                          const ErrorModelOptions& options = {},
-                                                         const SensorModel& sensors = {}, PriorSearch search = {}) {
+                                                         const SensorModel& sensors = {}, PriorSearch search = {},
+                                                         std::span<const Contact> contacts = {}) {
   using Chain = DhChain<N, Convention>;
   const Chain& nominal = start.model.nominal().model();
   detail::ErrorModelInput input{
-      start, ArmGeometry(start.model.identified()), detail::ChainTable(nominal.view()), {}, {}};
+      start, ArmGeometry(start.model.identified()), detail::ChainTable(nominal.view()), {}, {}, contacts};
   for (const Dataset<N>& data : stations) input.poses.push_back(detail::station_of(data, sensors));
   for (const Distances<N>& data : distances) input.distances.push_back(detail::station_of(data, sensors));
   detail::ErrorModelOutput found = detail::fit_error_model(input, options, sensors, search);

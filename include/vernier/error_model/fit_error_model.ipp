@@ -15,6 +15,7 @@
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
 #include "vernier/least_squares/evidence.hpp"
@@ -22,11 +23,12 @@
 
 namespace vernier::detail {
 
-/// The identified arm in every station's own base; that of distances has its origin at their fixed point.
+/// The identified arm in every station's own base; that of distances has its origin at their fixed point, that of a
+/// contact is the frame of its object.
 VERNIER_API std::vector<ArmGeometry> starting_arms(const ErrorModelInput& input) {
   for (const Station& data : input.poses) require(data.size() >= 1, "fit_error_model: a station without poses");
   for (const Station& data : input.distances) require(data.size() >= 1, "fit_error_model: a station without distances");
-  if (input.poses.size() + input.distances.size() == 1) return {input.identified};
+  if (input.poses.size() + input.distances.size() + input.contacts.size() == 1) return {input.identified};
   const ArmGeometry unregistered = input.identified.with_frames({}, input.identified.tool());
   std::vector<ArmGeometry> out;
   for (const Station& data : input.poses)
@@ -38,13 +40,19 @@ VERNIER_API std::vector<ArmGeometry> starting_arms(const ErrorModelInput& input)
     base.translation() = -trilaterate(unregistered.positions(data.joints()), *data.lengths);
     out.push_back(input.identified.with_frames(FrameParameters(base), input.identified.tool()));
   }
+  for (const Contact& contact : input.contacts) {
+    Station station = station_of(contact, {});
+    out.push_back(contact_arm(input.identified, contact, station));
+    require_spread(out.back(), contact);
+  }
   return out;
 }
 
 /// What is estimated: what the identification estimated, frames once a station.
 VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInput& input,
                                                              const ErrorModelOptions& options) {
-  const std::size_t of_poses = input.poses.size(), stations = of_poses + input.distances.size();
+  const std::size_t of_poses = input.poses.size(), of_objects = of_poses + input.distances.size(),
+                    stations = of_objects + input.contacts.size();
   const Index chain_end = 6 + 5 * input.identified.joints();
   std::vector<GeometricUnknown> out;
   for (const Index k : input.identification.free) {
@@ -62,15 +70,23 @@ VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInp
     for (std::size_t s = 0; s < last; ++s) out.push_back({k, static_cast<int>(s), p.scale, precision});
   }
   // a fixed point has a position, but no orientation
-  for (std::size_t s = of_poses; s < stations && stations > 1; ++s)
-    for (Index k = 0; k < 3; ++k)
-      out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
+  const auto add = [&](std::size_t s, Index k) {
+    out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
+  };
+  for (std::size_t s = of_poses; s < of_objects && stations > 1; ++s)
+    for (Index k = 0; k < 3; ++k) add(s, k);
+  for (std::size_t s = of_objects; s < stations; ++s)
+    for (const Index k : contact_unknowns(input.contacts[s - of_objects])) add(s, k);
   return out;
 }
 
-VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input) {
+VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input, const SensorModel& sensors) {
   std::vector<Station> out = input.poses;
   out.insert(out.end(), input.distances.begin(), input.distances.end());
+  for (const Contact& contact : input.contacts) {
+    out.push_back(station_of(contact, sensors));
+    static_cast<void>(contact_arm(input.identified, contact, out.back()));  // which way its heights count
+  }
   return out;
 }
 
@@ -81,8 +97,8 @@ class ErrorModelFit {
       : input_(input),
         options_(options),
         spectra_(spectra_of(options, input.nominal.joints())),
-        problem_(ArmParameterisation(starting_arms(input), geometric_unknowns(input, options)), joined_stations(input),
-                 sensors.loss),
+        problem_(ArmParameterisation(starting_arms(input), geometric_unknowns(input, options)),
+                 joined_stations(input, sensors), sensors.loss),
         stride_(std::max<Index>(1, problem_.num_validation_blocks() / options.num_validation_poses)) {
     problem_.executor = options.executor;
   }
@@ -689,6 +705,10 @@ VERNIER_IMPL ErrorModelOutput fit_error_model(const ErrorModelInput& input, cons
   options.validate();
   sensors.validate();
   require(input.poses.size() + input.distances.size() > 0, "fit_error_model: no stations");
+  require(input.contacts.empty() || !input.poses.empty(), "fit_error_model: contacts without poses");
+  for (const Contact& contact : input.contacts)
+    require(contact.joints().cols() == input.identified.joints(), "contact ", contact.name(), ": ",
+            contact.joints().cols(), " joints, the arm has ", input.identified.joints());
   return ErrorModelFit(input, options, sensors).run(search);
 }
 

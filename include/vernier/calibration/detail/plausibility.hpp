@@ -25,6 +25,9 @@ VERNIER_API void require_plausible(const ArmGeometry& nominal, const Station& po
 VERNIER_API void require_plausible_distances(const ArmGeometry& registered, const Station& distances,
                                              const std::string& data);
 
+/// The same for what its tool point touches.
+VERNIER_API void require_plausible_contact(const ArmGeometry& registered, const Contact& contact);
+
 /// Requires an identification that may be used.
 /// @param step names it: "identifying the geometry"
 /// @throws CalibrationFailure with advice

@@ -5,6 +5,7 @@
 
 #include "vernier/calibration/detail/plausibility.hpp"
 #include "vernier/calibration/detail/wording.hpp"
+#include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/frames.hpp"
 
 namespace vernier::detail {
@@ -51,6 +52,23 @@ VERNIER_IMPL void require_plausible_distances(const ArmGeometry& registered, con
   if (!(rms <= 0.05))
     throw CalibrationFailure(data + ": no fixed point is consistent with these distances, the best one is off by " +
                              brief(rms * 1e3) + " mm (rms): wrong units, columns or rows?");
+}
+
+VERNIER_IMPL void require_plausible_contact(const ArmGeometry& registered, const Contact& contact) {
+  Station station = station_of(contact, {});
+  const PointRows points = contact_arm(registered, contact, station).positions(contact.joints());
+  double sum = 0;
+  for (Index i = 0; i < points.rows(); ++i) {
+    const Vector3 point = points.row(i).transpose();
+    const double off = station.lengths != nullptr ? point.norm() - (*station.lengths)(i)
+                       : station.projected()      ? point.z() - station.height(i)
+                                                  : (point - station.position(i)).norm();
+    sum += off * off;
+  }
+  const double rms = std::sqrt(sum / static_cast<double>(points.rows()));
+  if (!(rms <= 0.02))
+    throw CalibrationFailure("contact " + contact.name() + ": the tool point of the poses misses it by " +
+                             brief(rms * 1e3) + " mm (rms): another tool point, wrong units, columns or rows?");
 }
 
 VERNIER_IMPL void require_usable(const IdentificationReport& report, const std::string& step) {

@@ -1,0 +1,215 @@
+// Identification from touches: what is recovered, what cannot be observed, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "complaint.hpp"
+#include "touched_objects.hpp"
+#include "vernier/identification/frames.hpp"
+#include "vernier/identification/identify_by_contacts.hpp"
+
+namespace vernier::contact_identification_test {
+namespace {
+
+using vernier_test::actual_arm;
+using vernier_test::complaint;
+using vernier_test::lengths;
+using vernier_test::nominal_arm;
+using vernier_test::three_planes;
+using vernier_test::touched;
+
+const IdentifyOptions exact{.frames = Frames::tool, .priors = false};
+
+/// Positions of an arm at fresh joint values.
+template <class Arm>
+PointRows at_fresh_joints(const Arm& arm) {
+  const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 50, 77);
+  PointRows out(joints.rows(), 3);
+  for (Index i = 0; i < joints.rows(); ++i) out.row(i) = arm.position(joints.row(i).transpose()).transpose();
+  return out;
+}
+
+/// Largest error at fresh joints, the base registered, points scaled by a factor first.
+template <class Arm>
+double registered_error(const Arm& arm, double factor = 1) {
+  const PointRows actual = at_fresh_joints(actual_arm()), points = factor * at_fresh_joints(arm);
+  const Isometry3 base = register_points(points, actual);
+  double out = 0;
+  for (Index i = 0; i < points.rows(); ++i)
+    out = std::max(out, (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm());
+  return out;
+}
+
+double spread(const PointRows& points) {
+  return (points.rowwise() - points.colwise().mean()).norm();
+}
+
+TEST(Contacts, AKnownLengthRecoversTheArmExactly) {
+  const auto contacts = three_planes(true);
+  const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+  EXPECT_TRUE(found.converged()) << found.summary();
+  EXPECT_TRUE(found.scale_observable);
+  EXPECT_EQ(found.missing, 0);
+  EXPECT_GT(registered_error(nominal_arm()), 1e-3);
+  EXPECT_LT(registered_error(found.model), 1e-8);
+  EXPECT_LT(found.rms_after, 1e-10);
+}
+
+TEST(Contacts, WithoutALengthTheScaleStaysNominal) {
+  const auto contacts = three_planes(false);
+  const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+  EXPECT_TRUE(found.converged()) << found.summary();
+  EXPECT_FALSE(found.scale_observable);
+  EXPECT_GT(registered_error(found.model), 1e-4);
+  const double factor = spread(at_fresh_joints(actual_arm())) / spread(at_fresh_joints(found.model));
+  EXPECT_GT(std::abs(factor - 1), 1e-4);
+  EXPECT_LT(registered_error(found.model, factor), 1e-8);
+  double change = 0;  // of the lengths of the links along themselves
+  for (const ParameterEstimate& p : found.parameters)
+    if (p.kind == ParameterKind::length && p.name[0] != 'b' && p.name[0] != 't' &&
+        p.state != ParameterState::not_identifiable)
+      change += p.nominal * (p.identified - p.nominal);
+  EXPECT_NEAR(change, 0, 1e-8);
+}
+
+TEST(Contacts, UnobservableDirectionsAreThoseOfTheory) {
+  // Positions determine 4 R + 6 - 3 = 27 parameters of an arm of six revolute joints, six of them the base's; the
+  // orientation of the tool has no effect. Of 6 base, 6 tool and 24 chain parameters 27 - 6 = 21 are left, less the
+  // scale.
+  for (const bool with_length : {true, false}) {
+    const auto contacts = three_planes(with_length);
+    const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+    EXPECT_EQ(found.singular_values.size(), 6 + 9 + 6 + 24);
+    EXPECT_EQ(found.unobservable, 6 + 3 + (24 + 3 - 21) + (with_length ? 0 : 1));
+    // a gap of orders of magnitude tells them from weak ones
+    const Index seen = found.singular_values.size() - found.unobservable;
+    EXPECT_GT(found.singular_values(seen - 1), 1e-6 * found.singular_values(0));
+    EXPECT_LT(found.singular_values(seen), 1e-10 * found.singular_values(0));
+    const auto unobserved = found.unobserved();
+    EXPECT_NE(unobserved.front().find("base frame (6 directions)"), std::string::npos);
+    EXPECT_EQ(unobserved[1].find("the scale of the arm") == 0, !with_length);
+    EXPECT_EQ(found.parameters[0].state, ParameterState::not_identifiable);
+    EXPECT_EQ(found.model.identified().base().matrix(), nominal_arm().base().matrix());
+  }
+}
+
+TEST(Contacts, BallsAndABarOfSocketsRecoverTheArm) {
+  const VectorX radii = VectorX::Constant(15, 0.03);
+  std::vector<Contact> contacts{
+      touched({ContactKind::ball, {0.4, 0.1, 0.3}, Vector3::UnitZ()}, "ball", radii, 0, 4),
+      touched({ContactKind::ball, {0.3, -0.2, 0.4}, Vector3::UnitZ()}, "second ball", radii, 0, 5),
+      touched({ContactKind::socket, {0.35, -0.1, 0.35}, Vector3(0.6, 0.8, 0)}, "bar", lengths(16, 8, 0.15), 0, 6)};
+  const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+  EXPECT_TRUE(found.converged()) << found.summary();
+  EXPECT_TRUE(found.scale_observable);
+  EXPECT_LT(registered_error(found.model), 1e-7);
+  // the objects are where they were, up to the base
+  const double distance = (found.objects[0].point - found.objects[1].point).norm();
+  EXPECT_NEAR(distance, Vector3(0.1, 0.3, -0.1).norm(), 1e-7);
+  EXPECT_NEAR(found.objects[2].direction.norm(), 1, 1e-12);
+}
+
+TEST(Contacts, SocketsWithoutALengthDoNotDetermineTheScale) {
+  const std::vector contacts{
+      touched({ContactKind::socket, {0.35, -0.1, 0.35}, Vector3::UnitZ()}, "one", lengths(12), 0, 7),
+      touched({ContactKind::socket, {0.3, 0.2, 0.4}, Vector3::UnitZ()}, "two", lengths(12), 0, 8)};
+  const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+  EXPECT_FALSE(found.scale_observable);
+  EXPECT_EQ(found.missing, 0) << found.summary();
+}
+
+TEST(Contacts, AToolThatIsOffByADecimetreIsFound) {
+  const auto contacts = three_planes(true);
+  const vernier_test::IrbArm start(nominal_arm().model(), {}, FrameParameters(Vector6{0.0, 0.03, 0.02, 0, 0, 0}));
+  const auto found = identify_by_contacts(start, contacts, exact);
+  EXPECT_LT(registered_error(found.model), 1e-8) << found.summary();
+}
+
+TEST(Contacts, StandardDeviationsAreThoseOfTheErrors) {
+  // normalised errors of the scale-free products, over several drawings of noise
+  double sum = 0, count = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const std::vector contacts{touched(vernier_test::table, "table", lengths(40, 20, 0.1), 0.03e-3, 3 * seed + 10),
+                               touched(vernier_test::front, "front", lengths(40), 0.03e-3, 3 * seed + 11),
+                               touched(vernier_test::side, "side", lengths(40), 0.03e-3, 3 * seed + 12)};
+    const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+    for (const char* name : {"a2", "a3", "theta3", "alpha2"})
+      for (const ParameterEstimate& p : found.parameters)
+        if (p.name == name) {
+          const auto actual = ArmGeometry(actual_arm()).parameters();
+          const Index k = &p - found.parameters.data();
+          sum += std::pow((p.identified - actual(k)) / p.std, 2);
+          ++count;
+        }
+  }
+  EXPECT_EQ(count, 48);
+  EXPECT_GT(sum / count, 0.5);
+  EXPECT_LT(sum / count, 1.8);
+}
+
+TEST(Contacts, PriorsKeepFewTouchesNearNominal) {
+  const auto contacts = three_planes(true, 8, 0.03e-3);
+  const auto found = identify_by_contacts(nominal_arm(), contacts);
+  EXPECT_EQ(found.status, IdentifyStatus::underdetermined);
+  EXPECT_LT(registered_error(found.model), 4e-3);
+  EXPECT_FALSE(found.names(ParameterState::weak).empty());
+}
+
+TEST(Contacts, OneHorizontalPlaneLacksDirections) {
+  const std::vector contacts{touched(vernier_test::table, "table", lengths(60, 30, 0.1))};
+  const auto found = identify_by_contacts(nominal_arm(), contacts);
+  EXPECT_EQ(found.status, IdentifyStatus::underdetermined);
+  EXPECT_GT(found.missing, 0);
+  EXPECT_NE(found.message.find("measured positions at the same joints would determine"), std::string::npos);
+}
+
+TEST(Contacts, RobustLossToleratesATouchThatSlipped) {
+  auto contacts = three_planes(true, 24, 0.02e-3);
+  MatrixX joints = contacts[1].joints();
+  joints(3, 1) += 0.01;  // 4 mm
+  contacts[1] = Contact("front", ContactKind::plane, joints);
+  const auto squared = identify_by_contacts(nominal_arm(), contacts);
+  const auto robust = identify_by_contacts(nominal_arm(), contacts, {.frames = Frames::tool}, {.loss = Loss::huber});
+  EXPECT_LT(registered_error(robust.model), 0.6 * registered_error(squared.model));
+}
+
+TEST(Contacts, RefusesWhatDeterminesNothing) {
+  const MatrixX joints = three_planes(true)[0].joints();
+  EXPECT_EQ(complaint([&] { Contact("table", ContactKind::plane, joints.topRows(3)); }),
+            "contact table: 3 touches of a plane, at least 4 are needed: fewer say where it is, and nothing about the "
+            "arm");
+  EXPECT_EQ(complaint([&] { Contact("s", ContactKind::socket, joints.topRows(1)); }),
+            "contact s: 1 touch of a socket, at least 2 are needed: fewer say where it is, and nothing about the arm");
+  EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, joints); }), "contact b: a ball without its radius");
+  EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, joints, VectorX::Zero(20)); }),
+            "contact b: touch 0 has a radius of 0 m, must be positive");
+  EXPECT_EQ(complaint([&] { Contact("p", ContactKind::plane, joints, VectorX::Zero(3)); }),
+            "contact p: 20 touches, but 3 known lengths");
+  MatrixX damaged = joints;
+  damaged(2, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(complaint([&] { Contact("p", ContactKind::plane, damaged); }),
+            "contact p: touch 2 has a value that is not finite");
+  EXPECT_EQ(complaint([&] { identify_by_contacts(nominal_arm(), std::span<const Contact>()); }),
+            "identify_by_contacts: no contacts");
+  const std::vector five{Contact("p", ContactKind::plane, joints.leftCols(5))};
+  EXPECT_EQ(complaint([&] { identify_by_contacts(nominal_arm(), five); }), "contact p: 5 joints, the arm has 6");
+}
+
+TEST(Contacts, RefusesAPlaneTouchedAlongALine) {
+  // points of a line on the table, 40 mm apart
+  MatrixX joints(10, 6);
+  for (Index i = 0; i < 10; ++i) {
+    const Vector3 point(0.3, 0.04 * static_cast<double>(i) - 0.2, 0.25);
+    const Contact one = touched({ContactKind::socket, point, Vector3::UnitZ()}, "point", lengths(2), 0, 20);
+    joints.row(i) = one.joints().row(0);
+  }
+  auto contacts = three_planes(true);
+  contacts[0] = Contact("table", ContactKind::plane, joints);
+  const std::string text = complaint([&] { identify_by_contacts(nominal_arm(), contacts); });
+  EXPECT_NE(text.find("contact table: all touches of the plane are along a line ("), std::string::npos) << text;
+  EXPECT_NE(text.find("which does not determine its normal"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace vernier::contact_identification_test

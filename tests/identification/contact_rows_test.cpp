@@ -1,0 +1,105 @@
+// Rows of touches: their residuals, and derivatives against finite differences.
+
+#include <gtest/gtest.h>
+
+#include "touched_objects.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/identification/detail/contact_frames.hpp"
+
+namespace vernier::contact_rows_test {
+namespace {
+
+using detail::CalibrationProblem;
+using detail::Station;
+using vernier_test::lengths;
+using vernier_test::touched;
+
+std::vector<Contact> every_kind() {
+  VectorX faces = lengths(8, 4, 0.1), bar = lengths(6, 3, 0.15), radii = VectorX::Constant(7, 0.02);
+  return {touched({ContactKind::plane, {0.35, 0, 0.3}, Vector3(0.6, 0, -0.8), 0.3}, "tilted plane", faces),
+          touched({ContactKind::plane, {0.35, 0, 0.3}, Vector3(0, 0.6, 0.8), 0.3}, "other plane", faces),
+          touched({ContactKind::ball, {0.4, 0.1, 0.3}, Vector3::UnitZ()}, "ball", radii),
+          touched({ContactKind::socket, {0.35, -0.1, 0.4}, Vector3::UnitZ()}, "socket", lengths(5)),
+          touched({ContactKind::socket, {0.3, 0.1, 0.4}, Vector3(0.6, 0, -0.8)}, "bar", bar)};
+}
+
+/// The arm in the frame of every object.
+CalibrationProblem problem_of(const std::vector<Contact>& contacts, const vernier_test::IrbArm& arm) {
+  std::vector<Station> stations;
+  std::vector<ArmGeometry> arms;
+  std::vector<GeometricUnknown> unknowns;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    stations.push_back(detail::station_of(contacts[c], {.contact_sigma = 0.05e-3}));
+    arms.push_back(detail::contact_arm(ArmGeometry(arm), contacts[c], stations.back()));
+    for (const Index k : detail::contact_unknowns(contacts[c])) unknowns.push_back({k, static_cast<int>(c), 10e-3, 0});
+  }
+  for (Index k = 6; k < 6 + 30 + 3; ++k) unknowns.push_back({k, -1, 1e-3, 0});
+  return {ArmParameterisation(std::move(arms), std::move(unknowns)), std::move(stations), Loss::squared};
+}
+
+TEST(ContactRows, NumberOfUnknownsAndValues) {
+  const auto contacts = every_kind();
+  const CalibrationProblem problem = problem_of(contacts, vernier_test::actual_arm());
+  EXPECT_EQ(problem.arm.size(), 3 + 3 + 3 + 3 + 5 + 33);
+  EXPECT_EQ(problem.measured_values(), 8 + 8 + 7 + 3 * 5 + 3 * 6);
+}
+
+TEST(ContactRows, TouchesOfTheRightArmLieOnTheirObjects) {
+  const auto contacts = every_kind();
+  const CalibrationProblem problem = problem_of(contacts, vernier_test::actual_arm());
+  const detail::StackedRows rows = problem.stacked(false);
+  for (Index i = 0; i < rows.residuals.size(); ++i) {
+    // the closed form of a ball's centre is exact, too
+    EXPECT_NEAR(rows.residuals(i) * 0.05e-3, 0, 1e-9) << contacts[static_cast<std::size_t>(problem.station_index(
+                                                             rows.block[static_cast<std::size_t>(i)]))].name();
+  }
+}
+
+TEST(ContactRows, JacobianIsTheDerivativeOfTheResiduals) {
+  const auto contacts = every_kind();
+  CalibrationProblem problem = problem_of(contacts, vernier_test::nominal_arm());
+  const MatrixX jacobian = problem.stacked(true).jacobian;
+  const ArmParameterisation at = problem.arm;
+  double largest = 0;
+  for (Index k = 0; k < at.size(); ++k) {
+    const double h = 1e-3;
+    problem.arm = at;
+    problem.arm.move(h * VectorX::Unit(at.size(), k));
+    const VectorX above = problem.stacked(false).residuals;
+    problem.arm = at;
+    problem.arm.move(-h * VectorX::Unit(at.size(), k));
+    const VectorX below = problem.stacked(false).residuals;
+    const VectorX difference = (above - below) / (2 * h);
+    EXPECT_LT((difference - jacobian.col(k)).norm(), 1e-6 * (1 + jacobian.norm())) << at.names()[static_cast<std::size_t>(k)];
+    largest = std::max(largest, jacobian.col(k).norm());
+  }
+  EXPECT_GT(largest, 1);
+}
+
+TEST(ContactRows, FramesTurnByARightAngleAtMost) {
+  const auto contacts = every_kind();
+  for (const Contact& contact : contacts) {
+    Station station = detail::station_of(contact, {});
+    const ArmGeometry arm = detail::contact_arm(ArmGeometry(vernier_test::nominal_arm()), contact, station);
+    EXPECT_LT(arm.base().values().tail<3>().norm(), 1.6) << contact.name();
+  }
+}
+
+TEST(ContactRows, TouchingJointsAreOnTheObjectAndNear) {
+  const auto contacts = every_kind();
+  const CalibrationProblem problem = problem_of(contacts, vernier_test::nominal_arm());
+  Index block = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    Station station = problem.station_of(block);
+    block += station.size();
+    const MatrixX joints = detail::touching_joints(problem.arm.geometry(static_cast<int>(c)), station);
+    EXPECT_LT((joints - contacts[c].joints()).cwiseAbs().maxCoeff(), 0.1) << contacts[c].name();
+    station.joint_values = joints.data();
+    const CalibrationProblem touching(
+        ArmParameterisation({problem.arm.geometry(static_cast<int>(c))}, {}), {station}, Loss::squared);
+    EXPECT_LT(touching.stacked(false).residuals.norm() * 0.05e-3, 1e-12) << contacts[c].name();
+  }
+}
+
+}  // namespace
+}  // namespace vernier::contact_rows_test

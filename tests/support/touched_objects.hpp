@@ -1,0 +1,52 @@
+#pragma once
+
+// Objects around a virtual IRB 120 that it can touch.
+
+#include <cstdint>
+#include <vector>
+
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/touches.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
+
+namespace vernier_test {
+
+using IrbArm = vernier::Framed<vernier::DhChain<6>>;
+
+/// As designed; the tip of its probe is only known to some millimetres.
+inline IrbArm nominal_arm() {
+  return IrbArm(vernier::robots::abb_irb120().chain, {},
+                vernier::FrameParameters(vernier::Vector6{0.04, -0.02, 0.1, 0, 0, 0}));
+}
+
+/// As made.
+inline IrbArm actual_arm(std::uint64_t seed = 5) {
+  return IrbArm(vernier::with_geometric_errors(vernier::robots::abb_irb120().chain, {}, seed), {},
+                vernier::FrameParameters(vernier::Vector6{0.043, -0.021, 0.104, 0, 0, 0}));
+}
+
+/// Touches of an object by it.
+inline vernier::Contact touched(const vernier::VirtualObject& object, const char* name, const vernier::VectorX& known,
+                                double sigma = 0, std::uint64_t seed = 1) {
+  return vernier::touch(actual_arm(), object, name, known, vernier::abb_irb120_operating_region().limits, sigma, seed);
+}
+
+/// n zeros, the last m of them another value.
+inline vernier::VectorX lengths(vernier::Index n, vernier::Index m = 0, double value = 0) {
+  vernier::VectorX out = vernier::VectorX::Zero(n);
+  out.tail(m).setConstant(value);
+  return out;
+}
+
+inline const vernier::VirtualObject table{vernier::ContactKind::plane, {0.35, 0, 0.25}, {0, 0, 1}, 0.3};
+inline const vernier::VirtualObject front{vernier::ContactKind::plane, {0.45, 0, 0.4}, {1, 0, 0}, 0.3};
+inline const vernier::VirtualObject side{vernier::ContactKind::plane, {0.3, 0.3, 0.4}, {0, 1, 0}, 0.3};
+
+/// Touches of three planes; with a gauge block on the first, or without.
+inline std::vector<vernier::Contact> three_planes(bool with_length, vernier::Index each = 20, double sigma = 0) {
+  return {touched(table, "table", lengths(each, with_length ? each / 2 : 0, 0.1), sigma, 1),
+          touched(front, "front", lengths(each), sigma, 2), touched(side, "side", lengths(each), sigma, 3)};
+}
+
+}  // namespace vernier_test

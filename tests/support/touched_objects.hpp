@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/touches.hpp"

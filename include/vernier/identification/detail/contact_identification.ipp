@@ -33,6 +33,7 @@ class ContactIdentification {
 
   VERNIER_API GeometryByContacts run() {
     register_objects();
+    require(std::isfinite(residual_rms()), "identify_by_contacts: no places of the objects fit the touches");
     for (int c = 0; c < static_cast<int>(contacts_.size()); ++c)
       require_spread(problem_.arm.geometry(c), contacts_[static_cast<std::size_t>(c)]);
     GeometryByContacts out{nominal_, {}};
@@ -73,6 +74,7 @@ class ContactIdentification {
     std::vector<std::pair<GeometricUnknown, std::vector<GeometricUnknown>>> dependent;
   };
 
+  static constexpr double tool_precision = 1e-2;  // 0.1 m, so that it stays finite where little was touched
   Index chain_end() const { return plan_.chain_end; }
   const Contact& contact(int station) const { return contacts_[static_cast<std::size_t>(station)]; }
 
@@ -96,7 +98,10 @@ class ContactIdentification {
   VERNIER_API void register_objects() {
     std::vector<GeometricUnknown> unknowns = unknowns_of_objects();
     for (const GeometricUnknown& unknown : unknowns_of_arm())
-      if (unknown.parameter >= chain_end()) unknowns.push_back(unknown);
+      if (unknown.parameter >= chain_end()) {
+        unknowns.push_back(unknown);
+        unknowns.back().precision = tool_precision;
+      }
     problem_.arm.set_geometric(unknowns);
     solve();
     if (!options_.tool_free() || residual_rms() < 5e-3) return;
@@ -129,13 +134,18 @@ class ContactIdentification {
   }
 
   VERNIER_API void solve() {
+    if (problem_.arm.size() == 0) return;
     problem_.reset_weights();
     converged_ = problem_.solve(options_.max_iterations);
   }
 
   /// Names what is estimated; chain parameters have priors of some precision.
   VERNIER_API void estimate(std::vector<GeometricUnknown> unknowns, double precision) {
-    for (GeometricUnknown& u : unknowns) u.precision = plan_.in_chain(u.parameter) && u.station < 0 ? precision : 0;
+    for (GeometricUnknown& u : unknowns) {
+      u.precision = 0;
+      if (plan_.in_chain(u.parameter)) u.precision = precision;
+      if (options_.priors && u.parameter >= chain_end()) u.precision = tool_precision;
+    }
     problem_.arm.set_geometric(std::move(unknowns));
     problem_.prior.reset();
     if (scale_observable_) return;
@@ -193,8 +203,9 @@ class ContactIdentification {
         !(effect <= 1e-7 * std::sqrt(scale.cwiseAbs2().dot(jacobian.colwise().squaredNorm().transpose())));
     if (!scale_observable_) {  // held, so known
       const VectorX held = scale_direction(true);
+      const double size = jacobian.norm() / std::max(held.norm(), 1e-300);
       jacobian.conservativeResize(jacobian.rows() + 1, Eigen::NoChange);
-      jacobian.bottomRows<1>() = jacobian.norm() / std::max(held.norm(), 1e-300) * held.transpose();
+      jacobian.bottomRows<1>() = size * held.transpose();
     }
     const IdentifiableParameters columns(jacobian);
     Selection out;
@@ -213,11 +224,14 @@ class ContactIdentification {
     UnknownGroup chain;
     const auto& unknowns = problem_.arm.geometric();
     for (std::size_t k = 0; k < unknowns.size(); ++k)
-      if (unknowns[k].precision > 0) chain.push_back(static_cast<Index>(k));
+      if (plan_.in_chain(unknowns[k].parameter)) chain.push_back(static_cast<Index>(k));
     if (chain.empty()) return;
     const NormalEquations normal = problem_.normal_equations();
-    problem_.arm.set_precisions(
-        scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(), problem_.measured_values(), chain));
+    VectorX precisions =
+        scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(), problem_.measured_values(), chain);
+    constexpr double widest = 10;  // expected sizes, where there is little evidence
+    for (const Index k : chain) precisions(k) = std::max(precisions(k), 1 / (widest * widest));
+    problem_.arm.set_precisions(precisions);
   }
 
   /// Of the residuals, per measured value, of one contact or of all [m].

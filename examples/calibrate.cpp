@@ -11,6 +11,7 @@
 
 #include "calibration_figures.hpp"
 #include "cli.hpp"
+#include "contact_calibration.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "progress.hpp"
@@ -34,10 +35,10 @@ constexpr vn::Index prior_generations = 15;
 
 struct Options {
   support::RobotOptions robot;
-  std::string model, save, date, split, priors = "default", loss = "huber", free, prior, report;
+  std::string model, save, date, split, priors = "default", loss = "huber", free, prior, report, contacts;
   Paths data, test, distances;
   vn::Index test_every = 5, train_rows = 0;
-  double test_fraction = 0.2, distance_sigma_mm = 0.03, accept_mm = 0;
+  double test_fraction = 0.2, distance_sigma_mm = 0.03, contact_sigma_mm = 0.03, accept_mm = 0;
   bool positions_only = false, no_approach = false;
   vn::CalibrateOptions calibrate{};
 };
@@ -147,7 +148,8 @@ vn::ReportInput page_of(const vn::CalibrationReport& report, const vn::Described
   }
   for (std::size_t d = 0; d < distances.size(); ++d)
     held_out.provenance.inputs.push_back(support::file_read(o.distances[d], distances[d].size()));
-  if (!o.prior.empty()) held_out.provenance.inputs.push_back(support::file_read(o.prior, 0));
+  for (const std::string& file : {o.contacts, o.prior})
+    if (!file.empty()) held_out.provenance.inputs.push_back(support::file_read(file, 0));
   for (const std::string& file : o.robot.files()) held_out.provenance.inputs.push_back(support::file_read(file, 0));
   vn::ReportInput page = vn::report_input(report, robot.name, learned_from);
   held_out.poses.normalised = page.poses.normalised;
@@ -178,6 +180,8 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
   }
   std::vector<vn::Distances<N>> distances;
   for (const std::string& file : o.distances) distances.push_back(vn::read_distances<N>(file, types));
+  std::vector<vn::Contact> contacts;
+  if (!o.contacts.empty()) contacts = vn::read_contacts(o.contacts, N, types);
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
   if (prior) options.errors.prior = &*prior;
@@ -185,7 +189,7 @@ vn::CalibrationReport calibrate_arm(const vn::RobotDescription& description, con
     return search_priors(objective, box, o.priors == "ga", fit);
   };
   const auto calibration = vn::calibrate(robot.arm, train, distances, options, fit,
-                                         o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search));
+                                         o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search), contacts);
   const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
   if (!o.save.empty())
     vn::save(o.save, calibration,
@@ -225,6 +229,8 @@ int run_calibration(support::Program& program, Options& o) {
   if (o.data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", o.data.size(), o.data.size());
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), rule);
   if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
+  if (!o.contacts.empty())
+    fmt::print("contacts to learn from, touched by the tool point of the poses: {}\n", o.contacts);
   fmt::print("\n{}", report.summary());
   support::Json json = vn::to_json(report, robot.name);
   for (const vn::DataAudit& audit : audits) json["audit"].push_back(vn::to_json(audit));
@@ -344,8 +350,18 @@ int run(support::Program& program) {
          "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s, segment (a new "
          "number: the "
          "approach is unknown) or from_q1_rad.. (where each pose was approached from); one file a sensor station",
-         "FILE...")
-      ->required();
+         "FILE...");
+  auto* contacts =
+      option("--contacts", o.contacts,
+             "what the tool point touched, beside the poses or, without --data, in their place: contact_id, "
+             "kind (plane, ball, socket), q1_rad.., radius_mm (of balls), offset_mm (known distance from "
+             "the first face or socket of the same contact)",
+             "FILE");
+  app.add_option("--contact-sigma", o.contact_sigma_mm, "standard deviation of a touch [mm]")
+      ->type_name("MM")
+      ->check(CLI::Range(1e-6, 1e3).description(""))
+      ->always_capture_default(false)
+      ->needs(contacts);
   auto* distances = option("--distances", o.distances,
                            "measured distances from a fixed point (draw-wire, ball-bar), used beside the poses: "
                            "q1_rad.., distance_mm; one file a fixed point",
@@ -411,6 +427,7 @@ int run(support::Program& program) {
              "offsets, joined by commas",
              "WHAT");
   model->excludes(distances)
+      ->excludes(contacts)
       ->excludes(robot)
       ->excludes(every)
       ->excludes(split)
@@ -431,13 +448,22 @@ int run(support::Program& program) {
   vn::SensorModel& sensors = o.calibrate.sensors;
   sensors.loss = losses.at(o.loss);
   sensors.distance_sigma = o.distance_sigma_mm * 1e-3;
+  sensors.contact_sigma = o.contact_sigma_mm * 1e-3;
   sensors.use_orientations = !o.positions_only;
   o.calibrate.errors.hysteresis = !o.no_approach;
+  if (o.data.empty() && (*model || o.contacts.empty()))
+    throw support::UsageError("--data is required (or --contacts, to calibrate without measured poses)");
   if (*model) {
     if (o.data.size() != 1) throw support::UsageError("--model takes one file of --data");
     return run_reregistration(program, o);
   }
   if (!*robot) throw support::UsageError("--robot is required (or --model, to register a fitted arm again)");
+  if (o.data.empty()) {
+    for (const CLI::Option* needs_poses : {distances, test, every, split, fraction, train, report, prior})
+      if (*needs_poses) throw support::UsageError(needs_poses->get_name() + " needs --data");
+    return support::calibrate_by_contacts(program, support::choose_robot(o.robot), o.contacts, o.calibrate.geometry,
+                                          sensors, o.save, o.date);
+  }
   return run_calibration(program, o);
 }
 

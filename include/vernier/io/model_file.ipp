@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, 4> activation_names{"sigmoid", "ta
 inline constexpr std::array<std::string_view, 3> input_map_names{"raw", "sines_and_cosines", "sine_cosine_products"};
 inline constexpr std::array<std::string_view, 2> kernel_names{"squared_exponential", "matern_5_2"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
-inline constexpr std::array<std::string_view, 2> measured_names{"poses", "positions"};
+inline constexpr std::array<std::string_view, 3> measured_names{"poses", "positions", "contacts"};
 inline constexpr std::array<std::string_view, 3> scaling_names{"none", "min_max", "standard"};
 inline constexpr std::array<std::string_view, 6> frame_keys{"x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"};
 

@@ -1,0 +1,90 @@
+// Contacts read from files, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+#include "temporary_folder.hpp"
+#include "vernier/data/csv.hpp"
+
+namespace contacts_test {
+namespace {
+
+using namespace vernier;
+
+class ReadContacts : public testing::Test {
+ protected:
+  std::vector<Contact> read(const std::string& text) {
+    write_file(folder_ / "c.csv", text);
+    return read_contacts(folder_ / "c.csv", 3);
+  }
+  std::string refused(const std::string& text) {
+    try {
+      (void)read(text);
+    } catch (const DataError& e) {
+      const std::string what = e.what();
+      return what.substr(what.find("c.csv"));
+    }
+    return {};
+  }
+  testing_support::TemporaryFolder folder_{"contacts"};
+};
+
+const std::string header = "contact_id,kind,radius_mm,offset_mm,q1_deg,q2_rad,q3_rad\n";
+const std::string plane = "plate,plane,,,90,2,3\nplate,plane,,100,1,2,4\nplate,plane,,0,1,2,5\nplate,plane,,,1,2,6\n";
+
+TEST_F(ReadContacts, ObjectsInTheOrderOfTheirFirstTouches) {
+  const std::vector<Contact> out = read(header + "A,socket,,,1,2,3\n" + plane +
+                                        "b 1,ball,12.5,,0,0,0\nA,socket,,250,1,2,3\nb 1,ball,12.5,0,0,0,1\n"
+                                        "b 1,ball,12.5,,0,0,0\nb 1,ball,12.5,,0,0,0\nA,socket,,0,7,8,9\n");
+  ASSERT_EQ(out.size(), 3u);
+  EXPECT_EQ(out[0].name(), "A");
+  EXPECT_EQ(out[0].kind(), ContactKind::socket);
+  EXPECT_EQ(out[0].known(), Vector3(0, 0.25, 0));
+  EXPECT_TRUE(out[0].has_length());
+  EXPECT_EQ(out[0].joints()(2, 1), 8);
+  EXPECT_EQ(out[1].name(), "plate");
+  EXPECT_EQ(out[1].kind(), ContactKind::plane);
+  EXPECT_EQ(out[1].known(), Eigen::Vector4d(0, 0.1, 0, 0));
+  EXPECT_DOUBLE_EQ(out[1].joints()(0, 0), std::numbers::pi / 2);
+  EXPECT_EQ(out[2].kind(), ContactKind::ball);
+  EXPECT_EQ(out[2].known(), Eigen::Vector4d::Constant(0.0125));
+}
+
+TEST_F(ReadContacts, ColumnsOfLengthsAreOptional) {
+  const auto out = read("kind,contact_id,q1_rad,q2_rad,q3_rad\nsocket,1,0,0,0\nsocket,1,0,0,1\n");
+  ASSERT_EQ(out.size(), 1u);
+  EXPECT_FALSE(out[0].has_length());
+}
+
+TEST_F(ReadContacts, EachKindOfDamageInOneLine) {
+  EXPECT_EQ(refused("kind,q1_rad,q2_rad,q3_rad\nplane,1,2,3\n"), "c.csv: no column contact_id");
+  EXPECT_EQ(refused("contact_id,q1_rad,q2_rad,q3_rad\nplane,1,2,3\n"), "c.csv: no column kind");
+  EXPECT_EQ(refused(header + "p,cube,,,1,2,3\n"), "c.csv, line 2, column kind: 'cube', must be plane, ball or socket");
+  EXPECT_EQ(refused(header + ",plane,,,1,2,3\n"), "c.csv, line 2, column contact_id: no name of what is touched");
+  EXPECT_EQ(refused(header + plane + "plate,socket,,,1,2,3\n"),
+            "c.csv, line 6, column kind: contact plate is a socket here, and a plane above");
+  EXPECT_EQ(refused(header + "p,plane,,,nan,2,3\n"), "c.csv, line 2, column q1_deg: 'nan' is not finite");
+  EXPECT_EQ(refused(header + "p,plane,,nan,1,2,3\n"), "c.csv, line 2, column offset_mm: 'nan' is not finite");
+  EXPECT_EQ(refused(header + "p,plane,,x,1,2,3\n"), "c.csv, line 2, column offset_mm: 'x' is not a number");
+  EXPECT_EQ(refused(header + "p,plane,5,,1,2,3\n"), "c.csv, line 2, column radius_mm: a plane has no radius");
+  EXPECT_EQ(refused(header + "b,ball,,,1,2,3\n"),
+            "c.csv: contact b: a ball needs its radius, in a column radius_mm");
+  EXPECT_EQ(refused("contact_id,kind,q1_rad,q2_rad,q3_rad\nb,ball,1,2,3\n"),
+            "c.csv: contact b: a ball needs its radius, in a column radius_mm");
+  EXPECT_EQ(refused(header + "b,ball,-1,,1,2,3\n"), "c.csv, line 2, column radius_mm: a radius must be positive");
+  EXPECT_EQ(refused(header + "b,ball,10,5,1,2,3\n"),
+            "c.csv, line 2, column offset_mm: a ball has a radius, but no offset");
+  EXPECT_EQ(refused(header + "p,plane,,,1,2,3\np,plane,,,1,2,3\np,plane,,,1,2,3\n"),
+            "c.csv: contact p: 3 touches of a plane, at least 4 are needed: fewer say where it is, and nothing about "
+            "the arm");
+  EXPECT_EQ(refused(header + "s,socket,,,1,2,3\ns,socket,,100,1,2,3\n"),
+            "c.csv: contact s: 2 touches of a socket, at least 3 are needed: fewer say where it is, and nothing about "
+            "the arm");
+  EXPECT_EQ(refused("contact_id,kind,q1_rad,q2_rad\np,plane,1,2\n"),
+            "c.csv: no column q3_rad or q3_deg in the header (contact_id, kind, q1_rad, q2_rad)");
+}
+
+}  // namespace
+}  // namespace contacts_test

@@ -19,6 +19,7 @@
 #include "vernier/evaluation/iso9283_poses.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/evaluation/statistics.hpp"
+#include "vernier/identification/identify_by_contacts.hpp"
 #include "vernier/identification/options.hpp"
 #include "vernier/kinematics/arm_angle_form.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -47,4 +48,5 @@
 #include "vernier/search/tuned.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/touches.hpp"
 #include "vernier/simulation/virtual_robot.hpp"

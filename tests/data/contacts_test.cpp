@@ -69,8 +69,7 @@ TEST_F(ReadContacts, EachKindOfDamageInOneLine) {
   EXPECT_EQ(refused(header + "p,plane,,nan,1,2,3\n"), "c.csv, line 2, column offset_mm: 'nan' is not finite");
   EXPECT_EQ(refused(header + "p,plane,,x,1,2,3\n"), "c.csv, line 2, column offset_mm: 'x' is not a number");
   EXPECT_EQ(refused(header + "p,plane,5,,1,2,3\n"), "c.csv, line 2, column radius_mm: a plane has no radius");
-  EXPECT_EQ(refused(header + "b,ball,,,1,2,3\n"),
-            "c.csv: contact b: a ball needs its radius, in a column radius_mm");
+  EXPECT_EQ(refused(header + "b,ball,,,1,2,3\n"), "c.csv: contact b: a ball needs its radius, in a column radius_mm");
   EXPECT_EQ(refused("contact_id,kind,q1_rad,q2_rad,q3_rad\nb,ball,1,2,3\n"),
             "c.csv: contact b: a ball needs its radius, in a column radius_mm");
   EXPECT_EQ(refused(header + "b,ball,-1,,1,2,3\n"), "c.csv, line 2, column radius_mm: a radius must be positive");

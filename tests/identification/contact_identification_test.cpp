@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 #include "complaint.hpp"
@@ -115,6 +116,40 @@ TEST(Contacts, SocketsWithoutALengthDoNotDetermineTheScale) {
   const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
   EXPECT_FALSE(found.scale_observable);
   EXPECT_EQ(found.missing, 0) << found.summary();
+}
+
+TEST(Contacts, ParallelAxesAreNoMatter) {
+  const DhChain<6> nominal = robots::ur10().chain;
+  const Framed<DhChain<6>> actual(with_geometric_errors(nominal, {}, 9), {},
+                                  FrameParameters(Vector6{0.06, 0.02, 0.1, 0, 0, 0}));
+  JointLimits<6> limits;
+  limits.lower.setConstant(-2.5);
+  limits.upper.setConstant(2.5);
+  const auto of = [&](const VirtualObject& plane, const char* name, const VectorX& known, std::uint64_t seed) {
+    return touch(actual, plane, name, known, limits, 0, seed);
+  };
+  const std::vector contacts{of({ContactKind::plane, {0.7, 0, 0.2}, {0, 0, 1}, 0.6}, "table", lengths(30, 15, 0.2), 1),
+                             of({ContactKind::plane, {0.8, 0, 0.4}, {1, 0, 0}, 0.6}, "front", lengths(30), 2),
+                             of({ContactKind::plane, {0.2, 0.7, 0.4}, {0, 1, 0}, 0.6}, "side", lengths(30), 3)};
+  const auto found = identify_by_contacts(
+      Framed<DhChain<6>>(nominal, {}, FrameParameters(Vector6{0.05, 0.02, 0.1, 0, 0, 0})), contacts);
+  EXPECT_TRUE(found.converged()) << found.summary();
+  EXPECT_EQ(found.missing, 0);
+  EXPECT_EQ(found.free.size(), 21u);
+}
+
+TEST(Contacts, AJointThatSlidesIsALength) {
+  std::array<DhRow, 6> rows;
+  for (int i = 0; i < 6; ++i) rows[static_cast<std::size_t>(i)] = robots::abb_irb120().chain.row(i);
+  rows[2] = {.a = 0.1, .alpha = 1.5, .d = 0.2, .theta = 0.3, .joint = JointType::prismatic};
+  const Framed<DhChain<6>> actual(DhChain<6>::from_rows(rows), {}, FrameParameters(Vector6{0.04, -0.02, 0.1, 0, 0, 0}));
+  JointLimits<6> limits = abb_irb120_operating_region().limits;
+  limits.lower(2) = -0.1;
+  limits.upper(2) = 0.3;
+  const std::vector contacts{
+      touch(actual, {ContactKind::socket, {0.35, 0.1, 0.4}, {0, 0, 1}}, "one", lengths(20), limits, 0, 1),
+      touch(actual, {ContactKind::socket, {0.3, -0.2, 0.5}, {0, 0, 1}}, "two", lengths(20), limits, 0, 2)};
+  EXPECT_TRUE(identify_by_contacts(actual, contacts).scale_observable);
 }
 
 TEST(Contacts, AToolThatIsOffByADecimetreIsFound) {

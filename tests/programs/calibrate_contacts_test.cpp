@@ -71,9 +71,9 @@ TEST_F(CalibrateContacts, WithoutPosesNamesWhatIsNotObservableAndSavesTheArm) {
   // the catalogue's arm has no tool: the tip, 115 mm from the flange, is found
   const CommandResult result = calibrate("--contacts contacts.csv --save model.json --json out.json");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  for (const char* part : {"60 touches of 3 objects, no measured poses: the geometry alone is identified",
-                           "Contacts do not observe (15 of 45 directions)", "the base frame (6 directions)",
-                           "table: plane, 20 touches"})
+  for (const char* part :
+       {"60 touches of 3 objects, no measured poses: the geometry alone is identified",
+        "Contacts do not observe (15 of 45 directions)", "the base frame (6 directions)", "table: plane, 20 touches"})
     EXPECT_NE(result.output.find(part), std::string::npos) << result.output;
   EXPECT_EQ(result.output.find("the scale of the arm"), std::string::npos) << result.output;
   const auto robot = load<6>(folder_ / "model.json");
@@ -117,7 +117,8 @@ TEST_F(CalibrateContacts, RefusalsAreOneLine) {
   refused("--contacts few.csv", 1, "few.csv: 15 touches of 3 objects determine");
   refused("--contacts few.csv", 1, "touch more, at other joint values, or other objects");
   write_file(folder_ / "kind.csv", text + "table,socket,0,0,0,0,0,0,0\n");
-  refused("--contacts kind.csv", 1, "kind.csv, line 17, column kind: contact table is a socket here, and a plane above");
+  refused("--contacts kind.csv", 1,
+          "kind.csv, line 17, column kind: contact table is a socket here, and a plane above");
   write_file(folder_ / "nan.csv", text + "table,plane,0,0,nan,0,0,0,0\n");
   refused("--contacts nan.csv", 1, "nan.csv, line 17, column q2_rad: 'nan' is not finite");
   std::string degrees = text_of(three_planes(true, 20));

@@ -25,7 +25,7 @@ namespace vernier {
 /// @throws std::invalid_argument on no contacts, another number of joints, an unusable option, or touches of a plane
 ///         along a line
 /// @complexity     O(n u^2) an iteration for n touches and u unknowns
-/// @cite           Meggiolaro, Scriffignano and Dubowsky 2000; Ikits and Hollerbach 1997; MacKay 1992
+/// @cite           Hollerbach and Wampler 1996; Zhuang, Motaghedi and Roth 1999; MacKay 1992
 template <NominalArm Arm>
 IdentifiedByContacts<ChainOf<Arm>> identify_by_contacts(const Arm& nominal, std::span<const Contact> contacts,
                                                         const IdentifyOptions& options = {.frames = Frames::tool},

@@ -1,0 +1,87 @@
+// Contacts beside measured poses, in one fit.
+
+#include <gtest/gtest.h>
+
+#include "complaint.hpp"
+#include "gauss_newton.hpp"
+#include "touched_objects.hpp"
+#include "vernier/error_model/fit_error_model.hpp"
+#include "vernier/identification/frames.hpp"
+
+namespace vernier::contacts_beside_poses_test {
+namespace {
+
+using vernier_test::actual_arm;
+using vernier_test::identify_by_gauss_newton;
+using vernier_test::lengths;
+using vernier_test::nominal_arm;
+using vernier_test::three_planes;
+using vernier_test::touched;
+
+const ErrorModelOptions geometry_alone{
+    .compliance = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
+
+Dataset<6> poses(double sigma) {
+  return measure(actual_arm(), abb_irb120_operating_region().sample(robots::abb_irb120().chain, 50, 5),
+                 {.position = sigma, .with_orientations = false}, 6);
+}
+
+/// Mean error at fresh joints, the base registered.
+template <class Arm>
+double error_of(const Arm& arm) {
+  const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 100, 78);
+  PointRows points(100, 3), actual(100, 3);
+  for (Index i = 0; i < 100; ++i) {
+    points.row(i) = arm.position(joints.row(i).transpose()).transpose();
+    actual.row(i) = actual_arm().position(joints.row(i).transpose()).transpose();
+  }
+  const Isometry3 base = register_points(points, actual);
+  double out = 0;
+  for (Index i = 0; i < 100; ++i)
+    out += (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm() / 100;
+  return out;
+}
+
+double fitted_error(double sigma, const SensorModel& sensors, std::span<const Contact> contacts) {
+  const Dataset<6> data = poses(sigma);
+  const auto start =
+      identify_by_gauss_newton(nominal_arm(), data, {.frames = Frames::base_and_tool}, {.loss = Loss::squared});
+  const auto fitted = fit_error_model(start, std::span<const Dataset<6>>(&data, 1), std::span<const Distances<6>>(),
+                                      geometry_alone, sensors, {}, contacts);
+  EXPECT_TRUE(fitted.converged);
+  EXPECT_EQ(fitted.models.size(), 1 + contacts.size());
+  return error_of(fitted.models.front());
+}
+
+TEST(ContactsBesidePoses, PreciseContactsImproveNoisyPoses) {
+  const SensorModel sensors{.position_sigma = 0.5e-3, .contact_sigma = 0.01e-3, .loss = Loss::squared};
+  std::vector<Contact> contacts = three_planes(true, 40, 0.01e-3);
+  contacts.push_back(
+      touched({ContactKind::ball, {0.4, 0.1, 0.3}, Vector3::UnitZ()}, "ball", VectorX::Constant(20, 0.02), 0.01e-3, 9));
+  contacts.push_back(
+      touched({ContactKind::socket, {0.3, 0.1, 0.4}, Vector3(0.6, 0, -0.8)}, "bar", lengths(20, 10, 0.15), 0.01e-3, 8));
+  const double without = fitted_error(0.5e-3, sensors, {}), with = fitted_error(0.5e-3, sensors, contacts);
+  EXPECT_GT(without, 0.1e-3);
+  EXPECT_LT(with, 0.25 * without);
+}
+
+TEST(ContactsBesidePoses, WithoutNoiseTheyAgree) {
+  EXPECT_LT(fitted_error(0, {.loss = Loss::squared}, three_planes(false, 10)), 1e-7);
+}
+
+TEST(ContactsBesidePoses, NeedPosesOfTheSameArm) {
+  const Dataset<6> data = poses(1e-5);
+  const auto start =
+      identify_by_gauss_newton(nominal_arm(), data, {.frames = Frames::base_and_tool}, {.loss = Loss::squared});
+  const std::vector five{Contact("p", ContactKind::plane, three_planes(true)[0].joints().leftCols(5))};
+  const auto fit = [&](std::span<const Dataset<6>> stations, std::span<const Distances<6>> wires) {
+    return vernier_test::complaint(
+        [&] { (void)fit_error_model(start, stations, wires, geometry_alone, {}, {}, five); });
+  };
+  EXPECT_EQ(fit({&data, 1}, {}), "contact p: 5 joints, the arm has 6");
+  const Distances<6> wire(data.joints(), VectorX::Ones(data.size()));
+  EXPECT_EQ(fit({}, {&wire, 1}), "fit_error_model: contacts without poses");
+}
+
+}  // namespace
+}  // namespace vernier::contacts_beside_poses_test

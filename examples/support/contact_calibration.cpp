@@ -20,12 +20,13 @@ namespace vn = vernier;
 
 /// Refuses what must not be used, with advice.
 void require_usable(const vn::ContactReport& report, const std::string& file) {
-  constexpr double largest = 0.02;  // [m] with nominal links
-  if (!(report.rms_before <= largest))
+  constexpr double largest = 3e-3;  // [m]; more than the worst of real arms leaves
+  if (!(report.rms_after <= largest))
     throw vn::CalibrationFailure(
-        fmt::format("{}: wherever its objects are, the touches miss them by {:.1f} mm (rms) with nominal links: wrong "
-                    "robot, units or columns, or a tool point that differs from the flange by more than 0.2 m?",
-                    file, report.rms_before * 1e3));
+        fmt::format("{}: wherever its objects are, touches of the best arm miss them by {:.1f} mm (rms): wrong robot, "
+                    "units or columns, touches of another object, or a tool point over 0.2 m away from where it is "
+                    "assumed?",
+                    file, report.rms_after * 1e3));
   if (report.status == vn::IdentifyStatus::underdetermined)
     throw vn::CalibrationFailure(file + ": " + report.message +
                                  "; touch more, at other joint values, or other objects, or --fix parameters");

@@ -102,13 +102,12 @@ TEST_F(CalibrateContacts, BesidePosesBothAreUsed) {
   write_dataset(folder_ / "poses.csv",
                 measure(actual_arm(), abb_irb120_operating_region().sample(robots::abb_irb120().chain, 50, 5),
                         {.position = 0.5e-3, .with_orientations = false}, 6));
-  const std::string common = "--data poses.csv --harmonics 0 --threads 1 ";
-  const CommandResult alone = calibrate(common + "--save alone.json");
-  const CommandResult both = calibrate(common + "--contacts contacts.csv --contact-sigma 0.01 --save both.json");
-  ASSERT_EQ(alone.exit_code, 0) << alone.errors;
+  const CommandResult both = calibrate(
+      "--data poses.csv --harmonics 0 --threads 1 --contacts contacts.csv --contact-sigma 0.01 --save both.json");
   ASSERT_EQ(both.exit_code, 0) << both.errors;
   EXPECT_NE(both.output.find("contacts to learn from"), std::string::npos) << both.output;
-  EXPECT_LT(registered_mean(load<6>(folder_ / "both.json")), 0.6 * registered_mean(load<6>(folder_ / "alone.json")));
+  // the poses alone bring 0.3 mm
+  EXPECT_LT(registered_mean(load<6>(folder_ / "both.json")), 0.1e-3);
 }
 
 TEST_F(CalibrateContacts, RefusalsAreOneLine) {
@@ -124,7 +123,7 @@ TEST_F(CalibrateContacts, RefusalsAreOneLine) {
   std::string degrees = text_of(three_planes(true, 20));
   degrees.replace(degrees.find("q1_rad"), 6, "q1_deg");
   write_file(folder_ / "degrees.csv", degrees);
-  refused("--contacts degrees.csv", 1, "wherever its objects are, the touches miss them by");
+  refused("--contacts degrees.csv", 1, "wherever its objects are, touches of the best arm miss them by");
   refused("--contacts missing.csv", 1, "missing.csv");
   refused("--contacts few.csv --prior model.json", 2, "--prior needs --data");
   refused("", 2, "--data is required (or --contacts, to calibrate without measured poses)");

@@ -146,9 +146,10 @@ TEST(Contacts, AJointThatSlidesIsALength) {
   JointLimits<6> limits = abb_irb120_operating_region().limits;
   limits.lower(2) = -0.1;
   limits.upper(2) = 0.3;
+  const JointVector<6> middle = (limits.lower + limits.upper) / 2, aside = 0.7 * limits.lower + 0.3 * limits.upper;
   const std::vector contacts{
-      touch(actual, {ContactKind::socket, {0.35, 0.1, 0.4}, {0, 0, 1}}, "one", lengths(20), limits, 0, 1),
-      touch(actual, {ContactKind::socket, {0.3, -0.2, 0.5}, {0, 0, 1}}, "two", lengths(20), limits, 0, 2)};
+      touch(actual, {ContactKind::socket, actual.position(middle), {0, 0, 1}}, "one", lengths(20), limits, 0, 1),
+      touch(actual, {ContactKind::socket, actual.position(aside), {0, 0, 1}}, "two", lengths(20), limits, 0, 2)};
   EXPECT_TRUE(identify_by_contacts(actual, contacts).scale_observable);
 }
 

@@ -106,8 +106,8 @@ TEST_F(CalibrateContacts, BesidePosesBothAreUsed) {
       "--data poses.csv --harmonics 0 --threads 1 --contacts contacts.csv --contact-sigma 0.01 --save both.json");
   ASSERT_EQ(both.exit_code, 0) << both.errors;
   EXPECT_NE(both.output.find("contacts to learn from"), std::string::npos) << both.output;
-  // the poses alone bring 0.3 mm
-  EXPECT_LT(registered_mean(load<6>(folder_ / "both.json")), 0.1e-3);
+  // the poses alone bring 0.35 mm
+  EXPECT_LT(registered_mean(load<6>(folder_ / "both.json")), 0.2e-3);
 }
 
 TEST_F(CalibrateContacts, RefusalsAreOneLine) {

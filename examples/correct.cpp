@@ -14,6 +14,7 @@
 #include "correction_report.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "program_correction.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io/model_file.hpp"
@@ -203,6 +204,7 @@ support::CorrectionReport correct_arm(const Settings& settings) {
 
 int run(support::Program& program) {
   Settings settings;
+  support::ProgramCorrection in_place;
   bool no_approach = false, no_radius = false;
   CLI::App& app = program.app();
   app.add_option("--model", settings.model, "calibrated model that calibrate saved")->required()->type_name("FILE");
@@ -210,8 +212,8 @@ int run(support::Program& program) {
                  "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
                  "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
                  "there: j (joint move) or l (linear move)")
-      ->required()
       ->type_name("FILE");
+  support::add_program_options(app, in_place);
   app.add_flag("--poses", settings.poses,
                "of a file with joints and poses, the poses are the targets; the joints choose the branch");
   app.add_flag("--linear", settings.linear, "all moves are linear, where the file has no column move");
@@ -242,6 +244,11 @@ int run(support::Program& program) {
   settings.radius = !no_radius;
   if (settings.out.empty()) throw support::UsageError("--out is required");
   support::require_writable(settings.out);
+  if (settings.targets.empty() == in_place.program.empty())
+    throw support::UsageError("either --targets or --program is required");
+  if (!in_place.program.empty())
+    return support::correct_program(in_place, {settings.model, settings.out, program.common().json,
+                                               settings.temperature, settings.start, settings.approach});
 
   const support::CorrectionReport report =
       support::dispatch_dof(vn::saved_arm(settings.model).dof, [&](auto n) { return correct_arm<n()>(settings); });

@@ -95,9 +95,9 @@ struct Outcome {
   std::vector<vn::Uncorrected> uncorrected{};
   std::vector<std::pair<std::size_t, std::string>> remarks{};  ///< by line
   vn::JointRows<6> commands{};
-  double mean = 0, largest = 0;        ///< correction of the flange [m]
-  double error = 0;                    ///< largest error that the model predicts [m]
-  int extrapolated = 0, linear = 0;    ///< targets outside the measured joint ranges; linear moves
+  double mean = 0, largest = 0;      ///< correction of the flange [m]
+  double error = 0;                  ///< largest error that the model predicts [m]
+  int extrapolated = 0, linear = 0;  ///< targets outside the measured joint ranges; linear moves
 };
 
 /// Everything that all targets have in common.
@@ -182,16 +182,17 @@ Outcome correct_targets(const Task<Controller>& task) {
       // Would the controller move there for what is written?
       const std::vector<int> configuration =
           vn::updated_configuration(task.program.language, target.configuration, corrected.command);
-      const vn::ControllerJoints back = vn::controller_joints(
-          task.roots, task.controller, task.robot.limits(), task.program.language, task.arm,
-          task.base * reached * task.tool, configuration, configuration.empty() ? q : unknown);
+      const vn::ControllerJoints back =
+          vn::controller_joints(task.roots, task.controller, task.robot.limits(), task.program.language, task.arm,
+                                task.base * reached * task.tool, configuration, configuration.empty() ? q : unknown);
       if (!back.joints || (*back.joints - corrected.command).cwiseAbs().maxCoeff() > 1e-6) {
         refuse("its corrected pose has several joint values with its configuration");
         continue;
       }
       if (configuration != target.configuration)
-        out.remarks.push_back({target.line, "a joint passes the end of its quadrant or turn; its configuration is "
-                                            "changed"});
+        out.remarks.push_back({target.line,
+                               "a joint passes the end of its quadrant or turn; its configuration is "
+                               "changed"});
     }
     commands[k] = corrected.command;
     rows.push_back(corrected.command);
@@ -225,7 +226,8 @@ Outcome correct_for_controller(const ProgramCorrection& options, const Correctio
   try {
     roots.emplace(chain);
   } catch (const std::invalid_argument& e) {
-    throw std::runtime_error(fmt::format("{}: programs are corrected for arms with a closed form: {}", input.model, e.what()));
+    throw std::runtime_error(
+        fmt::format("{}: programs are corrected for arms with a closed form: {}", input.model, e.what()));
   }
   Joints start = Joints::Constant(std::nan(""));
   if (!input.start.empty()) {
@@ -279,25 +281,25 @@ void add_program_options(CLI::App& app, ProgramCorrection& to) {
          "robot program whose literal targets are corrected in place: RAPID (.mod, .prg), KRL (.src, .dat), URScript "
          "(.script), Fanuc (.ls)",
          "FILE");
-  option("--controller", to.controller,
-         "kinematics by which the controller reaches the poses of a program: nominal, a model, or calibration.conf of a "
-         "Universal Robots arm; by default nominal, and URScript poses stay as they are",
-         "nominal|FILE");
-  option("--tool", to.tools,
-         "tool frame of a program's poses, in the flange's: position [mm] and rotation vector [deg], or the name of one "
-         "in the file; NAME=... gives that of one name or number",
-         "[NAME=]X,Y,Z,RX,RY,RZ")
+  option(
+      "--controller", to.controller,
+      "kinematics by which the controller reaches the poses of a program: nominal, a model, or calibration.conf of a "
+      "Universal Robots arm; by default nominal, and URScript poses stay as they are",
+      "nominal|FILE");
+  option(
+      "--tool", to.tools,
+      "tool frame of a program's poses, in the flange's: position [mm] and rotation vector [deg], or the name of one "
+      "in the file; NAME=... gives that of one name or number",
+      "[NAME=]X,Y,Z,RX,RY,RZ")
       ->allow_extra_args(false);
   option("--workobject", to.workobjects, "likewise the frame in which the poses are, in the robot's base frame",
          "[NAME=]X,Y,Z,RX,RY,RZ")
       ->allow_extra_args(false);
   option("--robot-base", to.robot_base,
-         "the controller's base frame in that of the model's chain, where they differ (KUKA, Fanuc)",
-         "X,Y,Z,RX,RY,RZ");
+         "the controller's base frame in that of the model's chain, where they differ (KUKA, Fanuc)", "X,Y,Z,RX,RY,RZ");
   option("--flange", to.flange, "the controller's flange frame in the last one of the model's chain, where they differ",
          "X,Y,Z,RX,RY,RZ");
-  option("--noflip", to.noflip, "Fanuc: sign of J5 at a position whose configuration has N",
-         "negative|positive")
+  option("--noflip", to.noflip, "Fanuc: sign of J5 at a position whose configuration has N", "negative|positive")
       ->check(CLI::IsMember({"negative", "positive"}));
   option("--date", to.date, "date written into the corrected program; by default today's", "DATE");
   app.add_flag("--allow-uncorrected", to.allow_uncorrected,
@@ -314,12 +316,14 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
   }
   const vn::RobotProgram program = vn::parse_program(language, text, options.program);
   if (const int dof = vn::saved_arm(input.model).dof; dof != 6)
-    throw std::runtime_error(fmt::format("{}: an arm of {} joints; programs are corrected for arms of 6", input.model, dof));
+    throw std::runtime_error(
+        fmt::format("{}: an arm of {} joints; programs are corrected for arms of 6", input.model, dof));
   const vn::CalibratedRobot<6> saved = vn::load<6>(input.model);
   const vn::CalibratedRobot<6> robot = input.temperature ? saved.at_temperature(*input.temperature) : saved;
   for (int j = 0; j < 6; ++j)
     if (robot.nominal().chain().row(j).joint != vn::JointType::revolute)
-      throw std::runtime_error(fmt::format("{}: joint {} is prismatic; programs are corrected for revolute joints", input.model, j + 1));
+      throw std::runtime_error(
+          fmt::format("{}: joint {} is prismatic; programs are corrected for revolute joints", input.model, j + 1));
 
   const Outcome outcome = correct_for_controller(options, input, program, robot);
   double radius = std::nan("");
@@ -353,20 +357,19 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
     write_json(input.json, json);
   }
   if (!outcome.uncorrected.empty() && !options.allow_uncorrected)
-    throw std::runtime_error(fmt::format("{}: {} of its targets or moves {} not corrected, the first in line {}; with "
-                                         "--allow-uncorrected it is written all the same",
-                                         options.program, outcome.uncorrected.size(),
-                                         outcome.uncorrected.size() == 1 ? "is" : "are",
-                                         outcome.uncorrected.front().line));
+    throw std::runtime_error(
+        fmt::format("{}: {} of its targets or moves {} not corrected, the first in line {}; with "
+                    "--allow-uncorrected it is written all the same",
+                    options.program, outcome.uncorrected.size(), outcome.uncorrected.size() == 1 ? "is" : "are",
+                    outcome.uncorrected.front().line));
 
   const std::string hash = vn::sha256(vn::read_file(input.model));
-  std::vector<std::string> stamp{
-      "do not correct this program twice",
-      fmt::format("model {}", std::filesystem::path(input.model).filename().string()),
-      fmt::format("sha256 {}", hash),
-      fmt::format("robot {}, {} targets", robot.name(), outcome.replaced.size()),
-      fmt::format("{} by Vernier {}.{}.{}", options.date.empty() ? today() : options.date, VERNIER_VERSION_MAJOR,
-                  VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH)};
+  std::vector<std::string> stamp{"do not correct this program twice",
+                                 fmt::format("model {}", std::filesystem::path(input.model).filename().string()),
+                                 fmt::format("sha256 {}", hash),
+                                 fmt::format("robot {}, {} targets", robot.name(), outcome.replaced.size()),
+                                 fmt::format("{} by Vernier {}.{}.{}", options.date.empty() ? today() : options.date,
+                                             VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH)};
   if (std::isfinite(radius)) stamp.push_back(fmt::format("errors < {:.3f} mm (95 %)", radius * 1e3));
   if (!outcome.uncorrected.empty()) stamp.push_back(fmt::format("{} not corrected", outcome.uncorrected.size()));
   vn::write_file(input.out, vn::stamped(vn::replace_targets(text, program, outcome.replaced), program, stamp));

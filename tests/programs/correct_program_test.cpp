@@ -73,7 +73,8 @@ Vector3 sides(const DhChain<6>& chain, const Joints& q) {
 std::vector<double> numbers_in(const std::string& text) {
   static const std::regex number("[-+]?[0-9]*\\.?[0-9]+([eE][-+]?[0-9]+)?");
   std::vector<double> out;
-  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) out.push_back(std::stod(it->str()));
+  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it)
+    out.push_back(std::stod(it->str()));
   return out;
 }
 
@@ -110,13 +111,15 @@ class CorrectProgram : public testing::Test {
   }
 
   /// Joint values with which a controller's arm is at a pose, as the program's configuration tells them apart.
-  Joints executed(const DhChain<6>& controller, const Isometry3& flange, const std::function<bool(const Joints&)>& fits) {
+  Joints executed(const DhChain<6>& controller, const Isometry3& flange,
+                  const std::function<bool(const Joints&)>& fits) {
     Rng rng(5);
     std::vector<Joints> found;
     for (int start = 0; start < 400; ++start) {
       Joints seed;
       for (int j = 0; j < 6; ++j) seed(j) = limits_.lower(j) + rng.uniform() * (limits_.upper(j) - limits_.lower(j));
-      const IkResult<6> result = inverse_kinematics(controller, flange, seed, {.limits = limits_, .max_iterations = 60});
+      const IkResult<6> result =
+          inverse_kinematics(controller, flange, seed, {.limits = limits_, .max_iterations = 60});
       if (result.status != IkStatus::converged) continue;
       for (int turn = -1; turn <= 1; ++turn) {  // of joint 6, whose range is wider than a turn
         Joints q = result.joints;
@@ -162,10 +165,10 @@ TEST_F(CorrectProgram, Rapid) {
   const std::vector<Joints> joints = sample(24, 3, 0.01);
   const auto flags = [&](const Joints& q) {
     const Vector3 at = sides(nominal_, q), home = sides(nominal_, Joints{0, 0, 0, 0, 0.5, 0});
-    return std::array<int, 4>{static_cast<int>(std::floor(q(0) / degree / 90)),
-                              static_cast<int>(std::floor(q(3) / degree / 90)),
-                              static_cast<int>(std::floor(q(5) / degree / 90)),
-                              (at(2) * home(2) < 0 ? 1 : 0) + (at(1) * home(1) < 0 ? 2 : 0) + (at(0) * home(0) < 0 ? 4 : 0)};
+    return std::array<int, 4>{
+        static_cast<int>(std::floor(q(0) / degree / 90)), static_cast<int>(std::floor(q(3) / degree / 90)),
+        static_cast<int>(std::floor(q(5) / degree / 90)),
+        (at(2) * home(2) < 0 ? 1 : 0) + (at(1) * home(1) < 0 ? 2 : 0) + (at(0) * home(0) < 0 ? 4 : 0)};
   };
   std::string text =
       "%%%\r\n  VERSION:1\r\n%%%\r\nMODULE part\r\n! weld \xE4\xF6\r\n"
@@ -235,7 +238,8 @@ TEST_F(CorrectProgram, Krl) {
     const Vector3 at = sides(nominal_, q), home = sides(nominal_, Joints{0, -90, 90, 0, 30, 0} * degree);
     int turns = 0;
     for (int j = 0; j < 6; ++j) turns |= q(j) < 0 ? 1 << j : 0;
-    return std::array<int, 2>{(at(0) * home(0) < 0 ? 1 : 0) + (at(1) * home(1) > 0 ? 2 : 0) + (q(4) < 0 ? 4 : 0), turns};
+    return std::array<int, 2>{(at(0) * home(0) < 0 ? 1 : 0) + (at(1) * home(1) > 0 ? 2 : 0) + (q(4) < 0 ? 4 : 0),
+                              turns};
   };
   std::vector<Joints> joints = sample(24, 4, 0.01);
   std::erase_if(joints, [](const Joints& q) { return (q.array().abs() < 3 * degree).any(); });
@@ -257,8 +261,9 @@ TEST_F(CorrectProgram, Krl) {
   write_file(folder_ / "part.dat", text);
   const CommandResult unknown = correct("--program part.dat --robot-base 0,0,0,180,0,0 --out out.dat");
   EXPECT_EQ(unknown.exit_code, 1);
-  EXPECT_NE(unknown.output.find("line 6: not corrected: xp0: the frame of its tool 3 is not known; name it with --tool"),
-            std::string::npos)
+  EXPECT_NE(
+      unknown.output.find("line 6: not corrected: xp0: the frame of its tool 3 is not known; name it with --tool"),
+      std::string::npos)
       << unknown.output;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.dat"));
   const CommandResult done =
@@ -269,8 +274,8 @@ TEST_F(CorrectProgram, Krl) {
   for (std::size_t at = out.find("={X"); at != std::string::npos; at = out.find("={X", at + 1), ++k) {
     const std::vector<double> v = numbers_in(out.substr(at, out.find("E1", at) - at));
     ASSERT_EQ(v.size(), 8u);
-    const Isometry3 x = frame({v[0], v[1], v[2]}, turn(v[3], Vector3::UnitZ()) * turn(v[4], Vector3::UnitY()) *
-                                                      turn(v[5], Vector3::UnitX()));
+    const Isometry3 x = frame(
+        {v[0], v[1], v[2]}, turn(v[3], Vector3::UnitZ()) * turn(v[4], Vector3::UnitY()) * turn(v[5], Vector3::UnitX()));
     const Joints q = executed(nominal_, root * x * tool.inverse(), [&](const Joints& candidate) {
       const auto c = flags(candidate);
       return c[0] == v[6] && c[1] == v[7];
@@ -301,16 +306,17 @@ TEST_F(CorrectProgram, FanucTp) {
     char line[500];
     std::snprintf(line, sizeof line, "%4zu:J P[%zu] 100%% FINE    ;\n", k + 1, k + 1);
     moves += line;
-    std::snprintf(line, sizeof line,
-                  "P[%zu%s]{\n   GP1:\n\tUF : 0, UT : 0,\t\tCONFIG : '%c %c %c, 0, 0, %d',\n\tX = %9.4f  mm,\tY = %9.4f  "
-                  "mm,\tZ = %9.4f  mm,\n\tW = %9.6f deg,\tP = %9.6f deg,\tR = %9.6f deg\n};\n",
-                  k + 1, k == 0 ? ":\"start; here\"" : "", c[0] != 0 ? 'F' : 'N', c[1] != 0 ? 'U' : 'D',
-                  c[2] != 0 ? 'T' : 'B', c[3], x.translation().x() * 1e3, x.translation().y() * 1e3,
-                  x.translation().z() * 1e3, std::atan2(r(2, 1), r(2, 2)) / degree, std::asin(-r(2, 0)) / degree,
-                  std::atan2(r(1, 0), r(0, 0)) / degree);
+    std::snprintf(
+        line, sizeof line,
+        "P[%zu%s]{\n   GP1:\n\tUF : 0, UT : 0,\t\tCONFIG : '%c %c %c, 0, 0, %d',\n\tX = %9.4f  mm,\tY = %9.4f  "
+        "mm,\tZ = %9.4f  mm,\n\tW = %9.6f deg,\tP = %9.6f deg,\tR = %9.6f deg\n};\n",
+        k + 1, k == 0 ? ":\"start; here\"" : "", c[0] != 0 ? 'F' : 'N', c[1] != 0 ? 'U' : 'D', c[2] != 0 ? 'T' : 'B',
+        c[3], x.translation().x() * 1e3, x.translation().y() * 1e3, x.translation().z() * 1e3,
+        std::atan2(r(2, 1), r(2, 2)) / degree, std::asin(-r(2, 0)) / degree, std::atan2(r(1, 0), r(0, 0)) / degree);
     positions += line;
   }
-  write_file(folder_ / "PART.LS", "/PROG  PART\n/ATTR\nCOMMENT\t\t= \"\";\n/MN\n" + moves + "/POS\n" + positions + "/END\n");
+  write_file(folder_ / "PART.LS",
+             "/PROG  PART\n/ATTR\nCOMMENT\t\t= \"\";\n/MN\n" + moves + "/POS\n" + positions + "/END\n");
   const CommandResult which = correct("--program PART.LS --out out.ls");
   EXPECT_EQ(which.exit_code, 2);
   EXPECT_NE(which.errors.find("a Fanuc program needs --noflip"), std::string::npos) << which.errors;
@@ -324,8 +330,8 @@ TEST_F(CorrectProgram, FanucTp) {
     const std::vector<double> turns = numbers_in(config);
     const std::vector<double> v = numbers_in(out.substr(out.find("X =", at), out.find("}", at) - out.find("X =", at)));
     ASSERT_EQ(v.size(), 6u);
-    const Isometry3 x = frame({v[0], v[1], v[2]}, turn(v[5], Vector3::UnitZ()) * turn(v[4], Vector3::UnitY()) *
-                                                      turn(v[3], Vector3::UnitX()));
+    const Isometry3 x = frame(
+        {v[0], v[1], v[2]}, turn(v[5], Vector3::UnitZ()) * turn(v[4], Vector3::UnitY()) * turn(v[3], Vector3::UnitX()));
     const Joints q = executed(nominal_, x, [&](const Joints& candidate) {
       const auto c = flags(candidate);
       return std::abs(candidate(3)) <= 180 * degree && config.find(c[0] != 0 ? "'F" : "'N") != std::string::npos &&
@@ -354,8 +360,9 @@ TEST_F(CorrectProgram, UrScript) {
   write_file(folder_ / "calibration.conf", small);
   RobotDescription described = RobotDescription::of(robots::ur10());
   const DhChain<6> controller = read_ur_calibration(folder_ / "calibration.conf", described).arm<6>().arm.model();
-  ASSERT_GT((controller.position(Joints{0.1, -1, 1, 0.2, 1, 0}) - nominal_.position(Joints{0.1, -1, 1, 0.2, 1, 0})).norm(),
-            1e-4);
+  ASSERT_GT(
+      (controller.position(Joints{0.1, -1, 1, 0.2, 1, 0}) - nominal_.position(Joints{0.1, -1, 1, 0.2, 1, 0})).norm(),
+      1e-4);
   const Isometry3 tool = frame({0, 0, 100}, Matrix3::Identity());
   Rng rng(8);
   std::vector<Joints> joints;
@@ -386,8 +393,9 @@ TEST_F(CorrectProgram, UrScript) {
   write_file(folder_ / "part.script", "def part():\n" + points + moves + "end\n");
   const CommandResult nominal = correct("--program part.script --out out.script --allow-uncorrected");
   EXPECT_EQ(nominal.exit_code, 0) << nominal.errors;
-  EXPECT_NE(nominal.output.find("line 2: not corrected: point_0_p: poses are reached by the robot's factory calibration"),
-            std::string::npos)
+  EXPECT_NE(
+      nominal.output.find("line 2: not corrected: point_0_p: poses are reached by the robot's factory calibration"),
+      std::string::npos)
       << nominal.output;
   EXPECT_NE(nominal.output.find("1 targets corrected"), std::string::npos);
   const CommandResult done = correct("--program part.script --controller calibration.conf --out out.script");
@@ -416,13 +424,14 @@ TEST_F(CorrectProgram, AnotherModelAsController) {
                          FrameParameters(Vector6{0, 0.2, 0, 0, 0, 0})};
   save(folder_ / "controller.json", CalibratedRobot<6>("factory", Model(nominal_, other), limits_, {}));
   write_file(folder_ / "a.mod",
-             "MODULE a\nPROC main()\nMoveL [[374,50,500],[0.5,0,0.866025404,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],"
+             "MODULE a\nPROC main()\nMoveL [[374,50,500],[0.5,0,0.866025404,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],"
              "v1,fine,tool0;\nMoveAbsJ [[1,2,3,4,5,6],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\nENDPROC\nENDMODULE\n");
   const CommandResult done = correct("--program a.mod --controller controller.json --out b.mod --allow-uncorrected");
   ASSERT_EQ(done.exit_code, 0) << done.errors;
   const std::string out = read_file(folder_ / "b.mod");
   const std::vector<double> v = numbers_in(out.substr(out.find("MoveAbsJ") + 8));
-  expect_met(Eigen::Map<const Joints>(v.data()) * degree, other.model().chain().pose(Joints{1, 2, 3, 4, 5, 6} * degree));
+  expect_met(Eigen::Map<const Joints>(v.data()) * degree,
+             other.model().chain().pose(Joints{1, 2, 3, 4, 5, 6} * degree));
 }
 
 TEST_F(CorrectProgram, EachTargetInAMoveComesFromTheOneBefore) {
@@ -449,17 +458,19 @@ TEST_F(CorrectProgram, EachTargetInAMoveComesFromTheOneBefore) {
 
 TEST_F(CorrectProgram, WhatIsNotCorrectedIsListed) {
   make_model(robots::abb_irb120(), 21);
-  write_file(folder_ / "a.mod",
-             "MODULE a\nCONST robtarget p1:=[[374,50,500],[0.5,0,0.866025404,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
-             "PROC main()\nMoveJ Offs(p1,0,0,50),v1,fine,tool0;\nMoveL p1,v1,fine,tool0;\nMoveL p9,v1,fine,tool0;\n"
-             "MoveL [[374,50,5000],[0.5,0,0.866025404,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n"
-             "MoveL [[374,50,500],[0.5,0,0.866025404,0],[1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n"
-             "MoveL [[374,50,500],[0.5,0,0.866025404,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,hand;\n"
-             "ENDPROC\nENDMODULE\n");
+  write_file(
+      folder_ / "a.mod",
+      "MODULE a\nCONST robtarget p1:=[[374,50,500],[0.5,0,0.866025404,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+      "PROC main()\nMoveJ Offs(p1,0,0,50),v1,fine,tool0;\nMoveL p1,v1,fine,tool0;\nMoveL p9,v1,fine,tool0;\n"
+      "MoveL [[374,50,5000],[0.5,0,0.866025404,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n"
+      "MoveL [[374,50,500],[0.5,0,0.866025404,0],[1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n"
+      "MoveL [[374,50,500],[0.5,0,0.866025404,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,hand;\n"
+      "ENDPROC\nENDMODULE\n");
   const CommandResult done = correct("--program a.mod --out b.mod");
   EXPECT_EQ(done.exit_code, 1);
   EXPECT_TRUE(done.one_line_of_errors()) << done.errors;
-  EXPECT_NE(done.errors.find("a.mod: 5 of its targets or moves are not corrected, the first in line 4"), std::string::npos)
+  EXPECT_NE(done.errors.find("a.mod: 5 of its targets or moves are not corrected, the first in line 4"),
+            std::string::npos)
       << done.errors;
   for (const char* remark :
        {"line 4: not corrected: MoveJ Offs(p1,0,0,50): computed, not a literal",
@@ -492,8 +503,9 @@ TEST_F(CorrectProgram, WrongUseIsRefusedInOneLine) {
   expect("--program a.mod --tool 1,2,3 --out b.mod", 2, "--tool 1,2,3: not six numbers");
   expect("--program a.mod --controller none.conf --out b.mod", 1, "none.conf");
   save(folder_ / "model.json",
-       CalibratedRobot<7>("seven", CalibratedRobot<7>::Model(robots::barrett_wam().chain,
-                                                             CalibratedRobot<7>::Model::Arm(robots::barrett_wam().chain)),
+       CalibratedRobot<7>("seven",
+                          CalibratedRobot<7>::Model(robots::barrett_wam().chain,
+                                                    CalibratedRobot<7>::Model::Arm(robots::barrett_wam().chain)),
                           robots::barrett_wam().limits, {}));
   expect("--program a.mod --out b.mod", 1, "model.json: an arm of 7 joints; programs are corrected for arms of 6");
 }

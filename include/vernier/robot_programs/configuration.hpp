@@ -100,8 +100,9 @@ template <BranchRoots Roots, KinematicModel M>
   }
   if (exact_fits == 1) return exact;
   if (fits == 1) return turned;
-  return {{}, fits == 0 ? "no joint values within the limits have its configuration"
-                        : "several joint values have its configuration"};
+  return {{},
+          fits == 0 ? "no joint values within the limits have its configuration"
+                    : "several joint values have its configuration"};
 }
 
 }  // namespace vernier

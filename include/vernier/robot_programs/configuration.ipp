@@ -36,8 +36,7 @@ VERNIER_IMPL int stated_branch(ProgramLanguage language, const std::vector<int>&
       const int status = configuration[0];
       return bit(status, 0, 0) | bit(~status, 1, 1) | bit(status, 2, 2);
     }
-    case ProgramLanguage::fanuc_tp:
-      return (1 - configuration[2]) | (1 - configuration[1]) << 1 | configuration[0] << 2;
+    case ProgramLanguage::fanuc_tp: return (1 - configuration[2]) | (1 - configuration[1]) << 1 | configuration[0] << 2;
     default: return 0;
   }
 }
@@ -66,7 +65,9 @@ VERNIER_IMPL JointRange stated_interval(ProgramLanguage language, const std::vec
     case ProgramLanguage::krl:
       return (configuration[1] >> joint & 1) != 0 ? JointRange{-infinite, 0} : JointRange{0, infinite};
     case ProgramLanguage::fanuc_tp: {
-      const double turn = joint == 5 ? 2 * half * configuration[5] : 0;
+      const int entry = joint == 0 || joint == 3 ? 3 : joint == 5 ? 5 : -1;
+      if (entry < 0) break;
+      const double turn = 2 * half * configuration[static_cast<std::size_t>(entry)];
       return {turn - half, turn + half};
     }
     default: break;
@@ -74,8 +75,8 @@ VERNIER_IMPL JointRange stated_interval(ProgramLanguage language, const std::vec
   return {-infinite, infinite};
 }
 
-VERNIER_IMPL double stated_turn(ProgramLanguage language, const std::vector<int>& configuration, int joint, double angle,
-                                double near, double lower, double upper) {
+VERNIER_IMPL double stated_turn(ProgramLanguage language, const std::vector<int>& configuration, int joint,
+                                double angle, double near, double lower, double upper) {
   constexpr double whole = 2 * std::numbers::pi, degree = std::numbers::pi / 180;
   const double tolerance = language == ProgramLanguage::krl ? 2 * degree : 0.05 * degree;
   const JointRange stated = stated_interval(language, configuration, joint);

@@ -16,10 +16,10 @@ namespace vernier {
 
 /// Languages of robot programs.
 enum class ProgramLanguage {
-  rapid,      ///< ABB
-  krl,        ///< KUKA
-  urscript,   ///< Universal Robots
-  fanuc_tp,   ///< Fanuc, the text form of teach pendant programs
+  rapid,     ///< ABB
+  krl,       ///< KUKA
+  urscript,  ///< Universal Robots
+  fanuc_tp,  ///< Fanuc, the text form of teach pendant programs
 };
 
 /// Bytes of a text from `begin` to before `end`.
@@ -43,11 +43,11 @@ enum class TargetMove {
 
 /// A target written as numbers, of an arm of six joints.
 struct ProgramTarget {
-  std::size_t line = 0;                  ///< where it begins, counted from 1
-  std::size_t column = 0;                ///< likewise, in bytes
-  TargetKind kind = TargetKind::pose;    ///< what it states
-  TargetMove move = TargetMove::unknown; ///< how the arm moves there
-  std::string name{};                    ///< of the variable whose value it is; empty where it stands in a move
+  std::size_t line = 0;                    ///< where it begins, counted from 1
+  std::size_t column = 0;                  ///< likewise, in bytes
+  TargetKind kind = TargetKind::pose;      ///< what it states
+  TargetMove move = TargetMove::unknown;   ///< how the arm moves there
+  std::string name{};                      ///< of the variable whose value it is; empty where it stands in a move
   Isometry3 pose = Isometry3::Identity();  ///< work object_T_tool [m], of a pose
   /// Joint values [rad]; of a pose those of which the program says that they are near it. Not finite where none are.
   JointVector<6> joints = JointVector<6>::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -75,7 +75,7 @@ struct RobotProgram {
   ProgramLanguage language = ProgramLanguage::rapid;  ///< in which it is written
   /// In the order in which moves first use them; behind them, as they stand in the text, those that no move uses.
   std::vector<ProgramTarget> targets{};
-  std::vector<Uncorrected> uncorrected{};        ///< targets that are no literals, in the order of lines
+  std::vector<Uncorrected> uncorrected{};          ///< targets that are no literals, in the order of lines
   std::map<std::string, Isometry3> tools{};        ///< flange_T_tool of the tools whose frame the text states [m]
   std::map<std::string, Isometry3> workobjects{};  ///< robot base_T_work object, likewise [m]
   std::size_t stamp_at = 0;                        ///< byte at which a comment may be inserted

@@ -27,7 +27,7 @@ VERNIER_API ProgramLanguage program_language(const std::string& path);
 ///
 /// What moves use beside them, what the program changes and what has external axes is in `uncorrected`.
 /// @param language of the text
-/// @param text     at most 64 MiB, in any encoding that extends ASCII; lines of at most 100,000 bytes, brackets nested
+/// @param text     at most 16 MiB, in any encoding that extends ASCII; lines of at most 100,000 bytes, brackets nested
 ///                 at most 32 deep
 /// @param name     of the file, for messages
 /// @throws DataError naming file and line for what is no program, and for one that was corrected before

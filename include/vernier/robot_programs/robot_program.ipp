@@ -52,7 +52,6 @@ VERNIER_IMPL std::vector<std::string> written_numbers(ProgramLanguage language, 
   if (language == ProgramLanguage::rapid) {
     Eigen::Quaterniond q(rotation);
     q.normalize();
-    if (q.dot(Eigen::Quaterniond(Matrix3(target.pose.linear()))) < 0) q.coeffs() *= -1;
     for (const double value : {q.w(), q.x(), q.y(), q.z()}) out.push_back(with_decimals(value, 9));
   } else if (si) {
     angles(log_so3(rotation));
@@ -75,13 +74,15 @@ VERNIER_IMPL ProgramLanguage program_language(const std::string& path) {
   if (ends(".ls")) return ProgramLanguage::fanuc_tp;
   if (ends(".tp")) throw DataError(message(path, ": a binary program; export it as text (.ls)"));
   throw DataError(
-      message(path, ": no robot program: .mod, .modx, .prg, .sys (RAPID), .src, .dat (KRL), .script (URScript) or .ls "
-                    "(Fanuc) are"));
+      message(path,
+              ": no robot program: .mod, .modx, .prg, .sys (RAPID), .src, .dat (KRL), .script (URScript) or .ls "
+              "(Fanuc) are"));
 }
 
 VERNIER_IMPL RobotProgram parse_program(ProgramLanguage language, std::string_view text, const std::string& name) {
   if (const std::size_t at = text.find(detail::program_stamp); at != std::string_view::npos)
-    throw DataError(message(name, ", line ", std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1,
+    throw DataError(message(name, ", line ",
+                            std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1,
                             ": this program was corrected before; correct the original one"));
   RobotProgram out;
   out.language = language;
@@ -104,8 +105,8 @@ VERNIER_IMPL std::string replace_targets(std::string_view text, const RobotProgr
   for (const ReplacedTarget& one : replaced) {
     require(one.target < program.targets.size(), "replace_targets: no target ", one.target);
     const ProgramTarget& target = program.targets[one.target];
-    require(one.joints.allFinite() && one.pose.matrix().allFinite(), "replace_targets: target ", one.target,
-            " is not finite");
+    require(one.pose.matrix().allFinite() && (one.joints.array().abs() < 1e6).all(), "replace_targets: target ",
+            one.target, " is not finite");
     const std::vector<std::string> numbers = detail::written_numbers(program.language, target, one);
     for (std::size_t k = 0; k < target.numbers.size(); ++k) pieces.push_back({target.numbers[k], numbers[k]});
     if (target.kind == TargetKind::joints || target.configuration.empty()) continue;
@@ -115,14 +116,15 @@ VERNIER_IMPL std::string replace_targets(std::string_view text, const RobotProgr
       if (configuration[offset + k] != target.configuration[offset + k])
         pieces.push_back({target.configuration_numbers[k], message(configuration[offset + k])});
   }
-  std::sort(pieces.begin(), pieces.end(),
-            [](const Piece& a, const Piece& b) { return a.range.begin < b.range.begin; });
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.range.begin < b.range.begin; });
   std::string out;
   out.reserve(text.size() + 8 * pieces.size());
   std::size_t at = 0;
   for (const Piece& piece : pieces) {
     require(piece.range.begin >= at && piece.range.end <= text.size(), "replace_targets: a target is there twice");
-    out.append(text.substr(at, piece.range.begin - at)).append(piece.text);
+    out.append(text.substr(at, piece.range.begin - at));
+    if (!out.empty() && detail::is_word_character(out.back())) out += ' ';  // X-1.5 must not become X1.5
+    out.append(piece.text);
     at = piece.range.end;
   }
   return out.append(text.substr(at));

@@ -32,9 +32,8 @@ class KrlReader {
     for (std::size_t k = 0; k < program_.targets.size(); ++k) flange_data(program_.targets[k]);
     for (const auto& [name, change] : changes_)
       if (names_.count(name) != 0)
-        program_.uncorrected.push_back(
-            {text_.tokens[change.first].line, excerpt(text_, change.first, change.second),
-             "the program changes this target"});
+        program_.uncorrected.push_back({text_.tokens[change.first].line, excerpt(text_, change.first, change.second),
+                                        "the program changes this target"});
     std::vector<bool> keep(program_.targets.size());
     for (std::size_t k = 0; k < keep.size(); ++k) keep[k] = typed_.count(program_.targets[k].name) != 0;
     use_targets(text_, steps_, keep, program_);
@@ -139,8 +138,10 @@ class KrlReader {
       const std::string key = number.empty() ? message(text_.at(at), " of line ", text_.tokens[at].line) : number;
       const std::vector<Component> parts = components(i, end);
       const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
-      if (frame) frames[key] = *frame;
-      else frames.erase(key);
+      if (frame)
+        frames[key] = *frame;
+      else
+        frames.erase(key);
       if (number.empty()) current = frame ? key : "?";
       return;
     }
@@ -297,10 +298,11 @@ class KrlReader {
 
   bool move(std::size_t i, std::size_t end) {
     const std::string name = word(i);
-    static constexpr std::array<std::string_view, 14> names{"ptp",     "lin",     "circ",     "sptp",  "slin",
-                                                            "scirc",   "spl",     "ptp_rel",  "lin_rel", "circ_rel",
+    static constexpr std::array<std::string_view, 14> names{"ptp",      "lin",      "circ",      "sptp",    "slin",
+                                                            "scirc",    "spl",      "ptp_rel",   "lin_rel", "circ_rel",
                                                             "sptp_rel", "slin_rel", "scirc_rel", "spl_rel"};
-    if (std::find(names.begin(), names.end(), name) == names.end() || text_.is(i + 1, '=') || i + 1 >= end) return false;
+    if (std::find(names.begin(), names.end(), name) == names.end() || text_.is(i + 1, '=') || i + 1 >= end)
+      return false;
     const bool relative = name.ends_with("_rel");
     const TargetMove kind = name.find("ptp") != std::string::npos ? TargetMove::joint : TargetMove::linear;
     const int targets = name.find("circ") != std::string::npos ? 2 : 1;
@@ -309,7 +311,7 @@ class KrlReader {
       std::size_t last = first;
       while (last < end && !text_.is(last, ',') && !is_option(last))
         last = text_.is(last, '{') || text_.is(last, '(') || text_.is(last, '[') ? behind_brackets(text_, last, end)
-                                                                               : last + 1;
+                                                                                 : last + 1;
       if (relative) {
         uses_.push_back({});
         program_.uncorrected.push_back({text_.tokens[i].line, excerpt(text_, i, last), "a relative move"});
@@ -347,15 +349,15 @@ class KrlReader {
       step.element = named->second.size() > 1;
       for (const std::size_t k : named->second) {
         step.target = k;
-        steps_.push_back(step);
+        add_step(steps_, step);
       }
       return;
     }
     steps_.push_back({{}, {}, {}, use.move});
     if (text_.is(first, '{') && behind_brackets(text_, first, last) == last) return;  // refused before
-    program_.uncorrected.push_back({text_.tokens[use.instruction].line, excerpt(text_, use.instruction, last),
-                                    name_alone ? "no literal of this file, perhaps of its data list"
-                                               : "computed, not a literal"});
+    program_.uncorrected.push_back(
+        {text_.tokens[use.instruction].line, excerpt(text_, use.instruction, last),
+         name_alone ? "no literal of this file, perhaps of its data list" : "computed, not a literal"});
   }
 
   // The data list says by FP1 which tool and base XP1 is in.

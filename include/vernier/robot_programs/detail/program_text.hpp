@@ -16,9 +16,10 @@ namespace vernier::detail {
 struct ProgramToken {
   /// What it is.
   enum class Kind : unsigned char { word, number, text, sign, line_end } kind;
-  std::size_t begin, end;  ///< bytes
-  std::size_t line;        ///< counted from 1
-  double value = 0;        ///< of a number
+  std::size_t begin, end;   ///< bytes
+  std::size_t line;         ///< counted from 1
+  double value = 0;         ///< of a number
+  std::size_t partner = 0;  ///< of an opening bracket: the token that closes it; 0 where none does
 };
 
 /// What marks a comment and quotes a text in a language.
@@ -53,6 +54,13 @@ struct ProgramStep {
   bool element = false;               ///< one of several literals that it may use: no order is known
 };
 
+/// Most moves, those that several literals serve counted as many times.
+inline constexpr std::size_t most_steps = 1'000'000;
+/// Adds a step, unless there are too many already; `use_targets` refuses those.
+inline void add_step(std::vector<ProgramStep>& steps, const ProgramStep& step) {
+  if (steps.size() <= most_steps) steps.push_back(step);
+}
+
 /// The text of a program and its tokens, and what is found in it.
 class ProgramText {
  public:
@@ -75,6 +83,11 @@ class ProgramText {
   bool is_line_end(std::size_t i) const { return tokens[i].kind == ProgramToken::Kind::line_end; }
 };
 
+/// Whether a character may be part of a word.
+inline bool is_word_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '$' ||
+         static_cast<signed char>(c) < 0;
+}
 /// A DataError about a line.
 VERNIER_API [[noreturn]] void fail_at(const ProgramText& text, std::size_t line, const std::string& what);
 /// In lower-case letters.
@@ -89,7 +102,7 @@ VERNIER_API std::optional<double> signed_number(const ProgramText& text, std::si
 /// The value that begins at token i, which is `[`; i is then behind it.
 /// @param terminator sign that ends a statement, which may not occur inside; 0: none
 VERNIER_API BracketValue read_brackets(const ProgramText& text, std::size_t& i, char terminator);
-/// The token behind the bracket that closes the one at i; stops in front of `stop`.
+/// The token behind the bracket that closes the one at token i, at most `stop`; i itself where that is none.
 VERNIER_API std::size_t behind_brackets(const ProgramText& text, std::size_t i, std::size_t stop);
 /// Sets line and column of a target by its first byte.
 VERNIER_API void place(const ProgramText& text, std::size_t byte, std::size_t line, ProgramTarget& target);

@@ -39,15 +39,13 @@ VERNIER_IMPL std::string excerpt(const ProgramText& text, std::size_t first, std
 
 VERNIER_IMPL ProgramText ProgramText::of(std::string_view text, const std::string& name, const ProgramSyntax& syntax) {
   using Kind = ProgramToken::Kind;
-  constexpr std::size_t max_bytes = std::size_t{64} << 20, max_line = 100000;
+  constexpr std::size_t max_bytes = std::size_t{16} << 20, max_line = 100000;
   ProgramText out;
   out.text = text;
   out.name = name;
   if (text.size() > max_bytes) throw DataError(message(name, ": ", text.size(), " bytes, at most ", max_bytes));
-  const auto letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '$' || static_cast<signed char>(c) < 0;
-  };
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto letter = [&](char c) { return is_word_character(c) && !digit(c); };
   std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0, line = 1, line_begin = 0;
   const auto line_length = [&](std::size_t end) {
     if (end - line_begin > max_line)
@@ -90,7 +88,7 @@ VERNIER_IMPL ProgramText ProgramText::of(std::string_view text, const std::strin
       if (error != std::errc() || !std::isfinite(token.value)) token.value = std::nan("");
       out.tokens.push_back(token);
     } else if (letter(c)) {
-      while (i < text.size() && (letter(text[i]) || digit(text[i]))) ++i;
+      while (i < text.size() && is_word_character(text[i])) ++i;
       out.tokens.push_back({Kind::word, begin, i, line});
     } else {
       out.tokens.push_back({Kind::sign, begin, ++i, line});
@@ -98,6 +96,14 @@ VERNIER_IMPL ProgramText ProgramText::of(std::string_view text, const std::strin
   }
   line_length(text.size());
   out.tokens.push_back({Kind::line_end, text.size(), text.size(), line});
+  std::vector<std::size_t> open;
+  for (std::size_t k = 0; k < out.tokens.size(); ++k) {
+    if (out.is(k, '(') || out.is(k, '[') || out.is(k, '{')) open.push_back(k);
+    if ((out.is(k, ')') || out.is(k, ']') || out.is(k, '}')) && !open.empty()) {
+      out.tokens[open.back()].partner = k;
+      open.pop_back();
+    }
+  }
   return out;
 }
 
@@ -119,7 +125,8 @@ VERNIER_IMPL BracketValue read_brackets(const ProgramText& text, std::size_t& i,
   std::vector<BracketValue> open;  // from the outermost one
   BracketValue done;
   const auto begin_group = [&] {
-    if (open.size() == max_depth) fail_at(text, text.tokens[i].line, message("brackets nested deeper than ", max_depth));
+    if (open.size() == max_depth)
+      fail_at(text, text.tokens[i].line, message("brackets nested deeper than ", max_depth));
     BracketValue group;
     group.group = true;
     group.range = {text.tokens[i].begin, text.tokens[i].end};
@@ -185,15 +192,8 @@ VERNIER_IMPL BracketValue read_brackets(const ProgramText& text, std::size_t& i,
 }
 
 VERNIER_IMPL std::size_t behind_brackets(const ProgramText& text, std::size_t i, std::size_t stop) {
-  std::size_t depth = 0;
-  for (; i < stop; ++i) {
-    if (text.is(i, '(') || text.is(i, '[') || text.is(i, '{')) ++depth;
-    if (text.is(i, ')') || text.is(i, ']') || text.is(i, '}')) {
-      if (depth > 0) --depth;
-      if (depth == 0) return i + 1;
-    }
-  }
-  return stop;
+  if (!text.is(i, '(') && !text.is(i, '[') && !text.is(i, '{')) return std::min(i, stop);
+  return text.tokens[i].partner == 0 ? stop : std::min(text.tokens[i].partner + 1, stop);
 }
 
 VERNIER_IMPL void place(const ProgramText& text, std::size_t byte, std::size_t line, ProgramTarget& target) {
@@ -205,6 +205,7 @@ VERNIER_IMPL void place(const ProgramText& text, std::size_t byte, std::size_t l
 VERNIER_IMPL void use_targets(const ProgramText& text, const std::vector<ProgramStep>& steps,
                               const std::vector<bool>& keep, RobotProgram& program) {
   constexpr std::size_t never = static_cast<std::size_t>(-1);
+  if (steps.size() > most_steps) throw DataError(message(text.name, ": more than ", most_steps, " uses of targets"));
   std::vector<ProgramTarget>& targets = program.targets;
   std::vector<std::size_t> first_use(targets.size(), never), uses(targets.size(), 0), before(targets.size(), never);
   std::vector<bool> refused(targets.size(), false);

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
@@ -38,7 +39,7 @@ class RapidReader {
     bool array = false, changed = false;
   };
   struct Move {
-    std::size_t token = 0;        // none: routines begin
+    std::size_t token = 0;  // none: routines begin
     std::vector<Span> arguments{};
     std::string tool{}, workobject = "wobj0";
   };
@@ -78,7 +79,7 @@ class RapidReader {
     std::size_t end = k;
     while (end < text_.tokens.size() && !text_.is(end, ';') && !text_.is_line_end(end)) ++end;
     changes_.push_back({text_.tokens[i].line, {i, end}});
-    return k + 2;
+    return end;
   }
 
   bool follows(std::size_t i, std::string_view signs) const {
@@ -88,10 +89,10 @@ class RapidReader {
 
   static bool is_move(std::string_view name) {
     static constexpr std::array<std::string_view, 28> names{
-        "movej",   "movel",  "movec",   "moveabsj", "movejdo",  "moveldo", "movecdo",   "movejao",  "movelao",
-        "movecao", "movejgo", "movelgo", "movecgo",  "movejsync", "movelsync", "movecsync", "triggj", "triggl",
-        "triggc",  "arcl",   "arcc",    "arclstart", "arclend",  "arccstart", "arccend", "spotl",   "displ",
-        "paintl"};
+        "movej",     "movel",     "movec",     "moveabsj", "movejdo", "moveldo", "movecdo",
+        "movejao",   "movelao",   "movecao",   "movejgo",  "movelgo", "movecgo", "movejsync",
+        "movelsync", "movecsync", "triggj",    "triggl",   "triggc",  "arcl",    "arcc",
+        "arclstart", "arclend",   "arccstart", "arccend",  "spotl",   "displ",   "paintl"};
     return std::find(names.begin(), names.end(), name) != names.end();
   }
 
@@ -121,6 +122,7 @@ class RapidReader {
         std::size_t end = k;
         while (end < text_.tokens.size() && !text_.is(end, ';') && !text_.is_line_end(end)) ++end;
         program_.uncorrected.push_back({line, excerpt(text_, i + 1, end), "computed, not a literal"});
+        return end;
       }
       return k;
     }
@@ -129,7 +131,7 @@ class RapidReader {
       const BracketValue data = read_brackets(text_, k, ';');
       if (type == "tooldata") tool(name, data);
       if (type == "wobjdata") workobject(name, data);
-      if (type == "extjoint" && unused(data)) unused_axes_.push_back(name);
+      if (type == "extjoint" && unused(data)) unused_axes_.insert(name);
       return k;
     }
     read_brackets(text_, k, ';');  // of another type: never a target
@@ -162,9 +164,7 @@ class RapidReader {
   }
 
   bool unused(const BracketValue& axes) const {
-    if (!axes.group && text_.is_word(axes.token))
-      return std::find(unused_axes_.begin(), unused_axes_.end(), lower_case(text_.at(axes.token))) !=
-             unused_axes_.end();
+    if (!axes.group && text_.is_word(axes.token)) return unused_axes_.count(lower_case(text_.at(axes.token))) != 0;
     if (!axes.numbers(6)) return false;
     return std::all_of(axes.values.begin(), axes.values.end(), [](const auto& v) { return *v.number > 8.9e8; });
   }
@@ -221,8 +221,10 @@ class RapidReader {
           target.configuration_numbers.push_back(number.range);
         }
     }
-    if (!name.empty()) names_[name].targets.push_back(program_.targets.size());
-    else inline_[value.token] = program_.targets.size();
+    if (!name.empty())
+      names_[name].targets.push_back(program_.targets.size());
+    else
+      inline_[value.token] = program_.targets.size();
     program_.targets.push_back(std::move(target));
   }
 
@@ -292,18 +294,17 @@ class RapidReader {
         step.element = declared->second.targets.size() > 1;
         for (const std::size_t k : declared->second.targets) {
           step.target = k;
-          steps_.push_back(step);
+          add_step(steps_, step);
         }
         continue;
       }
       steps_.push_back({{}, {}, {}, kind});
       if (text_.is(first, '[')) continue;  // refused before
-      program_.uncorrected.push_back(
-          {text_.tokens[first < last ? first : move.token].line,
-           excerpt(text_, move.token, move.token + 1) + " " + excerpt(text_, first, last),
-           !text_.is_word(first) || end != last ? "computed, not a literal"
-           : declared == names_.end()           ? "declared in another file, or a parameter"
-                                                : "a variable without literal value"});
+      program_.uncorrected.push_back({text_.tokens[first < last ? first : move.token].line,
+                                      excerpt(text_, move.token, move.token + 1) + " " + excerpt(text_, first, last),
+                                      !text_.is_word(first) || end != last ? "computed, not a literal"
+                                      : declared == names_.end()           ? "declared in another file, or a parameter"
+                                                                           : "a variable without literal value"});
     }
   }
 
@@ -311,7 +312,7 @@ class RapidReader {
   RobotProgram& program_;
   std::map<std::string, Declared> names_{};
   std::map<std::size_t, std::size_t> inline_{};  // target by its first token
-  std::vector<std::string> unused_axes_{};
+  std::set<std::string> unused_axes_{};
   std::vector<Move> moves_{};
   std::vector<std::pair<std::size_t, Span>> changes_{};
   std::vector<ProgramStep> steps_{};

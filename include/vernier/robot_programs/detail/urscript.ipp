@@ -54,7 +54,8 @@ class UrscriptReader {
   }
 
   std::size_t line_end(std::size_t i) const {
-    while (i < text_.tokens.size() && !text_.is_line_end(i)) ++i;
+    const std::size_t stop = std::min(i + 20, text_.tokens.size());  // enough for a remark
+    while (i < stop && !text_.is_line_end(i)) ++i;
     return i;
   }
 
@@ -165,7 +166,8 @@ class UrscriptReader {
     while (last > first && text_.is_line_end(last - 1)) --last;
     if (first >= last) return remark("no target");
     if (text_.is_word(first) && text_.at(first) == "get_inverse_kin" && text_.is(first + 1, '(') &&
-        behind_brackets(text_, first + 1, last) == last && first + 2 < last && text_.at(first + 2) != "get_inverse_kin") {
+        behind_brackets(text_, first + 1, last) == last && first + 2 < last &&
+        text_.at(first + 2) != "get_inverse_kin") {
       const std::size_t end = argument_end(first + 2, last - 1), before = steps_.size();
       target(instruction, first + 2, end, step);
       if (steps_.size() == before + 1 && steps_.back().target && end < last - 1)
@@ -191,7 +193,7 @@ class UrscriptReader {
     step.element = assigned->second.targets.size() > 1 || !assigned->second.computed.empty();
     for (const std::size_t k : assigned->second.targets) {
       step.target = k;
-      steps_.push_back(step);
+      add_step(steps_, step);
     }
   }
 

@@ -1,0 +1,120 @@
+// The arm's configuration that a program states, and the joint values that a controller takes for it.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/robot_programs/configuration.hpp"
+
+namespace vernier {
+namespace {
+
+using enum ProgramLanguage;
+constexpr double degree = std::numbers::pi / 180;
+
+JointVector<6> degrees(double a, double b, double c, double d, double e, double f) {
+  return JointVector<6>{a, b, c, d, e, f} * degree;
+}
+
+TEST(UpdatedConfiguration, QuadrantsOfRapid) {
+  const std::vector<int> stated{0, -1, 1, 4};
+  EXPECT_EQ(updated_configuration(rapid, stated, degrees(10, 0, 0, -10, 5, 100)), stated);
+  EXPECT_EQ(updated_configuration(rapid, stated, degrees(0, 0, 0, -90, 5, 180)), stated);
+  EXPECT_EQ(updated_configuration(rapid, stated, degrees(-0.01, 0, 0, 0.01, 5, 89.9)), (std::vector<int>{-1, 0, 0, 4}));
+  EXPECT_EQ(updated_configuration(rapid, stated, degrees(91, 0, 0, -91, 5, -271)), (std::vector<int>{1, -2, -4, 4}));
+}
+
+TEST(UpdatedConfiguration, TurnBitsOfKrl) {
+  const std::vector<int> stated{2, 2};  // A2 negative
+  EXPECT_EQ(updated_configuration(krl, stated, degrees(1, -90, 90, 1, 30, 1)), stated);
+  EXPECT_EQ(updated_configuration(krl, stated, degrees(-1.9, 1.9, 90, -1.9, 30, 0)), stated);  // within 2 degrees of 0
+  EXPECT_EQ(updated_configuration(krl, stated, degrees(-2.1, 2.1, 90, 0, 30, -3)), (std::vector<int>{2, 1 + 32}));
+}
+
+TEST(UpdatedConfiguration, LastTurnNumberOfFanuc) {
+  const std::vector<int> stated{0, 1, 1, 0, 0, 0};
+  EXPECT_EQ(updated_configuration(fanuc_tp, stated, degrees(0, 0, 0, 0, -90, 179)), stated);
+  EXPECT_EQ(updated_configuration(fanuc_tp, stated, degrees(0, 0, 0, 0, -90, 181)),
+            (std::vector<int>{0, 1, 1, 0, 0, 1}));
+  EXPECT_EQ(updated_configuration(fanuc_tp, stated, degrees(0, 0, 0, 0, -90, -181)),
+            (std::vector<int>{0, 1, 1, 0, 0, -1}));
+}
+
+class ControllerJointsOfIrb120 : public testing::Test {
+ protected:
+  ControllerJoints found(const JointVector<6>& at, const std::vector<int>& configuration,
+                         const JointVector<6>& near = JointVector<6>::Constant(std::nan(""))) const {
+    return controller_joints(roots_, robot_.chain, robot_.limits, rapid, {}, robot_.chain.pose(at), configuration,
+                             near);
+  }
+
+  Robot<6> robot_ = robots::abb_irb120();
+  ClosedForm<6> roots_{robot_.chain};
+};
+
+TEST_F(ControllerJointsOfIrb120, AsStated) {
+  const JointVector<6> q = degrees(10, 20, -30, 40, 50, 300);
+  const ControllerJoints as_stated = found(q, {0, 0, 3, 0});
+  ASSERT_TRUE(as_stated.joints) << as_stated.reason;
+  EXPECT_LT((*as_stated.joints - q).norm(), 1e-9);
+  // another turn of joint 6, and the other side of the wrist
+  EXPECT_LT((*found(q, {0, 0, -1, 0}).joints - degrees(10, 20, -30, 40, 50, -60)).norm(), 1e-9);
+  EXPECT_LT((*found(q, {0, -2, 1, 1}).joints - degrees(10, 20, -30, -140, -50, 120)).norm(), 1e-9);
+  EXPECT_EQ(found(q, {1, 0, 3, 0}).reason, "no joint values within the limits have its configuration");
+}
+
+TEST_F(ControllerJointsOfIrb120, FlagOfTheBranchChoosesWhereQuadrantsDoNot) {
+  // Of this pose, elbow up and elbow down have the same quadrants.
+  const JointVector<6> q = degrees(5, -20, 60, 10, 40, 10);
+  int chosen = 0;
+  for (int cfx = 0; cfx < 8; ++cfx) {
+    const ControllerJoints one = found(q, {0, 0, 0, cfx});
+    if (one.joints && (*one.joints - q).norm() < 1e-9) ++chosen;
+  }
+  EXPECT_GE(chosen, 1);
+  EXPECT_LT((*found(q, {0, 0, 0, 0}).joints - q).norm(), 1e-9);
+}
+
+TEST_F(ControllerJointsOfIrb120, QuadrantsAtTheirEnd) {
+  const JointVector<6> q = degrees(0.0, 20, -30, 40, 50, 90);
+  for (const int cf1 : {0, -1})
+    for (const int cf6 : {0, 1}) {
+      const ControllerJoints one = found(q, {cf1, 0, cf6, 0});
+      ASSERT_TRUE(one.joints) << one.reason;
+      EXPECT_LT((*one.joints - q).norm(), 1e-9);
+    }
+}
+
+TEST_F(ControllerJointsOfIrb120, WithoutConfigurationTheNearest) {
+  const JointVector<6> q = degrees(10, 20, -30, 40, 50, 200);
+  EXPECT_EQ(found(q, {}).reason, "no configuration, and no joint values before it are known");
+  EXPECT_LT((*found(q, {}, degrees(15, 25, -20, 30, 60, 190)).joints - q).norm(), 1e-9);
+  const ControllerJoints far = controller_joints(roots_, robot_.chain, robot_.limits, urscript, {},
+                                                 Isometry3(Eigen::Translation3d(3, 0, 0)), {}, q);
+  EXPECT_FALSE(far.joints);
+  EXPECT_FALSE(far.reason.empty());
+}
+
+// What makers say of their arms: ABB's cfx 0 is in front of axis 1 and of the lower arm with axis 5 positive; KUKA's
+// home position (0, -90, 90, 0, 0, 0) has S 2, and bit 2 where A5 is negative.
+TEST(StatedBranch, BitsOfTheLanguages) {
+  for (int cfx = 0; cfx < 8; ++cfx) {
+    const int branch = detail::stated_branch(rapid, {0, 0, 0, cfx});
+    EXPECT_EQ((branch & 1) != 0, cfx >= 4);
+    EXPECT_EQ((branch & 2) != 0, cfx % 4 >= 2);
+    EXPECT_EQ((branch & 4) != 0, cfx % 2 == 1);
+  }
+  EXPECT_EQ(detail::stated_branch(krl, {2, 2}), 0);
+  EXPECT_EQ(detail::stated_branch(krl, {6, 50}), 4);
+  EXPECT_EQ(detail::stated_branch(krl, {0, 0}), 2);
+  EXPECT_EQ(detail::stated_branch(krl, {3, 0}), 1);
+  EXPECT_EQ(detail::stated_branch(krl, {18, 2}), 0);  // bit 4 is another matter
+  EXPECT_EQ(detail::stated_branch(fanuc_tp, {0, 1, 1, 0, 0, 0}), 0);
+  EXPECT_EQ(detail::stated_branch(fanuc_tp, {1, 1, 1, 0, 0, 0}), 4);
+  EXPECT_EQ(detail::stated_branch(fanuc_tp, {0, 0, 1, 0, 0, 0}), 2);
+  EXPECT_EQ(detail::stated_branch(fanuc_tp, {0, 1, 0, 0, 0, 0}), 1);
+}
+
+}  // namespace
+}  // namespace vernier

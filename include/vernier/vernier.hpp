@@ -35,6 +35,8 @@
 #include "vernier/regression/ridge_elm.hpp"
 #include "vernier/regression/trigonometric_regression.hpp"
 #include "vernier/regression/var_pro_elm.hpp"
+#include "vernier/robot_programs/configuration.hpp"
+#include "vernier/robot_programs/robot_program.hpp"
 #include "vernier/search/cma_es.hpp"
 #include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"

@@ -186,6 +186,19 @@ TEST(ParseProgram, FanucTp) {
             "42 P[5]: no move of this file uses it\n");
 }
 
+TEST(ParseProgram, DamagedFanucPositionsAreListed) {
+  const auto position = [](const std::string& config, const std::string& r) {
+    return remarks(parse_program(ProgramLanguage::fanuc_tp,
+                                 "/PROG A\n/MN\n/POS\nP[1]{\nGP1:\nUF : 0, UT : 1, CONFIG : " + config +
+                                     ",\nX = 1 mm, Y = 2 mm, Z = 3 mm,\nW = 4 deg, P = 5 deg, R = " + r +
+                                     "\n};\n/END\n",
+                                 "a.ls"));
+  };
+  EXPECT_EQ(position("'N U T, 0, 0, 0'", "6 deg"), "");
+  EXPECT_EQ(position("'N U T, 0, 0, 0'", "6M0 deg"), "4 P[1]: a component is missing or no number\n");
+  EXPECT_EQ(position("'N U T, 0, 0, -1\n'", "6 deg"), "4 P[1]: its configuration is missing or of another kind\n");
+}
+
 TEST(ParseProgram, MovesWithSeveralToolsAreToldApart) {
   const RobotProgram program = parse_program(
       ProgramLanguage::rapid,

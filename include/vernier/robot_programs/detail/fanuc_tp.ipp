@@ -91,6 +91,7 @@ class FanucReader {
       for (std::size_t c = 0; c < 6; ++c)
         if (key == names[c]) {
           values[c] = signed_number(text_, k + 2, next, range);
+          if (word(next) != (c < 3 ? "mm" : "deg")) values[c].reset();
           ranges[c] = range;
         }
       if (key.size() == 2 && key[0] == 'j') joints = true;
@@ -123,6 +124,7 @@ class FanucReader {
   // 'N U T, 0, 0, 0'
   void configuration(const ProgramToken& token, ProgramTarget& target) const {
     const std::string_view text = text_.text.substr(token.begin, token.end - token.begin);
+    if (text.size() < 2 || text.back() != text.front()) return;
     std::array<int, 6> out{-1, -1, -1, 0, 0, 0};
     std::vector<ByteRange> ranges;
     for (std::size_t i = 1; i + 1 < text.size();) {

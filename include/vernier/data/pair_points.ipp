@@ -40,7 +40,7 @@ VERNIER_API double middle_of(std::vector<double> values) {
 }
 
 /// Median distance from the point of median coordinates.
-VERNIER_API double point_spread(const PointRows& points) {
+VERNIER_API double median_spread(const PointRows& points) {
   Vector3 centre;
   for (int k = 0; k < 3; ++k) centre(k) = middle_of({points.col(k).begin(), points.col(k).end()});
   const VectorX distances = (points.rowwise() - centre.transpose()).rowwise().norm();
@@ -162,7 +162,7 @@ struct PairSearch {
   /// The frames that explain most.
   std::optional<Found> best() const {
     constexpr std::size_t settled = 8;
-    const double spread = point_spread(points), widest = 0.05 * spread;
+    const double spread = median_spread(points), widest = 0.05 * spread;
     if (!(spread > 0)) return {};
     std::vector<std::pair<Index, std::size_t>> order;
     const std::vector<PointFrames> candidates = starts();
@@ -226,7 +226,7 @@ VERNIER_API std::pair<PairingProof, std::optional<PairSearch::Found>> prove(cons
   PointRows positions(search.rows(), 3);
   for (Index i = 0; i < search.rows(); ++i)
     positions.row(i) = search.flanges[static_cast<std::size_t>(i)].translation().transpose();
-  proof.spread_ratio = point_spread(search.points) / point_spread(positions);
+  proof.spread_ratio = median_spread(search.points) / median_spread(positions);
   proof.status = PairingStatus::unrelated;
   std::vector<double> factors{1};
   for (const double unit : {1e3, 25.4, 1 / 0.0254, 10.0, 100.0, 304.8, 1e6})

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/data/detail/text_lines.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/kinematics/detail/rows_of_axes.hpp"
 
@@ -22,12 +23,6 @@ struct UrDeltas {
   std::array<std::array<double, 6>, 4> values{};
   std::array<std::size_t, 4> lines{};  ///< where each list is; 0: nowhere
 };
-
-VERNIER_API std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 /// `[ x, x, x, x, x, x]`
 VERNIER_API std::array<double, 6> six_numbers(std::string_view list, const std::string& place) {
@@ -67,6 +62,7 @@ VERNIER_API UrDeltas read_ur_deltas(const std::string& path) {
     const std::size_t end = rest.find('\n');
     std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
     line = trimmed(line.substr(0, line.find('#')));
     if (line.empty()) continue;
     const std::size_t equals = line.find('=');

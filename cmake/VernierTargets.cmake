@@ -77,6 +77,11 @@ function(vernier_add_component component)
   target_compile_definitions(vernier_${compiled} PUBLIC VERNIER_COMPILED)
   target_link_libraries(vernier_${compiled} PUBLIC ${target})
   if(NOT component STREQUAL "vernier")
+    foreach(library IN LISTS arg_LINK)  # a component that brings another
+      if(library MATCHES "^vernier::(.+)$" AND TARGET vernier::compiled_${CMAKE_MATCH_1})
+        target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled_${CMAKE_MATCH_1})
+      endif()
+    endforeach()
     target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled)
   endif()
   foreach(library IN LISTS arg_LINK)  # components that this one is built on

@@ -13,7 +13,7 @@ namespace {
 
 using namespace vernier;
 
-class ReadContacts : public testing::Test {
+class ReadContacts : public ::testing::Test {
  protected:
   std::vector<Contact> read(const std::string& text) {
     write_file(folder_ / "c.csv", text);

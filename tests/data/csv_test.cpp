@@ -30,7 +30,7 @@ using vernier::write_dataset;
 constexpr double degree = std::numbers::pi / 180;
 
 /// A folder of its own for each test, gone afterwards.
-class Csv : public testing::Test {
+class Csv : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() / ("vernier_csv_" + std::to_string(getpid()) + "_" +

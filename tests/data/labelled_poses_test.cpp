@@ -15,7 +15,7 @@ namespace {
 
 using namespace vernier;
 
-class ReadLabelledPoses : public testing::Test {
+class ReadLabelledPoses : public ::testing::Test {
  protected:
   LabelledPoses read(const std::string& text) {
     write_file(folder_ / "p.csv", text);

@@ -131,7 +131,7 @@ struct Trial {
   int faults, kind, sets;
 };
 
-class PlantedFaults : public testing::TestWithParam<Trial> {};
+class PlantedFaults : public ::testing::TestWithParam<Trial> {};
 
 // Every planted fault of every set is found and named, nothing else is, and every pair is right. The arm's errors are
 // 4 mm (median), a misplaced point is 60 mm off.

@@ -15,7 +15,7 @@
 namespace vernier::point_table_test {
 namespace {
 
-class PointTables : public testing::Test {
+class PointTables : public ::testing::Test {
  protected:
   PointTable read(const std::string& text, const PointTableFormat& format = {}) const {
     std::filesystem::current_path(folder_.path());

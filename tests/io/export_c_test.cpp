@@ -222,7 +222,7 @@ bool have(const char* compiler, const testing_support::TemporaryFolder& folder) 
   return run_command(std::string("command -v ") + compiler, folder.path()).exit_code == 0;
 }
 
-class ExportC : public testing::Test {
+class ExportC : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!have("gcc", folder_)) GTEST_SKIP() << "gcc is not here to compile what is exported";

@@ -324,7 +324,7 @@ TEST(SvgChart, PlacesValuesOnItsAxes) {
 }
 
 /// A page in a file, looked at by other programs.
-class HtmlReportSeen : public testing::Test {
+class HtmlReportSeen : public ::testing::Test {
  protected:
   CommandResult run(const std::string& command) {
     return testing_support::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());

@@ -70,7 +70,7 @@ void expect_same_bits(const Model::Arm& a, const Model::Arm& b) {
   EXPECT_TRUE(a.tool_frame().values() == b.tool_frame().values());
 }
 
-class ModelFile : public testing::Test {
+class ModelFile : public ::testing::Test {
  protected:
   testing_support::TemporaryFolder folder_{"model_file"};
 };

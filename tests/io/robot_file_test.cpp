@@ -12,7 +12,7 @@
 namespace vernier::robot_file_test {
 namespace {
 
-class RobotFile : public testing::Test {
+class RobotFile : public ::testing::Test {
  protected:
   RobotDescription load(const std::string& text) const {
     write_file(path_, text);

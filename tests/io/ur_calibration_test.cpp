@@ -12,7 +12,7 @@
 namespace vernier::ur_calibration_test {
 namespace {
 
-class UrCalibration : public testing::Test {
+class UrCalibration : public ::testing::Test {
  protected:
   RobotDescription read(const std::string& text, const RobotDescription& nominal) const {
     write_file(path_, text);

@@ -27,7 +27,7 @@ CalibratedRobot<6> model() {
   return {"an arm", Model(robot.chain, Model::Arm(with_geometric_errors(robot.chain, {}, 3))), robot.limits, {}};
 }
 
-class BadInputToPrograms : public testing::Test {
+class BadInputToPrograms : public ::testing::Test {
  protected:
   BadInputToPrograms() {
     const auto robot = robots::abb_irb120();

@@ -49,7 +49,7 @@ double registered_mean(const Arm& arm) {
   return out;
 }
 
-class CalibrateContacts : public testing::Test {
+class CalibrateContacts : public ::testing::Test {
  protected:
   CommandResult calibrate(const std::string& arguments) {
     return testing_support::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +

@@ -78,7 +78,7 @@ std::vector<double> numbers_in(const std::string& text) {
   return out;
 }
 
-class CorrectProgram : public testing::Test {
+class CorrectProgram : public ::testing::Test {
  protected:
   void make_model(const Robot<6>& catalogue, std::uint64_t seed) {
     nominal_ = catalogue.chain;

@@ -22,7 +22,7 @@ namespace {
 
 using testing_support::CommandResult;
 
-class Correct : public testing::Test {
+class Correct : public ::testing::Test {
  protected:
   Correct() {
     save(folder_ / "model.json", robot_);

@@ -17,7 +17,7 @@ namespace {
 
 using testing_support::CommandResult;
 
-class ExportCProgram : public testing::Test {
+class ExportCProgram : public ::testing::Test {
  protected:
   ExportCProgram() { save(folder_ / "model.json", robot_); }
 

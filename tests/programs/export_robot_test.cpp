@@ -23,7 +23,7 @@ namespace {
 const std::string from_urdf = "--robot arm.urdf --base-link base_link --tip-link tool0 ";
 
 /// Eighty poses of a virtual arm, measured in a tracker's frame with a tool.
-class ExportRobot : public testing::Test {
+class ExportRobot : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new testing_support::TemporaryFolder("export_robot");

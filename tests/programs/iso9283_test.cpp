@@ -20,7 +20,7 @@ namespace {
 
 using testing_support::CommandResult;
 
-class Iso9283Program : public testing::Test {
+class Iso9283Program : public ::testing::Test {
  protected:
   CommandResult iso(const std::string& arguments) {
     return testing_support::run_command(

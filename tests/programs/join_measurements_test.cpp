@@ -22,7 +22,7 @@ namespace {
 
 using testing_support::CommandResult;
 
-class JoinMeasurements : public testing::Test {
+class JoinMeasurements : public ::testing::Test {
  protected:
   JoinMeasurements() {
     const auto robot = robots::ur10();

@@ -19,7 +19,7 @@ namespace {
 
 using testing_support::CommandResult;
 
-class PlanPoses : public testing::Test {
+class PlanPoses : public ::testing::Test {
  protected:
   CommandResult run(const std::string& program, const std::string& arguments) {
     return testing_support::run_command(

@@ -7,7 +7,7 @@
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/robot_programs/configuration.hpp"
 
-namespace vernier {
+namespace vernier::robot_configuration_test {
 namespace {
 
 using enum ProgramLanguage;
@@ -117,4 +117,4 @@ TEST(StatedBranch, BitsOfTheLanguages) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::robot_configuration_test

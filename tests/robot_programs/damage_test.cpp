@@ -7,7 +7,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
 
-namespace vernier {
+namespace vernier::robot_damage_test {
 namespace {
 
 using namespace vernier_test;
@@ -81,4 +81,4 @@ TEST(DamagedPrograms, ManyBracketsTakeNoLongTime) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::robot_damage_test

@@ -9,7 +9,7 @@
 #include "vernier/core/data_error.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
 
-namespace vernier {
+namespace vernier::robot_parse_test {
 namespace {
 
 using namespace vernier_test;
@@ -244,4 +244,4 @@ TEST(ParseProgram, DamageIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::robot_parse_test

@@ -14,7 +14,7 @@
 #include "vernier/robot_programs/configuration.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
 
-namespace vernier {
+namespace vernier::robot_replace_test {
 namespace {
 
 using namespace vernier_test;
@@ -163,4 +163,4 @@ TEST(Stamped, AProgramIsCorrectedOnce) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::robot_replace_test

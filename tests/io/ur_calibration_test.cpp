@@ -138,6 +138,7 @@ TEST_F(UrCalibration, DamageIsNamedInOneLine) {
   expect(changed("delta_a ", "delta_a : 3"), "is neither a [section] nor key = value");
   expect(changed("delta_a ", "delta_d = [0, 0, 0, 0, 0, 0]"), "line 4: delta_d is given twice, also in line 3");
   expect(changed("delta_a ", "delta_a = [0, 2, 0, 0, 0, 0]"), "far from -0.612 m of 'ur10'; is it of another arm?");
+  expect(std::string((1 << 20) + 1, '#'), "has more than 1 MiB");
   EXPECT_NE(vernier_test::complaint([&] {
               (void)read_ur_calibration((folder_ / "none").string(), RobotDescription::of(robots::ur10()));
             }).find("none"),

@@ -21,7 +21,7 @@ namespace vernier {
 /// the controller places the nearly parallel axes 2 to 4 by d of up to hundreds of metres. The rows returned have d = 0
 /// and beta there, are close to the nominal ones, and have the same poses, to the rounding of such lengths (1e-13 m).
 /// The frames and everything else of the nominal arm stay as they are.
-/// @param path    the file
+/// @param path    the file, of at most 1 MiB
 /// @param nominal six revolute joints in the standard convention without beta, e.g. of `robots::ur10()`
 /// @throws DataError naming file, line and key, also where the result is far from the nominal arm
 /// @throws std::invalid_argument for another kind of nominal arm

@@ -50,7 +50,7 @@ VERNIER_API std::array<double, 6> six_numbers(std::string_view list, const std::
 VERNIER_API UrDeltas read_ur_deltas(const std::string& path) {
   std::string content;
   try {
-    content = read_file(path);
+    content = read_file(path, std::size_t{1} << 20);
   } catch (const std::invalid_argument& e) {
     throw DataError(e.what());
   }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "cli.hpp"
@@ -32,11 +33,19 @@ double held_out_error(const std::string& results, const std::string& model) {
   return 1e-3 * root.at("stages").at(root.at("chosen").text()).at("mean_mm").number();
 }
 
+/// The same from the model itself; none where it does not know.
+std::optional<double> held_out_error(const std::string& model) {
+  const nlohmann::json saved = vn::read_json(model);
+  const vn::JsonNode from = vn::JsonNode(saved, model).at("provenance");
+  return from.has("held_out_error_m") ? std::optional<double>(from.at("held_out_error_m").number()) : std::nullopt;
+}
+
 int run(support::Program& program) {
   std::string model, results, name = "arm";
   CLI::App& app = program.app();
   app.add_option("--model", model, "calibrated model that calibrate saved")->required()->type_name("FILE");
-  app.add_option("--results", results, "what calibrate wrote by --json: its held-out error becomes a macro")
+  app.add_option("--results", results,
+                 "what calibrate wrote by --json, in place of the held-out error that the model keeps")
       ->type_name("FILE");
   app.add_option("--name", name, "what all names in the file begin with")->type_name("NAME")->capture_default_str();
   program.parse("", "write the C header to this file", "FILE");
@@ -47,6 +56,7 @@ int run(support::Program& program) {
   vn::CExport options{.name = name};
   if (!results.empty()) options.held_out_error = held_out_error(results, model);
   const std::string source = vn::c_source(model, options);
+  if (results.empty()) options.held_out_error = held_out_error(model);
   vn::write_file(out, source);
   std::string capitals = name;
   for (char& letter : capitals) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));

@@ -370,6 +370,8 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
                                  fmt::format("robot {}, {} targets", robot.name(), outcome.replaced.size()),
                                  fmt::format("{} by Vernier {}.{}.{}", options.date.empty() ? today() : options.date,
                                              VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH)};
+  if (const double error = saved.provenance().held_out_error; error > 0)
+    stamp.push_back(fmt::format("held-out error {:.3f} mm (mean)", error * 1e3));
   if (std::isfinite(radius)) stamp.push_back(fmt::format("errors < {:.3f} mm (95 %)", radius * 1e3));
   if (!outcome.uncorrected.empty()) stamp.push_back(fmt::format("{} not corrected", outcome.uncorrected.size()));
   vn::write_file(input.out, vn::stamped(vn::replace_targets(text, program, outcome.replaced), program, stamp));

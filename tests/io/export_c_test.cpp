@@ -397,6 +397,16 @@ TEST_F(ExportC, StatesWhereItComesFrom) {
   EXPECT_EQ(c_source(path, {.held_out_error = 1.25e-4}), source);  // the file is the same arm
   has(c_source(robot, {.name = "cell3_Left"}), "\nCELL3_LEFT_API int cell3_Left_correct(");
   EXPECT_EQ(c_source(robot).find("HELD_OUT_ERROR"), std::string::npos);
+  has(c_source(robot), " * held-out error:  not stated\n");
+  Provenance from = robot.provenance();
+  from.held_out_error = 8.5e-5;  // as calibrate knows it
+  const CalibratedRobot<6> assessed(robot.name(), robot.model(), robot.limits(), from);
+  save(path, assessed);
+  for (const std::string& text : {c_source(assessed), c_source(path)}) {
+    has(text, "#define ARM_HELD_OUT_ERROR 8.5000000000000006e-05 /* mean [m] */\n");
+    has(text, " * held-out error:  0.085 mm in the mean\n");
+  }
+  has(c_source(assessed, {.held_out_error = 1.25e-4}), "#define ARM_HELD_OUT_ERROR 0.000125 /* mean [m] */\n");
 
   const CalibratedRobot<6> warm("warm", robot.model().with_thermal({22, 20, 25, VectorX::Constant(42, 1e-5)}),
                                 robot.limits(), robot.provenance());

@@ -86,7 +86,7 @@ class CorrectProgram : public ::testing::Test {
     const Model::Arm actual{with_geometric_errors(catalogue.chain, {}, seed),
                             FrameParameters(Vector6{1, 2, 0.5, 0.1, 0.2, 1}),
                             FrameParameters(Vector6{0.01, 0, 0.1, 0, 0.4, 0})};
-    robot_.emplace("simulated", Model(catalogue.chain, actual), catalogue.limits, Provenance{});
+    robot_.emplace("simulated", Model(catalogue.chain, actual), catalogue.limits, Provenance{.held_out_error = 8.6e-5});
     save(folder_ / "model.json", *robot_);
   }
 
@@ -201,6 +201,7 @@ TEST_F(CorrectProgram, Rapid) {
   EXPECT_NE(out.find("! sha256 " + sha256(read_file(folder_ / "model.json")) + "\r\n"), std::string::npos);
   EXPECT_NE(out.find("! 2026-02-03 by Vernier"), std::string::npos);
   EXPECT_NE(out.find("! do not correct this program twice\r\n"), std::string::npos);
+  EXPECT_NE(out.find("! held-out error 0.086 mm (mean)\r\n"), std::string::npos);
   EXPECT_NE(out.find("! weld \xE4\xF6\r\n"), std::string::npos);
   std::size_t k = 0;
   for (std::size_t at = out.find("MoveJ"); at != std::string::npos; at = out.find("MoveJ", at + 1), ++k) {
@@ -324,6 +325,7 @@ TEST_F(CorrectProgram, FanucTp) {
   ASSERT_EQ(done.exit_code, 0) << done.errors << done.output;
   const std::string out = read_file(folder_ / "out.ls");
   EXPECT_NE(out.find("/MN\n   :  !VERNIER-CORRECTED: ;\n"), std::string::npos);
+  EXPECT_NE(out.find("   :  !held-out error 0.086 mm (mean) ;\n"), std::string::npos);
   std::size_t k = 0;
   for (std::size_t at = out.find("CONFIG"); at != std::string::npos; at = out.find("CONFIG", at + 1), ++k) {
     const std::string config = out.substr(at, out.find("X =", at) - at);

@@ -76,6 +76,21 @@ TEST_F(ExportCProgram, WritesAHeaderThatTheDemonstrationsUse) {
   EXPECT_EQ(met(in_python.output), 3u) << in_python.output;
 }
 
+TEST_F(ExportCProgram, TheModelsHeldOutErrorIsStated) {
+  ASSERT_EQ(export_c("--out arm.h --json r.json").exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "arm.h").find("HELD_OUT_ERROR"), std::string::npos);
+  EXPECT_FALSE(nlohmann::json::parse(read_file(folder_ / "r.json")).contains("held_out_error_mm"));
+  Provenance from = robot_.provenance();
+  from.held_out_error = 1.25e-4;
+  save(folder_ / "model.json", CalibratedRobot<6>("irb", robot_.model(), robot_.limits(), from));
+  ASSERT_EQ(export_c("--out arm.h --json r.json").exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "arm.h").find("#define ARM_HELD_OUT_ERROR 0.000125 "), std::string::npos);
+  EXPECT_NEAR(nlohmann::json::parse(read_file(folder_ / "r.json")).at("held_out_error_mm"), 0.125, 1e-12);
+  write_results("irb", 90);  // of other held-out poses
+  ASSERT_EQ(export_c("--results results.json --out arm.h").exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "arm.h").find("#define ARM_HELD_OUT_ERROR 8.599"), std::string::npos);
+}
+
 TEST_F(ExportCProgram, RefusesInOneLine) {
   const auto refused = [&](const std::string& arguments, int code, const std::string& why) {
     const CommandResult done = export_c(arguments);

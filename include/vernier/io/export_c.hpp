@@ -15,7 +15,7 @@ namespace vernier {
 struct CExport {
   std::string name = "arm";                ///< a C identifier, with which all names begin; in capitals those of macros
   std::string hash{};                      ///< SHA-256 of the model file; empty: of the file that `save` writes
-  std::optional<double> held_out_error{};  ///< mean position error at held-out poses [m]; none: unknown
+  std::optional<double> held_out_error{};  ///< mean position error at held-out poses [m]; none: that of the provenance
 };
 
 namespace detail {

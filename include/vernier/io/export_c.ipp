@@ -67,6 +67,8 @@ VERNIER_API std::set<std::string> c_features(const ModelData& model) {
 VERNIER_API std::string c_preamble(const ModelData& model, const CExport& options) {
   const Provenance& from = model.provenance;
   const CorrectionOptions correction;
+  const double held_out_error = options.held_out_error.value_or(from.held_out_error);
+  const bool stated = options.held_out_error || held_out_error > 0;
   const std::string version = message(VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH);
   const std::string hash = options.hash.empty() ? sha256(model_to_json(model).dump(1) + "\n") : options.hash;
   const auto row = [](const char* what, const std::string& value) { return message(" * ", what, c_text(value), "\n"); };
@@ -75,8 +77,8 @@ VERNIER_API std::string c_preamble(const ModelData& model, const CExport& option
   out += row("calibrated:      ", from.date);
   out += row("from:            ", message(from.rows, " ", from.measured, " of ", from.data_file));
   out += row("joint values:    ", from.joints);
-  out += row("held-out error:  ", options.held_out_error ? message(*options.held_out_error * 1e3, " mm in the mean")
-                                                         : std::string("not stated"));
+  out +=
+      row("held-out error:  ", stated ? message(held_out_error * 1e3, " mm in the mean") : std::string("not stated"));
   if (model.thermal)
     out +=
         row("temperature:     ", message(model.thermal->reference, " deg C; how the arm changes with it is left out"));
@@ -103,7 +105,7 @@ VERNIER_API std::string c_preamble(const ModelData& model, const CExport& option
   define("MODEL_HASH", quoted(hash));
   define("MODEL_DATE", quoted(from.date));
   define("VERNIER_VERSION", quoted(version));
-  if (options.held_out_error) define("HELD_OUT_ERROR", c_number(*options.held_out_error) + " /* mean [m] */");
+  if (stated) define("HELD_OUT_ERROR", c_number(held_out_error) + " /* mean [m] */");
   if (model.thermal) define("TEMPERATURE", c_number(model.thermal->reference) + " /* [deg C] */");
   define("POSITION_TOLERANCE", c_number(correction.position_tolerance) + " /* of a correction [m] */");
   define("ROTATION_TOLERANCE", c_number(correction.rotation_tolerance) + " /* [rad] */");

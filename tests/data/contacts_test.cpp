@@ -52,6 +52,22 @@ TEST_F(ReadContacts, ObjectsInTheOrderOfTheirFirstTouches) {
   EXPECT_EQ(out[2].known(), Eigen::Vector4d::Constant(0.0125));
 }
 
+TEST_F(ReadContacts, NamesDifferInAnyByte) {
+  const std::string same(40, 'n');  // of a name, messages show as much
+  const auto out = read(header + "\xC3\xA4,socket,,,0,0,0\n\xC3\xB6,socket,,,0,0,1\n\xC3\xA4,socket,,,0,0,0\n" +
+                        "\xC3\xB6,socket,,,0,0,1\n" + same + "1,socket,,,0,0,0\n" + same + "2,socket,,,0,0,1\n" + same +
+                        "1,socket,,,0,0,0\n" + same + "2,socket,,,0,0,1\n");
+  ASSERT_EQ(out.size(), 4u);
+  for (const Contact& contact : out) EXPECT_EQ(contact.size(), 2);
+  EXPECT_EQ(out[2].name(), same + "...");
+}
+
+TEST_F(ReadContacts, ManyObjectsTakeNoLongTime) {  // 10^10 comparisons if each row looked through all names
+  std::string rows = header;
+  for (int i = 0; i < 100'000; ++i) rows += message(i, ",socket,,,0,0,0\n");
+  EXPECT_EQ(refused(rows), "");
+}
+
 TEST_F(ReadContacts, ColumnsOfLengthsAreOptional) {
   const auto out = read("kind,contact_id,q1_rad,q2_rad,q3_rad\nsocket,1,0,0,0\nsocket,1,0,0,1\n");
   ASSERT_EQ(out.size(), 1u);

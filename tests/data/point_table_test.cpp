@@ -77,6 +77,16 @@ TEST_F(PointTables, EachDamageHasItsLine) {
             "points.txt, line 1, column x: '1.5' is not a number");
   EXPECT_EQ(refused("p1;1,5;2;3\n", {.separator = ';'}), "points.txt, line 1, column x: '1,5' is not a number");
   EXPECT_EQ(refused(std::string("p\0", 2)), "points.txt, line 1: binary data, not text");
+  EXPECT_EQ(refused(std::string(5000, ',') + "\n"),
+            "points.txt, line 1: more than 1000 cells, 4 columns are declared, separated by ',': '" +
+                std::string(40, ',') + "...'");
+  EXPECT_EQ(refused(std::string(4000, 'a') + " b"),
+            "points.txt, line 1: 1 cell, 4 columns are declared, separated by "
+            "',': '" +
+                std::string(40, 'a') + "...'");
+  std::string rows;
+  for (int k = 0; k < 1'000'002; ++k) rows += "1\n";
+  EXPECT_EQ(refused(rows), "points.txt: has more than 1000000 rows");
   EXPECT_EQ(refused("// none\n", {.comment = "//"}), "points.txt: no points");
   EXPECT_EQ(refused(""), "points.txt: no points");
   EXPECT_EQ(vernier_test::complaint([] { (void)read_point_table("missing.txt", {}); }),

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -24,20 +25,16 @@ struct CsvColumn {
   double factor;  ///< to m or rad
 };
 
-// What a file may have, so that one that is no table does not fill the memory.
-inline constexpr std::ptrdiff_t most_columns = 1000;
-inline constexpr std::size_t most_rows = 1'000'000;
-
 /// The lines of a file, its numbers by column name. Quotes are not part of the format.
 class CsvTable {
  public:
   explicit CsvTable(const std::string& path) : file_(path) {
     content_ = text_of(path);
     for (const TextLine& line : text_lines(file_, content_)) {
-      if (const auto n = 1 + std::count(line.text.begin(), line.text.end(), ','); n > most_columns)
+      if (const auto n = 1 + std::count(line.text.begin(), line.text.end(), ',');
+          n > static_cast<std::ptrdiff_t>(most_columns))
         throw DataError(message(file_, ", line ", line.number, ": has ", n, " values, more than ", most_columns));
       if (!header_.empty()) {
-        if (lines_.size() == most_rows) throw DataError(message(file_, ": has more than ", most_rows, " rows"));
         lines_.push_back(line);
         continue;
       }
@@ -93,12 +90,12 @@ class CsvTable {
                             " in the header (", present, ")"));
   }
 
-  /// The text of a column, one entry a row.
+  /// The text of a column as it is, one entry a row.
   std::vector<std::string> texts(const CsvColumn& column) const {
     std::vector<std::string> out;
     for (const auto& [number, line] : lines_) {
       const auto fields = cells(line);
-      out.push_back(column.index < fields.size() ? printable(fields[column.index]) : std::string());
+      out.emplace_back(column.index < fields.size() ? fields[column.index] : std::string_view());
     }
     return out;
   }
@@ -239,7 +236,8 @@ VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int join
     const std::vector<std::string> words = table.texts(*move);
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (words[i] != "j" && words[i] != "l")
-        table.fail_in_row(static_cast<Index>(i), *move, "'", words[i], "', must be j (joint move) or l (linear move)");
+        table.fail_in_row(static_cast<Index>(i), *move, "'", printable(words[i]),
+                          "', must be j (joint move) or l (linear move)");
       out.linear.push_back(words[i] == "l");
     }
   }
@@ -347,6 +345,7 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     std::vector<Index> rows;
   };
   std::vector<Object> objects;
+  std::map<std::string, std::size_t> known_objects;  // by all of the name, of which messages show a part
   VectorX known(q.rows());
   for (Index i = 0; i < q.rows(); ++i) {
     const std::string &id = ids[static_cast<std::size_t>(i)], &word = kinds[static_cast<std::size_t>(i)];
@@ -354,18 +353,18 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     ContactKind kind = ContactKind::plane;
     for (const ContactKind k : {ContactKind::ball, ContactKind::socket})
       if (word == name_of(k)) kind = k;
-    if (word != name_of(kind)) table.fail_in_row(i, kind_column, "'", word, "', must be plane, ball or socket");
-    Object* object = nullptr;
-    for (Object& o : objects)
-      if (o.name == id) object = &o;
-    if (object == nullptr) object = &objects.emplace_back(Object{id, kind, {}});
-    if (object->kind != kind)
-      table.fail_in_row(i, kind_column, "contact ", id, " is a ", word, " here, and a ", name_of(object->kind),
+    if (word != name_of(kind))
+      table.fail_in_row(i, kind_column, "'", detail::printable(word), "', must be plane, ball or socket");
+    const auto [found, fresh] = known_objects.emplace(id, objects.size());
+    if (fresh) objects.push_back({detail::printable(id), kind, {}});
+    Object& object = objects[found->second];
+    if (object.kind != kind)
+      table.fail_in_row(i, kind_column, "contact ", object.name, " is a ", word, " here, and a ", name_of(object.kind),
                         " above");
-    object->rows.push_back(i);
+    object.rows.push_back(i);
     const bool ball = kind == ContactKind::ball;
     if (ball && std::isnan(radii(i)))
-      throw DataError(message(path, ": contact ", id, ": a ball needs its radius, in a column radius_mm"));
+      throw DataError(message(path, ": contact ", object.name, ": a ball needs its radius, in a column radius_mm"));
     if (ball && !(radii(i) > 0)) table.fail_in_row(i, *radius_column, "a radius must be positive");
     if (ball && !std::isnan(offsets(i)) && offsets(i) != 0)
       table.fail_in_row(i, *offset_column, "a ball has a radius, but no offset");

@@ -22,11 +22,12 @@ VERNIER_API Index column_index(const std::vector<std::string>& columns, std::str
   return found - columns.begin();
 }
 
-/// The cells of a line; between blanks, or between separators.
+/// The cells of a line, between blanks or separators; of a line that has more than `most_columns` one more than these.
 VERNIER_API std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   std::vector<std::string_view> out;
   if (separator == ' ') {
-    for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t", begin)) != std::string_view::npos;) {
+    for (std::size_t begin = 0;
+         out.size() <= most_columns && (begin = line.find_first_not_of(" \t", begin)) != std::string_view::npos;) {
       const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
       out.push_back(line.substr(begin, end - begin));
       begin = end;
@@ -36,7 +37,7 @@ VERNIER_API std::vector<std::string_view> cells_of(std::string_view line, char s
   for (;;) {
     const std::size_t end = line.find(separator);
     out.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return out;
+    if (end == std::string_view::npos || out.size() > most_columns) return out;
     line.remove_prefix(end + 1);
   }
 }
@@ -81,12 +82,14 @@ VERNIER_IMPL PointTable read_point_table(const std::string& path, const PointTab
     if (!format.comment.empty() && detail::trimmed(line.text).starts_with(format.comment)) continue;
     const auto cells = detail::cells_of(line.text, format.separator);
     if (cells.size() != width)
-      throw DataError(message(path, ", line ", line.number, ": ", cells.size(),
-                              cells.size() == 1 ? " cell, " : " cells, ", width, " columns are declared, separated by ",
-                              format.separator == ' '    ? std::string("blanks")
-                              : format.separator == '\t' ? std::string("tabs")
-                                                         : message("'", format.separator, "'"),
-                              ": '", detail::printable(detail::trimmed(line.text)), "'"));
+      throw DataError(message(
+          path, ", line ", line.number, ": ",
+          cells.size() > detail::most_columns ? message("more than ", detail::most_columns) : message(cells.size()),
+          cells.size() == 1 ? " cell, " : " cells, ", width, " columns are declared, separated by ",
+          format.separator == ' '    ? std::string("blanks")
+          : format.separator == '\t' ? std::string("tabs")
+                                     : message("'", format.separator, "'"),
+          ": '", detail::printable(detail::trimmed(line.text)), "'"));
     for (const Index axis : axes) {
       const auto at = static_cast<std::size_t>(axis);
       const double value = detail::number_in(cells[at], format.decimal, [&] {

@@ -22,10 +22,13 @@ struct TextLine {
 /// @throws DataError where it cannot be read
 VERNIER_API std::string text_of(const std::string& path);
 
+// What a table may have, so that a file that is none does not fill the memory.
+inline constexpr std::size_t most_columns = 1000, most_rows = 1'000'000;
+
 /// The lines that are not blank, without a byte-order mark; CRLF is accepted.
 /// @param file    its name, for messages
 /// @param content the text, which must outlive the lines
-/// @throws DataError on binary data
+/// @throws DataError on binary data, and on more lines than `most_rows` below a header
 VERNIER_API std::vector<TextLine> text_lines(const std::string& file, std::string_view content);
 
 /// A cell without blanks around it.

@@ -32,6 +32,7 @@ VERNIER_IMPL std::vector<TextLine> text_lines(const std::string& file, std::stri
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
     if (line.find('\0') != std::string_view::npos)
       throw DataError(message(file, ", line ", number, ": binary data, not text"));
+    if (out.size() > most_rows) throw DataError(message(file, ": has more than ", most_rows, " rows"));
     out.push_back({number, line});
   }
   return out;

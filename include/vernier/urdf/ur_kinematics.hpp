@@ -49,7 +49,7 @@ struct UrKinematics {
   VERNIER_API std::string text(const ExportNote& note) const;
 };
 
-/// Reads such a file.
+/// Reads such a file, of at most 1 MiB; numbers up to 1000 [m, rad].
 /// @throws DataError naming file, line and key
 VERNIER_API UrKinematics read_ur_kinematics(const std::string& path);
 

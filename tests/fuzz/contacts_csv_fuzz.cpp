@@ -1,0 +1,8 @@
+// Touches of objects, of three joints.
+#include "reader_fuzz.hpp"
+#include "vernier/data/csv.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return vernier::fuzz::read_as_file(
+      data, size, [](const std::string& path) { static_cast<void>(vernier::read_contacts(path, 3)); });
+}

@@ -1,0 +1,6 @@
+// Teach pendant programs of Fanuc.
+#include "robot_program_fuzz.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return vernier::fuzz::read_program(vernier::ProgramLanguage::fanuc_tp, data, size);
+}

@@ -1,0 +1,6 @@
+// RAPID modules.
+#include "robot_program_fuzz.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return vernier::fuzz::read_program(vernier::ProgramLanguage::rapid, data, size);
+}

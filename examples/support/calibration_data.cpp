@@ -1,0 +1,107 @@
+#include "calibration_data.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "dispatch.hpp"
+#include "vernier/calibration/calibration_failure.hpp"
+#include "vernier/data/csv.hpp"
+#include "vernier/data/split.hpp"
+
+namespace support {
+
+namespace vn = vernier;
+
+namespace {
+
+/// Rows of a file to learn from and to hold out.
+/// @param rule becomes the choice in words
+template <int N>
+vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, std::uint64_t seed, std::string& rule) {
+  using vn::Face;
+  const bool far = seed % 2 == 1;
+  rule = fmt::format("{:.3g} % of the rows, ", o.test_fraction * 100);
+  const auto region = [&](Face face, const char* which) {
+    rule += which;
+    return vn::split_region(data, {.test_fraction = o.test_fraction, .face = face});
+  };
+  if (o.split == "region-x") return far ? region(Face::x_high, "largest x") : region(Face::x_low, "smallest x");
+  if (o.split == "region-z") return far ? region(Face::z_high, "largest z") : region(Face::z_low, "smallest z");
+  if (o.split == "time") {
+    rule += "the last ones";
+    return vn::split_time(data, o.test_fraction);
+  }
+  if (o.split == "random") {
+    rule += fmt::format("at random, seed {}", seed);
+    return vn::split(data, {.test_fraction = o.test_fraction, .seed = seed});
+  }
+  rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every);
+  return vn::split_every(data, o.test_every);
+}
+
+/// Training and held-out poses of station s.
+template <int N>
+vn::Split<N> read_station(const CalibrationOptions& o, std::size_t s, std::span<const vn::JointType> types,
+                          std::uint64_t seed, std::string& rule) {
+  vn::Split<N> out{read_poses<N>(o.data[s], o, types), {}};
+  if (!o.test.empty()) {
+    rule += (s == 0 ? "the rows of " : ", ") + o.test[s];
+    out.test = read_poses<N>(o.test[s], o, types);
+  } else {
+    if (out.train.size() < 2)
+      throw vn::CalibrationFailure(o.data[s] + ": a single row; a calibration needs many poses, and held-out ones");
+    out = hold_out(vn::Dataset<N>(out.train), o, seed, rule);
+  }
+  const vn::Index n = out.train.size();
+  if (o.train_rows > n)
+    throw vn::CalibrationFailure(
+        fmt::format("{}: --train asks for {} rows, there are {} to learn from", o.data[s], o.train_rows, n));
+  if (o.train_rows > 0) out.train = vn::random_subset(out.train, o.train_rows, seed);
+  return out;
+}
+
+}  // namespace
+
+template <int N>
+vn::Dataset<N> read_poses(const std::string& file, const CalibrationOptions& o, std::span<const vn::JointType> types) {
+  const vn::Dataset<N> data = vn::read_dataset<N>(file, types);
+  return o.no_approach ? data.without_approach() : data;
+}
+
+template <int N>
+Measurements<N> read_measurements(const CalibrationOptions& o, std::span<const vn::JointType> types,
+                                  std::uint64_t seed) {
+  Measurements<N> out;
+  for (std::size_t s = 0; s < o.data.size(); ++s) {
+    vn::Split<N> station = read_station<N>(o, s, types, seed, out.held_out);
+    out.train.push_back(std::move(station.train));
+    out.test.push_back(std::move(station.test));
+  }
+  for (const std::string& file : o.distances) out.distances.push_back(vn::read_distances<N>(file, types));
+  if (!o.contacts.empty()) out.contacts = vn::read_contacts(o.contacts, N, types);
+  return out;
+}
+
+template <int N>
+std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot) {
+  constexpr vn::Index fewest = 10;
+  std::vector<vn::DataAudit> out;
+  for (const std::string& file : o.data) {
+    const vn::Dataset<N> data = vn::read_dataset<N>(file, robot.arm.chain().joint_types());
+    out.push_back(data.size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, data));
+    if (!out.back().findings.empty()) fmt::print("{}: {}\n", file, out.back().summary());
+  }
+  return out;
+}
+
+#define VERNIER_INSTANTIATE(N)                                                                             \
+  template vn::Dataset<N> read_poses<N>(const std::string&, const CalibrationOptions&,                     \
+                                        std::span<const vn::JointType>);                                   \
+  template Measurements<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>, \
+                                                std::uint64_t);                                            \
+  template std::vector<vn::DataAudit> audit_files<N>(const CalibrationOptions&, const vn::DescribedRobot<N>&);
+VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
+#undef VERNIER_INSTANTIATE
+
+}  // namespace support

@@ -1,0 +1,71 @@
+#include "calibration_page.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "dispatch.hpp"
+#include "report_page.hpp"
+#include "vernier/data/csv.hpp"
+
+namespace support {
+
+namespace vn = vernier;
+
+namespace {
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// Poses of a page, with the names of the training rows.
+struct PagePoses {
+  vn::ReportInput held_out;               ///< poses, their times, and the files of both
+  std::vector<std::string> learned_from;  ///< training rows, one station after the other
+};
+
+template <int N>
+PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot, const Measurements<N>& measured) {
+  PagePoses out;
+  std::vector<vn::ReportFile>& inputs = out.held_out.provenance.inputs;
+  for (std::size_t s = 0; s < o.data.size(); ++s) {
+    const vn::Dataset<N>& test = measured.test[s];
+    const vn::Dataset<N> all = vn::read_dataset<N>(o.data[s], robot.arm.chain().joint_types());
+    for (const vn::Index row : rows_of(all, measured.train[s]))
+      out.learned_from.push_back(fmt::format("{} of {}", row, file_name(o.data[s])));
+    inputs.push_back(file_read(o.data[s], all.size()));
+    if (!o.test.empty()) inputs.push_back(file_read(o.test[s], test.size()));
+    add_poses(out.held_out, robot.arm, test, file_name(o.test.empty() ? o.data[s] : o.test[s]),
+              rows_of(o.test.empty() ? all : test, test));
+  }
+  return out;
+}
+
+}  // namespace
+
+template <int N>
+vn::ReportInput calibration_page(const vn::CalibrationReport& report, const CalibrationOptions& o,
+                                 const vn::DescribedRobot<N>& robot, const Measurements<N>& measured) {
+  PagePoses poses = poses_of(o, robot, measured);
+  vn::ReportInput page = vn::report_input(report, robot.name, poses.learned_from);
+  poses.held_out.poses.normalised = page.poses.normalised;
+  poses.held_out.poses.gates = page.poses.gates;
+  page.poses = std::move(poses.held_out.poses);
+  page.times = std::move(poses.held_out.times);
+  page.provenance = std::move(poses.held_out.provenance);
+  std::vector<vn::ReportFile>& inputs = page.provenance.inputs;
+  for (std::size_t d = 0; d < o.distances.size(); ++d)
+    inputs.push_back(file_read(o.distances[d], measured.distances[d].size()));
+  for (const std::string& file : {o.contacts, o.prior})
+    if (!file.empty()) inputs.push_back(file_read(file, 0));
+  for (const std::string& file : o.robot.files()) inputs.push_back(file_read(file, 0));
+  if (o.accept_mm > 0) page.accept = o.accept_mm * 1e-3;
+  return page;
+}
+
+#define VERNIER_INSTANTIATE(N)                                                                          \
+  template vn::ReportInput calibration_page<N>(const vn::CalibrationReport&, const CalibrationOptions&, \
+                                               const vn::DescribedRobot<N>&, const Measurements<N>&);
+VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
+#undef VERNIER_INSTANTIATE
+
+}  // namespace support

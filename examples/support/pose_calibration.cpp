@@ -1,0 +1,80 @@
+#include "pose_calibration.hpp"
+
+#include <filesystem>
+#include <optional>
+
+#include "calibration_data.hpp"
+#include "calibration_page.hpp"
+#include "dispatch.hpp"
+#include "report_page.hpp"
+#include "saved_model.hpp"
+#include "vernier/ceres.hpp"
+#include "vernier/io/model_file.hpp"
+#include "vernier/search/genetic_algorithm.hpp"
+
+namespace support {
+
+namespace {
+
+namespace vn = vernier;
+
+vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& box, bool genetic,
+                          const vn::FitOptions& fit) {
+  const auto best = [&](const auto& algorithm) {
+    return vn::minimize(algorithm, objective, box, {}, fit.seed, fit.executor, fit.observer).best;
+  };
+  if (genetic) return best(vn::GeneticAlgorithm{.individuals = 20, .generations = prior_generations});
+  return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
+}
+
+/// Names of files without their folders, joined by commas.
+std::string file_names(const std::vector<std::string>& paths) {
+  std::string out;
+  for (const std::string& path : paths)
+    out += (out.empty() ? "" : ",") + std::filesystem::path(path).filename().string();
+  return out;
+}
+
+template <int N>
+PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& o,
+                              const vn::FitOptions& fit) {
+  const vn::DescribedRobot<N> robot = description.arm<N>();
+  std::optional<vn::ArmPrior> prior;
+  if (!o.prior.empty()) prior = read_prior(o.prior, N);
+  PoseCalibration out;
+  out.audits = audit_files(o, robot);
+  const Measurements<N> measured = read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed);
+  out.held_out = measured.held_out;
+
+  vn::CalibrateOptions options = o.calibrate;
+  options.errors.drives = robot.drives;
+  if (prior) options.errors.prior = &*prior;
+  const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
+    return search_priors(objective, box, o.priors == "ga", fit);
+  };
+  const auto calibration =
+      vn::calibrate(robot.arm, measured.train, measured.distances, options, fit,
+                    o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search), measured.contacts);
+  out.report = vn::evaluate(calibration, measured.test, robot.limits);
+  if (!o.save.empty())
+    vn::save(o.save, calibration,
+             {.name = robot.name,
+              .limits = robot.limits,
+              .data_file = file_names(o.data),
+              .date = o.date,
+              .held_out_error = out.report.stage(out.report.chosen).position.mean()});
+  if (!o.report.empty()) {
+    out.page = calibration_page(out.report, o, robot, measured);
+    out.page.audit = audit_rows(o.data, out.audits);
+  }
+  return out;
+}
+
+}  // namespace
+
+PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
+                                     const vernier::FitOptions& fit) {
+  return dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, options, fit); });
+}
+
+}  // namespace support

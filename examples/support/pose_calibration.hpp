@@ -1,0 +1,37 @@
+#pragma once
+
+/// @file
+/// `calibrate` from measured poses, whatever the number of joints.
+
+#include <string>
+#include <vector>
+
+#include "calibration_options.hpp"
+#include "vernier/calibration/calibration_report.hpp"
+#include "vernier/calibration/data_audit.hpp"
+#include "vernier/core/fit_options.hpp"
+#include "vernier/io/report_input.hpp"
+#include "vernier/io/robot_file.hpp"
+
+namespace support {
+
+/// Generations of a search of priors.
+inline constexpr vernier::Index prior_generations = 15;
+
+/// A calibration from measured poses, assessed.
+struct PoseCalibration {
+  vernier::CalibrationReport report{};       ///< the assessment
+  std::string held_out{};                    ///< which poses are held out, in words
+  std::vector<vernier::DataAudit> audits{};  ///< of the files of poses
+  vernier::ReportInput page{};               ///< what an HTML page shows; empty unless it is asked for
+};
+
+/// Reads the measurements, calibrates, assesses the calibration and saves its model.
+/// @param fit seed, executor and observer of everything
+/// @throws vernier::DataError on a malformed file
+/// @throws vernier::CalibrationFailure for data that do not support a calibration
+/// @throws UsageError for an earlier model of another arm
+PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
+                                     const vernier::FitOptions& fit);
+
+}  // namespace support

@@ -77,9 +77,10 @@ function(vernier_add_component component)
   target_compile_definitions(vernier_${compiled} PUBLIC VERNIER_COMPILED)
   target_link_libraries(vernier_${compiled} PUBLIC ${target})
   if(NOT component STREQUAL "vernier")
-    foreach(library IN LISTS arg_LINK)  # a component that brings another
-      if(library MATCHES "^vernier::(.+)$" AND TARGET vernier::compiled_${CMAKE_MATCH_1})
-        target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled_${CMAKE_MATCH_1})
+    foreach(library IN LISTS arg_LINK)  # a component may bring another
+      string(REPLACE "vernier::" "vernier::compiled_" brought "${library}")
+      if(NOT brought STREQUAL library AND TARGET ${brought})
+        target_link_libraries(vernier_${compiled} PUBLIC ${brought})
       endif()
     endforeach()
     target_link_libraries(vernier_${compiled} PUBLIC vernier::compiled)

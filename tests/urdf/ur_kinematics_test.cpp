@@ -154,6 +154,18 @@ TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
   expect("x: -0.612", "x: -0.612, x: -0.6", "key 'kinematics.forearm.x' is given twice");
   expect("{x: -0.612, y: 0, z: 0, roll: -0, pitch: 0, yaw: -0}", "5", "'kinematics.forearm' must be a map of keys");
   expect("hash: calib_17452164853672886207", "hash: {}", "'kinematics.hash' must be a text");
+  for (const char* hash : {"a b", "\"a\\nb\"", "'~'", "''", "a#b"})
+    expect("calib_17452164853672886207", hash,
+           "line 14: 'kinematics.hash' must be of up to 64 letters, digits and underscores");
+  const std::string large = "#" + std::string(1 << 16, ' ');
+  expect(published, large, "65537 bytes, more than 65536");
+  EXPECT_EQ(read(testing_support::replaced(published, "  hash: calib_17452164853672886207\n", "")).hash, "");
+  UrKinematics without = kinematics;
+  without.hash = "";
+  EXPECT_EQ(read(without.text({})).hash, "");
+  without.hash = "a\nb";
+  EXPECT_EQ(vernier_test::complaint([&] { (void)without.text({}); }),
+            "UrKinematics: the hash must be of up to 64 letters, digits and underscores");
   EXPECT_NE(vernier_test::complaint([&] { (void)read_ur_kinematics(path_ + "x"); }).find("yamlx"), std::string::npos);
 }
 

@@ -24,7 +24,8 @@ namespace vernier {
 struct UrKinematics {
   /// Of shoulder, upper_arm, forearm, wrist_1, wrist_2, wrist_3: parent_T_joint.
   std::array<Isometry3, 6> origins{};
-  /// Which controller's kinematics they are; the driver compares it, and warns.
+  /// Which controller's kinematics they are; the driver compares it, and warns. Up to 64 letters, digits and
+  /// underscores; empty: not stated.
   std::string hash;
 
   /// From rows, their frames where the rows end along the axes, as `ur_calibration` has them. What the last row has
@@ -46,10 +47,11 @@ struct UrKinematics {
 
   /// As a file, in digits that read back exactly.
   /// @param note written as a comment
+  /// @throws std::invalid_argument for a hash of other characters
   VERNIER_API std::string text(const ExportNote& note) const;
 };
 
-/// Reads such a file, of at most 1 MiB; numbers up to 1000 [m, rad].
+/// Reads such a file, of at most 64 KiB; numbers up to 1000 [m, rad].
 /// @throws DataError naming file, line and key
 VERNIER_API UrKinematics read_ur_kinematics(const std::string& path);
 

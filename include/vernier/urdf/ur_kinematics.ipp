@@ -21,6 +21,12 @@ inline constexpr std::array<const char*, 6> ur_links{"shoulder", "upper_arm", "f
                                                      "wrist_1",  "wrist_2",   "wrist_3"};
 inline constexpr std::array<const char*, 6> ur_values{"x", "y", "z", "roll", "pitch", "yaw"};
 
+/// Whether a hash can stand in a file as it is: 1 to 64 letters, digits and underscores.
+VERNIER_API bool is_ur_hash(const std::string& hash) {
+  return !hash.empty() && hash.size() <= 64 &&
+         hash.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string::npos;
+}
+
 /// A node of a kinematics file, for messages that name file, line and key.
 class UrYaml {
  public:
@@ -138,6 +144,8 @@ VERNIER_IMPL std::string UrKinematics::text(const ExportNote& note) const {
       out += message("    ", detail::ur_values[k], ": ", detail::exact_number(k < 3 ? xyz(at) : rpy(at)), "\n");
     }
   }
+  if (hash.empty()) return out;
+  require(detail::is_ur_hash(hash), "UrKinematics: the hash must be of up to 64 letters, digits and underscores");
   return out + "  hash: " + hash + "\n";
 }
 
@@ -148,7 +156,7 @@ VERNIER_IMPL UrKinematics read_ur_kinematics(const std::string& path) {
   } catch (const std::invalid_argument& e) {
     throw DataError(e.what());
   }
-  constexpr std::size_t largest = 1u << 20u;
+  constexpr std::size_t largest = 1u << 16u;  // the driver writes 1 kB; of 1 MiB the parser can take many seconds
   if (content.size() > largest) throw DataError(message(path, ": ", content.size(), " bytes, more than ", largest));
   YAML::Node document;
   try {
@@ -166,7 +174,10 @@ VERNIER_IMPL UrKinematics read_ur_kinematics(const std::string& path) {
     out.origins[i].translation() = values.head<3>();
     out.origins[i].linear() = detail::from_roll_pitch_yaw(values.tail<3>());
   }
-  if (kinematics.has("hash")) out.hash = kinematics.at("hash").text();
+  if (!kinematics.has("hash")) return out;
+  const detail::UrYaml hash = kinematics.at("hash");
+  out.hash = hash.text();
+  if (!detail::is_ur_hash(out.hash)) hash.fail("'kinematics.hash' must be of up to 64 letters, digits and underscores");
   return out;
 }
 

@@ -33,18 +33,19 @@ struct IndexRange {
 
 /// Where a table of points departs from the order, or the names, of the commanded poses.
 struct PairingFault {
-  /// What it is.
+  /// What it may be.
   enum class Kind {
     missing,       ///< poses without a point
     additional,    ///< points without a pose
     swapped,       ///< two points in exchanged places
     out_of_order,  ///< a point in another place
     misfit,        ///< a point in its place that is too far from where the arm was
-  } kind = Kind::missing;
-  IndexRange rows{};    ///< poses concerned, of swapped points both; of additional points those before and after
-  IndexRange points{};  ///< points of these poses, or those additional; of missing ones those before and after
-  Index count = 1;      ///< how many are missing or additional; fewer than concerned where several fit as well
-  double distance = 0;  ///< of a misfit: from where the arm was to the point [m]
+  };
+  Kind kind = Kind::missing;  ///< which of them
+  IndexRange rows{};          ///< poses concerned, of swapped points both; of additional points those before and after
+  IndexRange points{};        ///< points of these poses, or those additional; of missing ones those before and after
+  Index count = 1;            ///< how many are missing or additional; fewer than concerned where several fit as well
+  double distance = 0;        ///< of a misfit: from where the arm was to the point [m]
 };
 
 /// What the nominal arm says about the pairs.
@@ -85,6 +86,7 @@ struct Pairing {
 VERNIER_API Pairing pair_by_name(const CsvText& commanded, const std::string& key, const PointTable& points);
 
 /// Checks pairs against the nominal arm: adds a proof, takes pairs that do not fit out, and exchanges swapped ones.
+/// @param pairing by name
 /// @param flanges poses of the nominal flange at all rows
 /// @param points  measured points, n x 3 [m]
 VERNIER_API Pairing check_pairs(const Pairing& pairing, std::span<const Isometry3> flanges, const PointRows& points);

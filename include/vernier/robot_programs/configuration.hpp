@@ -38,7 +38,9 @@ VERNIER_API double stated_turn(ProgramLanguage language, const std::vector<int>&
 
 /// The configuration with those numbers replaced that joint values contradict: quadrants (RAPID), bits of T for joints
 /// more than 2 degrees from 0 (KRL), the last turn number (Fanuc). Flags of the branch stay.
-/// @param joints [rad]
+/// @param language      of the program
+/// @param configuration as in `ProgramTarget`
+/// @param joints        corrected joint values [rad]
 VERNIER_API std::vector<int> updated_configuration(ProgramLanguage language, const std::vector<int>& configuration,
                                                    const JointVector<6>& joints);
 

@@ -89,8 +89,9 @@ inline Eigen::Matrix<long double, 4, 4> ur_controller_pose(const vernier::RobotD
   Matrix pose = Matrix::Identity();
   for (std::size_t i = 0; i < 6; ++i) {
     const vernier::DhRow& row = nominal.rows[i];
-    const Real theta = Real(row.theta) + set.theta[i] + q(static_cast<vernier::Index>(i));
-    const Real alpha = Real(row.alpha) + set.alpha[i], a = Real(row.a) + set.a[i], d = Real(row.d) + set.d[i];
+    const Real theta = Real(row.theta) + Real(set.theta[i]) + Real(q(static_cast<vernier::Index>(i)));
+    const Real alpha = Real(row.alpha) + Real(set.alpha[i]), a = Real(row.a) + Real(set.a[i]),
+               d = Real(row.d) + Real(set.d[i]);
     const Real c = std::cos(theta), s = std::sin(theta), ca = std::cos(alpha), sa = std::sin(alpha);
     Matrix step;
     step << c, -s * ca, s * sa, a * c, s, c * ca, -c * sa, a * s, 0, sa, ca, d, 0, 0, 0, 1;

@@ -9,18 +9,10 @@
 #include <vector>
 
 #include "vernier/data/csv.hpp"
+#include "vernier/data/point_pair.hpp"
 #include "vernier/data/point_table.hpp"
 
 namespace vernier {
-
-/// A commanded pose and the point measured there.
-struct PointPair {
-  Index row;    ///< of the commanded pose, from 0
-  Index point;  ///< from 0
-
-  /// Of the same row and point.
-  bool operator==(const PointPair&) const = default;
-};
 
 /// Consecutive rows or points.
 struct IndexRange {

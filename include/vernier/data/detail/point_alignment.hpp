@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vernier/core/function_ref.hpp"
-#include "vernier/data/pair_points.hpp"
+#include "vernier/data/point_pair.hpp"
 
 namespace vernier::detail {
 

@@ -168,8 +168,8 @@ int run(support::Program& program) {
       ->delimiter(',');
   option("--separator", o.separator, "between the columns: a character, tab, or space for any number of blanks", "C");
   option("--decimal", o.decimal, "decimal point of --points; . without it", "C");
-  option("--comment", o.comment, "lines that begin so are skipped", "TEXT");
-  app.add_option("--header-lines", o.header_lines, "so many lines at the beginning are skipped")
+  option("--comment", o.comment, "lines that begin with this text are skipped", "TEXT");
+  app.add_option("--header-lines", o.header_lines, "number of lines to skip at the beginning")
       ->check(CLI::Range(0, 1000));
   option("--key", o.key, "column of --joints with the names of the points; without it they pair by order", "COLUMN");
   o.robot.add_to(app)->description(

@@ -80,7 +80,7 @@ unpack() {
     'Suggests: libsuitesparse-dev, libtbb-dev' "Version: $(cat "$build/version")"; do
     dpkg-deb --field "$package" | grep "^$field" >/dev/null || fail "$(basename "$package"): does not say '$field'"
   done
-  dpkg-deb -x "$package" "$build/root"
+  dpkg-deb -x "$package" "$build/unpacked"
   printf '%-14s %-17s %s\n' debian unpacked "$(basename "$package")"
 }
 
@@ -107,7 +107,7 @@ sed -n 's/^#define VERNIER_VERSION_[A-Z]* *//p' "$root/include/vernier/core/vers
 whole=$build/prefix
 if [[ -d $build/deb ]]; then
   unpack
-  whole=$build/root/usr
+  whole=$build/unpacked/usr
 fi
 if command -v pkg-config >/dev/null; then
   compile_with_pc "$whole"

@@ -91,7 +91,7 @@ bool contains(const Branches<N>& branches, const JointVector<N>& q, double toler
 /// but for one in a thousand poses, next to folds.
 template <int N, class Roots, class Make>
 void expect_branches(const Roots& nominal, const Make& make, const std::string& name, int poses,
-                     double most_lost = 0.002) {
+                     double most_lost = 0.001) {
   Rng rng(1);
   const int held = nominal.held_joint();
   double position = 0, rotation = 0, understated = 0, sigma = 0;
@@ -146,9 +146,9 @@ auto made_from(const DhChain<N, Convention>& nominal) {
 TEST(AllBranches, OfArmsAsMade) {
   expect_branches<6>(ClosedForm(robots::ur10().chain), made_from(robots::ur10().chain), "ur10", 5000);
   expect_branches<6>(ClosedForm(robots::abb_irb120().chain), made_from(robots::abb_irb120().chain), "irb120", 2000);
-  expect_branches<6>(ClosedForm(robots::puma560().chain), made_from(robots::puma560().chain), "puma560", 2000, 0.006);
+  expect_branches<6>(ClosedForm(robots::puma560().chain), made_from(robots::puma560().chain), "puma560", 2000, 0.004);
   expect_branches<6>(ClosedForm(robots::puma560_modified().chain), made_from(robots::puma560_modified().chain),
-                     "puma560_modified", 2000, 0.006);
+                     "puma560_modified", 2000, 0.004);
 }
 
 TEST(AllBranches, OfSevenJointsWithOneHeld) {
@@ -202,7 +202,7 @@ void expect_no_fewer_than_a_search(const DhChain<N, Convention>& nominal, const 
     }
     searched += static_cast<int>(found.size());
   }
-  EXPECT_GE(enumerated, 0.99 * searched) << name;
+  EXPECT_GE(enumerated, 0.995 * searched) << name;
   EXPECT_GT(searched, 2 * poses) << name;
 }
 

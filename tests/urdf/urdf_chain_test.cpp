@@ -177,7 +177,7 @@ TEST(RollPitchYaw, IsExactAtAndNextToTheSingularity) {
         (Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
          Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()))
             .toRotationMatrix();
-    EXPECT_LE((detail::from_roll_pitch_yaw(rpy) - rotation).cwiseAbs().maxCoeff(), 4e-15);
+    EXPECT_LE((detail::from_roll_pitch_yaw(rpy) - rotation).cwiseAbs().maxCoeff(), 2e-15);
     worst = std::max(worst,
                      (detail::from_roll_pitch_yaw(detail::roll_pitch_yaw(rotation)) - rotation).cwiseAbs().maxCoeff());
   }

@@ -71,7 +71,7 @@ struct Cell {
   std::uint64_t seed = 0;
 };
 
-/// Best fitness of a search after so many evaluations and seconds.
+/// Best fitness of a search at a number of evaluations and seconds.
 struct Convergence {
   std::vector<double> evaluations, seconds, best;
 };

@@ -42,7 +42,7 @@ bool same_numbers(const Outcome& a, const Outcome& b) {
          a.convergence.evaluations == b.convergence.evaluations && a.convergence.best == b.convergence.best;
 }
 
-/// Whether a search ended after so many seconds, so that no two runs give the same.
+/// Whether a limit of time ended a search; such a run cannot be reproduced.
 bool decided_by_time(const std::string& key) { return key.find("\"seconds_allowed\":") != std::string::npos; }
 
 void append(const std::filesystem::path& path, const std::string& lines) {

@@ -62,15 +62,15 @@ struct PairSearch {
     double median = 0, limit = 0;
   };
 
-  Index rows() const { return static_cast<Index>(flanges.size()); }
-  std::size_t most_pairs() const {
+  VERNIER_API Index rows() const { return static_cast<Index>(flanges.size()); }
+  VERNIER_API std::size_t most_pairs() const {
     return by_order ? static_cast<std::size_t>(std::min(rows(), points.rows())) : given.size();
   }
-  double distance(const Found& found, Index row, Index point) const {
+  VERNIER_API double distance(const Found& found, Index row, Index point) const {
     return (found.nominal.row(row) - points.row(point)).norm();
   }
 
-  void set_frames(Found& found, const PointFrames& frames) const {
+  VERNIER_API void set_frames(Found& found, const PointFrames& frames) const {
     found.frames = frames;
     found.nominal.resize(rows(), 3);
     for (Index i = 0; i < rows(); ++i)
@@ -78,10 +78,10 @@ struct PairSearch {
   }
 
   /// Largest shift of a point against its pose at the beginning of a search.
-  Index reach() const { return std::max<Index>(20, std::abs(rows() - points.rows()) + 10); }
+  VERNIER_API Index reach() const { return std::max<Index>(20, std::abs(rows() - points.rows()) + 10); }
 
   /// Frames from short runs of poses and points, by ascending residuals.
-  std::vector<PointFrames> starts() const {
+  VERNIER_API std::vector<PointFrames> starts() const {
     constexpr std::size_t max_runs = 24, kept = 40;
     const std::size_t n = most_pairs();
     std::vector<PointFrames> out;
@@ -107,7 +107,7 @@ struct PairSearch {
   }
 
   /// How many poses have a point nearby.
-  Index support(const Found& found, double limit) const {
+  VERNIER_API Index support(const Found& found, double limit) const {
     Index out = 0;
     if (!by_order) {
       for (const PointPair& pair : given) out += distance(found, pair.row, pair.point) <= limit;
@@ -122,7 +122,7 @@ struct PairSearch {
     return out;
   }
 
-  std::vector<PointPair> aligned(const Found& found, double limit) const {
+  VERNIER_API std::vector<PointPair> aligned(const Found& found, double limit) const {
     if (by_order)
       return align_with_gaps(rows(), points.rows(), [&](Index i, Index j) {
         return (found.nominal.row(i) - points.row(j)).squaredNorm() / (limit * limit);
@@ -134,7 +134,7 @@ struct PairSearch {
   }
 
   /// Aligns and registers in turn: with a wide limit until no pairs are added, then with that of the residuals.
-  void settle(Found& found, double widest) const {
+  VERNIER_API void settle(Found& found, double widest) const {
     constexpr double smallest = 1e-4;  // a tracker's own errors
     constexpr int max_rounds = 20;
     found.limit = widest;
@@ -160,7 +160,7 @@ struct PairSearch {
   }
 
   /// The frames that explain most.
-  std::optional<Found> best() const {
+  VERNIER_API std::optional<Found> best() const {
     constexpr std::size_t settled = 8;
     const double spread = median_spread(points), widest = 0.05 * spread;
     if (!(spread > 0)) return {};
@@ -185,7 +185,7 @@ struct PairSearch {
   }
 
   /// Whether some other order fits all points as well, e.g. along a straight line of equal steps.
-  bool ambiguous(const Found& found) const {
+  VERNIER_API bool ambiguous(const Found& found) const {
     const auto n = static_cast<Index>(found.pairs.size());
     for (const Index shift : {-3, -2, -1, 1, 2, 3}) {
       std::vector<PointPair> shifted;
@@ -203,7 +203,7 @@ struct PairSearch {
   }
 
   /// Of the measured lengths against those of the nominal arm.
-  double scale(const Found& found) const {
+  VERNIER_API double scale(const Found& found) const {
     Vector3 nominal_mean = Vector3::Zero(), mean = Vector3::Zero();
     for (const PointPair& pair : found.pairs) {
       nominal_mean += found.nominal.row(pair.row).transpose() / static_cast<double>(found.pairs.size());
@@ -260,7 +260,7 @@ VERNIER_API std::pair<PairingProof, std::optional<PairSearch::Found>> prove(cons
 /// What pairs leave over, with the pairs that are found among it.
 class LeftOver {
  public:
-  LeftOver(const PairSearch& search, const PairSearch::Found& found)
+  VERNIER_API LeftOver(const PairSearch& search, const PairSearch::Found& found)
       : search_(search),
         found_(found),
         point_of_(static_cast<std::size_t>(search.rows()), -1),
@@ -273,14 +273,14 @@ class LeftOver {
     find_moved();
   }
 
-  std::vector<PointPair> pairs() const {
+  VERNIER_API std::vector<PointPair> pairs() const {
     std::vector<PointPair> out;
     for (std::size_t i = 0; i < point_of_.size(); ++i)
       if (point_of_[i] >= 0) out.push_back({static_cast<Index>(i), point_of_[i]});
     return out;
   }
 
-  std::vector<PairingFault> faults() const {
+  VERNIER_API std::vector<PairingFault> faults() const {
     std::vector<PairingFault> out;
     add_moved(out);
     if (search_.by_order) {
@@ -299,15 +299,15 @@ class LeftOver {
   }
 
  private:
-  Index point_of(Index row) const { return point_of_[static_cast<std::size_t>(row)]; }
-  Index row_of(Index point) const { return row_of_[static_cast<std::size_t>(point)]; }
-  void join(const PointPair& pair) {
+  VERNIER_API Index point_of(Index row) const { return point_of_[static_cast<std::size_t>(row)]; }
+  VERNIER_API Index row_of(Index point) const { return row_of_[static_cast<std::size_t>(point)]; }
+  VERNIER_API void join(const PointPair& pair) {
     point_of_[static_cast<std::size_t>(pair.row)] = pair.point;
     row_of_[static_cast<std::size_t>(pair.point)] = pair.row;
   }
-  bool near(Index row, Index point) const { return search_.distance(found_, row, point) <= found_.limit; }
+  VERNIER_API bool near(Index row, Index point) const { return search_.distance(found_, row, point) <= found_.limit; }
 
-  void find_moved() {
+  VERNIER_API void find_moved() {
     std::vector<std::pair<double, PointPair>> close;
     for (Index i = 0; i < search_.rows(); ++i)
       for (Index j = 0; point_of(i) < 0 && j < search_.points.rows(); ++j)
@@ -324,7 +324,7 @@ class LeftOver {
   }
 
   /// Two moved points that would be in their places if they were exchanged, else single ones.
-  void add_moved(std::vector<PairingFault>& out) const {
+  VERNIER_API void add_moved(std::vector<PairingFault>& out) const {
     const std::vector<PointPair> all = pairs();
     std::vector<Index> points,
         place(point_of_.size(), -1);  // place of a row's point: the row that has it by order or name
@@ -352,7 +352,7 @@ class LeftOver {
     }
   }
 
-  void add_misfit(const PointPair& pair, std::vector<PairingFault>& out) const {
+  VERNIER_API void add_misfit(const PointPair& pair, std::vector<PairingFault>& out) const {
     out.push_back({PairingFault::Kind::misfit,
                    {pair.row, pair.row},
                    {pair.point, pair.point},
@@ -361,7 +361,7 @@ class LeftOver {
   }
 
   /// What is left between two pairs in order.
-  void add_gap(const PointPair& before, const PointPair& after, std::vector<PairingFault>& out) const {
+  VERNIER_API void add_gap(const PointPair& before, const PointPair& after, std::vector<PairingFault>& out) const {
     std::vector<Index> rows, points;
     for (Index i = before.row + 1; i < after.row; ++i)
       if (point_of(i) < 0) rows.push_back(i);
@@ -392,7 +392,7 @@ class LeftOver {
   }
 
   /// Whether the partner of a row (or point) would fit another one as well.
-  bool fits_at(Index from, Index to, bool rows) const {
+  VERNIER_API bool fits_at(Index from, Index to, bool rows) const {
     const auto end = rows ? search_.rows() : search_.points.rows();
     if (from < 0 || from >= end || to < 0 || to >= end) return false;
     const Index partner = rows ? point_of(from) : row_of(from);

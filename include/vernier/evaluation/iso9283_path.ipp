@@ -32,7 +32,7 @@ struct PoseLine {
   std::vector<Isometry3> poses;
 
   /// Where `at` is reached first.
-  Isometry3 pose(double at, bool oriented) const {
+  VERNIER_API Isometry3 pose(double at, bool oriented) const {
     const auto next = std::find_if(arc.begin() + 1, arc.end() - 1, [&](double s) { return s >= at; });
     const auto k = static_cast<std::size_t>(next - arc.begin());
     const double step = arc[k] - arc[k - 1];

@@ -47,7 +47,7 @@ struct Branch {
 /// All branches of one target; a range of `Branch`. No allocation.
 template <int N>
 struct Branches {
-  /// At most so many.
+  /// Largest number of branches.
   static constexpr int capacity = detail::BranchSet::capacity;
   std::array<Branch<N>, capacity> branches;  ///< the first `count` are set
   int count = 0;                             ///< number of branches

@@ -102,7 +102,7 @@ VERNIER_IMPL VectorX scale_priors(const NormalEquations& normal, const VectorX& 
   };
   constexpr std::size_t few = 256;
   std::optional<detail::ScaledEvidence> of_few;
-  if (group.size() <= few) of_few.emplace(normal, precisions, steps, values, group, local_steps);
+  if (group.size() <= few) of_few = detail::ScaledEvidence(normal, precisions, steps, values, group, local_steps);
   const auto evidence = [&](double factor) {
     if (of_few) return (*of_few)(factor);
     const VectorX now = scaled(factor);

@@ -26,7 +26,7 @@ struct PlanOptions {
   bool oriented = false;                     ///< whether orientations are measured, and not positions alone
   double bin = 10 * std::numbers::pi / 180;  ///< width of the bins of each joint [rad, m]
   int bin_count = 0;                         ///< measurements wanted in each bin that candidates reach
-  Index check_every = 20;                    ///< the first visit is repeated after so many
+  Index check_every = 20;                    ///< number of poses after which the first one is repeated
   VectorX speeds{};                          ///< of the joints, see `visiting_order`
   int bound_iterations = 0;                  ///< of `information_bound`; 0: no bound
 };

@@ -14,7 +14,7 @@ namespace vernier {
 /// shortens the path.
 /// @param joints n x joints [rad, m]
 /// @param speeds of the joints [rad/s, m/s], in any common proportion; empty: equal
-/// @param fixed  so many rows stay first, in their order; the path starts at the last of them, at row 0 where none does
+/// @param fixed  number of rows that stay first, in their order; the path starts at the last of them, or at row 0
 /// @return the rows in the order of their visits
 /// @throws std::invalid_argument for values that are not finite, or speeds that are not positive
 /// @complexity O(n^2) a sweep over the path

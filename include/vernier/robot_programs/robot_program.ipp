@@ -18,7 +18,7 @@ namespace detail {
 
 inline constexpr std::string_view program_stamp = "VERNIER-CORRECTED";
 
-/// A number with so many decimals.
+/// A number, rounded to a number of decimals.
 VERNIER_API std::string with_decimals(double value, int decimals);
 
 VERNIER_IMPL std::string with_decimals(double value, int decimals) {

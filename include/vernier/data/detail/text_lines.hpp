@@ -34,7 +34,7 @@ VERNIER_API std::vector<TextLine> text_lines(const std::string& file, std::strin
 /// A cell without blanks around it.
 VERNIER_API std::string_view trimmed(std::string_view cell);
 
-/// A cell as it may stand in a message: short, and plain characters alone.
+/// The text of a cell for a message: shortened, and with printable ASCII characters only.
 VERNIER_API std::string printable(std::string_view cell);
 
 /// The number in a cell, finite and of a size that joints and lengths have.

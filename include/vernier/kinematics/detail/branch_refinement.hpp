@@ -59,7 +59,7 @@ struct BranchSet {
   /// Whether some may be missing: branches come in pairs, and may change their number next to a singularity.
   bool may_be_incomplete() const {
     return suspicious || count % 2 != 0 ||
-           std::any_of(branches.begin(), branches.begin() + count, [](const auto& b) { return b.sigma_min < 0.0005; });
+           std::any_of(branches.begin(), branches.begin() + count, [](const auto& b) { return b.sigma_min < 0.002; });
   }
   /// Adds the branch to which Newton's method leads.
   /// @param margin of the seed, see `SixAxisRoot`

@@ -88,10 +88,8 @@ VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) n
 
 /// Newton's method, damped least squares where that does not converge. The last step takes the inverse of the step
 /// before, and is not evaluated, where the Lipschitz bound proves that nothing is left.
-/// @param damped whether damped least squares are tried
 /// @return whether the target is met
-VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
-                            bool damped = true) noexcept {
+VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations) noexcept {
   constexpr double longest_step = 0.3;                  // rad
   constexpr double negligible = 1e-2 * accepted_error;  // m
   double start[most_branch_joints];
@@ -129,7 +127,6 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
     advance(std::min(1.0, longest_step / largest) * step);
     if (const double left = 0.5 * problem.lipschitz * step.squaredNorm(); left < negligible) return finish(left);
   }
-  if (!damped) return false;
 
   // near a singularity
   double lower[most_branch_joints], upper[most_branch_joints], jacobian[36];
@@ -267,7 +264,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
       if (!(std::abs(by) < 2)) continue;
       displace(by);
       int iterations = 3;
-      if (!solve_near(problem, q, at, iterations, met)) continue;
+      if (!solve_near(problem, q, at, iterations)) continue;
       double turned[most_branch_joints];
       std::copy_n(q, problem.joints, turned);
       bool same = true;
@@ -281,7 +278,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
 }
 
 VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
-  const double near_fold = may_be_incomplete() ? 0.05 : 0.005;  // m/rad
+  const double near_fold = may_be_incomplete() ? 0.05 : 0.01;  // m/rad
   for (int b = 0; b < count; ++b) {
     const FoundBranch& from = branches[static_cast<std::size_t>(b)];
     if (from.sigma_min < near_fold) cross_folds(*this, problem, from.q, true, near_fold);

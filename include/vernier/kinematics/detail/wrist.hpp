@@ -42,7 +42,7 @@ struct Candidates {
 struct WristAngles {
   double q4[2 + angle_samples], q5[2 + angle_samples], q6[2 + angle_samples];
   int count;
-  int exact;      ///< so many of them; the others are samples
+  int exact;      ///< number of exact ones, which come first; the others are samples
   double margin;  ///< of the exact ones
   bool any;
 

@@ -178,7 +178,7 @@ class Compiled {
 struct Differences {
   double pose = 0, jacobian = 0, command = 0, error = 0;
   Index inside = 0, between = 0, outside = 0;  ///< by the gate
-  Index met = 0, other = 0, statuses = 0;      ///< corrections: met by the library, not met, with another status in C
+  Index met = 0, statuses = 0, compared = 0;   ///< corrections: met by the library, with another status in C, compared
 };
 
 /// Compares an exported arm with the library.
@@ -208,10 +208,13 @@ Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<
     const JointVector<N> nan = JointVector<N>::Constant(std::nan(""));
     const Correction<N> expected = robot.correct(target, q, known ? previous : nan);
     const Correction<N> found = c.correct(target, q, from);
-    ++(expected.status == IkStatus::converged ? out.met : out.other);
+    out.met += expected.status == IkStatus::converged;
     if (found.status != expected.status) ++out.statuses;
     const double least = jacobian.jacobiSvd().singularValues().minCoeff();
-    if (expected.status != IkStatus::converged || least < 0.02) continue;
+    if (expected.status != IkStatus::converged || least < 0.005) continue;
+    // on its way through half a radian a redundant arm magnifies what roundings move it along its null space
+    if (N > 6 && (expected.command - q).norm() > 0.5) continue;
+    ++out.compared;
     grow(out.command, (found.command - expected.command).cwiseAbs().maxCoeff());
     grow(out.error, std::abs(found.predicted_error - expected.predicted_error));
   }
@@ -229,16 +232,15 @@ class ExportC : public ::testing::Test {
   }
 
   template <int N, class Convention>
-  void expect_equal(const CalibratedRobot<N, Convention>& robot, Index n = 10000, Index corrections = 2000) {
+  void expect_equal(const CalibratedRobot<N, Convention>& robot, Index n = 10000, Index corrections = 10000) {
     const Compiled<N> c(folder_, c_source(robot));
     const Differences found = compare(robot, c, n, corrections);
     EXPECT_LT(found.pose, 1e-13);
     EXPECT_LT(found.jacobian, 1e-11);  // slopes of harmonics are multiplied by their orders
-    // Where there are more joints than equations, rounding alone moves a command along the null space of the Jacobian.
-    const bool redundant = N == 7 || N == 4;
-    EXPECT_LT(found.command, redundant ? 1e-5 : 1e-9);
-    EXPECT_LT(found.error, redundant ? 1e-7 : 1e-9);
+    EXPECT_LT(found.command, 1e-9);
+    EXPECT_LT(found.error, 1e-9);
     EXPECT_GT(found.met, corrections / 2);
+    EXPECT_GT(found.compared, 0.95 * static_cast<double>(found.met));
     EXPECT_EQ(found.statuses, 0);
     if (robot.model().fallback() != nullptr) {
       EXPECT_GT(std::min({found.inside, found.between, found.outside}), n / 20);
@@ -265,25 +267,26 @@ TEST_F(ExportC, OfSevenAxesEqualsTheLibrary) {
 
 TEST_F(ExportC, OfAModifiedChainEqualsTheLibrary) {
   const auto robot = robots::puma560_modified();
-  expect_equal(with_everything(robot.chain, robot.limits), 2000, 500);
+  expect_equal(with_everything(robot.chain, robot.limits), 10000, 10000);
 }
 
 TEST_F(ExportC, OfSlidingJointsEqualsTheLibrary) {
   Rng rng(6);
   const JointLimits<4> limits{JointVector<4>::Constant(-1), JointVector<4>::Constant(1)};
   for (int k = 0; k < 2; ++k)
-    expect_equal(with_everything(vernier_test::random_chain<4>(rng, {.prismatic = 0.5}), limits), 2000, 500);
-  expect_equal(with_everything(vernier_test::random_chain<4, ModifiedDh>(rng, {.prismatic = 0.5}), limits), 2000, 500);
+    expect_equal(with_everything(vernier_test::random_chain<4>(rng, {.prismatic = 0.5}), limits), 10000, 10000);
+  expect_equal(with_everything(vernier_test::random_chain<4, ModifiedDh>(rng, {.prismatic = 0.5}), limits), 10000,
+               10000);
 }
 
 TEST_F(ExportC, OfWhatWasLearnedEqualsTheLibrary) {
   const auto robot = robots::abb_irb120();
   const auto errors = with_everything(robot.chain, robot.limits), geometry = geometric(robot.chain, robot.limits);
-  expect_equal(with_learned(errors, {}), 10000, 500);
+  expect_equal(with_learned(errors, {}), 10000, 10000);
   for (const RidgeElm& learner : {RidgeElm{.activation = Activation::tanh, .input_map = InputMap::sine_cosine_products},
                                   RidgeElm{.activation = Activation::radial_basis, .input_map = InputMap::raw},
                                   RidgeElm{.activation = Activation::sine, .input_map = InputMap::raw}})
-    expect_equal(with_learned(geometry, learner), 1000, 100);
+    expect_equal(with_learned(geometry, learner), 10000, 10000);
 }
 
 /// Headers of the models that the compilers and sanitizers look at, and a program that calls everything.

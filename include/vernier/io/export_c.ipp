@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -46,7 +47,9 @@ VERNIER_API std::set<std::string> c_features(const ModelData& model) {
   if (model.fallback) add_terms(*model.fallback);
   for (const DhRow& row : model.nominal.rows()) add("prismatic", row.joint == JointType::prismatic);
   add("modified", model.nominal.modified());
-  add("oriented", model.nominal.joints() >= 6);  // as CorrectionTarget::automatic
+  const int joints = model.nominal.joints(), equations = joints >= 6 ? 6 : 3;  // as CorrectionTarget::automatic
+  add("oriented", equations == 6);
+  add("redundant", equations < joints);
   add("fallback", model.fallback.has_value());
   add("learned", model.learned.has_value());
   add("gates", model.fallback || model.learned);
@@ -131,6 +134,7 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
     out += message("#define $$_", what, "_ ", value, "\n");
   };
   define("LANES", message(lanes));
+  define("SIZE", message(std::min(joints, oriented ? 6 : 3)));
   define("EVALUATIONS", message(CorrectionOptions{}.max_iterations));
   define("ROTATION_LENGTH", c_number(oriented ? IkOptions<6>{}.rotation_length : 0));
   const FittedNetwork* network = model.learned ? std::get_if<FittedNetwork>(&model.learned->function) : nullptr;

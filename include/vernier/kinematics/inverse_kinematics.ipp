@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
@@ -47,8 +48,14 @@ inline double dot6(const double* a, const double* b) noexcept {
 /// Starts at `next.q`; the iterates change places, the better one is `*best`.
 VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* best, IkIterate* next,
                                            double* joints) noexcept {
-  const int n = problem.joints, moving = std::clamp(problem.moving_joints, 1, n);
+  const int n = problem.joints, moving = std::clamp(problem.moving_joints, 1, n), rows = problem.oriented ? 6 : 3;
+  // With fewer equations than joints the step is J' (J J' + d)^-1 e = (J' J + d)^-1 J' e, without rounding errors along
+  // the null space of J, which the singular J' J would magnify.
+  const bool redundant = rows < n;
+  const int size = redundant ? rows : n;
   double normal[max_joints * max_joints], damped[max_joints * max_joints], gradient[max_joints], step[max_joints];
+  double solution[std::max(6, max_joints)];
+  bool held[max_joints];
   const double rotation_weight = problem.oriented ? problem.rotation_length : 0;
 
   const auto evaluate = [&](IkIterate& it) {
@@ -79,25 +86,30 @@ VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* 
   double damping = 1e-3;  // in units of the cost
   if (!std::isfinite(best->cost)) return finish(IkStatus::stalled);
   while (!converged()) {
-    double trace = 0;
+    double trace = 0, gradient_square = 0;
     for (int j = 0; j < n; ++j) {
       const double* const of_j = best->jacobian + 6 * j;
-      for (int i = j; i < n; ++i) normal[j * n + i] = dot6(best->jacobian + 6 * i, of_j);
       gradient[j] = dot6(of_j, best->error.data());
-      trace += normal[j * n + j];
+      trace += dot6(of_j, of_j);
+      held[j] = j >= moving || (best->q[j] <= problem.lower[j] && gradient[j] < 0) ||
+                (best->q[j] >= problem.upper[j] && gradient[j] > 0);
+      if (held[j]) gradient[j] = 0;
+      gradient_square += gradient[j] * gradient[j];
     }
     const double scale = std::max(trace, 1e-12);
-    double gradient_square = 0;
-    for (int i = 0; i < n; ++i) {
-      const bool held = i >= moving || (best->q[i] <= problem.lower[i] && gradient[i] < 0) ||
-                        (best->q[i] >= problem.upper[i] && gradient[i] > 0);
-      if (held) {
-        gradient[i] = 0;
-        for (int k = 0; k < i; ++k) normal[k * n + i] = 0;
-        for (int k = i + 1; k < n; ++k) normal[i * n + k] = 0;
-        normal[i * n + i] = 1;
+    if (redundant) {
+      std::fill_n(normal, size * size, 0.0);
+      for (int j = 0; j < n; ++j) {
+        const double* const of_j = best->jacobian + 6 * j;
+        if (held[j]) continue;
+        for (int k = 0; k < rows; ++k)
+          for (int i = k; i < rows; ++i) normal[k * size + i] += of_j[i] * of_j[k];
       }
-      gradient_square += gradient[i] * gradient[i];
+    } else {
+      for (int j = 0; j < n; ++j)
+        for (int i = j; i < n; ++i)
+          normal[j * n + i] =
+              held[i] || held[j] ? (i == j ? 1.0 : 0.0) : dot6(best->jacobian + 6 * i, best->jacobian + 6 * j);
     }
     // Nothing to gain in any direction; and no motion below 10 rad (or m) would remove the error to first order, or it
     // is only the slow way out of a singularity.
@@ -105,10 +117,14 @@ VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* 
       return finish(IkStatus::unreachable);
     for (;;) {
       if (iterations >= problem.max_iterations || damping > 1e12) return finish(IkStatus::stalled);
-      std::copy_n(normal, n * n, damped);
-      for (int i = 0; i < n; ++i) damped[i * n + i] += damping * best->cost + 1e-14 * scale;
-      std::copy_n(gradient, n, step);
-      solve_few(damped, step, n);
+      std::copy_n(normal, size * size, damped);
+      for (int i = 0; i < size; ++i) damped[i * size + i] += damping * best->cost + 1e-14 * scale;
+      std::copy_n(redundant ? best->error.data() : gradient, size, solution);
+      solve_few(damped, solution, size);
+      for (int j = 0; j < n; ++j) {
+        step[j] = held[j] ? 0 : solution[j];
+        if (redundant && !held[j]) step[j] = std::inner_product(solution, solution + rows, best->jacobian + 6 * j, 0.0);
+      }
       double square = 0;
       for (int i = 0; i < n; ++i) square += step[i] * step[i];
       const double shorten =

@@ -125,61 +125,86 @@ static inline void $_evaluate_(const double *target, const double *previous, $_i
 /* Solves a x = b, a symmetric, its lower triangle by columns; x replaces b, a is lost. */
 static inline void $_solve_(double *a, double *b) {
   int i, j, k;
-  for (j = 0; j < $$_JOINTS; ++j) {
-    double *column = a + j * $$_JOINTS, inverse;
+  for (j = 0; j < $$_SIZE_; ++j) {
+    double *column = a + j * $$_SIZE_, inverse;
     for (k = 0; k < j; ++k) {
-      const double *before = a + k * $$_JOINTS;
+      const double *before = a + k * $$_SIZE_;
       const double factor = before[j] * before[k];
-      for (i = j; i < $$_JOINTS; ++i) column[i] -= factor * before[i];
+      for (i = j; i < $$_SIZE_; ++i) column[i] -= factor * before[i];
     }
     inverse = 1 / column[j];
-    for (i = j + 1; i < $$_JOINTS; ++i) column[i] *= inverse;
-    for (i = j + 1; i < $$_JOINTS; ++i) b[i] -= column[i] * b[j];
+    for (i = j + 1; i < $$_SIZE_; ++i) column[i] *= inverse;
+    for (i = j + 1; i < $$_SIZE_; ++i) b[i] -= column[i] * b[j];
   }
-  for (j = $$_JOINTS - 1; j >= 0; --j) {
-    const double *column = a + j * $$_JOINTS;
+  for (j = $$_SIZE_ - 1; j >= 0; --j) {
+    const double *column = a + j * $$_SIZE_;
     double sum = b[j] / column[j];
-    for (i = j + 1; i < $$_JOINTS; ++i) sum -= column[i] * b[i];
+    for (i = j + 1; i < $$_SIZE_; ++i) sum -= column[i] * b[i];
     b[j] = sum;
   }
 }
 
 static inline int $_search_(const double *target, const double *previous, $_iterate_ **best, $_iterate_ *next) {
-  double normal[$$_JOINTS * $$_JOINTS], damped[$$_JOINTS * $$_JOINTS], gradient[$$_JOINTS], step[$$_JOINTS];
+  double normal[$$_SIZE_ * $$_SIZE_], damped[$$_SIZE_ * $$_SIZE_], gradient[$$_JOINTS], step[$$_JOINTS], x[$$_SIZE_];
   double damping = 1e-3;
-  int i, j, k, evaluations = 1;
+  int held[$$_JOINTS], i, j, evaluations = 1;
+@if redundant
+  int k;
+@end
   $_evaluate_(target, previous, *best);
   if (!((*best)->cost - (*best)->cost == 0)) return $$_STALLED; /* not finite */
   while (!((*best)->position <= $$_POSITION_TOLERANCE && (*best)->rotation <= $$_ROTATION_TOLERANCE)) {
     double trace = 0, scale, square = 0, least;
     for (j = 0; j < $$_JOINTS; ++j) {
-      const double *of_j = (*best)->J + 6 * j;
-      for (i = j; i < $$_JOINTS; ++i) normal[j * $$_JOINTS + i] = $_dot6_((*best)->J + 6 * i, of_j);
+      const double *limit = $_limits_ + 2 * j, *of_j = (*best)->J + 6 * j, q = (*best)->q[j];
       gradient[j] = $_dot6_(of_j, (*best)->error);
-      trace += normal[j * $$_JOINTS + j];
+      trace += $_dot6_(of_j, of_j);
+      held[j] = (q <= limit[0] && gradient[j] < 0) || (q >= limit[1] && gradient[j] > 0); /* by its limit */
+      if (held[j]) gradient[j] = 0;
+      square += gradient[j] * gradient[j];
     }
     scale = trace > 1e-12 ? trace : 1e-12;
-    for (i = 0; i < $$_JOINTS; ++i) {
-      const double *limit = $_limits_ + 2 * i, q = (*best)->q[i];
-      if ((q <= limit[0] && gradient[i] < 0) || (q >= limit[1] && gradient[i] > 0)) { /* held by its limit */
-        gradient[i] = 0;
-        for (k = 0; k < i; ++k) normal[k * $$_JOINTS + i] = 0;
-        for (k = i; k < $$_JOINTS; ++k) normal[i * $$_JOINTS + k] = k == i ? 1 : 0;
-      }
-      square += gradient[i] * gradient[i];
+@if redundant
+    for (k = 0; k < $$_SIZE_ * $$_SIZE_; ++k) normal[k] = 0; /* J J': J' J is singular with fewer equations than joints */
+    for (j = 0; j < $$_JOINTS; ++j) {
+      const double *of_j = (*best)->J + 6 * j;
+      if (held[j]) continue;
+      for (k = 0; k < $$_SIZE_; ++k)
+        for (i = k; i < $$_SIZE_; ++i) normal[k * $$_SIZE_ + i] += of_j[i] * of_j[k];
     }
+@end
+@if !redundant
+    for (j = 0; j < $$_JOINTS; ++j)
+      for (i = j; i < $$_JOINTS; ++i)
+        normal[j * $$_SIZE_ + i] =
+            held[i] || held[j] ? (i == j ? 1 : 0) : $_dot6_((*best)->J + 6 * i, (*best)->J + 6 * j);
+@end
     least = 1e-3 * sqrt(scale * (*best)->cost);
     if (0.1 * (*best)->cost < least) least = 0.1 * (*best)->cost;
     if (sqrt(square) <= least) return $$_LIMITS; /* nothing to gain in any direction */
     for (;;) {
       double shorten = 1;
       if (evaluations >= $$_EVALUATIONS_ || damping > 1e12) return $$_STALLED;
-      for (j = 0; j < $$_JOINTS; ++j) {
-        for (i = j; i < $$_JOINTS; ++i) damped[j * $$_JOINTS + i] = normal[j * $$_JOINTS + i];
-        damped[j * $$_JOINTS + j] += damping * (*best)->cost + 1e-14 * scale;
-        step[j] = gradient[j];
+      for (j = 0; j < $$_SIZE_; ++j) {
+        for (i = j; i < $$_SIZE_; ++i) damped[j * $$_SIZE_ + i] = normal[j * $$_SIZE_ + i];
+        damped[j * $$_SIZE_ + j] += damping * (*best)->cost + 1e-14 * scale;
+@if redundant
+        x[j] = (*best)->error[j];
+@end
+@if !redundant
+        x[j] = gradient[j];
+@end
       }
-      $_solve_(damped, step);
+      $_solve_(damped, x);
+      for (j = 0; j < $$_JOINTS; ++j) {
+@if redundant
+        step[j] = 0;
+        for (k = 0; k < $$_SIZE_ && !held[j]; ++k) step[j] += x[k] * (*best)->J[6 * j + k];
+@end
+@if !redundant
+        step[j] = held[j] ? 0 : x[j];
+@end
+      }
       square = 0;
       for (i = 0; i < $$_JOINTS; ++i) square += step[i] * step[i];
       if (1.5 / sqrt(square) < 1) shorten = 1.5 / sqrt(square); /* no needless turns near a singularity */

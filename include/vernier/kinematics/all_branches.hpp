@@ -131,7 +131,7 @@ template <BranchRoots Roots, KinematicModel M>
   detail::BranchSet found;
   const auto refine = [&](bool sampled) {
     for (const InverseRoot<N>& root : roots)
-      if (root.sampled == sampled) found.refine(problem, root.joints.data(), root.margin);
+      if (root.sampled == sampled) found.refine(problem, root.joints.data(), root.margin, sampled);
   };
   refine(false);
   if (found.may_be_incomplete()) refine(true);

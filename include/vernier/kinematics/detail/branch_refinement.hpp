@@ -62,8 +62,9 @@ struct BranchSet {
            std::any_of(branches.begin(), branches.begin() + count, [](const auto& b) { return b.sigma_min < 0.002; });
   }
   /// Adds the branch to which Newton's method leads.
-  /// @param margin of the seed, see `SixAxisRoot`
-  VERNIER_API void refine(const BranchProblem& problem, const double* seed, double margin) noexcept;
+  /// @param margin  of the seed, see `SixAxisRoot`
+  /// @param sampled whether the seed is one of many, which need not lead to a branch
+  VERNIER_API void refine(const BranchProblem& problem, const double* seed, double margin, bool sampled) noexcept;
   /// Looks for missing ones beyond the folds next to those found; computes how sure each is.
   VERNIER_API void complete(const BranchProblem& problem) noexcept;
 };

@@ -88,8 +88,10 @@ VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) n
 
 /// Newton's method, damped least squares where that does not converge. The last step takes the inverse of the step
 /// before, and is not evaluated, where the Lipschitz bound proves that nothing is left.
+/// @param damped whether damped least squares, which take many more evaluations, are tried
 /// @return whether the target is met
-VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations) noexcept {
+VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
+                            bool damped = true) noexcept {
   constexpr double longest_step = 0.3;                  // rad
   constexpr double negligible = 1e-2 * accepted_error;  // m
   double start[most_branch_joints];
@@ -127,6 +129,8 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
     advance(std::min(1.0, longest_step / largest) * step);
     if (const double left = 0.5 * problem.lipschitz * step.squaredNorm(); left < negligible) return finish(left);
   }
+
+  if (!damped) return false;
 
   // near a singularity
   double lower[most_branch_joints], upper[most_branch_joints], jacobian[36];
@@ -198,7 +202,8 @@ VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const 
   return true;
 }
 
-VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* seed, double margin) noexcept {
+VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* seed, double margin,
+                                    bool sampled) noexcept {
   double q[most_branch_joints];
   for (int i = 0; i < problem.joints; ++i) q[i] = seed[i];
   for (const int i : problem.moving) q[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
@@ -213,9 +218,10 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
       changed = changed || value != q[i];
       q[i] = value;
     }
-    return !changed || solve_near(problem, q, at, iterations);
+    return !changed || solve_near(problem, q, at, iterations, !sampled);
   };
-  if (!solve_near(problem, q, at, iterations) || !turned()) {
+  if (!solve_near(problem, q, at, iterations, !sampled) || !turned()) {
+    if (sampled) return;  // one of many
     if (margin == 0) ++seeds_lost;
     if (stalled_count < max_stalled) std::copy_n(q, problem.joints, stalled[stalled_count++].data());
     suspicious = true;
@@ -228,11 +234,11 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
 /// lie on a parabola, whose curvature gives the distance of the other one.
 VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const double* from, bool met,
                              double near_fold) noexcept {
-  BranchIterate at;
-  evaluate_iterate(problem, from, at);
-  if (!at.jacobian.allFinite()) return;
+  BranchIterate here;
+  evaluate_iterate(problem, from, here);
+  if (!here.jacobian.allFinite()) return;
   // singular vectors by the symmetric problem, for a third of what a decomposition of J takes
-  const Eigen::SelfAdjointEigenSolver<Matrix6> right(at.jacobian.transpose() * at.jacobian);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> right(here.jacobian.transpose() * here.jacobian);
   constexpr double h = 1e-4, wide = 0.25 * std::numbers::pi;
   double start[most_branch_joints], q[most_branch_joints];
   std::copy_n(from, problem.joints, start);
@@ -243,28 +249,32 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
   };
   for (int direction = 0; direction < 2; ++direction) {
     v = right.eigenvectors().col(direction);
-    Vector6 u = at.jacobian * v;
+    Vector6 u = here.jacobian * v;
     const double sigma = u.norm();
     if (!(sigma < near_fold)) break;
     if (sigma < 1e-6)
-      u = Eigen::SelfAdjointEigenSolver<Matrix6>(at.jacobian * at.jacobian.transpose()).eigenvectors().col(direction);
+      u = Eigen::SelfAdjointEigenSolver<Matrix6>(here.jacobian * here.jacobian.transpose())
+              .eigenvectors()
+              .col(direction);
     else
       u /= sigma;
-    BranchIterate ahead, behind;
+    BranchIterate ahead, behind, at;
     displace(h);
     evaluate_iterate(problem, q, ahead);
     displace(-h);
     evaluate_iterate(problem, q, behind);
     const double curvature = u.dot((ahead.jacobian - behind.jacobian) * v) / (2 * h);
-    // the other solution; where the seed stalled, it is at the vertex, and both sides may have one
-    const double twin = met ? -2 * sigma / curvature : std::sqrt(2 * std::abs(u.dot(at.error) / curvature));
+    // the other solution; where the seed stalled, it is at the vertex, and both sides have one if the square is
+    // positive
+    const double square = 2 * u.dot(here.error) / curvature;
+    const double twin = met ? -2 * sigma / curvature : std::sqrt(std::abs(square));
     displace(twin);
     if (met && std::abs(twin) < 0.3 && is_known(set, problem, q, 0.5 * std::abs(twin))) continue;
-    for (const double by : {twin, met ? 0.5 * twin : -twin, 2 * twin, 0.15, -0.15, wide, -wide}) {
-      if (!(std::abs(by) < 2)) continue;
+    const auto search = [&](double by, bool damped) {
+      if (!(std::abs(by) < 2)) return;
       displace(by);
       int iterations = 3;
-      if (!solve_near(problem, q, at, iterations)) continue;
+      if (!solve_near(problem, q, at, iterations, damped)) return;
       double turned[most_branch_joints];
       std::copy_n(q, problem.joints, turned);
       bool same = true;
@@ -273,7 +283,14 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
         same = same && turned[i] == q[i];
       }
       if (same || solve_near(problem, turned, at, iterations)) add_branch(set, problem, turned, at, iterations);
-    }
+    };
+    const bool likely = met ? set.suspicious || set.count % 2 != 0 : square > 0;
+    search(twin, likely);
+    search(met ? 0.5 * twin : -twin, likely);
+    search(2 * twin, met && likely);
+    if (met && set.count % 2 == 0) continue;
+    for (const double by : {0.15, -0.15}) search(by, false);
+    for (const double by : {wide, -wide}) search(by, !met);
   }
 }
 

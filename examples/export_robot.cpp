@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <ctime>
 #include <optional>
 
 #include "cli.hpp"
@@ -125,10 +124,7 @@ support::Json to_json(const vn::ErrorStatistics& e) {
 
 int run(support::Program& program) {
   Settings o;
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  o.date = fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+  o.date = support::today();
   CLI::App& app = program.app();
   const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
     return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);

@@ -169,8 +169,8 @@ int run(support::Program& program) {
       ->needs(data);
   auto* add =
       option("--add", o.add, "number of poses to add to --data", "N")->check(CLI::Range(3, 100000))->needs(data);
-  auto* choose = option("--choose", o.choose, "choose N rows of --from, by their joints alone", "N")
-                     ->check(CLI::Range(3, 100000));
+  auto* choose =
+      option("--choose", o.choose, "choose N rows of --from, by their joints alone", "N")->check(CLI::Range(3, 100000));
   auto* from = option("--from", o.from, "measured poses, as calibrate reads them", "FILE");
   choose->needs(from)->excludes(count)->excludes(add);
   count->excludes(add);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <ctime>
 #include <filesystem>
 
 #include "cli.hpp"
@@ -59,10 +58,7 @@ int verify_arm(const support::Program& program, const Options& o) {
 
 int run(support::Program& program) {
   Options o;
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  o.date = fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+  o.date = support::today();
   CLI::App& app = program.app();
   const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
     return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);

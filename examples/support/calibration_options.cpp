@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <map>
 
 namespace support {
@@ -18,13 +17,6 @@ struct TypedValues {
   double distance_sigma_mm = 0.03, contact_sigma_mm = 0.03;
   bool positions_only = false;
 };
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
-}
 
 /// An option whose default is not shown in the help.
 CLI::Option* option(CLI::App& app, const char* name, auto& value, const char* help, const char* type) {

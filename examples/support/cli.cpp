@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <new>
 #include <thread>
@@ -74,6 +75,13 @@ std::filesystem::path Program::output_folder() const {
   if (error) throw std::runtime_error(common_.out + ": the folder cannot be made: " + error.message());
   if (!std::filesystem::is_directory(common_.out)) throw std::runtime_error(common_.out + ": is not a folder");
   return common_.out;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
 }
 
 void require_writable(const std::filesystem::path& path) {

@@ -69,6 +69,9 @@ class Program {
   const char* const* argv_;
 };
 
+/// The date, UTC, e.g. "2024-05-01".
+std::string today();
+
 /// Makes sure that a file can be written, before the work whose result it takes.
 /// @throws std::runtime_error naming the file and the reason
 void require_writable(const std::filesystem::path& path);

@@ -15,6 +15,7 @@ using vernier_test::actual_arm;
 using vernier_test::identify_by_gauss_newton;
 using vernier_test::lengths;
 using vernier_test::nominal_arm;
+using vernier_test::registered_mean;
 using vernier_test::three_planes;
 using vernier_test::touched;
 
@@ -26,22 +27,6 @@ Dataset<6> poses(double sigma) {
                  {.position = sigma, .with_orientations = false}, 6);
 }
 
-/// Mean error at fresh joints, the base registered.
-template <class Arm>
-double error_of(const Arm& arm) {
-  const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 100, 78);
-  PointRows points(100, 3), actual(100, 3);
-  for (Index i = 0; i < 100; ++i) {
-    points.row(i) = arm.position(joints.row(i).transpose()).transpose();
-    actual.row(i) = actual_arm().position(joints.row(i).transpose()).transpose();
-  }
-  const Isometry3 base = register_points(points, actual);
-  double out = 0;
-  for (Index i = 0; i < 100; ++i)
-    out += (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm() / 100;
-  return out;
-}
-
 double fitted_error(double sigma, const SensorModel& sensors, std::span<const Contact> contacts) {
   const Dataset<6> data = poses(sigma);
   const auto start =
@@ -50,7 +35,7 @@ double fitted_error(double sigma, const SensorModel& sensors, std::span<const Co
                                       geometry_alone, sensors, {}, contacts);
   EXPECT_TRUE(fitted.converged);
   EXPECT_EQ(fitted.models.size(), 1 + contacts.size());
-  return error_of(fitted.models.front());
+  return registered_mean(fitted.models.front());
 }
 
 TEST(ContactsBesidePoses, PreciseContactsImproveNoisyPoses) {

@@ -19,6 +19,7 @@ namespace {
 using testing_support::CommandResult;
 using testing_support::TemporaryFolder;
 using vernier_test::actual_arm;
+using vernier_test::registered_mean;
 using vernier_test::three_planes;
 
 /// Contacts as a file.
@@ -30,22 +31,6 @@ std::string text_of(const std::vector<Contact>& contacts) {
       for (Index j = 0; j < 6; ++j) out += message(',', contact.joints()(i, j));
       out += '\n';
     }
-  return out;
-}
-
-/// Mean error at fresh joints, the base registered.
-template <class Arm>
-double registered_mean(const Arm& arm) {
-  const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 100, 78);
-  PointRows points(100, 3), actual(100, 3);
-  for (Index i = 0; i < 100; ++i) {
-    points.row(i) = arm.position(joints.row(i).transpose()).transpose();
-    actual.row(i) = actual_arm().position(joints.row(i).transpose()).transpose();
-  }
-  const Isometry3 base = register_points(points, actual);
-  double out = 0;
-  for (Index i = 0; i < 100; ++i)
-    out += (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm() / 100;
   return out;
 }
 

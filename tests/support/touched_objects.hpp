@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vernier/core/register_points.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -27,7 +28,24 @@ inline IrbArm actual_arm(std::uint64_t seed = 5) {
                 vernier::FrameParameters(vernier::Vector6{0.043, -0.021, 0.104, 0, 0, 0}));
 }
 
-/// Touches of an object by it.
+/// Mean distance from it at fresh joints, the base registered [m].
+template <class Arm>
+double registered_mean(const Arm& arm) {
+  using namespace vernier;
+  const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 100, 78);
+  PointRows points(100, 3), actual(100, 3);
+  for (Index i = 0; i < 100; ++i) {
+    points.row(i) = arm.position(joints.row(i).transpose()).transpose();
+    actual.row(i) = actual_arm().position(joints.row(i).transpose()).transpose();
+  }
+  const Isometry3 base = register_points(points, actual);
+  double out = 0;
+  for (Index i = 0; i < 100; ++i)
+    out += (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm() / 100;
+  return out;
+}
+
+/// Touches of an object by the arm as made.
 inline vernier::Contact touched(const vernier::VirtualObject& object, const char* name, const vernier::VectorX& known,
                                 double sigma = 0, std::uint64_t seed = 1) {
   return vernier::touch(actual_arm(), object, name, known, vernier::abb_irb120_operating_region().limits, sigma, seed);

@@ -76,6 +76,9 @@ const std::vector<Named>& search_names() {
 bool Method::classical() const { return known(classical_names(), learner); }
 
 Method Method::parse(const std::string& text) {
+  const auto plain = [](char c) { return c >= '!' && c <= '~'; };
+  if (text.size() > 60 || !std::all_of(text.begin(), text.end(), plain))
+    throw UsageError("the name of a method has at most 60 characters, all of them printable ASCII");
   Method out{.text = text};
   std::string rest = text;
   for (const char* base : {"geometry", "jointwise"})

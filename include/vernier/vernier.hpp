@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for four parts that few
-/// programs use and that take long to compile. Include those by name: the general inverse kinematics
+/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for four parts that
+/// few programs use and that take long to compile. Include those by name: the general inverse kinematics
 /// (`kinematics/general_six_axis.hpp`), tables of a tracker (`data/pair_points.hpp`), calibration by contacts
 /// (`identification/identify_by_contacts.hpp`, `simulation/touches.hpp`) and robot programs
 /// (`robot_programs/robot_program.hpp`, `robot_programs/configuration.hpp`). The library's own headers never include

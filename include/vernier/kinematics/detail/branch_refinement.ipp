@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +9,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
+#include "vernier/kinematics/detail/wrist.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 
 namespace vernier::detail {
@@ -30,21 +30,34 @@ struct BranchIterate {
 
 /// Inverse of a matrix, by Gauss-Jordan elimination with row pivoting; entries that are not finite for a singular one.
 VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
-  Matrix6 a = matrix;
-  out.setIdentity();
+  out = matrix;
+  int pivot[6];
   for (int k = 0; k < 6; ++k) {
-    int pivot = k;
+    pivot[k] = k;
     for (int i = k + 1; i < 6; ++i)
-      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
-    if (pivot != k) {
-      a.row(k).swap(a.row(pivot));
-      out.row(k).swap(out.row(pivot));
-    }
-    Vector6 factor = -a.col(k) / a(k, k);
-    factor(k) = 1 / a(k, k) - 1;
-    for (int j = k + 1; j < 6; ++j) a.col(j) += factor * a(k, j);
-    for (int j = 0; j < 6; ++j) out.col(j) += factor * out(k, j);
+      if (std::abs(out(i, k)) > std::abs(out(pivot[k], k))) pivot[k] = i;
+    if (pivot[k] != k) out.row(k).swap(out.row(pivot[k]));
+    Vector6 factor = -out.col(k) / out(k, k);
+    factor(k) = 1 / out(k, k) - 1;
+    for (int j = 0; j < 6; ++j)
+      if (j != k) out.col(j) += factor * out(k, j);
+    ++factor(k);
+    out.col(k) = factor;
   }
+  for (int k = 5; k >= 0; --k)
+    if (pivot[k] != k) out.col(k).swap(out.col(pivot[k]));
+}
+
+/// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues lie in [0, 1]: power iteration on a
+/// matrix squared thrice.
+VERNIER_API Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
+  Matrix6 power = matrix * matrix;
+  for (int k = 0; k < 2; ++k) power = (power * power).eval();
+  Index widest = 0;
+  power.diagonal().maxCoeff(&widest);
+  Vector6 out = power.col(widest).normalized();
+  for (int k = 0; k < 4; ++k) out = (power * out).normalized();
+  return out;
 }
 
 VERNIER_API void evaluate_iterate(const BranchProblem& problem, const double* q, BranchIterate& out) noexcept {
@@ -88,7 +101,9 @@ VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) n
 
 /// Newton's method, damped least squares where that does not converge. The last step takes the inverse of the step
 /// before, and is not evaluated, where the Lipschitz bound proves that nothing is left.
-/// @param damped whether damped least squares, which take many more evaluations, are tried
+/// @param damped whether damped least squares, which take many more evaluations, are tried; without, a step of more
+/// than
+///               half a turn ends the search early
 /// @return whether the target is met
 VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
                             bool damped = true) noexcept {
@@ -125,7 +140,7 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
     at.moved = 0;
     const Vector6 step = at.inverse * at.error;
     const double largest = step.cwiseAbs().maxCoeff();
-    if (!std::isfinite(largest)) break;
+    if (!std::isfinite(largest) || (!damped && k < 2 && largest > std::numbers::pi)) break;
     advance(std::min(1.0, longest_step / largest) * step);
     if (const double left = 0.5 * problem.lipschitz * step.squaredNorm(); left < negligible) return finish(left);
   }
@@ -156,18 +171,20 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
   return at.accepted();
 }
 
-/// Whether a branch was found whose joints differ by less than a distance [rad] from q, whole turns aside.
+/// Whether joint values differ by less than a distance [rad], whole turns aside.
+VERNIER_API bool are_near(const BranchProblem& problem, const double* a, const double* b, double distance) noexcept {
+  for (int i = 0; i < problem.joints; ++i) {
+    const double turns = (a[i] - b[i]) / (2 * std::numbers::pi);
+    if (!(std::abs(turns - std::nearbyint(turns)) * (2 * std::numbers::pi) < distance)) return false;
+  }
+  return true;
+}
+
+/// Whether a branch was found so near to q.
 VERNIER_API bool is_known(const BranchSet& set, const BranchProblem& problem, const double* q,
                           double distance) noexcept {
-  for (int b = 0; b < set.count; ++b) {
-    bool near = true;
-    for (int i = 0; near && i < problem.joints; ++i) {
-      const double turns = (q[i] - set.branches[static_cast<std::size_t>(b)].q[i]) / (2 * std::numbers::pi);
-      near = std::abs(turns - std::nearbyint(turns)) * (2 * std::numbers::pi) < distance;
-    }
-    if (near) return true;
-  }
-  return false;
+  return std::any_of(set.branches.begin(), set.branches.begin() + set.count,
+                     [&](const FoundBranch& branch) { return are_near(problem, q, branch.q, distance); });
 }
 
 /// Adds a solution unless it is there.
@@ -186,15 +203,8 @@ VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const 
     out.sigma_min = out.radius = 0;
     return true;
   }
-  // power iteration on a matrix squared thrice
-  const Matrix6 once = at.inverse * at.inverse.transpose() / (bound * bound);
-  Matrix6 power = once * once;
-  for (int k = 0; k < 2; ++k) power = (power * power).eval();
-  Index widest = 0;
-  power.diagonal().maxCoeff(&widest);
-  Vector6 direction = power.col(widest).normalized();
-  for (int k = 0; k < 4; ++k) direction = (power * direction).normalized();
-  out.sigma_min = 1 / (bound * std::sqrt(direction.dot(once * direction)));
+  const Vector6 direction = dominant_eigenvector(at.inverse * at.inverse.transpose() / (bound * bound));
+  out.sigma_min = 1 / (at.inverse.transpose() * direction).norm();
 
   const double step = at.moved + 1e-15 * bound;
   const double h = bound * problem.lipschitz * step;
@@ -210,6 +220,7 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
   BranchIterate at;
   int iterations = 0;
   if (margin > 0) suspicious = true;
+  const bool damped = !sampled || margin > sampled_margin;  // beyond a boundary the Jacobian is singular
   // Newton's method may lead across a limit, or farther than half a turn from `near`
   const auto turned = [&] {
     bool changed = false;
@@ -218,13 +229,15 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
       changed = changed || value != q[i];
       q[i] = value;
     }
-    return !changed || solve_near(problem, q, at, iterations, !sampled);
+    return !changed || solve_near(problem, q, at, iterations, damped);
   };
-  if (!solve_near(problem, q, at, iterations, !sampled) || !turned()) {
+  if (!solve_near(problem, q, at, iterations, damped) || !turned()) {
     if (sampled) return;  // one of many
     if (margin == 0) ++seeds_lost;
-    if (stalled_count < max_stalled) std::copy_n(q, problem.joints, stalled[stalled_count++].data());
     suspicious = true;
+    const bool known = std::any_of(stalled, stalled + stalled_count,
+                                   [&](const auto& other) { return are_near(problem, q, other.data(), 0.01); });
+    if (!known && stalled_count < max_stalled) std::copy_n(q, problem.joints, stalled[stalled_count++].data());
   } else if (!add_branch(*this, problem, q, at, iterations)) {
     suspicious = true;
   }
@@ -237,8 +250,11 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
   BranchIterate here;
   evaluate_iterate(problem, from, here);
   if (!here.jacobian.allFinite()) return;
-  // singular vectors by the symmetric problem, for a third of what a decomposition of J takes
-  const Eigen::SelfAdjointEigenSolver<Matrix6> right(here.jacobian.transpose() * here.jacobian);
+  // singular vectors of small singular values are those of large ones of the inverse, which shall exist
+  here.jacobian.diagonal().array() += 1e-12;
+  invert(here.jacobian, here.inverse);
+  const double bound = here.inverse.norm();
+  Matrix6 spread = here.inverse * here.inverse.transpose() / (bound * bound);
   constexpr double h = 1e-4, wide = 0.25 * std::numbers::pi;
   double start[most_branch_joints], q[most_branch_joints];
   std::copy_n(from, problem.joints, start);
@@ -248,16 +264,12 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += by * v(i);
   };
   for (int direction = 0; direction < 2; ++direction) {
-    v = right.eigenvectors().col(direction);
-    Vector6 u = here.jacobian * v;
-    const double sigma = u.norm();
+    v = dominant_eigenvector(spread);
+    Vector6 u = here.inverse.transpose() * v;
+    const double sigma = 1 / u.norm();
     if (!(sigma < near_fold)) break;
-    if (sigma < 1e-6)
-      u = Eigen::SelfAdjointEigenSolver<Matrix6>(here.jacobian * here.jacobian.transpose())
-              .eigenvectors()
-              .col(direction);
-    else
-      u /= sigma;
+    u *= sigma;
+    spread -= (1 / (sigma * sigma * bound * bound)) * v * v.transpose();
     BranchIterate ahead, behind, at;
     displace(h);
     evaluate_iterate(problem, q, ahead);
@@ -289,18 +301,21 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     search(met ? 0.5 * twin : -twin, likely);
     search(2 * twin, met && likely);
     if (met && set.count % 2 == 0) continue;
-    for (const double by : {0.15, -0.15}) search(by, false);
-    for (const double by : {wide, -wide}) search(by, !met);
+    for (const double by : {wide, -wide}) search(by, false);
   }
 }
 
 VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
+  const auto across = [&](double near_fold) {
+    for (int b = 0; b < count; ++b) {
+      const FoundBranch& from = branches[static_cast<std::size_t>(b)];
+      if (from.sigma_min < near_fold) cross_folds(*this, problem, from.q, true, near_fold);
+    }
+  };
   const double near_fold = may_be_incomplete() ? 0.05 : 0.01;  // m/rad
-  for (int b = 0; b < count; ++b) {
-    const FoundBranch& from = branches[static_cast<std::size_t>(b)];
-    if (from.sigma_min < near_fold) cross_folds(*this, problem, from.q, true, near_fold);
-  }
+  across(near_fold);
   for (int k = 0; k < stalled_count; ++k) cross_folds(*this, problem, stalled[k].data(), false, near_fold);
+  if (count % 2 != 0) across(0.2);
 }
 
 VERNIER_IMPL std::string describe_reach(Reach reach, int branches, double margin) {

@@ -120,7 +120,7 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
                                                double width) const noexcept {
   SixAxisRoots out;
   const auto nearby = [&](int i) { return near(mirrored_ ? 5 - i : i); };
-  const auto emit = [&](const double(&q)[6], double margin, unsigned free, bool sampled = false) {
+  const auto emit = [&](const double(&q)[6], double margin, unsigned free, bool sampled) {
     if (out.count >= SixAxisRoots::capacity) return;
     SixAxisRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
     root.margin = margin;
@@ -147,13 +147,13 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
 
   // with the first three joints known, a spherical wrist does the rest
   const auto finish = [&](double q1, double q2, double q3, const Matrix3& r1, const Matrix3& r3, double margin,
-                          unsigned free) {
+                          unsigned free, bool sampled) {
     const Matrix3 to_wrist = r1 * rotation_about(h_[1], q2) * r3;
-    const WristAngles end = solve_wrist(wrist_, to_wrist.transpose() * rotation, nearby(3), width);
+    const WristAngles end = solve_wrist(wrist_, to_wrist.transpose() * rotation, nearby(3), sampled ? 0 : width);
     missed(end.margin);
     for (int k = 0; k < end.count; ++k)
       emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin_of(k)),
-           free | (end.any ? 8u : 0u), k >= end.exact);
+           free | (end.any ? 8u : 0u), sampled || k >= end.exact);
   };
 
   switch (kind_) {
@@ -175,10 +175,17 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
         missed(thirds.margin);
         for (int k = 0; k < thirds.count; ++k) {
           const Matrix3 r3 = rotation_about(h_[2], thirds.angles[k]);
-          const AngleAbout second = angle_between(h_[1], p_[1] + r3 * p_[2], u, negligible_length);
-          finish(q1, second.any ? nearby(1) : second.angle, thirds.angles[k], r1, r3,
-                 std::max(firsts.margin, thirds.margin),
-                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u));
+          const Vector3 bent = p_[1] + r3 * p_[2];
+          const AngleAbout second = angle_between(h_[1], bent, u, negligible_length);
+          const double q2 = second.any ? nearby(1) : second.angle,
+                       margin = std::max(firsts.margin_of(i), thirds.margin);
+          const unsigned free = (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u);
+          finish(q1, q2, thirds.angles[k], r1, r3, margin, free, i >= firsts.exact);
+          // folded, the arm has its wrist next to the second axis
+          if (i < firsts.exact && std::max(h_[1].cross(bent).norm(), h_[1].cross(u).norm()) < width)
+            for (int m = 0; m < angle_samples; ++m)
+              finish(q1, q2 + (m + 0.5) * 2 * std::numbers::pi / angle_samples, thirds.angles[k], r1, r3, margin, free,
+                     true);
         }
       }
       break;
@@ -202,8 +209,10 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
           const double q2 = seconds.angles[k];
           const AngleAbout q1 = angle_between(h_[0], p_[0] + rotation_about(h_[1], q2) * v, w, negligible_length);
           const double turn = q1.any ? nearby(0) : q1.angle;
-          finish(turn, q2, thirds.angles[i], rotation_about(h_[0], turn), r3, std::max(thirds.margin, seconds.margin),
-                 (q1.any ? 1u : 0u) | (seconds.any ? 2u : 0u) | (thirds.any ? 4u : 0u));
+          finish(turn, q2, thirds.angles[i], rotation_about(h_[0], turn), r3,
+                 std::max(thirds.margin_of(i), seconds.margin_of(k)),
+                 (q1.any ? 1u : 0u) | (seconds.any ? 2u : 0u) | (thirds.any ? 4u : 0u),
+                 i >= thirds.exact || k >= seconds.exact);
         }
       }
       break;
@@ -236,8 +245,9 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
                 angle_between(h_[1], p_[1] + rotation_about(h_[2], q3) * p_[2], u, negligible_length);
             const double q2 = second.any ? nearby(1) : second.angle;
             emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
-                 std::max({firsts.margin, end.margin_of(m), thirds.margin}),
-                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u));
+                 std::max({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
+                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u),
+                 i >= firsts.exact || m >= end.exact);
           }
         }
       }

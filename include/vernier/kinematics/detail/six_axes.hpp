@@ -41,13 +41,13 @@ struct SixAxisRoot {
   /// the joint values at the boundary that come nearest.
   double margin = 0;
   unsigned free = 0;     ///< bit i: every value of joint i would do as well, given that others follow
-  bool sampled = false;  ///< of a spherical wrist next to its singularity
+  bool sampled = false;  ///< one of several next to a singularity of the shoulder, elbow or wrist
 };
 
 /// All joint values that a solver found for one target.
 struct SixAxisRoots {
   /// A six-axis arm has at most 16 solutions (@cite Primrose 1986); the others are for samples near singularities.
-  static constexpr int capacity = 48;
+  static constexpr int capacity = 128;
   std::array<SixAxisRoot, capacity> roots;  ///< the first `count` are set
   int count = 0;                            ///< how many were found
   /// The smallest margin of what was left out because its own was too large; infinite where there was nothing such.

@@ -31,11 +31,13 @@ VERNIER_API Wrist wrist_of(const Vector3& k4, const Vector3& k5, const Vector3& 
 struct Candidates {
   double angles[2 + angle_samples];
   int count;
-  double margin;
+  int exact;      ///< number of exact ones, which come first; the others are samples
+  double margin;  ///< of the exact ones
   bool any;
 
   /// @param widest circle that counts as next to a singularity [m]
   VERNIER_API Candidates(const AnglePair& pair, double near, double widest = 0);
+  double margin_of(int k) const { return k < exact ? margin : std::clamp(margin, sampled_margin, most_margin); }
 };
 
 /// Angles of a wrist whose rotation is given.

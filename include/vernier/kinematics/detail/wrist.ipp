@@ -32,8 +32,8 @@ VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double near, double w
     angles[1] = pair.centre - pair.half;
     if (margin == 0 && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
   }
+  exact = count;
   if (pair.radius >= widest) return;
-  margin = std::clamp(margin, sampled_margin, most_margin);
   for (int k = 0; k < angle_samples; ++k)
     angles[count++] = pair.centre + (k + 0.5) * 2 * std::numbers::pi / angle_samples;
 }

@@ -30,22 +30,21 @@ struct BranchIterate {
 
 /// Inverse of a matrix, by Gauss-Jordan elimination with row pivoting; entries that are not finite for a singular one.
 VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
-  out = matrix;
-  int pivot[6];
+  Matrix6 a = matrix;
+  out.setIdentity();
   for (int k = 0; k < 6; ++k) {
-    pivot[k] = k;
+    int pivot = k;
     for (int i = k + 1; i < 6; ++i)
-      if (std::abs(out(i, k)) > std::abs(out(pivot[k], k))) pivot[k] = i;
-    if (pivot[k] != k) out.row(k).swap(out.row(pivot[k]));
-    Vector6 factor = -out.col(k) / out(k, k);
-    factor(k) = 1 / out(k, k) - 1;
-    for (int j = 0; j < 6; ++j)
-      if (j != k) out.col(j) += factor * out(k, j);
-    ++factor(k);
-    out.col(k) = factor;
+      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
+    if (pivot != k) {
+      a.row(k).swap(a.row(pivot));
+      out.row(k).swap(out.row(pivot));
+    }
+    Vector6 factor = -a.col(k) / a(k, k);
+    factor(k) = 1 / a(k, k) - 1;
+    for (int j = k + 1; j < 6; ++j) a.col(j) += factor * a(k, j);
+    for (int j = 0; j < 6; ++j) out.col(j) += factor * out(k, j);
   }
-  for (int k = 5; k >= 0; --k)
-    if (pivot[k] != k) out.col(k).swap(out.col(pivot[k]));
 }
 
 /// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues lie in [0, 1]: power iteration on a

@@ -26,7 +26,7 @@
 #ifdef CONSUMER_MPI
 #include <vernier/mpi.hpp>
 #endif
-#if !defined(CONSUMER_IO) && !defined(CONSUMER_CERES) && !defined(CONSUMER_TBB)  // all that needs Eigen alone
+#ifdef CONSUMER_UMBRELLA  // all that needs Eigen alone
 #include <vernier/vernier.hpp>
 #endif
 

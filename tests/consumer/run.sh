@@ -25,16 +25,29 @@ quietly() {
   }
 }
 
+# Nothing is optimised here, and nothing debugged.
+fast=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=--param=ggc-min-heapsize=1000000)
+
 # consume PROJECT MODE COMPONENTS [CMAKE ARG...]
 consume() {
   local project=$1 mode=$2 components=$3
   local folder="$build/$project-$mode-${components//;/-}"
-  quietly "$build/configure.log" cmake -S "$here/$project" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
+  quietly "$folder.log" cmake -S "$here/$project" -B "$folder" -G Ninja "${fast[@]}" \
     "-DCONSUMER_COMPONENTS=$components" -DCONSUMER_MODE="$mode" "-DCMAKE_PREFIX_PATH=$build/prefix" "${@:4}"
-  quietly "$build/build.log" cmake --build "$folder"
+  quietly "$folder.log" cmake --build "$folder"
   [[ ! -e $folder/vernier/examples && ! -e $folder/vernier/tests ]] || fail "$project builds our tests or programs"
-  printf "%-14s %-17s " "$project" "${components:-bare}"
-  "$folder/consumer"
+  printf '%-14s %-17s %s\n' "$project" "${components:-bare}" "$("$folder/consumer")"
+}
+
+# in_background COMMAND...: two at a time, since most of these projects are one translation unit
+running=()
+in_background() {
+  if [[ ${#running[@]} -ge 2 ]]; then
+    wait "${running[0]}"
+    running=("${running[@]:1}")
+  fi
+  "$@" &
+  running+=($!)
 }
 
 # refuse TEXT CMAKE ARG...: configuring must fail, and say TEXT
@@ -62,7 +75,7 @@ no_parallel=(-DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_MP
 # install PREFIX CMAKE ARG...
 install() {
   quietly "$build/install.log" cmake -S "$root" -B "$build/package" -G Ninja "-DCMAKE_INSTALL_PREFIX=$build/$1" \
-    -DCMAKE_BUILD_TYPE=Debug -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF \
+    "${fast[@]}" -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF \
     "${@:2}"
   quietly "$build/install.log" cmake --build "$build/package"
   quietly "$build/install.log" cmake --install "$build/package"
@@ -115,15 +128,18 @@ fi
 
 bare=("-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}")
 for project in in_tree fetch_content installed; do
-  consume $project header_only "" "${bare[@]}"
+  in_background consume $project header_only "" "${bare[@]}"
 done
-consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_urdf[@]}" "${no_parallel[@]}"
-consume installed header_only urdf "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
-consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}"
-consume installed header_only "io;urdf;ceres;cholmod;tbb;mpi"
-consume installed compiled "io;urdf;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
-consume in_tree compiled "" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
-consume installed mixed ""
+in_background consume installed header_only io "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_urdf[@]}" "${no_parallel[@]}"
+in_background consume installed header_only urdf "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres "${no_parallel[@]}"
+in_background consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}"
+in_background consume installed header_only "io;urdf;ceres;cholmod;tbb;mpi"
+in_background consume installed compiled "io;urdf;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
+in_background consume in_tree compiled "" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
+in_background consume installed mixed ""
+for process in "${running[@]}"; do
+  wait "$process"
+done
 
 # A program whose Eigen types have another alignment than the library's does not link.
 folder="$build/aligned"

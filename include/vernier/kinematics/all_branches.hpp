@@ -134,8 +134,8 @@ template <BranchRoots Roots, KinematicModel M>
       if (root.sampled == sampled) found.refine(problem, root.joints.data(), root.margin, sampled);
   };
   refine(false);
-  const bool left_out =
-      std::isfinite(roots.nearest_margin);  // beyond a boundary, which next to a singularity moves far
+  // beyond a boundary of the nominal arm, which moves far next to a singularity
+  const bool left_out = std::isfinite(roots.nearest_margin);
   if (left_out || found.may_be_incomplete()) refine(true);
   found.complete(problem);
   out.count = found.count;

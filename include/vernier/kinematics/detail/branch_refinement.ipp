@@ -269,12 +269,10 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     if (!(sigma < near_fold)) break;
     u *= sigma;
     spread -= (1 / (sigma * sigma * bound * bound)) * v * v.transpose();
-    BranchIterate ahead, behind, at;
+    BranchIterate ahead, at;
     displace(h);
     evaluate_iterate(problem, q, ahead);
-    displace(-h);
-    evaluate_iterate(problem, q, behind);
-    const double curvature = u.dot((ahead.jacobian - behind.jacobian) * v) / (2 * h);
+    const double curvature = u.dot((ahead.jacobian - here.jacobian) * v) / h;
     // the other solution; where the seed stalled, it is at the vertex, and both sides have one if the square is
     // positive
     const double square = 2 * u.dot(here.error) / curvature;
@@ -284,7 +282,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     const auto search = [&](double by, bool damped) {
       if (!(std::abs(by) < 2)) return;
       displace(by);
-      int iterations = 3;
+      int iterations = 2;
       if (!solve_near(problem, q, at, iterations, damped)) return;
       double turned[most_branch_joints];
       std::copy_n(q, problem.joints, turned);
@@ -297,7 +295,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     };
     const bool likely = met ? set.suspicious || set.count % 2 != 0 : square > 0;
     search(twin, likely);
-    search(met ? 0.5 * twin : -twin, likely);
+    search(met ? 0.5 * twin : -twin, !met && likely);
     search(2 * twin, met && likely);
     if (met && set.count % 2 == 0) continue;
     for (const double by : {wide, -wide}) search(by, false);
@@ -311,7 +309,7 @@ VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
       if (from.sigma_min < near_fold) cross_folds(*this, problem, from.q, true, near_fold);
     }
   };
-  const double near_fold = may_be_incomplete() ? 0.05 : 0.01;  // m/rad
+  const double near_fold = may_be_incomplete() ? 0.05 : 0.005;  // m/rad
   across(near_fold);
   for (int k = 0; k < stalled_count; ++k) cross_folds(*this, problem, stalled[k].data(), false, near_fold);
   if (count % 2 != 0) across(0.2);

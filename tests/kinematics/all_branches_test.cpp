@@ -88,10 +88,10 @@ bool contains(const Branches<N>& branches, const JointVector<N>& q, double toler
 // random poses
 
 /// Poses of arms as made: every branch meets its target, no two alike, and the joints that made the target among them,
-/// but for one in a thousand poses, next to folds.
+/// but for some next to folds: of 65,536 poses of the UR10 0.09 %.
 template <int N, class Roots, class Make>
 void expect_branches(const Roots& nominal, const Make& make, const std::string& name, int poses,
-                     double most_lost = 0.001) {
+                     double most_lost = 0.0015) {
   Rng rng(1);
   const int held = nominal.held_joint();
   double position = 0, rotation = 0, understated = 0, sigma = 0;
@@ -144,7 +144,7 @@ auto made_from(const DhChain<N, Convention>& nominal) {
 }
 
 TEST(AllBranches, OfArmsAsMade) {
-  expect_branches<6>(ClosedForm(robots::ur10().chain), made_from(robots::ur10().chain), "ur10", 5000, 0.0015);
+  expect_branches<6>(ClosedForm(robots::ur10().chain), made_from(robots::ur10().chain), "ur10", 5000);
   expect_branches<6>(ClosedForm(robots::abb_irb120().chain), made_from(robots::abb_irb120().chain), "irb120", 2000);
   expect_branches<6>(ClosedForm(robots::puma560().chain), made_from(robots::puma560().chain), "puma560", 2000, 0.004);
   expect_branches<6>(ClosedForm(robots::puma560_modified().chain), made_from(robots::puma560_modified().chain),

@@ -28,35 +28,43 @@ struct BranchIterate {
   bool accepted() const { return position_error < accepted_error && rotation_error < accepted_error; }
 };
 
-/// Inverse of a matrix, by Gauss-Jordan elimination with row pivoting; entries that are not finite for a singular one.
+/// Inverse of a matrix, by Gauss-Jordan elimination in place with row pivoting; entries that are not finite for a
+/// singular one. Pivots stay in their rows till the end: swapped rows would be read before they are written.
 VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
+  const Matrix6 unit = Matrix6::Identity();
   Matrix6 a = matrix;
-  out.setIdentity();
-  for (int k = 0; k < 6; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < 6; ++i)
-      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
-    if (pivot != k) {
-      a.row(k).swap(a.row(pivot));
-      out.row(k).swap(out.row(pivot));
+  unsigned used = 0;
+  Index row[6];
+  for (Index k = 0; k < 6; ++k) {
+    Index pivot = 0;
+    double largest = -1;
+    for (Index i = 0; i < 6; ++i) {
+      if ((used >> i & 1u) != 0 || !(std::abs(a(i, k)) > largest)) continue;
+      largest = std::abs(a(i, k));
+      pivot = i;
     }
-    Vector6 factor = -a.col(k) / a(k, k);
-    factor(k) = 1 / a(k, k) - 1;
-    for (int j = k + 1; j < 6; ++j) a.col(j) += factor * a(k, j);
-    for (int j = 0; j < 6; ++j) out.col(j) += factor * out(k, j);
+    used |= 1u << pivot;
+    row[k] = pivot;
+    const double inverse = 1 / a(pivot, k);
+    const Vector6 factor = inverse * (unit.col(pivot) - a.col(k));
+    for (Index j = 0; j < 6; ++j)
+      if (j != k) a.col(j) += factor * a(pivot, j);
+    a.col(k) = factor + unit.col(pivot);
   }
+  for (Index j = 0; j < 6; ++j)
+    for (Index k = 0; k < 6; ++k) out(k, row[j]) = a(row[k], j);
 }
 
-/// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues lie in [0, 1]: power iteration on a
-/// matrix squared thrice.
+/// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues are not negative and whose trace is 1:
+/// power iteration on a matrix squared twice. What is left cannot underflow: that eigenvalue is at least a sixth.
 VERNIER_API Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
   Matrix6 power = matrix * matrix;
-  for (int k = 0; k < 2; ++k) power = (power * power).eval();
+  power = (power * power).eval();
   Index widest = 0;
   power.diagonal().maxCoeff(&widest);
-  Vector6 out = power.col(widest).normalized();
-  for (int k = 0; k < 4; ++k) out = (power * out).normalized();
-  return out;
+  Vector6 out = power.col(widest);
+  for (int k = 0; k < 6; ++k) out = (power * out).eval();
+  return out.normalized();
 }
 
 VERNIER_API void evaluate_iterate(const BranchProblem& problem, const double* q, BranchIterate& out) noexcept {
@@ -252,8 +260,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
   // singular vectors of small singular values are those of large ones of the inverse, which shall exist
   here.jacobian.diagonal().array() += 1e-12;
   invert(here.jacobian, here.inverse);
-  const double bound = here.inverse.norm();
-  Matrix6 spread = here.inverse * here.inverse.transpose() / (bound * bound);
+  Matrix6 spread = here.inverse * here.inverse.transpose() / here.inverse.squaredNorm();
   constexpr double h = 1e-4, wide = 0.25 * std::numbers::pi;
   double start[most_branch_joints], q[most_branch_joints];
   std::copy_n(from, problem.joints, start);
@@ -268,7 +275,8 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
     const double sigma = 1 / u.norm();
     if (!(sigma < near_fold)) break;
     u *= sigma;
-    spread -= (1 / (sigma * sigma * bound * bound)) * v * v.transpose();
+    spread -= v.dot(spread * v) * v * v.transpose();
+    spread /= spread.trace();
     BranchIterate ahead, at;
     displace(h);
     evaluate_iterate(problem, q, ahead);

@@ -26,17 +26,18 @@ quietly() {
 }
 
 # Nothing is optimised here, and nothing debugged.
-fast=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=--param=ggc-min-heapsize=1000000)
+fast=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
 
 # consume PROJECT MODE COMPONENTS [CMAKE ARG...]
 consume() {
-  local project=$1 mode=$2 components=$3
+  local project=$1 mode=$2 components=$3 said
   local folder="$build/$project-$mode-${components//;/-}"
   quietly "$folder.log" cmake -S "$here/$project" -B "$folder" -G Ninja "${fast[@]}" \
     "-DCONSUMER_COMPONENTS=$components" -DCONSUMER_MODE="$mode" "-DCMAKE_PREFIX_PATH=$build/prefix" "${@:4}"
   quietly "$folder.log" cmake --build "$folder"
   [[ ! -e $folder/vernier/examples && ! -e $folder/vernier/tests ]] || fail "$project builds our tests or programs"
-  printf '%-14s %-17s %s\n' "$project" "${components:-bare}" "$("$folder/consumer")"
+  said=$("$folder/consumer") || fail "$folder/consumer computes something else"
+  printf '%-14s %-17s %s\n' "$project" "${components:-bare}" "$said"
 }
 
 # in_background COMMAND...: two at a time, since most of these projects are one translation unit

@@ -108,9 +108,8 @@ VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) n
 
 /// Newton's method, damped least squares where that does not converge. The last step takes the inverse of the step
 /// before, and is not evaluated, where the Lipschitz bound proves that nothing is left.
-/// @param damped whether damped least squares, which take many more evaluations, are tried; without, a step of more
-/// than
-///               half a turn ends the search early
+/// @param damped whether damped least squares, which take many more evaluations, are tried; without, a step of
+///               more than half a turn ends the search early
 /// @return whether the target is met
 VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
                             bool damped = true) noexcept {

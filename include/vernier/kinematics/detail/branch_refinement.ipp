@@ -56,14 +56,14 @@ VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
 }
 
 /// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues are not negative and whose trace is 1:
-/// power iteration on a matrix squared twice. What is left cannot underflow: that eigenvalue is at least a sixth.
+/// power iteration on a matrix squared thrice. What is left cannot underflow: that eigenvalue is at least a sixth.
 VERNIER_API Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
   Matrix6 power = matrix * matrix;
-  power = (power * power).eval();
+  for (int k = 0; k < 2; ++k) power = (power * power).eval();
   Index widest = 0;
   power.diagonal().maxCoeff(&widest);
   Vector6 out = power.col(widest);
-  for (int k = 0; k < 6; ++k) out = (power * out).eval();
+  for (int k = 0; k < 4; ++k) out = (power * out).eval();
   return out.normalized();
 }
 

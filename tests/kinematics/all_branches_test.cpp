@@ -88,10 +88,10 @@ bool contains(const Branches<N>& branches, const JointVector<N>& q, double toler
 // random poses
 
 /// Poses of arms as made: every branch meets its target, no two alike, and the joints that made the target among them,
-/// but for some next to folds: of 65,536 poses of the UR10 0.09 %.
+/// but for one in a thousand poses, next to folds.
 template <int N, class Roots, class Make>
 void expect_branches(const Roots& nominal, const Make& make, const std::string& name, int poses,
-                     double most_lost = 0.0015) {
+                     double most_lost = 0.001) {
   Rng rng(1);
   const int held = nominal.held_joint();
   double position = 0, rotation = 0, understated = 0, sigma = 0;
@@ -168,7 +168,8 @@ TEST(AllBranches, OfArmsBetweenFramesAndWithUnevenJoints) {
       ClosedForm(framed), [&](Rng& rng) { return framed.around(as_made(ur10, rng)); }, "ur10 between frames", 3000,
       0.002);
   expect_branches<6>(
-      ClosedForm(ur10), [&](Rng& rng) { return UnevenJoints<6>{as_made(ur10, rng)}; }, "ur10 with uneven joints", 3000);
+      ClosedForm(ur10), [&](Rng& rng) { return UnevenJoints<6>{as_made(ur10, rng)}; }, "ur10 with uneven joints",
+      12000);
 }
 
 /// How many branches are found, and how many there are with those that a search from many starts finds.

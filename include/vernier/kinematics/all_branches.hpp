@@ -22,9 +22,9 @@ struct BranchOptions {
   /// Of the whole turns by which a joint's value may differ, the nearest to this within the limits is taken [rad].
   /// Where a branch meets a singularity and a joint's value is arbitrary, it is this.
   JointVector<N> near = JointVector<N>::Zero();
-  /// So near to a singularity of the nominal arm, branches may lie anywhere around it [m, rad]: ten times what the
-  /// model differs from the nominal arm. Searched only where its roots do not lead to all branches.
-  double near_singularity = 0.04;
+  /// So near to a singularity of the nominal arm, branches may lie anywhere around it [m, rad]: a few
+  /// times what the model differs from the nominal arm.
+  double near_singularity = 0.03;
   double rotation_length = 0.3;  ///< 1 rad of rotation weighs as many metres in `sigma_min` and `radius` [m]
 };
 
@@ -134,7 +134,7 @@ template <BranchRoots Roots, KinematicModel M>
       if (root.sampled == sampled) found.refine(problem, root.joints.data(), root.margin, sampled);
   };
   refine(false);
-  // beyond a boundary of the nominal arm, which moves far next to a singularity
+  // Roots beyond a boundary of the nominal arm were left out; next to a singularity that of the real arm lies far off.
   const bool left_out = std::isfinite(roots.nearest_margin);
   if (left_out || found.may_be_incomplete()) refine(true);
   found.complete(problem);

@@ -29,7 +29,7 @@ struct BranchIterate {
 };
 
 /// Inverse of a matrix, by Gauss-Jordan elimination in place with row pivoting; entries that are not finite for a
-/// singular one. Pivots stay in their rows till the end: swapped rows would be read before they are written.
+/// singular one. Rows are put in order at the end.
 VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
   const Matrix6 unit = Matrix6::Identity();
   Matrix6 a = matrix;

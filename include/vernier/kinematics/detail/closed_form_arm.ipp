@@ -247,7 +247,7 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
             emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
                  std::max({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
                  (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u),
-                 i >= firsts.exact || m >= end.exact);
+                 i >= firsts.exact);
           }
         }
       }

@@ -95,6 +95,23 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
   EXPECT_EQ(report.joints[2].transmission.size(), static_cast<Index>(report.joints[2].angle.size()));
 }
 
+TEST(Calibrate, KernelsAreTriedOnFewPosesAlone) {
+  const auto poses = measure(actual_arm(), joints(60, 1), noise, 2);
+  CalibrateOptions options = quick;
+  for (const Index most : {60, 59}) {
+    options.remainder.max_kernel_poses = most;
+    const auto found = calibrate(robot.chain, poses, options);
+    Index kernels = 0;
+    for (const RemainderTrial& trial : found.trials) kernels += trial.learner == Learner::kernel_elm;
+    EXPECT_EQ(kernels, most == 60 ? 2 : 0);
+    EXPECT_EQ(found.trials.size(), most == 60 ? 6u : 4u);
+    EXPECT_GT(found.errors.leave_one_out_seconds, 0);
+    EXPECT_LT(found.errors.leave_one_out_seconds, found.fit_seconds);
+  }
+  options.remainder.learners = {Learner::kernel_elm};
+  EXPECT_TRUE(calibrate(robot.chain, poses, options).trials.empty());
+}
+
 TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   const auto actual = actual_arm();
   CalibrateOptions options = quick;

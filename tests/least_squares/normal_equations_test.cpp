@@ -164,12 +164,13 @@ TEST(LeaveOneOutErrors, OfValidationBlocksAlone) {
 /// Blocks that depend on local states, and their priors, as one dense problem: dense and factored unknowns, then the
 /// states.
 struct RandomStates {
-  static constexpr Index states = 4, size = 2, unknowns = 15;
+  static constexpr Index states = 4, size = 2;
   RandomBlocks blocks;
+  Index unknowns;
   std::vector<LocalPrior> priors;
   VectorX precisions, steps, local_steps;
 
-  explicit RandomStates(Index n) : blocks(n, 31, false) {
+  explicit RandomStates(Index n, Index dense = 5) : blocks(n, 31, false, dense), unknowns(dense + 10) {
     Rng rng(32);
     for (Index b = 0; b < n; ++b) {
       RowBlock& rows = blocks.rows[static_cast<std::size_t>(b)];
@@ -233,21 +234,58 @@ struct RandomStates {
 };
 
 TEST(LocalStates, AreEliminatedExactly) {
+  for (const Index dense : {5, 300}) {  // in one panel of columns, and in several
+    const RandomStates problem(30, dense);
+    problem.with_system([&](const BlockSystem& system) {
+      const Index unknowns = problem.unknowns;
+      const NormalEquations normal(system, problem.priors);
+      const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+      ASSERT_TRUE(solved.usable());
+      const auto [matrix, gradient] = problem.dense(-1);
+      const Eigen::LLT<MatrixX> whole(matrix);
+      ASSERT_EQ(whole.info(), Eigen::Success);
+      const VectorX step = -whole.solve(gradient);
+      EXPECT_LT((solved.step() - step.head(unknowns)).norm(), 1e-9 * step.norm());
+      EXPECT_LT((solved.local_step() - step.tail(8)).norm(), 1e-9 * step.norm());
+      const MatrixX covariance = matrix.inverse().topLeftCorner(unknowns, unknowns);
+      EXPECT_LT((solved.inverse() - covariance).norm(), 1e-9 * covariance.norm());
+      EXPECT_LT((solved.inverse_diagonal() - covariance.diagonal()).norm(), 1e-9 * covariance.norm());
+      const double log_determinant = 2 * MatrixX(whole.matrixL()).diagonal().array().log().sum();
+      EXPECT_NEAR(solved.log_determinant(), log_determinant, 1e-9 * std::abs(log_determinant));
+    });
+  }
+}
+
+TEST(LocalStates, OtherPriorsOfTheOtherUnknowns) {
   const RandomStates problem(30);
   problem.with_system([&](const BlockSystem& system) {
     const NormalEquations normal(system, problem.priors);
     const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
-    ASSERT_TRUE(solved.usable());
-    const auto [matrix, gradient] = problem.dense(-1);
-    const Eigen::LLT<MatrixX> whole(matrix);
-    ASSERT_EQ(whole.info(), Eigen::Success);
-    const VectorX step = -whole.solve(gradient);
-    EXPECT_LT((solved.step() - step.head(15)).norm(), 1e-9 * step.norm());
-    EXPECT_LT((solved.local_step() - step.tail(8)).norm(), 1e-9 * step.norm());
-    const MatrixX covariance = matrix.inverse().topLeftCorner(15, 15);
-    EXPECT_LT((solved.inverse() - covariance).norm(), 1e-9 * covariance.norm());
-    const double log_determinant = 2 * MatrixX(whole.matrixL()).diagonal().array().log().sum();
-    EXPECT_NEAR(solved.log_determinant(), log_determinant, 1e-9 * std::abs(log_determinant));
+    const VectorX others = 3 * problem.precisions, steps = -problem.steps;
+    const FactorisedEquations expected(normal, others, steps, problem.local_steps);
+    const FactorisedEquations again = solved.with(others, steps);
+    EXPECT_EQ(again.step(), expected.step());
+    EXPECT_EQ(again.local_step(), expected.local_step());
+    EXPECT_EQ(again.log_determinant(), expected.log_determinant());
+    EXPECT_NE(again.log_determinant(), solved.log_determinant());
+    EXPECT_TRUE(solved.with(problem.precisions, problem.steps).usable());
+    EXPECT_FALSE(solved.with(VectorX::Constant(problem.unknowns, -1e9), steps).usable());
+  });
+}
+
+TEST(LocalStates, ThreadsChangeNoBit) {
+  const RandomStates problem(100, 300);
+  const ThreadExecutor threads(3);
+  problem.with_system([&](const BlockSystem& system) {
+    const NormalEquations normal(system, problem.priors), shared(system, problem.priors, threads);
+    EXPECT_EQ(normal.matrix, shared.matrix);
+    EXPECT_EQ(normal.gradient, shared.gradient);
+    const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+    const FactorisedEquations by_threads(shared, problem.precisions, problem.steps, problem.local_steps);
+    EXPECT_EQ(solved.step(), by_threads.step());
+    EXPECT_EQ(solved.local_step(), by_threads.local_step());
+    EXPECT_EQ(solved.inverse_diagonal(), by_threads.inverse_diagonal());
+    EXPECT_EQ(leave_one_out_errors(system, solved, 1), leave_one_out_errors(system, by_threads, 1));
   });
 }
 

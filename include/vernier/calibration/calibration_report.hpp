@@ -79,6 +79,7 @@ struct CalibrationReport {
   double median_error = 0;             ///< median position error of the training poses [m]
   Loss loss = Loss::huber;             ///< of the fit
   double fit_seconds = 0;              ///< time from poses to error model
+  double leave_one_out_seconds = 0;    ///< of it, for leave-one-pose-out errors
   double evaluation_seconds = 0;       ///< time that the chosen stage takes for a pose and its Jacobian [s]
   VectorX normalised_errors{};         ///< of held-out poses, in standard deviations of their predicted ellipsoids
   VectorX left_out_errors{};           ///< of some training poses, each predicted by the model without it [m]

@@ -69,6 +69,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   out.median_error = calibration.median_error;
   out.loss = calibration.sensors.loss;
   out.fit_seconds = calibration.fit_seconds;
+  out.leave_one_out_seconds = errors.leave_one_out_seconds;
 
   const auto assess = [&](const char* key, const char* title, const auto& models) {
     StageErrors stage{key, title, {}, {}};

@@ -84,9 +84,11 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   const VectorX without = position_errors(model, data);
   std::vector<PriorTrial> errors;  // the preferred one last
   for (const Learner learner : options.learners) {
+    if (learner == Learner::kernel_elm && data.size() > options.max_kernel_poses) continue;
     errors.insert(errors.begin(), {0, fold_errors(learner, model, data, options, fit)});
     out.trials.push_back({on_geometry, learner, without.mean(), errors.front().errors.mean()});
   }
+  if (errors.empty()) return {};
   const std::size_t best = one_standard_error_rule(errors);
   return BestLearner{out.trials.size() - 1 - best, errors[best].errors, without};
 }

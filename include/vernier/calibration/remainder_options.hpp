@@ -39,9 +39,10 @@ struct RemainderOptions {
   /// a standard error of the best the first is taken, and deployed if cross-validation supports it. The first of all is
   /// learned from all poses in any case.
   std::vector<Learner> learners{Learner::pso_elm, Learner::ridge_elm, Learner::kernel_elm};
-  int hidden_nodes = 30;  ///< number of hidden nodes of the ELM
-  int particles = 20;     ///< of the swarm
-  int iterations = 20;    ///< of the swarm; more bring nothing that held-out poses would show
+  Index max_kernel_poses = 5000;  ///< kernels are tried with up to so many: their time grows with the cube
+  int hidden_nodes = 30;          ///< number of hidden nodes of the ELM
+  int particles = 20;             ///< of the swarm
+  int iterations = 20;            ///< of the swarm; more bring nothing that held-out poses would show
 };
 
 /// A learner in cross-validation.

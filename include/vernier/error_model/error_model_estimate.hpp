@@ -69,10 +69,11 @@ struct ErrorModelEstimate {
   std::optional<PriorTransfer> prior{};  ///< of an earlier calibration, where there was one
   std::vector<JointDrive> drives{};      ///< gears and encoders, one a joint, as given; empty where unknown
   ArmParameterisation arm;               ///< the unknowns and their estimates
-  double mean_temperature = 0;  ///< of the measurements [deg C], for which the parameters hold; 0 where the model
-                                ///< does not change with temperature
-  double temperature_std = 0;   ///< standard deviation of the measured temperatures [K]; likewise
-  VectorX left_out_errors{};    ///< of some poses, each predicted by the model without it, drift not known [m]
+  double mean_temperature = 0;       ///< of the measurements [deg C], for which the parameters hold; 0 where the model
+                                     ///< does not change with temperature
+  double temperature_std = 0;        ///< standard deviation of the measured temperatures [K]; likewise
+  double leave_one_out_seconds = 0;  ///< time that leave-one-pose-out errors took
+  VectorX left_out_errors{};         ///< of some poses, each predicted by the model without it, drift not known [m]
   std::vector<Index> left_out_rows{};  ///< which poses, counted over the stations
   MatrixX covariance{};                ///< of all unknowns, in units of their scales
   double variance_factor = 1;          ///< covariance divided by the inverse of the normal equations' matrix

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -89,6 +90,19 @@ VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input, c
   }
   return out;
 }
+
+/// Adds the time of its life to a sum [s].
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
 
 /// The steps of `fit_error_model`.
 class ErrorModelFit {
@@ -237,6 +251,7 @@ class ErrorModelFit {
     VectorX precisions = problem_.arm.precisions();
     const Index at = static_cast<Index>(problem_.arm.geometric().size()) + first;
     const Linearised& now = linearised();
+    const Stopwatch watch(leave_one_out_seconds_);
     const PriorChoice choice = choose_prior(now.system, now.normal, precisions, now.steps, at, count, stride_);
     precisions.segment(at, count).setConstant(choice.precision);
     problem_.arm.set_precisions(precisions);
@@ -298,6 +313,7 @@ class ErrorModelFit {
 
   /// Position errors of poses left out one at a time, under some priors [m].
   VERNIER_API VectorX left_out(const Linearised& at, const VectorX& precisions) const {
+    const Stopwatch watch(leave_one_out_seconds_);
     const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
     return leave_one_out_errors(at.system, solved, stride_).colwise().norm().transpose();
   }
@@ -348,8 +364,7 @@ class ErrorModelFit {
     if (at.system.validation_blocks < enough)
       precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, std::numeric_limits<int>::max()),
                                 at.local_steps);
-    const VectorX learned =
-        learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps, options_.executor);
+    const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
     if (at.system.validation_blocks >= enough || evidence(learned) > evidence(precisions) + clearly)
       precisions = learned;
     problem_.arm.set_precisions(precisions);
@@ -488,8 +503,7 @@ class ErrorModelFit {
     const JointTerms& terms = problem_.arm.terms();
     const VectorX precisions = problem_.arm.precisions();
     const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
-    const double explained =
-        static_cast<double>(precisions.size()) - solved.inverse_diagonal(options_.executor).dot(precisions);
+    const double explained = static_cast<double>(precisions.size()) - solved.inverse_diagonal().dot(precisions);
     const double values = static_cast<double>(problem_.measured_values());
     const double variance = at.normal.cost / std::max(1.0, values - explained);
     const Index joints = terms.joints;
@@ -512,10 +526,41 @@ class ErrorModelFit {
     return out;
   }
 
+  /// Chooses the precisions of random walks, of unknowns first .. end - 1 of each state: their factor by evidence, in
+  /// steps of four from 1 down to `lowest` or up to 64, and whether there is such a drift by leave-one-pose-out errors.
+  VERNIER_API BlockChoice choose_drift(const char* name, Index first, Index end, double lowest) const {
+    Linearised at = linearised();  // the precisions of the random walks are all that changes
+    SparseSymmetric& prior = at.normal.local_prior;
+    const std::vector<double> expected = prior.values;
+    const VectorX precisions = problem_.arm.precisions();
+    const auto scale = [&](double factor) {
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        const Index unknown = prior.rows[k] % at.system.local_size;
+        prior.values[k] = expected[k] * (unknown >= first && unknown < end ? factor : 1);
+      }
+    };
+    const auto evidence = [&](double factor) {
+      scale(factor);
+      return log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
+                          at.steps, problem_.measured_values(), at.local_steps);
+    };
+    double best = 1, most = evidence(1);
+    for (const double step : {4.0, 0.25})
+      for (double factor = step; best == factor / step && factor >= lowest && factor <= 64; factor *= step) {
+        const double reached = evidence(factor);
+        if (!(reached > most)) break;
+        most = reached;
+        best = factor;
+      }
+    scale(suppressing_precision);
+    const VectorX without = left_out(at, precisions);
+    scale(best);
+    const std::vector<PriorTrial> trials{{best, left_out(at, precisions)}, {suppressing_precision, without}};
+    return {name, without.mean(), trials[0].errors.mean(), one_standard_error_rule(trials) == 0, best};
+  }
+
   /// Lets the bases drift, if leave-one-pose-out errors support that.
   VERNIER_API bool add_drift(ErrorModelEstimate& estimate) {
-    const VectorX precisions = problem_.arm.precisions();
-    const VectorX without = left_out(linearised(), precisions);
     problem_.start_drift(40);
     problem_.drift_precision = 1;
     if (problem_.system().local_states == 0) {
@@ -523,66 +568,27 @@ class ErrorModelFit {
       return false;
     }
     linearised_.reset();
-    Linearised at = linearised();  // the precisions of the random walks are all that changes
-    const std::vector<double> expected = at.normal.local_prior.values;
-    const auto scaled = [&](double factor) {
-      std::transform(expected.begin(), expected.end(), at.normal.local_prior.values.begin(),
-                     [&](double value) { return factor * value; });
-    };
-    double best = 1, highest = -std::numeric_limits<double>::infinity();
-    for (const double factor : {0.0625, 0.25, 1.0, 4.0, 16.0, 64.0}) {
-      scaled(factor);
-      const double reached =
-          log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
-                       at.steps, problem_.measured_values(), at.local_steps);
-      if (!(reached > highest)) continue;
-      highest = reached;
-      best = factor;
-    }
-    scaled(best);
-    problem_.drift_precision = best;
-    const std::vector<PriorTrial> trials{{best, left_out(at, precisions)}, {suppressing_precision, without}};
-    const bool used = one_standard_error_rule(trials) == 0;
-    estimate.blocks.push_back({"drift", without.mean(), trials[0].errors.mean(), used, best});
-    if (used)
+    const BlockChoice choice = choose_drift("drift", 0, 6, 0.0625);
+    estimate.blocks.push_back(choice);
+    problem_.drift_precision = choice.precision;
+    if (choice.used)
       steps(1);
     else
       problem_.stop_drift();
     linearised_.reset();
-    if (used) add_joint_drift(estimate);
-    return used;
+    if (choice.used) add_joint_drift(estimate);
+    return choice.used;
   }
 
   /// Lets the joints' zeros drift beside the bases, if leave-one-pose-out errors support that.
   VERNIER_API void add_joint_drift(ErrorModelEstimate& estimate) {
-    const VectorX precisions = problem_.arm.precisions();
-    const VectorX without = left_out(linearised(), precisions);
     problem_.start_joint_drift();
     problem_.joint_drift_precision = 1;
     linearised_.reset();
-    Linearised at = linearised();
-    const std::vector<double> expected = at.normal.local_prior.values;
-    const auto scaled = [&](double factor) {  // the precisions of the joints alone
-      const SparseSymmetric& prior = at.normal.local_prior;
-      for (std::size_t k = 0; k < expected.size(); ++k)
-        at.normal.local_prior.values[k] = expected[k] * (prior.rows[k] % at.system.local_size >= 6 ? factor : 1);
-    };
-    double best = 1, highest = -std::numeric_limits<double>::infinity();
-    for (const double factor : {0.25, 1.0, 4.0, 16.0, 64.0}) {
-      scaled(factor);
-      const double reached =
-          log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
-                       at.steps, problem_.measured_values(), at.local_steps);
-      if (!(reached > highest)) continue;
-      highest = reached;
-      best = factor;
-    }
-    scaled(best);
-    problem_.joint_drift_precision = best;
-    const std::vector<PriorTrial> trials{{best, left_out(at, precisions)}, {suppressing_precision, without}};
-    const bool used = one_standard_error_rule(trials) == 0;
-    estimate.blocks.push_back({"joint_drift", without.mean(), trials[0].errors.mean(), used, best});
-    if (used)
+    const BlockChoice choice = choose_drift("joint_drift", 6, 6 + problem_.arm.geometry(0).joints(), 0.25);
+    estimate.blocks.push_back(choice);
+    problem_.joint_drift_precision = choice.precision;
+    if (choice.used)
       steps(1);
     else
       problem_.stop_joint_drift();
@@ -640,7 +646,12 @@ class ErrorModelFit {
     Index stacked = 0;
     double rotation_sum = 0, rotation_values = 0, distance_sum = 0;
     std::vector<LeftOutVisit> visits;
-    const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, stride_);
+    Eigen::Matrix3Xd errors;
+    {
+      const Stopwatch watch(leave_one_out_seconds_);
+      errors = leave_one_out_errors(system, solved, stride_);
+    }
+    estimate.leave_one_out_seconds = leave_one_out_seconds_;
     const auto flush = [&] {
       half.setZero(3 * stacked, p);
       add_product(half, stack.topRows(3 * stacked), estimate.covariance);
@@ -698,6 +709,7 @@ class ErrorModelFit {
   Index stride_;
   mutable std::optional<Linearised> linearised_{};
   VectorX expected_{};  // precisions of the joint errors by an earlier calibration that is used
+  mutable double leave_one_out_seconds_ = 0;
 };
 
 VERNIER_IMPL ErrorModelOutput fit_error_model(const ErrorModelInput& input, const ErrorModelOptions& options,

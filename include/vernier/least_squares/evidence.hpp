@@ -44,12 +44,11 @@ VERNIER_API VectorX scale_priors(const NormalEquations& normal, const VectorX& p
 /// @param groups      disjoint
 /// @param iterations  number of iterations, each a factorisation and the diagonal of an inverse
 /// @param local_steps present values of local unknowns, likewise
-/// @param executor    computes the diagonals
 /// @return            precisions with those of each group multiplied
 /// @cite MacKay 1992
 VERNIER_API VectorX learn_priors(const NormalEquations& normal, VectorX precisions, const VectorX& steps, Index values,
                                  const std::vector<UnknownGroup>& groups, int iterations,
-                                 const VectorX& local_steps = {}, ExecutorRef executor = {});
+                                 const VectorX& local_steps = {});
 
 }  // namespace vernier
 

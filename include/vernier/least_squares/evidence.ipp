@@ -102,11 +102,15 @@ VERNIER_IMPL VectorX scale_priors(const NormalEquations& normal, const VectorX& 
   };
   constexpr std::size_t few = 256;
   std::optional<detail::ScaledEvidence> of_few;
-  if (group.size() <= few) of_few = detail::ScaledEvidence(normal, precisions, steps, values, group, local_steps);
+  std::optional<FactorisedEquations> solved;
+  if (group.size() <= few)
+    of_few = detail::ScaledEvidence(normal, precisions, steps, values, group, local_steps);
+  else
+    solved.emplace(normal, precisions, steps, local_steps);
   const auto evidence = [&](double factor) {
     if (of_few) return (*of_few)(factor);
     const VectorX now = scaled(factor);
-    return log_evidence(normal, FactorisedEquations(normal, now, steps, local_steps), now, steps, values, local_steps);
+    return log_evidence(normal, solved->with(now, steps), now, steps, values, local_steps);
   };
   double best = 1, highest = evidence(1);
   for (const double step : {16.0, 4.0, 2.0, std::sqrt(2.0)})
@@ -121,13 +125,12 @@ VERNIER_IMPL VectorX scale_priors(const NormalEquations& normal, const VectorX& 
 }
 
 VERNIER_IMPL VectorX learn_priors(const NormalEquations& normal, VectorX precisions, const VectorX& steps, Index values,
-                                  const std::vector<UnknownGroup>& groups, int iterations, const VectorX& local_steps,
-                                  ExecutorRef executor) {
-  for (int i = 0; i < iterations; ++i) {
-    const FactorisedEquations solved(normal, precisions, steps, local_steps);
-    if (!solved.usable()) return precisions;
+                                  const std::vector<UnknownGroup>& groups, int iterations, const VectorX& local_steps) {
+  if (iterations < 1) return precisions;
+  FactorisedEquations solved(normal, precisions, steps, local_steps);
+  for (int i = 0; solved.usable(); ++i) {
     const auto [cost, freedom] = detail::penalised_minimum(normal, solved, precisions, steps, values, local_steps);
-    const VectorX variance = solved.inverse_diagonal(executor), z = steps + solved.step();
+    const VectorX variance = solved.inverse_diagonal(), z = steps + solved.step();
     for (const UnknownGroup& group : groups) {
       double determined = 0, squares = 0;  // number of unknowns that the data determine, not the priors
       for (const Index k : group) {
@@ -138,6 +141,8 @@ VERNIER_IMPL VectorX learn_priors(const NormalEquations& normal, VectorX precisi
           std::clamp(std::max(determined, 1e-3) * cost / freedom / std::max(squares, 1e-300), 0.1, 10.0);
       for (const Index k : group) precisions(k) = std::min(precisions(k) * factor, 1e9);
     }
+    if (i + 1 == iterations) break;
+    solved = solved.with(precisions, steps);
   }
   return precisions;
 }

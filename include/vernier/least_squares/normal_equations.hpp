@@ -8,6 +8,7 @@
 /// enter the sums as one row weighted by `factor_i' factor_j`: a sixth of the work, and memory that does not grow with
 /// the number of blocks. Local states are eliminated by a Schur complement; what remains is dense.
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct NormalEquations {
   SparseSymmetric local_prior;  ///< precisions of local unknowns, same pattern
   MatrixX prior{};              ///< precision of a `JointPrior` that was added; empty for none
   Index prior_unknowns = 0;     ///< number of unknowns with such a prior
+  ExecutorRef executor{};       ///< computes these sums and what follows from them; must outlive this
 
   /// Sums over all blocks; the bits do not depend on the executor.
   /// @complexity O(blocks u^2 / 6) for u unknowns, memory O(u^2)
@@ -80,6 +82,9 @@ class FactorisedEquations {
   FactorisedEquations(NormalEquations&&, const VectorX&, const VectorX&, const VectorX& = {},
                       SparseSolve = eigen_sparse_solver, double = 0) = delete;
 
+  /// The same, undamped, with other priors of dense and factored unknowns: local ones are not eliminated again.
+  VERNIER_API FactorisedEquations with(const VectorX& precisions, const VectorX& steps) const;
+
   /// Whether there is a solution.
   bool usable() const { return usable_; }
   /// Gauss-Newton step of dense and factored unknowns.
@@ -91,7 +96,7 @@ class FactorisedEquations {
   /// Inverse of the matrix with local unknowns eliminated: the covariance of dense and factored unknowns.
   VERNIER_API MatrixX inverse() const;
   /// Its diagonal, at a third of the cost.
-  VERNIER_API VectorX inverse_diagonal(ExecutorRef executor = {}) const;
+  VERNIER_API VectorX inverse_diagonal() const;
   /// Multiplies by the inverse of the Cholesky factor of that matrix, in place.
   VERNIER_API void apply_inverse_factor(MatrixRef columns) const;
 
@@ -102,14 +107,31 @@ class FactorisedEquations {
   /// Covariances of the rows of blocks by local states alone: 6 x 6 of each block, side by side.
   VERNIER_API MatrixX local_gains(const std::vector<RowBlock>& blocks) const;
 
+  /// That of the normal equations.
+  ExecutorRef executor() const { return normal_->executor; }
+
  private:
-  const NormalEquations& normal_;
+  /// Normal equations of dense and factored unknowns, local ones eliminated.
+  struct Reduced {
+    MatrixX matrix;         // lower triangle
+    VectorX gradient;       // with the priors of local unknowns
+    SparseSymmetric local;  // with priors
+    MatrixX eliminated;     // inverse of the local part times its gradient and the coupling, side by side
+    double log_determinant = 0;
+  };
+
+  FactorisedEquations(const NormalEquations& normal, SparseSolve solve, std::shared_ptr<const Reduced> reduced)
+      : normal_(&normal), solve_(solve), reduced_(std::move(reduced)) {}
+  /// Nothing where the local part is not positive definite.
+  VERNIER_API static std::shared_ptr<const Reduced> eliminate(const NormalEquations& normal, const VectorX& local_steps,
+                                                              SparseSolve solve);
+  VERNIER_API void factorise(const VectorX& precisions, const VectorX& steps, double damping);
+
+  const NormalEquations* normal_;
   SparseSolve solve_;
-  MatrixX factor_;      // lower triangle
-  MatrixX eliminated_;  // inverse of the local part times the coupling
-  VectorX step_, local_step_;
-  SparseSymmetric local_;  // with priors
-  double local_log_determinant_ = 0;
+  std::shared_ptr<const Reduced> reduced_{};  // with local unknowns
+  MatrixX factor_{};                          // lower triangle
+  VectorX step_{}, local_step_{};
   bool usable_ = false;
 };
 

@@ -114,11 +114,13 @@ VERNIER_API VectorX multiply(const SparseSymmetric& matrix, const VectorX& x) {
 }  // namespace detail
 
 VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors,
-                                              ExecutorRef executor)
-    : matrix(MatrixX::Zero(system.unknowns(), system.unknowns())), gradient(VectorX::Zero(system.unknowns())) {
+                                              ExecutorRef of_sums)
+    : matrix(MatrixX::Zero(system.unknowns(), system.unknowns())),
+      gradient(VectorX::Zero(system.unknowns())),
+      executor(of_sums) {
   constexpr Index chunk = 256;
   const Index all = system.unknowns(), d = system.dense, groups = system.groups();
-  MatrixX dense(6 * chunk, d), h(chunk, all - d), mixed(chunk, d * groups), product;
+  MatrixX dense(6 * chunk, d), h(chunk, all - d), mixed(chunk, d * groups);
   MatrixX factor_residual(chunk, groups), factor_product(chunk, groups * groups);  // f_j' r and f_i' f_j of each block
   VectorX residuals(6 * chunk);
   std::vector<std::array<Index, 2>> pairs;  // of groups, the second not before the first
@@ -129,18 +131,23 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
   }
   for (Index first = 0; first < system.blocks; first += chunk) {
     const Index n = std::min(chunk, system.blocks - first);
-    detail::visit_blocks(system, first, 1, n, [&](Index b, const RowBlock& rows) {
-      if (d > 0) dense.middleRows(6 * b, 6) = rows.dense;
-      residuals.segment(6 * b, 6) = rows.residual;
-      if (all == d) return;
-      h.row(b) = rows.functions.transpose();
-      product = rows.factor.transpose().lazyProduct(rows.factor);
-      factor_product.row(b) = product.reshaped().transpose();
-      if (d > 0) {
-        product = rows.dense.transpose().lazyProduct(rows.factor);
-        mixed.row(b) = product.reshaped().transpose();
-      }
-      factor_residual.row(b) = rows.residual.transpose().lazyProduct(rows.factor);
+    executor.for_ranges((n + detail::rows_at_a_time - 1) / detail::rows_at_a_time, [&](Index from, Index to) {
+      const Index start = from * detail::rows_at_a_time, stop = std::min(n, to * detail::rows_at_a_time);
+      MatrixX product;
+      detail::visit_blocks(system, first + start, 1, stop - start, [&](Index k, const RowBlock& rows) {
+        const Index b = start + k;
+        if (d > 0) dense.middleRows(6 * b, 6) = rows.dense;
+        residuals.segment(6 * b, 6) = rows.residual;
+        if (all == d) return;
+        h.row(b) = rows.functions.transpose();
+        product = rows.factor.transpose().lazyProduct(rows.factor);
+        factor_product.row(b) = product.reshaped().transpose();
+        if (d > 0) {
+          product = rows.dense.transpose().lazyProduct(rows.factor);
+          mixed.row(b) = product.reshaped().transpose();
+        }
+        factor_residual.row(b) = rows.residual.transpose().lazyProduct(rows.factor);
+      });
     });
     const auto dense_rows = dense.topRows(6 * n);
     detail::add_transposed_product(matrix.topLeftCorner(d, d), dense_rows, dense_rows);
@@ -205,64 +212,102 @@ VERNIER_IMPL double local_gain(const NormalEquations& normal, const VectorX& ste
   return step.dot(normal.local_gradient + detail::multiply(normal.local_prior, local_steps));
 }
 
+namespace detail {
+
+/// Calls `use(first, count)` for panels of the columns of a lower triangle.
+template <class Use>
+void visit_panels(ExecutorRef executor, Index n, Index width, const Use& use) {
+  const Index panels = (n + width - 1) / width;
+  executor.for_ranges(panels, [&](Index from, Index to) {
+    for (Index k = from; k < to; ++k) {
+      // the first panels are the longest: every thread gets long and short ones
+      const Index first = width * (k % 2 == 0 ? k / 2 : panels - 1 - k / 2);
+      use(first, std::min(width, n - first));
+    }
+  });
+}
+
+}  // namespace detail
+
 VERNIER_IMPL FactorisedEquations::FactorisedEquations(const NormalEquations& normal, const VectorX& precisions,
                                                       const VectorX& steps, const VectorX& local_steps,
                                                       SparseSolve solve, double damping)
-    : normal_(normal), solve_(solve) {
-  factor_ = normal.matrix;
-  VectorX right = normal.gradient + precisions.cwiseProduct(steps);
+    : FactorisedEquations(normal, solve, eliminate(normal, local_steps, solve)) {
+  factorise(precisions, steps, damping);
+}
+
+VERNIER_IMPL FactorisedEquations FactorisedEquations::with(const VectorX& precisions, const VectorX& steps) const {
+  FactorisedEquations out(*normal_, solve_, reduced_);
+  out.factorise(precisions, steps, 0);
+  return out;
+}
+
+VERNIER_IMPL std::shared_ptr<const FactorisedEquations::Reduced> FactorisedEquations::eliminate(
+    const NormalEquations& normal, const VectorX& local_steps, SparseSolve solve) {
+  if (normal.local.size == 0) return {};
+  Reduced out{normal.matrix, normal.gradient, normal.local, {}, {}};
+  for (std::size_t k = 0; k < out.local.values.size(); ++k) out.local.values[k] += normal.local_prior.values[k];
+  const Index n = normal.matrix.rows();
+  out.eliminated.resize(normal.local.size, 1 + n);
+  out.eliminated.col(0) = normal.local_gradient;
+  if (local_steps.size() > 0) out.eliminated.col(0) += detail::multiply(normal.local_prior, local_steps);
+  out.eliminated.rightCols(n) = normal.coupling;
+  // factorised once a panel, which costs little beside its solutions
+  constexpr Index width = 256;
+  const Index panels = n / width + 1;
+  std::vector<SparseOutcome> outcomes(static_cast<std::size_t>(panels));
+  normal.executor.for_ranges(panels, [&](Index from, Index to) {
+    for (Index k = from; k < to; ++k)
+      outcomes[static_cast<std::size_t>(k)] =
+          solve(out.local, out.eliminated.middleCols(k * width, std::min(width, n + 1 - k * width)));
+  });
+  if (!outcomes.front().solved) return {};
+  out.log_determinant = outcomes.front().log_determinant;
+  detail::add_transposed_product(out.gradient, normal.coupling, out.eliminated.col(0), -1);
+  detail::visit_panels(normal.executor, n, 64, [&](Index first, Index count) {
+    detail::add_transposed_product(out.matrix.block(first, first, n - first, count),
+                                   normal.coupling.rightCols(n - first), out.eliminated.middleCols(1 + first, count),
+                                   -1);
+  });
+  return std::make_shared<const Reduced>(std::move(out));
+}
+
+VERNIER_IMPL void FactorisedEquations::factorise(const VectorX& precisions, const VectorX& steps, double damping) {
+  const NormalEquations& normal = *normal_;
+  const bool local = normal.local.size > 0;
+  if (local && reduced_ == nullptr) return;
+  factor_ = local ? reduced_->matrix : normal.matrix;
+  VectorX right = precisions.cwiseProduct(steps);
+  right += local ? reduced_->gradient : normal.gradient;
   factor_.diagonal() += precisions + damping * (normal.matrix.diagonal() + precisions);
   VectorX of_data = normal.matrix.diagonal();  // priors may be huge
   if (normal.prior.size() > 0) of_data -= normal.prior.diagonal();
   factor_.diagonal().array() += 1e-12 * of_data.maxCoeff();
-  VectorX local_right;
-  if (normal.local.size > 0) {
-    local_ = normal.local;
-    for (std::size_t k = 0; k < local_.values.size(); ++k) local_.values[k] += normal.local_prior.values[k];
-    MatrixX solution(normal.local.size, 1 + normal.coupling.cols());
-    solution.col(0) = normal.local_gradient;
-    if (local_steps.size() > 0) solution.col(0) += detail::multiply(normal.local_prior, local_steps);
-    solution.rightCols(normal.coupling.cols()) = normal.coupling;
-    const SparseOutcome outcome = solve(local_, solution);
-    if (!outcome.solved) return;
-    local_log_determinant_ = outcome.log_determinant;
-    local_right = solution.col(0);
-    eliminated_ = solution.rightCols(normal.coupling.cols());
-    detail::add_transposed_product(factor_, normal.coupling, eliminated_, -1);
-    detail::add_transposed_product(right, normal.coupling, local_right, -1);
-  }
   if (!detail::cholesky(factor_)) return;
   step_ = -right;
   detail::solve_lower(factor_, step_);
   detail::solve_lower_transposed(factor_, step_);
   usable_ = step_.allFinite();
-  if (normal.local.size == 0) return;
-  local_step_ = -local_right;
-  detail::add_product(local_step_, eliminated_, step_, -1);
+  if (!local) return;
+  local_step_ = -reduced_->eliminated.col(0);
+  detail::add_product(local_step_, reduced_->eliminated.rightCols(step_.size()), step_, -1);
 }
 
 VERNIER_IMPL double FactorisedEquations::log_determinant() const {
-  return 2 * factor_.diagonal().array().log().sum() + local_log_determinant_;
+  return 2 * factor_.diagonal().array().log().sum() + (reduced_ == nullptr ? 0 : reduced_->log_determinant);
 }
 
 VERNIER_IMPL MatrixX FactorisedEquations::inverse() const { return detail::inverse_from_cholesky(factor_); }
 
-VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal(ExecutorRef executor) const {
+VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal() const {
   // columns of the inverse factor start at their own row
-  const Index n = factor_.rows(), width = 64;
+  const Index n = factor_.rows();
   VectorX out(n);
-  const Index blocks = (n + width - 1) / width;
-  executor.for_ranges(blocks, [&](Index from, Index to) {
-    MatrixX columns;
-    for (Index k = from; k < to; ++k) {
-      // the first blocks are the longest: every thread gets long and short ones
-      const Index block = k % 2 == 0 ? k / 2 : blocks - 1 - k / 2;
-      const Index first = block * width, count = std::min(width, n - first);
-      columns.setZero(n - first, count);
-      columns.topRows(count).setIdentity();
-      detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
-      out.segment(first, count) = columns.colwise().squaredNorm().transpose();
-    }
+  detail::visit_panels(executor(), n, 64, [&](Index first, Index count) {
+    MatrixX columns = MatrixX::Zero(n - first, count);
+    columns.topRows(count).setIdentity();
+    detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
+    out.segment(first, count) = columns.colwise().squaredNorm().transpose();
   });
   return out;
 }
@@ -275,20 +320,20 @@ VERNIER_IMPL void FactorisedEquations::eliminate_local(const RowBlock& block, Ei
   for (const RowBlock::Local& local : block.local) {
     if (local.state < 0) continue;
     const Index k = local.columns.cols();
-    rows -= local.columns.lazyProduct(eliminated_.middleRows(local.state * k, k));
+    rows -= local.columns.lazyProduct(reduced_->eliminated.block(local.state * k, 1, k, rows.cols()));
   }
 }
 
 VERNIER_IMPL MatrixX FactorisedEquations::local_gains(const std::vector<RowBlock>& blocks) const {
   MatrixX out = MatrixX::Zero(6, 6 * static_cast<Index>(blocks.size()));
-  if (normal_.local.size == 0) return out;
-  MatrixX columns = MatrixX::Zero(normal_.local.size, out.cols());
+  if (reduced_ == nullptr) return out;
+  MatrixX columns = MatrixX::Zero(reduced_->local.size, out.cols());
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (const RowBlock::Local& local : blocks[b].local)
       if (local.state >= 0)
         columns.block(local.state * local.columns.cols(), 6 * static_cast<Index>(b), local.columns.cols(), 6) =
             local.columns.transpose();
-  solve_(local_, columns);
+  solve_(reduced_->local, columns);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (const RowBlock::Local& local : blocks[b].local)
       if (local.state >= 0)
@@ -306,39 +351,41 @@ VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, co
   }
   constexpr Index batch = 32;
   const bool local = system.local_states > 0;
-  std::vector<RowBlock> kept;
-  Rows6 expanded(6, system.unknowns());
-  MatrixX columns(system.unknowns(), 6 * batch), residuals(6, batch), unwhiten(6, 6 * batch), gains, rest;
-  VectorX sigmas(batch);
-  for (Index first = 0; first < out.cols(); first += batch) {
-    const Index n = std::min(batch, out.cols() - first);
-    kept.clear();
-    detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
-      rows.expand(system.group_sizes, expanded);
-      residuals.col(b) = rows.residual + expanded.lazyProduct(solved.step());
-      if (local) {
-        for (const RowBlock::Local& part : rows.local)
-          if (part.state >= 0)
-            residuals.col(b) += part.columns.lazyProduct(
-                solved.local_step().segment(part.state * system.local_size, system.local_size));
-        solved.eliminate_local(rows, expanded);
-        kept.push_back(rows);
+  solved.executor().for_ranges((out.cols() + batch - 1) / batch, [&](Index from, Index to) {
+    std::vector<RowBlock> kept;
+    Rows6 expanded(6, system.unknowns());
+    MatrixX columns(system.unknowns(), 6 * batch), residuals(6, batch), unwhiten(6, 6 * batch), gains, rest;
+    VectorX sigmas(batch);
+    for (Index first = from * batch; first < std::min(to * batch, out.cols()); first += batch) {
+      const Index n = std::min(batch, out.cols() - first);
+      kept.clear();
+      detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
+        rows.expand(system.group_sizes, expanded);
+        residuals.col(b) = rows.residual + expanded.lazyProduct(solved.step());
+        if (local) {
+          for (const RowBlock::Local& part : rows.local)
+            if (part.state >= 0)
+              residuals.col(b) += part.columns.lazyProduct(
+                  solved.local_step().segment(part.state * system.local_size, system.local_size));
+          solved.eliminate_local(rows, expanded);
+          kept.push_back(rows);
+        }
+        columns.middleCols(6 * b, 6) = expanded.transpose();
+        unwhiten.middleCols(6 * b, 6) = rows.unwhiten;
+        sigmas(b) = rows.position_sigma;
+      });
+      solved.apply_inverse_factor(columns.leftCols(6 * n));
+      if (local) gains = solved.local_gains(kept);
+      for (Index b = 0; b < n; ++b) {
+        const auto z = columns.middleCols(6 * b, 6);
+        rest.setIdentity(6, 6);
+        detail::add_transposed_product(rest, z, z, -1);
+        if (local) rest -= gains.middleCols(6 * b, 6);
+        detail::solve_general(rest, residuals.col(b));
+        out.col(first + b) = sigmas(b) * unwhiten.block(0, 6 * b, 3, 6).lazyProduct(residuals.col(b));
       }
-      columns.middleCols(6 * b, 6) = expanded.transpose();
-      unwhiten.middleCols(6 * b, 6) = rows.unwhiten;
-      sigmas(b) = rows.position_sigma;
-    });
-    solved.apply_inverse_factor(columns.leftCols(6 * n));
-    if (local) gains = solved.local_gains(kept);
-    for (Index b = 0; b < n; ++b) {
-      const auto z = columns.middleCols(6 * b, 6);
-      rest.setIdentity(6, 6);
-      detail::add_transposed_product(rest, z, z, -1);
-      if (local) rest -= gains.middleCols(6 * b, 6);
-      detail::solve_general(rest, residuals.col(b));
-      out.col(first + b) = sigmas(b) * unwhiten.block(0, 6 * b, 3, 6).lazyProduct(residuals.col(b));
     }
-  }
+  });
   return out;
 }
 

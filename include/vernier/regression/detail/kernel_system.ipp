@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/kernel_system.hpp"
 
 namespace vernier::detail {
@@ -26,15 +26,16 @@ VERNIER_IMPL void KernelFeatures::divide(const VectorX& length_scales) {
 VERNIER_IMPL KernelSystem::KernelSystem(MatrixX a, const VectorX& noise, const ConstMatrixRef& targets)
     : factor(std::move(a)) {
   factor.diagonal() += noise;
-  const Eigen::LLT<Eigen::Ref<MatrixX>> llt(factor);  // in place
-  solved = llt.info() == Eigen::Success;
+  solved = cholesky(factor);
   if (!solved) return;
   const Index n = factor.rows();
   const Index m = targets.cols();
   const Eigen::RowVectorXd centre = targets.colwise().mean();  // first, so that little cancels later
   MatrixX right(n, 1 + m);
   right << VectorX::Ones(n), targets.rowwise() - centre;
-  const MatrixX solution = llt.solve(right);
+  MatrixX solution = right;
+  solve_lower(factor, solution);
+  solve_lower_transposed(factor, solution);
   ones = solution.col(0);
   precision = ones.sum();
   mean = solution.rightCols(m).colwise().sum().transpose() / precision;

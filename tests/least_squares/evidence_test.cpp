@@ -9,13 +9,15 @@
 #include <limits>
 
 #include "local_states.hpp"
+#include "random_blocks.hpp"
 
 namespace vernier::evidence_test {
 namespace {
 
 using vernier_test::LocalStates;
 
-/// log density of the residuals at the prior means, the noise's variance at its most likely value; up to a constant.
+/// log density of the residuals at the prior means, over all variances of the noise; up to a constant: Student's
+/// distribution of 30 degrees of freedom in n dimensions.
 double marginal(const LocalStates& problem, const VectorX& precisions) {
   const MatrixX jacobian = problem.jacobian();
   const Index dense = LocalStates::dense, all = jacobian.cols();
@@ -30,7 +32,7 @@ double marginal(const LocalStates& problem, const VectorX& precisions) {
   const Eigen::LLT<MatrixX> factor(covariance);
   const auto n = static_cast<double>(residual.size());
   const double log_determinant = 2 * MatrixX(factor.matrixL()).diagonal().array().log().sum();
-  return -0.5 * (n * std::log(residual.dot(factor.solve(residual)) / n) + log_determinant);
+  return -0.5 * ((n + 30) * std::log((residual.dot(factor.solve(residual)) + 30) / (n + 30)) + log_determinant);
 }
 
 double evidence(const LocalStates& problem, const NormalEquations& normal, const VectorX& precisions) {
@@ -49,16 +51,38 @@ TEST(Evidence, IsTheDensityOfTheResiduals) {
   }
 }
 
-// A hundred times the residuals at prior means: noise of another size, the same preferences.
-TEST(Evidence, DoesNotDependOnTheSizeOfTheNoise) {
-  LocalStates problem(4), louder(4);
-  for (auto& row : louder.rows) row.residual *= 100;
-  louder.steps *= 100;
-  louder.local_steps *= 100;
+/// Noise and prior means of another size.
+LocalStates magnified(LocalStates problem, double factor) {
+  for (auto& row : problem.rows) row.residual *= factor;
+  problem.steps *= factor;
+  problem.local_steps *= factor;
+  return problem;
+}
+
+// Noise far above the sensor's: its size does not matter.
+TEST(Evidence, DoesNotDependOnTheSizeOfLargeNoise) {
+  const LocalStates problem = magnified(LocalStates(4), 1e4), louder = magnified(LocalStates(4), 1e6);
   const VectorX some = VectorX::Constant(4, 0.3), others = VectorX::Constant(4, 7);
   const NormalEquations quiet_normal = problem.normal_equations(), loud_normal = louder.normal_equations();
   EXPECT_NEAR(evidence(problem, quiet_normal, some) - evidence(problem, quiet_normal, others),
               evidence(louder, loud_normal, some) - evidence(louder, loud_normal, others), 1e-6);
+}
+
+// Where every value is explained by unknowns, the data do not say which
+// is noise. The sensor does: the wider their prior, the less likely.
+TEST(Evidence, ValuesThatAreAllExplainedAreNotFreeOfNoise) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const vernier_test::RandomBlocks blocks(2, 500 + seed, true, 15);  // 12 values, 25 unknowns
+    const NormalEquations normal = blocks.normal();
+    const VectorX zero = VectorX::Zero(25);
+    const auto of = [&](double precision) {
+      const VectorX precisions = VectorX::Constant(25, precision);
+      return log_evidence(normal, FactorisedEquations(normal, precisions, zero), precisions, zero, 12);
+    };
+    // twelve values, each a hundred times less likely than under a prior ten thousand times tighter
+    EXPECT_NEAR(of(1e-4) - of(1e-8), 12 * std::log(100), 0.5);
+    EXPECT_GT(of(1), of(1e-4));
+  }
 }
 
 // Unknowns without prior take values away from what determines the noise.

@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 #include <limits>
 
 #include "random_blocks.hpp"
@@ -137,6 +138,49 @@ TEST(LeaveOneOutErrors, AreThoseOfSolvingWithoutThePose) {
     }
 }
 
+// The density of a block's values under N(their prediction, variance (I + A S A')), with S the inverse of the equations
+// of all other blocks, and the variance of the noise at which the sum over all blocks is largest.
+TEST(LeaveOneOut, LogDensitiesAreThoseOfThePredictiveDistributions) {
+  RandomBlocks blocks(12, 7, false);
+  for (const Index b : {3, 8}) {  // positions alone
+    blocks.rows[static_cast<std::size_t>(b)].residual.tail<3>().setZero();
+    blocks.rows[static_cast<std::size_t>(b)].dense.bottomRows<3>().setZero();
+    blocks.rows[static_cast<std::size_t>(b)].factor.bottomRows<3>().setZero();
+  }
+  Rng rng(8);
+  const VectorX precisions = random_vector(rng, 15).cwiseAbs(), steps = random_vector(rng, 15, 0.3);
+  const NormalEquations normal = blocks.normal();
+  const FactorisedEquations solved(normal, precisions, steps);
+  const VectorX found =
+      blocks.with_system([&](const BlockSystem& s) { return leave_one_out(s, solved, 1); }).log_densities;
+  const auto wanted = [&](double variance) {
+    VectorX out(12);
+    for (Index b = 0; b < 12; ++b) {
+      MatrixX matrix = precisions.asDiagonal();
+      VectorX gradient = precisions.cwiseProduct(steps);
+      for (Index other = 0; other < 12; ++other) {
+        if (other == b) continue;
+        matrix += blocks.expanded(other).transpose() * blocks.expanded(other);
+        gradient += blocks.expanded(other).transpose() * blocks.row(other).residual;
+      }
+      const Index values = b == 3 || b == 8 ? 3 : 6;
+      const MatrixX rows = blocks.expanded(b).topRows(values);
+      const VectorX error = blocks.row(b).residual.head(values) - rows * matrix.inverse() * gradient;
+      const MatrixX covariance =
+          variance * (MatrixX::Identity(values, values) + rows * matrix.inverse() * rows.transpose());
+      out(b) = -0.5 * (error.dot(covariance.inverse() * error) + std::log(covariance.determinant()));
+    }
+    return out;
+  };
+  double best = 1;
+  for (const double step : {2.0, 1.1, 1.01, 1.001, 1.0001})
+    for (const double towards : {step, 1 / step})
+      while (wanted(best * towards).sum() > wanted(best).sum()) best *= towards;
+  EXPECT_LT((found - wanted(best)).norm(), 1e-3 * found.norm());
+  EXPECT_GT((found - wanted(1.1 * best)).norm(), 1e-2 * found.norm());
+  EXPECT_NEAR(found.sum(), wanted(best).sum(), 1e-6 * std::abs(found.sum()));
+}
+
 TEST(LeaveOneOutErrors, AreInfiniteWhereNothingCouldBeSolved) {
   const RandomBlocks blocks(15, 9);
   const NormalEquations normal = blocks.normal();
@@ -146,6 +190,9 @@ TEST(LeaveOneOutErrors, AreInfiniteWhereNothingCouldBeSolved) {
       blocks.with_system([&](const BlockSystem& s) { return leave_one_out_errors(s, broken, 2); });
   EXPECT_EQ(errors.cols(), 8);
   EXPECT_TRUE((errors.array() == infinity).all());
+  const VectorX densities =
+      blocks.with_system([&](const BlockSystem& s) { return leave_one_out(s, broken, 2); }).log_densities;
+  EXPECT_TRUE((densities.array() == -infinity).all());
 }
 
 TEST(LeaveOneOutErrors, OfValidationBlocksAlone) {

@@ -63,6 +63,43 @@ TEST(OneStandardErrorRule, WhatIsNotFiniteIsSuppressed) {
   EXPECT_THROW((void)one_standard_error_rule({}), std::invalid_argument);
 }
 
+/// Blocks with given errors along x, and log predictive densities.
+LeftOutBlocks left_out(const std::vector<double>& errors, const std::vector<double>& log_densities) {
+  const auto n = static_cast<Index>(errors.size());
+  LeftOutBlocks out{Eigen::Matrix3Xd::Zero(3, n), Eigen::Map<const VectorX>(log_densities.data(), n)};
+  out.errors.row(0) = -Eigen::Map<const VectorX>(errors.data(), n).transpose();
+  return out;
+}
+
+// Saved: (0.5, 0), mean 0.25, standard error 0.25; (0.5625, 0), mean 0.28125, standard error 0.28125; (0.5, 0.0625):
+// mean 0.28125, standard error 0.21875.
+TEST(Supports, ErrorsSmallerByMoreThanAStandardError) {
+  const std::vector<double> same{0, 0};
+  EXPECT_FALSE(supports(left_out({1, 1}, same), left_out({1.5, 1}, same)));
+  EXPECT_FALSE(supports(left_out({1, 1}, same), left_out({1.5625, 1}, same)));
+  EXPECT_TRUE(supports(left_out({1, 1}, same), left_out({1.5, 1.0625}, same)));
+  EXPECT_FALSE(supports(left_out({1.5, 1.0625}, same), left_out({1, 1}, same)));
+  // densities that are smaller do not matter then
+  EXPECT_TRUE(supports(left_out({1, 1}, {-9, -9}), left_out({1.5, 1.0625}, same)));
+}
+
+// Errors differ by less than a standard error: densities decide, by the same rule, where errors are smaller at all.
+TEST(Supports, ErrorsSmallerAndDensitiesGreater) {
+  const std::vector<double> with{1, 1}, without{1.5, 0.75}, zero{0, 0};  // saved 0.125, standard error 0.375
+  EXPECT_FALSE(supports(left_out(with, zero), left_out(without, zero)));
+  EXPECT_FALSE(supports(left_out(with, {0.5, 0}), left_out(without, zero)));
+  EXPECT_TRUE(supports(left_out(with, {0.5, 0.0625}), left_out(without, zero)));
+  EXPECT_FALSE(supports(left_out(with, zero), left_out(without, {0.5, 0.0625})));
+  EXPECT_FALSE(supports(left_out(without, {9, 9}), left_out(with, zero)));  // saved -0.125
+}
+
+TEST(Supports, NothingThatIsNotFinite) {
+  EXPECT_FALSE(supports(left_out({nan, 1}, {0, 0}), left_out({2, 2.1}, {0, 0})));
+  EXPECT_FALSE(supports(left_out({infinity, infinity}, {-infinity, -infinity}), left_out({2, 2.1}, {0, 0})));
+  EXPECT_FALSE(supports(left_out({1, 1}, {0, 0}), left_out({infinity, infinity}, {-infinity, -infinity})));
+  EXPECT_FALSE(supports(left_out({1, 1}, {nan, nan}), left_out({1.5, 0.75}, {0, 0})));
+}
+
 PriorChoice chosen(const RandomBlocks& poses) {
   return poses.with_system([&](const BlockSystem& s) {
     return choose_prior(s, NormalEquations(s), VectorX::Constant(15, 1e-3), VectorX::Zero(15), 5, 10, 1);

@@ -311,11 +311,23 @@ class ErrorModelFit {
     linearised_.reset();
   }
 
-  /// Position errors of poses left out one at a time, under some priors [m].
-  VERNIER_API VectorX left_out(const Linearised& at, const VectorX& precisions) const {
+  /// Poses left out one at a time, under some priors.
+  VERNIER_API LeftOutBlocks left_out(const Linearised& at, const VectorX& precisions) const {
     const Stopwatch watch(leave_one_out_seconds_);
-    const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
-    return leave_one_out_errors(at.system, solved, stride_).colwise().norm().transpose();
+    return leave_one_out(at.system, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), stride_);
+  }
+
+  /// Their mean position error as the problem is [m].
+  VERNIER_API double left_out_error() const {
+    return left_out(linearised(), problem_.arm.precisions()).errors.colwise().norm().mean();
+  }
+
+  /// A block of unknowns, by the errors with it and without.
+  VERNIER_API static BlockChoice choice_between(const char* name, const LeftOutBlocks& with,
+                                                const LeftOutBlocks& without, double precision) {
+    const bool used = supports(with, without);
+    return {name, without.errors.colwise().norm().mean(), with.errors.colwise().norm().mean(), used,
+            used ? precision : suppressing_precision};
   }
 
   /// Sizes of some coefficients by evidence, and their inclusion by leave-one-pose-out errors.
@@ -325,12 +337,10 @@ class ErrorModelFit {
     const VectorX sized = scale_priors(at.normal, before, at.steps, problem_.measured_values(), group, at.local_steps);
     VectorX suppressed = sized;
     for (const Index k : group) suppressed(k) = suppressing_precision;
-    const std::vector<PriorTrial> trials{{sized(group.front()), left_out(at, sized)},
-                                         {suppressing_precision, left_out(at, suppressed)}};
-    const bool used = one_standard_error_rule(trials) == 0;
-    problem_.arm.set_precisions(used ? sized : suppressed);
-    return {name, trials[1].errors.mean(), trials[0].errors.mean(), used,
-            used ? sized(group.front()) : suppressing_precision};
+    const BlockChoice choice =
+        choice_between(name, left_out(at, sized), left_out(at, suppressed), sized(group.front()));
+    problem_.arm.set_precisions(choice.used ? sized : suppressed);
+    return choice;
   }
 
   /// Sizes of some coefficients by evidence, unless they are suppressed.
@@ -407,7 +417,7 @@ class ErrorModelFit {
             prior.nominal.modified() ? "modified" : "standard", " convention");
     ErrorModelEstimate& estimate = out.estimate;
     const CalibrationProblem without = problem_;
-    const double error_without = left_out(linearised(), problem_.arm.precisions()).mean();
+    const double error_without = left_out_error();
 
     const ErrorModelEstimate& before = prior.estimate;
     const JointTerms& terms = before.arm.terms();
@@ -430,7 +440,7 @@ class ErrorModelFit {
     converged = problem_.solve() && converged;
     linearised_.reset();
 
-    const double error_with = left_out(linearised(), problem_.arm.precisions()).mean();
+    const double error_with = left_out_error();
     transfer.name = prior.name;
     constexpr double unrelated = 0.6;  // of errors that have nothing to do with each other it would be above 1
     const bool holds = std::min(transfer.geometry, transfer.joints) < unrelated;
@@ -553,10 +563,9 @@ class ErrorModelFit {
         best = factor;
       }
     scale(suppressing_precision);
-    const VectorX without = left_out(at, precisions);
+    const LeftOutBlocks without = left_out(at, precisions);
     scale(best);
-    const std::vector<PriorTrial> trials{{best, left_out(at, precisions)}, {suppressing_precision, without}};
-    return {name, without.mean(), trials[0].errors.mean(), one_standard_error_rule(trials) == 0, best};
+    return choice_between(name, left_out(at, precisions), without, best);
   }
 
   /// Lets the bases drift, if leave-one-pose-out errors support that.

@@ -9,7 +9,12 @@
 
 namespace vernier {
 
-/// Logarithm of the evidence of priors, up to a constant, the variance of the whitened noise at its most likely value.
+/// Values that the stated accuracy of the sensor counts as, in the variance of the noise: as many as ten positions.
+inline constexpr double sensor_values = 30;
+
+/// Logarithm of the evidence of priors, up to a constant, over all variances of the whitened noise. The prior of that
+/// variance is the scaled inverse chi-square distribution of `sensor_values` around one, the sensor's: a model that
+/// fits a few poses exactly is not taken for one whose measurements have no noise.
 /// @param normal      the problem
 /// @param solved      the same with these priors
 /// @param precisions  of the priors; 0 for unknowns without
@@ -17,7 +22,7 @@ namespace vernier {
 /// @param values      number of measured values
 /// @param local_steps present values of local unknowns, likewise
 /// @return            minus infinity where there is no solution
-/// @cite MacKay 1992
+/// @cite MacKay 1992; Gelman 2013 (3.3, the prior of a variance)
 VERNIER_API double log_evidence(const NormalEquations& normal, const FactorisedEquations& solved,
                                 const VectorX& precisions, const VectorX& steps, Index values,
                                 const VectorX& local_steps = {});

@@ -12,7 +12,7 @@ namespace vernier {
 
 namespace detail {
 
-/// The minimum of residuals and priors, and the values left to determine the noise.
+/// The minimum of residuals and priors, and the values left to determine the noise; with those of the sensor.
 struct PenalisedMinimum {
   double cost, freedom;
 };
@@ -24,7 +24,8 @@ VERNIER_API PenalisedMinimum penalised_minimum(const NormalEquations& normal, co
   const double gain = solved.step().dot(normal.gradient + precisions.cwiseProduct(steps)) +
                       local_gain(normal, solved.local_step(), local_steps);
   const auto without_prior = static_cast<double>((precisions.array() <= 0).count() - normal.prior_unknowns);
-  return {std::max(at_present + gain, 1e-300), std::max(1.0, static_cast<double>(values) - without_prior)};
+  return {std::max(at_present + gain, 0.0) + sensor_values,
+          std::max(1.0, static_cast<double>(values) - without_prior) + sensor_values};
 }
 
 /// log determinant of the precisions of local unknowns.

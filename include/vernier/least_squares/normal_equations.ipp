@@ -342,22 +342,21 @@ VERNIER_IMPL MatrixX FactorisedEquations::local_gains(const std::vector<RowBlock
   return out;
 }
 
-VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
-                                                   Index stride) {
-  Eigen::Matrix3Xd out(3, (system.validation_blocks + stride - 1) / stride);
-  if (!solved.usable()) {
-    out.setConstant(std::numeric_limits<double>::infinity());
-    return out;
-  }
+VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const FactorisedEquations& solved, Index stride) {
+  const Index size = (system.validation_blocks + stride - 1) / stride;
+  LeftOutBlocks out{Eigen::Matrix3Xd::Constant(3, size, std::numeric_limits<double>::infinity()),
+                    VectorX::Constant(size, -std::numeric_limits<double>::infinity())};
+  if (!solved.usable()) return out;
+  VectorX squares(size), log_determinants(size), values(size);  // of whitened errors; of I - H; measured ones
   constexpr Index batch = 32;
   const bool local = system.local_states > 0;
-  solved.executor().for_ranges((out.cols() + batch - 1) / batch, [&](Index from, Index to) {
+  solved.executor().for_ranges((size + batch - 1) / batch, [&](Index from, Index to) {
     std::vector<RowBlock> kept;
     Rows6 expanded(6, system.unknowns());
     MatrixX columns(system.unknowns(), 6 * batch), residuals(6, batch), unwhiten(6, 6 * batch), gains, rest;
     VectorX sigmas(batch);
-    for (Index first = from * batch; first < std::min(to * batch, out.cols()); first += batch) {
-      const Index n = std::min(batch, out.cols() - first);
+    for (Index first = from * batch; first < std::min(to * batch, size); first += batch) {
+      const Index n = std::min(batch, size - first);
       kept.clear();
       detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
         rows.expand(system.group_sizes, expanded);
@@ -373,6 +372,9 @@ VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, co
         columns.middleCols(6 * b, 6) = expanded.transpose();
         unwhiten.middleCols(6 * b, 6) = rows.unwhiten;
         sigmas(b) = rows.position_sigma;
+        values(first + b) = 0;
+        for (Index i = 0; i < 6; ++i)
+          if (rows.residual(i) != 0 || (rows.dense.row(i).array() != 0).any()) values(first + b) += 1;
       });
       solved.apply_inverse_factor(columns.leftCols(6 * n));
       if (local) gains = solved.local_gains(kept);
@@ -381,12 +383,21 @@ VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, co
         rest.setIdentity(6, 6);
         detail::add_transposed_product(rest, z, z, -1);
         if (local) rest -= gains.middleCols(6 * b, 6);
-        detail::solve_general(rest, residuals.col(b));
-        out.col(first + b) = sigmas(b) * unwhiten.block(0, 6 * b, 3, 6).lazyProduct(residuals.col(b));
+        const Vector6 residual = residuals.col(b);
+        log_determinants(first + b) = detail::solve_general(rest, residuals.col(b));
+        squares(first + b) = residual.dot(residuals.col(b));
+        out.errors.col(first + b) = sigmas(b) * unwhiten.block(0, 6 * b, 3, 6).lazyProduct(residuals.col(b));
       }
     }
   });
+  const double variance = squares.sum() / values.sum();
+  out.log_densities = -0.5 * (squares / variance - log_determinants + std::log(variance) * values);
   return out;
+}
+
+VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
+                                                   Index stride) {
+  return leave_one_out(system, solved, stride).errors;
 }
 
 }  // namespace vernier

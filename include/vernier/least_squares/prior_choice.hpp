@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The scale of a prior, chosen by leave-one-block-out errors with the one-standard-error rule.
+/// The scale of a prior, and whether unknowns are included, by leave-one-block-out validation with the
+/// one-standard-error rule.
 
 #include <vector>
 
@@ -20,6 +21,15 @@ struct PriorTrial {
 /// @param trials at least one
 /// @cite Breiman 1984; Hastie 2009
 VERNIER_API std::size_t one_standard_error_rule(const std::vector<PriorTrial>& trials);
+
+/// Whether leave-one-block-out validation supports additional unknowns: with them the mean error is smaller by more
+/// than a standard error of the paired differences; or it is smaller, and the log predictive density greater by more
+/// than a standard error. The latter knows which blocks could not be predicted well, as is usual among few that were
+/// planned.
+/// @param with,without the same blocks, predicted with the unknowns and without
+/// @return             false where errors are not finite
+/// @cite Hastie 2009; Vehtari 2017
+VERNIER_API bool supports(const LeftOutBlocks& with, const LeftOutBlocks& without);
 
 /// Outcome of `choose_prior`.
 struct PriorChoice {

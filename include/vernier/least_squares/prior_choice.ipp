@@ -8,6 +8,16 @@
 
 namespace vernier {
 
+namespace detail {
+
+/// Standard error of the mean of some values.
+VERNIER_API double standard_error(const VectorX& values) {
+  const double n = static_cast<double>(values.size());
+  return std::sqrt((values.array() - values.mean()).square().sum() / std::max(1.0, n * (n - 1)));
+}
+
+}  // namespace detail
+
 VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& trials) {
   require(!trials.empty(), "one_standard_error_rule: no trials");
   const auto best = std::min_element(trials.begin(), trials.end(), [](const PriorTrial& a, const PriorTrial& b) {
@@ -15,10 +25,16 @@ VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& 
   });
   for (std::size_t k = trials.size(); k-- > 0;) {
     const VectorX excess = trials[k].errors - best->errors;
-    const double n = static_cast<double>(excess.size()), mean = excess.mean();
-    if (mean <= std::sqrt((excess.array() - mean).square().sum() / std::max(1.0, n * (n - 1)))) return k;
+    if (excess.mean() <= detail::standard_error(excess)) return k;
   }
   return trials.size() - 1;  // errors that are not finite compare with nothing
+}
+
+VERNIER_IMPL bool supports(const LeftOutBlocks& with, const LeftOutBlocks& without) {
+  const VectorX saved = (without.errors.colwise().norm() - with.errors.colwise().norm()).transpose();
+  if (saved.mean() > detail::standard_error(saved)) return true;
+  const VectorX gained = with.log_densities - without.log_densities;
+  return saved.mean() > 0 && gained.mean() > detail::standard_error(gained);
 }
 
 VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEquations& normal, VectorX precisions,

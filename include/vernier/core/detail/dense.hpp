@@ -25,7 +25,8 @@ VERNIER_API void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef 
 VERNIER_API MatrixX inverse_from_cholesky(const ConstMatrixRef& factor);
 
 /// Solves a x = b by Gaussian elimination with partial pivoting, both in place.
-VERNIER_API void solve_general(MatrixRef a, VectorRef b);
+/// @return logarithm of the absolute determinant of a
+VERNIER_API double solve_general(MatrixRef a, VectorRef b);
 
 /// R of the QR decomposition of a matrix of n columns, n x n.
 VERNIER_API MatrixX triangular_factor(const ConstMatrixRef& matrix);

@@ -69,9 +69,10 @@ VERNIER_IMPL MatrixX inverse_from_cholesky(const ConstMatrixRef& factor) {
   return out;
 }
 
-VERNIER_IMPL void solve_general(MatrixRef a, VectorRef b) {
+VERNIER_IMPL double solve_general(MatrixRef a, VectorRef b) {
   const Eigen::PartialPivLU<MatrixRef> lu(a);  // in place
   b = VectorX(lu.solve(b));
+  return a.diagonal().array().abs().log().sum();
 }
 
 VERNIER_IMPL MatrixX triangular_factor(const ConstMatrixRef& matrix) {

@@ -73,31 +73,35 @@ LeftOutBlocks left_out(const std::vector<double>& errors, const std::vector<doub
 
 // Saved: (0.5, 0), mean 0.25, standard error 0.25; (0.5625, 0), mean 0.28125, standard error 0.28125; (0.5, 0.0625):
 // mean 0.28125, standard error 0.21875.
-TEST(Supports, ErrorsSmallerByMoreThanAStandardError) {
+TEST(ErrorsSupport, WhatMakesThemSmallerByMoreThanAStandardError) {
   const std::vector<double> same{0, 0};
-  EXPECT_FALSE(supports(left_out({1, 1}, same), left_out({1.5, 1}, same)));
-  EXPECT_FALSE(supports(left_out({1, 1}, same), left_out({1.5625, 1}, same)));
-  EXPECT_TRUE(supports(left_out({1, 1}, same), left_out({1.5, 1.0625}, same)));
-  EXPECT_FALSE(supports(left_out({1.5, 1.0625}, same), left_out({1, 1}, same)));
-  // densities that are smaller do not matter then
-  EXPECT_TRUE(supports(left_out({1, 1}, {-9, -9}), left_out({1.5, 1.0625}, same)));
+  EXPECT_FALSE(errors_support(left_out({1, 1}, same), left_out({1.5, 1}, same)));
+  EXPECT_FALSE(errors_support(left_out({1, 1}, same), left_out({1.5625, 1}, same)));
+  EXPECT_TRUE(errors_support(left_out({1, 1}, same), left_out({1.5, 1.0625}, same)));
+  EXPECT_FALSE(errors_support(left_out({1.5, 1.0625}, same), left_out({1, 1}, same)));
+  EXPECT_TRUE(errors_support(left_out({1, 1}, {-9, -9}), left_out({1.5, 1.0625}, same)));  // whatever the densities
 }
 
-// Errors differ by less than a standard error: densities decide, by the same rule, where errors are smaller at all.
-TEST(Supports, ErrorsSmallerAndDensitiesGreater) {
-  const std::vector<double> with{1, 1}, without{1.5, 0.75}, zero{0, 0};  // saved 0.125, standard error 0.375
-  EXPECT_FALSE(supports(left_out(with, zero), left_out(without, zero)));
-  EXPECT_FALSE(supports(left_out(with, {0.5, 0}), left_out(without, zero)));
-  EXPECT_TRUE(supports(left_out(with, {0.5, 0.0625}), left_out(without, zero)));
-  EXPECT_FALSE(supports(left_out(with, zero), left_out(without, {0.5, 0.0625})));
-  EXPECT_FALSE(supports(left_out(without, {9, 9}), left_out(with, zero)));  // saved -0.125
+// Errors smaller by 0.125, standard error 0.375.
+TEST(DensitiesSupport, WhatMakesThemGreaterByMoreThanAStandardErrorAndErrorsSmaller) {
+  const std::vector<double> with{1, 1}, without{1.5, 0.75}, zero{0, 0};
+  EXPECT_FALSE(errors_support(left_out(with, {9, 9}), left_out(without, zero)));
+  EXPECT_FALSE(densities_support(left_out(with, zero), left_out(without, zero)));
+  EXPECT_FALSE(densities_support(left_out(with, {0.5, 0}), left_out(without, zero)));
+  EXPECT_TRUE(densities_support(left_out(with, {0.5, 0.0625}), left_out(without, zero)));
+  EXPECT_FALSE(densities_support(left_out(with, zero), left_out(without, {0.5, 0.0625})));
+  EXPECT_FALSE(densities_support(left_out(without, {9, 9}), left_out(with, zero)));  // errors greater by 0.125
 }
 
-TEST(Supports, NothingThatIsNotFinite) {
-  EXPECT_FALSE(supports(left_out({nan, 1}, {0, 0}), left_out({2, 2.1}, {0, 0})));
-  EXPECT_FALSE(supports(left_out({infinity, infinity}, {-infinity, -infinity}), left_out({2, 2.1}, {0, 0})));
-  EXPECT_FALSE(supports(left_out({1, 1}, {0, 0}), left_out({infinity, infinity}, {-infinity, -infinity})));
-  EXPECT_FALSE(supports(left_out({1, 1}, {nan, nan}), left_out({1.5, 0.75}, {0, 0})));
+TEST(ErrorsSupport, NothingThatIsNotFinite) {
+  const std::vector<double> zero{0, 0}, none{-infinity, -infinity};
+  const auto both = [](const LeftOutBlocks& a, const LeftOutBlocks& b) {
+    return errors_support(a, b) || densities_support(a, b);
+  };
+  EXPECT_FALSE(both(left_out({nan, 1}, zero), left_out({2, 2.1}, zero)));
+  EXPECT_FALSE(both(left_out({infinity, infinity}, none), left_out({2, 2.1}, zero)));
+  EXPECT_FALSE(both(left_out({1, 1}, zero), left_out({infinity, infinity}, none)));
+  EXPECT_FALSE(both(left_out({1, 1}, {nan, nan}), left_out({1.5, 0.75}, zero)));
 }
 
 PriorChoice chosen(const RandomBlocks& poses) {

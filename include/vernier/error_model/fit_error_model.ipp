@@ -204,6 +204,9 @@ class ErrorModelFit {
   }
 
  private:
+  static constexpr Index many_poses =
+      500;  ///< from here on bands of orders are sized apart, and errors suffice to decide
+
   VERNIER_API std::vector<FittedArm> arms() const {
     std::vector<FittedArm> out;
     for (int s = 0; s < problem_.arm.stations(); ++s)
@@ -322,10 +325,11 @@ class ErrorModelFit {
     return left_out(linearised(), problem_.arm.precisions()).errors.colwise().norm().mean();
   }
 
-  /// A block of unknowns, by the errors with it and without.
-  VERNIER_API static BlockChoice choice_between(const char* name, const LeftOutBlocks& with,
-                                                const LeftOutBlocks& without, double precision) {
-    const bool used = supports(with, without);
+  /// A block of unknowns, by the errors with it and without; of few poses also by log predictive densities.
+  VERNIER_API BlockChoice choice_between(const char* name, const LeftOutBlocks& with, const LeftOutBlocks& without,
+                                         double precision) const {
+    const bool few = problem_.num_validation_blocks() < many_poses;
+    const bool used = errors_support(with, without) || (few && densities_support(with, without));
     return {name, without.errors.colwise().norm().mean(), with.errors.colwise().norm().mean(), used,
             used ? precision : suppressing_precision};
   }
@@ -369,13 +373,12 @@ class ErrorModelFit {
                           at.steps, values, at.local_steps);
     };
     VectorX precisions = problem_.arm.precisions();
-    constexpr Index enough = 500;
     constexpr double clearly = 10;
-    if (at.system.validation_blocks < enough)
+    if (at.system.validation_blocks < many_poses)
       precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, std::numeric_limits<int>::max()),
                                 at.local_steps);
     const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
-    if (at.system.validation_blocks >= enough || evidence(learned) > evidence(precisions) + clearly)
+    if (at.system.validation_blocks >= many_poses || evidence(learned) > evidence(precisions) + clearly)
       precisions = learned;
     problem_.arm.set_precisions(precisions);
     for (BlockChoice& block : estimate.blocks)

@@ -22,14 +22,18 @@ struct PriorTrial {
 /// @cite Breiman 1984; Hastie 2009
 VERNIER_API std::size_t one_standard_error_rule(const std::vector<PriorTrial>& trials);
 
-/// Whether leave-one-block-out validation supports additional unknowns: with them the mean error is smaller by more
-/// than a standard error of the paired differences; or it is smaller, and the log predictive density greater by more
-/// than a standard error. The latter knows which blocks could not be predicted well, as is usual among few that were
-/// planned.
+/// Whether the errors of left-out blocks support additional unknowns: with them the mean error is smaller by more than
+/// a standard error of the paired differences.
 /// @param with,without the same blocks, predicted with the unknowns and without
 /// @return             false where errors are not finite
-/// @cite Hastie 2009; Vehtari 2017
-VERNIER_API bool supports(const LeftOutBlocks& with, const LeftOutBlocks& without);
+/// @cite Hastie 2009
+VERNIER_API bool errors_support(const LeftOutBlocks& with, const LeftOutBlocks& without);
+
+/// Whether the log predictive densities of left-out blocks do, by the same rule, and the mean error is smaller at all.
+/// Densities know which blocks could not be predicted well, as is usual among few that were planned.
+/// @param with,without as for `errors_support`
+/// @cite Vehtari 2017
+VERNIER_API bool densities_support(const LeftOutBlocks& with, const LeftOutBlocks& without);
 
 /// Outcome of `choose_prior`.
 struct PriorChoice {

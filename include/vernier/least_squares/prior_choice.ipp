@@ -30,11 +30,23 @@ VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& 
   return trials.size() - 1;  // errors that are not finite compare with nothing
 }
 
-VERNIER_IMPL bool supports(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  const VectorX saved = (without.errors.colwise().norm() - with.errors.colwise().norm()).transpose();
-  if (saved.mean() > detail::standard_error(saved)) return true;
+namespace detail {
+
+/// What the position errors of each block are smaller by [m].
+VERNIER_API VectorX saved_errors(const LeftOutBlocks& with, const LeftOutBlocks& without) {
+  return (without.errors.colwise().norm() - with.errors.colwise().norm()).transpose();
+}
+
+}  // namespace detail
+
+VERNIER_IMPL bool errors_support(const LeftOutBlocks& with, const LeftOutBlocks& without) {
+  const VectorX saved = detail::saved_errors(with, without);
+  return saved.mean() > detail::standard_error(saved);
+}
+
+VERNIER_IMPL bool densities_support(const LeftOutBlocks& with, const LeftOutBlocks& without) {
   const VectorX gained = with.log_densities - without.log_densities;
-  return saved.mean() > 0 && gained.mean() > detail::standard_error(gained);
+  return detail::saved_errors(with, without).mean() > 0 && gained.mean() > detail::standard_error(gained);
 }
 
 VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEquations& normal, VectorX precisions,

@@ -2,10 +2,12 @@
 # Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, with what runs in parallel,
 # and with everything; header-only, with the compiled libraries, and both in one program; from the Debian package, and
 # with pkg-config.
-# usage: tests/consumer/run.sh [BUILD FOLDER]
+# usage: tests/consumer/run.sh [BUILD FOLDER [FINISHED BUILD]]
+# The package with the compiled libraries comes from a finished build of this tree where one is named; else one is made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
+finished=${2:+$(cd "$2" && pwd)}
 mkdir -p "${1:-$root/build/consumer}"
 build=$(cd "${1:-$root/build/consumer}" && pwd)
 rm -rf "${build:?}"/*
@@ -73,18 +75,15 @@ no_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
 no_urdf=(-DCMAKE_DISABLE_FIND_PACKAGE_tinyxml2=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON)
 no_parallel=(-DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON)
 
-# install PREFIX CMAKE ARG...
-install() {
-  quietly "$build/install.log" cmake -S "$root" -B "$build/package" -G Ninja "-DCMAKE_INSTALL_PREFIX=$build/$1" \
-    "${fast[@]}" -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF \
-    "${@:2}"
-  quietly "$build/install.log" cmake --build "$build/package"
-  quietly "$build/install.log" cmake --install "$build/package"
-  if [[ $1 == prefix ]] && command -v dpkg-deb >/dev/null; then
-    (cd "$build/package" && quietly "$build/deb.log" cpack -G DEB -B "$build/deb")
-  fi
-  rm -rf "$build/package"
+# make FOLDER CMAKE ARG...: the libraries alone
+make() {
+  quietly "$build/make.log" cmake -S "$root" -B "$1" -G Ninja "${fast[@]}" -DVERNIER_BUILD_TESTS=OFF \
+    -DVERNIER_BUILD_EXAMPLES=OFF -DVERNIER_BUILD_BENCHMARKS=OFF "${@:2}"
+  quietly "$build/make.log" cmake --build "$1"
 }
+
+# install FOLDER PREFIX
+install() { quietly "$build/install.log" cmake --install "$1" --prefix "$build/$2"; }
 
 # unpack: the Debian package, as a root of its own. What it says it needs must be what it needs.
 unpack() {
@@ -114,8 +113,18 @@ compile_with_pc() {
 
 # The headers are installed by a build that knows none of the libraries: the package is the same, but for what is
 # compiled.
-install bare -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
-install prefix
+make "$build/package" -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
+install "$build/package" bare
+rm -rf "$build/package"
+if [[ -z $finished ]]; then
+  finished=$build/package
+  make "$finished"
+fi
+install "$finished" prefix
+if command -v dpkg-deb >/dev/null; then
+  quietly "$build/deb.log" cpack -G DEB -B "$build/deb" --config "$finished/CPackConfig.cmake"
+fi
+rm -rf "$build/package"
 
 sed -n 's/^#define VERNIER_VERSION_[A-Z]* *//p' "$root/include/vernier/core/version.hpp" | paste -sd. >"$build/version"
 whole=$build/prefix

@@ -169,7 +169,8 @@ VERNIER_API bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
   for (const SixAxisRoot& root : roots)
     if (root_distance(root.joints, q) < same) return false;
   if (roots.count == SixAxisRoots::capacity) return false;
-  roots.roots[static_cast<std::size_t>(roots.count++)].joints = q.unaryExpr([](double angle) { return half_turn_angle(angle); });
+  roots.roots[static_cast<std::size_t>(roots.count++)].joints =
+      q.unaryExpr([](double angle) { return half_turn_angle(angle); });
   return true;
 }
 

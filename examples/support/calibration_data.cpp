@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "dispatch.hpp"
@@ -28,6 +30,13 @@ vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, s
   };
   if (o.split == "region-x") return far ? region(Face::x_high, "largest x") : region(Face::x_low, "smallest x");
   if (o.split == "region-z") return far ? region(Face::z_high, "largest z") : region(Face::z_low, "smallest z");
+  if (o.split == "block") {
+    const auto blocks = std::max<vn::Index>(2, std::llround(1 / o.test_fraction));
+    const auto block =
+        static_cast<vn::Index>((seed + static_cast<std::uint64_t>(blocks) - 1) % static_cast<std::uint64_t>(blocks));
+    rule = fmt::format("block {} of {} contiguous blocks of the rows", block + 1, blocks);
+    return vn::split_block(data, block, blocks);
+  }
   if (o.split == "time") {
     rule += "the last ones";
     return vn::split_time(data, o.test_fraction);

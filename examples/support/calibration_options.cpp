@@ -55,11 +55,13 @@ void add_split(CLI::App& app, CalibrationOptions& o) {
   auto* every = app.add_option("--test-every", o.test_every, "hold out every K-th row of the data")
                     ->type_name("K")
                     ->check(CLI::Range(2, 1000000).description(""));
-  auto* split = option(app, "--split", o.split,
-                       "hold out a fraction of the rows: random, region-x or region-z (largest values for odd seeds, "
-                       "smallest for even), time (the last rows)",
-                       "HOW")
-                    ->check(CLI::IsMember({"random", "region-x", "region-z", "time"}).description(""));
+  auto* split =
+      option(app, "--split", o.split,
+             "hold out a fraction of the rows: random, region-x or region-z (largest values for odd seeds, "
+             "smallest for even), time (the last rows), block (the first of 1/F contiguous blocks for seed 1, and "
+             "so on)",
+             "HOW")
+          ->check(CLI::IsMember({"random", "region-x", "region-z", "time", "block"}).description(""));
   auto* fraction =
       app.add_option("--test-fraction", o.test_fraction, "that fraction; random where --split is not given")
           ->type_name("F")

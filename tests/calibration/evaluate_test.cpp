@@ -95,6 +95,42 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
   EXPECT_EQ(report.joints[2].transmission.size(), static_cast<Index>(report.joints[2].angle.size()));
 }
 
+// A base that drifts goes on to do so: the ellipsoid of a pose long before the session, or after it, is wider.
+TEST(Evaluate, EllipsoidsWidenBeyondADriftingSession) {
+  const auto still = measure(actual_arm(), joints(400, 1), noise, 2);
+  PointRows positions = still.positions();
+  for (Index i = 0; i < still.size(); ++i)
+    positions(i, 2) += 0.2e-3 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 400);
+  CalibrateOptions options = quick;
+  options.remainder.learners.clear();
+  const auto found = calibrate(robot.chain, Dataset<6>(still.joints(), positions, still.orientations()), options);
+  ASSERT_EQ(found.errors.drift.size(), 1u);
+  const SessionDrift& drift = found.errors.drift.front();
+  ASSERT_FALSE(drift.empty());
+
+  const auto fresh = measure(actual_arm(), joints(50, 3), noise, 4);
+  const auto at = [&](double time) {
+    return evaluate(found, fresh.measured_at(VectorX::Constant(fresh.size(), time)), robot.limits).normalised_errors;
+  };
+  const VectorX within = at(200);
+  for (const double time : {-80.0, 399 + 80.0}) {
+    const VectorX beyond = at(time);
+    for (Index i = 0; i < fresh.size(); ++i) {
+      const PredictedPose predicted = found.errors.predicted(fresh.joints(i));
+      const Vector3 point = predicted.pose.translation(), error = point - fresh.position(i);
+      const Matrix3 then =
+          (predicted.covariance +
+           drift.covariance_beyond(time, point, found.model().pose_and_jacobian(fresh.joints(i)).jacobian))
+              .topLeftCorner<3, 3>();
+      EXPECT_LT(beyond(i), within(i));
+      EXPECT_NEAR(beyond(i), std::sqrt(error.dot(then.inverse() * error)), 1e-9);
+    }
+  }
+  // 80 rows, with a knot every 40 or so, of steps of 0.03 mm a 200 rows or more
+  EXPECT_GT(at(-80).mean(), 0.1 * within.mean());
+  EXPECT_LT(at(-80).mean(), 0.95 * within.mean());
+}
+
 TEST(Calibrate, KernelsAreTriedOnFewPosesAlone) {
   const auto poses = measure(actual_arm(), joints(60, 1), noise, 2);
   CalibrateOptions options = quick;

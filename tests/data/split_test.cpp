@@ -129,6 +129,14 @@ TEST(Split, TimeHoldsOutTheLastRows) {
   EXPECT_EQ(rows_of(vernier::split_time(numbered(10)).train), (std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 
+TEST(Split, BlocksAreContiguousAndTogetherAllRows) {
+  EXPECT_EQ(rows_of(vernier::split_block(numbered(11), 0, 3).test), (std::vector<Index>{0, 1, 2, 3}));
+  EXPECT_EQ(rows_of(vernier::split_block(numbered(11), 1, 3).test), (std::vector<Index>{4, 5, 6, 7}));
+  EXPECT_EQ(rows_of(vernier::split_block(numbered(11), 2, 3).test), (std::vector<Index>{8, 9, 10}));
+  for (Index block = 0; block < 5; ++block) expect_partition(vernier::split_block(numbered(13), block), numbered(13));
+  EXPECT_EQ(rows_of(vernier::split_block(numbered(10), 4).test), rows_of(vernier::split_time(numbered(10)).test));
+}
+
 template <class F>
 void expect_complaint(F&& f, const char* part) {
   try {
@@ -150,6 +158,10 @@ TEST(Split, BadFractionsAreNamed) {
   }
   expect_complaint([&] { (void)vernier::split_every(data, 1); }, "k is 1");
   expect_complaint([&] { (void)vernier::split_every(data, -3); }, "k is -3");
+  expect_complaint([&] { (void)vernier::split_block(data, 5); }, "block is 5, must be 0 to 4");
+  expect_complaint([&] { (void)vernier::split_block(data, -1); }, "block is -1");
+  expect_complaint([&] { (void)vernier::split_block(data, 0, 1); }, "1 blocks of 10 rows");
+  expect_complaint([&] { (void)vernier::split_block(data, 0, 11); }, "11 blocks of 10 rows");
 }
 
 TEST(Split, OneRowCannotBeSplit) {

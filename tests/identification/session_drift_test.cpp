@@ -53,6 +53,28 @@ TEST(SessionDrift, ZerosOfTheJointsStandBelowTheTwist) {
   EXPECT_EQ(drift.twist(12.5), three_knots().twist(12.5));
 }
 
+// 2.5 knots before the session, or after it, of a step with 0.2 mm, 30 urad about z alone and 10 urad of the second
+// joint.
+TEST(SessionDrift, WalksOnBeyondItsEnds) {
+  SessionDrift drift = three_knots();
+  const Vector3 point = drift.centre + Vector3(2, 0, 0);  // turning by w about z moves it by 2 m w along y
+  MatrixX jacobian = MatrixX::Zero(6, 2);
+  jacobian.col(1) << 0, 0, 0.5, 1, 0, 0;
+  EXPECT_EQ(drift.covariance_beyond(-100, point, jacobian), Matrix6(Matrix6::Zero()));  // nothing is known of its steps
+  drift.step_variance.setZero(8);
+  drift.step_variance.head<3>().setConstant(4e-8);
+  drift.step_variance(5) = 9e-10;
+  drift.step_variance(7) = 1e-10;
+  Matrix6 expected = Matrix6::Zero();
+  expected.diagonal() << 1e-7, 1e-7 + 4 * 2.25e-9, 1e-7 + 0.25 * 2.5e-10, 2.5e-10, 0, 2.25e-9;
+  expected(1, 5) = expected(5, 1) = 2 * 2.25e-9;
+  expected(2, 3) = expected(3, 2) = 0.5 * 2.5e-10;
+  for (const double time : {10 - 12.5, 20 + 12.5})
+    EXPECT_LT((drift.covariance_beyond(time, point, jacobian) - expected).norm(), 1e-21) << time;
+  for (const double time : {10.0, 13.0, 20.0})
+    EXPECT_EQ(drift.covariance_beyond(time, point, jacobian), Matrix6(Matrix6::Zero())) << time;
+}
+
 TEST(SessionDrift, NoneIsNoMotion) {
   const SessionDrift none;
   EXPECT_EQ(none.joint_zeros(3).size(), 0);

@@ -176,7 +176,13 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
       Vector3 error = poses[row].translation() - data.position(i);
       if (deployed != nullptr && !deployed->on_geometry)
         error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
-      normalised(i) = detail::normalised_error(error, covariances[row].template topLeftCorner<3, 3>());
+      Matrix3 covariance = covariances[row].template topLeftCorner<3, 3>();
+      if (s < errors.drift.size())
+        covariance += errors.drift[s]
+                          .covariance_beyond(data.times()(i), poses[row].translation(),
+                                             errors.models[s].pose_and_jacobian(data.joints(i)).jacobian)
+                          .template topLeftCorner<3, 3>();
+      normalised(i) = detail::normalised_error(error, covariance);
     }
     return normalised;
   });

@@ -19,6 +19,8 @@ using Vector3 = Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 /// 3 x 3.
 using Matrix3 = Eigen::Matrix3d;
+/// 6 x 6.
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// Any size, column-major.
 using MatrixX = Eigen::MatrixXd;
 /// Any length.

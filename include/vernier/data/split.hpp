@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Splits into training and test rows: random, every k-th, by region of space, by time.
+/// Splits into training and test rows: random, every k-th, contiguous blocks, by region of space, by time.
 
 #include <cstdint>
 #include <vector>
@@ -40,6 +40,7 @@ struct SplitRows {
 };
 VERNIER_API SplitRows random_rows(Index n, const SplitOptions& options);
 VERNIER_API SplitRows every_kth_row(Index n, Index k);
+VERNIER_API SplitRows block_rows(Index n, Index block, Index blocks);
 VERNIER_API SplitRows region_rows(const PointRows& positions, const RegionOptions& options);
 VERNIER_API SplitRows last_rows(Index n, double test_fraction);
 VERNIER_API std::vector<Index> first_random_rows(Index size, Index n, std::uint64_t seed);
@@ -63,6 +64,16 @@ Split<N> split(const Dataset<N>& data, const SplitOptions& options = {}) {
 template <int N>
 Split<N> split_every(const Dataset<N>& data, Index k) {
   return detail::split_at(data, detail::every_kth_row(data.size(), k));
+}
+
+/// One of some contiguous blocks of rows held out, whose sizes differ by one row at most: tests drift in both
+/// directions.
+/// @param block  which of them, from 0
+/// @param blocks their number
+/// @throws std::invalid_argument unless blocks is in [2, data.size()] and block in [0, blocks)
+template <int N>
+Split<N> split_block(const Dataset<N>& data, Index block, Index blocks = 5) {
+  return detail::split_at(data, detail::block_rows(data.size(), block, blocks));
 }
 
 /// The rows nearest to one face of the bounding box held out: tests extrapolation in space.

@@ -38,6 +38,14 @@ VERNIER_IMPL SplitRows every_kth_row(Index n, Index k) {
   return out;
 }
 
+VERNIER_IMPL SplitRows block_rows(Index n, Index block, Index blocks) {
+  require(blocks >= 2 && blocks <= n, "split_block: ", blocks, " blocks of ", n, " rows, must be 2 to as many");
+  require(block >= 0 && block < blocks, "split_block: block is ", block, ", must be 0 to ", blocks - 1);
+  SplitRows out;
+  for (Index i = 0; i < n; ++i) (i * blocks / n == block ? out.test : out.train).push_back(i);
+  return out;
+}
+
 VERNIER_IMPL SplitRows region_rows(const PointRows& positions, const RegionOptions& options) {
   const Index n = positions.rows(), tests = num_test_rows("split_region", n, options.test_fraction);
   const int axis = static_cast<int>(options.face) / 2;

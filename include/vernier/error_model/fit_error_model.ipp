@@ -184,6 +184,8 @@ class ErrorModelFit {
     if (out.jointwise && options_.find_lines && !inherited) find_lines(estimate);
     solve(estimate);
     out.estimate.drift = problem_.drift;
+    for (SessionDrift& of_station : out.estimate.drift)
+      if (!of_station.empty()) of_station.step_variance = problem_.drift_step_variance();
     out.all = arms();
     // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
     const bool later = hysteresis || tilt || thermal || inherited;

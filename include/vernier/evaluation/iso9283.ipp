@@ -2,7 +2,6 @@
 
 #include "vernier/evaluation/iso9283.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,8 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/register_points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/detail/iso9283_visits.hpp"
@@ -129,19 +130,18 @@ VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, c
 
 VERNIER_API std::optional<Isometry3> registration_of(const std::vector<Iso9283Pose>& poses,
                                                      std::span<const Isometry3> commanded) {
-  Eigen::Matrix3Xd from(3, static_cast<Index>(poses.size())), to(3, from.cols());
-  for (Index k = 0; k < from.cols(); ++k) {
+  const auto n = static_cast<Index>(poses.size());
+  PointRows from(n, 3), to(n, 3);
+  for (Index k = 0; k < n; ++k) {
     const Iso9283Pose& one = poses[static_cast<std::size_t>(k)];
-    from.col(k) = commanded[static_cast<std::size_t>(one.pose - 1)].translation();
-    to.col(k) = one.mean.translation();
+    from.row(k) = commanded[static_cast<std::size_t>(one.pose - 1)].translation().transpose();
+    to.row(k) = one.mean.translation().transpose();
   }
-  if (from.cols() < 3) return {};
-  const MatrixX centred = from.colwise() - from.rowwise().mean();
-  const VectorX spread = Eigen::JacobiSVD<MatrixX>(centred).singularValues();
+  if (n < 3) return {};
+  const Eigen::RowVector3d centre = from.colwise().mean();
+  const VectorX spread = right_singular(from.rowwise() - centre).values;
   if (!(spread(1) > 1e-6 * spread(0))) return {};
-  Isometry3 out = Isometry3::Identity();
-  out.matrix() = Eigen::umeyama(from, to, false);
-  return out;
+  return register_points(from, to);
 }
 
 VERNIER_API std::optional<Iso9283Distance> accuracy_of_distance(const VisitedPose& first, const VisitedPose& second,

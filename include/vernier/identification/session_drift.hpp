@@ -17,6 +17,8 @@ struct SessionDrift {
   /// A column a knot: translation of the centre [m], rotation vector [rad], in the sensor's frame; then, where the
   /// joints' zeros move, too, their changes [rad, m].
   MatrixX knots{};
+  /// Variance of the change from knot to knot, one value a row of the knots; empty: none beyond the session.
+  VectorX step_variance{};
 
   /// Whether there is none.
   bool empty() const { return knots.cols() == 0; }
@@ -34,6 +36,12 @@ struct SessionDrift {
   VERNIER_API Vector6 twist(double time) const;
   /// The same as a motion, to be applied in front of a modelled pose.
   VERNIER_API Isometry3 motion(double time) const;
+  /// Covariance by which drift has moved a pose before the first knot or after the last: of a random walk from there.
+  /// Position [m^2], then orientation [rad^2], sensor's frame. Zero between the knots.
+  /// @param time     in the unit of `Dataset::times`
+  /// @param point    the tool point [m]
+  /// @param jacobian of the pose by the joints, in the sensor's frame: 6 x joints
+  VERNIER_API Matrix6 covariance_beyond(double time, const Vector3& point, const ConstMatrixRef& jacobian) const;
 };
 
 }  // namespace vernier

@@ -42,4 +42,18 @@ VERNIER_IMPL Isometry3 SessionDrift::motion(double time) const {
   return out;
 }
 
+VERNIER_IMPL Matrix6 SessionDrift::covariance_beyond(double time, const Vector3& point,
+                                                     const ConstMatrixRef& jacobian) const {
+  Matrix6 out = Matrix6::Zero();
+  if (step_variance.size() == 0) return out;
+  const double knot = (time - begin) / spacing;
+  const double steps = std::max({0.0, -knot, knot - static_cast<double>(knots.cols() - 1)});
+  Matrix6 of_base = Matrix6::Identity();
+  of_base.topRightCorner<3, 3>() = -skew(Vector3(point - centre));
+  out = steps * of_base * step_variance.head<6>().asDiagonal() * of_base.transpose();
+  for (Index j = 6; j < step_variance.size(); ++j)
+    out += steps * step_variance(j) * jacobian.col(j - 6) * jacobian.col(j - 6).transpose();
+  return out;
+}
+
 }  // namespace vernier

@@ -285,8 +285,7 @@ VERNIER_IMPL void FactorisedEquations::factorise(const VectorX& precisions, cons
   factor_.diagonal().array() += 1e-12 * of_data.maxCoeff();
   if (!detail::cholesky(factor_)) return;
   step_ = -right;
-  detail::solve_lower(factor_, step_);
-  detail::solve_lower_transposed(factor_, step_);
+  detail::solve_cholesky(factor_, step_);
   usable_ = step_.allFinite();
   if (!local) return;
   local_step_ = -reduced_->eliminated.col(0);

@@ -11,8 +11,6 @@
 
 namespace vernier {
 
-/// A 6 x 6 matrix.
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// Six rows, any number of columns.
 using Rows6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 

@@ -3,23 +3,10 @@
 /// @file
 /// Linear least squares for output weights: minimum norm, ridge, and closed-form leave-one-out.
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
-
-namespace detail {
-
-/// Thin singular value decomposition `H = U diag(s) V'`: QR of the longer side, then one-sided Jacobi rotations of the
-/// square factor, the most accurate method.
-struct ThinSvd {
-  MatrixX u;  ///< n x k, k = min(n, h)
-  VectorX s;  ///< k, descending
-  MatrixX v;  ///< h x k
-
-  VERNIER_API explicit ThinSvd(const ConstMatrixRef& h);
-};
-
-}  // namespace detail
 
 /// Minimum-norm solution of `min |H beta - T|`: singular values below `rcond` times the largest count as zero.
 /// @param h     n x nodes

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,26 +9,8 @@
 
 namespace vernier {
 
-namespace detail {
-
-VERNIER_IMPL ThinSvd::ThinSvd(const ConstMatrixRef& h) {
-  const bool tall = h.rows() >= h.cols();
-  const Index k = std::min(h.rows(), h.cols());
-  const Eigen::HouseholderQR<MatrixX> qr(tall ? MatrixX(h) : MatrixX(h.transpose()));
-  const MatrixX square = qr.matrixQR().topRows(k).template triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner> svd(square, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  s = svd.singularValues();
-  MatrixX longer = MatrixX::Zero(std::max(h.rows(), h.cols()), k);
-  longer.topRows(k) = svd.matrixU();
-  longer.applyOnTheLeft(qr.householderQ());
-  u = tall ? longer : svd.matrixV();
-  v = tall ? svd.matrixV() : longer;
-}
-
-}  // namespace detail
-
 VERNIER_IMPL MatrixX minimum_norm_solution(const ConstMatrixRef& h, const ConstMatrixRef& t, double rcond) {
-  const detail::ThinSvd svd(h);
+  const detail::ThinSvd svd = detail::thin_svd(h);
   const double cut = rcond * (svd.s.size() > 0 ? svd.s(0) : 0.0);
   VectorX inverse = VectorX::Zero(svd.s.size());
   for (Index j = 0; j < svd.s.size(); ++j)
@@ -57,7 +37,7 @@ VERNIER_IMPL RidgeSolution relative_ridge(const ConstMatrixRef& h, const ConstMa
     MatrixX stacked(h.rows() + nodes, nodes), right = MatrixX::Zero(h.rows() + nodes, t.cols());
     stacked << h, std::sqrt(lambda) * MatrixX::Identity(nodes, nodes);
     right.topRows(t.rows()) = t;
-    out.beta = Eigen::HouseholderQR<MatrixX>(stacked).solve(right);
+    out.beta = detail::solve_by_qr(stacked, right).solution;
   }
   out.objective = (h * out.beta - t).squaredNorm() + lambda * out.beta.squaredNorm();
   return out;
@@ -94,7 +74,7 @@ VERNIER_IMPL RidgePath::RidgePath(const ConstMatrixRef& h, const ConstMatrixRef&
       mean_h_(weights != nullptr ? Row(shares_.transpose() * h) : Row(h.colwise().mean())),
       mean_t_(weights != nullptr ? Row(shares_.transpose() * t) : Row(t.colwise().mean())),
       centred_t_(scaled(t.rowwise() - mean_t_, weights != nullptr)),
-      svd_(scaled(h.rowwise() - mean_h_, weights != nullptr)) {
+      svd_(detail::thin_svd(scaled(h.rowwise() - mean_h_, weights != nullptr))) {
   projected_ = svd_.u.transpose() * centred_t_;
   if (rank() == 0) svd_.s.setZero();
 }

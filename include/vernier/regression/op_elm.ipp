@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/rank_nodes.hpp"
 #include "vernier/regression/op_elm.hpp"
 
@@ -34,8 +34,8 @@ VERNIER_IMPL detail::FittedNetwork OpElm::solve(const ConstMatrixRef& inputs, co
   MatrixX design(h.rows(), pruned.nodes + 1);
   design << h(Eigen::all, nodes), VectorX::Ones(h.rows());
   const VectorX root = weights.cwiseSqrt();
-  const MatrixX beta = Eigen::HouseholderQR<MatrixX>(root.asDiagonal() * design)
-                           .solve(MatrixX(root.asDiagonal() * (targets.rowwise() - mean)));
+  const MatrixX beta =
+      detail::solve_by_qr(root.asDiagonal() * design, root.asDiagonal() * (targets.rowwise() - mean)).solution;
   const MatrixX chosen = theta.reshaped(each, hidden_nodes)(Eigen::all, nodes);
   return {pruned, scaling, chosen.reshaped(), beta.topRows(pruned.nodes), (beta.bottomRows(1) + mean).transpose()};
 }

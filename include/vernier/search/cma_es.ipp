@@ -2,12 +2,12 @@
 
 #include "vernier/search/cma_es.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "vernier/core/argsort.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/search/bounds.hpp"
 
 namespace vernier {
@@ -96,13 +96,13 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
   s.sigma *= std::exp(std::min(1.0, c.c_sigma / c.d_sigma * (length / c.expected_norm - 1)));
 
   if (static_cast<double>(s.updates - s.decomposed) > 1 / ((c.c_1 + c.c_mu) * static_cast<double>(n) * 10)) {
-    const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(s.covariance);
-    const VectorX& values = eigen.eigenvalues();
-    if (eigen.info() != Eigen::Success || !(values(0) > 1e-14 * values(n - 1))) {
+    const detail::SymmetricEigen eigen = detail::symmetric_eigen(s.covariance);
+    const VectorX& values = eigen.values;
+    if (!eigen.converged || !(values(0) > 1e-14 * values(n - 1))) {
       s.converged = true;
       return;
     }
-    s.basis = eigen.eigenvectors();
+    s.basis = eigen.vectors;
     s.scales = values.cwiseSqrt();
     s.decomposed = s.updates;
   }

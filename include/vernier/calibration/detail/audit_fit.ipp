@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vernier/calibration/detail/audit_fit.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 
 namespace vernier::detail {
@@ -105,6 +106,13 @@ struct AuditColumns {
   Index size() const { return precision.size(); }
 };
 
+/// J' W J, and precisions of the unknowns.
+VERNIER_API MatrixX normal_matrix(const MatrixX& jacobian, const VectorX& weights, const VectorX& precision) {
+  MatrixX out = precision.asDiagonal();
+  add_transposed_product(out, jacobian, weights.asDiagonal() * jacobian);
+  return out;
+}
+
 /// Whitened Jacobian of the free columns, six (or three) rows a pose, unweighted.
 VERNIER_API MatrixX audit_jacobian(const PosesAndJacobians& at, const AuditColumns& columns, bool oriented,
                                    const AuditResiduals& residuals) {
@@ -164,17 +172,21 @@ VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& 
     const MatrixX jacobian = audit_jacobian(at, columns, rows.oriented(), out.residuals);
     const VectorX whitened = audit_whitened(out.residuals), weights = audit_weights(whitened);
     const VectorX from = deviation(values);
-    MatrixX weighted = weights.asDiagonal() * jacobian;
-    MatrixX normal = jacobian.transpose() * weighted;
-    const VectorX right = weighted.transpose() * whitened - (columns.precision.array() * from.array()).matrix();
-    normal.diagonal() += columns.precision;
+    MatrixX normal = normal_matrix(jacobian, weights, columns.precision);
+    const VectorX right = jacobian.transpose() * weights.cwiseProduct(whitened) - columns.precision.cwiseProduct(from);
     const VectorX diagonal = normal.diagonal();
     const double before = audit_cost(whitened, columns.precision, from);
     const double old_score = out.residuals.score();
     bool better = false;
     for (int attempt = 0; attempt < 5 && !better; ++attempt) {
       normal.diagonal() = diagonal * (1 + damping);
-      const VectorX step = normal.ldlt().solve(right);
+      MatrixX factor = normal;
+      VectorX step = right;
+      if (!cholesky(factor)) {
+        damping = std::max(10 * damping, 1e-3);
+        continue;
+      }
+      solve_cholesky(factor, step);
       VectorX next = values;
       for (Index k = 0; k < step.size(); ++k) next(columns.free[static_cast<std::size_t>(k)]) += step(k);
       if (!next.allFinite()) break;
@@ -205,10 +217,9 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
   const bool oriented = rows.oriented();
   const MatrixX jacobian = audit_jacobian(at, columns, oriented, fit.residuals);
   const VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened);
-  MatrixX normal = jacobian.transpose() * (weights.asDiagonal() * jacobian);
-  normal.diagonal() += columns.precision;
-  const Eigen::LLT<MatrixX> factor(normal);
-  const MatrixX whitening = factor.matrixL().solve(jacobian.transpose());
+  MatrixX factor = normal_matrix(jacobian, weights, columns.precision), whitening = jacobian.transpose();
+  cholesky(factor);
+  solve_lower(factor, whitening);
   std::vector<LeftOut> out(static_cast<std::size_t>(rows.size()));
   const Index values = oriented ? 6 : 3;
   std::vector<double> factors[2];
@@ -288,11 +299,12 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   Eigen::Matrix<double, 6, 6> covariance;
   double scale = 1;
   for (int round = 0; round < 3; ++round) {
-    MatrixX normal = design.transpose() * (weights.asDiagonal() * design);
-    normal.diagonal() += precision / (scale * scale);
-    const Eigen::LDLT<MatrixX> factor(normal);
-    solution = factor.solve(design.transpose() * weights.cwiseProduct(whitened));
-    covariance = factor.solve(MatrixX::Identity(all, 6)).topRows<6>();
+    MatrixX normal = normal_matrix(design, weights, precision / (scale * scale)), solved(all, 7);
+    solved << design.transpose() * weights.cwiseProduct(whitened), MatrixX::Identity(all, 6);
+    if (!cholesky(normal)) return out;
+    solve_cholesky(normal, solved);
+    solution = solved.col(0);
+    covariance = solved.topRightCorner<6, 6>();
     const VectorX left = whitened - design * solution;
     std::vector<double> norms;
     for (Index k = 0; k + 3 <= left.size(); k += 3) norms.push_back(left.segment<3>(k).norm());

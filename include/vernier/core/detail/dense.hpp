@@ -21,6 +21,8 @@ VERNIER_API bool cholesky(MatrixRef matrix);
 VERNIER_API void solve_lower(const ConstMatrixRef& factor, MatrixRef right);
 /// Solves L' x = b for the lower triangle L, in place.
 VERNIER_API void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef right);
+/// Solves L L' x = b for the lower triangle L, in place.
+VERNIER_API void solve_cholesky(const ConstMatrixRef& factor, MatrixRef right);
 /// Inverse of L L'.
 VERNIER_API MatrixX inverse_from_cholesky(const ConstMatrixRef& factor);
 
@@ -31,6 +33,23 @@ VERNIER_API double solve_general(MatrixRef a, VectorRef b);
 /// R of the QR decomposition of a matrix of n columns, n x n.
 VERNIER_API MatrixX triangular_factor(const ConstMatrixRef& matrix);
 
+/// Least squares by QR, for at least as many rows as columns, which are linearly independent.
+struct QrSolution {
+  MatrixX solution;  ///< of `min |matrix x - right|`
+  MatrixX triangle;  ///< R, n x n
+};
+/// See `QrSolution`.
+VERNIER_API QrSolution solve_by_qr(const ConstMatrixRef& matrix, const ConstMatrixRef& right);
+
+/// Eigenvalues, in ascending order, and eigenvectors of a symmetric matrix, its lower triangle.
+struct SymmetricEigen {
+  VectorX values;   ///< n
+  MatrixX vectors;  ///< n x n
+  bool converged;   ///< false where a value is not finite
+};
+/// See `SymmetricEigen`.
+VERNIER_API SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix);
+
 /// Singular values, in descending order, and right singular vectors of a matrix of n columns and at least as many rows.
 struct RightSingular {
   VectorX values;   ///< n
@@ -38,6 +57,17 @@ struct RightSingular {
 };
 /// See `RightSingular`. By Jacobi rotations: slow and accurate.
 VERNIER_API RightSingular right_singular(const ConstMatrixRef& matrix);
+
+/// Thin singular value decomposition `H = U diag(s) V'`: QR of the longer side, then one-sided Jacobi rotations of the
+/// square factor, the most accurate method.
+struct ThinSvd {
+  MatrixX u;  ///< n x k, k = min(n, h)
+  VectorX s;  ///< k, descending
+  MatrixX v;  ///< h x k
+};
+/// See `ThinSvd`.
+/// @param h n x h
+VERNIER_API ThinSvd thin_svd(const ConstMatrixRef& h);
 
 }  // namespace vernier::detail
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -62,10 +63,14 @@ VERNIER_IMPL void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef
   factor.triangularView<Eigen::Lower>().transpose().solveInPlace(right);
 }
 
+VERNIER_IMPL void solve_cholesky(const ConstMatrixRef& factor, MatrixRef right) {
+  solve_lower(factor, right);
+  solve_lower_transposed(factor, right);
+}
+
 VERNIER_IMPL MatrixX inverse_from_cholesky(const ConstMatrixRef& factor) {
   MatrixX out = MatrixX::Identity(factor.rows(), factor.rows());
-  solve_lower(factor, out);
-  solve_lower_transposed(factor, out);
+  solve_cholesky(factor, out);
   return out;
 }
 
@@ -75,18 +80,45 @@ VERNIER_IMPL double solve_general(MatrixRef a, VectorRef b) {
   return a.diagonal().array().abs().log().sum();
 }
 
-VERNIER_IMPL MatrixX triangular_factor(const ConstMatrixRef& matrix) {
-  const Index columns = matrix.cols(), height = std::min(matrix.rows(), columns);
-  const Eigen::HouseholderQR<MatrixX> qr(matrix);
+/// R of a decomposition of a matrix of n columns, n x n.
+VERNIER_API MatrixX triangle_of(const Eigen::HouseholderQR<MatrixX>& qr) {
+  const Index columns = qr.cols(), height = std::min(qr.rows(), columns);
   MatrixX out = MatrixX::Zero(columns, columns);
   out.topRows(height) = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();
   return out;
 }
 
+VERNIER_IMPL MatrixX triangular_factor(const ConstMatrixRef& matrix) {
+  return triangle_of(Eigen::HouseholderQR<MatrixX>(matrix));
+}
+
+VERNIER_IMPL QrSolution solve_by_qr(const ConstMatrixRef& matrix, const ConstMatrixRef& right) {
+  const Eigen::HouseholderQR<MatrixX> qr(matrix);
+  return {qr.solve(right), triangle_of(qr)};
+}
+
+VERNIER_IMPL SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix) {
+  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(matrix);
+  return {eigen.eigenvalues(), eigen.eigenvectors(), eigen.info() == Eigen::Success};
+}
+
+using JacobiSvd = Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner>;
+
 VERNIER_IMPL RightSingular right_singular(const ConstMatrixRef& matrix) {
   const MatrixX square = matrix.rows() == matrix.cols() ? MatrixX(matrix) : triangular_factor(matrix);
-  const Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner> svd(square, Eigen::ComputeFullV);
+  const JacobiSvd svd(square, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
+}
+
+VERNIER_IMPL ThinSvd thin_svd(const ConstMatrixRef& h) {
+  const bool tall = h.rows() >= h.cols();
+  const Index k = std::min(h.rows(), h.cols());
+  const Eigen::HouseholderQR<MatrixX> qr(tall ? MatrixX(h) : MatrixX(h.transpose()));
+  const JacobiSvd svd(triangle_of(qr), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  MatrixX longer = MatrixX::Zero(qr.rows(), k);
+  longer.topRows(k) = svd.matrixU();
+  longer.applyOnTheLeft(qr.householderQ());
+  return {tall ? longer : svd.matrixV(), svd.singularValues(), tall ? svd.matrixV() : longer};
 }
 
 }  // namespace vernier::detail

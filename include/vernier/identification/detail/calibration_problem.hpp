@@ -73,6 +73,9 @@ class CalibrationProblem {
   VERNIER_API VectorX drift_steps() const;
   /// Changes of the joints' zeros at a block; empty where they rest.
   VERNIER_API VectorX drift_joint_zeros(Index block) const;
+  /// Variance of the drift's change from knot to knot, as beyond a session: of at least the expected size, since a
+  /// session tells of itself alone.
+  VERNIER_API VectorX drift_step_variance() const;
   /// The motion of a block's base by drift.
   VERNIER_API Isometry3 drift_motion(Index block) const;
 

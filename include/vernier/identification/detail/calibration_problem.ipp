@@ -141,6 +141,12 @@ VERNIER_IMPL void CalibrationProblem::move_drift(const VectorX& steps) {
       drift[s].knots.col(k) += steps.segment(size * (first_state_[s] + k), size).cwiseProduct(drift_scale_);
 }
 
+VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance() const {
+  VectorX out = drift_scale_.cwiseAbs2() / std::min(1.0, joint_drift_precision);
+  out.head<6>() = drift_scale_.head<6>().cwiseAbs2() / std::min(1.0, drift_precision);
+  return out;
+}
+
 VERNIER_IMPL VectorX CalibrationProblem::drift_joint_zeros(Index block) const {
   const auto s = static_cast<std::size_t>(at(block).station);
   if (drift.empty() || drift[s].empty()) return {};

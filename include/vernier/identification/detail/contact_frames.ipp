@@ -1,11 +1,10 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/frames.hpp"
 
@@ -35,8 +34,7 @@ VERNIER_API Vector3 fitted_normal(const PointRows& points, const VectorX& height
     scatter += from_mean * from_mean.transpose();
     rise += (heights(i) - mean_height) * (points.row(i).transpose() - middle);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3> axes(scatter);
-  const Vector3 normal = axes.eigenvectors().col(0);
+  const Vector3 normal = symmetric_eigen(scatter).vectors.col(0);
   return normal.dot(rise) < 0 ? Vector3(-normal) : normal;
 }
 
@@ -79,7 +77,7 @@ VERNIER_IMPL void require_spread(const ArmGeometry& arm, const Contact& contact)
     const Eigen::Vector2d from_mean = points.row(i).head<2>().transpose() - mean;
     scatter += from_mean * from_mean.transpose();
   }
-  const Eigen::Vector2d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues();
+  const Eigen::Vector2d squares = symmetric_eigen(scatter).values;
   const double width = std::sqrt(std::max(squares(0), 0.0) / static_cast<double>(points.rows()));
   const double length = std::sqrt(squares(1) / static_cast<double>(points.rows()));
   require(width > std::max(1e-3, 0.02 * length), "contact ", contact.name(),
@@ -113,7 +111,8 @@ VERNIER_IMPL MatrixX touching_joints(const ArmGeometry& arm, const Station& stat
       }
       MatrixX gram = rows * rows.transpose();
       gram.diagonal().array() += 1e-12 * gram.trace();
-      const VectorX step = rows.transpose() * VectorX(gram.partialPivLu().solve(residual));
+      solve_general(gram, residual);
+      const VectorX step = rows.transpose() * residual;
       if (step.allFinite() && step.norm() < 0.5) joints.row(i) -= step.transpose();
     }
   }

@@ -14,8 +14,6 @@
 
 namespace vernier::detail {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 inline constexpr double accepted_error = 1e-10;  // m and rad
 
 /// The model at joint values: rows of rotations weighted as lengths.

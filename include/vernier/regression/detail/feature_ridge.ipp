@@ -1,11 +1,10 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/concepts.hpp"
 #include "vernier/regression/detail/feature_ridge.hpp"
 
@@ -29,12 +28,12 @@ VERNIER_IMPL FeatureRidge::FeatureRidge(const ConstMatrixRef& features, const Co
   MatrixX products = MatrixX::Zero(k, k);
   dual ? products.selfadjointView<Eigen::Lower>().rankUpdate(features_)
        : products.selfadjointView<Eigen::Lower>().rankUpdate(features_.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>> eigen(products);
-  const double top = std::max<double>(eigen.eigenvalues()(k - 1), 0);
-  const Index rank = (eigen.eigenvalues().array() > std::max(1e-14 * top, 1e-300)).count();
-  squares_ = eigen.eigenvalues().tail(rank);
+  const SymmetricEigen eigen = symmetric_eigen(products);
+  const double top = std::max<double>(eigen.values(k - 1), 0);
+  const Index rank = (eigen.values.array() > std::max(1e-14 * top, 1e-300)).count();
+  squares_ = eigen.values.tail(rank);
   const VectorX inverse = squares_.cwiseSqrt().cwiseInverse();
-  const auto vectors = eigen.eigenvectors().rightCols(rank);
+  const auto vectors = eigen.vectors.rightCols(rank);
   left_ = dual ? MatrixX(vectors) : MatrixX(features_ * vectors * inverse.asDiagonal());
   right_ = dual ? MatrixX(features_.transpose() * vectors * inverse.asDiagonal()) : MatrixX(vectors);
   projected_ = left_.transpose() * targets_;
@@ -106,11 +105,10 @@ VERNIER_IMPL FeatureRidgeFit FeatureRidge::from_samples(double lambda) const {
   MatrixX stacked(n + f, f), right = MatrixX::Zero(n + f, targets_.cols());
   stacked << features_, std::sqrt(lambda) * MatrixX::Identity(f, f);
   right.topRows(n) = targets_;
-  const Eigen::HouseholderQR<MatrixX> qr(stacked);
-  const auto triangle = qr.matrixQR().topRows(f).triangularView<Eigen::Upper>();
-  const MatrixX inverse = triangle.solve(MatrixX::Identity(f, f));
-  return finish(lambda, qr.solve(right), static_cast<double>(f) - lambda * inverse.squaredNorm(), inverse,
-                VectorX::Ones(f), 0);
+  const QrSolution qr = solve_by_qr(stacked, right);
+  const MatrixX inverse = qr.triangle.triangularView<Eigen::Upper>().solve(MatrixX::Identity(f, f));
+  return finish(lambda, qr.solution, static_cast<double>(f) - lambda * inverse.squaredNorm(), inverse, VectorX::Ones(f),
+                0);
 }
 
 VERNIER_IMPL FeatureRidgeFit FeatureRidge::finish(double lambda, const MatrixX& beta, double used,

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/kernel_ridge_path.hpp"
 
 namespace vernier::detail {
@@ -10,9 +11,9 @@ namespace vernier::detail {
 VERNIER_IMPL KernelRidgePath::KernelRidgePath(MatrixX k, const ConstMatrixRef& targets, const VectorX& weights)
     : root_(weights.cwiseSqrt()), targets_(targets) {
   k = root_.asDiagonal() * k * root_.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(k);
-  vectors_ = eigen.eigenvectors();
-  values_ = eigen.eigenvalues().cwiseMax(0.0);  // below: rounding
+  SymmetricEigen eigen = symmetric_eigen(k);
+  vectors_ = std::move(eigen.vectors);
+  values_ = eigen.values.cwiseMax(0.0);  // below: rounding
   MatrixX right(root_.size(), 1 + targets_.cols());
   right << root_, root_.asDiagonal() * targets_;
   projected_ = vectors_.transpose() * right;

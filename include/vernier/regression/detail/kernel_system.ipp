@@ -34,8 +34,7 @@ VERNIER_IMPL KernelSystem::KernelSystem(MatrixX a, const VectorX& noise, const C
   MatrixX right(n, 1 + m);
   right << VectorX::Ones(n), targets.rowwise() - centre;
   MatrixX solution = right;
-  solve_lower(factor, solution);
-  solve_lower_transposed(factor, solution);
+  solve_cholesky(factor, solution);
   ones = solution.col(0);
   precision = ones.sum();
   mean = solution.rightCols(m).colwise().sum().transpose() / precision;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/leave_one_out.hpp"
 #include "vernier/regression/detail/tile_product_kernel.hpp"
 
@@ -132,17 +132,17 @@ VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
   MatrixX gram = equations_.gram();
   const double raw = gram.trace();
   gram.triangularView<Eigen::Lower>() -= MatrixX(n * mean * mean.transpose());
-  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(gram);
+  const SymmetricEigen eigen = symmetric_eigen(gram);
   const double mean_alone = centred_square_ * (n / (n - 1)) * (n / (n - 1));
-  const double scale = eigen.eigenvalues()(h - 1);
-  if (eigen.info() != Eigen::Success || !(scale * 100 > raw) || !std::isfinite(scale)) return -1;
+  const double scale = eigen.values(h - 1);
+  if (!eigen.converged || !(scale * 100 > raw) || !std::isfinite(scale)) return -1;
 
   const MatrixX right = equations_.right().topRows(outputs_).transpose() - mean * (n * mean_target_);
-  const VectorX squares = eigen.eigenvalues().cwiseMax(0);
-  const MatrixX rotated_right = eigen.eigenvectors().transpose() * right;
+  const VectorX squares = eigen.values.cwiseMax(0);
+  const MatrixX rotated_right = eigen.vectors.transpose() * right;
   RowMatrix rotation = RowMatrix::Zero(h, rotated_), shares = RowMatrix::Zero(h, padded_lambdas),
             weights = RowMatrix::Zero(h, outputs_ * padded_lambdas);
-  rotation.leftCols(h) = eigen.eigenvectors();
+  rotation.leftCols(h) = eigen.vectors;
   const VectorX start = -(rotation.transpose() * mean);
   for (Index l = 0; l < lambdas; ++l) {
     shares.col(l) = (squares.array() + scale * std::pow(10.0, -0.5 * static_cast<double>(l))).inverse();

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/online_elm.hpp"
 
 namespace vernier::detail {
@@ -22,11 +23,11 @@ VERNIER_IMPL OnlineElm::OnlineElm(const HiddenLayer& layer, const VectorX& theta
     total_ = weights->sum();
   }
   stacked.bottomRows(layer.nodes).diagonal().setConstant(std::sqrt(lambda));  // the constant has none
-  const Eigen::HouseholderQR<MatrixX> qr(stacked);
-  coefficients_ = qr.solve(right);
+  QrSolution qr = solve_by_qr(stacked, right);
+  coefficients_ = std::move(qr.solution);
   square_ = (right - stacked * coefficients_).colwise().squaredNorm().transpose();
   root_ = MatrixX::Identity(size, size);  // R^-T
-  qr.matrixQR().topRows(size).triangularView<Eigen::Upper>().transpose().solveInPlace(root_);
+  qr.triangle.triangularView<Eigen::Upper>().transpose().solveInPlace(root_);
 }
 
 VERNIER_IMPL void OnlineElm::update(const ConstMatrixRef& x, const ConstMatrixRef& y, const VectorX* weights) {

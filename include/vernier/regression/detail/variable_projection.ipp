@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/tile_product.hpp"
 #include "vernier/regression/detail/variable_projection.hpp"
 
@@ -201,8 +201,7 @@ VERNIER_IMPL void VariableProjection::factorise(const MatrixX& gram) {
   MatrixX stacked(samples_ + nodes_, nodes_);
   stacked << hidden_.leftCols(nodes_) - roots_ * mean_.transpose(),
       std::sqrt(lambda_) * MatrixX::Identity(nodes_, nodes_);
-  const Eigen::HouseholderQR<MatrixX> qr(stacked);
-  factor_ = MatrixX(qr.matrixQR().topRows(nodes_).triangularView<Eigen::Upper>()).transpose();
+  factor_ = triangular_factor(stacked).transpose();
 }
 
 VERNIER_IMPL MatrixX VariableProjection::solve(const MatrixX& right) const {

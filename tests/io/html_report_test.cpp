@@ -370,5 +370,44 @@ TEST_F(HtmlReportSeen, DrawsItsPosesInABrowser) {
   EXPECT_TRUE(first != before);
 }
 
+// Dragged by 60 pixels to the right and 20 up, turned back by an arrow key, and clicked until a point is met.
+TEST_F(HtmlReportSeen, FollowsThePointerAndTheKeys) {
+  if (missing("chromium")) GTEST_SKIP() << "chromium is not installed: the page's script is not run";
+  std::string page = report_html(input_of(300, hostile));
+  const std::size_t policy = page.find("<meta http-equiv=\"Content-Security-Policy\"");
+  ASSERT_NE(policy, std::string::npos);
+  page.erase(policy, page.find('>', policy) + 1 - policy);  // which would keep this script from running
+  page.insert(page.find("</body>"), R"(<script>
+    var canvas = document.getElementById('canvas'), picked = document.getElementById('picked');
+    var box = canvas.getBoundingClientRect();
+    canvas.setPointerCapture = function () {};  // there is no pointer
+    function send(kind, x, y) {
+      canvas.dispatchEvent(new PointerEvent(kind, {clientX: box.left + x, clientY: box.top + y, bubbles: true}));
+    }
+    send('pointerdown', 100, 100); send('pointermove', 130, 90); send('pointermove', 160, 80); send('pointerup', 160, 80);
+    document.body.dataset.dragged = location.hash;
+    canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', cancelable: true}));
+    canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp', cancelable: true}));
+    document.body.dataset.stepped = location.hash;
+    for (var x = 10; x < box.width; x += 10)
+      for (var y = 10; y < box.height && picked.textContent.indexOf('Row ') !== 0; y += 10) {
+        send('pointerdown', x, y); send('pointerup', x, y);
+      }
+    document.body.dataset.clicked = picked.textContent;
+  </script>)");
+  write_file(folder_ / "page.html", page);
+  const CommandResult dom = chromium("--dump-dom", "#rotate=100&tilt=20");
+  ASSERT_EQ(dom.exit_code, 0) << dom.errors;
+  const auto noted = [&](const std::string& name) {
+    const std::size_t at = dom.output.find("data-" + name + "=\"");
+    if (at == std::string::npos) return std::string("nothing");
+    const std::size_t begin = dom.output.find('"', at) + 1;
+    return dom.output.substr(begin, dom.output.find('"', begin) - begin);
+  };
+  EXPECT_EQ(noted("dragged"), "#rotate=70&amp;tilt=10&amp;show=after");
+  EXPECT_EQ(noted("stepped"), "#rotate=75&amp;tilt=15&amp;show=after");
+  EXPECT_EQ(noted("clicked").rfind("Row ", 0), 0u) << noted("clicked");
+}
+
 }  // namespace
 }  // namespace vernier::html_report_test

@@ -228,7 +228,7 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
     for (Index part = 0; part < values; part += 3) {
       const Index k = values * i + part;
       const auto of_row = whitening.middleCols(k, 3);
-      const Matrix3 h = of_row.transpose() * of_row;
+      const Matrix3 h = of_row.transpose().lazyProduct(of_row);
       const Matrix3 rest = Matrix3::Identity() * (1 + 1e-9) - weights(k) * h;
       const Eigen::LDLT<Matrix3> kept(rest);
       const Vector3 r = kept.solve(Vector3(whitened.segment<3>(k)));
@@ -296,7 +296,7 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   VectorX precision(all);
   precision << VectorX::Constant(6, 1e-9), columns.precision, VectorX::Constant(harmonics, 1 / (3e-3 * 3e-3));
   VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened), solution;
-  Eigen::Matrix<double, 6, 6> covariance;
+  MatrixX covariance;
   double scale = 1;
   for (int round = 0; round < 3; ++round) {
     MatrixX normal = normal_matrix(design, weights, precision / (scale * scale)), solved(all, 7);
@@ -314,7 +314,10 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   const double dof = static_cast<double>(values * n) / std::max(1.0, static_cast<double>(values * n - all));
   out.motion = solution.head<6>();
   out.scale = scale * fit.residuals.position_scale;
-  out.chi_square = out.motion.dot(covariance.ldlt().solve(out.motion)) / (scale * scale * dof);
+  VectorX whitened_motion = out.motion;
+  if (!cholesky(covariance)) return {};
+  solve_lower(covariance, whitened_motion);
+  out.chi_square = whitened_motion.squaredNorm() / (scale * scale * dof);
   out.centre = mean;
   double sum = 0;
   for (const Eigen::Matrix<double, 6, 6>& motion : motions) sum += (motion * out.motion).head<3>().squaredNorm();

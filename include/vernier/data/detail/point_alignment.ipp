@@ -2,11 +2,10 @@
 
 #include "vernier/data/detail/point_alignment.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/so3.hpp"
 
@@ -16,8 +15,8 @@ namespace vernier::detail {
 VERNIER_API Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, const PointRows& points,
                                          std::span<const PointPair> pairs) {
   constexpr int unknowns = 15;
-  Eigen::Matrix<double, unknowns, unknowns> normal = Eigen::Matrix<double, unknowns, unknowns>::Zero();
-  Eigen::Matrix<double, unknowns, 1> right = Eigen::Matrix<double, unknowns, 1>::Zero();
+  MatrixX normal = MatrixX::Zero(unknowns, unknowns);
+  VectorX right = VectorX::Zero(unknowns);
   Vector3 mean = Vector3::Zero();
   for (const PointPair& pair : pairs) mean += points.row(pair.point).transpose();
   mean /= static_cast<double>(pairs.size());
@@ -27,13 +26,14 @@ VERNIER_API Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, con
     for (int k = 0; k < 3; ++k) rows.block<1, 3>(k, 3 * k) = points.row(pair.point) - mean.transpose();
     rows.middleCols<3>(9) = -flange.linear();
     rows.rightCols<3>().setIdentity();
-    normal += rows.transpose() * rows;
-    right += rows.transpose() * flange.translation();
+    normal += rows.transpose().lazyProduct(rows);
+    right += rows.transpose().lazyProduct(flange.translation());
   }
   normal.diagonal().array() += 1e-9 * normal.trace();
-  const Eigen::Matrix<double, unknowns, 1> solved = normal.ldlt().solve(right);
+  if (!cholesky(normal)) return Matrix3::Identity();
+  solve_cholesky(normal, right);
   Matrix3 base;  // column k is row k of A
-  for (int k = 0; k < 3; ++k) base.col(k) = solved.segment<3>(3 * k);
+  for (int k = 0; k < 3; ++k) base.col(k) = right.segment<3>(3 * k);
   return nearest_rotation(base);
 }
 
@@ -45,8 +45,8 @@ VERNIER_API PointFrames refined_frames(std::span<const Isometry3> flanges, const
   PointFrames frames;
   frames.base.linear() = start;
   for (int step_number = 0; step_number < max_steps; ++step_number) {
-    Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
-    Eigen::Matrix<double, 9, 1> right = Eigen::Matrix<double, 9, 1>::Zero();
+    MatrixX normal = MatrixX::Zero(9, 9);
+    VectorX step = VectorX::Zero(9);
     for (const PointPair& pair : pairs) {
       const Isometry3& flange = flanges[static_cast<std::size_t>(pair.row)];
       const Vector3 turned = frames.base.linear() * (flange * frames.offset);
@@ -56,13 +56,14 @@ VERNIER_API PointFrames refined_frames(std::span<const Isometry3> flanges, const
           -turned.z(), 0, turned.x(), 0, 1, 0, 0, 0, 0,      //
           turned.y(), -turned.x(), 0, 0, 0, 1, 0, 0, 0;
       rows.rightCols<3>() = frames.base.linear() * flange.linear();
-      normal += rows.transpose() * rows;
-      right += rows.transpose() * left;
+      normal += rows.transpose().lazyProduct(rows);
+      step += rows.transpose().lazyProduct(left);
     }
     normal.bottomRightCorner<3, 3>().diagonal().array() += n * offset_weight;
-    right.tail<3>() -= n * offset_weight * frames.offset;
+    step.tail<3>() -= n * offset_weight * frames.offset;
     normal.diagonal().array() += 1e-12 * normal.trace();
-    const Eigen::Matrix<double, 9, 1> step = normal.ldlt().solve(right);
+    if (!cholesky(normal)) break;
+    solve_cholesky(normal, step);
     frames.base.linear() = exp_so3(Vector3(step.head<3>())) * frames.base.linear();
     frames.base.translation() += step.segment<3>(3);
     frames.offset += step.tail<3>();

@@ -40,7 +40,7 @@ struct SplitRows {
 };
 VERNIER_API SplitRows random_rows(Index n, const SplitOptions& options);
 VERNIER_API SplitRows every_kth_row(Index n, Index k);
-VERNIER_API SplitRows block_rows(Index n, Index block, Index blocks);
+VERNIER_API SplitRows rows_of_block(Index n, Index block, Index blocks);
 VERNIER_API SplitRows region_rows(const PointRows& positions, const RegionOptions& options);
 VERNIER_API SplitRows last_rows(Index n, double test_fraction);
 VERNIER_API std::vector<Index> first_random_rows(Index size, Index n, std::uint64_t seed);
@@ -73,7 +73,7 @@ Split<N> split_every(const Dataset<N>& data, Index k) {
 /// @throws std::invalid_argument unless blocks is in [2, data.size()] and block in [0, blocks)
 template <int N>
 Split<N> split_block(const Dataset<N>& data, Index block, Index blocks = 5) {
-  return detail::split_at(data, detail::block_rows(data.size(), block, blocks));
+  return detail::split_at(data, detail::rows_of_block(data.size(), block, blocks));
 }
 
 /// The rows nearest to one face of the bounding box held out: tests extrapolation in space.

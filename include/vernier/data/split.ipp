@@ -38,7 +38,7 @@ VERNIER_IMPL SplitRows every_kth_row(Index n, Index k) {
   return out;
 }
 
-VERNIER_IMPL SplitRows block_rows(Index n, Index block, Index blocks) {
+VERNIER_IMPL SplitRows rows_of_block(Index n, Index block, Index blocks) {
   require(blocks >= 2 && blocks <= n, "split_block: ", blocks, " blocks of ", n, " rows, must be 2 to as many");
   require(block >= 0 && block < blocks, "split_block: block is ", block, ", must be 0 to ", blocks - 1);
   SplitRows out;

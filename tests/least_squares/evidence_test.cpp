@@ -68,8 +68,8 @@ TEST(Evidence, DoesNotDependOnTheSizeOfLargeNoise) {
               evidence(louder, loud_normal, some) - evidence(louder, loud_normal, others), 1e-6);
 }
 
-// Where every value is explained by unknowns, the data do not say which is noise. The sensor does: the wider their prior,
-// the less likely.
+// Where every value is explained by unknowns, the data do not say which is noise. The sensor does: the wider their
+// prior, the less likely.
 TEST(Evidence, ValuesThatAreAllExplainedAreNotFreeOfNoise) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const vernier_test::RandomBlocks blocks(2, 500 + seed, true, 15);  // 12 values, 25 unknowns

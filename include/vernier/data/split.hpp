@@ -68,7 +68,8 @@ Split<N> split_every(const Dataset<N>& data, Index k) {
 
 /// One of some contiguous blocks of rows held out, whose sizes differ by one row at most: tests drift in both
 /// directions.
-/// @param block  which of them, from 0
+/// @param data   to split
+/// @param block  which of the blocks, from 0
 /// @param blocks their number
 /// @throws std::invalid_argument unless blocks is in [2, data.size()] and block in [0, blocks)
 template <int N>

@@ -177,7 +177,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
       if (deployed != nullptr && !deployed->on_geometry)
         error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
       Matrix3 covariance = covariances[row].template topLeftCorner<3, 3>();
-      if (s < errors.drift.size())
+      if (s < errors.drift.size() && !errors.drift[s].empty())
         covariance += errors.drift[s]
                           .covariance_beyond(data.times()(i), poses[row].translation(),
                                              errors.models[s].pose_and_jacobian(data.joints(i)).jacobian)

@@ -39,7 +39,7 @@ VERNIER_IMPL SplitRows every_kth_row(Index n, Index k) {
 }
 
 VERNIER_IMPL SplitRows rows_of_block(Index n, Index block, Index blocks) {
-  require(blocks >= 2 && blocks <= n, "split_block: ", blocks, " blocks of ", n, " rows, must be 2 to as many");
+  require(blocks >= 2 && blocks <= n, "split_block: ", blocks, " blocks of ", n, " rows, must be 2 to ", n);
   require(block >= 0 && block < blocks, "split_block: block is ", block, ", must be 0 to ", blocks - 1);
   SplitRows out;
   for (Index i = 0; i < n; ++i) (i * blocks / n == block ? out.test : out.train).push_back(i);

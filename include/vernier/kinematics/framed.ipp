@@ -18,7 +18,7 @@ VERNIER_IMPL void move_columns(const Isometry3& base, const Vector3& lever, cons
 
 VERNIER_IMPL void frame_columns(const FrameParameters& base, const FrameParameters& tool, const Isometry3& tool_point,
                                 Index columns, double* jacobian) noexcept {
-  using Columns = Eigen::Map<Eigen::Matrix<double, 6, 6>>;
+  using Columns = Eigen::Map<Matrix6>;
   Columns of_base(jacobian), of_tool(jacobian + 6 * (6 + columns));
   const Matrix3& rate = base.rotation_vector_jacobian();
   const Matrix3 rotation = tool_point.linear();

@@ -273,11 +273,11 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   MatrixX design(values * n, all);
   design.middleCols(6, geometry) = audit_jacobian(at, columns, rows.oriented(), fit.residuals);
   const Vector3 mean = rows.positions.colwise().mean().transpose();
-  std::vector<Eigen::Matrix<double, 6, 6>> motions(static_cast<std::size_t>(n));
+  std::vector<Matrix6> motions(static_cast<std::size_t>(n));
   VectorX sigma(6);
   sigma << Vector3::Constant(fit.residuals.position_scale), Vector3::Constant(fit.residuals.rotation_scale);
   for (Index i = 0; i < n; ++i) {
-    Eigen::Matrix<double, 6, 6>& motion = motions[static_cast<std::size_t>(i)];
+    Matrix6& motion = motions[static_cast<std::size_t>(i)];
     motion.setIdentity();
     motion.topRightCorner<3, 3>() = -skew(Vector3(rows.positions.row(i).transpose() - mean));
     const double t = (times(i) - first) / span - 0.5;
@@ -320,7 +320,7 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   out.chi_square = whitened_motion.squaredNorm() / (scale * scale * dof);
   out.centre = mean;
   double sum = 0;
-  for (const Eigen::Matrix<double, 6, 6>& motion : motions) sum += (motion * out.motion).head<3>().squaredNorm();
+  for (const Matrix6& motion : motions) sum += (motion * out.motion).head<3>().squaredNorm();
   out.displacement = std::sqrt(sum / static_cast<double>(n));
   return out;
 }

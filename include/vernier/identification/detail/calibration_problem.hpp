@@ -73,8 +73,8 @@ class CalibrationProblem {
   VERNIER_API VectorX drift_steps() const;
   /// Changes of the joints' zeros at a block; empty where they rest.
   VERNIER_API VectorX drift_joint_zeros(Index block) const;
-  /// Variance of the drift's change from knot to knot, as beyond a session: of at least the expected size, since a
-  /// session tells of itself alone.
+  /// Variance of the drift's change from knot to knot beyond the session: at least the expected one, because a session
+  /// without drift says little about the next hours.
   VERNIER_API VectorX drift_step_variance() const;
   /// The motion of a block's base by drift.
   VERNIER_API Isometry3 drift_motion(Index block) const;

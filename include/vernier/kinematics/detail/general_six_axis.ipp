@@ -137,7 +137,7 @@ VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPen
 VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
   constexpr int steps_to_come_near = 15, max_steps = 40;
   constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
-  Eigen::Matrix<double, 6, 6> jacobian;
+  Matrix6 jacobian;
   for (int step = 0;; ++step) {
     Isometry3 pose = Isometry3::Identity();
     for (int i = 0; i < 6; ++i) {
@@ -156,7 +156,7 @@ VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointV
     if (step == max_steps || (step >= steps_to_come_near && !(left < near)) || !std::isfinite(left))
       return left < accepted;
     // Damping in proportion to the square of the error: convergence stays quadratic.
-    Eigen::Matrix<double, 6, 6> normal = jacobian.transpose() * jacobian;
+    Matrix6 normal = jacobian.transpose() * jacobian;
     normal.diagonal().array() += 1e-2 * left * left + 1e-15;
     const Vector6 newton = normal.ldlt().solve(jacobian.transpose() * error);
     q += newton * std::min(1.0, longest_step / newton.cwiseAbs().maxCoeff());
@@ -224,7 +224,7 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
 }
 
 VERNIER_IMPL SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept {
-  Eigen::Matrix<double, 6, 6> columns;
+  Matrix6 columns;
   Isometry3 moved = Isometry3::Identity();
   const double length = std::max(arm_length({arm.direction, arm.point, arm.tool}), 1e-9);
   for (int i = 0; i < 6; ++i) {

@@ -167,6 +167,17 @@ TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   EXPECT_NE(verdict[0].find(message(e.n, " of 60 held-out poses")), std::string::npos) << verdict[0];
   EXPECT_EQ(verdict[1].find(message(60 - e.n, " held-out poses lie outside")), 0u) << verdict[1];
   EXPECT_EQ(verdict[2].find("Measured joint ranges [deg, mm]: q1 -14"), 0u) << verdict[2];
+
+  CalibrationReport other = report;
+  other.blocks = {{"jointwise", 47.52e-6, 47.49e-6, true, 1, 0.1234}, {"gears", 47.5e-6, 47.6e-6, false, 1e12, 0}};
+  const std::vector<std::string> decisions = other.verdict();
+  ASSERT_GE(decisions.size(), 5u);
+  EXPECT_EQ(
+      decisions[3],
+      "Joint-wise terms help (leave-one-pose-out error: 0.0475 mm without, 0.0475 mm with; log predictive density "
+      "of a left-out pose greater by 0.123).");
+  EXPECT_EQ(decisions[4],
+            "Gear ratios and coupling do not help (leave-one-pose-out error: 0.0475 mm without, 0.0476 mm with).");
 }
 
 TEST(Evaluate, TiltsAreAStageWhereTheyAreFound) {

@@ -168,6 +168,28 @@ TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
   }
 }
 
+// Joint errors as small as the noise: of few poses, errors of left-out ones alone do not decide, densities do.
+TEST(FitErrorModel, StatesTheDensityGainWhereThatDecided) {
+  const JointErrorSizes small{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 5e-5, .harmonics = 2};
+  for (const std::uint64_t seed : {2u, 4u}) {
+    const auto found = fitted(measured(actual_arm(small), 60, seed));
+    const BlockChoice* jointwise = choice_of(found, "jointwise");
+    ASSERT_NE(jointwise, nullptr);
+    EXPECT_TRUE(jointwise->used);
+    EXPECT_LT(jointwise->with, jointwise->without);
+    if (seed == 2) {  // by 0.1 % of the error, which is less than its standard error
+      EXPECT_GT(jointwise->log_density_gain, 0.05);
+      EXPECT_LT(jointwise->log_density_gain, 1);  // a pose, not all of them
+    } else {                                      // by 2 %
+      EXPECT_EQ(jointwise->log_density_gain, 0);
+    }
+    for (const BlockChoice& block : found.blocks)
+      if (!block.used) {
+        EXPECT_EQ(block.log_density_gain, 0) << block.name;
+      }
+  }
+}
+
 /// The covariance at the solution, before the noise of visits is known: (J'J + priors)^-1 times the weighted squares
 /// over the values that the unknowns leave free.
 MatrixX expected_covariance(const ErrorModelEstimate& estimate, std::vector<detail::Station> stations) {

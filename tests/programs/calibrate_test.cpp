@@ -85,6 +85,10 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   ASSERT_EQ(c.json.at("learners").size(), 6u);  // three on geometry, three on the error model
   for (const Json& learner : c.json.at("learners"))
     EXPECT_EQ(keys(learner), (std::vector<std::string>{"stage", "used", "left_out_without_mm", "left_out_with_mm"}));
+  ASSERT_FALSE(c.json.at("blocks").empty());
+  for (const Json& block : c.json.at("blocks"))
+    EXPECT_EQ(keys(block), (std::vector<std::string>{"name", "used", "left_out_without_mm", "left_out_with_mm",
+                                                     "log_density_gain", "tightness"}));
   ASSERT_EQ(c.json.at("spectrum").size(), 6u);
   for (const Json& joint : c.json.at("spectrum")) {
     EXPECT_EQ(joint.at("orders").size(), joint.at("amplitudes_urad").size());

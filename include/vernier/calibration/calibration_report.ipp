@@ -119,7 +119,11 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
       {"tuned_priors", {"Optimised priors help ", "Optimised priors are left out: they do not help "}}};
   const auto& [helps, does_not] = texts.at(block.name);
   return message(block.used ? helps : does_not, "(leave-one-pose-out error: ", brief(block.without * 1e3),
-                 " mm without, ", brief(block.with * 1e3), " mm with).");
+                 " mm without, ", brief(block.with * 1e3), " mm with",
+                 block.log_density_gain > 0
+                     ? "; log predictive density of a left-out pose greater by " + brief(block.log_density_gain)
+                     : std::string(),
+                 ").");
 }
 
 /// Poses that would determine a parameter.

@@ -16,7 +16,7 @@
 
 namespace vernier {
 
-/// Decision on a block of unknowns by leave-one-pose-out errors.
+/// Decision on a block of unknowns by leave-one-pose-out errors, of few poses also by log predictive densities.
 struct BlockChoice {
   /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
   /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
@@ -28,6 +28,9 @@ struct BlockChoice {
   bool used = false;     ///< whether it is in the model
   double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
                          ///< terms that of the lowest band of orders, of drift that of its random walk
+  /// Where log predictive densities included it and errors alone would not have: mean gain of a left-out pose [nat];
+  /// else 0
+  double log_density_gain = 0;
 };
 
 /// What a transmission adds over some angles beyond its mean, which is the joint's zero; one value an angle [rad].

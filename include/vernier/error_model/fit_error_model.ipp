@@ -331,9 +331,15 @@ class ErrorModelFit {
   VERNIER_API BlockChoice choice_between(const char* name, const LeftOutBlocks& with, const LeftOutBlocks& without,
                                          double precision) const {
     const bool few = problem_.num_validation_blocks() < many_poses;
-    const bool used = errors_support(with, without) || (few && densities_support(with, without));
-    return {name, without.errors.colwise().norm().mean(), with.errors.colwise().norm().mean(), used,
-            used ? precision : suppressing_precision};
+    const bool by_errors = errors_support(with, without);
+    const bool by_densities = !by_errors && few && densities_support(with, without);
+    const bool used = by_errors || by_densities;
+    return {name,
+            without.errors.colwise().norm().mean(),
+            with.errors.colwise().norm().mean(),
+            used,
+            used ? precision : suppressing_precision,
+            by_densities ? (with.log_densities - without.log_densities).mean() : 0};
   }
 
   /// Sizes of some coefficients by evidence, and their inclusion by leave-one-pose-out errors.

@@ -28,6 +28,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                       {"used", block.used},
                       {"left_out_without_mm", block.without * 1e3},
                       {"left_out_with_mm", block.with * 1e3},
+                      {"log_density_gain", block.log_density_gain},
                       {"tightness", block.used ? Json(block.precision) : Json()}});
   for (const ParameterEstimate& p : identification.parameters)
     parameters.push_back({{"name", p.name},

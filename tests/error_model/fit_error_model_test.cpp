@@ -275,11 +275,32 @@ TEST(ErrorModelEstimate, CovariancesByHand) {
   EXPECT_LT((estimate.model_covariance(q) - model).norm(), 1e-18);
   const Jacobian<6> jacobian = nominal.jacobian(q);
   Matrix6 visit = model + 1e-8 * jacobian * jacobian.transpose();
-  visit.diagonal().head<3>().array() += 9e-8 + 0.25e-6 * 0.25;  // half of 0.8 mm / 1.6, squared
+  visit.diagonal().head<3>().array() += 9e-8 + 0.25e-6 * 0.5625;  // three quarters of 0.8 mm / 1.6, squared
   visit.diagonal().tail<3>().array() += 4e-8;
-  EXPECT_LT((estimate.visit_covariance(q, 0.5) - visit).norm(), 1e-12 * visit.norm());
-  visit.diagonal().head<3>().array() -= 0.25e-6 * 0.25;
+  EXPECT_LT((estimate.visit_covariance(q, 0.25) - visit).norm(), 1e-12 * visit.norm());
+  visit.diagonal().head<3>().array() -= 0.25e-6 * 0.5625;
   EXPECT_LT((estimate.visit_covariance(q, 1) - visit).norm(), 1e-12 * visit.norm());
+}
+
+/// Nothing is uncertain but on which side of their loops the first and the third joint stand, 0.2 and -0.3 mrad wide.
+TEST(ErrorModelEstimate, UnknownApproachesAreUncertainByHalfTheLoop) {
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
+  JointTerms terms(6);
+  terms.hysteresis = {0.01};
+  estimate.arm.set_terms(terms, VectorX::Constant(6, 1e-4), VectorX::Ones(6));
+  VectorX steps = VectorX::Zero(7);
+  steps(1) = 2;
+  steps(3) = -3;
+  estimate.arm.move(steps);
+  estimate.covariance = MatrixX::Zero(7, 7);
+  estimate.position_sigma = estimate.joint_sigma = estimate.orientation_sigma = 0;
+  const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
+  const Jacobian<6> jacobian = nominal.jacobian(q);
+  const Vector6 first = 2e-4 * jacobian.col(0), third = 3e-4 * jacobian.col(2);
+  const Matrix6 expected = first * first.transpose() + third * third.transpose();
+  EXPECT_LT((estimate.visit_covariance(q, 1) - expected).norm(), 1e-12 * expected.norm());
+  const JointVector<6> previous = q.array() - 0.5;
+  EXPECT_EQ(estimate.visit_covariance(q, 1, 0, previous).norm(), 0);
 }
 
 // a cos q + b sin q at 0 and pi: a and -a, mean 0; its variance is that of a.

@@ -175,7 +175,7 @@ TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   EXPECT_EQ(
       decisions[3],
       "Joint-wise terms help (leave-one-pose-out error: 0.0475 mm without, 0.0475 mm with; log predictive density "
-      "of a left-out pose greater by 0.123).");
+      "of a left-out pose greater by 0.123 nat).");
   EXPECT_EQ(decisions[4],
             "Gear ratios and coupling do not help (leave-one-pose-out error: 0.0475 mm without, 0.0476 mm with).");
 }

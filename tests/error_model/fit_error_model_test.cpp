@@ -282,7 +282,8 @@ TEST(ErrorModelEstimate, CovariancesByHand) {
   EXPECT_LT((estimate.visit_covariance(q, 1) - visit).norm(), 1e-12 * visit.norm());
 }
 
-/// Nothing is uncertain but on which side of their loops the first and the third joint stand, 0.2 and -0.3 mrad wide.
+/// Nothing is uncertain but on which side of their loops the first and the third joint stand; half a loop is 0.2 and
+/// -0.3 mrad.
 TEST(ErrorModelEstimate, UnknownApproachesAreUncertainByHalfTheLoop) {
   ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
   JointTerms terms(6);

@@ -120,9 +120,9 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
   const auto& [helps, does_not] = texts.at(block.name);
   return message(block.used ? helps : does_not, "(leave-one-pose-out error: ", brief(block.without * 1e3),
                  " mm without, ", brief(block.with * 1e3), " mm with",
-                 block.log_density_gain > 0
-                     ? "; log predictive density of a left-out pose greater by " + brief(block.log_density_gain)
-                     : std::string(),
+                 block.log_density_gain > 0 ? "; log predictive density of a left-out pose greater by " +
+                                                  brief(block.log_density_gain) + " nat"
+                                            : std::string(),
                  ").");
 }
 

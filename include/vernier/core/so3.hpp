@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "vernier/core/types.hpp"
+#include "vernier/core/points.hpp"
 
 namespace vernier {
 
@@ -63,6 +63,9 @@ VERNIER_API Matrix3 left_jacobian_so3(const Vector3& r);
 /// Inverse of `left_jacobian_so3`; finite for angles below 2 pi.
 /// @cite Sola 2018
 VERNIER_API Matrix3 left_jacobian_inverse_so3(const Vector3& r);
+
+/// The rotation vector [rad] that takes `from` to `to`, in the base frame: `Log(R_to R_from')`.
+VERNIER_API Vector3 rotation_difference(const Matrix3& to, const Matrix3& from);
 
 /// The twist that takes `from` to `to`, in the base frame: `[p_to - p_from; Log(R_to R_from')]`, m and rad.
 VERNIER_API Vector6 pose_difference(const Isometry3& to, const Isometry3& from);

@@ -42,11 +42,20 @@ VERNIER_IMPL Matrix3 left_jacobian_inverse_so3(const Vector3& r) {
   return Matrix3::Identity() - 0.5 * k + c * (k * k);
 }
 
+VERNIER_IMPL Vector3 rotation_difference(const Matrix3& to, const Matrix3& from) {
+  const Matrix3 back = from.transpose();
+  return detail::double_log_so3(to * back);
+}
+
 VERNIER_IMPL Vector6 pose_difference(const Isometry3& to, const Isometry3& from) {
-  Vector6 e;
-  e.head<3>() = to.translation() - from.translation();
-  e.tail<3>() = log_so3(to.linear() * from.linear().transpose());
-  return e;
+  const Vector3 shift = translation(to) - translation(from);
+  const Vector3 turn = rotation_difference(rotation(to), rotation(from));
+  Vector6 out;
+  for (Index c = 0; c < 3; ++c) {
+    out(c) = shift(c);
+    out(c + 3) = turn(c);
+  }
+  return out;
 }
 
 }  // namespace vernier

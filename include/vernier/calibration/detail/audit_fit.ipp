@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,11 +25,11 @@ VERNIER_IMPL AuditRows AuditRows::rows(std::span<const Index> indices, Index shi
   out.rotation_vectors.resize(oriented() ? n : 0, 3);
   for (Index i = 0; i < n; ++i) {
     const Index row = indices[static_cast<std::size_t>(i)];
-    out.joints.row(i) = joints.row(row);
-    out.positions.row(i) = positions.row(row + shift);
+    for (Index j = 0; j < joints.cols(); ++j) out.joints(i, j) = joints(row, j);
+    set_point(out.positions, i, point(positions, row + shift));
     if (!oriented()) continue;
     out.orientations.push_back(orientations[static_cast<std::size_t>(row + shift)]);
-    out.rotation_vectors.row(i) = rotation_vectors.row(row + shift);
+    set_point(out.rotation_vectors, i, point(rotation_vectors, row + shift));
   }
   return out;
 }
@@ -45,8 +44,9 @@ VERNIER_API double median_of(std::vector<double> values) {
 constexpr double median_norm = 1.538172254;
 
 VERNIER_IMPL double robust_scale(const PointRows& residuals) {
-  const VectorX norms = residuals.rowwise().norm();
-  return std::max(median_of({norms.begin(), norms.end()}) / median_norm, 1e-9);
+  std::vector<double> norms;
+  for (Index i = 0; i < residuals.rows(); ++i) norms.push_back(point(residuals, i).norm());
+  return std::max(median_of(std::move(norms)) / median_norm, 1e-9);
 }
 
 VERNIER_IMPL double AuditResiduals::score() const { return std::hypot(position_scale, 0.25 * rotation_scale); }
@@ -56,9 +56,8 @@ VERNIER_API AuditResiduals residuals_of_poses(const std::vector<Isometry3>& pose
   AuditResiduals out{PointRows(n, 3), PointRows(rows.oriented() ? n : 0, 3)};
   for (Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    out.position.row(i) = rows.positions.row(i) - poses[k].translation().transpose();
-    if (rows.oriented())
-      out.rotation.row(i) = log_so3(Matrix3(rows.orientations[k] * poses[k].linear().transpose())).transpose();
+    set_point(out.position, i, point(rows.positions, i) - translation(poses[k]));
+    if (rows.oriented()) set_point(out.rotation, i, rotation_difference(rows.orientations[k], rotation(poses[k])));
   }
   out.position_scale = robust_scale(out.position);
   if (rows.oriented()) out.rotation_scale = robust_scale(out.rotation);
@@ -72,16 +71,18 @@ VERNIER_IMPL AuditResiduals audit_residuals(const ArmGeometry& arm, const AuditR
 VERNIER_IMPL VectorX audit_frames_std(const ArmGeometry& arm, bool oriented) {
   constexpr double free = std::numeric_limits<double>::infinity();
   VectorX out = VectorX::Zero(arm.num_parameters());
-  out.head<6>().setConstant(free);
-  out.tail<6>().head<3>().setConstant(free);
-  if (oriented) out.tail<3>().setConstant(free);
+  const Index tool = out.size() - 6;
+  for (Index k = 0; k < 6; ++k) {
+    out(k) = free;
+    if (k < 3 || oriented) out(tool + k) = free;
+  }
   return out;
 }
 
 VERNIER_IMPL VectorX audit_geometry_std(const ArmGeometry& arm, bool oriented, double length_std, double angle_std) {
   VectorX out = audit_frames_std(arm, oriented);
   for (int j = 0; j < arm.joints(); ++j)
-    out.segment<5>(6 + 5 * j) << length_std, angle_std, length_std, angle_std, angle_std;
+    for (Index k = 0; k < 5; ++k) out(6 + 5 * j + k) = k == 0 || k == 2 ? length_std : angle_std;
   return out;
 }
 
@@ -108,8 +109,12 @@ struct AuditColumns {
 
 /// J' W J, and precisions of the unknowns.
 VERNIER_API MatrixX normal_matrix(const MatrixX& jacobian, const VectorX& weights, const VectorX& precision) {
-  MatrixX out = precision.asDiagonal();
-  add_transposed_product(out, jacobian, weights.asDiagonal() * jacobian);
+  MatrixX out = MatrixX::Zero(precision.size(), precision.size()), weighted = jacobian;
+  for (Index c = 0; c < weighted.cols(); ++c) {
+    out(c, c) = precision(c);
+    for (Index r = 0; r < weighted.rows(); ++r) weighted(r, c) *= weights(r);
+  }
+  add_transposed_product(out, jacobian, weighted);
   return out;
 }
 
@@ -131,24 +136,30 @@ VERNIER_API VectorX audit_whitened(const AuditResiduals& residuals) {
   const Index n = residuals.position.rows(), values = residuals.rotation.rows() > 0 ? 6 : 3;
   VectorX out(values * n);
   for (Index i = 0; i < n; ++i) {
-    out.segment<3>(values * i) = residuals.position.row(i).transpose() / residuals.position_scale;
-    if (values == 6) out.segment<3>(values * i + 3) = residuals.rotation.row(i).transpose() / residuals.rotation_scale;
+    for (Index c = 0; c < 3; ++c) {
+      out(values * i + c) = residuals.position(i, c) / residuals.position_scale;
+      if (values == 6) out(values * i + 3 + c) = residuals.rotation(i, c) / residuals.rotation_scale;
+    }
   }
   return out;
 }
+
+/// Three values from k on.
+inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
 
 /// Weights of Cauchy's loss, positions and orientations apart.
 VERNIER_API VectorX audit_weights(const VectorX& whitened) {
   constexpr double tuning = 4;
   VectorX out(whitened.size());
   for (Index k = 0; k + 3 <= whitened.size(); k += 3)
-    out.segment<3>(k).setConstant(1 / (1 + whitened.segment<3>(k).squaredNorm() / (tuning * tuning)));
+    out(k) = out(k + 1) = out(k + 2) = 1 / (1 + three(whitened, k).squaredNorm() / (tuning * tuning));
   return out;
 }
 
 VERNIER_API double audit_cost(const VectorX& whitened, const VectorX& precision, const VectorX& deviation) {
-  double sum = (precision.array() * deviation.array().square()).sum();
-  for (Index k = 0; k + 3 <= whitened.size(); k += 3) sum += 16 * std::log1p(whitened.segment<3>(k).squaredNorm() / 16);
+  double sum = 0;
+  for (Index k = 0; k < precision.size(); ++k) sum += precision(k) * deviation(k) * deviation(k);
+  for (Index k = 0; k + 3 <= whitened.size(); k += 3) sum += 16 * std::log1p(three(whitened, k).squaredNorm() / 16);
   return sum;
 }
 
@@ -172,15 +183,18 @@ VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& 
     const MatrixX jacobian = audit_jacobian(at, columns, rows.oriented(), out.residuals);
     const VectorX whitened = audit_whitened(out.residuals), weights = audit_weights(whitened);
     const VectorX from = deviation(values);
-    MatrixX normal = normal_matrix(jacobian, weights, columns.precision);
-    const VectorX right = jacobian.transpose() * weights.cwiseProduct(whitened) - columns.precision.cwiseProduct(from);
-    const VectorX diagonal = normal.diagonal();
+    const MatrixX normal = normal_matrix(jacobian, weights, columns.precision);
+    VectorX right = transposed_product(jacobian, weights.cwiseProduct(whitened)), diagonal(right.size());
+    for (Index k = 0; k < right.size(); ++k) {
+      right(k) -= columns.precision(k) * from(k);
+      diagonal(k) = normal(k, k);
+    }
     const double before = audit_cost(whitened, columns.precision, from);
     const double old_score = out.residuals.score();
     bool better = false;
     for (int attempt = 0; attempt < 5 && !better; ++attempt) {
-      normal.diagonal() = diagonal * (1 + damping);
       MatrixX factor = normal;
+      for (Index k = 0; k < diagonal.size(); ++k) factor(k, k) = diagonal(k) * (1 + damping);
       VectorX step = right;
       if (!cholesky(factor)) {
         damping = std::max(10 * damping, 1e-3);
@@ -227,13 +241,13 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
     LeftOut& row = out[static_cast<std::size_t>(i)];
     for (Index part = 0; part < values; part += 3) {
       const Index k = values * i + part;
-      const auto of_row = whitening.middleCols(k, 3);
-      const Matrix3 h = of_row.transpose().lazyProduct(of_row);
-      const Matrix3 rest = Matrix3::Identity() * (1 + 1e-9) - weights(k) * h;
-      const Eigen::LDLT<Matrix3> kept(rest);
-      const Vector3 r = kept.solve(Vector3(whitened.segment<3>(k)));
-      const Matrix3 covariance = Matrix3::Identity() + kept.solve(h);
-      const Matrix3 weight = covariance.inverse();
+      Matrix3 h;
+      for (Index a = 0; a < 3; ++a)
+        for (Index b = 0; b < 3; ++b) h(a, b) = whitening.col(k + a).dot(whitening.col(k + b));
+      const Matrix3 identity = Matrix3::Identity(), rest = (1 + 1e-9) * identity - weights(k) * h;
+      const Matrix3 kept = rest.inverse();
+      const Vector3 r = kept * three(whitened, k);
+      const Matrix3 covariance = identity + kept * h, weight = covariance.inverse();
       const double t = std::sqrt(std::max(0.0, r.dot(weight * r)));
       factors[part / 3].push_back(t);
       if (part == 0) {
@@ -272,16 +286,18 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   fit.arm.poses_and_parameter_jacobians(rows.joints, at);
   MatrixX design(values * n, all);
   design.middleCols(6, geometry) = audit_jacobian(at, columns, rows.oriented(), fit.residuals);
-  const Vector3 mean = rows.positions.colwise().mean().transpose();
+  const Vector3 mean = centroid(rows.positions);
   std::vector<Matrix6> motions(static_cast<std::size_t>(n));
-  VectorX sigma(6);
-  sigma << Vector3::Constant(fit.residuals.position_scale), Vector3::Constant(fit.residuals.rotation_scale);
+  const auto sigma = [&](Index v) { return v < 3 ? fit.residuals.position_scale : fit.residuals.rotation_scale; };
   for (Index i = 0; i < n; ++i) {
     Matrix6& motion = motions[static_cast<std::size_t>(i)];
     motion.setIdentity();
-    motion.topRightCorner<3, 3>() = -skew(Vector3(rows.positions.row(i).transpose() - mean));
+    const Matrix3 lever = skew(Vector3(point(rows.positions, i) - mean));
+    for (Index c = 0; c < 3; ++c)
+      for (Index v = 0; v < 3; ++v) motion(v, c + 3) = -lever(v, c);
     const double t = (times(i) - first) / span - 0.5;
-    for (Index v = 0; v < values; ++v) design.row(values * i + v).head<6>() = t / sigma(v) * motion.row(v);
+    for (Index v = 0; v < values; ++v)
+      for (Index c = 0; c < 6; ++c) design(values * i + v, c) = t / sigma(v) * motion(v, c);
     for (int j = 0; j < joints; ++j)
       for (Index v = 0; v < values; ++v) {
         const double column = at.jacobians(i, 6 * zero_parameter(fit.arm, j) + v) / sigma(v), q = rows.joints(i, j);
@@ -294,25 +310,27 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
       }
   }
   VectorX precision(all);
-  precision << VectorX::Constant(6, 1e-9), columns.precision, VectorX::Constant(harmonics, 1 / (3e-3 * 3e-3));
+  for (Index k = 0; k < all; ++k)
+    precision(k) = k < 6 ? 1e-9 : k < 6 + geometry ? columns.precision(k - 6) : 1 / (3e-3 * 3e-3);
   VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened), solution;
   MatrixX covariance;
   double scale = 1;
   for (int round = 0; round < 3; ++round) {
-    MatrixX normal = normal_matrix(design, weights, precision / (scale * scale)), solved(all, 7);
-    solved << design.transpose() * weights.cwiseProduct(whitened), MatrixX::Identity(all, 6);
+    MatrixX normal = normal_matrix(design, weights, precision / (scale * scale));
+    MatrixX columns_of_motion = MatrixX::Identity(all, 6);
+    solution = transposed_product(design, weights.cwiseProduct(whitened));
     if (!cholesky(normal)) return out;
-    solve_cholesky(normal, solved);
-    solution = solved.col(0);
-    covariance = solved.topRightCorner<6, 6>();
-    const VectorX left = whitened - design * solution;
+    solve_cholesky(normal, solution);
+    solve_cholesky(normal, columns_of_motion);
+    covariance = columns_of_motion.topRows(6);
+    const VectorX left = whitened - product(design, solution);
     std::vector<double> norms;
-    for (Index k = 0; k + 3 <= left.size(); k += 3) norms.push_back(left.segment<3>(k).norm());
+    for (Index k = 0; k + 3 <= left.size(); k += 3) norms.push_back(three(left, k).norm());
     scale = median_of(norms) / median_norm;
     weights = audit_weights(left / scale);
   }
   const double dof = static_cast<double>(values * n) / std::max(1.0, static_cast<double>(values * n - all));
-  out.motion = solution.head<6>();
+  for (Index k = 0; k < 6; ++k) out.motion(k) = solution(k);
   out.scale = scale * fit.residuals.position_scale;
   VectorX whitened_motion = out.motion;
   if (!cholesky(covariance)) return {};
@@ -320,7 +338,7 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   out.chi_square = whitened_motion.squaredNorm() / (scale * scale * dof);
   out.centre = mean;
   double sum = 0;
-  for (const Matrix6& motion : motions) sum += (motion * out.motion).head<3>().squaredNorm();
+  for (const Matrix6& motion : motions) sum += Vector6(motion * out.motion).head<3>().squaredNorm();
   out.displacement = std::sqrt(sum / static_cast<double>(n));
   return out;
 }
@@ -330,9 +348,10 @@ VERNIER_IMPL AuditRows without_trend(const AuditRows& rows, const BaseTrend& tre
   const double first = times.minCoeff(), span = times.maxCoeff() - first;
   for (Index i = 0; i < rows.size(); ++i) {
     const Vector6 motion = ((times(i) - first) / span - 0.5) * trend.motion;
-    const Matrix3 back = exp_so3(Vector3(-motion.tail<3>()));
-    const Vector3 position = rows.positions.row(i).transpose();
-    out.positions.row(i) = (trend.centre + back * (position - trend.centre) - motion.head<3>()).transpose();
+    const Vector3 shift = motion.head<3>(), turn = motion.tail<3>();
+    const Matrix3 back = exp_so3(Vector3(-turn));
+    const Vector3 arm = point(rows.positions, i) - trend.centre, position = trend.centre + back * arm;
+    set_point(out.positions, i, position - shift);
     if (rows.oriented()) {
       Matrix3& turned = out.orientations[static_cast<std::size_t>(i)];
       turned = back * turned;

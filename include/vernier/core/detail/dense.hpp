@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Products and decompositions of run-time-sized matrices, so that Eigen's kernels are compiled once for the whole
-/// house.
+/// Products, sums and decompositions of matrices sized at run time. A call costs its compiler nothing, an expression
+/// the class of its type and Eigen's kernels for it.
 
 #include "vernier/core/types.hpp"
 
@@ -13,6 +13,33 @@ VERNIER_API void add_product(MatrixRef out, const ConstMatrixRef& a, const Const
 /// out += factor a' b
 VERNIER_API void add_transposed_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b,
                                         double factor = 1);
+
+/// a x
+VERNIER_API VectorX product(const ConstMatrixRef& a, const ConstVectorRef& x);
+/// a' x
+VERNIER_API VectorX transposed_product(const ConstMatrixRef& a, const ConstVectorRef& x);
+/// a b
+VERNIER_API MatrixX matrix_product(const ConstMatrixRef& a, const ConstMatrixRef& b);
+/// a' b
+VERNIER_API MatrixX transposed_matrix_product(const ConstMatrixRef& a, const ConstMatrixRef& b);
+
+/// diag(factors) a
+VERNIER_API MatrixX rows_scaled(const ConstVectorRef& factors, const ConstMatrixRef& a);
+/// a diag(factors)
+VERNIER_API MatrixX columns_scaled(const ConstMatrixRef& a, const ConstVectorRef& factors);
+/// a, less the same row from each of its rows.
+VERNIER_API MatrixX rows_minus(const ConstMatrixRef& a, const ConstVectorRef& row);
+
+/// The i-th row, as a column.
+VERNIER_API VectorX row_of(const ConstMatrixRef& a, Index i);
+/// The diagonal.
+VERNIER_API VectorX diagonal_of(const ConstMatrixRef& a);
+/// Mean of each column.
+VERNIER_API VectorX column_means(const ConstMatrixRef& a);
+/// Squared norm of each column.
+VERNIER_API VectorX squared_column_norms(const ConstMatrixRef& a);
+/// Squared norm of each row.
+VERNIER_API VectorX squared_row_norms(const ConstMatrixRef& a);
 
 /// Cholesky factorisation of a symmetric matrix, its lower triangle, in place.
 /// @return whether it is positive definite

@@ -45,6 +45,74 @@ VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a,
   out.noalias() += factor * (a.transpose() * b);
 }
 
+VERNIER_IMPL VectorX product(const ConstMatrixRef& a, const ConstVectorRef& x) { return a * x; }
+
+VERNIER_IMPL VectorX transposed_product(const ConstMatrixRef& a, const ConstVectorRef& x) { return a.transpose() * x; }
+
+VERNIER_IMPL MatrixX matrix_product(const ConstMatrixRef& a, const ConstMatrixRef& b) {
+  MatrixX out = MatrixX::Zero(a.rows(), b.cols());
+  add_product(out, a, b);
+  return out;
+}
+
+VERNIER_IMPL MatrixX transposed_matrix_product(const ConstMatrixRef& a, const ConstMatrixRef& b) {
+  MatrixX out = MatrixX::Zero(a.cols(), b.cols());
+  add_transposed_product(out, a, b);
+  return out;
+}
+
+VERNIER_IMPL MatrixX rows_scaled(const ConstVectorRef& factors, const ConstMatrixRef& a) {
+  MatrixX out(a.rows(), a.cols());
+  for (Index c = 0; c < a.cols(); ++c)
+    for (Index r = 0; r < a.rows(); ++r) out(r, c) = factors(r) * a(r, c);
+  return out;
+}
+
+VERNIER_IMPL MatrixX columns_scaled(const ConstMatrixRef& a, const ConstVectorRef& factors) {
+  MatrixX out(a.rows(), a.cols());
+  for (Index c = 0; c < a.cols(); ++c)
+    for (Index r = 0; r < a.rows(); ++r) out(r, c) = a(r, c) * factors(c);
+  return out;
+}
+
+VERNIER_IMPL MatrixX rows_minus(const ConstMatrixRef& a, const ConstVectorRef& row) {
+  MatrixX out(a.rows(), a.cols());
+  for (Index c = 0; c < a.cols(); ++c)
+    for (Index r = 0; r < a.rows(); ++r) out(r, c) = a(r, c) - row(c);
+  return out;
+}
+
+VERNIER_IMPL VectorX row_of(const ConstMatrixRef& a, Index i) {
+  VectorX out(a.cols());
+  for (Index c = 0; c < a.cols(); ++c) out(c) = a(i, c);
+  return out;
+}
+
+VERNIER_IMPL VectorX diagonal_of(const ConstMatrixRef& a) {
+  VectorX out(std::min(a.rows(), a.cols()));
+  for (Index k = 0; k < out.size(); ++k) out(k) = a(k, k);
+  return out;
+}
+
+VERNIER_IMPL VectorX column_means(const ConstMatrixRef& a) {
+  VectorX out(a.cols());
+  for (Index c = 0; c < a.cols(); ++c) out(c) = a.col(c).sum() / static_cast<double>(a.rows());
+  return out;
+}
+
+VERNIER_IMPL VectorX squared_column_norms(const ConstMatrixRef& a) {
+  VectorX out(a.cols());
+  for (Index c = 0; c < a.cols(); ++c) out(c) = a.col(c).squaredNorm();
+  return out;
+}
+
+VERNIER_IMPL VectorX squared_row_norms(const ConstMatrixRef& a) {
+  VectorX out = VectorX::Zero(a.rows());
+  for (Index c = 0; c < a.cols(); ++c)
+    for (Index r = 0; r < a.rows(); ++r) out(r) += a(r, c) * a(r, c);
+  return out;
+}
+
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
   if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
     return wide->cholesky(at(matrix));

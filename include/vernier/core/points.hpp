@@ -1,0 +1,44 @@
+#pragma once
+
+/// @file
+/// Points among rows, and the parts of a rigid motion, as values. Expressions of `Vector3` and `Matrix3` are compiled
+/// once for the whole house; those of rows and blocks, once for each kind.
+
+#include "vernier/core/types.hpp"
+
+namespace vernier {
+
+/// The i-th point.
+inline Vector3 point(const PointRows& points, Index i) { return {points(i, 0), points(i, 1), points(i, 2)}; }
+
+/// Sets the i-th point.
+inline void set_point(PointRows& points, Index i, const Vector3& value) {
+  for (Index c = 0; c < 3; ++c) points(i, c) = value(c);
+}
+
+/// Mean of points, of which there is at least one.
+inline Vector3 centroid(const PointRows& points) {
+  Vector3 sum = Vector3::Zero();
+  for (Index i = 0; i < points.rows(); ++i) sum += point(points, i);
+  return sum / static_cast<double>(points.rows());
+}
+
+/// Distance of each point from another.
+inline VectorX distances_from(const PointRows& points, const Vector3& from) {
+  VectorX out(points.rows());
+  for (Index i = 0; i < points.rows(); ++i) out(i) = (point(points, i) - from).norm();
+  return out;
+}
+
+/// Translation of a rigid motion [m].
+inline Vector3 translation(const Isometry3& pose) { return {pose(0, 3), pose(1, 3), pose(2, 3)}; }
+
+/// Rotation matrix of a rigid motion.
+inline Matrix3 rotation(const Isometry3& pose) {
+  Matrix3 out;
+  for (Index c = 0; c < 3; ++c)
+    for (Index r = 0; r < 3; ++r) out(r, c) = pose(r, c);
+  return out;
+}
+
+}  // namespace vernier

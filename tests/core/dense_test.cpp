@@ -55,6 +55,24 @@ TEST(DenseWhiteBox, ProductsAreAdded) {
   }
 }
 
+// By hand: a = [1 2; 3 4; 5 6].
+TEST(DenseWhiteBox, ProductsScalingsAndSums) {
+  const MatrixX a{{1, 2}, {3, 4}, {5, 6}}, b{{1, 0, 2}, {-1, 3, 1}};
+  EXPECT_EQ(product(a, Eigen::Vector2d(1, -2)), Vector3(-3, -5, -7));
+  EXPECT_EQ(transposed_product(a, Vector3(1, 0, -1)), Eigen::Vector2d(-4, -4));
+  EXPECT_EQ(matrix_product(a, b), (MatrixX{{-1, 6, 4}, {-1, 12, 10}, {-1, 18, 16}}));
+  EXPECT_EQ(transposed_matrix_product(a, b.transpose()), (MatrixX{{11, 13}, {14, 16}}));
+  EXPECT_EQ(rows_scaled(Vector3(2, 0, -1), a), (MatrixX{{2, 4}, {0, 0}, {-5, -6}}));
+  EXPECT_EQ(columns_scaled(a, Eigen::Vector2d(2, -1)), (MatrixX{{2, -2}, {6, -4}, {10, -6}}));
+  EXPECT_EQ(rows_minus(a, Eigen::Vector2d(1, 4)), (MatrixX{{0, -2}, {2, 0}, {4, 2}}));
+  EXPECT_EQ(row_of(a, 1), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(diagonal_of(a), Eigen::Vector2d(1, 4));
+  EXPECT_EQ(diagonal_of(b), Eigen::Vector2d(1, 3));
+  EXPECT_EQ(column_means(a), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(squared_column_norms(a), Eigen::Vector2d(35, 56));
+  EXPECT_EQ(squared_row_norms(a), Vector3(5, 25, 61));
+}
+
 TEST(DenseWhiteBox, CholeskyFactorsAndItsSolutions) {
   for (const Index n : sizes) {
     const MatrixX a = positive(n, 1), right = random(n, 3, 2);

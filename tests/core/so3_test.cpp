@@ -158,6 +158,7 @@ TEST(PoseDifference, TakesOneFrameToTheOther) {
     const vn::Vector6 e = vn::pose_difference(to, from);
     EXPECT_LE((e.head<3>() - shift).norm(), 1e-15);
     EXPECT_LE((e.tail<3>() - turn).norm(), 1e-14);
+    EXPECT_LE((vn::rotation_difference(to.linear(), from.linear()) - turn).norm(), 1e-14);
   }
 }
 

@@ -35,14 +35,20 @@ inline double operations(Index a, Index b, Index c) {
 VERNIER_IMPL void add_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b, double factor) {
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.cols())))
     return wide->add_product(at(out), at(a), at(b), factor);
-  out.noalias() += factor * (a * b);
+  if (factor == 1)
+    out.noalias() += a * b;
+  else
+    out.noalias() += a * ConstMatrixRef(MatrixX(factor * b));
 }
 
 VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b,
                                          double factor) {
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.rows())))
     return wide->add_transposed_product(at(out), at(a), at(b), factor);
-  out.noalias() += factor * (a.transpose() * b);
+  if (factor == 1)
+    out.noalias() += a.transpose() * b;
+  else
+    out.noalias() += a.transpose() * ConstMatrixRef(MatrixX(factor * b));
 }
 
 VERNIER_IMPL VectorX product(const ConstMatrixRef& a, const ConstVectorRef& x) { return a * x; }

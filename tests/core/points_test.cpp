@@ -26,5 +26,19 @@ TEST(Points, PartsOfAPose) {
   EXPECT_EQ(rotation(pose), (Matrix3{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}));
 }
 
+TEST(Points, RigidMotions) {
+  const Matrix3 quarter{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}, half{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  const Isometry3 first = rigid_motion(quarter, {1, 2, 3}), second = rigid_motion(half, {4, 5, 6});
+  EXPECT_EQ(rotation(first), quarter);
+  EXPECT_EQ(translation(first), Vector3(1, 2, 3));
+  EXPECT_EQ(transformed(first, {7, 8, 9}), Vector3(-7, 9, 12));
+  EXPECT_EQ(rotation(composed(first, second)), (Matrix3{{0, 1, 0}, {1, 0, 0}, {0, 0, -1}}));
+  EXPECT_EQ(translation(composed(first, second)), Vector3(-4, 6, 9));
+  EXPECT_EQ(rotation(inverse_of(first)), quarter.transpose());
+  EXPECT_EQ(translation(inverse_of(first)), Vector3(-2, 1, -3));
+  for (const Isometry3& motion : {rigid_motion(half, {4, 5, 6}), composed(first, second), inverse_of(first)})
+    EXPECT_EQ(motion.matrix().row(3), (Eigen::RowVector4d(0, 0, 0, 1)));
+}
+
 }  // namespace
 }  // namespace vernier::points_test

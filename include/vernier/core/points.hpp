@@ -41,4 +41,42 @@ inline Matrix3 rotation(const Isometry3& pose) {
   return out;
 }
 
+/// Rigid motion of a rotation matrix and a translation [m].
+inline Isometry3 rigid_motion(const Matrix3& rotation, const Vector3& translation) {
+  Isometry3 out = Isometry3::Identity();
+  for (Index r = 0; r < 3; ++r) {
+    for (Index c = 0; c < 3; ++c) out(r, c) = rotation(r, c);
+    out(r, 3) = translation(r);
+  }
+  return out;
+}
+
+/// The product `outer inner` of rigid motions: the inner one, then the outer one.
+inline Isometry3 composed(const Isometry3& outer, const Isometry3& inner) {
+  Isometry3 out = Isometry3::Identity();
+  for (Index r = 0; r < 3; ++r)
+    for (Index c = 0; c < 4; ++c)
+      out(r, c) = outer(r, 0) * inner(0, c) + outer(r, 1) * inner(1, c) + outer(r, 2) * inner(2, c) +
+                  (c == 3 ? outer(r, 3) : 0);
+  return out;
+}
+
+/// The inverse of a rigid motion.
+inline Isometry3 inverse_of(const Isometry3& pose) {
+  Isometry3 out = Isometry3::Identity();
+  for (Index r = 0; r < 3; ++r) {
+    for (Index c = 0; c < 3; ++c) out(r, c) = pose(c, r);
+    out(r, 3) = -(pose(0, r) * pose(0, 3) + pose(1, r) * pose(1, 3) + pose(2, r) * pose(2, 3));
+  }
+  return out;
+}
+
+/// A point after a rigid motion.
+inline Vector3 transformed(const Isometry3& motion, const Vector3& point) {
+  Vector3 out;
+  for (Index r = 0; r < 3; ++r)
+    out(r) = motion(r, 0) * point(0) + motion(r, 1) * point(1) + motion(r, 2) * point(2) + motion(r, 3);
+  return out;
+}
+
 }  // namespace vernier

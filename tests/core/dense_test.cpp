@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "vernier/core/rng.hpp"
 
@@ -66,11 +67,18 @@ TEST(DenseWhiteBox, ProductsScalingsAndSums) {
   EXPECT_EQ(columns_scaled(a, Eigen::Vector2d(2, -1)), (MatrixX{{2, -2}, {6, -4}, {10, -6}}));
   EXPECT_EQ(rows_minus(a, Eigen::Vector2d(1, 4)), (MatrixX{{0, -2}, {2, 0}, {4, 2}}));
   EXPECT_EQ(row_of(a, 1), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(rows_of(a, std::vector<Index>{2, 0, 2}), (MatrixX{{5, 6}, {1, 2}, {5, 6}}));
   EXPECT_EQ(diagonal_of(a), Eigen::Vector2d(1, 4));
   EXPECT_EQ(diagonal_of(b), Eigen::Vector2d(1, 3));
   EXPECT_EQ(column_means(a), Eigen::Vector2d(3, 4));
   EXPECT_EQ(squared_column_norms(a), Eigen::Vector2d(35, 56));
   EXPECT_EQ(squared_row_norms(a), Vector3(5, 25, 61));
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    MatrixX with_one = a;
+    EXPECT_TRUE(all_finite(with_one));
+    with_one(2, 1) = -bad;
+    EXPECT_FALSE(all_finite(with_one));
+  }
 }
 
 TEST(DenseWhiteBox, CholeskyFactorsAndItsSolutions) {
@@ -90,6 +98,9 @@ TEST(DenseWhiteBox, CholeskyFactorsAndItsSolutions) {
     solve_cholesky(factor, solved);
     EXPECT_LT(largest(a * solved - right), 1e-11) << n;
     EXPECT_LT(largest(a * inverse_from_cholesky(factor) - MatrixX::Identity(n, n)), 1e-11) << n;
+    MatrixX eliminated = a;
+    VectorX unused = VectorX::Zero(n);
+    EXPECT_NEAR(cholesky_log_determinant(factor), solve_general(eliminated, unused), 1e-9) << n;
   }
   MatrixX indefinite{{1, 0}, {2, 1}};  // lower triangle of eigenvalues 3 and -1
   EXPECT_FALSE(cholesky(indefinite));

@@ -4,6 +4,8 @@
 /// Products, sums and decompositions of matrices sized at run time. A call costs its compiler nothing, an expression
 /// the class of its type and Eigen's kernels for it.
 
+#include <span>
+
 #include "vernier/core/types.hpp"
 
 namespace vernier::detail {
@@ -32,6 +34,8 @@ VERNIER_API MatrixX rows_minus(const ConstMatrixRef& a, const ConstVectorRef& ro
 
 /// The i-th row, as a column.
 VERNIER_API VectorX row_of(const ConstMatrixRef& a, Index i);
+/// Some rows, in the order given.
+VERNIER_API MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> rows);
 /// The diagonal.
 VERNIER_API VectorX diagonal_of(const ConstMatrixRef& a);
 /// Mean of each column.
@@ -40,6 +44,8 @@ VERNIER_API VectorX column_means(const ConstMatrixRef& a);
 VERNIER_API VectorX squared_column_norms(const ConstMatrixRef& a);
 /// Squared norm of each row.
 VERNIER_API VectorX squared_row_norms(const ConstMatrixRef& a);
+/// Whether no element is infinite or not a number.
+VERNIER_API bool all_finite(const ConstMatrixRef& a);
 
 /// Cholesky factorisation of a symmetric matrix, its lower triangle, in place.
 /// @return whether it is positive definite
@@ -50,6 +56,8 @@ VERNIER_API void solve_lower(const ConstMatrixRef& factor, MatrixRef right);
 VERNIER_API void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef right);
 /// Solves L L' x = b for the lower triangle L, in place.
 VERNIER_API void solve_cholesky(const ConstMatrixRef& factor, MatrixRef right);
+/// log |L L'| for the lower triangle L.
+VERNIER_API double cholesky_log_determinant(const ConstMatrixRef& factor);
 /// Inverse of L L'.
 VERNIER_API MatrixX inverse_from_cholesky(const ConstMatrixRef& factor);
 

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/detail/dense_kernels.hpp"
@@ -94,6 +95,13 @@ VERNIER_IMPL VectorX row_of(const ConstMatrixRef& a, Index i) {
   return out;
 }
 
+VERNIER_IMPL MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> rows) {
+  MatrixX out(static_cast<Index>(rows.size()), a.cols());
+  for (Index c = 0; c < out.cols(); ++c)
+    for (Index r = 0; r < out.rows(); ++r) out(r, c) = a(rows[static_cast<std::size_t>(r)], c);
+  return out;
+}
+
 VERNIER_IMPL VectorX diagonal_of(const ConstMatrixRef& a) {
   VectorX out(std::min(a.rows(), a.cols()));
   for (Index k = 0; k < out.size(); ++k) out(k) = a(k, k);
@@ -119,6 +127,13 @@ VERNIER_IMPL VectorX squared_row_norms(const ConstMatrixRef& a) {
   return out;
 }
 
+VERNIER_IMPL bool all_finite(const ConstMatrixRef& a) {
+  for (Index c = 0; c < a.cols(); ++c)
+    for (Index r = 0; r < a.rows(); ++r)
+      if (!std::isfinite(a(r, c))) return false;
+  return true;
+}
+
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
   if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
     return wide->cholesky(at(matrix));
@@ -140,6 +155,12 @@ VERNIER_IMPL void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef
 VERNIER_IMPL void solve_cholesky(const ConstMatrixRef& factor, MatrixRef right) {
   solve_lower(factor, right);
   solve_lower_transposed(factor, right);
+}
+
+VERNIER_IMPL double cholesky_log_determinant(const ConstMatrixRef& factor) {
+  double sum = 0;
+  for (Index k = 0; k < factor.rows(); ++k) sum += std::log(factor(k, k));
+  return 2 * sum;
 }
 
 VERNIER_IMPL MatrixX inverse_from_cholesky(const ConstMatrixRef& factor) {

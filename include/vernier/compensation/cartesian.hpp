@@ -50,7 +50,9 @@ class CartesianCorrected {
       slope = learned_.derivative(q);
     }
     at.pose.translation() -= gate * error;
-    at.jacobian.template topRows<3>() -= gate * slope + error * gate_.derivative(q);
+    const auto rate = gate_.derivative(q);
+    for (int j = 0; j < dof; ++j)
+      for (int r = 0; r < 3; ++r) at.jacobian(r, j) -= gate * slope(r, j) + error(r) * rate(j);
   }
 
   /// Tool position [m], base frame.

@@ -94,6 +94,9 @@ namespace detail {
 VERNIER_API void visit_common_terms(const JointTerms& first, const JointTerms& second,
                                     FunctionRef<void(Index a, Index b)> f);
 
+/// Chain rule: the product of a Jacobian, 6 x n, and the derivative of its joint values, n x n, by columns.
+VERNIER_API void compose_jacobian(const double* jacobian, const double* derivative, int n, double* out) noexcept;
+
 }  // namespace detail
 
 /// Joint errors with their coefficients: the map from commanded to effective joint values, and the tilts of the joints'
@@ -223,8 +226,10 @@ class WithJointErrors {
   /// The same with the geometric Jacobian.
   PoseAndJacobian<dof> pose_and_jacobian_from(const double* previous, const JointVector<dof>& q) const noexcept {
     const auto effective = errors_.effective<dof>(q, previous);
-    PoseAndJacobian<dof> out = chain_.pose_and_jacobian(effective.joints);
-    out.jacobian = (out.jacobian * effective.derivative).eval();
+    const PoseAndJacobian<dof> inner = chain_.pose_and_jacobian(effective.joints);
+    PoseAndJacobian<dof> out;
+    out.pose = inner.pose;
+    detail::compose_jacobian(inner.jacobian.data(), effective.derivative.data(), dof, out.jacobian.data());
     if (errors_.tilts()) errors_.tilt(q.data(), out.pose, out.jacobian.data());
     return out;
   }

@@ -16,6 +16,15 @@ inline double step_of(const double* q, const double* previous, int joint, double
   return previous == nullptr || !std::isfinite(previous[joint]) ? 0 : std::tanh((q[joint] - previous[joint]) / width);
 }
 
+VERNIER_IMPL void compose_jacobian(const double* jacobian, const double* derivative, int n, double* out) noexcept {
+  for (int j = 0; j < n; ++j) {
+    double sum[6] = {};
+    for (int k = 0; k < n; ++k)
+      for (int r = 0; r < 6; ++r) sum[r] += jacobian[6 * k + r] * derivative[n * j + k];
+    for (int r = 0; r < 6; ++r) out[6 * j + r] = sum[r];
+  }
+}
+
 }  // namespace detail
 
 VERNIER_IMPL void detail::visit_common_terms(const JointTerms& first, const JointTerms& second,

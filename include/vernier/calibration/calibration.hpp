@@ -11,6 +11,7 @@
 #include "vernier/calibration/remainder_options.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/identification/identified.hpp"
 #include "vernier/identification/sensor_model.hpp"
@@ -89,7 +90,7 @@ std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Datas
   const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
     JointVector<Chain::dof> q = data.joints(i);
     if (const VectorX zeros = drift.joint_zeros(data.times()(i)); zeros.size() > 0) q += zeros;
-    return drift.motion(data.times()(i)) * now.approached_from(data.previous().row(i).transpose()).pose(q);
+    return drift.motion(data.times()(i)) * now.approached_from(configuration(data.previous(), i)).pose(q);
   };
   const bool thermal = temperature && model.thermal() != nullptr;
   for (Index i = 0; i < data.size(); ++i)

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/points.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
 #include "vernier/registration/reregister.hpp"
@@ -136,7 +137,7 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   input.gates.resize(data.size());
   const Matrix3 turn = now.identified().base().linear() * model.identified().base().linear().transpose();
   for (Index i = 0; i < data.size(); ++i) {
-    const JointVector<N> q = data.joints(i), previous = data.previous().row(i).transpose();
+    const JointVector<N> q = data.joints(i), previous = configuration(data.previous(), i);
     const Vector3 error = learned.rows() > 0 ? Vector3(learned.row(i).transpose()) : Vector3(Vector3::Zero());
     const auto warm = [&](const ErrorModel<Chain>& arm) {
       return data.temperatures().size() > 0 ? arm.at_temperature(data.temperatures()(i)) : arm;

@@ -4,6 +4,7 @@
 /// Joint-space compensation: learn the joint error over the joints, on top of any model.
 
 #include "vernier/compensation/compensated.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/regression/concepts.hpp"
@@ -102,11 +103,14 @@ JointErrorLabels<Solver::dof> joint_errors(const Solver& solver, const JointRows
   out.errors.resize(from.rows(), Solver::dof);
   Index kept = 0;
   for (Index i = 0; i < from.rows(); ++i) {
-    const JointVector<Solver::dof> q = from.row(i).transpose();
+    const JointVector<Solver::dof> q = configuration(from, i);
     const auto found = inverse_kinematics(solver, Isometry3(target(i)), q);
     if (found.status != IkStatus::converged) continue;
-    out.joints.row(kept) = from.row(i);
-    out.errors.row(kept++) = sign * (found.joints - q).transpose();
+    for (int j = 0; j < Solver::dof; ++j) {
+      out.joints(kept, j) = q(j);
+      out.errors(kept, j) = sign * (found.joints(j) - q(j));
+    }
+    ++kept;
   }
   out.failed = from.rows() - kept;
   out.joints.conservativeResize(kept, Solver::dof);

@@ -30,6 +30,14 @@ inline VectorX distances_from(const PointRows& points, const Vector3& from) {
   return out;
 }
 
+/// The i-th configuration of rows of joint values.
+template <int N>
+JointVector<N> configuration(const JointRows<N>& joints, Index i) {
+  JointVector<N> out(joints.cols());
+  for (Index j = 0; j < out.size(); ++j) out(j) = joints(i, j);
+  return out;
+}
+
 /// Translation of a rigid motion [m].
 inline Vector3 translation(const Isometry3& pose) { return {pose(0, 3), pose(1, 3), pose(2, 3)}; }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/types.hpp"
 
@@ -96,11 +97,11 @@ class Dataset {
   }
 
   /// Joint values of sample i [rad, m].
-  JointVector<N> joints(Index i) const { return joints_.row(i).transpose(); }
+  JointVector<N> joints(Index i) const { return configuration(joints_, i); }
   /// Measured position of sample i [m].
-  Vector3 position(Index i) const { return positions_.row(i).transpose(); }
+  Vector3 position(Index i) const { return point(positions_, i); }
   /// Measured orientation; only where `has_orientations()`.
-  Matrix3 orientation(Index i) const { return exp_so3(Vector3(orientations_.row(i).transpose())); }
+  Matrix3 orientation(Index i) const { return exp_so3(point(orientations_, i)); }
   /// Measured pose; only where `has_orientations()`.
   Isometry3 pose(Index i) const {
     Isometry3 pose = Isometry3::Identity();

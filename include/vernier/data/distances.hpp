@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "vernier/core/points.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/data/dataset.hpp"
 
@@ -37,7 +38,7 @@ class Distances {
   /// Joint values [rad, m].
   const JointRows<N>& joints() const { return joints_; }
   /// Joint values of sample i [rad, m].
-  JointVector<N> joints(Index i) const { return joints_.row(i).transpose(); }
+  JointVector<N> joints(Index i) const { return configuration(joints_, i); }
   /// Measured distances [m].
   const VectorX& lengths() const { return lengths_; }
   /// Measured distance of sample i [m].

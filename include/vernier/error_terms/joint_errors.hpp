@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vernier/core/function_ref.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/error_terms/detail/harmonic_table.hpp"
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"
@@ -196,14 +197,14 @@ class WithJointErrors {
     if (!errors_.tilts()) return chain_.positions(errors_.effective_rows(joints), point);
     const std::vector<Isometry3> ends = poses(joints);
     PointRows out(joints.rows(), 3);
-    for (Index i = 0; i < out.rows(); ++i) out.row(i) = (ends[static_cast<std::size_t>(i)] * point).transpose();
+    for (Index i = 0; i < out.rows(); ++i) set_point(out, i, ends[static_cast<std::size_t>(i)] * point);
     return out;
   }
   /// base_T_tool at n configurations.
   std::vector<Isometry3> poses(const JointRows<dof>& joints) const {
     std::vector<Isometry3> out = chain_.poses(errors_.effective_rows(joints));
     for (std::size_t i = 0; errors_.tilts() && i < out.size(); ++i) {
-      const JointVector<dof> q = joints.row(static_cast<Index>(i)).transpose();
+      const JointVector<dof> q = configuration(joints, static_cast<Index>(i));
       errors_.tilt(q.data(), out[i]);
     }
     return out;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/kinematics/concepts.hpp"
@@ -48,7 +49,7 @@ template <PosePredictor M>
 std::vector<Isometry3> predicted_poses(const M& model, const JointRows<M::dof>& joints) {
   std::vector<Isometry3> poses(static_cast<std::size_t>(joints.rows()));
   for (Index i = 0; i < joints.rows(); ++i) {
-    const JointVector<M::dof> q = joints.row(i).transpose();
+    const JointVector<M::dof> q = configuration(joints, i);
     if constexpr (KinematicModel<M>)
       poses[static_cast<std::size_t>(i)] = model.pose(q);
     else
@@ -64,7 +65,7 @@ std::vector<Isometry3> predicted_poses(const M& model, const Dataset<M::dof>& da
     std::vector<Isometry3> poses(static_cast<std::size_t>(data.size()));
     for (Index i = 0; i < data.size(); ++i)
       poses[static_cast<std::size_t>(i)] =
-          model.approached_from(data.previous().row(i).transpose()).pose(data.joints(i));
+          model.approached_from(configuration(data.previous(), i)).pose(data.joints(i));
     return poses;
   } else {
     return predicted_poses(model, data.joints());

@@ -14,6 +14,7 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/evaluation/quantile.hpp"
@@ -174,16 +175,18 @@ class CalibratedRobot {
     std::vector<double> out(static_cast<std::size_t>(commands.rows()), std::numeric_limits<double>::quiet_NaN());
     std::vector<Index> rows;
     for (Index i = 0; i < commands.rows(); ++i)
-      if (commands.row(i).allFinite()) rows.push_back(i);
+      if (configuration(commands, i).allFinite()) rows.push_back(i);
     const auto n = static_cast<Index>(rows.size());
     JointRows<N> q(n, N), previous(n, N);
     VectorX gates(n), temperatures(n);
     for (Index k = 0; k < n; ++k) {
       const Index i = rows[static_cast<std::size_t>(k)];
-      q.row(k) = commands.row(i);
-      previous.row(k) = unknown().transpose();
-      if (i > 0) previous.row(k) = commands.row(i - 1);
-      gates(k) = gate(q.row(k).transpose());
+      const JointVector<N> at = configuration(commands, i), from = i > 0 ? configuration(commands, i - 1) : unknown();
+      for (int j = 0; j < N; ++j) {
+        q(k, j) = at(j);
+        previous(k, j) = from(j);
+      }
+      gates(k) = gate(at);
     }
     temperatures.setConstant(model_.thermal() == nullptr ? std::numeric_limits<double>::quiet_NaN()
                                                          : model_.thermal()->reference);

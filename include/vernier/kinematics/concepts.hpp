@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/points.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -48,7 +49,7 @@ PosesAndJacobians evaluate_rows(const JointRows<N>& joints, Index columns, Poses
                                 const Evaluate& evaluate) {
   out.resize(joints.rows(), columns);
   for (Index i = 0; i < joints.rows(); ++i) {
-    const auto at = evaluate(JointVector<N>(joints.row(i).transpose()));
+    const auto at = evaluate(configuration(joints, i));
     out.poses[static_cast<std::size_t>(i)] = at.pose;
     for (Index k = 0; k < 6 * columns; ++k) out.jacobians(i, k) = at.jacobian.data()[k];
   }
@@ -116,7 +117,7 @@ template <KinematicModel M>
 PointRows positions(const M& model, const JointRows<M::dof>& joints) {
   if constexpr (requires { model.positions(joints); }) return model.positions(joints);
   PointRows out(joints.rows(), 3);
-  for (Index i = 0; i < joints.rows(); ++i) out.row(i) = model.position(joints.row(i).transpose()).transpose();
+  for (Index i = 0; i < joints.rows(); ++i) set_point(out, i, model.position(configuration(joints, i)));
   return out;
 }
 
@@ -126,7 +127,7 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
   if constexpr (requires { model.poses(joints); }) return model.poses(joints);
   std::vector<Isometry3> out;
   out.reserve(static_cast<std::size_t>(joints.rows()));
-  for (Index i = 0; i < joints.rows(); ++i) out.push_back(model.pose(joints.row(i).transpose()));
+  for (Index i = 0; i < joints.rows(); ++i) out.push_back(model.pose(configuration(joints, i)));
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/points.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
@@ -120,7 +121,7 @@ class Framed {
       return out;
     } else {
       PointRows out = model_.positions(joints, tool() * point);
-      for (Index i = 0; i < out.rows(); ++i) out.row(i) = (base() * Vector3(out.row(i).transpose())).transpose();
+      for (Index i = 0; i < out.rows(); ++i) set_point(out, i, base() * vernier::point(out, i));
       return out;
     }
   }

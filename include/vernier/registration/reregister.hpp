@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/points.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/identification/detail/station.hpp"
 #include "vernier/identification/sensor_model.hpp"
@@ -98,7 +99,7 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
     jacobians.resize(6, N * data.size());
     for (Index i = 0; i < data.size(); ++i) {
       const PoseAndJacobian<N> at =
-          now.approached_from(data.previous().row(i).transpose()).pose_and_jacobian(data.joints(i));
+          now.approached_from(configuration(data.previous(), i)).pose_and_jacobian(data.joints(i));
       poses[static_cast<std::size_t>(i)] = at.pose;
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }

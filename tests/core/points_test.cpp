@@ -18,6 +18,13 @@ TEST(Points, AreRowsAsValues) {
   EXPECT_EQ(point(points, 1), Vector3(5, 6, 15));
 }
 
+TEST(Points, ConfigurationsAreRowsOfJointValues) {
+  JointRows<4> joints(2, 4);
+  joints << 1, 2, 3, 4, 5, 6, 7, 8;
+  EXPECT_EQ(configuration(joints, 1), JointVector<4>(5, 6, 7, 8));
+  EXPECT_EQ(configuration(JointRows<1>(JointRows<1>::Constant(3, 1, 9)), 2)(0), 9);
+}
+
 TEST(Points, PartsOfAPose) {
   Isometry3 pose = Isometry3::Identity();
   pose.translation() = Vector3(1, 2, 3);

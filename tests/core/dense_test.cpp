@@ -73,6 +73,7 @@ TEST(DenseWhiteBox, ProductsScalingsAndSums) {
   EXPECT_EQ(column_means(a), Eigen::Vector2d(3, 4));
   EXPECT_EQ(squared_column_norms(a), Eigen::Vector2d(35, 56));
   EXPECT_EQ(squared_row_norms(a), Vector3(5, 25, 61));
+  EXPECT_EQ(weighted_square(Vector3(1, 2, -3), Vector3(4, 5, 6)), -42);
   for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     MatrixX with_one = a;
     EXPECT_TRUE(all_finite(with_one));

@@ -44,6 +44,8 @@ VERNIER_API VectorX column_means(const ConstMatrixRef& a);
 VERNIER_API VectorX squared_column_norms(const ConstMatrixRef& a);
 /// Squared norm of each row.
 VERNIER_API VectorX squared_row_norms(const ConstMatrixRef& a);
+/// Sum of weighted squares.
+VERNIER_API double weighted_square(const ConstVectorRef& weights, const ConstVectorRef& values);
 /// Whether no element is infinite or not a number.
 VERNIER_API bool all_finite(const ConstMatrixRef& a);
 

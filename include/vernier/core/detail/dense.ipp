@@ -134,6 +134,12 @@ VERNIER_IMPL bool all_finite(const ConstMatrixRef& a) {
   return true;
 }
 
+VERNIER_IMPL double weighted_square(const ConstVectorRef& weights, const ConstVectorRef& values) {
+  double sum = 0;
+  for (Index k = 0; k < values.size(); ++k) sum += weights(k) * values(k) * values(k);
+  return sum;
+}
+
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
   if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
     return wide->cholesky(at(matrix));

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/detail/predictor_interface.hpp"
 
@@ -114,11 +115,11 @@ struct Ensemble {
         VectorX weights;
         FitOptions own{.seed = child_seed(options.seed, stream + 1)};
         if (options.weights != nullptr) {
-          weights = (*options.weights)(rows);
+          weights = detail::rows_of(*options.weights, rows);
           own.weights = &weights;
         }
-        const Eigen::Matrix<double, Eigen::Dynamic, X::ColsAtCompileTime> x = inputs(rows, Eigen::all);
-        const Eigen::Matrix<double, Eigen::Dynamic, Y::ColsAtCompileTime> y = targets(rows, Eigen::all);
+        const Eigen::Matrix<double, Eigen::Dynamic, X::ColsAtCompileTime> x = detail::rows_of(inputs.derived(), rows);
+        const Eigen::Matrix<double, Eigen::Dynamic, Y::ColsAtCompileTime> y = detail::rows_of(targets.derived(), rows);
         fitted[static_cast<std::size_t>(k)].emplace(regressor.fit(x, y, own));
         const std::scoped_lock lock(guard);
         ++done;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/detail/bounded_bfgs.hpp"
 #include "vernier/regression/detail/marginal_likelihood.hpp"
@@ -16,7 +17,7 @@ VERNIER_IMPL void GaussianProcess::validate(Index dimension) const {
           "GaussianProcess: products of sines and cosines have no length scale of one input");
   require(length_scales.size() == 0 || length_scales.size() == dimension, "GaussianProcess: ", length_scales.size(),
           " length scales for ", dimension, " inputs");
-  require(length_scales.size() == 0 || (length_scales.allFinite() && length_scales.minCoeff() > 0),
+  require(length_scales.size() == 0 || (detail::all_finite(length_scales) && length_scales.minCoeff() > 0),
           "GaussianProcess: the length scales must be positive");
   require(!noise_ratio || (*noise_ratio > 0 && std::isfinite(*noise_ratio)), "GaussianProcess: noise_ratio is ",
           noise_ratio.value_or(0), ", must be positive");
@@ -33,11 +34,14 @@ VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& 
   const VectorX weights = detail::weights_or_ones(options.weights, inputs.rows());
   const VectorX found = logarithms(features.values, dimension, targets, weights, options);
   const double ratio = std::exp(found(dimension));
-  features.divide(found.head(dimension).array().exp().matrix());
-  const detail::KernelSystem system(detail::kernel_matrix(kernel, features.values), ratio * weights.cwiseInverse(),
-                                    targets);
+  VectorX scales = found.head(dimension);
+  detail::exponentiate(scales);
+  features.divide(scales);
+  const VectorX inverse = weights.cwiseInverse();
+  const detail::KernelSystem system(detail::kernel_matrix(kernel, features.values), ratio * inverse, targets);
   require(system.solved, "GaussianProcess: noise_ratio is ", ratio, ", too small for ", inputs.rows(), " samples");
-  const VectorX variance = (system.square.array().max(0.0) * detail::varying_outputs(targets) / weights.sum()).matrix();
+  VectorX variance = detail::varying_outputs(targets);
+  for (Index o = 0; o < variance.size(); ++o) variance(o) *= std::max(system.square(o), 0.0) / weights.sum();
   return {{kernel, input_map, features.scaling, features.values, system.alpha, system.mean},
           detail::ProcessSpread(system, variance, ratio)};
 }
@@ -45,11 +49,12 @@ VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& 
 VERNIER_IMPL VectorX GaussianProcess::logarithms(const MatrixX& features, int dimension, const ConstMatrixRef& targets,
                                                  const VectorX& weights, const FitOptions& options) const {
   const double tenfold = std::log(10.0);
+  const Index n = features.rows();
+  const VectorX squares = detail::squared_column_norms(detail::rows_minus(features, detail::column_means(features)));
   VectorX start(dimension + 1), lower(dimension + 1), upper(dimension + 1);
   for (int j = 0; j < dimension; ++j) {
     double square = 0;  // of an input's spread
-    for (Index k = j; k < features.cols(); k += dimension)
-      square += (features.col(k).array() - features.col(k).mean()).square().mean();
+    for (Index k = j; k < features.cols(); k += dimension) square += squares(k) / static_cast<double>(n);
     if (!(square > 0)) square = 1;
     start(j) = 0.5 * std::log(2.0 * dimension * square);  // two samples are typically one length scale apart
     lower(j) = 0.5 * std::log(square) - 1.5 * tenfold;
@@ -59,22 +64,20 @@ VERNIER_IMPL VectorX GaussianProcess::logarithms(const MatrixX& features, int di
   lower(dimension) = -8 * tenfold;
   upper(dimension) = 3 * tenfold;
   if (length_scales.size() > 0) {
-    start.head(dimension) = length_scales.array().log().matrix();
-    lower.head(dimension) = upper.head(dimension) = start.head(dimension);
+    for (int j = 0; j < dimension; ++j) lower(j) = upper(j) = start(j) = std::log(length_scales(j));
   }
   if (noise_ratio) lower(dimension) = upper(dimension) = start(dimension) = std::log(*noise_ratio);
   if (length_scales.size() > 0 && noise_ratio) return start;
 
   Rng rng(options.seed);
-  const Index n = features.rows();
   std::vector<Index> rows(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) rows[static_cast<std::size_t>(i)] = i;
   if (n > max_hyper_samples) {
     rows = rng.permutation(n);
     rows.resize(static_cast<std::size_t>(max_hyper_samples));
   }
-  const detail::MarginalLikelihood likelihood(kernel, features(rows, Eigen::all), dimension, targets(rows, Eigen::all),
-                                              weights(rows));
+  const detail::MarginalLikelihood likelihood(kernel, detail::rows_of(features, rows), dimension,
+                                              detail::rows_of(targets, rows), detail::rows_of(weights, rows));
   std::vector<detail::BoundedMinimum> found(static_cast<std::size_t>(starts));
   for (std::size_t k = 0; k < found.size(); ++k) {
     found[k].x = start;

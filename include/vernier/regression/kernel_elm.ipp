@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/detail/kernel_ridge_path.hpp"
 #include "vernier/regression/detail/kernel_system.hpp"
@@ -28,9 +29,10 @@ VERNIER_IMPL detail::FittedKernels KernelElm::solve(const ConstMatrixRef& inputs
             features.scaling,
             features.values,
             MatrixX::Zero(targets.rows(), targets.cols()),
-            targets.transpose() * weights / weights.sum()};
+            detail::transposed_product(targets, weights) / weights.sum()};
+  const VectorX inverse = weights.cwiseInverse();
   const detail::KernelSystem system(detail::kernel_matrix(Kernel::squared_exponential, features.values),
-                                    chosen.lambda * weights.cwiseInverse(), targets);
+                                    chosen.lambda * inverse, targets);
   require(system.solved, "KernelElm: lambda is ", chosen.lambda, ", too small for ", inputs.rows(),
           " samples at a length scale of ", chosen.length_scale);
   return {Kernel::squared_exponential, input_map, features.scaling, features.values, system.alpha, system.mean};
@@ -45,8 +47,8 @@ VERNIER_IMPL KernelElm::Choice KernelElm::choose(const MatrixX& features, const 
   rows.resize(static_cast<std::size_t>(m));
   if (m == n)  // in their own order
     for (Index i = 0; i < n; ++i) rows[static_cast<std::size_t>(i)] = i;
-  const MatrixX x = features(rows, Eigen::all), t = targets(rows, Eigen::all);
-  const VectorX w = weights(rows);
+  const MatrixX x = detail::rows_of(features, rows), t = detail::rows_of(targets, rows);
+  const VectorX w = detail::rows_of(weights, rows);
 
   const auto at = [&](double length) {
     const detail::KernelRidgePath path(detail::kernel_matrix(Kernel::squared_exponential, x / length), t, w);
@@ -67,7 +69,8 @@ VERNIER_IMPL KernelElm::Choice KernelElm::choose(const MatrixX& features, const 
   if (length_scale) return at(*length_scale);
 
   // Octaves around the typical distance of two samples, then half octaves beside the best.
-  double typical = std::sqrt(2 * (x.rowwise() - x.colwise().mean()).squaredNorm() / static_cast<double>(m));
+  const MatrixX centred = detail::rows_minus(x, detail::column_means(x));
+  double typical = std::sqrt(2 * centred.squaredNorm() / static_cast<double>(m));
   if (!(typical > 0)) typical = 1;
   Choice best;
   const auto try_all = [&](const std::vector<double>& lengths) {

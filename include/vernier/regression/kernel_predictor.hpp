@@ -17,6 +17,12 @@ enum class Kernel {
 
 namespace detail {
 
+/// Exponential of each value, in place.
+VERNIER_API void exponentiate(VectorX& values);
+
+/// Squared distances in length scales to values of a kernel, in place.
+VERNIER_API void kernel_values(Kernel kernel, VectorX& squares);
+
 /// Kernels of n samples around themselves, features in length scales, n x features; the lower triangle is filled.
 VERNIER_API MatrixX kernel_matrix(Kernel kernel, const ConstMatrixRef& features);
 

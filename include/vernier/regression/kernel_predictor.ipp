@@ -1,23 +1,40 @@
 #pragma once
 
+#include <algorithm>
+
 #include "vernier/core/check.hpp"
 #include "vernier/regression/kernel_predictor.hpp"
 
 namespace vernier::detail {
 
+VERNIER_IMPL void exponentiate(VectorX& values) { values.array() = values.array().exp(); }
+
+VERNIER_IMPL void kernel_values(Kernel kernel, VectorX& squares) {
+  if (kernel == Kernel::squared_exponential) {
+    squares *= -0.5;
+    exponentiate(squares);
+    return;
+  }
+  squares *= 5;
+  const VectorX s = squares.cwiseSqrt();
+  squares = -1 * s;
+  exponentiate(squares);
+  for (Index i = 0; i < s.size(); ++i) squares(i) *= 1 + s(i) + s(i) * s(i) / 3;
+}
+
 VERNIER_IMPL MatrixX kernel_matrix(Kernel kernel, const ConstMatrixRef& features) {
   const Index n = features.rows();
   MatrixX out(n, n);
-  VectorX square, s;
+  VectorX squares;
   for (Index j = 0; j < n; ++j) {
-    const Index rest = n - j;
-    square = (features.bottomRows(rest).rowwise() - features.row(j)).rowwise().squaredNorm();
-    if (kernel == Kernel::squared_exponential) {
-      out.col(j).tail(rest) = (-0.5 * square.array()).exp().matrix();
-    } else {
-      s = (5.0 * square).cwiseSqrt();
-      out.col(j).tail(rest) = ((1 + s.array() + s.array().square() / 3) * (-s.array()).exp()).matrix();
-    }
+    squares.setZero(n - j);
+    for (Index f = 0; f < features.cols(); ++f)
+      for (Index i = j; i < n; ++i) {
+        const double along = features(i, f) - features(j, f);
+        squares(i - j) += along * along;
+      }
+    kernel_values(kernel, squares);
+    std::copy(squares.begin(), squares.end(), &out(j, j));
   }
   return out;
 }
@@ -30,7 +47,7 @@ VERNIER_IMPL NodeSum node_sum_of(const FittedKernels& fitted, int inputs) {
           fitted.alpha.rows(), " coefficients");
   const NodeFunction function =
       fitted.kernel == Kernel::squared_exponential ? NodeFunction::squared_exponential : NodeFunction::matern_5_2;
-  return {function,  fitted.input_map, inputs,     fitted.scaling, MatrixX(fitted.centres.transpose()),
+  return {function,  fitted.input_map, inputs,     fitted.scaling, fitted.centres.transpose(),
           VectorX(), fitted.alpha,     fitted.mean};
 }
 

@@ -20,8 +20,9 @@ VERNIER_IMPL detail::FittedNetwork OpElm::solve(const ConstMatrixRef& inputs, co
   MatrixX h;
   layer().outputs(scaling.apply(mapped), theta, h);
 
-  const Eigen::RowVectorXd mean = weights.transpose() * targets / weights.sum();
-  const detail::RankedNodes ranked = detail::rank_nodes(h, targets.rowwise() - mean, weights);
+  const VectorX mean = detail::transposed_product(targets, weights) / weights.sum();
+  const MatrixX centred = detail::rows_minus(targets, mean);
+  const detail::RankedNodes ranked = detail::rank_nodes(h, centred, weights);
   std::size_t kept = 0;
   for (std::size_t count = 1; count < ranked.press.size(); ++count)
     if (ranked.press[count] < ranked.press[kept]) kept = count;
@@ -31,13 +32,17 @@ VERNIER_IMPL detail::FittedNetwork OpElm::solve(const ConstMatrixRef& inputs, co
   const Index each = layer().features(n) + 1;
   if (kept == 0) return {pruned, scaling, theta.head(each), MatrixX::Zero(1, targets.cols()), mean};
   const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + static_cast<std::ptrdiff_t>(kept));
-  MatrixX design(h.rows(), pruned.nodes + 1);
-  design << h(Eigen::all, nodes), VectorX::Ones(h.rows());
+  MatrixX design = MatrixX::Ones(h.rows(), pruned.nodes + 1);
+  VectorX chosen(each * pruned.nodes);
+  for (Index k = 0; k < pruned.nodes; ++k) {
+    const Index node = nodes[static_cast<std::size_t>(k)];
+    design.col(k) = h.col(node);
+    chosen.segment(k * each, each) = theta.segment(node * each, each);
+  }
   const VectorX root = weights.cwiseSqrt();
   const MatrixX beta =
-      detail::solve_by_qr(root.asDiagonal() * design, root.asDiagonal() * (targets.rowwise() - mean)).solution;
-  const MatrixX chosen = theta.reshaped(each, hidden_nodes)(Eigen::all, nodes);
-  return {pruned, scaling, chosen.reshaped(), beta.topRows(pruned.nodes), (beta.bottomRows(1) + mean).transpose()};
+      detail::solve_by_qr(detail::rows_scaled(root, design), detail::rows_scaled(root, centred)).solution;
+  return {pruned, scaling, chosen, beta.topRows(pruned.nodes), detail::row_of(beta, pruned.nodes) + mean};
 }
 
 }  // namespace vernier

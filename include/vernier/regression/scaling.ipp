@@ -17,7 +17,9 @@ VERNIER_IMPL ColumnScaling ColumnScaling::fit(const ConstMatrixRef& columns, Sca
     s.offset(j) = low + width;
     if (kind == Scaling::standard) {
       s.offset(j) = columns.col(j).mean();
-      width = std::sqrt((columns.col(j).array() - s.offset(j)).square().mean());
+      double sum = 0;
+      for (Index i = 0; i < n; ++i) sum += std::pow(columns(i, j) - s.offset(j), 2);
+      width = std::sqrt(sum / static_cast<double>(n));
     }
     // differences at the level of rounding are no signal
     if (width > 1e-12 * std::max(std::abs(low), std::abs(high))) s.factor(j) = 1 / width;
@@ -26,7 +28,10 @@ VERNIER_IMPL ColumnScaling ColumnScaling::fit(const ConstMatrixRef& columns, Sca
 }
 
 VERNIER_IMPL MatrixX ColumnScaling::apply(const ConstMatrixRef& columns) const {
-  return (columns.rowwise() - offset.transpose()) * factor.asDiagonal();
+  MatrixX out(columns.rows(), columns.cols());
+  for (Index j = 0; j < out.cols(); ++j)
+    for (Index i = 0; i < out.rows(); ++i) out(i, j) = (columns(i, j) - offset(j)) * factor(j);
+  return out;
 }
 
 }  // namespace vernier

@@ -32,19 +32,22 @@ VERNIER_IMPL detail::TrigonometricSum TrigonometricRegression::solve(const Const
   MatrixX z(inputs.rows(), scale.size());
   VectorX x(inputs.cols()), all(count);
   for (Index i = 0; i < z.rows() && z.cols() > 0; ++i) {
-    x = inputs.row(i).transpose();
+    for (Index j = 0; j < x.size(); ++j) x(j) = inputs(i, j);
     detail::trigonometric_features(x.data(), n, all.data());
-    z.row(i) = all(features).cwiseProduct(scale).transpose();
+    for (Index k = 0; k < z.cols(); ++k) z(i, k) = all(features[static_cast<std::size_t>(k)]) * scale(k);
   }
 
   const detail::FeatureRidge path(z, targets, weights);
   detail::FeatureRidgeFit found = ridge ? path.fit(*ridge * path.total_weight()) : path.best_fit();
   MatrixX coefficients = MatrixX::Zero(count, targets.cols());
-  coefficients.row(0) = found.offset.transpose();
-  coefficients(features, Eigen::all) = scale.asDiagonal() * found.coefficients;
+  for (Index o = 0; o < coefficients.cols(); ++o) {
+    coefficients(0, o) = found.offset(o);
+    for (Index k = 0; k < scale.size(); ++k)
+      coefficients(features[static_cast<std::size_t>(k)], o) = scale(k) * found.coefficients(k, o);
+  }
   detail::TrigonometricSpread spread{.features = std::move(features),
                                      .scale = scale,
-                                     .mean = path.mean_features().transpose(),
+                                     .mean = path.mean_features(),
                                      .directions = std::move(found.directions),
                                      .gain = std::move(found.gain),
                                      .rest = found.rest,

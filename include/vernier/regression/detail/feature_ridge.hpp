@@ -35,7 +35,7 @@ class FeatureRidge {
   /// Sum of the weights.
   double total_weight() const { return total_; }
   /// Weighted mean of the features.
-  const Eigen::RowVectorXd& mean_features() const { return mean_features_; }
+  const VectorX& mean_features() const { return mean_features_; }
 
   /// At `lambda` > 0; infinity is the mean alone.
   VERNIER_API FeatureRidgeFit fit(double lambda) const;
@@ -54,6 +54,9 @@ class FeatureRidge {
 
   double largest() const { return squares_.size() > 0 ? squares_(squares_.size() - 1) : 0; }
 
+  /// Weighted residuals of coefficients.
+  VERNIER_API MatrixX residual_of(const MatrixX& beta) const;
+
   VERNIER_API double left_out_error(const MatrixX& residual, const VectorX& one_minus_leverage) const;
 
   VERNIER_API FeatureRidgeFit from_samples(double lambda) const;
@@ -63,7 +66,7 @@ class FeatureRidge {
 
   VectorX weights_;
   double total_;
-  Eigen::RowVectorXd mean_features_, mean_targets_;
+  VectorX mean_features_, mean_targets_;
   MatrixX features_, targets_;  // centred, times the roots of the weights
   VectorX squares_;
   MatrixX left_, right_, projected_;  // singular vectors, n x k and f x k; left' targets

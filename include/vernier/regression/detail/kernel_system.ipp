@@ -25,24 +25,30 @@ VERNIER_IMPL void KernelFeatures::divide(const VectorX& length_scales) {
 
 VERNIER_IMPL KernelSystem::KernelSystem(MatrixX a, const VectorX& noise, const ConstMatrixRef& targets)
     : factor(std::move(a)) {
-  factor.diagonal() += noise;
+  for (Index i = 0; i < noise.size(); ++i) factor(i, i) += noise(i);
   solved = cholesky(factor);
   if (!solved) return;
   const Index n = factor.rows();
   const Index m = targets.cols();
-  const Eigen::RowVectorXd centre = targets.colwise().mean();  // first, so that little cancels later
+  const VectorX centre = column_means(targets);  // first, so that little cancels later
   MatrixX right(n, 1 + m);
-  right << VectorX::Ones(n), targets.rowwise() - centre;
+  right.col(0).setOnes();
+  right.rightCols(m) = rows_minus(targets, centre);
   MatrixX solution = right;
   solve_cholesky(factor, solution);
   ones = solution.col(0);
   precision = ones.sum();
-  mean = solution.rightCols(m).colwise().sum().transpose() / precision;
-  alpha = solution.rightCols(m) - ones * mean.transpose();
-  square = right.rightCols(m).cwiseProduct(alpha).colwise().sum().transpose();
-  mean += centre.transpose();
+  alpha = solution.rightCols(m);
+  mean.resize(m);
+  square.resize(m);
+  for (Index o = 0; o < m; ++o) {
+    const double shift = alpha.col(o).sum() / precision;
+    alpha.col(o) -= shift * ones;
+    square(o) = right.col(1 + o).dot(alpha.col(o));
+    mean(o) = centre(o) + shift;
+  }
 }
 
-VERNIER_IMPL double KernelSystem::log_determinant() const { return 2 * factor.diagonal().array().log().sum(); }
+VERNIER_IMPL double KernelSystem::log_determinant() const { return cholesky_log_determinant(factor); }
 
 }  // namespace vernier::detail

@@ -7,8 +7,8 @@
 
 namespace vernier::detail {
 
-/// Outputs that vary by more than rounding.
-VERNIER_API Eigen::ArrayXd varying_outputs(const ConstMatrixRef& targets);
+/// One for each output that varies by more than rounding, zero for the others.
+VERNIER_API VectorX varying_outputs(const ConstMatrixRef& targets);
 
 /// The log marginal likelihood of a Gaussian process, summed over outputs that share length scales and the ratio of
 /// noise to signal variance. Mean and signal variance of each output are at their best, which has a closed form
@@ -34,19 +34,18 @@ class MarginalLikelihood {
   VERNIER_API double operator()(const VectorX& logarithms, VectorX& gradient) const;
 
  private:
-  /// From the factor in the lower triangle: the inverse, both triangles.
-  VERNIER_API static MatrixX inverse(const MatrixX& factor);
+  
 
   /// Derivative of the kernel with respect to the logarithm of a length scale, divided by the square of the distance
   /// along it.
-  VERNIER_API VectorX slope(const VectorX& square) const;
+  VERNIER_API VectorX slope(VectorX square) const;
 
   Kernel kernel_;
   MatrixX features_;
   int inputs_;
   MatrixX targets_;
   VectorX weights_;
-  Eigen::ArrayXd varying_;
+  VectorX varying_;
 };
 
 }  // namespace vernier::detail

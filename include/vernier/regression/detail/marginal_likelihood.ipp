@@ -6,13 +6,14 @@
 #include <numbers>
 #include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/kernel_system.hpp"
 #include "vernier/regression/detail/marginal_likelihood.hpp"
 
 namespace vernier::detail {
 
-VERNIER_IMPL Eigen::ArrayXd varying_outputs(const ConstMatrixRef& targets) {
-  Eigen::ArrayXd out(targets.cols());
+VERNIER_IMPL VectorX varying_outputs(const ConstMatrixRef& targets) {
+  VectorX out(targets.cols());
   for (Index o = 0; o < targets.cols(); ++o) {
     const double low = targets.col(o).minCoeff(), high = targets.col(o).maxCoeff();
     out(o) = high - low > 1e-12 * std::max(std::abs(low), std::abs(high)) ? 1 : 0;
@@ -27,27 +28,40 @@ VERNIER_IMPL double MarginalLikelihood::operator()(const VectorX& logarithms, Ve
   if (outputs == 0) return 0;
   MatrixX x = features_;
   for (Index j = 0; j < x.cols(); ++j) x.col(j) *= std::exp(-logarithms(j % inputs_));
-  const VectorX noise = ratio * weights_.cwiseInverse();
+  VectorX noise = weights_.cwiseInverse();
+  noise *= ratio;
   const KernelSystem system(kernel_matrix(kernel_, x), noise, targets_);
   if (!system.solved) return std::numeric_limits<double>::infinity();
 
-  const double shared = system.log_determinant() + (total - static_cast<double>(n)) * logarithms(inputs_) +
-                        weights_.array().log().sum() + total * (1 + std::log(2 * std::numbers::pi));
+  double shared = system.log_determinant() + (total - static_cast<double>(n)) * logarithms(inputs_) +
+                  total * (1 + std::log(2 * std::numbers::pi));
+  for (const double weight : weights_) shared += std::log(weight);
   double likelihood = -0.5 * outputs * shared;
   // A^-1 outputs - sum of alpha alpha' / s^2, its lower triangle
-  MatrixX pull = outputs * inverse(system.factor);
+  MatrixX pull = outputs * inverse_from_cholesky(system.factor);
   for (Index o = 0; o < targets_.cols(); ++o) {
     if (varying_(o) == 0) continue;
     const double variance = system.square(o) / total;
     if (!(variance > 0)) return std::numeric_limits<double>::infinity();
     likelihood -= 0.5 * total * std::log(variance);
-    pull.selfadjointView<Eigen::Lower>().rankUpdate(system.alpha.col(o), -1 / variance);
+    for (Index b = 0; b < n; ++b) {
+      const double of_b = system.alpha(b, o) / variance;
+      for (Index a = b; a < n; ++a) pull(a, b) -= of_b * system.alpha(a, o);
+    }
   }
-  gradient(inputs_) = -0.5 * (pull.diagonal().dot(noise) + outputs * (total - static_cast<double>(n)));
+  gradient(inputs_) = -0.5 * (diagonal_of(pull).dot(noise) + outputs * (total - static_cast<double>(n)));
   for (Index b = 0; b < n; ++b) {  // all pairs once, so twice the half
     const Index rest = n - b - 1;
-    MatrixX square = (x.bottomRows(rest).rowwise() - x.row(b)).cwiseAbs2();
-    const VectorX pulled = pull.col(b).tail(rest).cwiseProduct(slope(square.rowwise().sum()));
+    MatrixX square(rest, x.cols());
+    VectorX distance = VectorX::Zero(rest);
+    for (Index j = 0; j < x.cols(); ++j)
+      for (Index i = 0; i < rest; ++i) {
+        const double along = x(b + 1 + i, j) - x(b, j);
+        square(i, j) = along * along;
+        distance(i) += along * along;
+      }
+    VectorX pulled = slope(std::move(distance));
+    for (Index i = 0; i < rest; ++i) pulled(i) *= pull(b + 1 + i, b);
     for (Index j = 0; j < x.cols(); ++j) gradient(j % inputs_) -= pulled.dot(square.col(j));
   }
   const double scale = -1 / (total * outputs);
@@ -55,17 +69,17 @@ VERNIER_IMPL double MarginalLikelihood::operator()(const VectorX& logarithms, Ve
   return scale * likelihood;
 }
 
-VERNIER_IMPL MatrixX MarginalLikelihood::inverse(const MatrixX& factor) {
-  MatrixX out = MatrixX::Identity(factor.rows(), factor.rows());
-  factor.triangularView<Eigen::Lower>().solveInPlace(out);
-  factor.triangularView<Eigen::Lower>().transpose().solveInPlace(out);
+VERNIER_IMPL VectorX MarginalLikelihood::slope(VectorX square) const {
+  if (kernel_ == Kernel::squared_exponential) {
+    kernel_values(kernel_, square);  // the kernel itself
+    return square;
+  }
+  VectorX s = 5 * square;
+  s = s.cwiseSqrt();
+  VectorX out = -1 * s;
+  exponentiate(out);
+  for (Index i = 0; i < s.size(); ++i) out(i) *= 5.0 / 3 * (1 + s(i));
   return out;
-}
-
-VERNIER_IMPL VectorX MarginalLikelihood::slope(const VectorX& square) const {
-  if (kernel_ == Kernel::squared_exponential) return (-0.5 * square.array()).exp().matrix();
-  const Eigen::ArrayXd s = (5 * square.array()).sqrt();
-  return (5.0 / 3 * (1 + s) * (-s).exp()).matrix();
 }
 
 }  // namespace vernier::detail

@@ -14,20 +14,17 @@ VERNIER_IMPL OnlineElm::OnlineElm(const HiddenLayer& layer, const VectorX& theta
     : layer_(layer), theta_(theta), features_(layer.features(static_cast<int>(x.cols()))), forgetting_(forgetting) {
   const Index n = x.rows(), size = layer.nodes + 1;
   MatrixX stacked = MatrixX::Zero(n + layer.nodes, size), right = MatrixX::Zero(n + layer.nodes, y.cols());
-  stacked.topRows(n) = hidden(x);
-  right.topRows(n) = y;
-  total_ = static_cast<double>(n);
-  if (weights != nullptr) {
-    stacked.topRows(n) = weights->cwiseSqrt().asDiagonal() * MatrixX(stacked.topRows(n));
-    right.topRows(n) = weights->cwiseSqrt().asDiagonal() * y;
-    total_ = weights->sum();
-  }
-  stacked.bottomRows(layer.nodes).diagonal().setConstant(std::sqrt(lambda));  // the constant has none
+  const VectorX samples = weights_or_ones(weights, n), root = samples.cwiseSqrt();
+  total_ = samples.sum();
+  stacked.topRows(n) = rows_scaled(root, hidden(x));
+  right.topRows(n) = rows_scaled(root, y);
+  for (Index k = 0; k < layer.nodes; ++k) stacked(n + k, k) = std::sqrt(lambda);  // the constant has none
   QrSolution qr = solve_by_qr(stacked, right);
   coefficients_ = std::move(qr.solution);
-  square_ = (right - stacked * coefficients_).colwise().squaredNorm().transpose();
+  add_product(right, stacked, coefficients_, -1);
+  square_ = squared_column_norms(right);
   root_ = MatrixX::Identity(size, size);  // R^-T
-  qr.triangle.triangularView<Eigen::Upper>().transpose().solveInPlace(root_);
+  solve_lower(qr.triangle.transpose(), root_);
 }
 
 VERNIER_IMPL void OnlineElm::update(const ConstMatrixRef& x, const ConstMatrixRef& y, const VectorX* weights) {
@@ -35,8 +32,7 @@ VERNIER_IMPL void OnlineElm::update(const ConstMatrixRef& x, const ConstMatrixRe
   root_ /= std::sqrt(forgetting_);
   square_ *= forgetting_;
   total_ *= forgetting_;
-  for (Index i = 0; i < h.rows(); ++i)
-    absorb(h.row(i).transpose(), y.row(i).transpose(), weights != nullptr ? (*weights)(i) : 1);
+  for (Index i = 0; i < h.rows(); ++i) absorb(row_of(h, i), row_of(y, i), weights != nullptr ? (*weights)(i) : 1);
 }
 
 VERNIER_IMPL double OnlineElm::variance_factor(const double* features) const noexcept {
@@ -57,10 +53,10 @@ VERNIER_IMPL double OnlineElm::variance_factor(const double* features) const noe
 
 VERNIER_IMPL FittedNetwork OnlineElm::network() const {
   return {layer_, ColumnScaling{VectorX::Zero(features_), VectorX::Ones(features_)}, theta_,
-          coefficients_.topRows(layer_.nodes), coefficients_.row(layer_.nodes).transpose()};
+          coefficients_.topRows(layer_.nodes), row_of(coefficients_, layer_.nodes)};
 }
 
-VERNIER_IMPL MatrixX OnlineElm::covariance() const { return root_.transpose() * root_; }
+VERNIER_IMPL MatrixX OnlineElm::covariance() const { return transposed_matrix_product(root_, root_); }
 
 VERNIER_IMPL VectorX OnlineElm::noise_variance() const { return square_ / total_; }
 
@@ -68,7 +64,8 @@ VERNIER_IMPL VectorX OnlineElm::noise_variance() const { return square_ / total_
 VERNIER_IMPL MatrixX OnlineElm::hidden(const ConstMatrixRef& x) const {
   MatrixX nodes, out(x.rows(), layer_.nodes + 1);
   layer_.outputs(layer_.map(x), theta_, nodes);
-  out << nodes, VectorX::Ones(x.rows());
+  out.leftCols(layer_.nodes) = nodes;
+  out.col(layer_.nodes).setOnes();
   return out;
 }
 
@@ -94,12 +91,15 @@ VERNIER_IMPL double OnlineElm::node(Index k, const double* features) const noexc
 /// `P <- P - P h h'P / (1 / weight + h'P h)`, `beta <- beta + P h weight (y - h'beta)`, by the square root:
 /// with f = B h, `B <- (I - g f f') B` where `(I - g f f')^2 = I - f f' / (1 / weight + f'f)`.
 VERNIER_IMPL void OnlineElm::absorb(const VectorX& h, const VectorX& y, double weight) {
-  const VectorX f = root_ * h, through = root_.transpose() * f;
+  const VectorX f = product(root_, h), through = transposed_product(root_, f);
   const double scale = 1 / (1 / weight + f.squaredNorm());
-  const VectorX error = y - coefficients_.transpose() * h;
-  coefficients_ += scale * through * error.transpose();
-  root_ -= scale / (1 + std::sqrt(scale / weight)) * f * through.transpose();
-  square_ += scale * error.cwiseAbs2();
+  const VectorX error = y - transposed_product(coefficients_, h);
+  for (Index o = 0; o < error.size(); ++o) {
+    coefficients_.col(o) += scale * error(o) * through;
+    square_(o) += scale * error(o) * error(o);
+  }
+  const double of_root = scale / (1 + std::sqrt(scale / weight));
+  for (Index k = 0; k < through.size(); ++k) root_.col(k) -= of_root * through(k) * f;
   total_ += weight;
 }
 

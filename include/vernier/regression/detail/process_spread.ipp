@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/regression/detail/process_spread.hpp"
 
@@ -16,11 +17,11 @@ VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
   for (Index j = 0; j < rows_; ++j) {  // a tile's columns of the inverse are zero above it
     const Index first = j * size, rest = n - first, width = std::min(size, rest);
     columns = MatrixX::Identity(rest, width);
-    factor.bottomRightCorner(rest, rest).triangularView<Eigen::Lower>().solveInPlace(columns);
+    solve_lower(factor.bottomRightCorner(rest, rest), columns);
     for (Index i = j; i < rows_; ++i) {
       const Index height = std::min(size, n - i * size);
-      Eigen::Map<MatrixX>(tiles_.data() + offset(i, j), size, size).topLeftCorner(height, width) =
-          columns.middleRows(i * size - first, height);
+      for (Index c = 0; c < width; ++c)
+        std::copy_n(&columns(i * size - first, c), height, tiles_.data() + offset(i, j) + c * size);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/leave_one_out.hpp"
 #include "vernier/regression/detail/ridge_elm_leave_one_out.hpp"
 #include "vernier/regression/least_squares.hpp"
@@ -26,7 +27,7 @@ VERNIER_IMPL void RidgeElmLeaveOneOutError::operator()(const ConstMatrixRef& pop
     fitness(k) = products ? (*products)(population.col(k)) : -1;
     if (fitness(k) >= 0) continue;  // else from the singular values
     layer_.outputs(features_, population.col(k), h);
-    fitness(k) = h.allFinite() ? choose_lambda(RidgePath(h, targets_, weights), targets_.rows()).mean_squared_error
+    fitness(k) = all_finite(h) ? choose_lambda(RidgePath(h, targets_, weights), targets_.rows()).mean_squared_error
                                : std::numeric_limits<double>::infinity();
   }
 }

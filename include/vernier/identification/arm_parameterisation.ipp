@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/arm_parameterisation.hpp"
+#include "vernier/identification/detail/twists.hpp"
 
 namespace vernier {
 
@@ -90,9 +92,11 @@ VERNIER_IMPL void ArmParameterisation::move(const VectorX& steps) {
         p(unknowns_[k].parameter) += unknowns_[k].scale * steps(static_cast<Index>(k));
     arm = arm.with_parameters(p);
   }
-  if (!errors_.empty())
-    errors_ =
-        JointErrors(terms(), errors_.coefficients() + coefficient_scales_.cwiseProduct(steps.tail(terms().size())));
+  if (errors_.empty()) return;
+  VectorX coefficients = errors_.coefficients();
+  const Index first = steps.size() - coefficients.size();
+  for (Index k = 0; k < coefficients.size(); ++k) coefficients(k) += coefficient_scales_(k) * steps(first + k);
+  errors_ = JointErrors(terms(), std::move(coefficients));
 }
 
 VERNIER_IMPL std::vector<std::string> ArmParameterisation::names() const {
@@ -109,11 +113,12 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, cons
                                                                const ConstMatrixRef& previous) const {
   const ArmGeometry& arm = geometry(station);
   std::vector<Isometry3> out = arm.poses(errors_.empty() ? MatrixX(joints) : errors_.effective_rows(joints, previous));
+  const Isometry3 &base = arm.base().isometry(), out_of_base = inverse_of(base);
   for (std::size_t i = 0; errors_.tilts() && i < out.size(); ++i) {
-    const VectorX q = joints.row(static_cast<Index>(i)).transpose();
+    const VectorX q = detail::row_of(joints, static_cast<Index>(i));
     Isometry3 motion = Isometry3::Identity();
     errors_.tilt(q.data(), motion);
-    out[i] = arm.base().isometry() * motion * arm.base().isometry().inverse() * out[i];
+    out[i] = composed(composed(base, motion), composed(out_of_base, out[i]));
   }
   return out;
 }
@@ -128,30 +133,37 @@ VERNIER_API void tilt_columns(const JointErrors& errors, const VectorX& q, const
   const GravityTilt& tilt = *errors.terms().tilt;
   const Index begin = errors.terms().tilt_begin();
   const Vector6 at = tilt.motion(q.data(), errors.coefficients().data() + begin);
-  const Vector3 turn = at.tail<3>(), before = pose.translation();
-  Isometry3 motion = Isometry3::Identity();
-  motion.linear() = exp_so3(turn);
-  const Vector3 turned = base.linear() * motion.linear() * (base.inverse() * before);  // about the base's origin
-  motion.translation() = at.head<3>();
-  motion = base * motion * base.inverse();
-  pose = motion * pose;
+  const Vector3 shift = at.head<3>(), turn = at.tail<3>(), before = translation(pose);
+  const Matrix3 to_base = rotation(base), tilted = exp_so3(turn);
+  const Isometry3 in_base = rigid_motion(tilted, shift), out_of_base = inverse_of(base);
+  const Isometry3 motion = composed(composed(base, in_base), out_of_base);
+  const Matrix3 turning = rotation(motion), rate = to_base * left_jacobian_so3(turn);
+  const Vector3 local = tilted * transformed(out_of_base, before), turned = to_base * local;  // about the base's origin
+  pose = composed(motion, pose);
+  const Vector3 moved = translation(pose) - before;
   for (Rows6* columns : {&rows.dense, &rows.factor})
     for (Index k = 0; k < columns->cols(); ++k) {
-      auto linear = columns->col(k).head<3>(), angular = columns->col(k).tail<3>();
+      double* column = columns->data() + 6 * k;
+      Vector3 linear(column[0], column[1], column[2]), angular(column[3], column[4], column[5]);
       if (columns == &rows.dense && k < static_cast<Index>(of_base.size()) && of_base[static_cast<std::size_t>(k)]) {
-        linear += Vector3(angular).cross(pose.translation() - before);
-        continue;
+        linear += angular.cross(moved);
+      } else {
+        linear = turning * linear;
+        angular = turning * angular;
       }
-      linear = (motion.linear() * linear).eval();
-      angular = (motion.linear() * angular).eval();
+      std::copy_n(linear.data(), 3, column);
+      std::copy_n(angular.data(), 3, column + 3);
     }
   MatrixX basis(6, tilt.size());
   tilt.basis(q.data(), basis);
-  const Matrix3 rate = base.linear() * left_jacobian_so3(turn);
   for (Index k = 0; k < tilt.size(); ++k) {
-    const Vector3 omega = rate * basis.col(k).tail<3>();
-    rows.dense.col(first + k) << omega.cross(turned) + base.linear() * basis.col(k).head<3>(), omega;
-    rows.dense.col(first + k) *= scales(begin + k);
+    const Vector3 translates = to_base * Vector3(basis(0, k), basis(1, k), basis(2, k));
+    const Vector3 omega = rate * Vector3(basis(3, k), basis(4, k), basis(5, k));
+    const Vector3 linear = omega.cross(turned) + translates;
+    for (Index r = 0; r < 3; ++r) {
+      rows.dense(r, first + k) = scales(begin + k) * linear(r);
+      rows.dense(r + 3, first + k) = scales(begin + k) * omega(r);
+    }
   }
 }
 
@@ -185,10 +197,10 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     rows.factor.resize(6, factored ? n : 0);
     for (int j = 0; factored && j < n; ++j)  // a joint adds to a parameter of its row
       copy(6 + 5 * j + static_cast<int>(arm.chain().revolute(j) ? DhParameter::theta : DhParameter::d), 1,
-           rows.factor.col(j).data());
+           rows.factor.data() + 6 * j);
     rows.dense.resize(6, num_dense());
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
-      double* column = rows.dense.col(static_cast<Index>(k)).data();
+      double* column = rows.dense.data() + 6 * k;
       const double share = unknowns_[k].thermal ? warmer.size() > 0 ? warmer(i) : 0 : 1;
       if (unknowns_[k].station < 0 || unknowns_[k].station == station)
         copy(unknowns_[k].parameter, share * unknowns_[k].scale, column);
@@ -198,21 +210,26 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     if (warmer.size() > 0 && !thermal_rates_.empty()) {  // tiny, so it adds up
       Vector6 shift = Vector6::Zero();
       for (std::size_t k = 0; k < unknowns_.size(); ++k)
-        if (unknowns_[k].thermal)
-          shift += thermal_rates_[k] / unknowns_[k].scale * rows.dense.col(static_cast<Index>(k));
-      at.poses[static_cast<std::size_t>(i)].translation() += shift.head<3>();
-      at.poses[static_cast<std::size_t>(i)].linear() =
-          exp_so3(Vector3(shift.tail<3>())) * at.poses[static_cast<std::size_t>(i)].linear();
+        for (Index r = 0; unknowns_[k].thermal && r < 6; ++r)
+          shift(r) += thermal_rates_[k] / unknowns_[k].scale * rows.dense(r, static_cast<Index>(k));
+      Isometry3& pose = at.poses[static_cast<std::size_t>(i)];
+      pose = detail::shifted(pose, shift);
     }
     rows.local = {};
     rows.functions.resize(0);
     if (!factored) continue;
-    q = joints.row(i).transpose();
+    for (int j = 0; j < n; ++j) {
+      q(j) = joints(i, j);
+      if (previous.rows() > 0) before(j) = previous(i, j);
+    }
     if (few > 0) {
-      if (previous.rows() > 0) before = previous.row(i).transpose();
       terms().dense_basis(q.data(), previous.rows() > 0 ? before.data() : nullptr, basis);
-      for (Index k = 0; k < few; ++k)
-        rows.dense.col(of_geometry + k) = rows.factor.lazyProduct(basis.col(k) * coefficient_scales_(k));
+      for (Index k = 0; k < few; ++k) {
+        Vector6 sum = Vector6::Zero();
+        for (Index j = 0; j < n; ++j)
+          for (Index r = 0; r < 6; ++r) sum(r) += rows.factor(r, j) * basis(j, k);
+        for (Index r = 0; r < 6; ++r) rows.dense(r, of_geometry + k) = coefficient_scales_(k) * sum(r);
+      }
     }
     transmission_values(q.data(), rows.functions);
     if (errors_.tilts())

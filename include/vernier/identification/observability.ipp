@@ -14,8 +14,13 @@ VERNIER_IMPL Observability Observability::of(const VectorX& singular_values, Ind
           poses, " poses");
   const double largest = singular_values(0), least = singular_values(singular_values.size() - 1);
   if (!(least > 0)) return {};
-  return {std::exp(singular_values.array().log().mean()) / std::sqrt(static_cast<double>(poses)), least / largest,
-          least, least * least / largest, 1 / singular_values.cwiseInverse().sum()};
+  double logarithms = 0, inverses = 0;
+  for (const double value : singular_values) {
+    logarithms += std::log(value);
+    inverses += 1 / value;
+  }
+  const double mean = std::exp(logarithms / static_cast<double>(singular_values.size()));
+  return {mean / std::sqrt(static_cast<double>(poses)), least / largest, least, least * least / largest, 1 / inverses};
 }
 
 VERNIER_IMPL std::vector<Correlation> strong_correlations(const MatrixX& covariance, double limit) {

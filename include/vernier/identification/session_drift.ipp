@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vernier/core/so3.hpp"
+#include "vernier/identification/detail/twists.hpp"
 #include "vernier/identification/session_drift.hpp"
 
 namespace vernier {
@@ -19,8 +20,11 @@ namespace detail {
 /// Some rows of the knots at a time.
 VERNIER_API VectorX interpolated(const SessionDrift& drift, Index first_row, Index rows, double time) {
   const auto [first, share] = drift.position(time);
-  VectorX out = (1 - share) * drift.knots.block(first_row, first, rows, 1);
-  if (share > 0) out += share * drift.knots.block(first_row, first + 1, rows, 1);
+  VectorX out(rows);
+  for (Index r = 0; r < rows; ++r) {
+    out(r) = (1 - share) * drift.knots(first_row + r, first);
+    if (share > 0) out(r) += share * drift.knots(first_row + r, first + 1);
+  }
   return out;
 }
 
@@ -36,10 +40,10 @@ VERNIER_IMPL VectorX SessionDrift::joint_zeros(double time) const {
 
 VERNIER_IMPL Isometry3 SessionDrift::motion(double time) const {
   const Vector6 by = twist(time);
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = exp_so3(Vector3(by.tail<3>()));
-  out.translation() = centre + by.head<3>() - out.linear() * centre;
-  return out;
+  const Vector3 shift = by.head<3>(), turn = by.tail<3>();
+  const Matrix3 turned = exp_so3(turn);
+  const Vector3 origin = centre - turned * centre;
+  return rigid_motion(turned, origin + shift);
 }
 
 VERNIER_IMPL Matrix6 SessionDrift::covariance_beyond(double time, const Vector3& point,
@@ -48,11 +52,11 @@ VERNIER_IMPL Matrix6 SessionDrift::covariance_beyond(double time, const Vector3&
   if (step_variance.size() == 0) return out;
   const double knot = (time - begin) / spacing;
   const double steps = std::max({0.0, -knot, knot - static_cast<double>(knots.cols() - 1)});
-  Matrix6 of_base = Matrix6::Identity();
-  of_base.topRightCorner<3, 3>() = -skew(Vector3(point - centre));
-  out = steps * of_base * step_variance.head<6>().asDiagonal() * of_base.transpose();
-  for (Index j = 6; j < step_variance.size(); ++j)
-    out += steps * step_variance(j) * jacobian.col(j - 6) * jacobian.col(j - 6).transpose();
+  const Matrix6 of_base = detail::effect_of_twist(point - centre);
+  const auto entry = [&](Index r, Index j) { return j < 6 ? of_base(r, j) : jacobian(r, j - 6); };
+  for (Index j = 0; j < step_variance.size(); ++j)
+    for (Index c = 0; c < 6; ++c)
+      for (Index r = 0; r < 6; ++r) out(r, c) += steps * step_variance(j) * entry(r, j) * entry(c, j);
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/ranges.hpp"
 
@@ -45,7 +46,7 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     joints.middleRows(at, data.size()) = data.joints();
     previous.middleRows(at, data.size()) = data.previous();
     times.segment(at, data.size()) = data.times();
-    detail::move_poses(bases.front() * bases[s].inverse(), data.positions(), data.orientations(), at, positions,
+    detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at, positions,
                        orientations);
     at += data.size();
   }

@@ -7,11 +7,11 @@ namespace vernier::detail {
 
 VERNIER_IMPL void move_poses(const Isometry3& motion, const PointRows& positions, const PointRows& orientations,
                              Index first, PointRows& moved_positions, PointRows& moved_orientations) {
+  const Matrix3 turn = rotation(motion);
   for (Index i = 0; i < positions.rows(); ++i) {
-    moved_positions.row(first + i) = (motion * Vector3(positions.row(i).transpose())).transpose();
+    set_point(moved_positions, first + i, transformed(motion, point(positions, i)));
     if (moved_orientations.rows() > 0)
-      moved_orientations.row(first + i) =
-          log_so3(motion.linear() * exp_so3(Vector3(orientations.row(i).transpose()))).transpose();
+      set_point(moved_orientations, first + i, log_so3(turn * exp_so3(point(orientations, i))));
   }
 }
 

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/identification/detail/twists.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
 #include "vernier/least_squares/marquardt_damping.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
@@ -62,10 +64,12 @@ VERNIER_IMPL CalibrationProblem::Temperatures CalibrationProblem::temperatures()
     all.insert(all.end(), station.temperatures->begin(), station.temperatures->end());
   }
   if (all.empty()) return {};
-  const Eigen::Map<const VectorX> values(all.data(), static_cast<Index>(all.size()));
-  return {values.mean(),
-          std::sqrt((values.array() - values.mean()).square().mean()),
-          {values.minCoeff(), values.maxCoeff()}};
+  const auto n = static_cast<double>(all.size());
+  const double mean = std::accumulate(all.begin(), all.end(), 0.0) / n;
+  double squares = 0;
+  for (const double value : all) squares += (value - mean) * (value - mean);
+  const auto [low, high] = std::minmax_element(all.begin(), all.end());
+  return {mean, std::sqrt(squares / n), {*low, *high}};
 }
 
 VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
@@ -79,14 +83,13 @@ VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
     const Index intervals = std::max<Index>(1, station.size() / rows_per_knot);
     const double begin = station.times->minCoeff(), end = station.times->maxCoeff();
     if (!(end > begin)) continue;
-    drift[s] = {
-        begin, (end - begin) / static_cast<double>(intervals), station.positions->colwise().mean().transpose(), {}};
+    drift[s] = {begin, (end - begin) / static_cast<double>(intervals), centroid(*station.positions), {}};
     drift[s].knots.setZero(6, intervals + 1);
     states += intervals + 1;
   }
   const double root = std::sqrt(static_cast<double>(rows_per_knot) / 200);
   drift_scale_.resize(6);
-  drift_scale_ << Vector3::Constant(0.03e-3 * root), Vector3::Constant(20e-6 * root);
+  for (Index k = 0; k < 6; ++k) drift_scale_(k) = (k < 3 ? 0.03e-3 : 20e-6) * root;
 }
 
 VERNIER_IMPL void CalibrationProblem::start_joint_drift() {
@@ -109,9 +112,9 @@ VERNIER_IMPL void CalibrationProblem::stop_joint_drift() {
 
 VERNIER_IMPL std::vector<LocalPrior> CalibrationProblem::drift_priors() const {
   std::vector<LocalPrior> out;
-  VectorX precisions = VectorX::Constant(drift_scale_.size(), joint_drift_precision);
-  precisions.head<6>().setConstant(drift_precision);
-  const MatrixX walk = precisions.asDiagonal(), anchor = 0.01 * walk;
+  MatrixX walk = MatrixX::Zero(drift_scale_.size(), drift_scale_.size());
+  for (Index k = 0; k < walk.cols(); ++k) walk(k, k) = k < 6 ? drift_precision : joint_drift_precision;
+  const MatrixX anchor = 0.01 * walk, coupling = -1.0 * walk;
   for (std::size_t s = 0; s < drift.size(); ++s)
     for (Index k = 0; k < drift[s].knots.cols(); ++k) {
       const Index state = first_state_[s] + k;
@@ -119,7 +122,7 @@ VERNIER_IMPL std::vector<LocalPrior> CalibrationProblem::drift_priors() const {
       if (k == 0) continue;
       out.push_back({state, state, walk});
       out.push_back({state - 1, state - 1, walk});
-      out.push_back({state, state - 1, -walk});
+      out.push_back({state, state - 1, coupling});
     }
   return out;
 }
@@ -130,7 +133,7 @@ VERNIER_IMPL VectorX CalibrationProblem::drift_steps() const {
   VectorX out(size * states);
   for (std::size_t s = 0; s < drift.size(); ++s)
     for (Index k = 0; k < drift[s].knots.cols(); ++k)
-      out.segment(size * (first_state_[s] + k), size) = drift[s].knots.col(k).cwiseQuotient(drift_scale_);
+      for (Index r = 0; r < size; ++r) out(size * (first_state_[s] + k) + r) = drift[s].knots(r, k) / drift_scale_(r);
   return out;
 }
 
@@ -138,12 +141,14 @@ VERNIER_IMPL void CalibrationProblem::move_drift(const VectorX& steps) {
   const Index size = drift_scale_.size();
   for (std::size_t s = 0; s < drift.size(); ++s)
     for (Index k = 0; k < drift[s].knots.cols(); ++k)
-      drift[s].knots.col(k) += steps.segment(size * (first_state_[s] + k), size).cwiseProduct(drift_scale_);
+      for (Index r = 0; r < size; ++r)
+        drift[s].knots(r, k) += steps(size * (first_state_[s] + k) + r) * drift_scale_(r);
 }
 
 VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance() const {
-  VectorX out = drift_scale_.cwiseAbs2() / std::min(1.0, joint_drift_precision);
-  out.head<6>() = drift_scale_.head<6>().cwiseAbs2() / std::min(1.0, drift_precision);
+  VectorX out(drift_scale_.size());
+  for (Index k = 0; k < out.size(); ++k)
+    out(k) = drift_scale_(k) * drift_scale_(k) / std::min(1.0, k < 6 ? drift_precision : joint_drift_precision);
   return out;
 }
 
@@ -165,28 +170,28 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
   const double time = (*stations_[s].times)(block.row);
   const Isometry3 motion = drift[s].motion(time);
   const Index joints = drift_scale_.size() - 6;
-  if (joints > 0) {  // tiny, so it adds up
-    const Vector6 shift = rows->factor.lazyProduct(drift[s].joint_zeros(time));
-    pose.translation() += shift.head<3>();
-    pose.linear() = exp_so3(Vector3(shift.tail<3>())) * pose.linear();
+  if (joints > 0) {
+    const VectorX zeros = drift[s].joint_zeros(time);
+    Vector6 shift = Vector6::Zero();  // tiny, so it adds up
+    for (Index j = 0; j < joints; ++j)
+      for (Index r = 0; r < 6; ++r) shift(r) += rows->factor(r, j) * zeros(j);
+    pose = shifted(pose, shift);
   }
-  const Vector3 lever = pose.translation() - drift[s].centre;
-  pose = motion * pose;
+  const Vector3 lever = translation(pose) - drift[s].centre;
+  pose = composed(motion, pose);
   if (rows == nullptr) return;
-  for (Rows6* columns : {&rows->dense, &rows->factor})
-    for (Index k = 0; k < columns->cols(); ++k) {
-      columns->col(k).head<3>() = (motion.linear() * columns->col(k).head<3>()).eval();
-      columns->col(k).tail<3>() = (motion.linear() * columns->col(k).tail<3>()).eval();
-    }
+  const Matrix3 turn = rotation(motion);
+  turn_columns(turn, rows->dense);
+  turn_columns(turn, rows->factor);
+  const Matrix6 of_base = effect_of_twist(lever);
   const auto [knot, share] = drift[s].position(time);
   for (std::size_t k = 0; k < 2 && (k == 0 || share > 0); ++k) {
-    Rows6 columns = Rows6::Zero(6, 6 + joints);
-    columns.topLeftCorner<3, 3>().setIdentity();
-    columns.block<3, 3>(0, 3) = -skew(lever);
-    columns.block<3, 3>(3, 3).setIdentity();
-    columns.rightCols(joints) = rows->factor.leftCols(joints);
-    columns *= (k == 0 ? 1 - share : share) * drift_scale_.asDiagonal();
-    rows->local[k] = {first_state_[s] + knot + static_cast<Index>(k), columns};
+    const double of_knot = k == 0 ? 1 - share : share;
+    Rows6 columns(6, 6 + joints);
+    for (Index c = 0; c < columns.cols(); ++c)
+      for (Index r = 0; r < 6; ++r)
+        columns(r, c) = of_knot * drift_scale_(c) * (c < 6 ? of_base(r, c) : rows->factor(r, c - 6));
+    rows->local[k] = {first_state_[s] + knot + static_cast<Index>(k), std::move(columns)};
   }
 }
 
@@ -196,20 +201,20 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
 VERNIER_API Vector6 measured_residual(const Station& station, Index row, const Isometry3& modelled, Vector3& along,
                                       Matrix3& rotation_rate) {
   Vector6 out = Vector6::Zero();
+  const Vector3 point = translation(modelled);
   if (station.lengths != nullptr) {
-    along = modelled.translation().normalized();
-    out(0) = modelled.translation().norm() - (*station.lengths)(row);
+    along = point.normalized();
+    out(0) = point.norm() - (*station.lengths)(row);
   } else if (station.projected()) {
     along = Vector3::UnitZ();
-    out(0) = modelled.translation().z() - station.height(row);
+    out(0) = point.z() - station.height(row);
   } else {
-    out.head<3>() = modelled.translation() - station.position(row);
+    out.head<3>() = point - station.position(row);
   }
   if (station.oriented()) {
-    const Vector3 rotation =
-        log_so3(modelled.linear() * station.orientations[static_cast<std::size_t>(row)].transpose());
-    out.tail<3>() = rotation;
-    rotation_rate = left_jacobian_inverse_so3(rotation);
+    const Vector3 turn = rotation_difference(rotation(modelled), station.orientations[static_cast<std::size_t>(row)]);
+    out.tail<3>() = turn;
+    rotation_rate = left_jacobian_inverse_so3(turn);
   }
   return out;
 }
@@ -219,7 +224,7 @@ VERNIER_API void whiten_rows(const Station& station, const Vector3& along, doubl
                              Rows6& rows) {
   const bool projected = station.projected(), oriented = station.oriented();
   for (Index k = 0; k < rows.cols(); ++k) {
-    double* column = rows.col(k).data();
+    double* column = rows.data() + 6 * k;
     if (projected) {
       column[0] = position * (along(0) * column[0] + along(1) * column[1] + along(2) * column[2]);
       column[1] = column[2] = 0;
@@ -227,8 +232,8 @@ VERNIER_API void whiten_rows(const Station& station, const Vector3& along, doubl
       for (int r = 0; r < 3; ++r) column[r] *= position;
     }
     if (oriented) {
-      const Vector3 angular(column[3], column[4], column[5]);
-      Eigen::Map<Vector3>(column + 3) = orientation * angular;
+      const Vector3 angular = orientation * Vector3(column[3], column[4], column[5]);
+      std::copy_n(angular.data(), 3, column + 3);
     } else {
       column[3] = column[4] = column[5] = 0;
     }
@@ -241,8 +246,9 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     const Station& station = stations_[static_cast<std::size_t>(begin.station)];
     const Index stretch = std::min(count - done, station.size() - begin.row);
     VectorX warmer;
-    if (station.temperatures != nullptr)
-      warmer = station.temperatures->segment(begin.row, stretch).array() - reference_temperature;
+    if (station.temperatures != nullptr) warmer.resize(stretch);
+    for (Index i = 0; i < warmer.size(); ++i)
+      warmer(i) = (*station.temperatures)(begin.row + i) - reference_temperature;
     std::vector<Isometry3> poses =
         arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
                       station.previous().middleRows(station.previous().rows() > 0 ? begin.row : 0,
@@ -260,32 +266,25 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       rows.position_sigma = 1 / position;
       rows.residual.head<3>() *= position;
       rows.residual.tail<3>() *= orientation;
-      whiten_rows(station, along, position, orientation * rate, rows.dense);
-      whiten_rows(station, along, position, orientation * rate, rows.factor);
+      const Matrix3 angular = orientation * rate;
+      whiten_rows(station, along, position, angular, rows.dense);
+      whiten_rows(station, along, position, angular, rows.factor);
       for (RowBlock::Local& local : rows.local)
-        if (local.state >= 0) whiten_rows(station, along, position, orientation * rate, local.columns);
+        if (local.state >= 0) whiten_rows(station, along, position, angular, local.columns);
       rows.unwhiten.setIdentity();
       if (station.joint_sigma <= 0) continue;
       // the residual's covariance with the joint readings eliminated: I + noise noise'
-      const Rows6 noise = station.joint_sigma * rows.factor;
-      MatrixX covariance = MatrixX::Identity(6, 6), residual = rows.residual;
-      covariance += noise.lazyProduct(noise.transpose());
-      cholesky(covariance);
-      rows.unwhiten = covariance.triangularView<Eigen::Lower>();
-      solve_lower(covariance, residual);
-      rows.residual = residual;
-      MatrixX columns = rows.dense;
-      solve_lower(covariance, columns);
-      rows.dense = columns;
-      columns = rows.factor;
-      solve_lower(covariance, columns);
-      rows.factor = columns;
-      for (RowBlock::Local& local : rows.local) {
-        if (local.state < 0) continue;
-        columns = local.columns;
-        solve_lower(covariance, columns);
-        local.columns = columns;
-      }
+      const double variance = station.joint_sigma * station.joint_sigma;
+      Matrix6& factor = rows.unwhiten;
+      for (Index j = 0; j < rows.factor.cols(); ++j)
+        for (Index c = 0; c < 6; ++c)
+          for (Index r = c; r < 6; ++r) factor(r, c) += variance * rows.factor(r, j) * rows.factor(c, j);
+      cholesky(factor);
+      solve_lower(factor, rows.residual);
+      solve_lower(factor, rows.dense);
+      solve_lower(factor, rows.factor);
+      for (RowBlock::Local& local : rows.local)
+        if (local.state >= 0) solve_lower(factor, local.columns);
     }
     done += stretch;
   }
@@ -312,7 +311,7 @@ VERNIER_IMPL void CalibrationProblem::stack(bool with_jacobian, StackedRows& out
     if (with_jacobian && factored) rows.expand(group_sizes, expanded);
     const Rows6& columns = factored ? expanded : rows.dense;
     for (Index k = 0; with_jacobian && k < unknowns; ++k)
-      std::copy_n(columns.col(k).data(), count, &out.jacobian(row, k));
+      std::copy_n(columns.data() + 6 * k, count, &out.jacobian(row, k));
     for (Index r = 0; r < count; ++r, ++row) {
       out.residuals(row) = rows.residual(r);
       if (known) continue;
@@ -341,20 +340,21 @@ VERNIER_IMPL double CalibrationProblem::cost() const {
       Matrix3 rate = Matrix3::Zero();
       add_drift(at(b), poses[static_cast<std::size_t>(i)], nullptr);
       const Vector6 residual = measured_residual(station, i, poses[static_cast<std::size_t>(i)], along, rate);
-      sum +=
-          at(b).weight[0] * residual.head<3>().squaredNorm() / (station.position_sigma * station.position_sigma) +
-          at(b).weight[1] * residual.tail<3>().squaredNorm() / (station.orientation_sigma * station.orientation_sigma);
+      const Vector3 linear = residual.head<3>(), angular = residual.tail<3>();
+      sum += at(b).weight[0] * linear.squaredNorm() / (station.position_sigma * station.position_sigma) +
+             at(b).weight[1] * angular.squaredNorm() / (station.orientation_sigma * station.orientation_sigma);
     }
   }
   const VectorX steps = arm.steps();
-  return sum + arm.precisions().dot(steps.cwiseAbs2()) + (prior ? prior->cost(steps) : 0);
+  return sum + weighted_square(arm.precisions(), steps) + (prior ? prior->cost(steps) : 0);
 }
 
 VERNIER_IMPL MatrixX CalibrationProblem::residual_norms() const {
   MatrixX norms(num_blocks(), 2);
   visit_blocks(system(), 0, 1, num_blocks(), [&](Index b, const RowBlock& rows) {
-    norms(b, 0) = rows.residual.head<3>().norm();
-    norms(b, 1) = rows.residual.tail<3>().norm();
+    const Vector3 linear = rows.residual.head<3>(), angular = rows.residual.tail<3>();
+    norms(b, 0) = linear.norm();
+    norms(b, 1) = angular.norm();
   });
   return norms;
 }
@@ -413,7 +413,7 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
     std::array<double, 2> sums{};
     if (robust) sums = reweight();
     const NormalEquations normal = normal_equations();
-    double of_priors = precisions.dot(steps.cwiseAbs2()) + local_prior_cost(normal, local_steps);
+    double of_priors = weighted_square(precisions, steps) + local_prior_cost(normal, local_steps);
     if (!robust) sums = {normal.cost, normal.cost};
     if (robust && prior) of_priors += prior->cost(steps);  // `normal.cost` has it
     const double sum = sums[0] + of_priors;
@@ -433,9 +433,13 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
     arm.move(solved.step());
     if (!drift.empty()) move_drift(solved.local_step());
     // converged when steps vanish, or change no more than digits of the cost
-    const double gain = -solved.step().dot(normal.gradient + precisions.cwiseProduct(steps)) -
-                        local_gain(normal, solved.local_step(), local_steps);
-    predicted = gain + damping.value() * solved.step().cwiseAbs2().dot(normal.matrix.diagonal() + precisions);
+    double gain = -local_gain(normal, solved.local_step(), local_steps), damped = 0;
+    for (Index k = 0; k < steps.size(); ++k) {
+      const double step = solved.step()(k);
+      gain -= step * (normal.gradient(k) + precisions(k) * steps(k));
+      damped += step * step * (normal.matrix(k, k) + precisions(k));
+    }
+    predicted = gain + damping.value() * damped;
     if (damping.value() < 1 &&
         (solved.step().cwiseAbs().maxCoeff() < 1e-6 || gain < (robust ? 1e-5 : 1e-9) * normal.cost))
       return true;

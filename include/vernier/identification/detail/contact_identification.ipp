@@ -17,6 +17,12 @@
 
 namespace vernier::detail {
 
+/// Adds a row below a matrix.
+inline void append_row(MatrixX& matrix, const VectorX& row) {
+  matrix.conservativeResize(matrix.rows() + 1, Eigen::NoChange);
+  for (Index k = 0; k < row.size(); ++k) matrix(matrix.rows() - 1, k) = row(k);
+}
+
 /// The steps of `identify_geometry_by_contacts`.
 class ContactIdentification {
  public:
@@ -27,7 +33,7 @@ class ContactIdentification {
         contacts_(contacts),
         plan_(nominal, options),
         nominal_(nominal),
-        problem_(registered(nominal.tool().isometry().translation())) {
+        problem_(registered(translation(nominal.tool().isometry()))) {
     problem_.joint_columns = false;
   }
 
@@ -80,10 +86,9 @@ class ContactIdentification {
 
   /// Every contact in the frame of its object, by nominal links and a tool point.
   VERNIER_API CalibrationProblem registered(const Vector3& tool_point) const {
-    Isometry3 tool = nominal_.tool().isometry();
-    tool.translation() = tool_point;
-    const FrameParameters of_tool =
-        tool_point == nominal_.tool().isometry().translation() ? nominal_.tool() : FrameParameters(tool);
+    const Isometry3& tool = nominal_.tool().isometry();
+    const bool given = (tool_point - translation(tool)).norm() == 0;
+    const FrameParameters of_tool = given ? nominal_.tool() : FrameParameters(rigid_motion(rotation(tool), tool_point));
     std::vector<Station> stations;
     std::vector<ArmGeometry> arms;
     for (const Contact& contact : contacts_) {
@@ -105,10 +110,11 @@ class ContactIdentification {
     problem_.arm.set_geometric(unknowns);
     solve();
     if (!options_.tool_free() || residual_rms() < 5e-3) return;
-    const Vector3 start = nominal_.tool().isometry().translation();
+    const Vector3 start = translation(nominal_.tool().isometry());
     for (int k = 0; k < 12; ++k) {
-      CalibrationProblem other =
-          registered(start + (k < 6 ? 0.1 : 0.2) * (k % 2 == 0 ? 1 : -1) * Vector3::Unit(k / 2 % 3));
+      Vector3 tool_point = start;
+      tool_point(k / 2 % 3) += (k < 6 ? 0.1 : 0.2) * (k % 2 == 0 ? 1 : -1);
+      CalibrationProblem other = registered(tool_point);
       other.arm.set_geometric(unknowns);
       std::swap(problem_, other);
       solve();
@@ -154,8 +160,8 @@ class ContactIdentification {
     const double square = scale.squaredNorm();
     if (!(square > 0)) return;
     constexpr double share = 1e-6;
-    problem_.prior = JointPrior{scale * scale.transpose() / (square * square * share * share),
-                                VectorX::Zero(problem_.arm.size()), 1};
+    const VectorX held = scale / (square * share);
+    problem_.prior = JointPrior{matrix_product(held, held.transpose()), VectorX::Zero(problem_.arm.size()), 1};
   }
 
   /// The step of the unknowns that scales the arm and all objects, or the links alone.
@@ -198,14 +204,13 @@ class ContactIdentification {
     problem_.arm.set_geometric(candidates);
     MatrixX jacobian = touching_jacobian(problem_.arm);
     const VectorX scale = scale_direction(false);
-    const double effect = VectorX(jacobian * scale).norm();
-    scale_observable_ =
-        !(effect <= 1e-7 * std::sqrt(scale.cwiseAbs2().dot(jacobian.colwise().squaredNorm().transpose())));
+    const double effect = product(jacobian, scale).norm();
+    const double apart = std::sqrt(weighted_square(squared_column_norms(jacobian), scale));
+    scale_observable_ = !(effect <= 1e-7 * apart);
     if (!scale_observable_) {  // held, so known
       const VectorX held = scale_direction(true);
       const double size = jacobian.norm() / std::max(held.norm(), 1e-300);
-      jacobian.conservativeResize(jacobian.rows() + 1, Eigen::NoChange);
-      jacobian.bottomRows<1>() = size * held.transpose();
+      append_row(jacobian, size * held);
     }
     const IdentifiableParameters columns(jacobian);
     Selection out;
@@ -291,11 +296,12 @@ class ContactIdentification {
     all.set_geometric(unknowns);
     const MatrixX jacobian = touching_jacobian(all);
     MatrixX padded = MatrixX::Zero(std::max(jacobian.rows(), jacobian.cols()), jacobian.cols());
-    for (Index k = 0; k < jacobian.cols(); ++k) padded.col(k).head(jacobian.rows()) = jacobian.col(k);
+    padded.topRows(jacobian.rows()) = jacobian;
     const VectorX values = right_singular(triangular_factor(padded)).values;
     report.singular_values = VectorX::Zero(values.size() + without_effect);
     report.singular_values.head(values.size()) = values;
-    report.unobservable = (report.singular_values.array() <= 1e-9 * values(0)).count();
+    report.unobservable = std::count_if(report.singular_values.begin(), report.singular_values.end(),
+                                        [&](double value) { return value <= 1e-9 * values(0); });
 
     // covariance of what is estimated
     const auto& estimated = solved.arm.geometric();
@@ -303,15 +309,15 @@ class ContactIdentification {
     MatrixX stack = rows.jacobian;
     if (solved.prior) {
       const VectorX held = scale_direction(true);
-      stack.conservativeResize(stack.rows() + 1, Eigen::NoChange);
-      stack.bottomRows<1>() =
-          std::sqrt(solved.prior->precision.trace()) / std::max(held.norm(), 1e-300) * held.transpose();
+      append_row(stack, std::sqrt(diagonal_of(solved.prior->precision).sum()) / std::max(held.norm(), 1e-300) * held);
     }
     const VectorX precisions = solved.arm.precisions();
-    VectorX ones = VectorX::Ones(stack.rows());
-    const EstimateCovariance unit(stack, ones, precisions, precisions.cwiseMax(1e-300).cwiseInverse());
+    const VectorX ones = VectorX::Ones(stack.rows());
+    VectorX variances(precisions.size());
+    for (Index k = 0; k < variances.size(); ++k) variances(k) = 1 / std::max(precisions(k), 1e-300);
+    const EstimateCovariance unit(stack, ones, precisions, variances);
     double explained = static_cast<double>(precisions.size());
-    if (unit.inverse.size() > 0) explained -= unit.inverse.diagonal().dot(precisions);
+    if (unit.inverse.size() > 0) explained -= diagonal_of(unit.inverse).dot(precisions);
     const double freedom = static_cast<double>(rows.residuals.size()) - explained + (solved.prior ? 1 : 0);
     const double variance = freedom >= 1 ? rows.residuals.squaredNorm() / freedom : 1;
     report.rank = unit.rank;
@@ -391,16 +397,17 @@ class ContactIdentification {
   VERNIER_API void describe_objects(ContactReport& report) const {
     for (int c = 0; c < static_cast<int>(contacts_.size()); ++c) {
       const ArmGeometry& arm = problem_.arm.geometry(c);
-      const Isometry3 out_of = nominal_.base().isometry() * arm.base().isometry().inverse();
+      const Isometry3 out_of = composed(nominal_.base().isometry(), inverse_of(arm.base().isometry()));
       Vector3 local = Vector3::Zero();
       if (contact(c).kind() == ContactKind::plane) {
-        local = arm.positions(contact(c).joints()).colwise().mean().transpose();
+        local = centroid(arm.positions(contact(c).joints()));
         local.z() = 0;
       }
-      TouchedObject object{contact(c).name(), contact(c).kind(), contact(c).size(),
-                           out_of * local,    Vector3::Zero(),   residual_rms(problem_, c)};
+      TouchedObject object{contact(c).name(),          contact(c).kind(), contact(c).size(),
+                           transformed(out_of, local), Vector3::Zero(),   residual_rms(problem_, c)};
       if (contact_unknowns(contact(c)) != std::vector<Index>{0, 1, 2})
-        object.direction = problem_.station_of(first_block(c)).height_sign * out_of.linear().col(2);
+        object.direction =
+            problem_.station_of(first_block(c)).height_sign * Vector3(out_of(0, 2), out_of(1, 2), out_of(2, 2));
       report.objects.push_back(std::move(object));
     }
   }

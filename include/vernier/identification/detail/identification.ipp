@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/identification.hpp"
@@ -192,7 +193,7 @@ class IdentificationRun {
       const NormalEquations normal(system);
       const FactorisedEquations solved(normal, problem_.arm.precisions(), problem_.arm.steps());
       trials.push_back(
-          {1 / (prior_scale * prior_scale), leave_one_out_errors(system, solved, 1).colwise().norm().transpose()});
+          {1 / (prior_scale * prior_scale), squared_column_norms(leave_one_out_errors(system, solved, 1)).cwiseSqrt()});
       problem_.reset_weights();
       candidates.push_back({prior_scale, problem_.arm, summary_});
     }
@@ -206,9 +207,11 @@ class IdentificationRun {
   VERNIER_API double position_rms(const ArmGeometry& arm) const {
     const PointRows points = arm.positions(data().joints());
     double sum = 0;
-    for (Index i = 0; i < points.rows(); ++i)
-      sum += data().lengths != nullptr ? std::pow(points.row(i).norm() - (*data().lengths)(i), 2)
-                                       : (points.row(i).transpose() - data().position(i)).squaredNorm();
+    for (Index i = 0; i < points.rows(); ++i) {
+      const Vector3 modelled = point(points, i);
+      sum += data().lengths != nullptr ? std::pow(modelled.norm() - (*data().lengths)(i), 2)
+                                       : (modelled - data().position(i)).squaredNorm();
+    }
     return std::sqrt(sum / static_cast<double>(points.rows()));
   }
 
@@ -218,7 +221,7 @@ class IdentificationRun {
     const std::vector<Isometry3> poses = arm.poses(data().joints());
     double sum = 0;
     for (std::size_t i = 0; i < poses.size(); ++i)
-      sum += log_so3(poses[i].linear() * data().orientations[i].transpose()).squaredNorm();
+      sum += rotation_difference(rotation(poses[i]), data().orientations[i]).squaredNorm();
     return std::sqrt(sum / static_cast<double>(poses.size()));
   }
 
@@ -236,7 +239,7 @@ class IdentificationRun {
                                    plan_.scales(k)});
     const VectorX scales = problem_.arm.scales();
     if (covariance.covariance.size() > 0)
-      report.covariance = scales.asDiagonal() * covariance.covariance * scales.asDiagonal();
+      report.covariance = rows_scaled(scales, columns_scaled(covariance.covariance, scales));
     for (std::size_t k = 0; k < report.free.size(); ++k) {
       ParameterEstimate& p = report.parameters[static_cast<std::size_t>(report.free[k])];
       p.state = weak_[k] ? ParameterState::weak : ParameterState::identified;
@@ -257,13 +260,13 @@ class IdentificationRun {
                   .position_sigma = data().position_sigma,
                   .orientation_sigma = data().orientation_sigma};
     const PointRows points = arm.positions(joints);
-    const VectorX lengths = points.rowwise().norm();
+    const VectorX lengths = distances_from(points, Vector3::Zero());
     if (data().lengths != nullptr)
       ideal.lengths = &lengths;
     else
       ideal.positions = &points;
     if (data().oriented())
-      for (const Isometry3& pose : arm.poses(joints)) ideal.orientations.push_back(pose.linear());
+      for (const Isometry3& pose : arm.poses(joints)) ideal.orientations.push_back(rotation(pose));
     std::vector<GeometricUnknown> unknowns;
     for (const Index k : plan_.candidates) unknowns.push_back({k, -1, plan_.scales(k), 0});
     const CalibrationProblem random_poses(ArmParameterisation({arm}, std::move(unknowns)), {ideal}, Loss::squared);

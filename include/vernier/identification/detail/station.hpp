@@ -43,7 +43,7 @@ struct Station {
   Index values() const { return projected() ? 1 : oriented() ? 6 : 3; }
   double height(Index i) const { return height_sign * (*heights)(i); }
   Vector3 position(Index i) const {
-    return positions != nullptr ? Vector3(positions->row(i).transpose()) : Vector3(0, 0, height(i));
+    return positions != nullptr ? point(*positions, i) : Vector3(0, 0, height(i));
   }
 };
 

@@ -8,8 +8,7 @@ namespace vernier::detail {
 VERNIER_IMPL std::vector<Matrix3> rotations(const PointRows& rotation_vectors) {
   std::vector<Matrix3> out;
   out.reserve(static_cast<std::size_t>(rotation_vectors.rows()));
-  for (Index i = 0; i < rotation_vectors.rows(); ++i)
-    out.push_back(exp_so3(Vector3(rotation_vectors.row(i).transpose())));
+  for (Index i = 0; i < rotation_vectors.rows(); ++i) out.push_back(exp_so3(point(rotation_vectors, i)));
   return out;
 }
 

@@ -70,9 +70,7 @@ class RecursiveCalibration {
 
   /// Processes a measured position.
   void update(const JointVector<N>& q, const Vector3& position) {
-    Isometry3 pose = Isometry3::Identity();
-    pose.translation() = position;
-    process(q, pose, false);
+    process(q, rigid_motion(Matrix3::Identity(), position), false);
   }
   /// Processes a measured pose.
   void update(const JointVector<N>& q, const Isometry3& pose) { process(q, pose, true); }

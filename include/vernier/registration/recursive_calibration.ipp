@@ -8,18 +8,18 @@
 namespace vernier::detail {
 
 VERNIER_IMPL RecursiveEstimator::RecursiveEstimator(const VectorX& std, double forgetting)
-    : start_(std.cwiseAbs2()), covariance_(MatrixX::Zero(std.size(), std.size())), forgetting_(forgetting) {
+    : start_(std.cwiseProduct(std)), covariance_(MatrixX::Zero(std.size(), std.size())), forgetting_(forgetting) {
   require(forgetting > 0 && forgetting <= 1, "RecursiveCalibration: forgetting is ", forgetting,
           ", must lie in (0, 1]");
-  covariance_.diagonal() = start_;
+  for (Index k = 0; k < std.size(); ++k) covariance_(k, k) = start_(k);
 }
 
 VERNIER_IMPL VectorX RecursiveEstimator::update(const MatrixX& rows, const VectorX& residual) {
-  require(residual.allFinite(), "RecursiveCalibration: a measured value is not finite");
+  require(all_finite(residual), "RecursiveCalibration: a measured value is not finite");
   if (forgetting_ < 1) {  // towards the initial covariance: what is not excited does not grow without bound
     cholesky(covariance_);
     MatrixX information = forgetting_ * inverse_from_cholesky(covariance_);
-    information.diagonal() += (1 - forgetting_) * start_.cwiseInverse();
+    for (Index k = 0; k < start_.size(); ++k) information(k, k) += (1 - forgetting_) / start_(k);
     cholesky(information);
     covariance_ = inverse_from_cholesky(information);
   }
@@ -33,7 +33,8 @@ VERNIER_IMPL VectorX RecursiveEstimator::update(const MatrixX& rows, const Vecto
   VectorX change = VectorX::Zero(covariance_.cols());
   add_transposed_product(change, cross, whitened);
   add_transposed_product(covariance_, cross, cross, -1);
-  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  for (Index c = 0; c < covariance_.cols(); ++c)
+    for (Index r = 0; r < c; ++r) covariance_(r, c) = covariance_(c, r) = 0.5 * (covariance_(r, c) + covariance_(c, r));
   return change;
 }
 
@@ -52,15 +53,15 @@ VERNIER_IMPL VectorX initial_std(const FrameUpdate& update, const ReregisterOpti
 VERNIER_IMPL void whitened_rows(const FrameUpdate& update, const SensorModel& sensors, const Isometry3& modelled,
                                 const double* jacobian, const Isometry3& measured, bool oriented, MatrixX& rows,
                                 VectorX& residual) {
-  Vector6 difference = pose_difference(measured, modelled);
-  difference.head<3>() /= sensors.position_sigma;
-  difference.tail<3>() /= sensors.orientation_sigma;
+  const Vector6 difference = pose_difference(measured, modelled);
   const Rows6 columns = update.columns(modelled, jacobian);
-  const Index used = oriented ? 6 : 3;
-  residual = difference.head(used);
-  rows = columns.topRows(used);
-  rows.topRows(3) /= sensors.position_sigma;
-  if (oriented) rows.bottomRows(3) /= sensors.orientation_sigma;
+  rows.resize(oriented ? 6 : 3, columns.cols());
+  residual.resize(rows.rows());
+  for (Index r = 0; r < rows.rows(); ++r) {
+    const double sigma = r < 3 ? sensors.position_sigma : sensors.orientation_sigma;
+    residual(r) = difference(r) / sigma;
+    for (Index c = 0; c < rows.cols(); ++c) rows(r, c) = columns(r, c) / sigma;
+  }
 }
 
 }  // namespace vernier::detail

@@ -61,16 +61,19 @@ VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
                             "another tool, register it as such (with infinite priors).",
                             how, 1e3 * moved, unit, 1e3 * prior));
   };
-  far("moved", motion.tool.translation().norm(), estimated.tool_position_prior_std, "mm");
-  far("turned", log_so3(motion.tool.linear()).norm(), estimated.tool_rotation_prior_std, "mrad");
+  far("moved", translation(motion.tool).norm(), estimated.tool_position_prior_std, "mm");
+  far("turned", log_so3(rotation(motion.tool)).norm(), estimated.tool_rotation_prior_std, "mrad");
   const auto vague = [&](const char* what, double sigma, double prior, const char* unit) {
     if (std::isinf(prior) && sigma > 1e-3)
       out.push_back(
           detail::formatted("The poses determine the %s of the tool to %.1f %s only.", what, 1e3 * sigma, unit));
   };
   if (!estimated.tool || change_std.size() == 0) return out;
-  vague("position", change_std.tail<6>().head<3>().maxCoeff(), estimated.tool_position_prior_std, "mm");
-  vague("rotation", change_std.tail<3>().maxCoeff(), estimated.tool_rotation_prior_std, "mrad");
+  const auto largest = [&](Index begin) {
+    return std::max({change_std(begin), change_std(begin + 1), change_std(begin + 2)});
+  };
+  vague("position", largest(change_std.size() - 6), estimated.tool_position_prior_std, "mm");
+  vague("rotation", largest(change_std.size() - 3), estimated.tool_rotation_prior_std, "mrad");
   return out;
 }
 
@@ -79,12 +82,14 @@ VERNIER_IMPL std::string ReregistrationReport::summary() const {
   Index at = 0;
   const bool known = change_std.size() > 0;
   const auto frame = [&](const char* name, const Isometry3& by) {
-    const Vector6 v = 1e3 * FrameParameters(by).values();
-    const Vector6 sigma = known ? Vector6(1e3 * change_std.segment<6>(at)) : v;
+    const Vector6 v = FrameParameters(by).values();
+    const auto thousandfold = [](const auto& values, Index k) {
+      return detail::formatted("(%.3f, %.3f, %.3f)", 1e3 * values(k), 1e3 * values(k + 1), 1e3 * values(k + 2));
+    };
     for (const Index k : {0, 3}) {
-      out += k == 0 ? std::string(name) + " moved by" : ", turned by";
-      out += detail::formatted(" (%.3f, %.3f, %.3f)", v(k), v(k + 1), v(k + 2));
-      if (known) out += detail::formatted(" +- (%.3f, %.3f, %.3f)", sigma(k), sigma(k + 1), sigma(k + 2));
+      out += k == 0 ? std::string(name) + " moved by " : ", turned by ";
+      out += thousandfold(v, k);
+      if (known) out += " +- " + thousandfold(change_std, at + k);
       out += k == 0 ? " mm" : " mrad\n";
     }
     at += 6;
@@ -113,39 +118,38 @@ namespace detail {
 VERNIER_API Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
   MatrixX sum = MatrixX::Zero(9, 9);
   for (std::size_t i = 0; i < modelled.size(); ++i)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) sum.block<3, 3>(3 * r, 3 * c) += modelled[i].linear()(r, c) * measured[i];
+    for (Index r = 0; r < 9; ++r)
+      for (Index c = 0; c < 9; ++c) sum(r, c) += modelled[i](r / 3, c / 3) * measured[i](r % 3, c % 3);
   const VectorX x = right_singular(sum.transpose()).vectors.col(0);
-  Matrix3 base = Eigen::Map<const Matrix3>(x.data());
-  if (base.col(0).cross(base.col(1)).dot(base.col(2)) < 0) base = -base;
-  base = nearest_rotation(base);
+  Matrix3 base;
+  for (Index k = 0; k < 9; ++k) base(k % 3, k / 3) = x(k);
+  if (base.determinant() < 0) base *= -1;
+  const Matrix3 nearest = nearest_rotation(base), back = nearest.transpose();
   Matrix3 turned = Matrix3::Zero();
-  for (std::size_t i = 0; i < modelled.size(); ++i) turned += (base * modelled[i].linear()).transpose() * measured[i];
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = nearest_rotation(turned);
-  return out;
+  for (std::size_t i = 0; i < modelled.size(); ++i) {
+    const Matrix3 in_base = back * measured[i];
+    turned += rotation(inverse_of(modelled[i])) * in_base;
+  }
+  return rigid_motion(nearest_rotation(turned), Vector3::Zero());
 }
 
 /// Base motion that brings modelled poses to the measured ones, in closed form; its rotation by the orientations or by
 /// the positions.
 VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const Station& data, bool by_orientations) {
   PointRows points(data.size(), 3);
-  for (Index i = 0; i < data.size(); ++i)
-    points.row(i) = modelled[static_cast<std::size_t>(i)].translation().transpose();
+  for (Index i = 0; i < data.size(); ++i) set_point(points, i, translation(modelled[static_cast<std::size_t>(i)]));
   if (!by_orientations) return register_points(points, *data.positions);
   Matrix3 sum = Matrix3::Zero();
-  for (std::size_t i = 0; i < modelled.size(); ++i) sum += data.orientations[i] * modelled[i].linear().transpose();
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = nearest_rotation(sum);
-  const Vector3 from = points.colwise().mean().transpose(), to = data.positions->colwise().mean().transpose();
-  out.translation() = to - out.linear() * from;
-  return out;
+  for (std::size_t i = 0; i < modelled.size(); ++i) sum += data.orientations[i] * rotation(inverse_of(modelled[i]));
+  const Matrix3 turn = nearest_rotation(sum);
+  const Vector3 turned = turn * centroid(points);
+  return rigid_motion(turn, centroid(*data.positions) - turned);
 }
 
 /// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
 VERNIER_API Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
   Matrix3 sum = Matrix3::Zero();
-  for (std::size_t i = 0; i < modelled.size(); ++i) sum += modelled[i].linear().transpose() * measured[i];
+  for (std::size_t i = 0; i < modelled.size(); ++i) sum += rotation(inverse_of(modelled[i])) * measured[i];
   return log_so3(nearest_rotation(sum));
 }
 
@@ -170,17 +174,20 @@ VERNIER_API std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
     const Index begin = fit.update.tool_begin() + part;
     const double least = std::pow(0.5 * fit.prior_std(begin), 2);
     const RightSingular axes = right_singular(fit.covariance_of(begin, 3));  // in descending order
-    const Index count = (axes.values.array() > least).count();
+    const Index count = std::count_if(axes.values.begin(), axes.values.end(), [&](double v) { return v > least; });
     if (count == 0) continue;
     std::string what = part == 0 ? "the position of the tool" : "the rotation of the tool";
     for (Index k = 0; k < count; ++k) {
       Vector3 axis = axes.vectors.col(k);
-      fit.held.conservativeResizeLike(MatrixX::Zero(fit.update.size(), fit.held.cols() + 1));
-      fit.held.rightCols<1>().segment<3>(begin) = axis;
-      Index largest = 0;
-      axis.cwiseAbs().maxCoeff(&largest);
-      axis /= axis(largest) < 0 ? -1 : 1;
-      axis = (axis.array().abs() < 0.005).select(0, axis);  // no -0.00
+      VectorX held = VectorX::Zero(fit.update.size());
+      held.segment(begin, 3) = axis;
+      fit.held.conservativeResize(held.size(), fit.held.cols() + 1);
+      fit.held.col(fit.held.cols() - 1) = held;
+      const double largest =
+          *std::max_element(axis.begin(), axis.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+      if (largest < 0) axis *= -1;
+      for (double& value : axis)
+        if (std::abs(value) < 0.005) value = 0;  // no -0.00
       if (count < 3)
         what += formatted("%s (%.2f, %.2f, %.2f)", k == 0 ? (part == 0 ? " along" : " about") : " and", axis.x(),
                           axis.y(), axis.z());
@@ -199,8 +206,10 @@ VERNIER_API void judge_probe(const MovedPoses& evaluate, const Station& data, co
   const double own =
       fit.orientation_sigma * fit.orientation_sigma - sensors.orientation_sigma * sensors.orientation_sigma;
   MatrixX by_chance = fit.covariance_of(begin, 3);
-  report.probe_std = by_chance.diagonal().cwiseSqrt();
-  by_chance.diagonal().array() += own;
+  for (Index k = 0; k < 3; ++k) {
+    report.probe_std(k) = std::sqrt(by_chance(k, k));
+    by_chance(k, k) += own;
+  }
   MatrixX whitened = fit.motion.probe;
   cholesky(by_chance);
   solve_lower(by_chance, whitened);
@@ -214,7 +223,7 @@ VERNIER_API void judge_probe(const MovedPoses& evaluate, const Station& data, co
   fit.motion.probe.setZero();
   fit.update.probe = own > 1e-18;
   fit.total.conservativeResize(fit.update.size());
-  if (fit.update.probe) fit.total.tail<3>().setZero();
+  if (fit.update.probe) fit.total.tail(3).setZero();
   fit.prior_std = prior_std_of(fit.update, options, std::sqrt(own));
   solve_frames(evaluate, data, fit);
 }
@@ -239,7 +248,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
   const auto rms = [&] {
     double sum = 0;
     for (Index i = 0; i < data.size(); ++i)
-      sum += (fit.poses[static_cast<std::size_t>(i)].translation() - data.position(i)).squaredNorm();
+      sum += (translation(fit.poses[static_cast<std::size_t>(i)]) - data.position(i)).squaredNorm();
     return std::sqrt(sum / static_cast<double>(data.size()));
   };
   evaluate(fit.motion, fit.poses, jacobians);
@@ -256,14 +265,15 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
         fit.motion.base = base_motion(before, data, false);
         evaluate(fit.motion, fit.poses, jacobians);
         fit.motion.probe = probe_rotation(fit.poses, data.orientations);
-        fit.total.tail<3>() = fit.motion.probe;
+        fit.total.tail(3) = fit.motion.probe;
       }
     }
   }
   solve_frames_and_weights(evaluate, data, fit);
   if (update.probe && fit.covariance.size() > 0) judge_probe(evaluate, data, options, sensors, fit, report);
   if (!report.probe_turned) fit.motion.probe.setZero();  // that much is the model's own error
-  if (fit.covariance.size() > 0) report.change_std = fit.covariance.diagonal().head(update.probe_begin()).cwiseSqrt();
+  if (fit.covariance.size() > 0)
+    report.change_std = diagonal_of(fit.covariance_of(0, update.probe_begin())).cwiseSqrt();
   if (options.tool && fit.covariance.size() > 0) report.held = hold_undetermined_tool(fit);
   if (!report.held.empty()) solve_frames(evaluate, data, fit);
   report.determined = fit.determined;

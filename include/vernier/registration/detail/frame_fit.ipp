@@ -17,26 +17,25 @@ VERNIER_API void frame_rows(const Station& data, const FrameFit& fit, const Matr
                             RowBlock& out) {
   const Isometry3& pose = fit.poses[static_cast<std::size_t>(i)];
   out.residual.setZero();
-  out.residual.head<3>() = (pose.translation() - data.position(i)) / fit.position_sigma;
+  out.residual.head<3>() = (translation(pose) - data.position(i)) / fit.position_sigma;
   out.dense = fit.update.columns(pose, jacobians.data() + 6 * fit.update.joints * i);
-  out.dense.topRows<3>() /= fit.position_sigma;
-  if (!data.oriented()) {
-    out.dense.bottomRows<3>().setZero();
-    return;
-  }
-  const Matrix3 seen = pose.linear() * exp_so3(fit.motion.probe);
+  const double angular = data.oriented() ? 1 / fit.orientation_sigma : 0;
+  for (Index c = 0; c < out.dense.cols(); ++c)
+    for (Index r = 0; r < 6; ++r) out.dense(r, c) *= r < 3 ? 1 / fit.position_sigma : angular;
+  if (!data.oriented()) return;
+  const Matrix3 seen = rotation(pose) * exp_so3(fit.motion.probe);
   out.residual.tail<3>() =
-      log_so3(seen * data.orientations[static_cast<std::size_t>(i)].transpose()) / fit.orientation_sigma;
-  out.dense.bottomRows<3>() /= fit.orientation_sigma;
+      rotation_difference(seen, data.orientations[static_cast<std::size_t>(i)]) / fit.orientation_sigma;
 }
 
 /// Adds priors so tight that the held directions stay where they are.
 VERNIER_API void hold(const FrameFit& fit, const VectorX& total, NormalEquations& normal) {
   for (Index k = 0; k < fit.held.cols(); ++k) {
     const VectorX axis = fit.held.col(k);
-    const double precision = 1e8 / axis.cwiseAbs2().dot(fit.prior_std.cwiseMin(1).cwiseAbs2());
-    const double at = axis.dot(total);
-    normal.matrix += precision * axis * axis.transpose();
+    double variance = 0;
+    for (Index r = 0; r < axis.size(); ++r) variance += std::pow(axis(r) * std::min(fit.prior_std(r), 1.0), 2);
+    const double precision = 1e8 / variance, at = axis.dot(total);
+    add_product(normal.matrix, axis, axis.transpose(), precision);
     normal.gradient += precision * at * axis;
     normal.cost += precision * at * at;
   }
@@ -49,7 +48,8 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
     for (Index b = 0; b < count; ++b) frame_rows(data, fit, jacobians, first + b, out[b]);
   };
   const BlockSystem system{data.size(), data.size(), fit.update.size(), {}, rows};
-  const VectorX precisions = fit.prior_std.cwiseAbs2().cwiseInverse();
+  VectorX precisions(fit.prior_std.size());
+  for (Index k = 0; k < precisions.size(); ++k) precisions(k) = 1 / (fit.prior_std(k) * fit.prior_std(k));
   fit.determined = fit.converged = false;
   fit.covariance.resize(0, 0);
   MarquardtDamping damping;
@@ -59,7 +59,7 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
   for (int iteration = 0; iteration < 50 && !fit.converged; ++iteration) {
     NormalEquations normal(system);
     hold(fit, total, normal);
-    const double sum = normal.cost + precisions.dot(total.cwiseAbs2());
+    const double sum = normal.cost + weighted_square(precisions, total);
     if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
       damping.reject();
       fit.motion = accepted;
@@ -72,15 +72,16 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
     accepted_total = total;
     reached = sum;
     MatrixX information = normal.matrix;
-    information.diagonal() += precisions;
+    for (Index k = 0; k < precisions.size(); ++k) information(k, k) += precisions(k);
     // eigenvalues are squares of singular values
     const VectorX spectrum = right_singular(information).values;
     fit.determined = spectrum(spectrum.size() - 1) > 1e-14 * spectrum(0);
     if (!fit.determined) break;
     const FactorisedEquations solved(normal, precisions, total, {}, eigen_sparse_solver, damping.value());
     if (!solved.usable()) break;
-    const VectorX slope = normal.gradient + precisions.cwiseProduct(total);
-    predicted = damping.value() * solved.step().cwiseAbs2().dot(information.diagonal()) - solved.step().dot(slope);
+    predicted = damping.value() * weighted_square(diagonal_of(information), solved.step());
+    for (Index k = 0; k < precisions.size(); ++k)
+      predicted -= solved.step()(k) * (normal.gradient(k) + precisions(k) * total(k));
     total += solved.step();
     fit.motion = fit.update.apply(fit.motion, solved.step());
     evaluate(fit.motion, fit.poses, jacobians);
@@ -96,11 +97,11 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
   RowBlock block;
   for (Index i = 0; i < data.size(); ++i) {
     frame_rows(data, fit, jacobians, i, block);
-    const Matrix6 taken = block.dense.lazyProduct(fit.covariance).eval().lazyProduct(block.dense.transpose());
-    fit.position_squares += block.residual.head<3>().squaredNorm();
-    fit.orientation_squares += block.residual.tail<3>().squaredNorm();
-    fit.position_redundancy -= taken.diagonal().head<3>().sum();
-    fit.orientation_redundancy -= taken.diagonal().tail<3>().sum();
+    for (Index r = 0; r < 6; ++r) {
+      const VectorX row = row_of(block.dense, r);
+      (r < 3 ? fit.position_squares : fit.orientation_squares) += block.residual(r) * block.residual(r);
+      (r < 3 ? fit.position_redundancy : fit.orientation_redundancy) -= row.dot(product(fit.covariance, row));
+    }
   }
 }
 

@@ -3,30 +3,35 @@
 #include "vernier/core/register_points.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/points.hpp"
 
 namespace vernier {
 
 VERNIER_IMPL Matrix3 nearest_rotation(const Matrix3& matrix) {
-  const Eigen::JacobiSVD<Matrix3, Eigen::NoQRPreconditioner> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-  return u * svd.matrixV().transpose();
+  const detail::ThinSvd svd = detail::thin_svd(matrix);
+  Matrix3 left = svd.u;
+  const Matrix3 right = svd.v, back = right.transpose(), nearest = left * back;
+  if (!(nearest.determinant() < 0)) return nearest;
+  for (Index r = 0; r < 3; ++r) left(r, 2) = -left(r, 2);
+  return left * back;
 }
 
 VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) {
   require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
           " points");
-  const Vector3 from_mean = from.colwise().mean().transpose(), to_mean = to.colwise().mean().transpose();
+  const Vector3 from_mean = centroid(from), to_mean = centroid(to);
   Matrix3 sum = Matrix3::Zero();
-  for (Index i = 0; i < from.rows(); ++i)
-    sum += (to.row(i).transpose() - to_mean) * (from.row(i).transpose() - from_mean).transpose();
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = nearest_rotation(sum);
-  out.translation() = to_mean - out.linear() * from_mean;
-  return out;
+  for (Index i = 0; i < from.rows(); ++i) {
+    const Vector3 a = point(from, i) - from_mean, b = point(to, i) - to_mean;
+    for (Index c = 0; c < 3; ++c)
+      for (Index r = 0; r < 3; ++r) sum(r, c) += b(r) * a(c);
+  }
+  const Matrix3 turn = nearest_rotation(sum);
+  const Vector3 turned = turn * from_mean;
+  return rigid_motion(turn, to_mean - turned);
 }
 
 }  // namespace vernier

@@ -91,7 +91,9 @@ Dataset<Actual::dof> measure_with_backlash(const Actual& actual, const JointRows
     for (int j = 0; j < Actual::dof; ++j)
       require(approach(i, j) == 0 || std::abs(approach(i, j)) == 1, "measure_with_backlash: row ", i, ", joint ", j + 1,
               " is approached from ", approach(i, j), ", must be -1, 0 or 1");
-  const JointRows<Actual::dof> effective = joints - approach * backlash.asDiagonal();
+  JointRows<Actual::dof> effective = joints;
+  for (int j = 0; j < Actual::dof; ++j)
+    for (Index i = 0; i < joints.rows(); ++i) effective(i, j) -= approach(i, j) * backlash(j);
   const Dataset<Actual::dof> seen = measure(actual, effective, noise, seed);
   return {joints, seen.positions(), seen.orientations()};
 }
@@ -120,7 +122,8 @@ WithOutliers<N> with_outliers(const Dataset<N>& data, double share, double size,
   PointRows positions = data.positions();
   for (const Index row : rows) {
     const Vector3 direction{rng.normal(), rng.normal(), rng.normal()};  // braces: left to right
-    positions.row(row) += size * direction.normalized().transpose();
+    const Vector3 shift = size * direction.normalized();
+    set_point(positions, row, point(positions, row) + shift);
   }
   return {{data.joints(), positions, data.orientations()}, std::move(rows)};
 }

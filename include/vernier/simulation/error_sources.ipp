@@ -46,7 +46,7 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
   if (terms.gravity) {
     const Index begin = at;
     draw(compliance, terms.gravity->size(), sizes.compliance);
-    coefficients.segment(begin, at - begin) = coefficients.segment(begin, at - begin).cwiseAbs().eval();
+    for (Index k = begin; k < at; ++k) coefficients(k) = std::abs(coefficients(k));
   }
   for (int i = 0; i < n; ++i) {
     Rng low_stream(child_seed(seed, stream++)), ripple_stream(child_seed(seed, stream++));

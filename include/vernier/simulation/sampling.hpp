@@ -56,8 +56,8 @@ struct OperatingRegion {
   JointRows<N> sample(const Chain& chain, Index n, std::uint64_t seed) const {
     return sample_joints(limits, n, seed, [&](const JointVector<N>& q) {
       const Isometry3 end = chain.pose(q);
-      const Vector3 wrist = end.translation() - chain.row(N - 1).d * end.linear().col(2);
-      return std::hypot(wrist.x(), wrist.y()) >= wrist_clearance;
+      const double d = chain.row(N - 1).d;
+      return std::hypot(end(0, 3) - d * end(0, 2), end(1, 3) - d * end(1, 2)) >= wrist_clearance;
     });
   }
 };

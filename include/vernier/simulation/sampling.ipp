@@ -21,7 +21,9 @@ VERNIER_IMPL void detail::sample_rows(const ConstVectorRef& lower, const ConstVe
     require(++tries <= 1000 * (out.rows() + 10),
             "sample_joints: fewer than one configuration in a thousand is accepted");
     for (Index j = 0; j < q.size(); ++j) q(j) = rng.uniform(lower(j), upper(j));
-    if (accept(q.data())) out.row(i++) = q.transpose();
+    if (!accept(q.data())) continue;
+    for (Index j = 0; j < q.size(); ++j) out(i, j) = q(j);
+    ++i;
   }
 }
 

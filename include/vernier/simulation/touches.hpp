@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/data/contacts.hpp"
 #include "vernier/kinematics/concepts.hpp"
@@ -26,8 +26,15 @@ struct VirtualObject {
 
 namespace detail {
 
-/// How far a point is from an object: one residual, or three of a socket; and their derivatives by the point, rows.
-VERNIER_API std::pair<VectorX, MatrixX> distance_from(const VirtualObject& object, const Vector3& point, double known);
+/// A step of Newton's method towards an object.
+struct TouchStep {
+  VectorX step;  ///< to be subtracted from the joint values
+  double left;   ///< distance of the point before it [m]
+};
+/// See `TouchStep`.
+/// @param jacobian of the point by the joints: its first three rows
+VERNIER_API TouchStep step_towards(const VirtualObject& object, const Vector3& point, double known,
+                                   const ConstMatrixRef& jacobian);
 
 }  // namespace detail
 
@@ -54,21 +61,18 @@ Contact touch(const Actual& actual, const VirtualObject& object, std::string nam
     double left = 1;
     for (int step = 0; step < 12 && left > 1e-13; ++step) {
       const auto at = actual.pose_and_jacobian(q);
-      const auto [residual, rows] = detail::distance_from(object, at.pose.translation() + noise, known(i));
-      const MatrixX columns = rows * at.jacobian.template topRows<3>();
-      MatrixX gram = columns * columns.transpose();
-      gram.diagonal().array() += 1e-9 * gram.trace();
-      VectorX move = residual;
-      detail::solve_general(gram, move);
-      q -= columns.transpose() * move;
-      left = residual.norm();
+      const auto [change, before] =
+          detail::step_towards(object, translation(at.pose) + noise, known(i), at.jacobian);
+      for (int j = 0; j < N; ++j) q(j) -= change(j);
+      left = before;
     }
     const Vector3 reached = actual.position(q) - object.point;
-    const Vector3 along = reached - object.direction.dot(reached) * object.direction;
-    if (!(left < 1e-9) || (q.array() < limits.lower.array()).any() || (q.array() > limits.upper.array()).any() ||
-        (object.kind == ContactKind::plane && along.norm() > object.extent))
-      continue;
-    joints.row(i++) = q.transpose();
+    const Vector3 across = object.direction.dot(reached) * object.direction, along = reached - across;
+    bool valid = left < 1e-9 && (object.kind != ContactKind::plane || along.norm() <= object.extent);
+    for (int j = 0; j < N; ++j) valid = valid && q(j) >= limits.lower(j) && q(j) <= limits.upper(j);
+    if (!valid) continue;
+    for (int j = 0; j < N; ++j) joints(i, j) = q(j);
+    ++i;
   }
   return Contact(std::move(name), object.kind, std::move(joints), known);
 }

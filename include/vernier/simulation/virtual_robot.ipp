@@ -38,9 +38,9 @@ VERNIER_IMPL MeasuredPoses measured_poses(std::span<const Isometry3> poses, cons
   MeasuredPoses out{PointRows(n, 3), PointRows(noise.with_orientations ? n : 0, 3)};
   for (Index i = 0; i < n; ++i) {
     const Isometry3& pose = poses[static_cast<std::size_t>(i)];
-    out.positions.row(i) = (pose.translation() + normal3(noise.position)).transpose();
+    set_point(out.positions, i, translation(pose) + normal3(noise.position));
     if (noise.with_orientations)
-      out.orientations.row(i) = log_so3(exp_so3(normal3(noise.orientation)) * pose.linear()).transpose();
+      set_point(out.orientations, i, log_so3(exp_so3(normal3(noise.orientation)) * rotation(pose)));
   }
   return out;
 }
@@ -48,7 +48,7 @@ VERNIER_IMPL MeasuredPoses measured_poses(std::span<const Isometry3> poses, cons
 VERNIER_IMPL VectorX measured_distances(const PointRows& positions, const Vector3& anchor, double sigma,
                                         std::uint64_t seed) {
   Rng rng(seed);
-  VectorX lengths = (positions.rowwise() - anchor.transpose()).rowwise().norm();
+  VectorX lengths = distances_from(positions, anchor);
   for (double& length : lengths) length += sigma * rng.normal();
   return lengths;
 }

@@ -18,7 +18,7 @@ VERNIER_IMPL EstimateCovariance::EstimateCovariance(const ConstMatrixRef& jacobi
   const MatrixX triangle = detail::triangular_factor(jacobian);
   detail::RightSingular svd = detail::right_singular(triangle);
   singular_values = svd.values;
-  rank = (singular_values.array() > 1e-12 * singular_values(0)).count();
+  while (rank < columns && singular_values(rank) > 1e-12 * singular_values(0)) ++rank;
   condition =
       rank < columns ? std::numeric_limits<double>::infinity() : singular_values(0) / singular_values(columns - 1);
   if (prior.maxCoeff() > 0) {
@@ -29,18 +29,13 @@ VERNIER_IMPL EstimateCovariance::EstimateCovariance(const ConstMatrixRef& jacobi
   }
   if (!(svd.values(columns - 1) > 1e-12 * svd.values(0))) return;
   MatrixX scaled = svd.vectors;  // V diag(1/s)
-  for (Index k = 0; k < columns; ++k) scaled.col(k) /= svd.values(k);
-  inverse.setZero(columns, columns);
-  detail::add_product(inverse, scaled, scaled.transpose());
-  MatrixX weighted = jacobian;
-  for (Index i = 0; i < weighted.rows(); ++i) weighted.row(i) *= row_variance(i);
-  MatrixX middle = MatrixX::Zero(columns, columns), half = middle;
-  detail::add_transposed_product(middle, jacobian, weighted);
+  for (Index k = 0; k < columns; ++k)
+    for (Index r = 0; r < columns; ++r) scaled(r, k) /= svd.values(k);
+  inverse = detail::matrix_product(scaled, scaled.transpose());
+  MatrixX middle = detail::transposed_matrix_product(jacobian, detail::rows_scaled(row_variance, jacobian));
   for (Index k = 0; k < columns; ++k)
     if (prior(k) > 0) middle(k, k) += prior(k) * prior(k) * prior_variance(k);
-  detail::add_product(half, inverse, middle);
-  covariance.setZero(columns, columns);
-  detail::add_product(covariance, half, inverse);
+  covariance = detail::matrix_product(detail::matrix_product(inverse, middle), inverse);
 }
 
 }  // namespace vernier

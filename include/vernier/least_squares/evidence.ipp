@@ -20,10 +20,14 @@ struct PenalisedMinimum {
 VERNIER_API PenalisedMinimum penalised_minimum(const NormalEquations& normal, const FactorisedEquations& solved,
                                                const VectorX& precisions, const VectorX& steps, Index values,
                                                const VectorX& local_steps) {
-  const double at_present = normal.cost + precisions.dot(steps.cwiseAbs2()) + local_prior_cost(normal, local_steps);
-  const double gain = solved.step().dot(normal.gradient + precisions.cwiseProduct(steps)) +
-                      local_gain(normal, solved.local_step(), local_steps);
-  const auto without_prior = static_cast<double>((precisions.array() <= 0).count() - normal.prior_unknowns);
+  double at_present = normal.cost + local_prior_cost(normal, local_steps);
+  double gain = local_gain(normal, solved.local_step(), local_steps);
+  double without_prior = -static_cast<double>(normal.prior_unknowns);
+  for (Index k = 0; k < steps.size(); ++k) {
+    at_present += precisions(k) * steps(k) * steps(k);
+    gain += solved.step()(k) * (normal.gradient(k) + precisions(k) * steps(k));
+    if (precisions(k) <= 0) without_prior += 1;
+  }
   return {std::max(at_present + gain, 0.0) + sensor_values,
           std::max(1.0, static_cast<double>(values) - without_prior) + sensor_values};
 }
@@ -69,20 +73,19 @@ class ScaledEvidence {
       value_(k, 0) = root * (steps(unknown) + solved.step()(unknown));
     }
     solved.apply_inverse_factor(columns);
-    share_.setZero(size_, size_);
-    add_product(share_, columns.transpose(), columns);
+    share_ = transposed_matrix_product(columns, columns);
     usable_ = true;
   }
 
   VERNIER_API double operator()(double factor) const {
     if (!usable_) return -std::numeric_limits<double>::infinity();
     MatrixX change = (factor - 1) * share_, value = value_;
-    change.diagonal().array() += 1;
+    for (Index k = 0; k < size_; ++k) change(k, k) += 1;
     if (!cholesky(change)) return -std::numeric_limits<double>::infinity();
     solve_lower(change, value);
     const double cost = std::max(minimum_.cost + (factor - 1) * value.squaredNorm(), 1e-300);
-    const double log_determinant = 2 * change.diagonal().array().log().sum();
-    return -0.5 * (minimum_.freedom * std::log(cost) + log_determinant - static_cast<double>(size_) * std::log(factor));
+    return -0.5 * (minimum_.freedom * std::log(cost) + cholesky_log_determinant(change) -
+                   static_cast<double>(size_) * std::log(factor));
   }
 
  private:

@@ -103,7 +103,7 @@ class FactorisedEquations {
   /// Rows of a block with local states eliminated.
   /// @param block the block
   /// @param rows  6 x unknowns, as expanded; then less what local states explain
-  VERNIER_API void eliminate_local(const RowBlock& block, Eigen::Ref<Rows6> rows) const;
+  VERNIER_API void eliminate_local(const RowBlock& block, Rows6& rows) const;
   /// Covariances of the rows of blocks by local states alone: 6 x 6 of each block, side by side.
   VERNIER_API MatrixX local_gains(const std::vector<RowBlock>& blocks) const;
 
@@ -120,7 +120,7 @@ class FactorisedEquations {
     double log_determinant = 0;
   };
 
-  FactorisedEquations(const NormalEquations& normal, SparseSolve solve, std::shared_ptr<const Reduced> reduced)
+  FactorisedEquations(const NormalEquations& normal, std::shared_ptr<const Reduced> reduced, SparseSolve solve)
       : normal_(&normal), solve_(solve), reduced_(std::move(reduced)) {}
   /// Nothing where the local part is not positive definite.
   VERNIER_API static std::shared_ptr<const Reduced> eliminate(const NormalEquations& normal, const VectorX& local_steps,
@@ -155,6 +155,13 @@ VERNIER_API LeftOutBlocks leave_one_out(const BlockSystem& system, const Factori
 /// Position errors of `leave_one_out`, 3 x ceil(validation_blocks / stride) [m].
 VERNIER_API Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
                                                   Index stride);
+
+namespace detail {
+
+/// Norm of the position error of each block [m].
+VERNIER_API VectorX error_norms(const Eigen::Matrix3Xd& errors);
+
+}  // namespace detail
 
 }  // namespace vernier
 

@@ -26,10 +26,10 @@ class PairBlocks {
 
   static Pair pair(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-  /// The block of rows of the later state and columns of the earlier one.
-  Eigen::Map<MatrixX> block(const Pair& pair) {
+  /// The block of rows of the later state and columns of the earlier one, by columns.
+  double* block(const Pair& pair) {
     const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), pair) - pairs_.begin();
-    return {values_.data() + at * size_ * size_, size_, size_};
+    return values_.data() + at * size_ * size_;
   }
 
   /// By columns, the same entries for any values.
@@ -82,17 +82,21 @@ VERNIER_API void add_local(const BlockSystem& system, const std::vector<LocalPri
     for (const RowBlock::Local& a : rows.local) {
       if (a.state < 0) continue;
       add_transposed_product(out.coupling.middleRows(a.state * k, k), a.columns, expanded);
-      out.local_gradient.segment(a.state * k, k) += a.columns.transpose().lazyProduct(rows.residual);
-      for (const RowBlock::Local& b : rows.local)
-        if (b.state >= 0 && b.state <= a.state)
-          sums.block({b.state, a.state}) += a.columns.transpose().lazyProduct(b.columns);
+      for (Index i = 0; i < k; ++i) out.local_gradient(a.state * k + i) += column_of(a.columns, i).dot(rows.residual);
+      for (const RowBlock::Local& b : rows.local) {
+        if (b.state < 0 || b.state > a.state) continue;
+        double* sum = sums.block({b.state, a.state});
+        for (Index j = 0; j < k; ++j)
+          for (Index i = 0; i < k; ++i) sum[k * j + i] += column_of(a.columns, i).dot(column_of(b.columns, j));
+      }
     }
   });
-  for (const LocalPrior& prior : priors)
-    if (prior.first >= prior.second)
-      prior_sums.block(PairBlocks::pair(prior.first, prior.second)) += prior.precision;
-    else
-      prior_sums.block(PairBlocks::pair(prior.first, prior.second)) += prior.precision.transpose();
+  for (const LocalPrior& prior : priors) {
+    double* sum = prior_sums.block(PairBlocks::pair(prior.first, prior.second));
+    for (Index j = 0; j < k; ++j)
+      for (Index i = 0; i < k; ++i)
+        sum[k * j + i] += prior.first >= prior.second ? prior.precision(i, j) : prior.precision(j, i);
+  }
   out.local = sums.compressed(system.local_states);
   out.local_prior = prior_sums.compressed(system.local_states);
 }
@@ -133,26 +137,26 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
     const Index n = std::min(chunk, system.blocks - first);
     executor.for_ranges((n + detail::rows_at_a_time - 1) / detail::rows_at_a_time, [&](Index from, Index to) {
       const Index start = from * detail::rows_at_a_time, stop = std::min(n, to * detail::rows_at_a_time);
-      MatrixX product;
       detail::visit_blocks(system, first + start, 1, stop - start, [&](Index k, const RowBlock& rows) {
         const Index b = start + k;
-        if (d > 0) dense.middleRows(6 * b, 6) = rows.dense;
-        residuals.segment(6 * b, 6) = rows.residual;
+        for (Index c = 0; c < d; ++c)
+          for (Index r = 0; r < 6; ++r) dense(6 * b + r, c) = rows.dense(r, c);
+        for (Index r = 0; r < 6; ++r) residuals(6 * b + r) = rows.residual(r);
         if (all == d) return;
-        h.row(b) = rows.functions.transpose();
-        product = rows.factor.transpose().lazyProduct(rows.factor);
-        factor_product.row(b) = product.reshaped().transpose();
-        if (d > 0) {
-          product = rows.dense.transpose().lazyProduct(rows.factor);
-          mixed.row(b) = product.reshaped().transpose();
+        for (Index c = 0; c < all - d; ++c) h(b, c) = rows.functions(c);
+        for (Index j = 0; j < groups; ++j) {
+          const Vector6 factor = column_of(rows.factor, j);
+          for (Index i = 0; i <= j; ++i) factor_product(b, i + groups * j) = column_of(rows.factor, i).dot(factor);
+          for (Index c = 0; c < d; ++c) mixed(b, c + d * j) = column_of(rows.dense, c).dot(factor);
+          factor_residual(b, j) = rows.residual.dot(factor);
         }
-        factor_residual.row(b) = rows.residual.transpose().lazyProduct(rows.factor);
       });
     });
     const auto dense_rows = dense.topRows(6 * n);
+    const VectorX present = residuals.head(6 * n);
     detail::add_transposed_product(matrix.topLeftCorner(d, d), dense_rows, dense_rows);
-    detail::add_transposed_product(gradient.head(d), dense_rows, residuals.head(6 * n));
-    cost += residuals.head(6 * n).squaredNorm();
+    detail::add_transposed_product(gradient.head(d), dense_rows, present);
+    cost += present.squaredNorm();
     const auto functions = [&](Index j) {
       const auto group = static_cast<std::size_t>(j);
       return h.block(0, begin[group], n, begin[group + 1] - begin[group]);
@@ -164,41 +168,38 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
       detail::add_transposed_product(matrix.block(0, at, d, h_j.cols()), mixed.block(0, j * d, n, d), h_j);
     }
     executor.for_ranges(all > d ? static_cast<Index>(pairs.size()) : 0, [&](Index from, Index to) {
-      MatrixX scaled;
       for (Index pair = from; pair < to; ++pair) {
         const Index i = pairs[static_cast<std::size_t>(pair)][0], j = pairs[static_cast<std::size_t>(pair)][1];
         const auto h_i = functions(i), h_j = functions(j);
         const Index row = d + begin[static_cast<std::size_t>(i)], column = d + begin[static_cast<std::size_t>(j)];
-        scaled = factor_product.col(i + groups * j).head(n).asDiagonal() * h_j;
+        const MatrixX scaled = detail::rows_scaled(factor_product.col(i + groups * j).head(n), h_j);
         if (i != j) {
           detail::add_transposed_product(matrix.block(row, column, h_i.cols(), h_j.cols()), h_i, scaled);
           continue;
         }
         const Index half = h_i.cols() / 2, rest = h_i.cols() - half;  // nothing below the diagonal blocks of this block
-        detail::add_transposed_product(matrix.block(row, column, half, h_i.cols()), h_i.leftCols(half), scaled);
-        detail::add_transposed_product(matrix.block(row + half, column + half, rest, rest), h_i.rightCols(rest),
-                                       scaled.rightCols(rest));
+        const Index at = begin[static_cast<std::size_t>(i)];
+        detail::add_transposed_product(matrix.block(row, column, half, h_i.cols()), h.block(0, at, n, half), scaled);
+        detail::add_transposed_product(matrix.block(row + half, column + half, rest, rest),
+                                       h.block(0, at + half, n, rest), scaled.rightCols(rest));
       }
     });
   }
-  matrix.triangularView<Eigen::StrictlyLower>() = matrix.transpose();
+  for (Index c = 0; c < all; ++c)
+    for (Index r = c + 1; r < all; ++r) matrix(r, c) = matrix(c, r);
   if (system.local_states > 0) detail::add_local(system, local_priors, *this);
 }
 
 VERNIER_IMPL double JointPrior::cost(const VectorX& steps) const {
-  const MatrixX offset = steps - mean;
-  MatrixX slope = MatrixX::Zero(offset.rows(), 1);
-  detail::add_product(slope, precision, offset);
-  return slope.col(0).dot(offset.col(0));
+  const VectorX offset = steps - mean;
+  return offset.dot(detail::product(precision, offset));
 }
 
 VERNIER_IMPL void NormalEquations::add(const JointPrior& joint, const VectorX& steps) {
-  const MatrixX offset = steps - joint.mean;
-  MatrixX slope = MatrixX::Zero(offset.rows(), 1);
-  detail::add_product(slope, joint.precision, offset);
+  const VectorX offset = steps - joint.mean, slope = detail::product(joint.precision, offset);
   matrix += joint.precision;
-  gradient += slope.col(0);
-  cost += slope.col(0).dot(offset.col(0));
+  gradient += slope;
+  cost += offset.dot(slope);
   prior = joint.precision;
   prior_unknowns = joint.unknowns;
 }
@@ -209,10 +210,19 @@ VERNIER_IMPL double local_prior_cost(const NormalEquations& normal, const Vector
 
 VERNIER_IMPL double local_gain(const NormalEquations& normal, const VectorX& step, const VectorX& local_steps) {
   if (normal.local.size == 0) return 0;
-  return step.dot(normal.local_gradient + detail::multiply(normal.local_prior, local_steps));
+  const VectorX slope = normal.local_gradient + detail::multiply(normal.local_prior, local_steps);
+  return step.dot(slope);
 }
 
 namespace detail {
+
+/// out += factor columns x, six values
+inline void add_columns(const Rows6& columns, const double* x, double factor, double* out) {
+  double sum[6] = {};
+  for (Index j = 0; j < columns.cols(); ++j)
+    for (Index r = 0; r < 6; ++r) sum[r] += x[j] * columns(r, j);
+  for (Index r = 0; r < 6; ++r) out[r] += factor * sum[r];
+}
 
 /// Calls `use(first, count)` for panels of the columns of a lower triangle.
 template <class Use>
@@ -232,12 +242,12 @@ void visit_panels(ExecutorRef executor, Index n, Index width, const Use& use) {
 VERNIER_IMPL FactorisedEquations::FactorisedEquations(const NormalEquations& normal, const VectorX& precisions,
                                                       const VectorX& steps, const VectorX& local_steps,
                                                       SparseSolve solve, double damping)
-    : FactorisedEquations(normal, solve, eliminate(normal, local_steps, solve)) {
+    : FactorisedEquations(normal, eliminate(normal, local_steps, solve), solve) {
   factorise(precisions, steps, damping);
 }
 
 VERNIER_IMPL FactorisedEquations FactorisedEquations::with(const VectorX& precisions, const VectorX& steps) const {
-  FactorisedEquations out(*normal_, solve_, reduced_);
+  FactorisedEquations out(*normal_, reduced_, solve_);
   out.factorise(precisions, steps, 0);
   return out;
 }
@@ -277,23 +287,28 @@ VERNIER_IMPL void FactorisedEquations::factorise(const VectorX& precisions, cons
   const bool local = normal.local.size > 0;
   if (local && reduced_ == nullptr) return;
   factor_ = local ? reduced_->matrix : normal.matrix;
-  VectorX right = precisions.cwiseProduct(steps);
-  right += local ? reduced_->gradient : normal.gradient;
-  factor_.diagonal() += precisions + damping * (normal.matrix.diagonal() + precisions);
-  VectorX of_data = normal.matrix.diagonal();  // priors may be huge
-  if (normal.prior.size() > 0) of_data -= normal.prior.diagonal();
-  factor_.diagonal().array() += 1e-12 * of_data.maxCoeff();
+  const VectorX& gradient = local ? reduced_->gradient : normal.gradient;
+  const Index n = gradient.size();
+  VectorX of_data = detail::diagonal_of(normal.matrix);  // priors may be huge
+  if (normal.prior.size() > 0) of_data -= detail::diagonal_of(normal.prior);
+  const double least = 1e-12 * of_data.maxCoeff();
+  VectorX step(n);
+  for (Index k = 0; k < n; ++k) {
+    factor_(k, k) += precisions(k) + damping * (normal.matrix(k, k) + precisions(k)) + least;
+    step(k) = -(precisions(k) * steps(k) + gradient(k));
+  }
   if (!detail::cholesky(factor_)) return;
-  step_ = -right;
+  step_ = std::move(step);
   detail::solve_cholesky(factor_, step_);
-  usable_ = step_.allFinite();
+  usable_ = detail::all_finite(step_);
   if (!local) return;
-  local_step_ = -reduced_->eliminated.col(0);
-  detail::add_product(local_step_, reduced_->eliminated.rightCols(step_.size()), step_, -1);
+  local_step_ = reduced_->eliminated.col(0);
+  detail::add_product(local_step_, reduced_->eliminated.rightCols(n), step_);
+  local_step_ *= -1;
 }
 
 VERNIER_IMPL double FactorisedEquations::log_determinant() const {
-  return 2 * factor_.diagonal().array().log().sum() + (reduced_ == nullptr ? 0 : reduced_->log_determinant);
+  return detail::cholesky_log_determinant(factor_) + (reduced_ == nullptr ? 0 : reduced_->log_determinant);
 }
 
 VERNIER_IMPL MatrixX FactorisedEquations::inverse() const { return detail::inverse_from_cholesky(factor_); }
@@ -303,10 +318,9 @@ VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal() const {
   const Index n = factor_.rows();
   VectorX out(n);
   detail::visit_panels(executor(), n, 64, [&](Index first, Index count) {
-    MatrixX columns = MatrixX::Zero(n - first, count);
-    columns.topRows(count).setIdentity();
+    MatrixX columns = MatrixX::Identity(n - first, count);
     detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
-    out.segment(first, count) = columns.colwise().squaredNorm().transpose();
+    out.segment(first, count) = detail::squared_column_norms(columns);
   });
   return out;
 }
@@ -315,11 +329,12 @@ VERNIER_IMPL void FactorisedEquations::apply_inverse_factor(MatrixRef columns) c
   detail::solve_lower(factor_, columns);
 }
 
-VERNIER_IMPL void FactorisedEquations::eliminate_local(const RowBlock& block, Eigen::Ref<Rows6> rows) const {
+VERNIER_IMPL void FactorisedEquations::eliminate_local(const RowBlock& block, Rows6& rows) const {
   for (const RowBlock::Local& local : block.local) {
     if (local.state < 0) continue;
     const Index k = local.columns.cols();
-    rows -= local.columns.lazyProduct(reduced_->eliminated.block(local.state * k, 1, k, rows.cols()));
+    for (Index c = 0; c < rows.cols(); ++c)
+      detail::add_columns(local.columns, &reduced_->eliminated(local.state * k, 1 + c), -1, &rows(0, c));
   }
 }
 
@@ -329,22 +344,21 @@ VERNIER_IMPL MatrixX FactorisedEquations::local_gains(const std::vector<RowBlock
   MatrixX columns = MatrixX::Zero(reduced_->local.size, out.cols());
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (const RowBlock::Local& local : blocks[b].local)
-      if (local.state >= 0)
-        columns.block(local.state * local.columns.cols(), 6 * static_cast<Index>(b), local.columns.cols(), 6) =
-            local.columns.transpose();
+      for (Index j = 0; local.state >= 0 && j < local.columns.cols(); ++j)
+        for (Index r = 0; r < 6; ++r)
+          columns(local.state * local.columns.cols() + j, 6 * static_cast<Index>(b) + r) = local.columns(r, j);
   solve_(reduced_->local, columns);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (const RowBlock::Local& local : blocks[b].local)
-      if (local.state >= 0)
-        out.middleCols(6 * static_cast<Index>(b), 6) += local.columns.lazyProduct(
-            columns.block(local.state * local.columns.cols(), 6 * static_cast<Index>(b), local.columns.cols(), 6));
+      for (Index c = 6 * static_cast<Index>(b); local.state >= 0 && c < 6 * static_cast<Index>(b + 1); ++c)
+        detail::add_columns(local.columns, &columns(local.state * local.columns.cols(), c), 1, &out(0, c));
   return out;
 }
 
 VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const FactorisedEquations& solved, Index stride) {
   const Index size = (system.validation_blocks + stride - 1) / stride;
-  LeftOutBlocks out{Eigen::Matrix3Xd::Constant(3, size, std::numeric_limits<double>::infinity()),
-                    VectorX::Constant(size, -std::numeric_limits<double>::infinity())};
+  LeftOutBlocks out{Eigen::Matrix3Xd(3, size), VectorX::Constant(size, -std::numeric_limits<double>::infinity())};
+  std::fill_n(out.errors.data(), 3 * size, std::numeric_limits<double>::infinity());
   if (!solved.usable()) return out;
   VectorX squares(size), log_determinants(size), values(size);  // of whitened errors; of I - H; measured ones
   constexpr Index batch = 32;
@@ -352,28 +366,35 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
   solved.executor().for_ranges((size + batch - 1) / batch, [&](Index from, Index to) {
     std::vector<RowBlock> kept;
     Rows6 expanded(6, system.unknowns());
-    MatrixX columns(system.unknowns(), 6 * batch), residuals(6, batch), unwhiten(6, 6 * batch), gains, rest;
+    MatrixX columns(system.unknowns(), 6 * batch), gains, rest;
+    std::array<Vector6, batch> residuals;
+    std::array<Matrix6, batch> unwhiten;
     VectorX sigmas(batch);
     for (Index first = from * batch; first < std::min(to * batch, size); first += batch) {
       const Index n = std::min(batch, size - first);
       kept.clear();
       detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
         rows.expand(system.group_sizes, expanded);
-        residuals.col(b) = rows.residual + expanded.lazyProduct(solved.step());
+        const auto k = static_cast<std::size_t>(b);
+        residuals[k] = rows.residual;
+        detail::add_columns(expanded, solved.step().data(), 1, residuals[k].data());
         if (local) {
           for (const RowBlock::Local& part : rows.local)
             if (part.state >= 0)
-              residuals.col(b) += part.columns.lazyProduct(
-                  solved.local_step().segment(part.state * system.local_size, system.local_size));
+              detail::add_columns(part.columns, &solved.local_step()(part.state * system.local_size), 1,
+                                  residuals[k].data());
           solved.eliminate_local(rows, expanded);
           kept.push_back(rows);
         }
-        columns.middleCols(6 * b, 6) = expanded.transpose();
-        unwhiten.middleCols(6 * b, 6) = rows.unwhiten;
+        unwhiten[k] = rows.unwhiten;
         sigmas(b) = rows.position_sigma;
         values(first + b) = 0;
-        for (Index i = 0; i < 6; ++i)
-          if (rows.residual(i) != 0 || (rows.dense.row(i).array() != 0).any()) values(first + b) += 1;
+        for (Index i = 0; i < 6; ++i) {
+          for (Index c = 0; c < expanded.cols(); ++c) columns(c, 6 * b + i) = expanded(i, c);
+          bool measured = rows.residual(i) != 0;
+          for (Index c = 0; c < rows.dense.cols() && !measured; ++c) measured = rows.dense(i, c) != 0;
+          if (measured) values(first + b) += 1;
+        }
       });
       solved.apply_inverse_factor(columns.leftCols(6 * n));
       if (local) gains = solved.local_gains(kept);
@@ -382,21 +403,30 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
         rest.setIdentity(6, 6);
         detail::add_transposed_product(rest, z, z, -1);
         if (local) rest -= gains.middleCols(6 * b, 6);
-        const Vector6 residual = residuals.col(b);
-        log_determinants(first + b) = detail::solve_general(rest, residuals.col(b));
-        squares(first + b) = residual.dot(residuals.col(b));
-        out.errors.col(first + b) = sigmas(b) * unwhiten.block(0, 6 * b, 3, 6).lazyProduct(residuals.col(b));
+        const auto k = static_cast<std::size_t>(b);
+        Vector6 left_out = residuals[k];
+        log_determinants(first + b) = detail::solve_general(rest, left_out);
+        squares(first + b) = residuals[k].dot(left_out);
+        const Vector6 error = unwhiten[k] * left_out;
+        for (Index r = 0; r < 3; ++r) out.errors(r, first + b) = sigmas(b) * error(r);
       }
     }
   });
   const double variance = squares.sum() / values.sum();
-  out.log_densities = -0.5 * (squares / variance - log_determinants + std::log(variance) * values);
+  for (Index b = 0; b < size; ++b)
+    out.log_densities(b) = -0.5 * (squares(b) / variance - log_determinants(b) + std::log(variance) * values(b));
   return out;
 }
 
 VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
                                                    Index stride) {
   return leave_one_out(system, solved, stride).errors;
+}
+
+VERNIER_IMPL VectorX detail::error_norms(const Eigen::Matrix3Xd& errors) {
+  VectorX out(errors.cols());
+  for (Index b = 0; b < out.size(); ++b) out(b) = Vector3(errors(0, b), errors(1, b), errors(2, b)).norm();
+  return out;
 }
 
 }  // namespace vernier

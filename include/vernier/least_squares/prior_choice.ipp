@@ -12,8 +12,10 @@ namespace detail {
 
 /// Standard error of the mean of some values.
 VERNIER_API double standard_error(const VectorX& values) {
-  const double n = static_cast<double>(values.size());
-  return std::sqrt((values.array() - values.mean()).square().sum() / std::max(1.0, n * (n - 1)));
+  const double n = static_cast<double>(values.size()), mean = values.mean();
+  double sum = 0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / std::max(1.0, n * (n - 1)));
 }
 
 }  // namespace detail
@@ -34,7 +36,7 @@ namespace detail {
 
 /// What the position errors of each block are smaller by [m].
 VERNIER_API VectorX saved_errors(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  return (without.errors.colwise().norm() - with.errors.colwise().norm()).transpose();
+  return error_norms(without.errors) - error_norms(with.errors);
 }
 
 }  // namespace detail
@@ -53,9 +55,9 @@ VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEqu
                                       const VectorX& steps, Index first, Index count, Index stride) {
   std::vector<PriorTrial> trials;
   for (const double precision : {0.3, 1.0, 3.0, 10.0, 100.0, 1e4, suppressing_precision}) {
-    precisions.segment(first, count).setConstant(precision);
+    for (Index k = first; k < first + count; ++k) precisions(k) = precision;
     const FactorisedEquations solved(normal, precisions, steps);
-    trials.push_back({precision, leave_one_out_errors(system, solved, stride).colwise().norm().transpose()});
+    trials.push_back({precision, detail::error_norms(leave_one_out_errors(system, solved, stride))});
   }
   double smallest = trials.front().errors.mean();
   for (const PriorTrial& trial : trials) smallest = std::min(smallest, trial.errors.mean());

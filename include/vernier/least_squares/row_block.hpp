@@ -3,6 +3,7 @@
 /// @file
 /// Whitened rows of a least-squares problem, in blocks of up to six: a block is a measured pose, position or distance.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -13,6 +14,13 @@ namespace vernier {
 
 /// Six rows, any number of columns.
 using Rows6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// The j-th column of six rows.
+inline Vector6 column_of(const Rows6& rows, Index j) {
+  Vector6 out;
+  std::copy_n(rows.data() + 6 * j, 6, out.data());
+  return out;
+}
 
 /// Residual (model minus measured) of a block and its derivatives with respect to the unknowns, all divided by the
 /// standard deviations of the measurement. Rows that were not measured are zero. Three kinds of unknowns:
@@ -37,7 +45,7 @@ struct RowBlock {
   double position_sigma = 1;     ///< standard deviation of the first three rows then [m]
 
   /// Writes the columns of all dense and factored unknowns, 6 x unknowns.
-  VERNIER_API void expand(const std::vector<Index>& group_sizes, Eigen::Ref<Rows6> out) const;
+  VERNIER_API void expand(const std::vector<Index>& group_sizes, Rows6& out) const;
 };
 
 /// A least-squares problem at its present values.

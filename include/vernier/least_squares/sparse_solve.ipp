@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCholesky>
+#include <cmath>
 
 #include "vernier/least_squares/sparse_solve.hpp"
 
@@ -11,9 +12,14 @@ VERNIER_IMPL SparseOutcome EigenSparseSolver::operator()(const SparseSymmetric& 
   const Eigen::Map<const Sparse> view(matrix.size, matrix.size, static_cast<Index>(matrix.values.size()),
                                       matrix.starts.data(), matrix.rows.data(), matrix.values.data());
   const Eigen::SimplicialLDLT<Sparse> factor{Sparse(view)};
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return {};
-  right = MatrixX(factor.solve(right));
-  return {true, factor.vectorD().array().log().sum()};
+  if (factor.info() != Eigen::Success) return {};
+  const VectorX diagonal = factor.vectorD();
+  if (!(diagonal.minCoeff() > 0)) return {};
+  const MatrixX given = right, solution = factor.solve(given);
+  right = solution;
+  double log_determinant = 0;
+  for (const double d : diagonal) log_determinant += std::log(d);
+  return {true, log_determinant};
 }
 
 }  // namespace vernier

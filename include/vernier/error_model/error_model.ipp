@@ -6,25 +6,33 @@
 namespace vernier::detail {
 
 VERNIER_IMPL Isometry3 blend_poses(double gate, const Isometry3& near, const Isometry3& far) noexcept {
-  Isometry3 out = far;
-  out.translation() += gate * (near.translation() - far.translation());
-  out.linear() = exp_so3(Vector3(gate * log_so3(near.linear() * far.linear().transpose()))) * far.linear();
-  return out;
+  const Vector3 start = translation(far), apart = translation(near) - start;
+  const Matrix3 turned = rotation(far);
+  const Vector3 turn = gate * rotation_difference(rotation(near), turned);
+  return rigid_motion(exp_so3(turn) * turned, start + gate * apart);
 }
 
 VERNIER_IMPL void blend_jacobians(double gate, const double* slope, const Isometry3& near, const double* near_jacobian,
                                   const Isometry3& far, Index joints, double* jacobian) noexcept {
   // R = Exp(gate * phi) R_far with Exp(phi) = R_near R_far'
-  const Vector3 apart = near.translation() - far.translation();
-  const Matrix3 between = near.linear() * far.linear().transpose();
+  const Vector3 apart = translation(near) - translation(far);
+  const Matrix3 back = rotation(far).transpose(), between = rotation(near) * back;
   const Vector3 phi = log_so3(between), part = gate * phi;
   const Matrix3 inverse = left_jacobian_inverse_so3(phi), left = left_jacobian_so3(part), turned = exp_so3(part);
   for (Index k = 0; k < joints; ++k) {
-    const Eigen::Map<const Vector3> near_linear(near_jacobian + 6 * k), near_angular(near_jacobian + 6 * k + 3);
-    Eigen::Map<Vector3> linear(jacobian + 6 * k), angular(jacobian + 6 * k + 3);
-    linear += gate * (near_linear - linear) + apart * slope[k];
-    const Vector3 phi_rate = inverse * (near_angular - between * angular);
-    angular = left * (gate * phi_rate + phi * slope[k]) + turned * angular;
+    const double* near_column = near_jacobian + 6 * k;
+    double* column = jacobian + 6 * k;
+    const Vector3 angular(column[3], column[4], column[5]),
+        near_angular(near_column[3], near_column[4], near_column[5]);
+    const Vector3 carried = between * angular, phi_rate = inverse * Vector3(near_angular - carried);
+    Vector3 part_rate = gate * phi_rate;
+    part_rate += slope[k] * phi;
+    Vector3 blended = left * part_rate;
+    blended += turned * angular;
+    for (Index r = 0; r < 3; ++r) {
+      column[r] += gate * (near_column[r] - column[r]) + apart(r) * slope[k];
+      column[3 + r] = blended(r);
+    }
   }
 }
 

@@ -20,8 +20,11 @@ VERNIER_IMPL ArmParameterisation parameterised(const FittedArm& arm, std::vector
   for (std::size_t k = 0; k < out.geometric().size(); ++k)
     if (const GeometricUnknown& u = out.geometric()[k]; u.thermal && thermal_rates.size() > 0)
       steps(static_cast<Index>(k)) = thermal_rates(u.parameter) / u.scale;
-  if (!arm.errors.empty())
-    steps.tail(arm.errors.coefficients().size()) = arm.errors.coefficients().cwiseQuotient(coefficient_scales);
+  if (!arm.errors.empty()) {
+    const VectorX& coefficients = arm.errors.coefficients();
+    for (Index k = 0, first = steps.size() - coefficients.size(); k < coefficients.size(); ++k)
+      steps(first + k) = coefficients(k) / coefficient_scales(k);
+  }
   out.move(steps);
   return out;
 }
@@ -50,7 +53,7 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::first_station() const {
   out.fallback_error = fallback_error;
   out.mean_temperature = mean_temperature;
   out.temperature_std = temperature_std;
-  out.covariance = covariance(kept, kept);
+  out.covariance = detail::rows_of(MatrixX(detail::rows_of(covariance, kept).transpose()), kept);
   out.variance_factor = variance_factor;
   out.residual_variance = residual_variance;
   return out;
@@ -78,16 +81,35 @@ VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std
   for (Index k = 0; k < n; ++k) {
     const VectorX q = VectorX::Constant(terms.joints, angles[static_cast<std::size_t>(k)]);
     arm.transmission_values(q.data(), all);
-    rows.row(k) = all.segment(first, count).transpose();
+    for (Index c = 0; c < count; ++c) rows(k, c) = all(first + c);
   }
-  rows.rowwise() -= rows.colwise().mean().eval();
-  MatrixX spread = MatrixX::Zero(n, count), value = MatrixX::Zero(n, 1);
-  detail::add_product(spread, rows, covariance.block(at, at, count, count));
-  detail::add_product(value, rows, arm.steps().segment(at, count));
-  return {value, spread.cwiseProduct(rows).rowwise().sum().cwiseMax(0).cwiseSqrt()};
+  rows = detail::rows_minus(rows, detail::column_means(rows));
+  const MatrixX spread = detail::matrix_product(rows, covariance.block(at, at, count, count));
+  JointFunction out{detail::product(rows, arm.steps().segment(at, count)), VectorX(n)};
+  for (Index k = 0; k < n; ++k) {
+    double variance = 0;
+    for (Index c = 0; c < count; ++c) variance += spread(k, c) * rows(k, c);
+    out.std(k) = std::sqrt(std::max(variance, 0.0));
+  }
+  return out;
 }
 
 namespace detail {
+
+/// Rows first .. first + count - 1.
+inline MatrixX consecutive_rows(const ConstMatrixRef& rows, Index first, Index count) {
+  MatrixX out(count, rows.cols());
+  for (Index c = 0; c < rows.cols(); ++c)
+    for (Index r = 0; r < count; ++r) out(r, c) = rows(first + r, c);
+  return out;
+}
+
+/// A vector as the only row.
+inline MatrixX one_row(const ConstVectorRef& values) {
+  MatrixX out(1, values.size());
+  for (Index k = 0; k < values.size(); ++k) out(0, k) = values(k);
+  return out;
+}
 
 /// Covariances of modelled poses at n configurations; `rows` are the linearised poses.
 VERNIER_API std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate, const ConstMatrixRef& joints,
@@ -96,30 +118,46 @@ VERNIER_API std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& esti
   const Index n = joints.rows(), unknowns = estimate.arm.size();
   rows.resize(static_cast<std::size_t>(n));
   estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer);
-  MatrixX all(unknowns, 6 * n), half = MatrixX::Zero(unknowns, 6 * n);  // the rows of each pose are contiguous columns
+  MatrixX all(unknowns, 6 * n);  // the rows of each pose are contiguous columns
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {
     rows[static_cast<std::size_t>(i)].expand(estimate.arm.group_sizes(), one);
-    all.middleCols(6 * i, 6) = one.transpose();
+    for (Index r = 0; r < 6; ++r)
+      for (Index k = 0; k < unknowns; ++k) all(k, 6 * i + r) = one(r, k);
   }
-  add_product(half, estimate.covariance, all);
-  std::vector<Matrix6> out;
+  const MatrixX half = matrix_product(estimate.covariance, all);
+  std::vector<Matrix6> out(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i)
-    out.push_back(half.middleCols(6 * i, 6).transpose().lazyProduct(all.middleCols(6 * i, 6)));
+    for (Index c = 0; c < 6; ++c)
+      for (Index r = 0; r < 6; ++r)
+        out[static_cast<std::size_t>(i)](r, c) = half.col(6 * i + r).dot(all.col(6 * i + c));
   return out;
+}
+
+/// out += factor x x'
+inline void add_outer_product(const Vector6& x, double factor, Matrix6& out) {
+  for (Index c = 0; c < 6; ++c)
+    for (Index r = 0; r < 6; ++r) out(r, c) += factor * x(r) * x(c);
+}
+
+/// Whether all values of a row are known.
+inline bool known_row(const MatrixX& rows, Index i) {
+  for (Index c = 0; c < rows.cols(); ++c)
+    if (!std::isfinite(rows(i, c))) return false;
+  return true;
 }
 
 }  // namespace detail
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
   std::vector<RowBlock> rows;
-  return detail::pose_covariances(*this, q.transpose(), station, MatrixX(), VectorX::Zero(1), rows).front();
+  return detail::pose_covariances(*this, detail::one_row(q), station, MatrixX(), VectorX::Zero(1), rows).front();
 }
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station,
                                                           const ConstVectorRef& previous, double temperature) const {
-  const MatrixX before = previous.size() > 0 ? MatrixX(previous.transpose()) : MatrixX();
-  return visit_covariances(q.transpose(), VectorX::Constant(1, gate), station, before,
+  const MatrixX before = previous.size() > 0 ? detail::one_row(previous) : MatrixX();
+  return visit_covariances(detail::one_row(q), VectorX::Constant(1, gate), station, before,
                            VectorX::Constant(1, temperature))
       .front();
 }
@@ -133,8 +171,8 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
   const VectorX steps = arm.steps();
   for (Index first = 0; first < joints.rows(); first += batch) {
     const Index n = std::min(batch, joints.rows() - first);
-    const MatrixX q = joints.middleRows(first, n),
-                  before = previous.rows() > 0 ? MatrixX(previous.middleRows(first, n)) : MatrixX();
+    const MatrixX q = detail::consecutive_rows(joints, first, n),
+                  before = previous.rows() > 0 ? detail::consecutive_rows(previous, first, n) : MatrixX();
     VectorX warmer = VectorX::Zero(n);
     std::vector<bool> known(static_cast<std::size_t>(n), false);
     for (Index i = 0; i < n && temperatures.size() > 0; ++i)
@@ -154,21 +192,22 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
       if (!known[i] && temperature_std > 0) {  // what a standard deviation of temperature does
         Vector6 effect = Vector6::Zero();
         for (Index k = 0; k < static_cast<Index>(arm.geometric().size()); ++k)
-          if (arm.geometric()[static_cast<std::size_t>(k)].thermal) effect += steps(k) * warm[i].dense.col(k);
-        out += effect * effect.transpose();
+          if (arm.geometric()[static_cast<std::size_t>(k)].thermal) effect += steps(k) * column_of(warm[i].dense, k);
+        detail::add_outer_product(effect, 1, out);
       }
-      if (!arm.terms().hysteresis.empty() && (before.rows() == 0 || !before.row(row).allFinite()))
-        for (int j = 0; j < arm.terms().joints; ++j) {
-          const Vector6 half = rows[i].factor.col(j) * arm.joint_errors().half_loop(j);
-          out += half * half.transpose();
-        }
-      out += joint_sigma * joint_sigma * rows[i].factor.lazyProduct(rows[i].factor.transpose());
+      const bool by_half_loops =
+          !arm.terms().hysteresis.empty() && (before.rows() == 0 || !detail::known_row(before, row));
+      for (int j = 0; j < static_cast<int>(rows[i].factor.cols()); ++j) {
+        const double half_loop = by_half_loops ? arm.joint_errors().half_loop(j) : 0;
+        detail::add_outer_product(column_of(rows[i].factor, j), joint_sigma * joint_sigma + half_loop * half_loop, out);
+      }
       const double gate = gates(first + row);
-      if (gate < 1)  // errors that the suppressed terms would have corrected
-        out.diagonal().head<3>().array() +=
-            std::pow((1 - gate) * fallback_error / 1.6, 2);  // a mean norm is 1.6 sigma of a component
-      out.diagonal().head<3>().array() += position_sigma * position_sigma;
-      out.diagonal().tail<3>().array() += orientation_sigma * orientation_sigma;
+      // errors that the suppressed terms would have corrected; a mean norm is 1.6 sigma of a component
+      const double suppressed = gate < 1 ? (1 - gate) * fallback_error / 1.6 : 0;
+      for (Index r = 0; r < 3; ++r) {
+        out(r, r) += suppressed * suppressed + position_sigma * position_sigma;
+        out(r + 3, r + 3) += orientation_sigma * orientation_sigma;
+      }
       all.push_back(out);
     }
   }

@@ -37,8 +37,8 @@ VERNIER_API std::vector<ArmGeometry> starting_arms(const ErrorModelInput& input)
         FrameParameters(register_points(unregistered.positions(data.joints()), *data.positions)),
         input.identified.tool()));
   for (const Station& data : input.distances) {
-    Isometry3 base = Isometry3::Identity();
-    base.translation() = -trilaterate(unregistered.positions(data.joints()), *data.lengths);
+    const Vector3 fixed = trilaterate(unregistered.positions(data.joints()), *data.lengths);
+    const Isometry3 base = rigid_motion(Matrix3::Identity(), -fixed);
     out.push_back(input.identified.with_frames(FrameParameters(base), input.identified.tool()));
   }
   for (const Contact& contact : input.contacts) {
@@ -199,7 +199,8 @@ class ErrorModelFit {
     assess(estimate);
     if (inherited) {  // for the next to start from
       VectorX precisions = problem_.arm.precisions();
-      precisions.tail(expected_.size()) = expected_;
+      for (Index k = 0, first = precisions.size() - expected_.size(); k < expected_.size(); ++k)
+        precisions(first + k) = expected_(k);
       estimate.arm.set_precisions(precisions);
     }
     return out;
@@ -258,7 +259,7 @@ class ErrorModelFit {
     const Linearised& now = linearised();
     const Stopwatch watch(leave_one_out_seconds_);
     const PriorChoice choice = choose_prior(now.system, now.normal, precisions, now.steps, at, count, stride_);
-    precisions.segment(at, count).setConstant(choice.precision);
+    for (Index k = at; k < at + count; ++k) precisions(k) = choice.precision;
     problem_.arm.set_precisions(precisions);
     const bool used = choice.precision < suppressing_precision;
     return {name, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
@@ -324,7 +325,7 @@ class ErrorModelFit {
 
   /// Their mean position error as the problem is [m].
   VERNIER_API double left_out_error() const {
-    return left_out(linearised(), problem_.arm.precisions()).errors.colwise().norm().mean();
+    return error_norms(left_out(linearised(), problem_.arm.precisions()).errors).mean();
   }
 
   /// A block of unknowns, by the errors with it and without; of few poses also by log predictive densities.
@@ -335,11 +336,11 @@ class ErrorModelFit {
     const bool by_densities = !by_errors && few && densities_support(with, without);
     const bool used = by_errors || by_densities;
     return {name,
-            without.errors.colwise().norm().mean(),
-            with.errors.colwise().norm().mean(),
+            error_norms(without.errors).mean(),
+            error_norms(with.errors).mean(),
             used,
             used ? precision : suppressing_precision,
-            by_densities ? (with.log_densities - without.log_densities).mean() : 0};
+            by_densities ? with.log_densities.mean() - without.log_densities.mean() : 0};
   }
 
   /// Sizes of some coefficients by evidence, and their inclusion by leave-one-pose-out errors.
@@ -531,8 +532,9 @@ class ErrorModelFit {
     MatrixX score = MatrixX::Zero(at.system.blocks, joints), weight = score;
     visit_blocks(at.system, 0, 1, at.system.blocks, [&](Index b, const RowBlock& rows) {
       for (Index j = 0; j < rows.factor.cols(); ++j) {
-        score(b, j) = rows.factor.col(j).dot(rows.residual);
-        weight(b, j) = rows.factor.col(j).squaredNorm();
+        const Vector6 effect = column_of(rows.factor, j);
+        score(b, j) = effect.dot(rows.residual);
+        weight(b, j) = effect.squaredNorm();
       }
     });
     const MatrixX angles = problem_.joints();
@@ -652,8 +654,9 @@ class ErrorModelFit {
     const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
     const Index p = system.unknowns();
     estimate.covariance = solved.inverse();
-    double explained = static_cast<double>(p) - estimate.covariance.diagonal().dot(precisions);
-    if (at.normal.prior.size() > 0) explained -= estimate.covariance.cwiseProduct(at.normal.prior).sum();
+    double explained = static_cast<double>(p) - diagonal_of(estimate.covariance).dot(precisions);
+    for (Index k = 0; k < at.normal.prior.cols(); ++k)
+      explained -= estimate.covariance.col(k).dot(at.normal.prior.col(k));
     const double values = static_cast<double>(problem_.measured_values());
     const double freedom = std::max(1.0, values - explained);
     estimate.residual_variance = estimate.variance_factor = at.normal.cost / freedom;
@@ -662,7 +665,7 @@ class ErrorModelFit {
     // leave-one-pose-out errors contain the noise of a visit and the uncertainty of the unknowns
     constexpr Index batch = 64;  // poses whose rows are multiplied by the covariance at once
     Rows6 all(6, p);
-    MatrixX stack(3 * batch, p), half;
+    MatrixX stack(p, 3 * batch);  // the rows of each pose are contiguous columns
     Index stacked = 0;
     double rotation_sum = 0, rotation_values = 0, distance_sum = 0;
     std::vector<LeftOutVisit> visits;
@@ -673,37 +676,54 @@ class ErrorModelFit {
     }
     estimate.leave_one_out_seconds = leave_one_out_seconds_;
     const auto flush = [&] {
-      half.setZero(3 * stacked, p);
-      add_product(half, stack.topRows(3 * stacked), estimate.covariance);
-      for (Index i = 0; i < stacked; ++i)
-        visits[visits.size() - static_cast<std::size_t>(stacked - i)].model =
-            half.middleRows(3 * i, 3).lazyProduct(stack.middleRows(3 * i, 3).transpose());
+      const MatrixX half = matrix_product(estimate.covariance, stack.leftCols(3 * stacked));
+      for (Index i = 0; i < stacked; ++i) {
+        Matrix3& model = visits[visits.size() - static_cast<std::size_t>(stacked - i)].model;
+        for (Index c = 0; c < 3; ++c)
+          for (Index r = 0; r < 3; ++r) model(r, c) = stack.col(3 * i + r).dot(half.col(3 * i + c));
+      }
       stacked = 0;
     };
     visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
       const Station& station = problem_.station_of(b);
       if (station.oriented()) {
         const Vector6 residual = rows.unwhiten * rows.residual;
-        rotation_sum += residual.tail<3>().squaredNorm() * station.orientation_sigma * station.orientation_sigma;
+        const Vector3 rotation(residual(3), residual(4), residual(5));
+        rotation_sum += rotation.squaredNorm() * station.orientation_sigma * station.orientation_sigma;
         rotation_values += 3;
       }
       if (b % stride_ != 0 || b >= system.validation_blocks) return;
-      Vector3 error = errors.col(b / stride_);
+      Vector3 error(errors(0, b / stride_), errors(1, b / stride_), errors(2, b / stride_));
       if (station.lengths == nullptr) {  // what is deployed does not know the drift
         const Isometry3 drift = problem_.drift_motion(b);
-        error += station.position(b - first_block(b)) - drift * station.position(b - first_block(b));
+        const Vector3 measured = station.position(b - first_block(b));
+        error += measured - transformed(drift, measured);
       }
       if (station.lengths != nullptr) {
         distance_sum += error.squaredNorm();
         return;
       }
       rows.expand(system.group_sizes, all);
-      const MatrixX position = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(all);
-      const MatrixX joint = rows.position_sigma * rows.unwhiten.topRows<3>().lazyProduct(rows.factor);
-      if (const VectorX zeros = problem_.drift_joint_zeros(b); zeros.size() > 0) error -= joint.lazyProduct(zeros);
+      const auto position_change = [&](const Rows6& columns, Index k) {
+        Vector3 out = Vector3::Zero();
+        for (Index s = 0; s < 6; ++s)
+          for (Index r = 0; r < 3; ++r) out(r) += rows.unwhiten(r, s) * columns(s, k);
+        return Vector3(rows.position_sigma * out);
+      };
+      const VectorX zeros = problem_.drift_joint_zeros(b);
+      Matrix3 joint_noise = Matrix3::Zero();
+      for (Index j = 0; j < rows.factor.cols(); ++j) {
+        const Vector3 joint = position_change(rows.factor, j);
+        if (zeros.size() > 0) error -= zeros(j) * joint;
+        for (Index c = 0; c < 3; ++c)
+          for (Index r = 0; r < 3; ++r) joint_noise(r, c) += joint(r) * joint(c);
+      }
+      for (Index k = 0; k < p; ++k) {
+        const Vector3 change = position_change(all, k);
+        for (Index r = 0; r < 3; ++r) stack(k, 3 * stacked + r) = change(r);
+      }
       estimate.left_out_rows.push_back(b);
-      visits.push_back({error, Matrix3::Zero(), joint.lazyProduct(joint.transpose())});
-      stack.middleRows(3 * stacked, 3) = position;
+      visits.push_back({error, Matrix3::Zero(), joint_noise});
       if (++stacked == batch) flush();
     });
     flush();

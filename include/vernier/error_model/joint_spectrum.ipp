@@ -1,16 +1,34 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vernier/error_model/joint_spectrum.hpp"
 
 namespace vernier {
 
+namespace detail {
+
+/// A symmetric matrix of the cosine and sine of a harmonic.
+struct HarmonicMatrix {
+  double cc, cs, ss;
+
+  double determinant() const { return cc * ss - cs * cs; }
+  HarmonicMatrix inverse() const { return {ss / determinant(), -cs / determinant(), cc / determinant()}; }
+  std::array<double, 2> operator*(const std::array<double, 2>& x) const {
+    return {cc * x[0] + cs * x[1], cs * x[0] + ss * x[1]};
+  }
+  /// x' M x
+  double square(const std::array<double, 2>& x) const {
+    const auto product = *this * x;
+    return x[0] * product[0] + x[1] * product[1];
+  }
+};
+
+}  // namespace detail
+
 VERNIER_IMPL std::vector<HarmonicEstimate> joint_spectrum(const ErrorModelEstimate& estimate, int joint) {
-  using Matrix2 = Eigen::Matrix2d;
-  using Vector2 = Eigen::Vector2d;
   std::vector<HarmonicEstimate> out;
   const JointTerms& terms = estimate.arm.terms();
   const Fourier& fourier = terms.transmission[static_cast<std::size_t>(joint)];
@@ -19,17 +37,21 @@ VERNIER_IMPL std::vector<HarmonicEstimate> joint_spectrum(const ErrorModelEstima
   for (Index k = 0; k < fourier.size(); k += 2) {
     const Index at = geometric + terms.transmission_begin(joint) + k;
     // what the measurements say of the two: posterior less prior
-    const Matrix2 posterior = (estimate.covariance.block<2, 2>(at, at) / estimate.variance_factor).inverse();
-    const Matrix2 information = posterior - Matrix2(precisions.segment<2>(at).asDiagonal());
-    const double determinant = information.determinant(), trace = information.trace();
+    const auto covariance = [&](Index r, Index c) {
+      return estimate.covariance(at + r, at + c) / estimate.variance_factor;
+    };
+    const auto posterior = detail::HarmonicMatrix{covariance(0, 0), covariance(0, 1), covariance(1, 1)}.inverse();
+    const detail::HarmonicMatrix information{posterior.cc - precisions(at), posterior.cs,
+                                             posterior.ss - precisions(at + 1)};
+    const double determinant = information.determinant(), trace = information.cc + information.ss;
     if (!(trace > 0 && determinant > 1e-9 * trace * trace)) continue;
-    const Vector2 value = information.inverse() * (posterior * steps.segment<2>(at));
-    const double norm = value.norm(), scale = scales(at);
+    const auto value = information.inverse() * (posterior * std::array{steps(at), steps(at + 1)});
+    const double norm = std::hypot(value[0], value[1]), scale = scales(at);
     if (!(norm > 0)) continue;
-    const Vector2 direction = value / norm;
+    const std::array direction{value[0] / norm, value[1] / norm};
     out.push_back({fourier.order(k), scale * norm,
-                   scale * std::sqrt(estimate.residual_variance * direction.dot(information.inverse() * direction)),
-                   value.dot(information * value) / estimate.residual_variance});
+                   scale * std::sqrt(estimate.residual_variance * information.inverse().square(direction)),
+                   information.square(value) / estimate.residual_variance});
   }
   return out;
 }

@@ -34,7 +34,10 @@ VERNIER_IMPL Box PriorObjective::box() const {
 VERNIER_IMPL VectorX PriorObjective::precisions(const ConstVectorRef& variables) const {
   VectorX out = precisions_;
   Index next = 0, k = system_.dense;
-  if (num_elastic_ > 0) out.segment(k - num_elastic_, num_elastic_).setConstant(std::pow(10, variables(next++)));
+  if (num_elastic_ > 0) {
+    const double elastic = std::pow(10, variables(next++));
+    for (Index e = k - num_elastic_; e < k; ++e) out(e) = elastic;
+  }
   const double exponent = variables(dimension() - 1);
   for (const Index count : system_.group_sizes) {
     if (count == 0) continue;
@@ -47,7 +50,7 @@ VERNIER_IMPL VectorX PriorObjective::precisions(const ConstVectorRef& variables)
 
 VERNIER_IMPL double PriorObjective::error(const VectorX& precisions) const {
   const FactorisedEquations solved(normal_, precisions, steps_);
-  return leave_one_out_errors(system_, solved, stride_).colwise().norm().mean();
+  return detail::error_norms(leave_one_out_errors(system_, solved, stride_)).mean();
 }
 
 VERNIER_IMPL void PriorObjective::operator()(const ConstMatrixRef& population, VectorRef fitness) const {

@@ -7,22 +7,40 @@
 
 namespace vernier::detail {
 
+/// Cosines and sines of all angles times an order.
+struct Waves {
+  VectorX cosine, sine;
+};
+
+VERNIER_API Waves waves(const VectorX& angles, int order) {
+  Waves out{angles, angles};
+  for (Index i = 0; i < angles.size(); ++i) {
+    out.cosine(i) = std::cos(order * angles(i));
+    out.sine(i) = std::sin(order * angles(i));
+  }
+  return out;
+}
+
+/// Cosines and sines of sums of two angles each, in place.
+inline void turn_waves(Index n, const double* by_cosine, const double* by_sine, double* cosine, double* sine) {
+  for (Index i = 0; i < n; ++i) {
+    const double c = cosine[i], s = sine[i];
+    cosine[i] = c * by_cosine[i] - s * by_sine[i];
+    sine[i] = s * by_cosine[i] + c * by_sine[i];
+  }
+}
+
 /// Calls `f(k, c, s)` for the orders 1 .. highest, c and s the cosines and sines of all angles.
 template <class F>
-void visit_orders(const ConstVectorRef& angles, int highest, const F& f) {
-  using Array = Eigen::ArrayXd;
-  const Array first_cos = angles.array().cos(), first_sin = angles.array().sin();
-  Array c = Array::Ones(angles.size()), s = Array::Zero(angles.size()), next(angles.size());
+void visit_orders(const VectorX& angles, int highest, const F& f) {
+  const Waves first = waves(angles, 1);
+  Waves now = waves(angles, 0);
   for (int k = 1; k <= highest; ++k) {
-    if (k % 256 == 0) {  // rounding of the recursion
-      c = (k * angles.array()).cos();
-      s = (k * angles.array()).sin();
-    } else {
-      next = c * first_cos - s * first_sin;
-      s = s * first_cos + c * first_sin;
-      c = next;
-    }
-    f(k, c, s);
+    if (k % 256 == 0)  // rounding of the recursion
+      now = waves(angles, k);
+    else
+      turn_waves(angles.size(), first.cosine.data(), first.sine.data(), now.cosine.data(), now.sine.data());
+    f(k, now.cosine, now.sine);
   }
 }
 
@@ -31,29 +49,27 @@ struct OrderFit {
   double cosine = 0, sine = 0, chi_square = 0;
 };
 
-VERNIER_API OrderFit fit_order(const ConstVectorRef& score, const ConstVectorRef& weight, double sum,
-                               const Eigen::ArrayXd& c, const Eigen::ArrayXd& s) {
-  const double gc = (score.array() * c).sum(), gs = (score.array() * s).sum();
-  const double cc = (weight.array() * c * c).sum(), cs = (weight.array() * c * s).sum(), ss = sum - cc;
+VERNIER_API OrderFit fit_order(const VectorX& score, const VectorX& weight, double sum, const VectorX& c,
+                               const VectorX& s) {
+  const double gc = score.dot(c), gs = score.dot(s);
+  const double cc = weight.cwiseProduct(c).dot(c), cs = weight.cwiseProduct(c).dot(s), ss = sum - cc;
   const double determinant = cc * ss - cs * cs;
   if (!(determinant > 1e-6 * sum * sum)) return {};
   const double a = (ss * gc - cs * gs) / determinant, b = (cc * gs - cs * gc) / determinant;
   return {a, b, a * gc + b * gs};
 }
 
-VERNIER_IMPL VectorX periodogram(const ConstVectorRef& angles, const ConstVectorRef& score,
-                                 const ConstVectorRef& weight, int highest) {
+VERNIER_IMPL VectorX periodogram(const VectorX& angles, const VectorX& score, const VectorX& weight, int highest) {
   VectorX out(highest);
   const double sum = weight.sum();
-  visit_orders(angles, highest, [&](int k, const Eigen::ArrayXd& c, const Eigen::ArrayXd& s) {
+  visit_orders(angles, highest, [&](int k, const VectorX& c, const VectorX& s) {
     out(k - 1) = fit_order(score, weight, sum, c, s).chi_square;
   });
   return out;
 }
 
-VERNIER_IMPL std::vector<int> lines_of_residuals(const ConstVectorRef& angles, VectorX score,
-                                                 const ConstVectorRef& weight, const std::vector<int>& known,
-                                                 int highest, double threshold) {
+VERNIER_IMPL std::vector<int> lines_of_residuals(const VectorX& angles, VectorX score, const VectorX& weight,
+                                                 const std::vector<int>& known, int highest, double threshold) {
   constexpr std::size_t most = 8;
   std::vector<int> out;
   while (out.size() < most) {
@@ -65,19 +81,20 @@ VERNIER_IMPL std::vector<int> lines_of_residuals(const ConstVectorRef& angles, V
     const auto order = static_cast<int>(largest + 1);
     if (std::find(out.begin(), out.end(), order) != out.end()) break;
     out.push_back(order);
-    const Eigen::ArrayXd c = (order * angles.array()).cos(), s = (order * angles.array()).sin();
-    const OrderFit fit = fit_order(score, weight, weight.sum(), c, s);
-    score.array() -= weight.array() * (fit.cosine * c + fit.sine * s);
+    const Waves wave = waves(angles, order);
+    const OrderFit fit = fit_order(score, weight, weight.sum(), wave.cosine, wave.sine);
+    for (Index i = 0; i < score.size(); ++i)
+      score(i) -= weight(i) * (fit.cosine * wave.cosine(i) + fit.sine * wave.sine(i));
   }
   return out;
 }
 
-VERNIER_IMPL bool tells_orders_apart(const ConstVectorRef& angles, const ConstVectorRef& weight, int highest) {
+VERNIER_IMPL bool tells_orders_apart(const VectorX& angles, const VectorX& weight, int highest) {
   constexpr int close = 40;  // neighbours are alike over a part of a turn
   const double sum = weight.sum();
   bool out = sum > 0;
-  visit_orders(angles, 2 * highest, [&](int k, const Eigen::ArrayXd& c, const Eigen::ArrayXd& s) {
-    if (k >= close) out = out && std::hypot((weight.array() * c).sum(), (weight.array() * s).sum()) < 0.5 * sum;
+  visit_orders(angles, 2 * highest, [&](int k, const VectorX& c, const VectorX& s) {
+    if (k >= close) out = out && std::hypot(weight.dot(c), weight.dot(s)) < 0.5 * sum;
   });
   return out;
 }

@@ -13,9 +13,10 @@ namespace vernier::detail {
 
 VERNIER_IMPL MatrixX TransferredUnknowns::widened(double geometry, double joints) const {
   MatrixX out = covariance;
-  const Index others = expected.size() - geometric;
-  out.diagonal().head(geometric) += geometry * geometry * expected.head(geometric);
-  out.diagonal().tail(others) += joints * joints * expected.tail(others);
+  for (Index k = 0; k < expected.size(); ++k) {
+    const double change = k < geometric ? geometry : joints;
+    out(k, k) += change * change * expected(k);
+  }
   return out;
 }
 
@@ -114,47 +115,49 @@ VERNIER_IMPL PriorTransfer likely_transfer(const CalibrationProblem& problem, co
   VectorX offset(n);
   for (Index k = 0; k < n; ++k) offset(k) = known.mean(k) - steps(known.unknowns[static_cast<std::size_t>(k)]);
   // residuals at the mean of the prior, and their covariance in three parts
-  MatrixX rows(6 * count, n), error(6 * count, 1), others(6 * count, system.unknowns() - n);
+  MatrixX rows(6 * count, n), others(6 * count, system.unknowns() - n);
+  VectorX error(6 * count);
   Rows6 all(6, system.unknowns());
   Index values = 0;
   std::vector<bool> transferred(static_cast<std::size_t>(system.unknowns()), false);
   for (const Index k : known.unknowns) transferred[static_cast<std::size_t>(k)] = true;
   visit_blocks(system, 0, stride, count, [&](Index b, const RowBlock& block) {
     block.expand(system.group_sizes, all);
-    for (Index k = 0; k < n; ++k) rows.block(6 * b, k, 6, 1) = all.col(known.unknowns[static_cast<std::size_t>(k)]);
-    for (Index k = 0, at = 0; k < system.unknowns(); ++k)
-      if (!transferred[static_cast<std::size_t>(k)]) others.block(6 * b, at++, 6, 1) = all.col(k);
-    error.middleRows(6 * b, 6) = block.residual;
+    for (Index r = 0; r < 6; ++r) {
+      for (Index k = 0; k < n; ++k) rows(6 * b + r, k) = all(r, known.unknowns[static_cast<std::size_t>(k)]);
+      for (Index k = 0, at = 0; k < system.unknowns(); ++k)
+        if (!transferred[static_cast<std::size_t>(k)]) others(6 * b + r, at++) = all(r, k);
+      error(6 * b + r) = block.residual(r);
+    }
     values += problem.station_of(b * stride).values();
   });
   add_product(error, rows, offset);
-  const auto covariance_of = [&](const MatrixX& columns, const MatrixX& half) {
-    MatrixX out = MatrixX::Zero(6 * count, 6 * count);
-    add_product(out, half, columns.transpose());
-    return out;
+  const auto covariance_of = [](const MatrixX& columns, const MatrixX& half) {
+    return matrix_product(half, columns.transpose());
   };
-  MatrixX half = MatrixX::Zero(6 * count, n);
-  add_product(half, rows, known.covariance);
-  MatrixX fixed = covariance_of(rows, half);
-  fixed.diagonal().array() += 1;
+  MatrixX fixed = covariance_of(rows, matrix_product(rows, known.covariance));
+  for (Index k = 0; k < fixed.rows(); ++k) fixed(k, k) += 1;
   constexpr double unknown = 1e4;  // times the expected size, squared: what the earlier calibration does not know
   fixed += covariance_of(others, unknown * others);
   const MatrixX geometry = rows.leftCols(known.geometric), joints = rows.rightCols(n - known.geometric);
-  const MatrixX of_geometry = covariance_of(geometry, geometry * known.expected.head(known.geometric).asDiagonal());
-  const MatrixX of_joints = covariance_of(joints, joints * known.expected.tail(n - known.geometric).asDiagonal());
+  const MatrixX of_geometry = covariance_of(geometry, columns_scaled(geometry, known.expected.head(known.geometric)));
+  const MatrixX of_joints = covariance_of(joints, columns_scaled(joints, known.expected.tail(n - known.geometric)));
 
   const auto freedom = static_cast<double>(std::max<Index>(1, values - others.cols()));
   PriorTransfer best{.name = {}};
   double highest = -std::numeric_limits<double>::infinity();
-  MatrixX factor, whitened;
+  MatrixX factor;
+  VectorX whitened;
   for (const double g : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2})
     for (const double j : {0.02, 0.05, 0.1, 0.15, 0.2, 0.4, 0.8, 1.6}) {
-      factor = fixed + g * g * of_geometry + j * j * of_joints;
+      factor = fixed;
+      factor += g * g * of_geometry;
+      factor += j * j * of_joints;
       if (!cholesky(factor)) continue;
       whitened = error;
       solve_lower(factor, whitened);
       const double evidence =
-          -0.5 * freedom * std::log(whitened.squaredNorm() / freedom) - factor.diagonal().array().log().sum();
+          -0.5 * (freedom * std::log(whitened.squaredNorm() / freedom) + cholesky_log_determinant(factor));
       if (!(evidence > highest)) continue;
       highest = evidence;
       best.geometry = g;

@@ -13,10 +13,10 @@ namespace detail {
 struct LinkVectors {
   double axes[3 * max_joints], points[3 * max_joints], origins[3 * max_joints];
 
-  using Column = Eigen::Map<const Vector3>;
-  Column axis(int i) const { return Column(axes + 3 * i); }
-  Column point(int i) const { return Column(points + 3 * i); }
-  Column origin(int i) const { return Column(origins + 3 * i); }
+  Vector3 axis(int i) const { return column(axes, i); }
+  Vector3 point(int i) const { return column(points, i); }
+  Vector3 origin(int i) const { return column(origins, i); }
+  static Vector3 column(const double* of, int i) { return {of[3 * i], of[3 * i + 1], of[3 * i + 2]}; }
 };
 
 }  // namespace detail
@@ -33,9 +33,10 @@ VERNIER_IMPL void GravityCompliance::basis(const double* q, MatrixRef out) const
   const int n = joints();
   out.setZero();
   for (int i = 0; i < n; ++i)
-    for (int j = i; j < n; ++j)
-      out(i, index(i, j)) = chain_.revolute(i) ? links.axis(i).dot((links.origin(j) - links.point(i)).cross(down_))
-                                               : links.axis(i).dot(down_);
+    for (int j = i; j < n; ++j) {
+      const Vector3 arm = links.origin(j) - links.point(i);
+      out(i, index(i, j)) = links.axis(i).dot(chain_.revolute(i) ? arm.cross(down_) : down_);
+    }
 }
 
 VERNIER_IMPL void GravityCompliance::add(const double* q, const double* products, double* joints,
@@ -49,7 +50,10 @@ VERNIER_IMPL void GravityCompliance::add(const double* q, const double* products
     // moment(k): weights of the links from k on, about a point on axis k
     const auto moment = [&](int k) {
       Vector3 sum = Vector3::Zero();
-      for (int j = std::max(i, k); j < n; ++j) sum += products[index(i, j)] * (links.origin(j) - links.point(k));
+      for (int j = std::max(i, k); j < n; ++j) {
+        const Vector3 arm = links.origin(j) - links.point(k);
+        sum += products[index(i, j)] * arm;
+      }
       return sum;
     };
     const bool revolute = chain_.revolute(i);

@@ -12,7 +12,7 @@ namespace detail {
 /// Joint axes, points on them, and the frames that tilt, of a chain at a configuration.
 struct TiltingFrames {
   Vector3 axis[max_joints], point[max_joints], origin[max_joints];
-  Matrix3 rotation[max_joints];
+  Vector3 x[max_joints], y[max_joints], z[max_joints];
 };
 
 /// See `TiltingFrames`; a frame is the one behind the joint, whose z axis is the joint's.
@@ -25,7 +25,9 @@ void walk_tilting_frames(const ChainView& c, const double* q, TiltingFrames& out
     const DhRow& row = c.rows[i];
     const double angle = c.theta[i] + c.turning[i] * q[i];
     const auto store = [&] {
-      out.rotation[i] << vector(frame.x), vector(frame.y), vector(frame.z);
+      out.x[i] = vector(frame.x);
+      out.y[i] = vector(frame.y);
+      out.z[i] = vector(frame.z);
       out.origin[i] = vector(frame.p);
     };
     walk_row<Convention>(row, c.twist[i], c.hayati[i], std::sin(angle), std::cos(angle),
@@ -57,11 +59,14 @@ VERNIER_IMPL void GravityTilt::basis(const double* q, MatrixRef out) const noexc
   detail::TiltingFrames frames;
   detail::find_tilting_frames(chain_.view(), q, frames);
   for (int i = 0; i < joints(); ++i) {
-    const Vector3 gravity = frames.rotation[i].transpose() * down_;
+    const double gravity[] = {frames.x[i].dot(down_), frames.y[i].dot(down_), frames.z[i].dot(down_)};
     for (int axis = 0; axis < 2; ++axis)
       for (int k = 0; k < 3; ++k) {
-        const Vector3 turn = gravity(k) * frames.rotation[i].col(axis);
-        out.col(6 * i + 3 * axis + k) << frames.origin[i].cross(turn), turn;
+        const Vector3 turn = gravity[k] * (axis == 0 ? frames.x[i] : frames.y[i]), shift = frames.origin[i].cross(turn);
+        for (int r = 0; r < 3; ++r) {
+          out(r, 6 * i + 3 * axis + k) = shift(r);
+          out(r + 3, 6 * i + 3 * axis + k) = turn(r);
+        }
       }
   }
 }
@@ -70,30 +75,37 @@ VERNIER_IMPL Vector6 GravityTilt::motion(const double* q, const double* coeffici
   detail::TiltingFrames frames;
   detail::find_tilting_frames(chain_.view(), q, frames);
   Vector6 out = Vector6::Zero();
+  const auto add = [](const Vector3& shift, const Vector3& turn, double* to) {
+    for (int r = 0; r < 3; ++r) {
+      to[r] += shift(r);
+      to[r + 3] += turn(r);
+    }
+  };
   if (rates != nullptr) std::fill_n(rates, 6 * joints(), 0.0);
   for (int i = 0; i < joints(); ++i) {
-    const Matrix3& rotation = frames.rotation[i];
     const Vector3& origin = frames.origin[i];
     // by a direction of gravity, the base frame's coordinates in and out
     const auto tilt = [&](const Vector3& gravity) {
-      const Vector3 inside = rotation.transpose() * gravity;
+      const double x = frames.x[i].dot(gravity), y = frames.y[i].dot(gravity), z = frames.z[i].dot(gravity);
       const double* c = coefficients + 6 * i;
-      return Vector3((c[0] * inside(0) + c[1] * inside(1) + c[2] * inside(2)) * rotation.col(0) +
-                     (c[3] * inside(0) + c[4] * inside(1) + c[5] * inside(2)) * rotation.col(1));
+      Vector3 turn = (c[0] * x + c[1] * y + c[2] * z) * frames.x[i];
+      turn += (c[3] * x + c[4] * y + c[5] * z) * frames.y[i];
+      return turn;
     };
     const Vector3 turn = tilt(down_);
-    out.head<3>() += origin.cross(turn);
-    out.tail<3>() += turn;
+    add(origin.cross(turn), turn, out.data());
     for (int k = 0; rates != nullptr && k <= i; ++k) {
-      Eigen::Map<Vector6> rate(rates + 6 * k);
       const Vector3& axis = frames.axis[k];
       if (!chain_.revolute(k)) {
-        rate.head<3>() += axis.cross(turn);
+        add(axis.cross(turn), Vector3::Zero(), rates + 6 * k);
         continue;
       }
-      const Vector3 turned = axis.cross(turn) + tilt(down_.cross(axis));
-      rate.head<3>() += axis.cross(origin - frames.point[k]).cross(turn) + origin.cross(turned);
-      rate.tail<3>() += turned;
+      Vector3 turned = axis.cross(turn);
+      turned += tilt(down_.cross(axis));
+      const Vector3 arm = origin - frames.point[k], moved = axis.cross(arm);
+      Vector3 shift = moved.cross(turn);
+      shift += origin.cross(turned);
+      add(shift, turned, rates + 6 * k);
     }
   }
   return out;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 
@@ -117,7 +118,7 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
             ", must be positive");
   require(coefficients_.size() == terms_.size(), "JointErrors: ", coefficients_.size(), " coefficients for ",
           terms_.size(), " terms");
-  require(coefficients_.allFinite(), "JointErrors: a coefficient is not finite");
+  require(detail::all_finite(coefficients_), "JointErrors: a coefficient is not finite");
   const Index dense = terms_.num_dense_terms();
   harmonics_ = {terms_.transmission, {coefficients_.data() + dense, coefficients_.data() + coefficients_.size()}};
 }
@@ -165,10 +166,12 @@ VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, c
   MatrixX out(joints.rows(), joints.cols());
   VectorX q(n), before(n), effective(n), derivative(n * n);
   for (Index i = 0; i < joints.rows(); ++i) {
-    q = joints.row(i).transpose();
-    if (previous.rows() > 0) before = previous.row(i).transpose();
+    for (Index j = 0; j < n; ++j) {
+      q(j) = joints(i, j);
+      if (previous.rows() > 0) before(j) = previous(i, j);
+    }
     evaluate(q.data(), n, effective.data(), derivative.data(), previous.rows() > 0 ? before.data() : nullptr);
-    out.row(i) = effective.transpose();
+    for (Index j = 0; j < n; ++j) out(i, j) = effective(j);
   }
   return out;
 }
@@ -189,19 +192,22 @@ VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* ja
   double rates[6 * max_joints];
   const Vector6 motion =
       terms_.tilt->motion(q, coefficients_.data() + terms_.tilt_begin(), jacobian != nullptr ? rates : nullptr);
-  const Vector3 turn = motion.tail<3>();
+  const Vector3 shift = motion.head<3>(), turn = motion.tail<3>();
   const Matrix3 rotation = exp_so3(turn);
-  const Vector3 turned = rotation * pose.translation();
-  pose.translation() = turned + motion.head<3>();
-  pose.linear() = (rotation * pose.linear()).eval();
+  const Vector3 turned = rotation * translation(pose);
+  pose = composed(rigid_motion(rotation, shift), pose);
   if (jacobian == nullptr) return;
   const Matrix3 rate_of_rotation = left_jacobian_so3(turn);
   for (int k = 0; k < n; ++k) {
-    Eigen::Map<Vector3> linear(jacobian + 6 * k), angular(jacobian + 6 * k + 3);
-    const Eigen::Map<const Vector6> rate(rates + 6 * k);
-    const Vector3 omega = rate_of_rotation * rate.tail<3>();
-    linear = (rotation * linear + omega.cross(turned) + rate.head<3>()).eval();
-    angular = (rotation * angular + omega).eval();
+    double* column = jacobian + 6 * k;
+    const double* rate = rates + 6 * k;
+    const Vector3 omega = rate_of_rotation * Vector3(rate[3], rate[4], rate[5]), swept = omega.cross(turned);
+    const Vector3 linear = rotation * Vector3(column[0], column[1], column[2]);
+    const Vector3 angular = rotation * Vector3(column[3], column[4], column[5]);
+    for (Index r = 0; r < 3; ++r) {
+      column[r] = linear(r) + swept(r) + rate[r];
+      column[3 + r] = angular(r) + omega(r);
+    }
   }
 }
 

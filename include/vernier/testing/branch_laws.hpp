@@ -3,7 +3,6 @@
 /// @file
 /// What a solver that returns all branches of the inverse kinematics must do, as a list of violations.
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/all_branches.hpp"
 #include "vernier/testing/same_bits.hpp"
@@ -41,6 +41,14 @@ template <int N>
 JointVector<N> turnless_difference(const JointVector<N>& a, const JointVector<N>& b) {
   JointVector<N> out;
   for (int i = 0; i < N; ++i) out(i) = std::remainder(a(i) - b(i), 2 * std::numbers::pi);
+  return out;
+}
+
+/// The largest difference of joint values.
+template <int N>
+double largest_difference(const JointVector<N>& differences) {
+  double out = 0;
+  for (int i = 0; i < N; ++i) out = std::max(out, std::abs(differences(i)));
   return out;
 }
 
@@ -79,13 +87,16 @@ class BranchLaw {
 template <KinematicModel M>
 double distance_from_singularity(const M& model, const JointVector<M::dof>& q,
                                  const BranchLawOptions<M::dof>& options) {
-  Jacobian<M::dof> jacobian = model.jacobian(q);
-  jacobian.template bottomRows<3>() *= options.rotation_length;
+  const Jacobian<M::dof> jacobian = model.jacobian(q);
   const bool held = options.held_joint >= 0;
   MatrixX moving(6, M::dof - (held ? 1 : 0));
-  for (Index j = 0, k = 0; j < M::dof; ++j)
-    if (j != options.held_joint) moving.col(k++) = jacobian.col(j);
-  return Eigen::JacobiSVD<MatrixX>(moving).singularValues().tail<1>()(0);
+  for (Index j = 0, k = 0; j < M::dof; ++j) {
+    if (j == options.held_joint) continue;
+    for (Index r = 0; r < 6; ++r) moving(r, k) = r < 3 ? jacobian(r, j) : options.rotation_length * jacobian(r, j);
+    ++k;
+  }
+  const VectorX values = vernier::detail::thin_svd(moving).s;
+  return values(values.size() - 1);
 }
 
 /// Whether two answers are the same, bit for bit.
@@ -93,9 +104,8 @@ template <int N>
 bool same_branches(const Branches<N>& a, const Branches<N>& b) {
   const auto numbers = [](const Branch<N>& of) {
     const auto distances = of.singularities.values();
-    Eigen::Matrix<double, 7, 1> out;
-    out << of.position_error, of.rotation_error, of.sigma_min, of.radius, distances[0], distances[1], distances[2];
-    return out;
+    return VectorX{
+        {of.position_error, of.rotation_error, of.sigma_min, of.radius, distances[0], distances[1], distances[2]}};
   };
   if (a.count != b.count || a.reach != b.reach || a.seeds_lost != b.seeds_lost || !(a.margin == b.margin)) return false;
   for (auto x = a.begin(), y = b.begin(); x != a.end(); ++x, ++y)
@@ -140,7 +150,7 @@ std::vector<std::string> branch_violations(const Solver& solver, const M& model,
   detail::BranchLaw repeatable("a repeated call gives the same bits", 0);
 
   for (Index s = 0; s < samples.rows(); ++s) {
-    const JointVector<N> q = samples.row(s).transpose();
+    const JointVector<N> q = configuration(samples, s);
     const Isometry3 target = model.pose(q);
     const Branches<N> branches = solver(target);
     repeatable.hold(detail::same_branches<N>(branches, solver(target)), s);
@@ -148,19 +158,19 @@ std::vector<std::string> branch_violations(const Solver& solver, const M& model,
     bool found = false, within = false;
     for (const Branch<N>& branch : branches) {
       const Vector6 left = pose_difference(target, model.pose(branch.joints));
-      position.miss(left.template head<3>().norm(), s);
-      rotation.miss(left.template tail<3>().norm(), s);
+      position.miss(Vector3(left.template head<3>()).norm(), s);
+      rotation.miss(Vector3(left.template tail<3>()).norm(), s);
       const bool inside = options.limits.contains(branch.joints);
       limits.hold(branch.within_limits == inside, s);
       within = within || inside;
       for (const double value : {branch.position_error, branch.rotation_error, branch.sigma_min, branch.radius})
         finite.hold(std::isfinite(value) && value >= 0, s);
-      found = found ||
-              detail::turnless_difference<N>(branch.joints, q).cwiseAbs().maxCoeff() < options.generating_tolerance;
+      const JointVector<N> missed = detail::turnless_difference<N>(branch.joints, q);
+      found = found || detail::largest_difference<N>(missed) < options.generating_tolerance;
       for (const Branch<N>& other : branches) {
         if (&other == &branch) continue;
         const JointVector<N> apart = detail::turnless_difference<N>(branch.joints, other.joints);
-        const bool same = apart.cwiseAbs().maxCoeff() < options.distinct;
+        const bool same = detail::largest_difference<N>(apart) < options.distinct;
         if (&other < &branch) distinct.hold(!same, s);
         if (!same) radius.hold(apart.norm() >= branch.radius, s);
       }

@@ -12,6 +12,7 @@
 
 #include "vernier/compensation/concepts.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/testing/same_bits.hpp"
@@ -63,22 +64,24 @@ void check_compensator(const C& compensator, const JointRows<C::dof>& samples, c
   CompensatorLaw rigid("predict(q) is a rigid motion", options.value_tolerance);
   CompensatorLaw finite("correct(q) is finite, its predicted_error not negative, its gate within [0, 1]", 0);
   for (Index s = 0; s < samples.rows(); ++s) {
-    const JointVector<C::dof> q = samples.row(s).transpose();
+    const JointVector<C::dof> q = configuration(samples, s);
     const Isometry3 pose = compensator.predict(q);
-    const Matrix3 rotation = pose.linear();
-    rigid.miss((rotation.transpose() * rotation - Matrix3::Identity()).norm(), s);
+    const Matrix3 rotation = vernier::rotation(pose), back = rotation.transpose(), product = back * rotation;
+    const Matrix3 identity = Matrix3::Identity(), skewed = product - identity;
+    rigid.miss(skewed.norm(), s);
     rigid.miss(std::abs(rotation.determinant() - 1), s);
-    rigid.miss((pose.matrix().row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm(), s);
-    rigid.miss(pose.translation().allFinite() ? 0 : std::numeric_limits<double>::infinity(), s);
+    rigid.miss(std::hypot(std::hypot(pose(3, 0), pose(3, 1), pose(3, 2)), pose(3, 3) - 1), s);
+    const Vector3 position = translation(pose);
+    rigid.miss(vernier::detail::all_finite(position) ? 0 : std::numeric_limits<double>::infinity(), s);
 
     const Correction<C::dof> once = compensator.correct(q), again = compensator.correct(q);
-    const Eigen::Vector2d numbers(once.predicted_error, once.gate), numbers_again(again.predicted_error, again.gate);
+    const VectorX numbers{{once.predicted_error, once.gate}}, numbers_again{{again.predicted_error, again.gate}};
     const bool same = same_bits(pose.matrix(), compensator.predict(q).matrix()) &&
                       same_bits(once.command, again.command) && same_bits(numbers, numbers_again) &&
                       once.status == again.status;
     repeatable.miss(same ? 0 : 1, s);
-    const bool sane = once.command.allFinite() && numbers.allFinite() && once.predicted_error >= 0 && once.gate >= 0 &&
-                      once.gate <= 1;
+    const bool sane = vernier::detail::all_finite(once.command) && vernier::detail::all_finite(numbers) &&
+                      once.predicted_error >= 0 && once.gate >= 0 && once.gate <= 1;
     finite.miss(sane ? 0 : 1, s);
   }
   for (const CompensatorLaw* law : {&repeatable, &rigid, &finite}) law->report(violations);
@@ -109,13 +112,14 @@ std::vector<std::string> compensator_violations(const C& compensator, const Refe
   detail::CompensatorLaw rotation("a converged command has its predicted orientation at the reference's",
                                   options.rotation_tolerance);
   for (Index s = 0; s < samples.rows(); ++s) {
-    const JointVector<C::dof> q = samples.row(s).transpose();
+    const JointVector<C::dof> q = configuration(samples, s);
     const Correction<C::dof> correction = compensator.correct(q);
     const Vector6 left = pose_difference(reference.pose(q), compensator.predict(correction.command));
-    predicted.miss(std::abs(left.template head<3>().norm() - correction.predicted_error), s);
+    const Vector3 shift = left.template head<3>(), turn = left.template tail<3>();
+    predicted.miss(std::abs(shift.norm() - correction.predicted_error), s);
     if (correction.status != IkStatus::converged) continue;
-    position.miss(left.template head<3>().norm(), s);
-    rotation.miss(left.template tail<3>().norm(), s);
+    position.miss(shift.norm(), s);
+    rotation.miss(turn.norm(), s);
   }
   for (const detail::CompensatorLaw* law : {&predicted, &position, &rotation}) law->report(violations);
   return violations;

@@ -38,15 +38,23 @@ class Law {
   /// Compares entry by entry; a value that is not finite is an infinite difference.
   template <class A, class B>
   void compare(const A& a, const B& b, Index sample) {
-    for (Index j = 0; j < a.cols(); ++j) {
-      for (Index i = 0; i < a.rows(); ++i) {
-        double difference = std::abs(a(i, j) - b(i, j)) / std::max(1.0, std::abs(b(i, j)));
-        if (!std::isfinite(difference)) difference = std::numeric_limits<double>::infinity();
-        if (difference <= worst_) continue;
-        worst_ = difference;
-        where_ = message("row ", i, ", column ", j, " at sample ", sample);
-      }
-    }
+    for (Index j = 0; j < a.cols(); ++j)
+      for (Index i = 0; i < a.rows(); ++i) compare_entry(a(i, j), b(i, j), i, j, sample);
+  }
+
+  /// Compares one entry.
+  void compare_entry(double a, double b, Index row, Index column, Index sample) {
+    double difference = std::abs(a - b) / std::max(1.0, std::abs(b));
+    if (!std::isfinite(difference)) difference = std::numeric_limits<double>::infinity();
+    if (difference <= worst_) return;
+    worst_ = difference;
+    where_ = message("row ", row, ", column ", column, " at sample ", sample);
+  }
+
+  /// Compares a row, entry by entry, with numbers.
+  template <class A>
+  void compare_row(const A& a, Index row, const double* b, Index sample) {
+    for (Index j = 0; j < a.cols(); ++j) compare_entry(a(row, j), b[j], row, j, sample);
   }
 
   /// Compares the stored numbers bit by bit.
@@ -104,17 +112,17 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
   const std::vector<Isometry3> all = poses(model, samples);
   const auto derivatives = poses_and_jacobians(model, samples);
   for (Index s = 0; s < samples.rows(); ++s) {
-    const JointVector<M::dof> q = samples.row(s).transpose();
+    const JointVector<M::dof> q = configuration(samples, s);
     const Isometry3 pose = model.pose(q);
     const Vector3 position = model.position(q);
     const Jacobian<M::dof> jacobian = model.jacobian(q);
     const PoseAndJacobian<M::dof> both = model.pose_and_jacobian(q);
-    const Matrix3 rotation = pose.linear();
+    const Matrix3 rotation = vernier::rotation(pose), back = rotation.transpose();
 
-    translation.compare(position, Vector3(pose.translation()), s);
-    orthonormal.compare(Matrix3(rotation.transpose() * rotation), Matrix3(Matrix3::Identity()), s);
-    orthonormal.compare(Eigen::Matrix<double, 1, 1>(rotation.determinant()), Eigen::Matrix<double, 1, 1>(1.0), s);
-    orthonormal.compare(Eigen::RowVector4d(pose.matrix().row(3)), Eigen::RowVector4d(0, 0, 0, 1), s);
+    translation.compare(position, vernier::translation(pose), s);
+    orthonormal.compare(Matrix3(back * rotation), Matrix3(Matrix3::Identity()), s);
+    orthonormal.compare_entry(rotation.determinant(), 1, 0, 0, s);
+    for (Index j = 0; j < 4; ++j) orthonormal.compare_entry(pose(3, j), j == 3 ? 1 : 0, 3, j, s);
     same_pose.compare(pose.matrix(), both.pose.matrix(), s);
     same_jacobian.compare(jacobian, both.jacobian, s);
 
@@ -123,7 +131,8 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
       JointVector<M::dof> after = q, before = q;
       after(k) += options.difference_step;
       before(k) -= options.difference_step;
-      difference.col(k) = detail::difference_quotient(model.pose(after), model.pose(before), after(k) - before(k));
+      const Vector6 column = detail::difference_quotient(model.pose(after), model.pose(before), after(k) - before(k));
+      for (Index r = 0; r < 6; ++r) difference(r, k) = column(r);
     }
     derivative.compare(jacobian, difference, s);
 
@@ -134,10 +143,10 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
     repeatable.same_bits(both.pose.matrix(), again.pose.matrix(), s);
     repeatable.same_bits(both.jacobian, again.jacobian, s);
 
-    blocks.compare(points.row(s), position.transpose(), s);
+    blocks.compare_row(points, s, position.data(), s);
     blocks.compare(all[static_cast<std::size_t>(s)].matrix(), pose.matrix(), s);
     blocks.compare(derivatives.poses[static_cast<std::size_t>(s)].matrix(), pose.matrix(), s);
-    blocks.compare(derivatives.jacobians.row(s), jacobian.reshaped().transpose(), s);
+    blocks.compare_row(derivatives.jacobians, s, jacobian.data(), s);
   }
 
   std::vector<std::string> violations;
@@ -190,7 +199,7 @@ std::vector<std::string> parametric_model_violations(const M& model, const Joint
     round_trip.same_bits(moved.parameters(), p, 0);
     const auto all = poses_and_parameter_jacobians(moved, samples);
     for (Index s = 0; s < samples.rows(); ++s) {
-      const JointVector<M::dof> q = samples.row(s).transpose();
+      const JointVector<M::dof> q = configuration(samples, s);
       const Isometry3 pose = model.template pose<double>(q, p);
       same_pose.compare(pose.matrix(), moved.pose(q).matrix(), s);
       if (p == own) same_model.compare(moved.pose(q).matrix(), model.pose(q).matrix(), s);
@@ -200,11 +209,12 @@ std::vector<std::string> parametric_model_violations(const M& model, const Joint
         Parameters after = p, before = p;
         after(k) += options.difference_step;
         before(k) -= options.difference_step;
-        difference.col(k) = detail::difference_quotient(model.with_parameters(after).pose(q),
-                                                        model.with_parameters(before).pose(q), after(k) - before(k));
+        const Vector6 column = detail::difference_quotient(model.with_parameters(after).pose(q),
+                                                           model.with_parameters(before).pose(q), after(k) - before(k));
+        for (Index r = 0; r < 6; ++r) difference(r, k) = column(r);
       }
       derivative.compare(moved.parameter_jacobian(q), difference, s);
-      derivative.compare(all.jacobians.row(s), difference.reshaped().transpose(), s);
+      derivative.compare_row(all.jacobians, s, difference.data(), s);
     }
   }
   for (const detail::Law* law : {&round_trip, &same_model, &same_pose, &derivative}) law->report(violations);

@@ -57,11 +57,9 @@ double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& coming, 
     const auto found = inverse_kinematics(nominal, between(first, last, s), q);
     if (found.status != IkStatus::converged) return std::numeric_limits<double>::infinity();
     q = found.joints;
-    worst = std::max(
-        worst,
-        (pose_from(arm, JointVector<Arm::dof>(vernier::detail::approach_on_the_way(coming, a, q)), q).translation() -
-         between(start, end, s).translation())
-            .norm());
+    const JointVector<Arm::dof> approach = vernier::detail::approach_on_the_way(coming, a, q);
+    const Vector3 off = translation(pose_from(arm, approach, q)) - translation(between(start, end, s));
+    worst = std::max(worst, off.norm());
   }
   return worst;
 }
@@ -121,11 +119,11 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
         if (pieces > 1) before = from;
       }
       const Isometry3 there = detail::pose_from(arm, before, p.command);
-      check((there.translation() - target.pose.translation()).norm() <= laws.position_tolerance, "target ", next,
-            " is missed");
+      const Vector3 missed = translation(there) - translation(target.pose);
+      check(missed.norm() <= laws.position_tolerance, "target ", next, " is missed");
       if constexpr (N >= 6)
-        check(log_so3(Matrix3(there.linear() * target.pose.linear().transpose())).norm() <= laws.rotation_tolerance,
-              "target ", next, ": its orientation is missed");
+        check(rotation_difference(rotation(there), rotation(target.pose)).norm() <= laws.rotation_tolerance, "target ",
+              next, ": its orientation is missed");
       coming = before;
       pieces = 0;
       ++next;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/back_propagation.hpp"
 #include "vernier/regression/detail/common_scaling.hpp"
@@ -22,7 +23,7 @@ namespace detail {
 VERNIER_API void train_by_adam(NetworkError& problem, VectorX& theta, const Adam& adam, std::uint64_t seed,
                                FunctionRef<bool(double value)> watch) {
   Rng rng(seed);
-  VectorX gradient, mean = VectorX::Zero(theta.size()), square = mean;
+  VectorX gradient, roots, mean = VectorX::Zero(theta.size()), square = mean;
   double mean_bias = 1, square_bias = 1;
   const Index n = problem.samples(), batch = std::min<Index>(adam.batch, n), batches = (n + batch - 1) / batch;
   const double steps = static_cast<double>(adam.epochs) * static_cast<double>(batches);
@@ -33,12 +34,16 @@ VERNIER_API void train_by_adam(NetworkError& problem, VectorX& theta, const Adam
     for (Index b = 0; b < batches; ++b, ++step) {
       const std::vector<Index> rows(order.begin() + n * b / batches, order.begin() + n * (b + 1) / batches);
       problem.batch(theta, rows, gradient);
-      mean = adam.momentum * mean + (1 - adam.momentum) * gradient;
-      square = adam.memory * square + (1 - adam.memory) * gradient.cwiseAbs2();
+      for (Index k = 0; k < theta.size(); ++k) {
+        mean(k) = adam.momentum * mean(k) + (1 - adam.momentum) * gradient(k);
+        square(k) = adam.memory * square(k) + (1 - adam.memory) * gradient(k) * gradient(k);
+      }
+      roots = square.cwiseSqrt();
       mean_bias *= adam.momentum;
       square_bias *= adam.memory;
       const double rate = adam.learning_rate * (0.5 + 0.5 * std::cos(3.14159265358979323846 * step / steps));
-      theta.array() -= rate / (1 - mean_bias) * mean.array() / ((square.array() / (1 - square_bias)).sqrt() + 1e-8);
+      const double root_bias = std::sqrt(1 - square_bias), factor = rate * root_bias / (1 - mean_bias);
+      for (Index k = 0; k < theta.size(); ++k) theta(k) -= factor * mean(k) / (roots(k) + 1e-8 * root_bias);
     }
     go_on = watch(problem.evaluate(theta));
   }
@@ -85,14 +90,15 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
   kept.erase(kept.begin(), cut);
   if (held_out.empty()) std::sort(kept.begin(), kept.end());
   const auto part = [&](const std::vector<Index>& rows, double decay) -> detail::NetworkError {
-    return {layer(), features(rows, Eigen::all), scaled(rows, Eigen::all), weights(rows), decay};
+    return {layer(), detail::rows_of(features, rows), detail::rows_of(scaled, rows), detail::rows_of(weights, rows),
+            decay};
   };
   detail::NetworkError problem = part(kept, weight_decay), validation = part(held_out.empty() ? kept : held_out, 0);
 
   VectorX theta(problem.dimension()), best;
   theta.head(problem.hidden()) = layer().draw(static_cast<int>(inputs.cols()), options.seed);
   Rng rng(child_seed(options.seed, 0));
-  for (double& weight : theta.tail((hidden_nodes + 1) * m)) weight = rng.uniform(-1, 1) / hidden_nodes;
+  for (Index k = problem.hidden(); k < theta.size(); ++k) theta(k) = rng.uniform(-1, 1) / hidden_nodes;
   double least = std::numeric_limits<double>::infinity(), lowest = least;
   Index epoch = -1, best_epoch = 0;
   const auto watch = [&](double objective) {
@@ -113,9 +119,13 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
     detail::levenberg_marquardt(problem, theta, lm.epochs, lm.tolerance, options.executor, watch);
   }
   require(best.size() > 0, "BackPropagation: the network is not finite at the weights to start from");
-  const MatrixX beta = best.tail((hidden_nodes + 1) * m).reshaped(hidden_nodes + 1, m);
-  return {layer(), in, best.head(problem.hidden()), out.spread * beta.topRows(hidden_nodes),
-          out.mean + out.spread * beta.row(hidden_nodes).transpose()};
+  MatrixX beta(hidden_nodes, m);
+  VectorX offset = out.mean;
+  for (Index o = 0, k = problem.hidden(); o < m; ++o) {
+    for (Index node = 0; node < hidden_nodes; ++node) beta(node, o) = out.spread * best(k++);
+    offset(o) += out.spread * best(k++);
+  }
+  return {layer(), in, best.head(problem.hidden()), beta, offset};
 }
 
 }  // namespace vernier

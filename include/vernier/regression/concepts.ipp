@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/concepts.hpp"
 
 namespace vernier::detail {
@@ -9,10 +10,10 @@ VERNIER_IMPL void check_samples(const char* caller, const ConstMatrixRef& inputs
   require(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(),
           " rows of targets");
   require(inputs.rows() >= 1, caller, ": no samples");
-  require(inputs.allFinite() && targets.allFinite(), caller, ": the samples have a value that is not finite");
+  require(all_finite(inputs) && all_finite(targets), caller, ": the samples have a value that is not finite");
   if (weights == nullptr) return;
   require(weights->size() == inputs.rows(), caller, ": ", weights->size(), " weights for ", inputs.rows(), " samples");
-  require(weights->allFinite() && weights->minCoeff() > 0, caller, ": the weights go down to ", weights->minCoeff(),
+  require(all_finite(*weights) && weights->minCoeff() > 0, caller, ": the weights go down to ", weights->minCoeff(),
           ", all must be finite and positive");
 }
 

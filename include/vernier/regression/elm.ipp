@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/least_squares.hpp"
 
@@ -30,10 +31,11 @@ VERNIER_IMPL detail::FittedNetwork Elm::solve(const ConstMatrixRef& inputs, cons
   layer().outputs(in.apply(mapped), theta, h);
   if (options.weights != nullptr) {
     const VectorX roots = options.weights->cwiseSqrt();
-    h = roots.asDiagonal() * h;
-    t = roots.asDiagonal() * t;
+    h = detail::rows_scaled(roots, h);
+    t = detail::rows_scaled(roots, t);
   }
-  const MatrixX beta = minimum_norm_solution(h, t, rcond) * out.factor.cwiseInverse().asDiagonal();
+  MatrixX beta = minimum_norm_solution(h, t, rcond);
+  for (Index o = 0; o < beta.cols(); ++o) beta.col(o) /= out.factor(o);
   return {layer(), in, theta, beta, out.offset};
 }
 

@@ -12,13 +12,16 @@ VERNIER_IMPL NodeSum node_sum_of(const FittedNetwork& network, int inputs) {
               network.scaling.offset.size() == f && network.scaling.factor.size() == f,
           "ElmPredictor: ", layer.nodes, " nodes of ", f, " features need ", layer.dimension(inputs), " weights and ",
           layer.nodes, " rows of output weights, got ", network.theta.size(), " and ", network.beta.rows());
-  const Eigen::Map<const MatrixX> weights(network.theta.data(), f + 1, layer.nodes);
+  const Eigen::Map<const MatrixX, 0, Eigen::OuterStride<>> weights(network.theta.data(), f, layer.nodes,
+                                                                   Eigen::OuterStride<>(f + 1));
+  VectorX biases(layer.nodes);
+  for (Index k = 0; k < biases.size(); ++k) biases(k) = network.theta(k * (f + 1) + f);
   return {static_cast<NodeFunction>(layer.activation),  // the first four of them
           layer.input_map,
           inputs,
           network.scaling,
-          weights.topRows(f),
-          weights.row(f).transpose(),
+          weights,
+          biases,
           network.beta,
           network.offset};
 }

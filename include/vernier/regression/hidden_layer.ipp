@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/hidden_layer.hpp"
 
@@ -30,16 +31,20 @@ VERNIER_IMPL MatrixX HiddenLayer::map(const ConstMatrixRef& inputs) const {
   const Index n = inputs.cols();
   MatrixX out(inputs.rows(), features(static_cast<int>(n)));
   if (input_map == InputMap::sines_and_cosines) {
-    out << inputs.array().sin().matrix(), inputs.array().cos().matrix();
+    for (Index j = 0; j < n; ++j)
+      for (Index i = 0; i < out.rows(); ++i) {
+        out(i, j) = std::sin(inputs(i, j));
+        out(i, n + j) = std::cos(inputs(i, j));
+      }
     return out;
   }
   require(n <= detail::max_inputs_of_products, "InputMap::sine_cosine_products: ", n, " inputs, must be at most ",
           detail::max_inputs_of_products);
-  VectorX x(n), features(out.cols()), sine(n), cosine(n);
+  VectorX features(out.cols()), sine(n), cosine(n);
   for (Index i = 0; i < out.rows(); ++i) {
-    x = inputs.row(i).transpose();
+    const VectorX x = detail::row_of(inputs, i);
     detail::map_inputs(input_map, x.data(), n, features.data(), sine.data(), cosine.data());
-    out.row(i) = features.transpose();
+    for (Index j = 0; j < out.cols(); ++j) out(i, j) = features(j);
   }
   return out;
 }
@@ -51,24 +56,24 @@ VERNIER_IMPL ColumnScaling HiddenLayer::scaling(const ConstMatrixRef& mapped) co
 VERNIER_IMPL void HiddenLayer::outputs(const ConstMatrixRef& features, const ConstVectorRef& theta,
                                        MatrixX& out) const {
   const Index f = features.cols();
-  const Eigen::Map<const MatrixX> weights(theta.data(), f + 1, nodes);
+  const Eigen::Map<const MatrixX, 0, Eigen::OuterStride<>> weights(theta.data(), f, nodes, Eigen::OuterStride<>(f + 1));
   out.resize(features.rows(), nodes);
   if (activation == Activation::radial_basis) {
     for (Index k = 0; k < nodes; ++k) {
-      const double inverse_width = weights(f, k);
-      out.col(k) = (-inverse_width * inverse_width *
-                    (features.rowwise() - weights.col(k).head(f).transpose()).rowwise().squaredNorm().array())
-                       .exp()
-                       .matrix();
+      const double inverse_width = theta(k * (f + 1) + f), factor = -inverse_width * inverse_width;
+      out.col(k).setZero();
+      for (Index j = 0; j < f; ++j)
+        out.col(k) += factor * (features.col(j) - VectorX::Constant(features.rows(), weights(j, k))).cwiseAbs2();
+      for (Index i = 0; i < out.rows(); ++i) out(i, k) = std::exp(out(i, k));  // zero far away, unlike Eigen's
     }
-    return;
+  } else {
+    for (Index k = 0; k < nodes; ++k) out.col(k).setConstant(theta(k * (f + 1) + f));
+    detail::add_product(out, features, weights);
   }
-  out.noalias() = features * weights.topRows(f);
-  out.rowwise() += weights.row(f);
   switch (activation) {
-    case Activation::sigmoid: out = (1 + (-out.array()).exp()).inverse().matrix(); break;
-    case Activation::tanh: out = out.array().tanh().matrix(); break;
-    case Activation::sine: out = out.array().sin().matrix(); break;
+    case Activation::sigmoid: out.array() = out.array().logistic(); break;
+    case Activation::tanh: out.array() = out.array().tanh(); break;
+    case Activation::sine: out.array() = out.array().sin(); break;
     case Activation::radial_basis: break;
   }
 }

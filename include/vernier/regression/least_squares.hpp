@@ -80,14 +80,13 @@ class RidgePath {
   VERNIER_API MatrixX leave_one_out_residuals(double lambda) const;
 
  private:
-  using Row = Eigen::RowVectorXd;
-
   VERNIER_API MatrixX scaled(const ConstMatrixRef& rows, bool weighted) const;
 
   VectorX shares_;  // of the samples, sum 1
-  Row mean_h_, mean_t_;
+  VectorX mean_h_, mean_t_;
   MatrixX centred_t_;
   detail::ThinSvd svd_;
+  MatrixX squares_;  // of the elements of U
   MatrixX projected_;
 };
 

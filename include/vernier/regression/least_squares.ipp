@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,105 +14,151 @@ VERNIER_IMPL MatrixX minimum_norm_solution(const ConstMatrixRef& h, const ConstM
   VectorX inverse = VectorX::Zero(svd.s.size());
   for (Index j = 0; j < svd.s.size(); ++j)
     if (svd.s(j) > cut) inverse(j) = 1 / svd.s(j);
-  return svd.v * (inverse.asDiagonal() * (svd.u.transpose() * t));
+  const MatrixX projected = detail::transposed_matrix_product(svd.u, t);
+  return detail::matrix_product(svd.v, detail::rows_scaled(inverse, projected));
 }
 
 VERNIER_IMPL RidgeSolution relative_ridge(const ConstMatrixRef& h, const ConstMatrixRef& t, double relative_lambda) {
   const Index nodes = h.cols();
-  MatrixX gram = MatrixX::Zero(nodes, nodes);
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(h.transpose());
-  const double lambda = relative_lambda * gram.trace() / static_cast<double>(nodes);
-  gram.diagonal().array() += lambda;
+  MatrixX gram = MatrixX::Zero(nodes, nodes);  // its lower triangle, and blocks of the diagonal
+  for (Index first = 0, width = 32; first < nodes; first += width) {
+    const Index rest = nodes - first, columns = std::min(width, rest);
+    detail::add_transposed_product(gram.block(first, first, rest, columns), h.rightCols(rest),
+                                   h.middleCols(first, columns));
+  }
+  const double lambda = relative_lambda * detail::diagonal_of(gram).sum() / static_cast<double>(nodes);
   RidgeSolution out;
   if (!(lambda > 0) || !std::isfinite(lambda)) {  // H is zero, or not finite
     out.beta = MatrixX::Zero(nodes, t.cols());
-    out.objective = std::isfinite(lambda) ? t.squaredNorm() : std::numeric_limits<double>::infinity();
+    out.objective =
+        std::isfinite(lambda) ? detail::squared_column_norms(t).sum() : std::numeric_limits<double>::infinity();
     return out;
   }
-  const Eigen::LLT<MatrixX> factor(gram);
-  if (factor.info() == Eigen::Success) {
-    out.beta = factor.solve(h.transpose() * t);
+  for (Index k = 0; k < nodes; ++k) gram(k, k) += lambda;
+  if (detail::cholesky(gram)) {
+    out.beta = detail::transposed_matrix_product(h, t);
+    detail::solve_cholesky(gram, out.beta);
   } else {
-    MatrixX stacked(h.rows() + nodes, nodes), right = MatrixX::Zero(h.rows() + nodes, t.cols());
-    stacked << h, std::sqrt(lambda) * MatrixX::Identity(nodes, nodes);
+    MatrixX stacked = MatrixX::Zero(h.rows() + nodes, nodes), right = MatrixX::Zero(h.rows() + nodes, t.cols());
+    stacked.topRows(h.rows()) = h;
     right.topRows(t.rows()) = t;
+    for (Index k = 0; k < nodes; ++k) stacked(h.rows() + k, k) = std::sqrt(lambda);
     out.beta = detail::solve_by_qr(stacked, right).solution;
   }
-  out.objective = (h * out.beta - t).squaredNorm() + lambda * out.beta.squaredNorm();
+  MatrixX residual = t;
+  detail::add_product(residual, h, out.beta, -1);
+  out.objective = residual.squaredNorm() + lambda * out.beta.squaredNorm();
   return out;
 }
 
 VERNIER_IMPL MatrixX ridge_weights(const ConstMatrixRef& gram, const ConstMatrixRef& right, double lambda) {
   if (!(lambda > 0) || !std::isfinite(lambda)) return {};
   MatrixX regularised = gram;
-  regularised.diagonal().array() += lambda;
-  const Eigen::LLT<Eigen::Ref<MatrixX>> factor(regularised);  // in place
-  if (factor.info() != Eigen::Success) return {};
-  return factor.solve(right.transpose());
+  for (Index k = 0; k < regularised.rows(); ++k) regularised(k, k) += lambda;
+  if (!detail::cholesky(regularised)) return {};
+  MatrixX beta = right.transpose();
+  detail::solve_cholesky(regularised, beta);
+  return beta;
 }
 
 VERNIER_IMPL double objective_from_products(const ConstMatrixRef& gram, const ConstMatrixRef& right,
                                             double target_square, const MatrixX& beta, double lambda, double trace) {
   if (beta.size() == 0) return -1;
+  MatrixX symmetric = gram;
+  for (Index c = 0; c < gram.cols(); ++c)
+    for (Index r = 0; r < c; ++r) symmetric(r, c) = gram(c, r);
+  const MatrixX product = detail::matrix_product(symmetric, beta);
+  double linear = 0, quadratic = 0;
+  for (Index o = 0; o < beta.cols(); ++o)
+    for (Index k = 0; k < beta.rows(); ++k) {
+      linear += right(o, k) * beta(k, o);
+      quadratic += product(k, o) * beta(k, o);
+    }
   const double size = beta.squaredNorm();
   // quadratic in beta, so that an error of beta enters squared where beta is the best
-  const double objective = target_square - 2 * right.transpose().cwiseProduct(beta).sum() +
-                           beta.cwiseProduct(gram.selfadjointView<Eigen::Lower>() * beta).sum() + lambda * size;
+  const double objective = target_square - 2 * linear + quadratic + lambda * size;
   return objective > 1e-7 * target_square && objective > 1e-8 * trace * size ? objective : -1;
 }
 
 VERNIER_IMPL double relative_ridge_objective(const ConstMatrixRef& gram, const ConstMatrixRef& right,
                                              double target_square, double relative_lambda) {
-  const double trace = gram.trace(), lambda = relative_lambda * trace / static_cast<double>(gram.rows());
+  const double trace = detail::diagonal_of(gram).sum(),
+               lambda = relative_lambda * trace / static_cast<double>(gram.rows());
   return objective_from_products(gram, right, target_square, ridge_weights(gram, right, lambda), lambda, trace);
 }
 
+namespace detail {
+
+/// Shares of samples in the sum of their weights.
+/// @param weights null: all the same
+VERNIER_API VectorX shares_of(const VectorX* weights, Index samples) {
+  if (weights != nullptr) return *weights / weights->sum();
+  return VectorX::Constant(samples, 1 / static_cast<double>(samples));
+}
+
+}  // namespace detail
+
 VERNIER_IMPL RidgePath::RidgePath(const ConstMatrixRef& h, const ConstMatrixRef& t, const VectorX* weights)
-    : shares_(weights != nullptr ? VectorX(*weights / weights->sum())
-                                 : VectorX(VectorX::Constant(h.rows(), 1 / static_cast<double>(h.rows())))),
-      mean_h_(weights != nullptr ? Row(shares_.transpose() * h) : Row(h.colwise().mean())),
-      mean_t_(weights != nullptr ? Row(shares_.transpose() * t) : Row(t.colwise().mean())),
-      centred_t_(scaled(t.rowwise() - mean_t_, weights != nullptr)),
-      svd_(detail::thin_svd(scaled(h.rowwise() - mean_h_, weights != nullptr))) {
-  projected_ = svd_.u.transpose() * centred_t_;
+    : shares_(detail::shares_of(weights, h.rows())),
+      mean_h_(weights != nullptr ? detail::transposed_product(h, shares_) : detail::column_means(h)),
+      mean_t_(weights != nullptr ? detail::transposed_product(t, shares_) : detail::column_means(t)),
+      centred_t_(scaled(detail::rows_minus(t, mean_t_), weights != nullptr)),
+      svd_(detail::thin_svd(scaled(detail::rows_minus(h, mean_h_), weights != nullptr))),
+      squares_(svd_.u.cwiseAbs2()),
+      projected_(detail::transposed_matrix_product(svd_.u, centred_t_)) {
   if (rank() == 0) svd_.s.setZero();
 }
 
 VERNIER_IMPL Index RidgePath::rank() const {
-  const double cut =
-      svd_.s.size() > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;
-  return (svd_.s.array() > std::max(cut, 1e-300)).count();
+  const Index k = svd_.s.size();
+  const double cut = k > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;
+  return std::count_if(svd_.s.data(), svd_.s.data() + k, [&](double s) { return s > std::max(cut, 1e-300); });
 }
 
 VERNIER_IMPL double RidgePath::scale() const { return svd_.s.size() > 0 ? svd_.s(0) * svd_.s(0) : 0; }
 
 VERNIER_IMPL MatrixX RidgePath::beta(double lambda) const {
   if (!std::isfinite(lambda)) return MatrixX::Zero(svd_.v.rows(), centred_t_.cols());
-  return svd_.v * (svd_.s.array() / (svd_.s.array().square() + lambda)).matrix().asDiagonal() * projected_;
+  VectorX inverse = svd_.s;
+  for (double& s : inverse) s /= s * s + lambda;
+  return detail::matrix_product(svd_.v, detail::rows_scaled(inverse, projected_));
 }
 
-VERNIER_IMPL VectorX RidgePath::offset(const MatrixX& beta) const { return (mean_t_ - mean_h_ * beta).transpose(); }
+VERNIER_IMPL VectorX RidgePath::offset(const MatrixX& beta) const {
+  return mean_t_ - detail::transposed_product(beta, mean_h_);
+}
 
 VERNIER_IMPL MatrixX RidgePath::leave_one_out_residuals(double lambda) const {
   const Index n = centred_t_.rows();
-  if (!std::isfinite(lambda)) return (1 - shares_.array()).inverse().matrix().asDiagonal() * centred_t_;
-  const Index r = rank();
-  const auto u = svd_.u.leftCols(r);
-  const Eigen::ArrayXd s2 = svd_.s.head(r).array().square();
-  const VectorX kept = (lambda / (s2 + lambda)).matrix();
-  VectorX one_minus_leverage = u.cwiseAbs2() * kept;
-  MatrixX residual = u * (kept.asDiagonal() * projected_.topRows(r));
-  if (r < n - 1) {  // what U does not span; where it spans all centred samples, nothing but rounding
-    one_minus_leverage.array() += (1 - shares_.array() - u.rowwise().squaredNorm().array()).max(0.0);
-    residual += centred_t_ - u * projected_.topRows(r);
+  MatrixX residual = centred_t_;
+  VectorX one_minus_leverage(n);
+  for (Index i = 0; i < n; ++i) one_minus_leverage(i) = 1 - shares_(i);
+  if (std::isfinite(lambda)) {
+    const Index r = rank();
+    const auto u = svd_.u.leftCols(r), squares = squares_.leftCols(r);
+    const MatrixX projected = projected_.topRows(r);
+    VectorX kept(r);
+    for (Index j = 0; j < r; ++j) kept(j) = lambda / (svd_.s(j) * svd_.s(j) + lambda);
+    if (r < n - 1) {  // what U does not span; where it spans all centred samples, nothing but rounding
+      const VectorX spanned = detail::product(squares, VectorX::Ones(r));
+      for (Index i = 0; i < n; ++i) one_minus_leverage(i) = std::max(one_minus_leverage(i) - spanned(i), 0.0);
+      detail::add_product(residual, u, projected, -1);
+    } else {
+      one_minus_leverage.setZero();
+      residual.setZero();
+    }
+    one_minus_leverage += detail::product(squares, kept);
+    detail::add_product(residual, u, detail::rows_scaled(kept, projected));
   }
-  for (Index i = 0; i < n; ++i) residual.row(i) /= std::max(one_minus_leverage(i), 1e-300);
+  for (Index o = 0; o < residual.cols(); ++o)
+    for (Index i = 0; i < n; ++i) residual(i, o) /= std::max(one_minus_leverage(i), 1e-300);
   return residual;
 }
 
 VERNIER_IMPL MatrixX RidgePath::scaled(const ConstMatrixRef& rows, bool weighted) const {
   if (!weighted) return rows;
-  return (shares_ * static_cast<double>(shares_.size())).cwiseSqrt().asDiagonal() * rows;
+  const VectorX relative = static_cast<double>(shares_.size()) * shares_;
+  return detail::rows_scaled(relative.cwiseSqrt(), rows);
 }
 
 VERNIER_IMPL LeaveOneOutChoice choose_lambda(const RidgePath& path, Index samples) {
@@ -131,12 +176,15 @@ VERNIER_IMPL LeaveOneOutChoice choose_lambda(const RidgePath& path, Index sample
 }
 
 VERNIER_IMPL double evidence_against_mean(const RidgePath& path, double lambda, Index samples) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!std::isfinite(lambda) || samples < 3) return 0;
-  const VectorX gain = path.leave_one_out_residuals(std::numeric_limits<double>::infinity()).rowwise().squaredNorm() -
-                       path.leave_one_out_residuals(lambda).rowwise().squaredNorm();
+  const VectorX of_mean = detail::squared_row_norms(path.leave_one_out_residuals(infinity)),
+                of_path = detail::squared_row_norms(path.leave_one_out_residuals(lambda)), gain = of_mean - of_path;
   const double mean = gain.mean(), n = static_cast<double>(samples);
-  const double standard_error = std::sqrt((gain.array() - mean).square().sum() / (n * (n - 1)));
-  return standard_error > 0 ? mean / standard_error : mean > 0 ? std::numeric_limits<double>::infinity() : 0;
+  double sum = 0;
+  for (const double value : gain) sum += (value - mean) * (value - mean);
+  const double standard_error = std::sqrt(sum / (n * (n - 1)));
+  return standard_error > 0 ? mean / standard_error : mean > 0 ? infinity : 0;
 }
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/elm_fitness.hpp"
 #include "vernier/regression/detail/normal_equations.hpp"
 #include "vernier/regression/least_squares.hpp"
@@ -43,7 +44,7 @@ VERNIER_IMPL double ElmFitness::from_samples(const ConstVectorRef& theta) const 
   MatrixX h;
   layer_.outputs(features_, theta, h);
   if (roots_.size() == 0) return relative_ridge(h, targets_, relative_lambda_).objective;
-  return relative_ridge(roots_.asDiagonal() * h, roots_.asDiagonal() * targets_, relative_lambda_).objective;
+  return relative_ridge(rows_scaled(roots_, h), rows_scaled(roots_, targets_), relative_lambda_).objective;
 }
 
 }  // namespace vernier::detail

@@ -41,7 +41,7 @@ class LeaveOneOutError {
   HiddenLayer layer_;
   Index samples_, outputs_, rotated_;
   InstructionSet set_;
-  Eigen::RowVectorXd mean_target_;
+  VectorX mean_target_;
   MatrixX mean_feature_, targets_and_ones_, shift_;
   double centred_square_ = 0;
   LayerEquations equations_;

@@ -111,43 +111,48 @@ VERNIER_IMPL LeaveOneOutError::LeaveOneOutError(const HiddenLayer& layer, const 
       outputs_(targets.cols()),
       rotated_((layer.nodes + 7) / 8 * 8),
       set_(set),
-      mean_target_(targets.colwise().mean()),
-      mean_feature_(features.colwise().mean()),
+      mean_target_(column_means(targets)),
+      mean_feature_(column_means(features).transpose()),
       targets_and_ones_(samples_, outputs_ + 1),
       equations_(layer, features, targets_and_ones_, set, true) {
-  targets_and_ones_ << targets, VectorX::Ones(samples_);
-  centred_square_ = (targets.rowwise() - mean_target_).squaredNorm();
+  targets_and_ones_.leftCols(outputs_) = targets;
+  targets_and_ones_.col(outputs_).setOnes();
+  centred_square_ = rows_minus(targets, mean_target_).squaredNorm();
   scratch_.resize(
       static_cast<std::size_t>(LeaveOneOutBlock::tile_samples * (2 * rotated_ + (1 + outputs_) * padded_lambdas)));
 }
 
 VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const double n = static_cast<double>(samples_);
   const Index h = layer_.nodes;
   // nodes less their output at the mean features, so that centring cancels little
   layer_.outputs(mean_feature_, theta, shift_);
   equations_.form(theta, shift_.data());
-  const VectorX mean = equations_.right().row(outputs_).transpose() / n;
+  const ConstMatrixRef products = equations_.right();
+  const VectorX mean = row_of(products, outputs_) / n;
   MatrixX gram = equations_.gram();
-  const double raw = gram.trace();
-  gram.triangularView<Eigen::Lower>() -= MatrixX(n * mean * mean.transpose());
+  const double raw = diagonal_of(gram).sum();
+  for (Index c = 0; c < h; ++c)
+    for (Index r = c; r < h; ++r) gram(r, c) -= n * mean(r) * mean(c);
   const SymmetricEigen eigen = symmetric_eigen(gram);
   const double mean_alone = centred_square_ * (n / (n - 1)) * (n / (n - 1));
   const double scale = eigen.values(h - 1);
   if (!eigen.converged || !(scale * 100 > raw) || !std::isfinite(scale)) return -1;
 
-  const MatrixX right = equations_.right().topRows(outputs_).transpose() - mean * (n * mean_target_);
-  const VectorX squares = eigen.values.cwiseMax(0);
-  const MatrixX rotated_right = eigen.vectors.transpose() * right;
-  RowMatrix rotation = RowMatrix::Zero(h, rotated_), shares = RowMatrix::Zero(h, padded_lambdas),
-            weights = RowMatrix::Zero(h, outputs_ * padded_lambdas);
-  rotation.leftCols(h) = eigen.vectors;
-  const VectorX start = -(rotation.transpose() * mean);
+  MatrixX right(h, outputs_);
+  for (Index o = 0; o < outputs_; ++o)
+    for (Index k = 0; k < h; ++k) right(k, o) = products(o, k) - mean(k) * (n * mean_target_(o));
+  const MatrixX rotated_right = transposed_matrix_product(eigen.vectors, right);
+  MatrixX rotation = MatrixX::Zero(rotated_, h), shares = MatrixX::Zero(padded_lambdas, h),
+          weights = MatrixX::Zero(outputs_ * padded_lambdas, h);
+  rotation.topRows(h) = eigen.vectors.transpose();
+  const VectorX start = -product(rotation, mean);
   for (Index l = 0; l < lambdas; ++l) {
-    shares.col(l) = (squares.array() + scale * std::pow(10.0, -0.5 * static_cast<double>(l))).inverse();
-    for (Index o = 0; o < outputs_; ++o)
-      weights.col(o * padded_lambdas + l) = rotated_right.col(o).cwiseProduct(shares.col(l));
+    const double lambda = scale * std::pow(10.0, -0.5 * static_cast<double>(l));
+    for (Index k = 0; k < h; ++k) {
+      shares(l, k) = 1 / (std::max(eigen.values(k), 0.0) + lambda);
+      for (Index o = 0; o < outputs_; ++o) weights(o * padded_lambdas + l, k) = rotated_right(k, o) * shares(l, k);
+    }
   }
   VectorX sums = VectorX::Zero(padded_lambdas), least = VectorX::Ones(padded_lambdas);
   const LeaveOneOutBlock block{.hidden = equations_.outputs(),
@@ -166,8 +171,8 @@ VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
                                .rotated = rotated_,
                                .lambdas = padded_lambdas};
   run_widest([&]<int W>() VERNIER_INLINED { leave_one_out_kernel<W, block_rows<W>, block_vectors<W>>(block); }, set_);
-  Index at = 0;
-  const double best = sums.head(lambdas).minCoeff(&at);
+  const Index at = std::min_element(sums.data(), sums.data() + lambdas) - sums.data();
+  const double best = sums(at);
   if (at >= trusted || !(least(at) > 1e-2) || !std::isfinite(best)) return -1;
   return std::min(best, mean_alone) / n;
 }

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/least_squares/marquardt_damping.hpp"
 #include "vernier/regression/detail/levenberg_marquardt.hpp"
 
@@ -22,17 +23,20 @@ VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, Vect
     if (moved) {
       gradient = problem.gradient();
       problem.curvature(curvature, executor);
-      if (!(curvature.diagonal().maxCoeff() > 0)) break;  // every node is saturated or unused
+      scale = diagonal_of(curvature);
+      if (!(scale.maxCoeff() > 0)) break;  // every node is saturated or unused
       // Nodes that hardly matter at the moment must not be thrown far away.
-      scale = curvature.diagonal().cwiseMax(1e-3 * curvature.diagonal().mean());
+      const double least = 1e-3 * scale.mean();
+      for (double& of_weight : scale) of_weight = std::max(of_weight, least);
       moved = false;
     }
     damped = curvature;
-    damped.diagonal() += damping.value() * scale;
-    const Eigen::LLT<Eigen::Ref<MatrixX>> factor(damped);  // in place
-    if (factor.info() == Eigen::Success) {
-      const VectorX step = -factor.solve(gradient);
-      const double predicted = 0.5 * (damping.value() * step.dot(scale.cwiseProduct(step)) - gradient.dot(step));
+    for (Index k = 0; k < scale.size(); ++k) damped(k, k) += damping.value() * scale(k);
+    if (cholesky(damped)) {
+      VectorX step = -gradient;
+      solve_cholesky(damped, step);
+      const VectorX scaled = scale.cwiseProduct(step);
+      const double predicted = 0.5 * (damping.value() * step.dot(scaled) - gradient.dot(step));
       if (!(predicted > 1e-15 * value)) break;  // the value cannot tell such steps apart
       const VectorX trial = theta + step;
       const double found = problem.evaluate(trial);

@@ -60,11 +60,9 @@ class NetworkError {
   VERNIER_API void curvature(MatrixX& out, ExecutorRef executor = {});
 
  private:
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  Eigen::Map<const MatrixX> hidden_weights() const { return {theta_.data(), features_.cols() + 1, layer_.nodes}; }
-  Eigen::Map<const MatrixX> output_weights() const {  // the last row: c
-    return {theta_.data() + hidden(), layer_.nodes + 1, targets_.cols()};
+  /// B; after every column a bias.
+  Eigen::Map<const MatrixX, 0, Eigen::OuterStride<>> output_weights() const {
+    return {theta_.data() + hidden(), layer_.nodes, targets_.cols(), Eigen::OuterStride<>(layer_.nodes + 1)};
   }
 
   VERNIER_API double over_samples(VectorX* gradient);
@@ -77,10 +75,11 @@ class NetworkError {
   /// Outputs of nodes become their slopes.
   VERNIER_API void to_slopes(MatrixX& h) const;
 
-  /// [H 1] and S of all samples, by rows.
+  /// [H 1] and S of all samples, a sample a column.
   VERNIER_API void fill();
 
-  /// Tasks below the number of pairs: S' diag(q phi_j phi_i) S. Then S' diag(q phi_j) [H 1]. The last: [H 1]'Q[H 1].
+  /// Tasks below the number of pairs: S' diag(q phi_j phi_i) S. Then [H 1]' diag(q phi_j) S. The last: [H 1]'Q[H 1].
+  /// Of symmetric products the lower triangle.
   VERNIER_API void form_products(Index begin, Index end);
 
   HiddenLayer layer_;
@@ -91,8 +90,8 @@ class NetworkError {
   VectorX theta_;
   MatrixX outputs_, residual_, pulled_;  // scratch
   Index stride_ = 0;
-  RowMatrix nodes_, slopes_;         // n x stride: [H 1], S, zeros
-  std::vector<RowMatrix> products_;  // see form_products
+  MatrixX nodes_, slopes_;         // stride x n: [H 1], S, zeros
+  std::vector<MatrixX> products_;  // see form_products
 };
 
 }  // namespace vernier::detail

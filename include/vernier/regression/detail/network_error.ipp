@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/network_error.hpp"
 #include "vernier/regression/detail/tile_product.hpp"
 
@@ -24,9 +25,10 @@ VERNIER_IMPL VectorX NetworkError::gradient() {
 
 VERNIER_IMPL double NetworkError::batch(const VectorX& theta, const std::vector<Index>& rows, VectorX& gradient) {
   theta_ = theta;
-  const MatrixX x = features_(rows, Eigen::all), t = targets_(rows, Eigen::all);
+  const MatrixX x = rows_of(features_, rows), t = rows_of(targets_, rows);
   // A batch of heavy samples counts for more: the mean over batches is then the gradient of F.
-  const VectorX q = shares_(rows) * (static_cast<double>(samples()) / static_cast<double>(rows.size()));
+  VectorX q = rows_of(shares_, rows);
+  q *= static_cast<double>(samples()) / static_cast<double>(rows.size());
   gradient.setZero(dimension());
   return add(x, t, q, &gradient) + add_decay(&gradient);
 }
@@ -34,28 +36,31 @@ VERNIER_IMPL double NetworkError::batch(const VectorX& theta, const std::vector<
 VERNIER_IMPL void NetworkError::curvature(MatrixX& out, ExecutorRef executor) {
   fill();
   const Index h = layer_.nodes, d = features_.cols() + 1, pairs = d * (d + 1) / 2;
-  products_.assign(static_cast<std::size_t>(pairs + d + 1), RowMatrix());
+  products_.assign(static_cast<std::size_t>(pairs + d + 1), MatrixX());
   executor.for_ranges(pairs + d + 1, [&](Index begin, Index end) { form_products(begin, end); });
-  const auto product = [&](Index task) -> const RowMatrix& { return products_[static_cast<std::size_t>(task)]; };
+  const auto product = [&](Index task) -> const MatrixX& { return products_[static_cast<std::size_t>(task)]; };
 
   out.setZero(dimension(), dimension());
-  const auto b = output_weights().topRows(h);
-  const MatrixX both = 2 * b * b.transpose();
+  const MatrixX b = output_weights(), transposed = b.transpose(), both = 2 * matrix_product(b, transposed);
   for (Index j = 0, pair = 0; j < d; ++j)
     for (Index i = j; i < d; ++i, ++pair)
       for (Index k = 0; k < h; ++k)
         for (Index l = k; l < h; ++l)
-          out(l * d + i, k * d + j) = out(l * d + j, k * d + i) = both(k, l) * product(pair)(k, l);
+          out(l * d + i, k * d + j) = out(l * d + j, k * d + i) = both(l, k) * product(pair)(l, k);
   for (Index o = 0; o < targets_.cols(); ++o) {
     const Index row = hidden() + o * (h + 1);
     for (Index k = 0; k < h; ++k)
       for (Index j = 0; j < d; ++j)
-        out.col(k * d + j).segment(row, h + 1) = 2 * b(k, o) * product(pairs + j).row(k).head(h + 1).transpose();
-    out.block(row, row, h + 1, h + 1) = 2 * product(pairs + d).topLeftCorner(h + 1, h + 1).transpose();
+        for (Index l = 0; l <= h; ++l) out(row + l, k * d + j) = 2 * b(k, o) * product(pairs + j)(l, k);
+    for (Index k = 0; k <= h; ++k)
+      for (Index l = k; l <= h; ++l) out(row + l, row + k) = 2 * product(pairs + d)(l, k);
   }
   for (Index k = 0; k < h; ++k) {
-    out.diagonal().segment(k * d, d - 1).array() += 2 * decay_;
-    for (Index o = 0; o < targets_.cols(); ++o) out.diagonal()(hidden() + o * (h + 1) + k) += 2 * decay_;
+    for (Index j = k * d; j < k * d + d - 1; ++j) out(j, j) += 2 * decay_;
+    for (Index o = 0; o < targets_.cols(); ++o) {
+      const Index j = hidden() + o * (h + 1) + k;
+      out(j, j) += 2 * decay_;
+    }
   }
 }
 
@@ -71,74 +76,80 @@ VERNIER_IMPL double NetworkError::over_samples(VectorX* gradient) {
 }
 
 VERNIER_IMPL double NetworkError::add_decay(VectorX* gradient) const {
-  const Index f = features_.cols(), h = layer_.nodes;
-  if (gradient != nullptr) {
-    Eigen::Map<MatrixX>(gradient->data(), f + 1, h).topRows(f) += 2 * decay_ * hidden_weights().topRows(f);
-    Eigen::Map<MatrixX>(gradient->data() + hidden(), h + 1, targets_.cols()).topRows(h) +=
-        2 * decay_ * output_weights().topRows(h);
-  }
-  return decay_ * (hidden_weights().topRows(f).squaredNorm() + output_weights().topRows(h).squaredNorm());
+  double sum = 0;
+  const auto add = [&](Index first, Index rows, Index columns) {  // after every column a bias
+    for (Index c = 0; c < columns; ++c)
+      for (Index k = first + c * (rows + 1); k < first + c * (rows + 1) + rows; ++k) {
+        sum += theta_(k) * theta_(k);
+        if (gradient != nullptr) (*gradient)(k) += 2 * decay_ * theta_(k);
+      }
+  };
+  add(0, features_.cols(), layer_.nodes);
+  add(hidden(), layer_.nodes, targets_.cols());
+  return decay_ * sum;
 }
 
 VERNIER_IMPL double NetworkError::add(const ConstMatrixRef& x, const ConstMatrixRef& t, const ConstVectorRef& q,
                                       VectorX* gradient) {
-  const Index f = features_.cols(), h = layer_.nodes;
+  const Index n = x.rows(), f = features_.cols(), h = layer_.nodes, m = targets_.cols();
+  const auto bias = [&](Index o) { return hidden() + o * (h + 1) + h; };
   layer_.outputs(x, theta_.head(hidden()), outputs_);
-  residual_.noalias() = outputs_ * output_weights().topRows(h);
-  residual_.rowwise() += output_weights().row(h);
-  residual_ -= t;
-  const double value = q.dot(residual_.rowwise().squaredNorm());
+  residual_.resize(n, m);
+  for (Index o = 0; o < m; ++o)
+    for (Index i = 0; i < n; ++i) residual_(i, o) = theta_(bias(o)) - t(i, o);
+  add_product(residual_, outputs_, output_weights());
+  const double value = q.dot(squared_row_norms(residual_));
   if (gradient == nullptr) return value;
-  residual_ = 2 * q.asDiagonal() * residual_;
-  Eigen::Map<MatrixX> to_hidden(gradient->data(), f + 1, h);
-  Eigen::Map<MatrixX> to_output(gradient->data() + hidden(), h + 1, targets_.cols());
-  to_output.topRows(h).noalias() += outputs_.transpose() * residual_;
-  to_output.row(h) += residual_.colwise().sum();
-  pulled_.noalias() = residual_ * output_weights().topRows(h).transpose();
+  for (Index o = 0; o < m; ++o)
+    for (Index i = 0; i < n; ++i) residual_(i, o) *= 2 * q(i);
+  const MatrixX back = output_weights().transpose();
+  pulled_.setZero(n, h);
+  add_product(pulled_, residual_, back);
+  Eigen::Map<MatrixX, 0, Eigen::OuterStride<>> to_hidden(gradient->data(), f, h, Eigen::OuterStride<>(f + 1)),
+      to_output(gradient->data() + hidden(), h, m, Eigen::OuterStride<>(h + 1));
+  add_transposed_product(to_output, outputs_, residual_);
+  for (Index o = 0; o < m; ++o) (*gradient)(bias(o)) += residual_.col(o).sum();
   to_slopes(outputs_);
-  pulled_.array() *= outputs_.array();
-  to_hidden.topRows(f).noalias() += x.transpose() * pulled_;
-  to_hidden.row(f) += pulled_.colwise().sum();
+  pulled_ = pulled_.cwiseProduct(outputs_);
+  add_transposed_product(to_hidden, x, pulled_);
+  for (Index k = 0; k < h; ++k) (*gradient)(k * (f + 1) + f) += pulled_.col(k).sum();
   return value;
 }
 
 VERNIER_IMPL void NetworkError::to_slopes(MatrixX& h) const {
-  if (layer_.activation == Activation::tanh) {
-    h.array() = 1 - h.array().square();
-  } else {
-    h.array() *= 1 - h.array();
-  }
+  if (layer_.activation == Activation::tanh)
+    h = MatrixX::Ones(h.rows(), h.cols()) - h.cwiseAbs2();
+  else
+    h -= h.cwiseAbs2();
 }
 
 VERNIER_IMPL void NetworkError::fill() {
   const Index h = layer_.nodes;
   stride_ = (h + 8) / 8 * 8;
-  if (nodes_.size() == 0) nodes_ = slopes_ = RowMatrix::Zero(samples(), stride_);
+  if (nodes_.size() == 0) nodes_ = slopes_ = MatrixX::Zero(stride_, samples());
   layer_.outputs(features_, theta_.head(hidden()), outputs_);
-  nodes_.leftCols(h) = outputs_;
-  nodes_.col(h).setOnes();
+  nodes_.topRows(h) = outputs_.transpose();
+  for (Index i = 0; i < samples(); ++i) nodes_(h, i) = 1;
   to_slopes(outputs_);
-  slopes_.leftCols(h) = outputs_;
+  slopes_.topRows(h) = outputs_.transpose();
 }
 
 VERNIER_IMPL void NetworkError::form_products(Index begin, Index end) {
   const Index d = features_.cols() + 1;
   constexpr Index stage = 512;  // samples that stay in the second-level cache while all tasks pass over them
-  RowMatrix tile(std::max<Index>(8, 3072 / stride_), stride_);  // 24 KiB, the first-level cache
+  MatrixX tile(stride_, std::max<Index>(8, 3072 / stride_));  // 24 KiB, the first-level cache
   for (Index task = begin; task < end; ++task)
-    products_[static_cast<std::size_t>(task)] = RowMatrix::Zero(stride_, stride_);
+    products_[static_cast<std::size_t>(task)] = MatrixX::Zero(stride_, stride_);
   for (Index from = 0; from < samples(); from += stage) {
     const Index count = std::min(stage, samples() - from);
-    MatrixX shared(count, d);
-    shared.leftCols(d - 1) = features_.middleRows(from, count);
-    shared.col(d - 1).setOnes();
     VectorX weights(count);
-    const auto run = [&](Index task, const RowMatrix& left, const RowMatrix& right, Index j, Index i) {
+    const auto shared = [&](Index i, Index j) { return j < d - 1 ? features_(from + i, j) : 1; };
+    const auto run = [&](Index task, const MatrixX& left, const MatrixX& right, Index j, Index i) {
       if (task < begin || task >= end) return;
-      weights = shares_.segment(from, count).cwiseProduct(shared.col(j)).cwiseProduct(shared.col(i));
+      for (Index s = 0; s < count; ++s) weights(s) = shares_(from + s) * shared(s, j) * shared(s, i);
       add_weighted_product(
-          {left.row(from).data(), right.row(from).data(), weights.data(), tile.data(),
-           products_[static_cast<std::size_t>(task)].data(), count, stride_, tile.rows(), &left == &right},
+          {left.col(from).data(), right.col(from).data(), weights.data(), tile.data(),
+           products_[static_cast<std::size_t>(task)].data(), count, stride_, tile.cols(), &left == &right},
           set_);
     };
     Index task = 0;

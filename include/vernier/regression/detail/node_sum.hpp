@@ -64,15 +64,13 @@ class NodeSum {
   VERNIER_API MatrixX coefficients() const;
 
  private:
-  using Packed = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  const double* row(Index i) const noexcept { return packed_.data() + i * packed_.cols(); }
+  const double* column(Index j) const noexcept { return packed_.data() + j * packed_.rows(); }
 
   NodeFunction function_ = NodeFunction::sigmoid;
   InputMap map_ = InputMap::raw;
   Index inputs_ = 0, features_ = 0, nodes_ = 0, outputs_ = 0;
   ColumnScaling scaling_;
-  Packed packed_;  // rows: weights of each feature, biases, coefficients; a column a node, padded with zeros
+  MatrixX packed_;  // columns: weights of each feature, biases, coefficients; a row a node, padded with zeros
   VectorX offset_;
 };
 

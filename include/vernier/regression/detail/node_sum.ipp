@@ -170,11 +170,13 @@ VERNIER_IMPL NodeSum::NodeSum(NodeFunction function, InputMap map, int inputs, c
       nodes_(weights.cols()),
       outputs_(coefficients.cols()),
       scaling_(scaling),
-      packed_(Packed::Zero(features_ + 1 + outputs_, (nodes_ + 7) / 8 * 8)),
+      packed_(MatrixX::Zero((nodes_ + 7) / 8 * 8, features_ + 1 + outputs_)),
       offset_(offset) {
-  packed_.topLeftCorner(features_, nodes_) = weights;
-  if (biases.size() > 0) packed_.row(features_).head(nodes_) = biases.transpose();
-  packed_.bottomLeftCorner(outputs_, nodes_) = coefficients.transpose();
+  for (Index k = 0; k < nodes_; ++k) {
+    for (Index j = 0; j < features_; ++j) packed_(k, j) = weights(j, k);
+    if (biases.size() > 0) packed_(k, features_) = biases(k);
+    for (Index o = 0; o < outputs_; ++o) packed_(k, features_ + 1 + o) = coefficients(k, o);
+  }
 }
 
 VERNIER_IMPL void NodeSum::features(const double* x, double* workspace) const noexcept {
@@ -191,13 +193,14 @@ VERNIER_IMPL void NodeSum::evaluate(const double* x, double* y, double* slope, d
   std::copy(offset_.data(), offset_.data() + outputs_, y);
   if (slope != nullptr) std::fill(slope, slope + outputs_ * inputs_, 0.0);
   run_widest([&]<int W>() VERNIER_INLINED {
-    for (Index first = 0; first < packed_.cols(); first += most) {
-      const NodeBlock block{function_, row(0) + first, workspace,
-                            features_, packed_.cols(), std::min(most, packed_.cols() - first),
-                            values,    slopes};
+    for (Index first = 0; first < packed_.rows(); first += most) {
+      const NodeBlock block{function_,      column(0) + first,
+                            workspace,      features_,
+                            packed_.rows(), std::min(most, packed_.rows() - first),
+                            values,         slopes};
       evaluate_nodes<W>(block);
       for (Index o = 0; o < outputs_; ++o) {
-        const double* coefficients = row(features_ + 1 + o) + first;
+        const double* coefficients = column(features_ + 1 + o) + first;
         y[o] += sum_of_nodes<W>(block, coefficients);
         if (slope == nullptr) continue;
         feature_gradient<W>(block, coefficients, effects, gradient);
@@ -211,9 +214,9 @@ VERNIER_IMPL void NodeSum::evaluate(const double* x, double* y, double* slope, d
 VERNIER_IMPL void NodeSum::evaluate_rows(const ConstMatrixRef& x, MatrixRef y) const {
   VectorX sample(inputs_), prediction(outputs_), memory(workspace(static_cast<int>(inputs_)));
   for (Index i = 0; i < x.rows(); ++i) {
-    sample = x.row(i).transpose();
+    for (Index j = 0; j < inputs_; ++j) sample(j) = x(i, j);
     evaluate(sample.data(), prediction.data(), nullptr, memory.data());
-    y.row(i) = prediction.transpose();
+    for (Index o = 0; o < outputs_; ++o) y(i, o) = prediction(o);
   }
 }
 
@@ -221,18 +224,21 @@ VERNIER_IMPL void NodeSum::node_values(const double* features, Index first, Inde
   constexpr Index most = 64;
   double slopes[most];
   for (Index begin = 0; begin < count; begin += most) {
-    const NodeBlock block{function_,      row(0) + first + begin,        features,    features_,
-                          packed_.cols(), std::min(most, count - begin), out + begin, slopes};
+    const NodeBlock block{function_,      column(0) + first + begin,     features,    features_,
+                          packed_.rows(), std::min(most, count - begin), out + begin, slopes};
     run_widest([&]<int W>() VERNIER_INLINED { evaluate_nodes<W>(block); });
   }
 }
 
-VERNIER_IMPL MatrixX NodeSum::weights() const { return packed_.topLeftCorner(features_, nodes_); }
+VERNIER_IMPL MatrixX NodeSum::weights() const { return packed_.topLeftCorner(nodes_, features_).transpose(); }
 
 VERNIER_IMPL VectorX NodeSum::weights_and_biases() const {
-  return MatrixX(packed_.topLeftCorner(features_ + 1, nodes_)).reshaped();
+  VectorX out(nodes_ * (features_ + 1));
+  for (Index k = 0; k < nodes_; ++k)
+    for (Index j = 0; j <= features_; ++j) out(k * (features_ + 1) + j) = packed_(k, j);
+  return out;
 }
 
-VERNIER_IMPL MatrixX NodeSum::coefficients() const { return packed_.bottomLeftCorner(outputs_, nodes_).transpose(); }
+VERNIER_IMPL MatrixX NodeSum::coefficients() const { return packed_.block(0, features_ + 1, nodes_, outputs_); }
 
 }  // namespace vernier::detail

@@ -39,15 +39,17 @@ class LayerEquations {
   const double* outputs() const { return tile_.data(); }
   Index stride() const { return stride_; }
   /// H'H, nodes x nodes; its lower triangle.
-  ConstMatrixRef gram() const { return view().topLeftCorner(layer_.nodes, layer_.nodes); }
+  ConstMatrixRef gram() const { return products_.topLeftCorner(layer_.nodes, layer_.nodes); }
   /// T'H, outputs x nodes.
-  ConstMatrixRef right() const { return view().block(layer_.nodes, 0, targets_.cols(), layer_.nodes); }
+  ConstMatrixRef right() const { return products_.block(layer_.nodes, 0, targets_.cols(), layer_.nodes); }
   /// |T|^2.
-  double target_square() const { return view().diagonal().segment(layer_.nodes, targets_.cols()).sum(); }
+  double target_square() const {
+    double sum = 0;
+    for (Index k = layer_.nodes; k < layer_.nodes + targets_.cols(); ++k) sum += products_(k, k);
+    return sum;
+  }
 
  private:
-  Eigen::Map<const MatrixX> view() const { return {products_.data(), stride_, stride_}; }  // transposed: lower triangle
-
   HiddenLayer layer_;
   const MatrixX& features_;
   const MatrixX& targets_;
@@ -55,7 +57,8 @@ class LayerEquations {
   bool keep_;
   const double* scale_;
   Index stride_ = 0, tile_samples_ = 0;
-  std::vector<double> weights_, shift_, tile_, products_;
+  std::vector<double> weights_, shift_, tile_;
+  MatrixX products_;  // lower triangle
 };
 
 }  // namespace vernier::detail

@@ -61,7 +61,7 @@ VERNIER_IMPL LayerEquations::LayerEquations(const HiddenLayer& layer, const Matr
   weights_.resize(static_cast<std::size_t>((features.cols() + 1) * stride_));
   tile_.resize(static_cast<std::size_t>((keep ? features.rows() : tile_samples_) * stride_));
   shift_.resize(static_cast<std::size_t>(stride_));
-  products_.resize(static_cast<std::size_t>(stride_ * stride_));
+  products_.resize(stride_, stride_);
 }
 
 VERNIER_IMPL void LayerEquations::form(const ConstVectorRef& theta, const double* shift) {
@@ -69,7 +69,7 @@ VERNIER_IMPL void LayerEquations::form(const ConstVectorRef& theta, const double
   for (Index k = 0; k < layer_.nodes; ++k)
     for (Index j = 0; j <= f; ++j) weights_[static_cast<std::size_t>(j * stride_ + k)] = theta(k * (f + 1) + j);
   if (shift != nullptr) std::copy(shift, shift + layer_.nodes, shift_.begin());  // padded
-  std::fill(products_.begin(), products_.end(), 0.0);
+  products_.setZero();
   const NormalEquationsBlock block{features_.data(),
                                    targets_.data(),
                                    weights_.data(),

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/concepts.hpp"
 #include "vernier/regression/detail/normal_equations.hpp"
 #include "vernier/regression/detail/var_pro_training_error.hpp"
@@ -20,9 +21,10 @@ VERNIER_IMPL VarProTrainingError::VarProTrainingError(const HiddenLayer& layer, 
 
 VERNIER_IMPL void VarProTrainingError::operator()(const ConstMatrixRef& population, VectorRef fitness) const {
   const VectorX roots = weights_or_ones(weights(), targets_.rows()).cwiseSqrt();
-  const double n = roots.squaredNorm(), target_square = (roots.asDiagonal() * targets_).squaredNorm();
+  const double n = roots.squaredNorm(), target_square = rows_scaled(roots, targets_).squaredNorm();
   MatrixX ones_and_targets(targets_.rows(), targets_.cols() + 1);
-  ones_and_targets << VectorX::Ones(targets_.rows()), targets_;
+  ones_and_targets.col(0).setOnes();
+  ones_and_targets.rightCols(targets_.cols()) = targets_;
   LayerEquations equations(layer_, features_, ones_and_targets, widest_instruction_set(), false,
                            weights_ ? roots.data() : nullptr);
   std::optional<VariableProjection> projection;
@@ -30,12 +32,14 @@ VERNIER_IMPL void VarProTrainingError::operator()(const ConstMatrixRef& populati
     double objective = -1;
     if (LayerEquations::supports(layer_.activation)) {
       equations.form(population.col(k));
-      const VectorX sum = equations.right().row(0).transpose();
+      const VectorX sum = row_of(equations.right(), 0);
       MatrixX gram = equations.gram();
-      gram -= sum * sum.transpose() / n;
+      const double trace = diagonal_of(gram).sum();
+      for (Index c = 0; c < gram.cols(); ++c)
+        for (Index r = c; r < gram.rows(); ++r) gram(r, c) -= sum(r) * sum(c) / n;
       const ConstMatrixRef right = equations.right().bottomRows(targets_.cols());
       objective = objective_from_products(gram, right, target_square, ridge_weights(gram, right, ridge_ * n),
-                                          ridge_ * n, equations.gram().trace());
+                                          ridge_ * n, trace);
     }
     if (!(objective >= 0)) {  // too nearly perfect or too badly conditioned for the products
       if (!projection) projection.emplace(layer_, features_, targets_, ridge_, weights());

@@ -55,12 +55,10 @@ class VariableProjection {
   VERNIER_API VectorX offset() const;
 
  private:
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   bool radial() const { return layer_.activation == Activation::radial_basis; }
 
-  /// The layer's outputs, one sample a row, times the roots of the weights.
-  VERNIER_API void fill(const VectorX& theta, RowMatrix& rows) const;
+  /// The layer's outputs, one sample a column, times the roots of the weights.
+  VERNIER_API void fill(const VectorX& theta, MatrixX& columns) const;
 
   /// The slopes of all nodes at all samples, from their outputs.
   VERNIER_API void find_slopes();
@@ -68,19 +66,19 @@ class VariableProjection {
   /// L_k times rows that belong to the shared features: rows that belong to the weights and the bias of node k.
   VERNIER_API MatrixX to_weights(Index k, const ConstMatrixRef& rows) const;
 
-  /// Tasks below the number of pairs: S' diag(phi_j phi_i) S. The others: (S phi_j)' [H 1 T].
+  /// Tasks below the number of pairs: S' diag(phi_j phi_i) S, its lower triangle. The others: [H 1 T]' (S phi_j).
   VERNIER_API void products_of_pairs(Index begin, Index end);
 
   /// 24 KiB, the first-level cache.
   Index tile_samples() const { return 3072 / stride_ > 8 ? 3072 / stride_ : 8; }
 
-  VERNIER_API void add_product(const RowMatrix& left, const RowMatrix& right, const double* weights, Index rows,
-                               RowMatrix& out, bool symmetric, Index tile_rows = 0) const;
+  /// Columns, of a multiple of 8 rows, times their transpose are added to the lower triangle of `out`.
+  VERNIER_API void add_square(const MatrixX& columns, MatrixX& out, Index tile_columns) const;
 
   /// Cholesky of the products; of the samples where that fails.
-  VERNIER_API void factorise(const MatrixX& gram);
+  VERNIER_API void factorise(MatrixX gram);
 
-  VERNIER_API MatrixX solve(const MatrixX& right) const;
+  VERNIER_API MatrixX solve(MatrixX right) const;
 
   HiddenLayer layer_;
   MatrixX features_;
@@ -90,14 +88,14 @@ class VariableProjection {
   double n_, lambda_;
   InstructionSet set_;
   Index stride_;
-  MatrixX shared_;                  // n x d: features, one, and for radial bases their squared norm
-  RowMatrix hidden_;                // n x stride: H, one, targets (each times roots_), zeros
-  RowMatrix products_;              // of hidden_ with itself
-  VectorX ones_, theta_, mean_;     // mean_ of H
-  MatrixX factor_;                  // lower, of the centred H'H + lambda
-  MatrixX beta_, residual_;         // nodes x m, n x m: roots times T - H beta - mean
-  RowMatrix slopes_;                // n x stride
-  std::vector<RowMatrix> by_pair_;  // see products_of_pairs
+  MatrixX shared_;                // n x d: features, one, and for radial bases their squared norm
+  MatrixX hidden_;                // stride x n: H, one, targets (each times roots_), zeros
+  MatrixX products_;              // of hidden_ with itself, lower triangle
+  VectorX ones_, theta_, mean_;   // mean_ of H
+  MatrixX factor_;                // lower, of the centred H'H + lambda
+  MatrixX beta_, residual_;       // nodes x m, n x m: roots times T - H beta - mean
+  MatrixX slopes_;                // stride x n
+  std::vector<MatrixX> by_pair_;  // see products_of_pairs
   bool slopes_known_ = false;
 };
 

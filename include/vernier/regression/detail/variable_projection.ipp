@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/tile_product.hpp"
@@ -17,7 +17,7 @@ VERNIER_IMPL VariableProjection::VariableProjection(const HiddenLayer& layer, co
     : layer_(layer),
       features_(features),
       roots_(weights != nullptr ? VectorX(weights->cwiseSqrt()) : VectorX(VectorX::Ones(features.rows()))),
-      targets_(roots_.asDiagonal() * targets),
+      targets_(rows_scaled(roots_, targets)),
       samples_(features.rows()),
       nodes_(layer.nodes),
       n_(weights != nullptr ? weights->sum() : static_cast<double>(samples_)),
@@ -25,122 +25,152 @@ VERNIER_IMPL VariableProjection::VariableProjection(const HiddenLayer& layer, co
       set_(set),
       stride_((nodes_ + 1 + targets.cols() + 7) / 8 * 8),
       shared_(samples_, features.cols() + (radial() ? 2 : 1)),
-      hidden_(RowMatrix::Zero(samples_, stride_)),
+      hidden_(MatrixX::Zero(stride_, samples_)),
       products_(stride_, stride_),
       ones_(VectorX::Ones(std::max(samples_, nodes_ + 1))) {
-  shared_.leftCols(features.cols()) = features;
-  shared_.col(features.cols()).setOnes();
-  if (radial()) shared_.rightCols(1) = features.rowwise().squaredNorm();
-  hidden_.col(nodes_) = roots_;
-  hidden_.middleCols(nodes_ + 1, targets.cols()) = targets_;
+  const Index f = features.cols();
+  shared_.leftCols(f) = features;
+  shared_.col(f).setOnes();
+  if (radial()) shared_.col(f + 1) = squared_row_norms(features);
+  for (Index i = 0; i < samples_; ++i) {
+    hidden_(nodes_, i) = roots_(i);
+    for (Index o = 0; o < targets.cols(); ++o) hidden_(nodes_ + 1 + o, i) = targets_(i, o);
+  }
 }
 
 VERNIER_IMPL double VariableProjection::evaluate(const ConstVectorRef& theta) {
   theta_ = theta;
   slopes_known_ = false;
   fill(theta_, hidden_);
-  if (!hidden_.leftCols(nodes_).allFinite()) return std::numeric_limits<double>::infinity();
   const Index m = targets_.cols();
   products_.setZero();
-  add_product(hidden_, hidden_, ones_.data(), samples_, products_, true);
-  mean_ = products_.col(nodes_).head(nodes_) / n_;
-  MatrixX gram = products_.topLeftCorner(nodes_, nodes_).transpose();  // its lower triangle
-  gram.triangularView<Eigen::Lower>() -= MatrixX(n_ * mean_ * mean_.transpose());
-  gram.diagonal().array() += lambda_;
-  factorise(gram);
-  const auto correlate = [&](const MatrixX& residual) -> MatrixX {  // centred H' residual
-    return hidden_.leftCols(nodes_).transpose() * residual - mean_ * (roots_.transpose() * residual);
+  add_square(hidden_, products_, tile_samples());
+  for (Index k = 0; k < nodes_; ++k)
+    if (!std::isfinite(products_(k, k))) return std::numeric_limits<double>::infinity();
+  mean_.resize(nodes_);
+  for (Index k = 0; k < nodes_; ++k) mean_(k) = products_(nodes_, k) / n_;
+  MatrixX gram = products_.topLeftCorner(nodes_, nodes_);  // its lower triangle
+  for (Index c = 0; c < nodes_; ++c) {
+    for (Index r = c; r < nodes_; ++r) gram(r, c) -= n_ * mean_(r) * mean_(c);
+    gram(c, c) += lambda_;
+  }
+  factorise(std::move(gram));
+  const auto h = hidden_.topRows(nodes_);
+  const auto centred = [&](MatrixX right, const MatrixX& residual) {  // H' residual becomes that of the centred H
+    const VectorX sums = transposed_product(residual, roots_);
+    for (Index o = 0; o < m; ++o) right.col(o) -= sums(o) * mean_;
+    return right;
   };
-  beta_ = solve(products_.block(0, nodes_ + 1, nodes_, m) - mean_ * (roots_.transpose() * targets_));
-  residual_ = targets_ - hidden_.leftCols(nodes_) * beta_;
-  residual_.noalias() += roots_ * (mean_.transpose() * beta_);
+  const auto fit = [&](const MatrixX& beta) {  // leaves the residual
+    add_transposed_product(residual_, h, beta, -1);
+    const VectorX shift = transposed_product(beta, mean_);
+    for (Index o = 0; o < m; ++o) residual_.col(o) += shift(o) * roots_;
+  };
+  residual_ = targets_;
+  beta_ = solve(centred(products_.block(nodes_ + 1, 0, m, nodes_).transpose(), targets_));
+  fit(beta_);
   // The products lose digits that the samples have: one step of refinement brings them back.
-  const MatrixX more = solve(correlate(residual_) - lambda_ * beta_);
+  MatrixX right = centred(matrix_product(h, residual_), residual_);
+  right -= lambda_ * beta_;
+  const MatrixX more = solve(std::move(right));
   beta_ += more;
-  residual_.noalias() -= hidden_.leftCols(nodes_) * more;
-  residual_.noalias() += roots_ * (mean_.transpose() * more);
+  fit(more);
   return (residual_.squaredNorm() + lambda_ * beta_.squaredNorm()) / n_;
 }
 
 VERNIER_IMPL VectorX VariableProjection::gradient() {
   find_slopes();
-  const RowMatrix pulled = slopes_.leftCols(nodes_).cwiseProduct(residual_ * beta_.transpose());
-  const MatrixX by_shared = shared_.transpose() * pulled;
-  MatrixX out(features_.cols() + 1, nodes_);
-  for (Index k = 0; k < nodes_; ++k) out.col(k) = to_weights(k, by_shared.col(k));
-  return (-2 / n_) * out.reshaped();
+  const MatrixX residual = residual_.transpose();
+  MatrixX pulled = matrix_product(beta_, residual);
+  for (Index i = 0; i < samples_; ++i)
+    for (Index k = 0; k < nodes_; ++k) pulled(k, i) *= slopes_(k, i);
+  const MatrixX by_shared = matrix_product(pulled, shared_);
+  const Index p = features_.cols() + 1;
+  VectorX out(dimension());
+  for (Index k = 0; k < nodes_; ++k) out.segment(k * p, p) = to_weights(k, row_of(by_shared, k));
+  return (-2 / n_) * out;
 }
 
 VERNIER_IMPL void VariableProjection::curvature(MatrixX& out, ExecutorRef executor) {
   find_slopes();
   const Index d = shared_.cols(), pairs = d * (d + 1) / 2, p = features_.cols() + 1;
-  by_pair_.assign(static_cast<std::size_t>(pairs + d), RowMatrix());
+  by_pair_.assign(static_cast<std::size_t>(pairs + d), MatrixX());
   executor.for_ranges(pairs + d, [&](Index begin, Index end) { products_of_pairs(begin, end); });
 
-  // What the output weights and the mean take over: rows of `taken` times themselves.
+  // What the output weights and the mean take over: columns of `taken` times themselves.
   const Index padded = (dimension() + 7) / 8 * 8;
-  MatrixX cross(nodes_, dimension());
-  RowMatrix taken = RowMatrix::Zero(nodes_ + 1, padded);
-  MatrixX of_node(d, nodes_ + 1);
+  MatrixX cross(nodes_, dimension()), taken = MatrixX::Zero(padded, nodes_ + 1), of_node(d, nodes_ + 1);
   for (Index k = 0; k < nodes_; ++k) {
-    for (Index j = 0; j < d; ++j)
-      of_node.row(j) = by_pair_[static_cast<std::size_t>(pairs + j)].row(k).head(nodes_ + 1);
+    for (Index j = 0; j < d; ++j) {
+      const MatrixX& by_feature = by_pair_[static_cast<std::size_t>(pairs + j)];
+      for (Index l = 0; l <= nodes_; ++l) of_node(j, l) = by_feature(l, k);
+    }
     const MatrixX of_weights = to_weights(k, of_node);
-    cross.middleCols(k * p, p) = of_weights.leftCols(nodes_).transpose() - mean_ * of_weights.col(nodes_).transpose();
-    taken.row(nodes_).segment(k * p, p) = of_weights.col(nodes_).transpose() / std::sqrt(n_);
+    for (Index i = 0; i < p; ++i) {
+      const double sum = of_weights(i, nodes_);
+      for (Index l = 0; l < nodes_; ++l) cross(l, k * p + i) = of_weights(i, l) - mean_(l) * sum;
+      taken(k * p + i, nodes_) = sum / std::sqrt(n_);
+    }
   }
-  factor_.triangularView<Eigen::Lower>().solveInPlace(cross);
-  taken.topLeftCorner(nodes_, dimension()) = cross;
-  RowMatrix all_taken = RowMatrix::Zero(padded, padded);
-  add_product(taken, taken, ones_.data(), nodes_ + 1, all_taken, true, nodes_ + 1);
+  solve_lower(factor_, cross);
+  taken.topLeftCorner(dimension(), nodes_) = cross.transpose();
+  MatrixX all_taken = MatrixX::Zero(padded, padded);
+  add_square(taken, all_taken, nodes_ + 1);
 
   out.resize(dimension(), dimension());
-  const MatrixX weight = (2 / n_) * beta_ * beta_.transpose();
-  MatrixX block(d, d);
+  const MatrixX by_node = beta_.transpose();
+  MatrixX block(d, d), radial_block;
   for (Index k = 0; k < nodes_; ++k)
     for (Index l = k; l < nodes_; ++l) {
       for (Index j = 0, pair = 0; j < d; ++j)
         for (Index i = j; i < d; ++i, ++pair)
-          block(i, j) = block(j, i) = by_pair_[static_cast<std::size_t>(pair)](k, l);
-      if (radial()) {
-        const MatrixX rows = to_weights(k, block);
-        const MatrixX both = to_weights(l, rows.transpose());  // p x p, rows of node l
-        out.block(l * p, k * p, p, p) = both;
-      } else {
-        out.block(l * p, k * p, p, p) = block;
-      }
-      auto to = out.block(l * p, k * p, p, p);
-      to = weight(k, l) * (to - all_taken.block(k * p, l * p, p, p).transpose());
+          block(i, j) = block(j, i) = by_pair_[static_cast<std::size_t>(pair)](l, k);
+      if (radial()) radial_block = to_weights(l, to_weights(k, block).transpose());
+      const MatrixX& of_weights = radial() ? radial_block : block;  // p x p, rows of node l
+      const double weight = 2 / n_ * by_node.col(k).dot(by_node.col(l));
+      for (Index j = k * p; j < (k + 1) * p; ++j)
+        for (Index i = l * p; i < (l + 1) * p; ++i)
+          out(i, j) = weight * (of_weights(i - l * p, j - k * p) - all_taken(i, j));
     }
 }
 
-VERNIER_IMPL VectorX VariableProjection::offset() const { return -(beta_.transpose() * mean_); }
+VERNIER_IMPL VectorX VariableProjection::offset() const { return -transposed_product(beta_, mean_); }
 
-VERNIER_IMPL void VariableProjection::fill(const VectorX& theta, RowMatrix& rows) const {
+VERNIER_IMPL void VariableProjection::fill(const VectorX& theta, MatrixX& columns) const {
   constexpr Index tile = 256;
   MatrixX block;
   for (Index begin = 0; begin < samples_; begin += tile) {
     const Index count = std::min(tile, samples_ - begin);
     layer_.outputs(features_.middleRows(begin, count), theta, block);
-    rows.block(begin, 0, count, nodes_) = roots_.segment(begin, count).asDiagonal() * block;
+    for (Index i = 0; i < count; ++i)
+      for (Index k = 0; k < nodes_; ++k) columns(k, begin + i) = roots_(begin + i) * block(i, k);
   }
 }
 
 VERNIER_IMPL void VariableProjection::find_slopes() {
   if (slopes_known_) return;
   slopes_known_ = true;
-  if (slopes_.size() == 0) slopes_ = RowMatrix::Zero(samples_, stride_);
-  const auto h = hidden_.leftCols(nodes_).array();  // root times output; the slopes are root times slope
-  auto s = slopes_.leftCols(nodes_).array();
-  switch (layer_.activation) {
-    case Activation::sigmoid: s = h * (1 - h.colwise() / roots_.array()); break;
-    case Activation::tanh: s = (-h.square()).colwise() / roots_.array(), s.colwise() += roots_.array(); break;
-    case Activation::radial_basis: s = h; break;
-    case Activation::sine: {  // cos z = sin(z + pi / 2)
-      VectorX shifted = theta_;
-      shifted.reshaped(features_.cols() + 1, nodes_).row(features_.cols()).array() += 1.57079632679489661923;
-      fill(shifted, slopes_);
-      break;
+  if (slopes_.size() == 0) slopes_ = MatrixX::Zero(stride_, samples_);
+  if (layer_.activation == Activation::sine) {  // cos z = sin(z + pi / 2)
+    VectorX shifted = theta_;
+    const Index f = features_.cols();
+    for (Index k = 0; k < nodes_; ++k) shifted(k * (f + 1) + f) += 1.57079632679489661923;
+    fill(shifted, slopes_);
+    return;
+  }
+  for (Index i = 0; i < samples_; ++i) {
+    const double root = roots_(i);
+    const double* h = hidden_.col(i).data();  // root times output
+    double* slope = slopes_.col(i).data();    // root times slope
+    switch (layer_.activation) {
+      case Activation::sigmoid:
+        for (Index k = 0; k < nodes_; ++k) slope[k] = h[k] * (1 - h[k] / root);
+        break;
+      case Activation::tanh:
+        for (Index k = 0; k < nodes_; ++k) slope[k] = root - h[k] * h[k] / root;
+        break;
+      case Activation::radial_basis: std::copy(h, h + nodes_, slope); break;
+      case Activation::sine: break;
     }
   }
 }
@@ -149,64 +179,69 @@ VERNIER_IMPL MatrixX VariableProjection::to_weights(Index k, const ConstMatrixRe
   if (!radial()) return rows;
   // h = exp(-b^2 |x - w|^2): dh/dw = 2 b^2 (x - w) h, dh/db = -2 b |x - w|^2 h
   const Index f = features_.cols();
-  const auto w = theta_.segment(k * (f + 1), f);
-  const double b = theta_(k * (f + 1) + f);
+  const double *w = theta_.data() + k * (f + 1), b = w[f];
   MatrixX out(f + 1, rows.cols());
-  out.topRows(f) = 2 * b * b * (rows.topRows(f) - w * rows.row(f));
-  out.row(f) = -2 * b * (rows.row(f + 1) - 2 * w.transpose() * rows.topRows(f) + w.squaredNorm() * rows.row(f));
+  for (Index c = 0; c < rows.cols(); ++c) {
+    double product = 0, square = 0;
+    for (Index j = 0; j < f; ++j) {
+      out(j, c) = 2 * b * b * (rows(j, c) - w[j] * rows(f, c));
+      product += w[j] * rows(j, c);
+      square += w[j] * w[j];
+    }
+    out(f, c) = -2 * b * (rows(f + 1, c) - 2 * product + square * rows(f, c));
+  }
   return out;
 }
 
 VERNIER_IMPL void VariableProjection::products_of_pairs(Index begin, Index end) {
   const Index d = shared_.cols(), pairs = d * (d + 1) / 2;
   constexpr Index stage = 512;  // samples that stay in the second-level cache while all tasks pass over them
-  RowMatrix tile(tile_samples(), stride_);
+  MatrixX tile(stride_, tile_samples());
   VectorX weights(std::min(stage, samples_));
   for (Index task = begin; task < end; ++task)
-    by_pair_[static_cast<std::size_t>(task)] = RowMatrix::Zero(stride_, stride_);
+    by_pair_[static_cast<std::size_t>(task)] = MatrixX::Zero(stride_, stride_);
   for (Index from = 0; from < samples_; from += stage) {
     const Index count = std::min(stage, samples_ - from);
     Index task = 0;
-    const auto run = [&](const RowMatrix& right, bool symmetric) {
-      add_weighted_product({slopes_.row(from).data(), right.row(from).data(), weights.data(), tile.data(),
-                            by_pair_[static_cast<std::size_t>(task)].data(), count, stride_, tile.rows(), symmetric},
+    const auto run = [&](const MatrixX& right, bool symmetric) {
+      add_weighted_product({slopes_.col(from).data(), right.col(from).data(), weights.data(), tile.data(),
+                            by_pair_[static_cast<std::size_t>(task)].data(), count, stride_, tile.cols(), symmetric},
                            set_);
     };
     for (Index j = 0; j < d; ++j)
       for (Index i = j; i < d; ++i, ++task) {
         if (task < begin || task >= end) continue;
-        weights.head(count) = shared_.col(j).segment(from, count).cwiseProduct(shared_.col(i).segment(from, count));
+        for (Index s = 0; s < count; ++s) weights(s) = shared_(from + s, j) * shared_(from + s, i);
         run(slopes_, true);
       }
     for (task = std::max(begin, pairs); task < end; ++task) {
-      weights.head(count) = shared_.col(task - pairs).segment(from, count);
+      for (Index s = 0; s < count; ++s) weights(s) = shared_(from + s, task - pairs);
       run(hidden_, false);
     }
   }
 }
 
-VERNIER_IMPL void VariableProjection::add_product(const RowMatrix& left, const RowMatrix& right, const double* weights,
-                                                  Index rows, RowMatrix& out, bool symmetric, Index tile_rows) const {
-  RowMatrix tile(tile_rows > 0 ? tile_rows : tile_samples(), left.cols());
-  add_weighted_product(
-      {left.data(), right.data(), weights, tile.data(), out.data(), rows, left.cols(), tile.rows(), symmetric}, set_);
+VERNIER_IMPL void VariableProjection::add_square(const MatrixX& columns, MatrixX& out, Index tile_columns) const {
+  MatrixX tile(columns.rows(), tile_columns);
+  add_weighted_product({columns.data(), columns.data(), ones_.data(), tile.data(), out.data(), columns.cols(),
+                        columns.rows(), tile_columns, true},
+                       set_);
 }
 
-VERNIER_IMPL void VariableProjection::factorise(const MatrixX& gram) {
-  const Eigen::LLT<MatrixX> factor(gram);
-  if (factor.info() == Eigen::Success) {
-    factor_ = factor.matrixL();
-    return;
+VERNIER_IMPL void VariableProjection::factorise(MatrixX gram) {
+  factor_ = std::move(gram);
+  if (cholesky(factor_)) return;
+  MatrixX stacked = MatrixX::Zero(samples_ + nodes_, nodes_);
+  for (Index k = 0; k < nodes_; ++k) {
+    for (Index i = 0; i < samples_; ++i) stacked(i, k) = hidden_(k, i) - roots_(i) * mean_(k);
+    stacked(samples_ + k, k) = std::sqrt(lambda_);
   }
-  MatrixX stacked(samples_ + nodes_, nodes_);
-  stacked << hidden_.leftCols(nodes_) - roots_ * mean_.transpose(),
-      std::sqrt(lambda_) * MatrixX::Identity(nodes_, nodes_);
   factor_ = triangular_factor(stacked).transpose();
 }
 
-VERNIER_IMPL MatrixX VariableProjection::solve(const MatrixX& right) const {
-  const auto lower = factor_.triangularView<Eigen::Lower>();
-  return lower.transpose().solve(MatrixX(lower.solve(right)));
+VERNIER_IMPL MatrixX VariableProjection::solve(MatrixX right) const {
+  solve_cholesky(factor_, right);
+  return right;
 }
 
 }  // namespace vernier::detail

@@ -94,10 +94,13 @@ ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Ar
   for (int i = 0; i < Arm::dof; ++i)
     require(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
   const auto links = chain.links(q);
-  ArmAxes out{ArmAxes::Columns(3, Arm::dof), ArmAxes::Columns(3, Arm::dof), framed.pose(q)};
+  ArmAxes out;
+  out.joints = Arm::dof;
+  out.tool = framed.pose(q);
+  const Matrix3 turn = rotation(framed.base());
   for (int i = 0; i < Arm::dof; ++i) {
-    out.direction.col(i) = framed.base().linear() * links.axis.col(i);
-    out.point.col(i) = framed.base() * Vector3(links.point.col(i));
+    out.direction[i] = turn * Vector3(links.axis(0, i), links.axis(1, i), links.axis(2, i));
+    out.point[i] = transformed(framed.base(), {links.point(0, i), links.point(1, i), links.point(2, i)});
   }
   return out;
 }
@@ -117,8 +120,10 @@ SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
   const MovingJoints<N> moving(held);
   for (int k = 0; k < 6; ++k) {
     const int i = moving.index[static_cast<std::size_t>(k)];
-    out.direction.col(k) = all.direction.col(i);
-    out.point.col(k) = all.point.col(i);
+    for (int c = 0; c < 3; ++c) {
+      out.direction(c, k) = all.direction[i](c);
+      out.point(c, k) = all.point[i](c);
+    }
   }
   out.tool = all.tool;
   return out;

@@ -6,6 +6,7 @@
 
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/kinematics/detail/small_systems.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 
 namespace vernier::detail {
@@ -18,32 +19,6 @@ struct IkIterate {
   double position_error, rotation_error;
   double cost;  ///< squared norm of the weighted error
 };
-
-/// Solves `a x = b` for a symmetric positive definite matrix of a few rows, its lower triangle; LDL' in place, then b
-/// is x. For so few rows Eigen's run-time-sized decompositions cost twice as much.
-inline void solve_few(double* a, double* b, int n) noexcept {
-  for (int j = 0; j < n; ++j) {
-    double* const column = a + j * n;
-    for (int k = 0; k < j; ++k) {
-      const double* const before = a + k * n;
-      const double factor = before[j] * before[k];  // before[k]: pivot k
-      for (int i = j; i < n; ++i) column[i] -= factor * before[i];
-    }
-    const double inverse = 1 / column[j];
-    for (int i = j + 1; i < n; ++i) column[i] *= inverse;
-    for (int i = j + 1; i < n; ++i) b[i] -= column[i] * b[j];
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    const double* const column = a + j * n;
-    double sum = b[j] / column[j];
-    for (int i = j + 1; i < n; ++i) sum -= column[i] * b[i];
-    b[j] = sum;
-  }
-}
-
-inline double dot6(const double* a, const double* b) noexcept {
-  return ((a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])) + (a[4] * b[4] + a[5] * b[5]);
-}
 
 /// Starts at `next.q`; the iterates change places, the better one is `*best`.
 VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* best, IkIterate* next,
@@ -61,12 +36,15 @@ VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* 
   const auto evaluate = [&](IkIterate& it) {
     Isometry3 pose;
     problem.model(it.q, pose, it.jacobian);
-    const Vector3 position = problem.target.translation() - pose.translation();
-    Vector3 rotation = Vector3::Zero();
-    if (problem.oriented) rotation = log_so3(problem.target.linear() * pose.linear().transpose());
+    const Vector3 position = translation(problem.target) - translation(pose);
+    Vector3 turn = Vector3::Zero();
+    if (problem.oriented) turn = rotation_difference(rotation(problem.target), rotation(pose));
     it.position_error = position.norm();
-    it.rotation_error = rotation.norm();
-    it.error << position, rotation_weight * rotation;
+    it.rotation_error = turn.norm();
+    for (int k = 0; k < 3; ++k) {
+      it.error(k) = position(k);
+      it.error(3 + k) = rotation_weight * turn(k);
+    }
     it.cost = it.error.squaredNorm();
     for (int i = 0; i < n; ++i)
       for (int k = 3; k < 6; ++k) it.jacobian[6 * i + k] *= rotation_weight;

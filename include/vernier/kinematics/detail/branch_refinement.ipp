@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
+#include "vernier/kinematics/detail/small_systems.hpp"
 #include "vernier/kinematics/detail/wrist.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 
@@ -26,59 +28,76 @@ struct BranchIterate {
   bool accepted() const { return position_error < accepted_error && rotation_error < accepted_error; }
 };
 
-/// Inverse of a matrix, by Gauss-Jordan elimination in place with row pivoting; entries that are not finite for a
-/// singular one. Rows are put in order at the end.
-VERNIER_API void invert(const Matrix6& matrix, Matrix6& out) noexcept {
-  const Matrix6 unit = Matrix6::Identity();
-  Matrix6 a = matrix;
-  unsigned used = 0;
-  Index row[6];
-  for (Index k = 0; k < 6; ++k) {
-    Index pivot = 0;
-    double largest = -1;
-    for (Index i = 0; i < 6; ++i) {
-      if ((used >> i & 1u) != 0 || !(std::abs(a(i, k)) > largest)) continue;
-      largest = std::abs(a(i, k));
-      pivot = i;
-    }
-    used |= 1u << pivot;
-    row[k] = pivot;
-    const double inverse = 1 / a(pivot, k);
-    const Vector6 factor = inverse * (unit.col(pivot) - a.col(k));
-    for (Index j = 0; j < 6; ++j)
-      if (j != k) a.col(j) += factor * a(pivot, j);
-    a.col(k) = factor + unit.col(pivot);
-  }
-  for (Index j = 0; j < 6; ++j)
-    for (Index k = 0; k < 6; ++k) out(k, row[j]) = a(row[k], j);
+/// a x
+inline Vector6 product6(const Matrix6& a, const Vector6& x) noexcept {
+  Vector6 out;
+  multiply_few<6, 6>(a.data(), x.data(), out.data());
+  return out;
+}
+
+/// out = a b
+inline void product66(const Matrix6& a, const Matrix6& b, Matrix6& out) noexcept {
+  for (int j = 0; j < 6; ++j) multiply_few<6, 6>(a.data(), b.data() + 6 * j, out.data() + 6 * j);
+}
+
+/// a' x
+inline Vector6 transposed_product6(const Matrix6& a, const Vector6& x) noexcept {
+  Vector6 out;
+  for (int j = 0; j < 6; ++j) out(j) = dot6(a.data() + 6 * j, x.data());
+  return out;
+}
+
+/// out = factor a a'
+inline void product_with_transpose(const Matrix6& a, double factor, Matrix6& out) noexcept {
+  Matrix6 scaled_transpose;
+  for (int j = 0; j < 6; ++j)
+    for (int k = 0; k < 6; ++k) scaled_transpose(k, j) = factor * a(j, k);
+  product66(a, scaled_transpose, out);
+}
+
+/// Squared Frobenius norm.
+inline double square6(const Matrix6& a) noexcept {
+  double out = 0;
+  for (int j = 0; j < 6; ++j) out += dot6(a.data() + 6 * j, a.data() + 6 * j);
+  return out;
 }
 
 /// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues are not negative and whose trace is 1:
 /// power iteration on a matrix squared thrice. What is left cannot underflow: that eigenvalue is at least a sixth.
 VERNIER_API Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
-  Matrix6 power = matrix * matrix;
-  for (int k = 0; k < 2; ++k) power = (power * power).eval();
-  Index widest = 0;
-  power.diagonal().maxCoeff(&widest);
-  Vector6 out = power.col(widest);
-  for (int k = 0; k < 4; ++k) out = (power * out).eval();
-  return out.normalized();
+  Matrix6 square, power;
+  product66(matrix, matrix, power);
+  product66(power, power, square);
+  product66(square, square, power);
+  int widest = 0;
+  for (int k = 1; k < 6; ++k)
+    if (power(k, k) > power(widest, widest)) widest = k;
+  Vector6 out;
+  std::copy_n(power.data() + 6 * widest, 6, out.data());
+  for (int k = 0; k < 4; ++k) out = product6(power, out);
+  return out / out.norm();
 }
 
 VERNIER_API void evaluate_iterate(const BranchProblem& problem, const double* q, BranchIterate& out) noexcept {
   Isometry3 pose;
   problem.model(q, pose, out.jacobian.data());
-  out.error.head<3>() = problem.target.translation() - pose.translation();
   // between rotations that are nearly the same, two terms of the arc sine have an error of 1e-11
-  const Matrix3 between = problem.target.linear() * pose.linear().transpose();
-  const Vector3 sine =
-      0.5 * Vector3(between(2, 1) - between(1, 2), between(0, 2) - between(2, 0), between(1, 0) - between(0, 1));
-  const double square = sine.squaredNorm();
-  const Vector3 rotation = square < 1e-4 && between.trace() > 2 ? (1 + square / 6) * sine : log_so3(between);
-  out.position_error = out.error.head<3>().norm();
-  out.rotation_error = rotation.norm();
-  out.error.tail<3>() = problem.rotation_length * rotation;
-  out.jacobian.bottomRows<3>() *= problem.rotation_length;
+  const auto between = [&](int r, int c) {
+    return problem.target(r, 0) * pose(c, 0) + problem.target(r, 1) * pose(c, 1) + problem.target(r, 2) * pose(c, 2);
+  };
+  const Vector3 position = translation(problem.target) - translation(pose);
+  const Vector3 sine(0.5 * (between(2, 1) - between(1, 2)), 0.5 * (between(0, 2) - between(2, 0)),
+                     0.5 * (between(1, 0) - between(0, 1)));
+  const double square = sine.squaredNorm(), trace = between(0, 0) + between(1, 1) + between(2, 2);
+  const Vector3 rest = square < 1e-4 && trace > 2 ? Vector3((1 + square / 6) * sine)
+                                                  : rotation_difference(rotation(problem.target), rotation(pose));
+  out.position_error = position.norm();
+  out.rotation_error = rest.norm();
+  for (int k = 0; k < 3; ++k) {
+    out.error(k) = position(k);
+    out.error(3 + k) = problem.rotation_length * rest(k);
+    for (int j = 0; j < 6; ++j) out.jacobian(3 + k, j) *= problem.rotation_length;
+  }
 }
 
 VERNIER_IMPL double nearest_turn(double angle, double near, double lower, double upper) noexcept {
@@ -94,9 +113,11 @@ VERNIER_IMPL double nearest_turn(double angle, double near, double lower, double
 }
 
 VERNIER_IMPL bool is_pose(const Isometry3& target) noexcept {
-  const Matrix3 r = target.linear();
-  return target.matrix().allFinite() && (r * r.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() < 1e-9 &&
-         r.determinant() > 0;
+  const auto row = [&](int r) { return Vector3(target(r, 0), target(r, 1), target(r, 2)); };
+  const Vector3 x = row(0), y = row(1), z = row(2);
+  const double off[] = {x.dot(x) - 1, y.dot(y) - 1, z.dot(z) - 1, x.dot(y), x.dot(z), y.dot(z)};
+  const bool unit = std::all_of(std::begin(off), std::end(off), [](double d) { return std::abs(d) < 1e-9; });
+  return unit && z.dot(x.cross(y)) > 0 && std::isfinite(translation(target).sum());
 }
 
 VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) noexcept {
@@ -116,9 +137,9 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
   double start[most_branch_joints];
   std::copy_n(q, problem.joints, start);
   double before = std::numeric_limits<double>::infinity();
-  const auto advance = [&](const Vector6& step) {
-    for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += step(i);
-    at.moved += step.norm();
+  const auto advance = [&](const Vector6& step, double share, double length) {
+    for (int i = 0; i < 6; ++i) q[problem.moving[static_cast<std::size_t>(i)]] += share * step(i);
+    at.moved += share * length;
   };
   const auto finish = [&](double left) {
     at.position_error = std::min(at.position_error, left);
@@ -133,20 +154,23 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
     if (!(size < 2 * before)) break;
     before = size;
     if (at.moved < 1e-3) {
-      const Vector6 step = at.inverse * at.error;
+      const Vector6 step = product6(at.inverse, at.error);
       const double length = step.norm(), left = problem.lipschitz * (at.moved + length) * length;
       if (left < negligible) {
-        advance(step);
+        advance(step, 1, length);
         return finish(left);
       }
     }
-    invert(at.jacobian, at.inverse);
+    invert_few<6>(at.jacobian.data(), at.inverse.data());
     at.moved = 0;
-    const Vector6 step = at.inverse * at.error;
-    const double largest = step.cwiseAbs().maxCoeff();
-    if (!std::isfinite(largest) || (!damped && k < 2 && largest > std::numbers::pi)) break;
-    advance(std::min(1.0, longest_step / largest) * step);
-    if (const double left = 0.5 * problem.lipschitz * step.squaredNorm(); left < negligible) return finish(left);
+    const Vector6 step = product6(at.inverse, at.error);
+    const double length = step.norm();
+    double largest = 0;
+    for (int i = 0; i < 6; ++i) largest = std::max(largest, std::abs(step(i)));
+    if (!std::isfinite(length) || (!damped && k < 2 && largest > std::numbers::pi)) break;
+    const double share = std::min(1.0, longest_step / largest);
+    advance(step, share, length);
+    if (const double left = 0.5 * problem.lipschitz * length * length; left < negligible) return finish(left);
   }
 
   if (!damped) return false;
@@ -169,8 +193,8 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
                                q);
   iterations += found.iterations;
   evaluate_iterate(problem, q, at);
-  invert(at.jacobian, at.inverse);
-  at.moved = (at.inverse * at.error).norm();
+  invert_few<6>(at.jacobian.data(), at.inverse.data());
+  at.moved = product6(at.inverse, at.error).norm();
   ++iterations;
   return at.accepted();
 }
@@ -202,13 +226,15 @@ VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const 
   out.rotation_error = at.rotation_error;
   out.iterations = iterations;
 
-  const double bound = at.inverse.norm();  // of the largest singular value of the inverse
+  const double bound = std::sqrt(square6(at.inverse));  // of the largest singular value of the inverse
   if (!std::isfinite(bound)) {
     out.sigma_min = out.radius = 0;
     return true;
   }
-  const Vector6 direction = dominant_eigenvector(at.inverse * at.inverse.transpose() / (bound * bound));
-  out.sigma_min = 1 / (at.inverse.transpose() * direction).norm();
+  Matrix6 spread;
+  product_with_transpose(at.inverse, 1 / (bound * bound), spread);
+  const Vector6 direction = dominant_eigenvector(spread);
+  out.sigma_min = 1 / transposed_product6(at.inverse, direction).norm();
 
   const double step = at.moved + 1e-15 * bound;
   const double h = bound * problem.lipschitz * step;
@@ -253,11 +279,12 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
                              double near_fold) noexcept {
   BranchIterate here;
   evaluate_iterate(problem, from, here);
-  if (!here.jacobian.allFinite()) return;
+  if (!std::isfinite(square6(here.jacobian))) return;
   // singular vectors of small singular values are those of large ones of the inverse, which shall exist
-  here.jacobian.diagonal().array() += 1e-12;
-  invert(here.jacobian, here.inverse);
-  Matrix6 spread = here.inverse * here.inverse.transpose() / here.inverse.squaredNorm();
+  for (int k = 0; k < 6; ++k) here.jacobian(k, k) += 1e-12;
+  invert_few<6>(here.jacobian.data(), here.inverse.data());
+  Matrix6 spread;
+  product_with_transpose(here.inverse, 1 / square6(here.inverse), spread);
   constexpr double h = 1e-4, wide = 0.25 * std::numbers::pi;
   double start[most_branch_joints], q[most_branch_joints];
   std::copy_n(from, problem.joints, start);
@@ -268,16 +295,21 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
   };
   for (int direction = 0; direction < 2; ++direction) {
     v = dominant_eigenvector(spread);
-    Vector6 u = here.inverse.transpose() * v;
+    Vector6 u = transposed_product6(here.inverse, v);
     const double sigma = 1 / u.norm();
     if (!(sigma < near_fold)) break;
     u *= sigma;
-    spread -= v.dot(spread * v) * v * v.transpose();
-    spread /= spread.trace();
+    const double eigenvalue = v.dot(product6(spread, v));
+    double trace = 0;
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 6; ++i) spread(i, j) -= eigenvalue * v(i) * v(j);
+      trace += spread(j, j);
+    }
+    for (int k = 0; k < 36; ++k) spread.data()[k] /= trace;
     BranchIterate ahead, at;
     displace(h);
     evaluate_iterate(problem, q, ahead);
-    const double curvature = u.dot((ahead.jacobian - here.jacobian) * v) / h;
+    const double curvature = (u.dot(product6(ahead.jacobian, v)) - u.dot(product6(here.jacobian, v))) / h;
     // the other solution; where the seed stalled, it is at the vertex, and both sides have one if the square is
     // positive
     const double square = 2 * u.dot(here.error) / curvature;

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/kinematics/detail/closed_form_arm.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 
@@ -20,18 +21,10 @@ struct AxisLines {
   }
   VERNIER_API double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
   /// The point nearest to lines i..j, and the largest distance from one of them.
-  VERNIER_API double meeting_point(int i, int j, Vector3& point) const {
-    Matrix3 normal = Matrix3::Zero();
-    Vector3 right = Vector3::Zero();
-    for (int k = i; k <= j; ++k) {
-      const Matrix3 off = Matrix3::Identity() - h[k] * h[k].transpose();
-      normal += off;
-      right += off * o[k];
-    }
-    point = normal.inverse() * right;
-    double largest = 0;
-    for (int k = i; k <= j; ++k) largest = std::max(largest, distance(k, point));
-    return std::isfinite(largest) ? largest : 1e300;
+  VERNIER_API double meeting(int i, int j, Vector3& point) const {
+    const MeetingPoint found = meeting_point(h + i, o + i, j - i + 1);
+    point = found.point;
+    return found.miss;
   }
 };
 
@@ -40,7 +33,7 @@ struct AxisLines {
 VERNIER_API bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std::string& why) {
   constexpr double apart = 0.05;  // rad: axes that have to be distinct
   Vector3 centre;
-  const double spherical = lines.meeting_point(3, 5, centre);
+  const double spherical = lines.meeting(3, 5, centre);
   if (spherical <= tolerance && lines.deviation(3, 4) > apart && lines.deviation(4, 5) > apart) {
     constexpr double lever = 1e-3;  // m: a shorter one moves nothing
     Vector3 shoulder;
@@ -50,11 +43,10 @@ VERNIER_API bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std
     } else if (lines.deviation(0, 1) <= tolerance && lines.deviation(1, 2) > apart && bends &&
                lines.distance(1, lines.o[0]) > lever) {
       kind = ArmKind::first_parallel_to_second;
-    } else if (distinct && bends && lines.meeting_point(0, 1, shoulder) <= tolerance &&
-               lines.distance(2, shoulder) > lever) {
+    } else if (distinct && bends && lines.meeting(0, 1, shoulder) <= tolerance && lines.distance(2, shoulder) > lever) {
       kind = ArmKind::first_meets_second;
       lines.o[0] = lines.o[1] = shoulder;
-    } else if (lines.deviation(1, 2) > apart && bends && lines.meeting_point(1, 2, shoulder) <= tolerance &&
+    } else if (lines.deviation(1, 2) > apart && bends && lines.meeting(1, 2, shoulder) <= tolerance &&
                lines.distance(0, shoulder) > lever) {
       kind = ArmKind::second_meets_third;
       lines.o[1] = lines.o[2] = shoulder;
@@ -69,7 +61,7 @@ VERNIER_API bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std
   }
   Vector3 meeting;
   const double parallel = std::max(lines.deviation(1, 2), lines.deviation(1, 3));
-  const double last = lines.meeting_point(4, 5, meeting);
+  const double last = lines.meeting(4, 5, meeting);
   if (parallel <= tolerance && last <= tolerance && lines.deviation(0, 1) > apart && lines.deviation(3, 4) > apart &&
       lines.deviation(4, 5) > apart) {
     kind = ArmKind::three_parallel;
@@ -87,8 +79,9 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   const auto collect = [&] {
     for (int i = 0; i < 6; ++i) {
       const int from = mirrored_ ? 5 - i : i;
-      lines.h[i] = (mirrored_ ? -1 : 1) * axes.direction.col(from).normalized();
-      lines.o[i] = axes.point.col(from);
+      const Vector3 direction = axes.direction_of(from);
+      lines.h[i] = direction / (mirrored_ ? -direction.norm() : direction.norm());
+      lines.o[i] = axes.point_of(from);
     }
   };
   collect();
@@ -99,7 +92,8 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   }
   // Along its axis a point may lie anywhere; next to its neighbour, rounding errors are smallest.
   const auto slide = [&](int i, int to) {
-    lines.o[i] += lines.h[i] * lines.h[i].dot(Vector3(lines.o[to] - lines.o[i]));
+    const Vector3 off = lines.o[to] - lines.o[i];
+    lines.o[i] += lines.h[i].dot(off) * lines.h[i];
   };
   const bool fixed_first = kind_ == ArmKind::first_meets_second, fixed_middle = kind_ == ArmKind::second_meets_third;
   if (kind_ == ArmKind::three_parallel) slide(3, 4);
@@ -109,7 +103,7 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   for (int i = 0; i < 6; ++i) {
     h_[i] = lines.h[i];
     o_[i] = lines.o[i];
-    p_[i] = i < 5 ? Vector3(lines.o[i + 1] - lines.o[i]) : Vector3(Vector3::Zero());
+    p_[i] = lines.o[i < 5 ? i + 1 : 5] - lines.o[i];
   }
   third_ = h_[1].dot(h_[2]) < 0 ? -1 : 1;
   fourth_ = h_[1].dot(h_[3]) < 0 ? -1 : 1;
@@ -137,19 +131,29 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
   };
 
   // displacement of the arm: rotation, and from the point of the first axis to that of the last
-  Matrix3 rotation = target.linear() * axes_.tool.linear().transpose();
-  const Vector3 last = mirrored_ ? o_[0] : o_[5], first = mirrored_ ? o_[5] : o_[0];
-  Vector3 w = target.translation() + rotation * (last - axes_.tool.translation()) - first;
+  const Matrix3 back_at_zero = rotation(axes_.tool).transpose();
+  Matrix3 turn = times3(rotation(target), back_at_zero);
+  const Vector3 lever = (mirrored_ ? o_[0] : o_[5]) - translation(axes_.tool), moved = rotated(turn, lever);
+  Vector3 w = translation(target) + moved;
+  w -= mirrored_ ? o_[5] : o_[0];
   if (mirrored_) {
-    w = (-(rotation.transpose() * w)).eval();
-    rotation.transposeInPlace();
+    const Matrix3 forward = turn;
+    turn = forward.transpose();
+    w = rotated(turn, -w);
   }
+
+  // how far the first so many points of the axes are apart along an axis
+  const auto along = [&](const Vector3& axis, int links) {
+    double sum = 0;
+    for (int i = 0; i < links; ++i) sum += axis.dot(p_[i]);
+    return sum;
+  };
 
   // with the first three joints known, a spherical wrist does the rest
   const auto finish = [&](double q1, double q2, double q3, const Matrix3& r1, const Matrix3& r3, double margin,
                           unsigned free, bool sampled) {
-    const Matrix3 to_wrist = r1 * rotation_about(h_[1], q2) * r3;
-    const WristAngles end = solve_wrist(wrist_, to_wrist.transpose() * rotation, nearby(3), sampled ? 0 : width);
+    const Matrix3 to_wrist = times3(times3(r1, rotation_about(h_[1], q2)), r3);
+    const WristAngles end = solve_wrist(wrist_, transposed_times3(to_wrist, turn), nearby(3), sampled ? 0 : width);
     missed(end.margin);
     for (int k = 0; k < end.count; ++k)
       emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin_of(k)),
@@ -160,22 +164,21 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     case ArmKind::second_parallel_to_third:
     case ArmKind::second_meets_third: {
       const bool parallel = kind_ == ArmKind::second_parallel_to_third;
-      const Candidates firsts(
-          parallel ? angles_to_plane(h_[1], -h_[0], w, h_[1].dot(p_[0] + p_[1] + p_[2]), negligible_length)
-                   : angles_to_distance(-h_[0], w, p_[0], p_[2].norm(), negligible_length),
-          nearby(0), parallel ? width : 0);
+      const Candidates firsts(parallel ? angles_to_plane(h_[1], -h_[0], w, along(h_[1], 3), negligible_length)
+                                       : angles_to_distance(-h_[0], w, p_[0], p_[2].norm(), negligible_length),
+                              nearby(0), parallel ? width : 0);
       missed(firsts.margin);
       for (int i = 0; i < firsts.count; ++i) {
         const double q1 = firsts.angles[i];
         const Matrix3 r1 = rotation_about(h_[0], q1);
-        const Vector3 u = r1.transpose() * w - p_[0];
+        const Vector3 u = rotated_back(r1, w) - p_[0];
         const Candidates thirds(parallel ? angles_to_distance(h_[2], p_[2], -p_[1], u.norm(), negligible_length)
                                          : angles_to_plane(h_[1], h_[2], p_[2], h_[1].dot(u), negligible_length),
                                 nearby(2));
         missed(thirds.margin);
         for (int k = 0; k < thirds.count; ++k) {
           const Matrix3 r3 = rotation_about(h_[2], thirds.angles[k]);
-          const Vector3 bent = p_[1] + r3 * p_[2];
+          const Vector3 bent = p_[1] + rotated(r3, p_[2]);
           const AngleAbout second = angle_between(h_[1], bent, u, negligible_length);
           const double q2 = second.any ? nearby(1) : second.angle,
                        margin = std::max(firsts.margin_of(i), thirds.margin);
@@ -194,22 +197,23 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     case ArmKind::first_meets_second: {
       const bool parallel = kind_ == ArmKind::first_parallel_to_second;
       const Candidates thirds(
-          parallel ? angles_to_plane(h_[0], h_[2], p_[2], h_[0].dot(w - p_[0] - p_[1]), negligible_length)
+          parallel ? angles_to_plane(h_[0], h_[2], p_[2], h_[0].dot(w) - along(h_[0], 2), negligible_length)
                    : angles_to_distance(h_[2], p_[2], -p_[1], w.norm(), negligible_length),
           nearby(2), parallel ? width : 0);
       missed(thirds.margin);
       for (int i = 0; i < thirds.count; ++i) {
         const Matrix3 r3 = rotation_about(h_[2], thirds.angles[i]);
-        const Vector3 v = p_[1] + r3 * p_[2];
+        const Vector3 v = p_[1] + rotated(r3, p_[2]);
         const Candidates seconds(parallel ? angles_to_distance(h_[1], v, -p_[0], w.norm(), negligible_length)
                                           : angles_to_plane(h_[0], h_[1], v, h_[0].dot(w), negligible_length),
                                  nearby(1), parallel ? 0 : width);
         missed(seconds.margin);
         for (int k = 0; k < seconds.count; ++k) {
           const double q2 = seconds.angles[k];
-          const AngleAbout q1 = angle_between(h_[0], p_[0] + rotation_about(h_[1], q2) * v, w, negligible_length);
-          const double turn = q1.any ? nearby(0) : q1.angle;
-          finish(turn, q2, thirds.angles[i], rotation_about(h_[0], turn), r3,
+          const Vector3 end = p_[0] + rotated(rotation_about(h_[1], q2), v);
+          const AngleAbout q1 = angle_between(h_[0], end, w, negligible_length);
+          const double first = q1.any ? nearby(0) : q1.angle;
+          finish(first, q2, thirds.angles[i], rotation_about(h_[0], first), r3,
                  std::max(thirds.margin_of(i), seconds.margin_of(k)),
                  (q1.any ? 1u : 0u) | (seconds.any ? 2u : 0u) | (thirds.any ? 4u : 0u),
                  i >= thirds.exact || k >= seconds.exact);
@@ -219,30 +223,31 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     }
     case ArmKind::three_parallel: {
       const double near_sum = nearby(1) + third_ * nearby(2) + fourth_ * nearby(3);
-      const Candidates firsts(
-          angles_to_plane(h_[1], -h_[0], w, h_[1].dot(p_[0] + p_[1] + p_[2] + p_[3]), negligible_length), nearby(0),
-          width);
+      const Candidates firsts(angles_to_plane(h_[1], -h_[0], w, along(h_[1], 4), negligible_length), nearby(0), width);
       missed(firsts.margin);
       for (int i = 0; i < firsts.count; ++i) {
         const Matrix3 back = rotation_about(h_[0], -firsts.angles[i]);
-        WristAngles end = solve_wrist(wrist_, back * rotation, near_sum, width);
+        const Matrix3 seen = times3(back, turn);
+        const Vector3 to_second = rotated(back, w) - p_[0];
+        WristAngles end = solve_wrist(wrist_, seen, near_sum, width);
+        // from axis 2 to axis 4, seen from joint 1
+        const auto middle = [&](double sum) { return Vector3(to_second - rotated(rotation_about(h_[1], sum), p_[3])); };
         // with a straight wrist any sum of the parallel joints will do that the arm reaches: the nearest of a few
         const auto out_of_reach = [&] {
-          const Vector3 u = back * w - p_[0] - rotation_about(h_[1], end.q4[0]) * p_[3];
-          return angles_to_distance(h_[2], p_[2], -p_[1], u.norm(), negligible_length).margin > 0;
+          return angles_to_distance(h_[2], p_[2], -p_[1], middle(end.q4[0]).norm(), negligible_length).margin > 0;
         };
         for (int k = 1; k <= 16 && end.any && out_of_reach(); ++k)
-          end = solve_wrist(wrist_, back * rotation,
-                            near_sum + (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * std::numbers::pi / 8, width);
+          end =
+              solve_wrist(wrist_, seen, near_sum + (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * std::numbers::pi / 8, width);
         missed(end.margin);
         for (int m = 0; m < end.count; ++m) {
-          const Vector3 u = back * w - p_[0] - rotation_about(h_[1], end.q4[m]) * p_[3];
+          const Vector3 u = middle(end.q4[m]);
           const Candidates thirds(angles_to_distance(h_[2], p_[2], -p_[1], u.norm(), negligible_length), nearby(2));
           missed(thirds.margin);
           for (int k = 0; k < thirds.count; ++k) {
             const double q3 = thirds.angles[k];
-            const AngleAbout second =
-                angle_between(h_[1], p_[1] + rotation_about(h_[2], q3) * p_[2], u, negligible_length);
+            const Vector3 bent = p_[1] + rotated(rotation_about(h_[2], q3), p_[2]);
+            const AngleAbout second = angle_between(h_[1], bent, u, negligible_length);
             const double q2 = second.any ? nearby(1) : second.angle;
             emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
                  std::max({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
@@ -261,18 +266,20 @@ VERNIER_IMPL SingularityDistances ClosedFormArm::distances(const JointVector<6>&
   double q[6];
   for (int i = 0; i < 6; ++i) q[i] = joints(mirrored_ ? 5 - i : i);
   const auto off = [](const Vector3& axis, const Vector3& v) { return axis.cross(v).norm(); };
-  const Vector3 bent = rotation_about(h_[2], q[2]) * p_[2];  // from axis 3 on, seen from before joint 3
+  const Vector3 bent = rotated(rotation_about(h_[2], q[2]), p_[2]);  // from axis 3 on, seen from before joint 3
+  const Vector3 both = p_[1] + bent,
+                turned = rotated(rotation_about(h_[1], q[1]), both);  // from axis 2 on, seen from joint 1
+  const Vector3 last = rotated(rotation_about(wrist_.k5, q[4]), wrist_.k6);
   const double upper = off(h_[2], p_[1]), fore = off(h_[2], p_[2]);
   SingularityDistances out;
-  out.wrist = wrist_.k4.dot(wrist_.k5.cross(rotation_about(wrist_.k5, q[4]) * wrist_.k6)) /
-              (std::sin(wrist_.alpha) * std::sin(wrist_.beta));
+  out.wrist = wrist_.k4.dot(wrist_.k5.cross(last)) / (std::sin(wrist_.alpha) * std::sin(wrist_.beta));
   switch (kind_) {
     case ArmKind::second_parallel_to_third:
     case ArmKind::three_parallel: {
-      Vector3 end = p_[0] + rotation_about(h_[1], q[1]) * (p_[1] + bent);
+      Vector3 end = p_[0] + turned;
       double length = upper + fore;
       if (kind_ == ArmKind::three_parallel) {
-        end += rotation_about(h_[1], q[1] + third_ * q[2] + fourth_ * q[3]) * p_[3];
+        end += rotated(rotation_about(h_[1], q[1] + third_ * q[2] + fourth_ * q[3]), p_[3]);
         length += off(h_[1], p_[3]);
       }
       out.shoulder = h_[1].dot(h_[0].cross(end)) / (off(h_[0], h_[1]) * (length + off(h_[1], p_[0])));
@@ -280,17 +287,15 @@ VERNIER_IMPL SingularityDistances ClosedFormArm::distances(const JointVector<6>&
       break;
     }
     case ArmKind::first_meets_second:
-      out.shoulder = (rotation_about(h_[1], q[1]) * (p_[1] + bent)).dot(h_[0].cross(h_[1])) /
-                     (off(h_[0], h_[1]) * (p_[1].norm() + p_[2].norm()));
+      out.shoulder = turned.dot(h_[0].cross(h_[1])) / (off(h_[0], h_[1]) * (p_[1].norm() + p_[2].norm()));
       out.elbow = p_[1].dot(h_[2].cross(bent)) / (upper * fore);
       break;
     case ArmKind::first_parallel_to_second:
       out.shoulder = h_[0].dot(h_[2].cross(bent)) / (off(h_[0], h_[2]) * fore);
-      out.elbow = h_[0].dot(p_[0].cross(rotation_about(h_[1], q[1]) * (p_[1] + bent))) /
-                  (off(h_[0], p_[0]) * (off(h_[0], p_[1]) + p_[2].norm()));
+      out.elbow = h_[0].dot(p_[0].cross(turned)) / (off(h_[0], p_[0]) * (off(h_[0], p_[1]) + p_[2].norm()));
       break;
-    case ArmKind::second_meets_third:
-      out.shoulder = (rotation_about(h_[1], q[1]) * bent).dot(h_[0].cross(p_[0])) / (off(h_[0], p_[0]) * p_[2].norm());
+    case ArmKind::second_meets_third:  // p_[1] is zero
+      out.shoulder = turned.dot(h_[0].cross(p_[0])) / (off(h_[0], p_[0]) * p_[2].norm());
       out.elbow = bent.dot(h_[1].cross(h_[2])) / (off(h_[1], h_[2]) * p_[2].norm());
       break;
   }

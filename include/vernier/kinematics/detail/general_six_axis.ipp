@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,10 +10,12 @@
 #include "vernier/kinematics/detail/general_six_axis.hpp"
 #include "vernier/kinematics/detail/hidden_joint.hpp"
 #include "vernier/kinematics/detail/reflections.hpp"
+#include "vernier/kinematics/detail/small_systems.hpp"
+#include "vernier/kinematics/detail/subproblems.hpp"
 
 namespace vernier::detail {
 
-VERNIER_API AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point.col(joint), arm.direction.col(joint)}; }
+VERNIER_API AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point_of(joint), arm.direction_of(joint)}; }
 
 /// Angle in (-pi, pi].
 VERNIER_API double half_turn_angle(double angle) {
@@ -36,36 +36,42 @@ VERNIER_API double root_distance(const JointVector<6>& a, const JointVector<6>& 
 VERNIER_API void normalize_lengths(SixAxes& arm, Isometry3& target) {
   const auto nearest = [&](int i, const Vector3& to) {
     const AxisLine axis = axis_of(arm, i);
-    return Vector3(axis.point + axis.direction * axis.direction.dot(to - axis.point));
+    const Vector3 off = to - axis.point;
+    return Vector3(axis.point + axis.direction.dot(off) * axis.direction);
   };
-  Vector3 centre = arm.point.col(0);
+  Vector3 centre = arm.point_of(0);
   for (int repeat = 0; repeat < 3; ++repeat) {
     Vector3 sum = Vector3::Zero();
     for (int i = 0; i < 6; ++i) sum += nearest(i, centre);
     centre = sum / 6;
   }
-  const Vector3 closure = target * (arm.tool.inverse(Eigen::Isometry) * centre);
+  const Vector3 closure = transformed(target, transformed(inverse_of(arm.tool), centre));
   double square = (closure - centre).squaredNorm();
   for (int i = 0; i < 6; ++i) {
-    arm.point.col(i) = nearest(i, centre) - centre;
-    square += arm.point.col(i).squaredNorm();
+    const Vector3 point = nearest(i, centre) - centre;
+    for (int k = 0; k < 3; ++k) arm.point(k, i) = point(k);
+    square += point.squaredNorm();
   }
   const double unit = square > 0 ? std::sqrt(square / 6) : 1;
-  arm.point /= unit;
-  arm.tool.translation() = (arm.tool.translation() - centre) / unit;
-  target.translation() = (target.translation() - centre) / unit;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 6; ++i) arm.point(k, i) /= unit;
+    arm.tool(k, 3) = (arm.tool(k, 3) - centre(k)) / unit;
+    target(k, 3) = (target(k, 3) - centre(k)) / unit;
+  }
 }
 
 /// The same arm with each axis displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
 /// for every angle; displaced, they leave it regular, and Newton steps make up for it.
 VERNIER_API SixAxes with_displaced_axes(SixAxes arm) {
   Rng rng;
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 6; ++i) {
     for (int k = 0; k < 3; ++k) {
       arm.direction(k, i) += rng.uniform(-1e-7, 1e-7);
       arm.point(k, i) += rng.uniform(-1e-7, 1e-7);
     }
-  arm.direction.colwise().normalize();
+    const double length = arm.direction_of(i).norm();
+    for (int k = 0; k < 3; ++k) arm.direction(k, i) /= length;
+  }
   return arm;
 }
 
@@ -73,61 +79,68 @@ VERNIER_API SixAxes with_displaced_axes(SixAxes arm) {
 /// of the product to its end with its axis moved by the inverse of the closure. Points next to the origin, so that the
 /// coordinates of lines stay small.
 VERNIER_API ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int first) noexcept {
-  const Isometry3 closure = target * arm.tool.inverse(Eigen::Isometry);
+  const Isometry3 closure = composed(target, inverse_of(arm.tool)), back = inverse_of(closure);
   ClosedLoop out;
   for (int i = 0; i < 6; ++i) {
     const AxisLine axis = axis_of(arm, (first + i) % 6);
-    out.axes[static_cast<std::size_t>(i)] = first + i < 6 ? axis : closure.inverse(Eigen::Isometry) * axis;
+    out.axes[static_cast<std::size_t>(i)] = first + i < 6 ? axis : back * axis;
   }
   const Isometry3 frame = to_z_axis(out.axes[2]);
   for (AxisLine& axis : out.axes) {
     axis = frame * axis;
-    axis.point -= axis.direction * axis.direction.dot(axis.point);
+    axis.point -= axis.direction.dot(axis.point) * axis.direction;
   }
-  out.closure = frame * closure * frame.inverse(Eigen::Isometry);
+  out.closure = composed(frame, composed(closure, inverse_of(frame)));
   return out;
 }
 
 /// All joints of a loop, from the third.
 VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPencil& pencil, double q3) noexcept {
   // The null vector of the pencil: (cos 3h, sin 3h, cos h, sin h) by (1, cos q5, sin q5), times any number.
-  LoopPencil::Matrix rows = equations_at(pencil, q3).transpose();
-  Eigen::Matrix<double, 12, 1> null;
-  orthogonal_complement(rows.data(), 12, 12, 11, null.data());
-  const double h = std::atan2(null(9), null(6));
-  const Eigen::Matrix<double, 3, 4> by_half_angle = Eigen::Map<const Eigen::Matrix<double, 3, 4>>(null.data());
-  const Vector3 five = by_half_angle * Eigen::Vector4d(std::cos(3 * h), std::sin(3 * h), std::cos(h), std::sin(h));
-  const double sign = five(0) < 0 ? -1 : 1;
-  const double q4 = 2 * h, q5 = std::atan2(sign * five(2), sign * five(1));
+  double equations[12][12], rows[12][12], null[12];
+  equations_at(pencil, q3, equations);
+  for (int i = 0; i < 12; ++i)
+    for (int k = 0; k < 12; ++k) rows[i][k] = equations[k][i];
+  orthogonal_complement(rows[0], 12, 12, 11, null);
+  const double h = std::atan2(null[9], null[6]);
+  const double of_half_angle[4] = {std::cos(3 * h), std::sin(3 * h), std::cos(h), std::sin(h)};
+  double five[3] = {};
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 3; ++r) five[r] += null[3 * c + r] * of_half_angle[c];
+  const double sign = five[0] < 0 ? -1 : 1;
+  const double q4 = 2 * h, q5 = std::atan2(sign * five[2], sign * five[1]);
 
   // E_2 (E_3 E_4 E_5 line 6) = E_1^-1 (closure line 6): what joint 1 leaves alone is linear in cos q2 and sin q2.
   const auto& axes = loop.axes;
   const Isometry3 frame = to_z_axis(axes[0]);
-  const Isometry3 wrist = turn_about(axes[2], q3) * turn_about(axes[3], q4) * turn_about(axes[4], q5);
+  const Isometry3 wrist = composed(composed(turn_about(axes[2], q3), turn_about(axes[3], q4)), turn_about(axes[4], q5));
+  const AxisLine last = wrist * axes[5];
   const LineCoordinates goal = coordinates_of(frame * (loop.closure * axes[5]));
-  const auto turned_second = [&](double q2) {
-    return coordinates_of(frame * (turn_about(axes[1], q2) * (wrist * axes[5])));
-  };
-  const auto kept = [&](double q2) { return Vector6(turned_second(q2).template tail<6>()); };
-  const Vector6 plus = kept(0), quarter = kept(std::numbers::pi / 2), minus = kept(std::numbers::pi);
-  const Vector6 middle = (plus + minus) / 2;
-  Eigen::Matrix<double, 6, 2> linear;
-  linear << plus - middle, quarter - middle;
-  const Eigen::Vector2d second =
-      Eigen::Matrix2d(linear.transpose() * linear).inverse() * (linear.transpose() * (goal.tail<6>() - middle));
-  const double q2 = std::atan2(second(1), second(0));
+  const auto turned_second = [&](double q2) { return coordinates_of(frame * (turn_about(axes[1], q2) * last)); };
+  const LineCoordinates plus = turned_second(0), quarter = turned_second(std::numbers::pi / 2),
+                        minus = turned_second(std::numbers::pi);
+  double cc = 0, cs = 0, ss = 0, right_c = 0, right_s = 0;  // of the normal equations
+  for (std::size_t k = 8; k < 14; ++k) {
+    const double middle = (plus[k] + minus[k]) / 2, c = plus[k] - middle, s = quarter[k] - middle;
+    cc += c * c;
+    cs += c * s;
+    ss += s * s;
+    right_c += c * (goal[k] - middle);
+    right_s += s * (goal[k] - middle);
+  }
+  const double q2 = std::atan2(cc * right_s - cs * right_c, ss * right_c - cs * right_s);
 
   // What joint 1 turns, and then joint 6 by the rotation left.
   const LineCoordinates from = turned_second(q2);
   double cosine = 0, sine = 0;
-  for (int k = 0; k < 4; ++k) {
-    cosine += from(k) * goal(k) + from(k + 4) * goal(k + 4);
-    sine += from(k) * goal(k + 4) - from(k + 4) * goal(k);
+  for (std::size_t k = 0; k < 4; ++k) {
+    cosine += from[k] * goal[k] + from[k + 4] * goal[k + 4];
+    sine += from[k] * goal[k + 4] - from[k + 4] * goal[k];
   }
   const double q1 = std::atan2(sine, cosine);
-  const Isometry3 before_last = turn_about(axes[0], q1) * turn_about(axes[1], q2) * wrist;
-  const Vector3 x = axes[5].direction.unitOrthogonal();
-  const Vector3 turned = before_last.linear().transpose() * (loop.closure.linear() * x);
+  const Isometry3 before_last = composed(composed(turn_about(axes[0], q1), turn_about(axes[1], q2)), wrist);
+  const Vector3 x = unit_orthogonal(axes[5].direction), seen = rotated(rotation(loop.closure), x);
+  const Vector3 turned = rotated_back(rotation(before_last), seen);
   const double q6 = std::atan2(axes[5].direction.dot(x.cross(turned)), x.dot(turned));
   return JointVector<6>{q1, q2, q3, q4, q5, q6};
 }
@@ -137,18 +150,24 @@ VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPen
 VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
   constexpr int steps_to_come_near = 15, max_steps = 40;
   constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
-  Matrix6 jacobian;
+  double jacobian[6][6], normal[6][6], newton[6];
   for (int step = 0;; ++step) {
-    Isometry3 pose = Isometry3::Identity();
+    Matrix3 turned = Matrix3::Identity();
+    Vector3 shift = Vector3::Zero(), directions[6], points[6];
     for (int i = 0; i < 6; ++i) {
-      const AxisLine axis = axis_of(arm, i), moved = pose * axis;
-      jacobian.col(i) << moved.point, moved.direction;
-      pose = pose * turn_about(axis, q(i));
+      const AxisLine axis = axis_of(arm, i);
+      const Matrix3 before = turned, turn = exp_so3(Vector3(q(i) * axis.direction));
+      directions[i] = rotated(before, axis.direction);
+      points[i] = shift + rotated(before, axis.point);
+      turned = times3(before, turn);
+      shift = points[i] - rotated(turned, axis.point);
     }
-    pose = pose * arm.tool;
+    const Isometry3 pose = composed(rigid_motion(turned, shift), arm.tool);
+    const Vector3 position = translation(pose);
     for (int i = 0; i < 6; ++i) {
-      const Vector3 lever = pose.translation() - jacobian.col(i).head<3>();
-      jacobian.col(i).head<3>() = jacobian.col(i).tail<3>().cross(lever);
+      const Vector3 lever = position - points[i], moved = directions[i].cross(lever);
+      std::copy_n(moved.data(), 3, jacobian[i]);
+      std::copy_n(directions[i].data(), 3, jacobian[i] + 3);
     }
     const Vector6 error = pose_difference(target, pose);
     const double left = error.norm();
@@ -156,10 +175,15 @@ VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointV
     if (step == max_steps || (step >= steps_to_come_near && !(left < near)) || !std::isfinite(left))
       return left < accepted;
     // Damping in proportion to the square of the error: convergence stays quadratic.
-    Matrix6 normal = jacobian.transpose() * jacobian;
-    normal.diagonal().array() += 1e-2 * left * left + 1e-15;
-    const Vector6 newton = normal.ldlt().solve(jacobian.transpose() * error);
-    q += newton * std::min(1.0, longest_step / newton.cwiseAbs().maxCoeff());
+    for (int j = 0; j < 6; ++j) {
+      for (int i = j; i < 6; ++i) normal[j][i] = dot6(jacobian[i], jacobian[j]);
+      normal[j][j] += 1e-2 * left * left + 1e-15;
+      newton[j] = dot6(jacobian[j], error.data());
+    }
+    solve_few(normal[0], newton, 6);
+    double largest = 0;
+    for (const double value : newton) largest = std::max(largest, std::abs(value));
+    for (int i = 0; i < 6; ++i) q(i) += newton[i] * std::min(1.0, longest_step / largest);
   }
 }
 
@@ -169,8 +193,8 @@ VERNIER_API bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
   for (const SixAxisRoot& root : roots)
     if (root_distance(root.joints, q) < same) return false;
   if (roots.count == SixAxisRoots::capacity) return false;
-  roots.roots[static_cast<std::size_t>(roots.count++)].joints =
-      q.unaryExpr([](double angle) { return half_turn_angle(angle); });
+  JointVector<6>& joints = roots.roots[static_cast<std::size_t>(roots.count++)].joints;
+  for (int i = 0; i < 6; ++i) joints(i) = half_turn_angle(q(i));
   return true;
 }
 
@@ -199,7 +223,8 @@ VERNIER_API bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, co
     complete &= is_new && std::abs(half_turn_angle(q(hidden) - angle.real())) < accounted;
     // A conjugate pair may be two roots that rounding, or the displacement, has merged: the other is opposite.
     if (angle.imag() > 0 && is_root) {
-      JointVector<6> opposite = 2 * start - q;
+      JointVector<6> opposite;
+      for (int k = 0; k < 6; ++k) opposite(k) = 2 * start(k) - q(k);
       if (polish_root(arm, target, opposite)) insert_root(found, opposite);
     }
   }
@@ -213,8 +238,11 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
   SixAxes scaled = arm;
   Isometry3 scaled_target = target;
   normalize_lengths(scaled, scaled_target);
-  if (!scaled.point.allFinite() || !scaled.direction.allFinite() || !scaled.tool.matrix().allFinite() ||
-      !scaled_target.matrix().allFinite())
+  const auto finite = [](const double* values, int n) {
+    return std::all_of(values, values + n, [](double value) { return std::isfinite(value); });
+  };
+  if (!finite(scaled.point.data(), 18) || !finite(scaled.direction.data(), 18) || !finite(scaled.tool.data(), 16) ||
+      !finite(scaled_target.data(), 16))
     return out;
   const SixAxes nearby = with_displaced_axes(scaled);
   constexpr int order[] = {3, 1, 4, 5, 2, 0};  // industrial arms need the fewest eliminations so
@@ -224,17 +252,20 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
 }
 
 VERNIER_IMPL SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept {
-  Matrix6 columns;
+  double columns[6][6];
   Isometry3 moved = Isometry3::Identity();
-  const double length = std::max(arm_length({arm.direction, arm.point, arm.tool}), 1e-9);
+  const double length = std::max(arm_length(arm), 1e-9);
   for (int i = 0; i < 6; ++i) {
-    const Vector3 axis = moved.linear() * arm.direction.col(i), point = moved * Vector3(arm.point.col(i));
-    columns.col(i) << point.cross(axis) / length, axis;
-    const Matrix3 turn = exp_so3(Vector3(axis * q(i)));
-    moved.pretranslate(Vector3(-point)).prerotate(turn).pretranslate(point);
-    columns.col(i).normalize();
+    const AxisLine axis = axis_of(arm, i), at = moved * axis;
+    const Vector3 moment = at.point.cross(at.direction) / length;
+    const double inverse = 1 / std::sqrt(moment.squaredNorm() + at.direction.squaredNorm());
+    for (int k = 0; k < 3; ++k) {
+      columns[i][k] = moment(k) * inverse;
+      columns[i][3 + k] = at.direction(k) * inverse;
+    }
+    if (i < 5) moved = composed(moved, turn_about(axis, q(i)));
   }
-  return {1, 1, columns.determinant(), false};
+  return {1, 1, determinant_few(columns), false};
 }
 
 }  // namespace vernier::detail

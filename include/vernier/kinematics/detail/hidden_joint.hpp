@@ -3,11 +3,11 @@
 /// @file
 /// Elimination: of six turns that close a loop, the values that the third may have.
 
-#include <Eigen/Core>
 #include <array>
 #include <complex>
 
-#include "vernier/core/types.hpp"
+#include "vernier/core/points.hpp"
+#include "vernier/kinematics/detail/subproblems.hpp"
 
 namespace vernier::detail {
 
@@ -19,7 +19,7 @@ struct AxisLine {
 
 /// A line moved.
 inline AxisLine operator*(const Isometry3& motion, const AxisLine& line) {
-  return {motion * line.point, motion.linear() * line.direction};
+  return {transformed(motion, line.point), rotated(rotation(motion), line.direction)};
 }
 
 /// The turn about an axis by an angle [rad].
@@ -33,7 +33,7 @@ VERNIER_API Isometry3 to_z_axis(const AxisLine& line) noexcept;
 /// the conformal coordinates of the point and (l, m, f, p.l) those of the tangent there. So a turn by q is of first
 /// degree in cos q and sin q; if about z, it turns the four pairs of x and y and leaves the other six alone.
 /// @cite Raghavan and Roth 1993
-using LineCoordinates = Eigen::Matrix<double, 14, 1>;
+using LineCoordinates = std::array<double, 14>;
 VERNIER_API LineCoordinates coordinates_of(const AxisLine& line) noexcept;
 
 /// Six turns E_i about axes whose product is given: E_1 E_2 ... E_6 = closure. Axis 3 is the z-axis.
@@ -46,16 +46,15 @@ struct ClosedLoop {
 /// (cos 3h, sin 3h, cos h, sin h), h = q4 / 2, and (1, cos q5, sin q5). Half angles instead of their tangents keep half
 /// turns from being infinite and the matrices balanced.
 struct LoopPencil {
-  using Matrix = Eigen::Matrix<double, 12, 12>;
-  Matrix constant;                         ///< what does not turn with joint 3
-  Eigen::Matrix<double, 12, 16> equation;  ///< how what turns enters the equations
-  Eigen::Matrix<double, 16, 12> turning;   ///< what turns: twice the x of p, l, m and f, and their y
+  double constant[12][12];  ///< what does not turn with joint 3; columns, as all of these
+  double equation[8][6];    ///< how what turns enters six equations, its first half the first six
+  double turning[12][16];   ///< what turns: twice the x of p, l, m and f, and their y
 };
 
 VERNIER_API LoopPencil eliminate(const ClosedLoop& loop) noexcept;
 
-/// The twelve equations where joint 3 has a value [rad].
-VERNIER_API LoopPencil::Matrix equations_at(const LoopPencil& pencil, double q3) noexcept;
+/// The twelve equations where joint 3 has a value [rad], in columns.
+VERNIER_API void equations_at(const LoopPencil& pencil, double q3, double (&out)[12][12]) noexcept;
 
 /// The values of joint 3 with which a pencil is singular, complex ones among them.
 struct HiddenJointValues {

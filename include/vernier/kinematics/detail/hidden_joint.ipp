@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,39 +8,41 @@
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/hidden_joint.hpp"
 #include "vernier/kinematics/detail/reflections.hpp"
+#include "vernier/kinematics/detail/small_systems.hpp"
 
 namespace vernier::detail {
 
 VERNIER_IMPL Isometry3 turn_about(const AxisLine& axis, double angle) noexcept {
-  Isometry3 out = Isometry3::Identity();
-  out.linear() = exp_so3(Vector3(axis.direction * angle));
-  out.translation() = axis.point - out.linear() * axis.point;
-  return out;
+  const Matrix3 turn = exp_so3(Vector3(angle * axis.direction));
+  return rigid_motion(turn, axis.point - rotated(turn, axis.point));
 }
 
 VERNIER_IMPL Isometry3 to_z_axis(const AxisLine& line) noexcept {
-  const Vector3 x = line.direction.unitOrthogonal();
-  Isometry3 out = Isometry3::Identity();
-  out.linear() << x.transpose(), line.direction.cross(x).transpose(), line.direction.transpose();
-  out.translation() = -(out.linear() * line.point);
-  return out;
+  const Vector3 x = unit_orthogonal(line.direction), y = line.direction.cross(x);
+  Matrix3 turn;
+  for (int c = 0; c < 3; ++c) {
+    turn(0, c) = x(c);
+    turn(1, c) = y(c);
+    turn(2, c) = line.direction(c);
+  }
+  return rigid_motion(turn, -rotated(turn, line.point));
 }
 
 VERNIER_IMPL LineCoordinates coordinates_of(const AxisLine& line) noexcept {
   const Vector3 &p = line.point, &l = line.direction;
   const double pp = p.dot(p), pl = p.dot(l);
-  const Vector3 m = p.cross(l), f = pp * l - 2 * pl * p;
-  LineCoordinates out;
-  out << p.x(), l.x(), m.x(), f.x(), p.y(), l.y(), m.y(), f.y(), p.z(), l.z(), m.z(), f.z(), pp, pl;
-  return out;
+  const Vector3 m = p.cross(l),
+                f(pp * l.x() - 2 * pl * p.x(), pp * l.y() - 2 * pl * p.y(), pp * l.z() - 2 * pl * p.z());
+  return {p.x(), l.x(), m.x(), f.x(), p.y(), l.y(), m.y(), f.y(), p.z(), l.z(), m.z(), f.z(), pp, pl};
 }
 
-/// The coordinates of a line turned about `inner` and then about `outer`, as coefficients of the products of
-/// (1, cos, sin) of the outer and of the inner angle. They follow from three angles each, a third of a turn apart.
-VERNIER_API Eigen::Matrix<double, 14, 9> turned_twice(const AxisLine& outer, const AxisLine& inner,
-                                                      const AxisLine& line) noexcept {
+/// The coordinates of a line turned about `inner` and then about `outer`, as coefficients, a column each, of the
+/// products of (1, cos, sin) of the outer and of the inner angle. They follow from three angles each, a third of a turn
+/// apart.
+VERNIER_API void turned_twice(const AxisLine& outer, const AxisLine& inner, const AxisLine& line,
+                              double (&out)[9][14]) noexcept {
   constexpr double angles[3] = {0, 2 * std::numbers::pi / 3, -2 * std::numbers::pi / 3};
-  Eigen::Matrix<double, 14, 9> out = Eigen::Matrix<double, 14, 9>::Zero();
+  std::fill_n(out[0], 9 * 14, 0.0);
   Isometry3 outer_turns[3];
   for (int j = 0; j < 3; ++j) outer_turns[j] = turn_about(outer, angles[j]);
   for (const double b : angles) {
@@ -50,22 +51,26 @@ VERNIER_API Eigen::Matrix<double, 14, 9> turned_twice(const AxisLine& outer, con
       const LineCoordinates sample = coordinates_of(outer_turns[j] * once);
       const double outer_weights[3] = {1. / 3, 2. / 3 * std::cos(angles[j]), 2. / 3 * std::sin(angles[j])};
       const double inner_weights[3] = {1. / 3, 2. / 3 * std::cos(b), 2. / 3 * std::sin(b)};
-      for (int column = 0; column < 9; ++column)
-        out.col(column) += outer_weights[column / 3] * inner_weights[column % 3] * sample;
+      for (int column = 0; column < 9; ++column) {
+        const double weight = outer_weights[column / 3] * inner_weights[column % 3];
+        for (std::size_t i = 0; i < 14; ++i) out[column][i] += weight * sample[i];
+      }
     }
   }
-  return out;
 }
 
-/// Rows over the products of (1, cos 2h, sin 2h) with anything, times cos h and, below, times sin h: rows over those of
-/// (cos 3h, sin 3h, cos h, sin h).
-template <int Rows>
-Eigen::Matrix<double, 2 * Rows, 12> times_half_angle(const Eigen::Matrix<double, Rows, 9>& a) {
-  const auto one = a.template leftCols<3>(), c = a.template middleCols<3>(3), s = a.template rightCols<3>();
-  Eigen::Matrix<double, 2 * Rows, 12> out;
-  out << c / 2, s / 2, one + c / 2, s / 2,  //
-      -s / 2, c / 2, s / 2, one - c / 2;
-  return out;
+/// The first rows of a, over the products of (1, cos 2h, sin 2h) with anything, times cos h and, below, times sin h:
+/// rows over those of (cos 3h, sin 3h, cos h, sin h).
+template <int Rows, int All>
+void times_half_angle(const double (&a)[9][All], double (&out)[12][2 * Rows]) noexcept {
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < Rows; ++i) {
+      const double one = a[k][i], c = a[3 + k][i] / 2, s = a[6 + k][i] / 2;
+      out[k][i] = c, out[k][Rows + i] = -s;
+      out[3 + k][i] = s, out[3 + k][Rows + i] = c;
+      out[6 + k][i] = one + c, out[6 + k][Rows + i] = s;
+      out[9 + k][i] = s, out[9 + k][Rows + i] = one - c;
+    }
 }
 
 VERNIER_IMPL LoopPencil eliminate(const ClosedLoop& loop) noexcept {
@@ -73,38 +78,61 @@ VERNIER_IMPL LoopPencil eliminate(const ClosedLoop& loop) noexcept {
   // equations without the eight terms in joints 1 and 2 are the left null space of those terms.
   const auto& axes = loop.axes;
   const auto reversed = [](const AxisLine& line) { return AxisLine{line.point, -line.direction}; };
-  const Eigen::Matrix<double, 14, 9> left = turned_twice(axes[3], axes[4], axes[5]);
-  const Eigen::Matrix<double, 14, 9> right = turned_twice(reversed(axes[1]), reversed(axes[0]), loop.closure * axes[5]);
-  Eigen::Matrix<double, 14, 8> eliminated = right.rightCols<8>();
-  Eigen::Matrix<double, 14, 6> complement;
-  orthogonal_complement(eliminated.data(), 14, 8, 8, complement.data());
-  const Eigen::Matrix<double, 6, 14> combinations = complement.transpose();
+  double left[9][14], right[9][14], eliminated[8][14], combinations[6][14], constant[9][6];
+  turned_twice(axes[3], axes[4], axes[5], left);
+  turned_twice(reversed(axes[1]), reversed(axes[0]), loop.closure * axes[5], right);
+  std::copy_n(right[1], 8 * 14, eliminated[0]);
+  orthogonal_complement(eliminated[0], 14, 8, 8, combinations[0]);
 
-  Eigen::Matrix<double, 6, 9> constant = combinations.rightCols<6>() * left.bottomRows<6>();
-  constant.col(0) -= combinations * right.col(0);
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 6; ++i) {
+      constant[j][i] = 0;
+      for (int k = 8; k < 14; ++k) constant[j][i] += combinations[i][k] * left[j][k];
+    }
   LoopPencil out;
-  out.constant = times_half_angle<6>(constant);
-  out.equation.setZero();
-  out.equation.topLeftCorner<6, 8>() = combinations.leftCols<8>();
-  out.equation.bottomRightCorner<6, 8>() = combinations.leftCols<8>();
-  out.turning = times_half_angle<8>(left.topRows<8>());
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 14; ++k) constant[0][i] -= combinations[i][k] * right[0][k];
+    for (int k = 0; k < 8; ++k) out.equation[k][i] = combinations[i][k];
+  }
+  times_half_angle<6>(constant, out.constant);
+  times_half_angle<8>(left, out.turning);
   return out;
 }
 
 /// What turns with joint 3, turned [rad].
-VERNIER_API Eigen::Matrix<double, 16, 12> turned_by(const LoopPencil& pencil, double q3) noexcept {
+VERNIER_API void turned_by(const LoopPencil& pencil, double q3, double (&out)[12][16]) noexcept {
   const double c = std::cos(q3), s = std::sin(q3);
-  Eigen::Matrix<double, 16, 12> out;
-  for (int k = 0; k < 16; k += 8) {
-    const auto x = pencil.turning.middleRows<4>(k), y = pencil.turning.middleRows<4>(k + 4);
-    out.middleRows<4>(k) = c * x - s * y;
-    out.middleRows<4>(k + 4) = s * x + c * y;
-  }
-  return out;
+  for (int j = 0; j < 12; ++j)
+    for (int half = 0; half < 16; half += 8) {
+      const double *const x = pencil.turning[j] + half, *const y = x + 4;
+      for (int i = 0; i < 4; ++i) {
+        out[j][half + i] = c * x[i] - s * y[i];
+        out[j][half + 4 + i] = s * x[i] + c * y[i];
+      }
+    }
 }
 
-VERNIER_IMPL LoopPencil::Matrix equations_at(const LoopPencil& pencil, double q3) noexcept {
-  return pencil.constant + pencil.equation * turned_by(pencil, q3);
+VERNIER_IMPL void equations_at(const LoopPencil& pencil, double q3, double (&out)[12][12]) noexcept {
+  double turned[12][16];
+  turned_by(pencil, q3, turned);
+  for (int j = 0; j < 12; ++j)
+    for (const int half : {0, 1}) {
+      FewNumbers<6> sum(pencil.constant[j] + 6 * half);
+      VERNIER_UNROLL
+      for (int k = 0; k < 8; ++k) sum.add(turned[j][8 * half + k], FewNumbers<6>(pencil.equation[k]));
+      sum.store(out[j] + 6 * half);
+    }
+}
+
+/// Largest sum of a column's absolute values.
+inline double column_sum_norm(const double (&a)[12][12]) noexcept {
+  double out = 0;
+  for (const auto& column : a) {
+    double sum = 0;
+    for (const double value : column) sum += std::abs(value);
+    if (sum > out || std::isnan(sum)) out = sum;
+  }
+  return out;
 }
 
 VERNIER_IMPL HiddenJointValues hidden_joint_values(const LoopPencil& pencil) noexcept {
@@ -114,52 +142,45 @@ VERNIER_IMPL HiddenJointValues hidden_joint_values(const LoopPencil& pencil) noe
   constexpr double pi = std::numbers::pi;
   constexpr int origins = 5;
   HiddenJointValues out;
-  Eigen::PartialPivLU<LoopPencil::Matrix> best;
+  double matrix[12][12], inverses[2][12][12];
+  int best = 0;
   double best_inverse_condition = 0, origin = 0;
   for (int k = 0; k < origins; ++k) {
     const double candidate = 0.3 + 2 * pi / origins * k;  // 0.3: zeros of catalogue arms are special
-    const Eigen::PartialPivLU<LoopPencil::Matrix> lu(equations_at(pencil, candidate + pi));
-    const double inverse_condition = lu.rcond();
+    auto& inverse = inverses[1 - best];
+    equations_at(pencil, candidate + pi, matrix);
+    const double norm = column_sum_norm(matrix);
+    invert_few<12>(matrix[0], inverse[0]);
+    const double inverse_condition = 1 / (norm * column_sum_norm(inverse));
     if (inverse_condition > best_inverse_condition) {  // false for NaN too
       best_inverse_condition = inverse_condition;
-      best = lu;
+      best = 1 - best;
       origin = candidate;
     }
   }
   out.condition = best_inverse_condition > 0 ? 1 / best_inverse_condition : std::numeric_limits<double>::infinity();
   if (!(best_inverse_condition > 0)) return out;
 
-  using Matrix16 = Eigen::Matrix<double, 16, 16>;
-  const Eigen::Matrix<double, 12, 16> solved = best.solve(pencil.equation);
-  Matrix16 doubled = 2 * turned_by(pencil, origin) * solved;
-  doubled.diagonal().array() += 1;
-  Matrix16 a;
-  for (int k = 0; k < 16; k += 8) {
-    a.middleRows<4>(k) = doubled.middleRows<4>(k + 4);
-    a.middleRows<4>(k + 4) = -doubled.middleRows<4>(k);
-  }
-  if (!a.allFinite()) return out;
-  double work[16];
-  to_hessenberg(a.data(), 16, work);
-  Eigen::RealSchur<Matrix16> schur;
-  schur.computeFromHessenberg(a, a, false);
-  if (schur.info() != Eigen::Success) return out;
-  const auto insert = [&](std::complex<double> t) {
-    out.angles[static_cast<std::size_t>(out.count++)] = origin + 2. * std::atan(t);
-  };
-  const Matrix16& triangular = schur.matrixT();  // but for blocks of two, which have conjugate eigenvalues
-  for (int i = 0; i < 16; ++i) {
-    if (i == 15 || triangular(i + 1, i) == 0) {
-      insert(triangular(i, i));
-      continue;
+  double turned[12][16], a[16][16];
+  turned_by(pencil, origin, turned);
+  bool finite = true;
+  for (int j = 0; j < 16; ++j) {
+    double solved[12], doubled[16];
+    multiply_few<12, 6>(inverses[best][j < 8 ? 0 : 6], pencil.equation[j % 8], solved);
+    multiply_few<16, 12>(turned[0], solved, doubled);
+    for (int i = 0; i < 16; ++i) {
+      doubled[i] = 2 * doubled[i] + (i == j ? 1 : 0);
+      finite = finite && std::isfinite(doubled[i]);
     }
-    const double middle = (triangular(i, i) + triangular(i + 1, i + 1)) / 2, half = triangular(i, i) - middle;
-    const std::complex<double> root =
-        std::sqrt(std::complex<double>(half * half + triangular(i, i + 1) * triangular(i + 1, i)));
-    insert(middle + root);
-    insert(middle - root);
-    ++i;
+    for (int i = 0; i < 16; ++i) a[j][i] = i % 8 < 4 ? doubled[i + 4] : -doubled[i - 4];
   }
+  if (!finite) return out;
+  double work[16];
+  std::complex<double> tangents[16];
+  to_hessenberg(a[0], 16, work);
+  if (!hessenberg_eigenvalues(a[0], 16, tangents)) return out;
+  for (const std::complex<double> tangent : tangents)
+    out.angles[static_cast<std::size_t>(out.count++)] = origin + 2. * std::atan(tangent);
   return out;
 }
 

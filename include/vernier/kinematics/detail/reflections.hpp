@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 
 namespace vernier::detail {
 
@@ -62,6 +64,69 @@ inline void to_hessenberg(double* a, int n, double* work) noexcept {
     for (int r = 0; r < n; ++r) reflect(work, a + (j + 1) * n + r, below, n);
     std::fill_n(a + j * n + j + 2, below - 1, 0.0);
   }
+}
+
+/// Eigenvalues of an upper n x n Hessenberg matrix, which is overwritten, by QR steps with double shifts.
+/// @return whether they converged
+/// @cite Golub and Van Loan 2013
+inline bool hessenberg_eigenvalues(double* a, int n, std::complex<double>* out) noexcept {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  constexpr int most_steps = 60;  // for one eigenvalue or pair; three are usual
+  const auto at = [&](int i, int j) -> double& { return a[j * n + i]; };
+  double size = 0;
+  for (int k = 0; k < n * n; ++k) size = std::max(size, std::abs(a[k]));
+  for (int last = n - 1, steps = 0; last >= 0;) {
+    int first = last;  // of the block that is left
+    for (; first > 0; --first) {
+      const double around = std::abs(at(first, first)) + std::abs(at(first - 1, first - 1));
+      if (std::abs(at(first, first - 1)) <= epsilon * (around > 0 ? around : size)) break;
+    }
+    const double below = first < last ? at(last, last - 1) : 0, beside = first < last ? at(last - 1, last) : 0;
+    double x = at(last, last), y = first < last ? at(last - 1, last - 1) : x, product = below * beside;
+    if (first == last) {
+      out[last--] = x;
+      steps = 0;
+      continue;
+    }
+    if (first == last - 1) {
+      const double middle = (x + y) / 2, half = y - middle;
+      const std::complex<double> root = std::sqrt(std::complex<double>(half * half + product));
+      out[first] = middle + root;
+      out[last] = middle - root;
+      last -= 2;
+      steps = 0;
+      continue;
+    }
+    if (++steps > most_steps) return false;
+    if (steps % 10 == 0) {  // shifts of their own where the usual ones go round in circles
+      const double away = std::abs(below) + std::abs(at(last - 1, last - 2));
+      x = y = x + 0.75 * away;
+      product = -0.4375 * away * away;
+    }
+    // The first column of (A - shift)(A - other shift), from where two small entries below the diagonal let it begin.
+    int begin = last - 2;
+    double v[3];
+    for (;; --begin) {
+      const double here = at(begin, begin), next = at(begin + 1, begin + 1), r = x - here, s = y - here;
+      v[0] = (r * s - product) / at(begin + 1, begin) + at(begin, begin + 1);
+      v[1] = next - here - r - s;
+      v[2] = at(begin + 2, begin + 1);
+      if (begin == first) break;
+      const double before = std::abs(at(begin - 1, begin - 1)), rest = std::abs(v[1]) + std::abs(v[2]);
+      if (std::abs(at(begin, begin - 1)) * rest <=
+          epsilon * std::abs(v[0]) * (before + std::abs(here) + std::abs(next)))
+        break;
+    }
+    for (int k = begin; k < last; ++k) {
+      const int rows = std::min(3, last - k + 1);
+      if (k > begin) std::copy_n(&at(k, k - 1), rows, v);
+      to_reflector(v, rows);
+      for (int j = std::max(k - 1, first); j <= last; ++j) reflect(v, &at(k, j), rows);
+      for (int i = first; i <= std::min(k + 3, last); ++i) reflect(v, &at(i, k), rows, n);
+      for (int i = k + 1; k > first && i < k + rows; ++i) at(i, k - 1) = 0;
+    }
+  }
+  return true;
 }
 
 }  // namespace vernier::detail

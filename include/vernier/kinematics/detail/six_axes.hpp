@@ -16,12 +16,15 @@ struct SixAxes {
   Eigen::Matrix<double, 3, 6> direction;  ///< unit vectors; the joint turns about it by the right-hand rule
   Eigen::Matrix<double, 3, 6> point;      ///< a point on each axis [m]
   Isometry3 tool;                         ///< base_T_tool at joint values zero
+
+  Vector3 direction_of(int i) const { return {direction(0, i), direction(1, i), direction(2, i)}; }
+  Vector3 point_of(int i) const { return {point(0, i), point(1, i), point(2, i)}; }
 };
 
 /// The same of an arm of 6 or 7 revolute joints.
 struct ArmAxes {
-  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 7>;
-  Columns direction, point;
+  int joints;
+  Vector3 direction[7], point[7];  ///< of each
   Isometry3 tool;
 };
 
@@ -31,6 +34,7 @@ VERNIER_API Isometry3 pose_of(const SixAxes& arm, const JointVector<6>& q) noexc
 
 /// Bound of the distance of the tool from any axis point, in every configuration [m].
 VERNIER_API double arm_length(const ArmAxes& arm) noexcept;
+VERNIER_API double arm_length(const SixAxes& arm) noexcept;
 /// By how much a target lies farther away than the arm is long [m]; negative where it may be within reach.
 VERNIER_API double reach_excess(const ArmAxes& arm, const Isometry3& target) noexcept;
 

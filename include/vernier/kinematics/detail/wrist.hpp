@@ -27,6 +27,15 @@ struct Wrist {
 /// @param k4, k5, k6 unit vectors, no two neighbours parallel
 VERNIER_API Wrist wrist_of(const Vector3& k4, const Vector3& k5, const Vector3& k6);
 
+/// The point nearest to lines.
+struct MeetingPoint {
+  Vector3 point;
+  double miss;  ///< largest distance from one of them; 1e300 where they are parallel
+};
+/// See `MeetingPoint`.
+/// @param directions, points of the lines
+VERNIER_API MeetingPoint meeting_point(const Vector3* directions, const Vector3* points, int lines) noexcept;
+
 /// The one or two angles of a pair that are no further outside than allowed; next to a singularity samples all around.
 struct Candidates {
   double angles[2 + angle_samples];

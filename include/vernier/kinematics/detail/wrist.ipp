@@ -14,10 +14,29 @@ VERNIER_IMPL Wrist wrist_of(const Vector3& k4, const Vector3& k5, const Vector3&
   out.alpha = std::atan2(k4.cross(k5).norm(), k4.dot(k5));
   out.beta = std::atan2(k5.cross(k6).norm(), k5.dot(k6));
   out.centre = std::atan2(k4.dot(k5.cross(k6)), k4.dot(k6) - k4.dot(k5) * k5.dot(k6));
-  Index least = 0;
-  k6.cwiseAbs().minCoeff(&least);
-  out.e6 = k6.cross(Vector3(Vector3::Unit(least))).normalized();
+  out.e6 = unit_orthogonal(k6);
   out.f6 = k6.cross(out.e6);
+  return out;
+}
+
+VERNIER_IMPL MeetingPoint meeting_point(const Vector3* directions, const Vector3* points, int lines) noexcept {
+  Matrix3 normal = Matrix3::Zero();
+  Vector3 right = Vector3::Zero();
+  for (int k = 0; k < lines; ++k) {
+    const Vector3& h = directions[k];
+    Matrix3 off;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) off(r, c) = (r == c ? 1 : 0) - h(r) * h(c);
+    normal += off;
+    right += rotated(off, points[k]);
+  }
+  const Matrix3 inverse = normal.inverse();
+  MeetingPoint out{rotated(inverse, right), 0};
+  for (int k = 0; k < lines; ++k) {
+    const Vector3 lever = out.point - points[k];
+    out.miss = std::max(out.miss, directions[k].cross(lever).norm());
+  }
+  if (!std::isfinite(out.point.sum())) out.miss = 1e300;
   return out;
 }
 
@@ -41,7 +60,7 @@ VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double near, double w
 // Joint 5 by the half-angle formula of spherical triangles, which keeps its digits where the wrist is nearly straight.
 VERNIER_IMPL WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation, double near4,
                                      double widest) noexcept {
-  const Vector3 axis = rotation * wrist.k6;
+  const Vector3 axis = rotated(rotation, wrist.k6);
   const double gamma = std::atan2(wrist.k4.cross(axis).norm(), wrist.k4.dot(axis));
   const double a = wrist.alpha, b = wrist.beta;
   const double numerator = std::sin(0.5 * (gamma - a + b)) * std::sin(0.5 * (gamma + a - b));
@@ -52,8 +71,9 @@ VERNIER_IMPL WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation
   out.margin = std::max({-numerator, -denominator, 0.0});
   if (out.margin < 1e-15) out.margin = 0;
   out.count = 0;
+  const Vector3 turned = rotated(rotation, wrist.e6);
   const auto add = [&](double q4, double q5, const Matrix3& r5) {
-    const Vector3 e = r5.transpose() * (rotation_about(wrist.k4, -q4) * (rotation * wrist.e6));
+    const Vector3 e = rotated_back(r5, rotated(rotation_about(wrist.k4, -q4), turned));
     out.q4[out.count] = q4;
     out.q5[out.count] = q5;
     out.q6[out.count++] = std::atan2(wrist.f6.dot(e), wrist.e6.dot(e));
@@ -62,7 +82,7 @@ VERNIER_IMPL WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation
   for (int k = 0; k < roots; ++k) {
     const double q5 = wrist.centre + (k == 0 ? half : -half);
     const Matrix3 r5 = rotation_about(wrist.k5, q5);
-    const AngleAbout q4 = angle_between(wrist.k4, r5 * wrist.k6, axis, 1e-11);
+    const AngleAbout q4 = angle_between(wrist.k4, rotated(r5, wrist.k6), axis, 1e-11);
     out.any = out.any || q4.any;
     add(q4.any ? near4 : q4.angle, q5, r5);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vernier/compensation/concepts.hpp"
+#include "vernier/core/points.hpp"
 
 namespace vernier {
 
@@ -15,7 +16,8 @@ VERNIER_IMPL void CorrectionOptions::validate(int dof) const {
 namespace detail {
 
 VERNIER_IMPL void require_same_frames(const char* caller, const PointRows& error) {
-  const double mean = error.rowwise().norm().mean();
+  double mean = 0;
+  for (Index i = 0; i < error.rows(); ++i) mean += point(error, i).norm() / static_cast<double>(error.rows());
   require(mean < 0.05, caller, ": model and data are ", mean * 1e3,
           " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
 }

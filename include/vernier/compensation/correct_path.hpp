@@ -3,6 +3,7 @@
 /// @file
 /// Corrected commands along a whole path: branches and whole turns chosen for all of it, linear moves kept straight.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "vernier/compensation/detail/path_solver.hpp"
 #include "vernier/kinematics/all_branches.hpp"
+#include "vernier/kinematics/detail/small_systems.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 
 namespace vernier {
@@ -99,7 +101,8 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   static_assert(N <= PathJoints::MaxRowsAtCompileTime);
   using Joints = JointVector<N>;
   require(options.tolerance > 0 && options.rotation_tolerance > 0 && options.max_joint_step > 0 &&
-              options.max_inserted >= 0 && (options.speed.array() > 0).all(),
+              options.max_inserted >= 0 &&
+              std::all_of(options.speed.data(), options.speed.data() + N, [](double speed) { return speed > 0; }),
           "correct_path: tolerances, steps and speeds must be positive");
   const auto& nominal = nominal_of(arm);
   IkOptions<N> tight;
@@ -112,7 +115,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
     if constexpr (N >= 6) {
       return inverse_kinematics(model, target, seed, ik);
     } else {
-      return inverse_kinematics(model, Vector3(target.translation()), seed, ik);
+      return inverse_kinematics(model, translation(target), seed, ik);
     }
   };
   const auto coming_from = [&](const Joints& from, const auto& use) {
@@ -167,7 +170,8 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   std::vector<PathGoal> goals;
   goals.reserve(targets.size());
   for (const PathTarget<N>& target : targets)
-    goals.push_back({target.pose, target.joints.allFinite() ? PathJoints(target.joints) : PathJoints(), target.motion});
+    goals.push_back(
+        {target.pose, are_finite(target.joints.data(), N) ? PathJoints(target.joints) : PathJoints(), target.motion});
   const SolvedPath solved =
       solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
                  {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
@@ -189,7 +193,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
                        from.ends_only,
                        1,
                        {}};
-    if (command.allFinite()) {
+    if (are_finite(command.data(), N)) {
       if constexpr (requires { arm.gate(command); }) point.gate = arm.gate(command);
       point.singularities = distances(command);
     }

@@ -3,6 +3,7 @@
 /// @file
 /// All branches of the inverse kinematics of an arm that is near a nominal one: identified, with joint errors, learned.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -64,10 +65,14 @@ struct Branches {
   /// The branch within limits whose largest joint difference from q is smallest; null where there is none.
   const Branch<N>* nearest(const JointVector<N>& q) const noexcept {
     const Branch<N>* best = nullptr;
-    for (const Branch<N>& branch : *this)
-      if (branch.within_limits &&
-          (best == nullptr || (branch.joints - q).cwiseAbs().maxCoeff() < (best->joints - q).cwiseAbs().maxCoeff()))
-        best = &branch;
+    double least = 0;
+    for (const Branch<N>& branch : *this) {
+      double largest = 0;
+      for (int j = 0; j < N; ++j) largest = std::max(largest, std::abs(branch.joints(j) - q(j)));
+      if (!branch.within_limits || (best != nullptr && !(largest < least))) continue;
+      best = &branch;
+      least = largest;
+    }
     return best;
   }
   /// What became of the target, in a sentence.
@@ -166,7 +171,7 @@ template <BranchRoots Roots, KinematicModel M>
       excess = detail::reach_excess(detail::arm_axes(model), target);
     } else if constexpr (requires { model.reach_sphere(); }) {
       const ReachSphere sphere = model.reach_sphere();
-      excess = (target.translation() - sphere.centre).norm() - sphere.radius;
+      excess = (translation(target) - sphere.centre).norm() - sphere.radius;
     }
     if (excess > 0) {
       out.reach = Reach::proven_out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <utility>
 
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -8,20 +9,18 @@ namespace vernier {
 
 VERNIER_IMPL VectorX ArmGeometry::parameters() const {
   VectorX out(num_parameters());
-  out.head<6>() = base_.values();
-  for (int i = 0; i < joints(); ++i) {
-    const DhRow& row = chain_.rows()[static_cast<std::size_t>(i)];
-    out.segment<5>(6 + 5 * i) << row.a, row.alpha, row.d, row.theta, row.beta;
-  }
-  out.tail<6>() = tool_.values();
+  double* next = std::copy_n(base_.values().data(), 6, out.data());
+  for (const DhRow& row : chain_.rows())
+    for (const double value : {row.a, row.alpha, row.d, row.theta, row.beta}) *next++ = value;
+  std::copy_n(tool_.values().data(), 6, next);
   return out;
 }
 
 VERNIER_IMPL ArmGeometry ArmGeometry::with_parameters(const ConstVectorRef& values) const {
   require(values.size() == num_parameters(), "ArmGeometry: ", values.size(), " parameters, expected ",
           num_parameters());
-  const auto frame = [](const FrameParameters& old, const Vector6& now) {
-    return now == old.values() ? old : FrameParameters(now);
+  const auto frame = [](const FrameParameters& old, const double* now) {
+    return std::equal(now, now + 6, old.values().data()) ? old : FrameParameters(Vector6(now));
   };
   std::vector<DhRow> rows = chain_.rows();
   for (int i = 0; i < joints(); ++i) {
@@ -29,8 +28,8 @@ VERNIER_IMPL ArmGeometry ArmGeometry::with_parameters(const ConstVectorRef& valu
     DhRow& row = rows[static_cast<std::size_t>(i)];
     row = {p[0], p[1], p[2], p[3], p[4], row.joint};
   }
-  return {detail::ChainTable(std::move(rows), chain_.modified()), frame(base_, values.head<6>()),
-          frame(tool_, values.tail<6>())};
+  return {detail::ChainTable(std::move(rows), chain_.modified()), frame(base_, values.data()),
+          frame(tool_, values.data() + values.size() - 6)};
 }
 
 VERNIER_IMPL std::vector<std::string> ArmGeometry::parameter_names() const {

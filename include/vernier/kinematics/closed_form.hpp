@@ -11,6 +11,7 @@
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/detail/closed_form_arm.hpp"
 #include "vernier/kinematics/detail/six_axes.hpp"
+#include "vernier/kinematics/detail/subproblems.hpp"
 #include "vernier/kinematics/singularities.hpp"
 
 namespace vernier {
@@ -99,7 +100,7 @@ ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Ar
   out.tool = framed.pose(q);
   const Matrix3 turn = rotation(framed.base());
   for (int i = 0; i < Arm::dof; ++i) {
-    out.direction[i] = turn * Vector3(links.axis(0, i), links.axis(1, i), links.axis(2, i));
+    out.direction[i] = rotated(turn, {links.axis(0, i), links.axis(1, i), links.axis(2, i)});
     out.point[i] = transformed(framed.base(), {links.point(0, i), links.point(1, i), links.point(2, i)});
   }
   return out;

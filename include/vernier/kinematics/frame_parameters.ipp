@@ -5,8 +5,12 @@
 namespace vernier {
 
 VERNIER_IMPL FrameParameters::FrameParameters(const Isometry3& frame) : frame_(frame) {
-  values_ << frame.translation(), log_so3(frame.linear());
-  rotation_vector_jacobian_ = left_jacobian_so3(values_.tail<3>());
+  const Vector3 turn = log_so3(rotation(frame));
+  for (Index k = 0; k < 3; ++k) {
+    values_(k) = frame(k, 3);
+    values_(3 + k) = turn(k);
+  }
+  rotation_vector_jacobian_ = left_jacobian_so3(turn);
 }
 
 VERNIER_IMPL FrameParameters::FrameParameters(const Vector6& values)

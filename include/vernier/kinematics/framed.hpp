@@ -11,6 +11,7 @@
 #include "vernier/core/points.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
+#include "vernier/kinematics/detail/subproblems.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
 
 namespace vernier {
@@ -27,6 +28,14 @@ VERNIER_API void move_columns(const Isometry3& base, const Vector3& lever, const
 /// @param jacobian   6 x (columns + 12)
 VERNIER_API void frame_columns(const FrameParameters& base, const FrameParameters& tool, const Isometry3& tool_point,
                                Index columns, double* jacobian) noexcept;
+
+/// Turns the axes of a pose as a tool does, whose origin it has already.
+inline void turn_axes(Isometry3& pose, const Isometry3& tool) noexcept {
+  for (Index r = 0; r < 3; ++r) {
+    const double x = pose(r, 0), y = pose(r, 1), z = pose(r, 2);
+    for (Index c = 0; c < 3; ++c) pose(r, c) = x * tool(0, c) + y * tool(1, c) + z * tool(2, c);
+  }
+}
 
 /// Names and kinds of the parameters of a model between base and tool frames.
 VERNIER_API std::vector<std::string> framed_names(std::vector<std::string> model);
@@ -85,24 +94,26 @@ class Framed {
   }
 
   /// base_T_tool.
-  Isometry3 pose(const JointVector<dof>& q) const noexcept { return base() * model_.pose(q) * tool(); }
+  Isometry3 pose(const JointVector<dof>& q) const noexcept {
+    return composed(composed(base(), model_.pose(q)), tool());
+  }
   /// Tool position [m], base frame.
   Vector3 position(const JointVector<dof>& q) const noexcept {
-    return base() * (model_.pose(q) * tool().translation());
+    return transformed(base(), transformed(model_.pose(q), translation(tool())));
   }
   /// Geometric Jacobian, 6 x N, see `Jacobian`.
   Jacobian<dof> jacobian(const JointVector<dof>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
   /// Both in one pass.
   PoseAndJacobian<dof> pose_and_jacobian(const JointVector<dof>& q) const noexcept {
-    if constexpr (requires { model_.pose_and_jacobian(q, base(), tool().translation()); }) {
-      PoseAndJacobian<dof> out = model_.pose_and_jacobian(q, base(), tool().translation());
-      out.pose.linear() *= tool().linear();
+    if constexpr (requires { model_.pose_and_jacobian(q, base(), translation(tool())); }) {
+      PoseAndJacobian<dof> out = model_.pose_and_jacobian(q, base(), translation(tool()));
+      detail::turn_axes(out.pose, tool());
       return out;
     } else {
       const PoseAndJacobian<dof> inner = model_.pose_and_jacobian(q);
       PoseAndJacobian<dof> out;
       detail::move_columns(base(), lever(inner.pose), inner.jacobian.data(), dof, out.jacobian.data());
-      out.pose = base() * inner.pose * tool();
+      out.pose = composed(composed(base(), inner.pose), tool());
       return out;
     }
   }
@@ -115,13 +126,13 @@ class Framed {
   }
   {
     if constexpr (of_chain) {
-      const Vector3 at_flange = tool() * point;
+      const Vector3 at_flange = transformed(tool(), point);
       PointRows out(joints.rows(), 3);
       evaluate(joints, {.base = base().data(), .point = at_flange.data()}, {.positions = out.data()});
       return out;
     } else {
-      PointRows out = model_.positions(joints, tool() * point);
-      for (Index i = 0; i < out.rows(); ++i) set_point(out, i, base() * vernier::point(out, i));
+      PointRows out = model_.positions(joints, transformed(tool(), point));
+      for (Index i = 0; i < out.rows(); ++i) set_point(out, i, transformed(base(), vernier::point(out, i)));
       return out;
     }
   }
@@ -131,7 +142,7 @@ class Framed {
   }
   {
     std::vector<Isometry3> out = model_.poses(joints);
-    for (Isometry3& pose : out) pose = base() * pose * tool();
+    for (Isometry3& pose : out) pose = composed(composed(base(), pose), tool());
     return out;
   }
   /// Poses and Jacobians at n configurations; equal to those one by one to 1e-14.
@@ -182,10 +193,11 @@ class Framed {
       const Isometry3 flange = model_.pose(q);
       const auto inner = model_.parameter_jacobian(q);
       detail::move_columns(base(), lever(flange), inner.data(), Model::num_parameters, out.jacobian.data() + 36);
-      out.pose = base() * flange * Eigen::Translation3d(tool().translation());
+      const Vector3 end = transformed(flange, translation(tool()));
+      out.pose = rigid_motion(rotation(composed(base(), flange)), transformed(base(), end));
     }
     detail::frame_columns(base_, tool_, out.pose, Model::num_parameters, out.jacobian.data());
-    out.pose.linear() *= tool().linear();
+    detail::turn_axes(out.pose, tool());
     return out;
   }
   /// Poses and parameter Jacobians at n configurations; equal to those one by one to 1e-14.
@@ -209,7 +221,9 @@ class Framed {
 
  private:
   /// From the model's end to the tool point, in the model's base.
-  Vector3 lever(const Isometry3& flange) const noexcept { return flange.linear() * tool().translation(); }
+  Vector3 lever(const Isometry3& flange) const noexcept {
+    return detail::rotated(rotation(flange), translation(tool()));
+  }
 
   detail::ChainFrames frames() const {
     return {base().data(), tool_.values().data(), tool().data(), base_.rotation_vector_jacobian().data(),
@@ -234,7 +248,7 @@ struct ReachSphere {
 /// Around the first axis, by the lengths of all links: joint errors do not change them.
 template <class Model>
 ReachSphere reach_sphere(const Framed<Model>& arm) {
-  ReachSphere out{arm.base().translation(), arm.tool().translation().norm()};
+  ReachSphere out{translation(arm.base()), translation(arm.tool()).norm()};
   for (int i = 0; i < Framed<Model>::dof; ++i) {
     const DhRow& row = arm.chain().row(i);
     out.radius += row.joint == JointType::revolute ? std::hypot(row.a, row.d) : std::numeric_limits<double>::infinity();

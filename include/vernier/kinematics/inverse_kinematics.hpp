@@ -114,8 +114,7 @@ template <KinematicModel M>
 [[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Vector3& target,
                                                   const JointVector<M::dof>& seed,
                                                   const IkOptions<M::dof>& options = {}) noexcept {
-  Isometry3 pose = Isometry3::Identity();
-  pose.translation() = target;
+  const Isometry3 pose = rigid_motion(Matrix3::Identity(), target);
   return detail::inverse_kinematics(model, pose, false, seed, options);
 }
 

@@ -38,7 +38,14 @@ VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* 
     problem.model(it.q, pose, it.jacobian);
     const Vector3 position = translation(problem.target) - translation(pose);
     Vector3 turn = Vector3::Zero();
-    if (problem.oriented) turn = rotation_difference(rotation(problem.target), rotation(pose));
+    if (problem.oriented) {
+      Matrix3 between;
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+          between(r, c) =
+              problem.target(r, 0) * pose(c, 0) + problem.target(r, 1) * pose(c, 1) + problem.target(r, 2) * pose(c, 2);
+      turn = log_so3(between);
+    }
     it.position_error = position.norm();
     it.rotation_error = turn.norm();
     for (int k = 0; k < 3; ++k) {

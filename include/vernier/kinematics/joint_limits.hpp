@@ -3,6 +3,7 @@
 /// @file
 /// Ranges of joint values.
 
+#include <algorithm>
 #include <limits>
 
 #include "vernier/core/types.hpp"
@@ -19,10 +20,16 @@ struct JointLimits {
 
   /// Whether q lies within, bounds included.
   bool contains(const JointVector<N>& q) const noexcept {
-    return (q.array() >= lower.array()).all() && (q.array() <= upper.array()).all();
+    bool out = true;
+    for (int j = 0; j < N; ++j) out = out && q(j) >= lower(j) && q(j) <= upper(j);
+    return out;
   }
   /// The nearest joints within.
-  JointVector<N> clamp(const JointVector<N>& q) const noexcept { return q.cwiseMax(lower).cwiseMin(upper); }
+  JointVector<N> clamp(const JointVector<N>& q) const noexcept {
+    JointVector<N> out;
+    for (int j = 0; j < N; ++j) out(j) = std::min(std::max(q(j), lower(j)), upper(j));
+    return out;
+  }
 };
 
 }  // namespace vernier

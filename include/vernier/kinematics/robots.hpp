@@ -33,7 +33,12 @@ namespace detail {
 template <int N>
 JointLimits<N> limits_deg(const double (&lower)[N], const double (&upper)[N]) {
   constexpr double degree = std::numbers::pi / 180;
-  return {Eigen::Map<const JointVector<N>>(lower) * degree, Eigen::Map<const JointVector<N>>(upper) * degree};
+  JointLimits<N> out;
+  for (int j = 0; j < N; ++j) {
+    out.lower(j) = lower[j] * degree;
+    out.upper(j) = upper[j] * degree;
+  }
+  return out;
 }
 
 }  // namespace detail

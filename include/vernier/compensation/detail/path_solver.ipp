@@ -10,15 +10,46 @@
 #include "vernier/compensation/detail/path_solver.hpp"
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/kinematics/detail/subproblems.hpp"
 
 namespace vernier::detail {
 
 VERNIER_IMPL Isometry3 pose_between(const Isometry3& a, const Isometry3& b, double share) noexcept {
-  Isometry3 out;
-  out.linear() = a.linear() * exp_so3(Vector3(share * log_so3(Matrix3(a.linear().transpose() * b.linear()))));
-  out.translation() = (1 - share) * a.translation() + share * b.translation();
-  out.makeAffine();
+  const Matrix3 start = rotation(a), turn = exp_so3(Vector3(share * rotation_difference(rotation(b), start)));
+  const Vector3 from = (1 - share) * translation(a), to = share * translation(b);
+  return rigid_motion(times3(turn, start), from + to);
+}
+
+/// The same value for each of n joints.
+inline PathJoints same_joints(int n, double value) noexcept {
+  PathJoints out(n);
+  for (int j = 0; j < n; ++j) out(j) = value;
   return out;
+}
+
+/// Largest difference of a joint.
+inline double largest_difference(const PathJoints& a, const PathJoints& b) noexcept {
+  double out = 0;
+  for (Index j = 0; j < a.size(); ++j) out = std::max(out, std::abs(a(j) - b(j)));
+  return out;
+}
+
+/// a, and a share of the way to b.
+inline PathJoints joints_between(const PathJoints& a, const PathJoints& b, double share) noexcept {
+  PathJoints out = a;
+  for (Index j = 0; j < a.size(); ++j) out(j) += share * (b(j) - a(j));
+  return out;
+}
+
+/// Whether joint values are the same but for rounding errors.
+inline bool nearly_same(const PathJoints& a, const PathJoints& b) noexcept {
+  double off = 0, of_a = 0, of_b = 0;
+  for (Index j = 0; j < a.size(); ++j) {
+    off += (a(j) - b(j)) * (a(j) - b(j));
+    of_a += a(j) * a(j);
+    of_b += b(j) * b(j);
+  }
+  return off <= 1e-24 * std::min(of_a, of_b);
 }
 
 VERNIER_IMPL PathJoints approach_on_the_way(const PathJoints& coming, const PathJoints& command, const PathJoints& q) {
@@ -69,7 +100,9 @@ class PathSearch {
  private:
   /// Time of a joint move, in units of the speeds.
   double duration(const PathJoints& a, const PathJoints& b) const {
-    return ((b - a).array().abs() / settings_.speed.array()).maxCoeff();
+    double out = 0;
+    for (int j = 0; j < arm_.joints; ++j) out = std::max(out, std::abs(b(j) - a(j)) / settings_.speed(j));
+    return out;
   }
   PathJoints turned(const PathJoints& joints, const PathJoints& near) const {
     PathJoints out = joints;
@@ -78,15 +111,21 @@ class PathSearch {
     return out;
   }
   bool within(const PathJoints& q) const {
-    return (q.array() >= settings_.lower.array() - 1e-9).all() && (q.array() <= settings_.upper.array() + 1e-9).all();
+    bool out = true;
+    for (int j = 0; j < arm_.joints; ++j)
+      out = out && q(j) >= settings_.lower(j) - 1e-9 && q(j) <= settings_.upper(j) + 1e-9;
+    return out;
   }
   bool at_limit(const PathJoints& q) const {
-    return ((q - settings_.lower).array() <= 1e-9).any() || ((settings_.upper - q).array() <= 1e-9).any();
+    bool out = false;
+    for (int j = 0; j < arm_.joints; ++j)
+      out = out || q(j) - settings_.lower(j) <= 1e-9 || settings_.upper(j) - q(j) <= 1e-9;
+    return out;
   }
   /// Adds a state, or a cheaper way to it.
   static void relax(std::vector<PathState>& states, const PathState& state) {
     for (PathState& known : states)
-      if (known.id == state.id && (known.joints - state.joints).cwiseAbs().maxCoeff() < 1e-6) {
+      if (known.id == state.id && largest_difference(known.joints, state.joints) < 1e-6) {
         if (state.cost < known.cost) known = state;
         return;
       }
@@ -114,7 +153,7 @@ VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoi
                                              std::vector<PathBranch>& out) const {
   if (!is_pose(goal.pose)) return Reach::invalid_target;
   if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
-  PathJoints command = goal.joints, unknown = PathJoints::Constant(arm_.joints, std::nan(""));
+  PathJoints command = goal.joints, unknown = same_joints(arm_.joints, std::nan(""));
   double errors[2];
   const bool met = arm_.correct(goal.pose, unknown, command, errors);
   out.push_back({command, arm_.branch_id(command)});  // else the joint values that come nearest
@@ -127,18 +166,18 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
   constexpr double small = 0.2, step = 0.1;  // rad
   if (from.id != to.id) return std::nullopt;
   PathJoints near = turned(to.joints, from.joints);
-  const double largest = (near - from.joints).cwiseAbs().maxCoeff();
+  const double largest = largest_difference(near, from.joints);
   if (largest > small) {
     const int n = std::clamp(static_cast<int>(std::ceil(largest / step)), 4, 64);
     PathJoints q = from.joints;
     for (int k = 1; k <= n; ++k) {
       const PathJoints before = q;
       if (!arm_.nominal_joints(pose_between(start.pose, end.pose, static_cast<double>(k) / n), q) ||
-          (q - before).cwiseAbs().maxCoeff() > settings_.max_joint_step || arm_.branch_id(q) != from.id)
+          largest_difference(q, before) > settings_.max_joint_step || arm_.branch_id(q) != from.id)
         return std::nullopt;
     }
     near = turned(to.joints, q);
-    if ((near - q).cwiseAbs().maxCoeff() > 0.1) return std::nullopt;
+    if (largest_difference(near, q) > 0.1) return std::nullopt;
   }
   return within(near) ? std::optional<PathJoints>(near) : std::nullopt;
 }
@@ -193,13 +232,14 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& coming, const Path
   const Isometry3 first = arm_.nominal_pose(a), last = arm_.nominal_pose(b);
   double worst = 0;
   for (const double share : {0.25, 0.5, 0.75}) {
-    PathJoints q = a + share * (b - a);
+    const PathJoints straight = joints_between(a, b, share);
+    PathJoints q = straight;
     if (!arm_.nominal_joints(pose_between(first, last, share), q) ||
-        (q - a - share * (b - a)).cwiseAbs().maxCoeff() > settings_.max_joint_step)
+        largest_difference(q, straight) > settings_.max_joint_step)
       return std::numeric_limits<double>::infinity();
     const Isometry3 there = arm_.pose(q, approach_on_the_way(coming, a, q)), wanted = pose_between(from, to, share);
-    const double off = (there.translation() - wanted.translation()).norm();
-    const double turned = log_so3(Matrix3(there.linear() * wanted.linear().transpose())).norm();
+    const double off = (translation(there) - translation(wanted)).norm();
+    const double turned = rotation_difference(rotation(there), rotation(wanted)).norm();
     deviation = std::max(deviation, off);
     worst = std::max({worst, off / settings_.tolerance, turned / settings_.rotation_tolerance});
   }
@@ -227,11 +267,11 @@ VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const Pat
     bool found = arm_.correct(wanted, point.coming, point.command, errors);
     // the direction of a joint that hardly moves shows in the command only
     const PathJoints now = approach_on_the_way(coming, before, point.command);
-    if (found && !now.isApprox(point.coming, 1e-12)) {
+    if (found && !nearly_same(now, point.coming)) {
       point.coming = now;
       found = arm_.correct(wanted, point.coming, point.command, errors);
     }
-    if (!found || (point.command - before).cwiseAbs().maxCoeff() > settings_.max_joint_step) return false;
+    if (!found || largest_difference(point.command, before) > settings_.max_joint_step) return false;
     point.position_error = errors[0];
     point.rotation_error = errors[1];
     worst = std::max(worst, worst_ratio(coming, before, point.command, at, wanted, point.deviation));
@@ -263,7 +303,7 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
       const double ratio = worst_ratio(before->coming, from, point.command, start, goal.pose, point.deviation);
       point.ends_only = point.deviation;
       out.before = std::max(out.before, point.deviation);
-      const double change = (point.command - from).cwiseAbs().maxCoeff();
+      const double change = largest_difference(point.command, from);
       // what is left grows with the square of a piece's length
       int pieces = std::isfinite(ratio) ? static_cast<int>(std::ceil(std::sqrt(std::min(ratio, 1e6)))) : 8;
       pieces = std::max(pieces, static_cast<int>(std::ceil(change / settings_.max_joint_step)));
@@ -306,11 +346,13 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   std::vector<std::vector<PathState>> states(n);
   std::vector<Reach> reach(n);
   std::vector<PathBranch> branches;
-  const bool started = settings_.start.allFinite();
-  PathJoints near = PathJoints::Zero(arm_.joints);
-  for (int j = 0; j < arm_.joints; ++j)
+  bool started = true;
+  PathJoints near = same_joints(arm_.joints, 0);
+  for (int j = 0; j < arm_.joints; ++j) {
+    started = started && std::isfinite(settings_.start(j));
     if (std::isfinite(settings_.lower(j) + settings_.upper(j)))
       near(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
+  }
   if (started) near = settings_.start;
   const std::vector<PathState> beginning{{near, 0, 0, -1, false}};
 
@@ -357,12 +399,8 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
       }
       continue;
     }
-    SolvedPoint point{PathJoints::Constant(arm_.joints, std::nan("")),
-                      target,
-                      false,
-                      PointStatus::not_found,
-                      std::nan(""),
-                      std::nan("")};
+    SolvedPoint point{
+        same_joints(arm_.joints, std::nan("")), target, false, PointStatus::not_found, std::nan(""), std::nan("")};
     switch (reach[k]) {
       case Reach::beyond_limits: point.status = PointStatus::beyond_limits; break;
       case Reach::proven_out: point.status = PointStatus::proven_out; break;

@@ -238,11 +238,8 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
   SixAxes scaled = arm;
   Isometry3 scaled_target = target;
   normalize_lengths(scaled, scaled_target);
-  const auto finite = [](const double* values, int n) {
-    return std::all_of(values, values + n, [](double value) { return std::isfinite(value); });
-  };
-  if (!finite(scaled.point.data(), 18) || !finite(scaled.direction.data(), 18) || !finite(scaled.tool.data(), 16) ||
-      !finite(scaled_target.data(), 16))
+  if (!are_finite(scaled.point.data(), 18) || !are_finite(scaled.direction.data(), 18) ||
+      !are_finite(scaled.tool.data(), 16) || !are_finite(scaled_target.data(), 16))
     return out;
   const SixAxes nearby = with_displaced_axes(scaled);
   constexpr int order[] = {3, 1, 4, 5, 2, 0};  // industrial arms need the fewest eliminations so

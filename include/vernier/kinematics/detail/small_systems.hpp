@@ -4,12 +4,18 @@
 /// Products and linear systems of a few rows, column-major, in plain loops: for so few, Eigen's decompositions of
 /// run-time size cost twice as much, and those of a fixed size take a compiler a second each.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "vernier/core/simd.hpp"
 
 namespace vernier::detail {
+
+/// Whether n numbers are finite.
+inline bool are_finite(const double* values, int n) noexcept {
+  return std::all_of(values, values + n, [](double value) { return std::isfinite(value); });
+}
 
 /// Scalar product of six numbers.
 inline double dot6(const double* a, const double* b) noexcept {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
 #include "vernier/planning/measurement_constraints.hpp"
 
@@ -33,7 +34,8 @@ VERNIER_IMPL double segment_distance(const Vector3& a, const Vector3& b, const V
     t = within(t);
     s = uu > 0 ? within((uv * t - uw) / uu) : 0;
   }
-  return (w + s * u - t * v).norm();
+  const Vector3 on_first = s * u, on_second = t * v, gap = w + on_first;
+  return (gap - on_second).norm();
 }
 
 VERNIER_IMPL MeasurementScene::MeasurementScene(const ArmGeometry& arm, MeasurementConstraints constraints)
@@ -45,14 +47,15 @@ VERNIER_IMPL MeasurementScene::MeasurementScene(const ArmGeometry& arm, Measurem
             " joints for an arm of ", joints);
   require(c.joint_margin >= 0, "MeasurementScene: joint_margin is ", c.joint_margin, ", must not be negative");
   if (c.tool_box)
-    require((c.tool_box->lower.array() < c.tool_box->upper.array()).all(),
-            "MeasurementScene: the lower corner of the tool box is not below the upper one");
+    for (Index k = 0; k < 3; ++k)
+      require(c.tool_box->lower(k) < c.tool_box->upper(k),
+              "MeasurementScene: the lower corner of the tool box is not below the upper one");
   require(c.link_radii.empty() || static_cast<Index>(c.link_radii.size()) == joints, "MeasurementScene: radii of ",
           c.link_radii.size(), " links for an arm of ", joints);
   for (const double radius : c.link_radii)
     require(radius >= 0 && std::isfinite(radius), "MeasurementScene: the radius of a link is ", radius);
   if (!c.tracker) return;
-  require(c.tracker->position.allFinite(), "MeasurementScene: the tracker's position is not finite");
+  require(detail::all_finite(c.tracker->position), "MeasurementScene: the tracker's position is not finite");
   require(c.tracker->reflector_direction.norm() > 0, "MeasurementScene: the reflector has no direction");
   require(c.tracker->acceptance > 0, "MeasurementScene: acceptance is ", c.tracker->acceptance, ", must be positive");
   require(c.tracker->min_range < c.tracker->max_range, "MeasurementScene: the tracker's range is empty");
@@ -62,25 +65,28 @@ VERNIER_IMPL Rejection MeasurementScene::check(const ConstVectorRef& q) const {
   const MeasurementConstraints& c = constraints_;
   const Index joints = arm_.joints();
   require(q.size() == joints, "MeasurementScene: ", q.size(), " joint values for an arm of ", joints);
-  if (c.lower.size() > 0 && (q.array() < c.lower.array() + c.joint_margin).any()) return Rejection::joint_limits;
-  if (c.upper.size() > 0 && (q.array() > c.upper.array() - c.joint_margin).any()) return Rejection::joint_limits;
+  for (Index j = 0; j < joints; ++j)
+    if ((c.lower.size() > 0 && q(j) < c.lower(j) + c.joint_margin) ||
+        (c.upper.size() > 0 && q(j) > c.upper(j) - c.joint_margin))
+      return Rejection::joint_limits;
   const Isometry3 pose = arm_.poses(q.transpose()).front();
-  const Vector3 tool = pose.translation();
-  if (c.tool_box &&
-      ((tool.array() < c.tool_box->lower.array()).any() || (tool.array() > c.tool_box->upper.array()).any()))
-    return Rejection::tool_box;
+  const Vector3 tool = translation(pose);
+  for (Index k = 0; c.tool_box && k < 3; ++k)
+    if (tool(k) < c.tool_box->lower(k) || tool(k) > c.tool_box->upper(k)) return Rejection::tool_box;
   std::vector<Vector3> points;  // the base, origins of the link frames, the tool
   if (!c.link_radii.empty()) {
     const VectorX values = q;
-    Eigen::Matrix3Xd axes(3, joints), on_axes(3, joints), origins(3, joints);
+    MatrixX axes(3, joints), on_axes(3, joints), origins(3, joints);
     detail::chain_links(arm_.chain().view(), values.data(), axes.data(), on_axes.data(), origins.data());
     const Isometry3& base = arm_.base().isometry();
-    points.push_back(base.translation());
-    for (Index i = 0; i < joints; ++i) points.push_back(base * Vector3(origins.col(i)));
+    points.push_back(translation(base));
+    for (Index i = 0; i < joints; ++i)
+      points.push_back(transformed(base, {origins(0, i), origins(1, i), origins(2, i)}));
     points.push_back(tool);
   }
   if (c.tracker) {
-    const Rejection seen = check_sight(tool, pose.linear() * c.tracker->reflector_direction.normalized(), points);
+    const Vector3 direction = c.tracker->reflector_direction.normalized(), looks = rotation(pose) * direction;
+    const Rejection seen = check_sight(tool, looks, points);
     if (seen != Rejection::none) return seen;
   }
   return collides(points) ? Rejection::self_collision : Rejection::none;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 #include "vernier/planning/detail/expected_rows.hpp"
 #include "vernier/planning/measurement_constraints.hpp"
@@ -105,7 +106,8 @@ MeasurementCandidates<Arm::dof> sample_candidates(const Arm& arm, const JointLim
   out.joints = detail::admitted_joints(MeasurementScene(ArmGeometry(in_frames(arm)), constraints), limits.lower,
                                        limits.upper, n, seed, out.rejected);
   out.previous = out.joints;
-  if (n > 1) out.previous.bottomRows(n - 1) = out.joints.topRows(n - 1);
+  for (Index i = 1; i < n; ++i)
+    for (Index j = 0; j < Arm::dof; ++j) out.previous(i, j) = out.joints(i - 1, j);
   return out;
 }
 
@@ -128,9 +130,7 @@ MeasurementPlan<Arm::dof> plan_measurements(const Arm& arm, const MeasurementCan
                                 {candidates.joints, candidates.previous, measured.joints, measured.previous, region},
                                 options),
       JointRows<Arm::dof>(), candidates.rejected};
-  out.joints.resize(static_cast<Index>(out.chosen.size()), Arm::dof);
-  for (Index i = 0; i < out.joints.rows(); ++i)
-    out.joints.row(i) = candidates.joints.row(out.chosen[static_cast<std::size_t>(i)]);
+  out.joints = detail::rows_of(candidates.joints, out.chosen);
   return out;
 }
 

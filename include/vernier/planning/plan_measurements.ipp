@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/planning/plan_measurements.hpp"
 
@@ -68,15 +69,16 @@ VERNIER_API std::vector<Index> registering_points(const PointRows& points) {
   double farthest = -1;
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < i; ++j)
-      if (const double d = (points.row(i) - points.row(j)).squaredNorm(); d > farthest) {
+      if (const double d = (point(points, i) - point(points, j)).squaredNorm(); d > farthest) {
         farthest = d;
         out = {j, i, 0};
       }
-  const Vector3 from = points.row(out[0]).transpose(), along = points.row(out[1]).transpose() - from;
+  const Vector3 from = point(points, out[0]), along = point(points, out[1]) - from;
   farthest = -1;
   for (Index i = 0; i < n; ++i) {
     if (i == out[0] || i == out[1]) continue;
-    const double d = along.cross(Vector3(points.row(i).transpose() - from)).squaredNorm();
+    const Vector3 arm = point(points, i) - from;
+    const double d = along.cross(arm).squaredNorm();
     if (!(d > farthest)) continue;
     farthest = d;
     out[2] = i;
@@ -92,9 +94,7 @@ VERNIER_API std::vector<Index> planned_visits(const MatrixX& joints, const Point
   std::vector<Index> rows = first;
   for (Index i = 0; i < joints.rows(); ++i)
     if (std::find(first.begin(), first.end(), i) == first.end()) rows.push_back(i);
-  MatrixX sorted(joints.rows(), joints.cols());
-  for (Index i = 0; i < joints.rows(); ++i) sorted.row(i) = joints.row(rows[static_cast<std::size_t>(i)]);
-  std::vector<Index> order = visiting_order(sorted, options.speeds, fixed);
+  std::vector<Index> order = visiting_order(rows_of(joints, rows), options.speeds, fixed);
   for (Index& visit : order) visit = rows[static_cast<std::size_t>(visit)];
   return with_check_visits(order, options.check_every);
 }
@@ -106,7 +106,7 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   const Index n = input.candidates.rows();
   require(options.count >= 1, "plan_measurements: count is ", options.count, ", must be at least 1");
   require(n >= options.count, "plan_measurements: ", n, " candidates for ", options.count, " measurements");
-  require(input.candidates.allFinite() && input.measured.allFinite() && input.region.allFinite(),
+  require(all_finite(input.candidates) && all_finite(input.measured) && all_finite(input.region),
           "plan_measurements: a joint value is not finite");
   require(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");
   require(options.criterion != DesignCriterion::region_variance || input.region.rows() > 0,
@@ -121,11 +121,11 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   constexpr Index region_points = 150;
   const MatrixX& of_region = input.region.rows() > 0 ? input.region : input.candidates;
   const Index stride = std::max<Index>(1, of_region.rows() / region_points);
-  MatrixX points((of_region.rows() + stride - 1) / stride, of_region.cols());
-  for (Index i = 0; i < points.rows(); ++i) points.row(i) = of_region.row(i * stride);
+  std::vector<Index> some;
+  for (Index i = 0; i < of_region.rows(); i += stride) some.push_back(i);
   PlannedCalibration positions = planned;
   positions.oriented = false;
-  const MatrixX region = options.sensors.position_sigma * expected_rows(positions, points, MatrixX());
+  const MatrixX region = options.sensors.position_sigma * expected_rows(positions, rows_of(of_region, some), MatrixX());
 
   const JointBins bins(input.candidates, options.bin);
   PoseDesignOptions design{.count = options.count, .criterion = options.criterion};
@@ -142,18 +142,16 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   out.chosen = found.chosen;
   out.unknowns = rows.cols();
   out.log_det = found.log_det;
-  out.relative_error = (found.region_variance / found.region_variance(options.count)).cwiseSqrt();
+  const VectorX relative = found.region_variance / found.region_variance(options.count);
+  out.relative_error = relative.cwiseSqrt();
   if (options.bound_iterations > 0 && measured.rows() == 0)
     out.bound = information_bound(rows, block, options.count, options.bound_iterations);
-  MatrixX joints(options.count, input.candidates.cols());
-  for (Index i = 0; i < options.count; ++i) {
-    const Index c = out.chosen[static_cast<std::size_t>(i)];
-    joints.row(i) = input.candidates.row(c);
-    for (Index j = 0; j < joints.cols(); ++j) wanted(bins_of(c, j)) = 0;
-  }
+  for (const Index c : out.chosen)
+    for (Index j = 0; j < bins_of.cols(); ++j) wanted(bins_of(c, j)) = 0;
   if (options.bin_count > 0) wanted = found.missing;
   for (int bin = 0; bin < bins.size(); ++bin)
     if (wanted(bin) > 0) out.uncovered.push_back(bins.named(bin));
+  const MatrixX joints = rows_of(input.candidates, out.chosen);
   out.visits = planned_visits(joints, nominal.positions(joints), options);
   return out;
 }
@@ -161,15 +159,16 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
 VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const VectorX& lower, const VectorX& upper, Index n,
                                      std::uint64_t seed, RejectionCounts& rejected) {
   require(n >= 1, "sample_candidates: ", n, " candidates requested");
-  require(lower.allFinite() && upper.allFinite() && (lower.array() < upper.array()).all(),
-          "sample_candidates: the joint limits are not finite, or empty");
+  bool usable = all_finite(lower) && all_finite(upper);
+  for (Index j = 0; j < lower.size(); ++j) usable = usable && lower(j) < upper(j);
+  require(usable, "sample_candidates: the joint limits are not finite, or empty");
   Rng rng(seed);
   MatrixX out(n, lower.size());
   constexpr Index attempts = 1000;
   Index tried = 0;
   for (Index i = 0; i < n;) {
     for (Index j = 0; j < lower.size(); ++j) out(i, j) = rng.uniform(lower(j), upper(j));
-    const Rejection reason = scene.check(out.row(i).transpose());
+    const Rejection reason = scene.check(row_of(out, i));
     ++rejected[static_cast<std::size_t>(reason)];
     if (reason == Rejection::none) ++i;
     ++tried;

@@ -14,13 +14,10 @@ namespace vernier {
 
 namespace detail {
 
-/// A symmetric positive definite matrix of at most six rows, factorised.
-using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-
-/// Lower Cholesky factor of I + v.
-VERNIER_API SmallMatrix factor_of_sum(const ConstMatrixRef& v) {
+/// Lower Cholesky factor of I + v, v of at most six rows; I where v has none.
+VERNIER_API Matrix6 factor_of_sum(const ConstMatrixRef& v) {
   const Index n = v.rows();
-  SmallMatrix out = SmallMatrix::Zero(n, n);
+  Matrix6 out = Matrix6::Identity();
   for (Index j = 0; j < n; ++j) {
     double pivot = 1 + v(j, j);
     for (Index k = 0; k < j; ++k) pivot -= out(j, k) * out(j, k);
@@ -37,12 +34,6 @@ VERNIER_API SmallMatrix factor_of_sum(const ConstMatrixRef& v) {
 /// A design that grows. Of all rows chosen so far, P, it keeps the Cholesky factor F of `I + P P'`; a candidate with
 /// rows A then has `V = A A' - known' known`, `F known = P A'`, which is brought up to date where it is looked at.
 class GrowingDesign {
-  /// The columns of a candidate.
-  template <class M>
-  auto of(M& matrix, Index c) const {
-    return matrix.middleCols(c * block_, block_);
-  }
-
  public:
   /// @param candidates p x n b, what the rows are transposed
   /// @param region     p x r, likewise
@@ -56,8 +47,9 @@ class GrowingDesign {
         known_region_(options.count * block, region_.cols()),
         variance_(block, columns_.cols()),
         level_(static_cast<std::size_t>(size()), 0),
-        region_variance_(region_.colwise().squaredNorm().transpose()) {
-    for (Index c = 0; c < size(); ++c) of(variance_, c) = of(columns_, c).transpose().lazyProduct(of(columns_, c));
+        region_variance_(squared_column_norms(region_)) {
+    variance_.setZero();
+    for (Index c = 0; c < size(); ++c) add_to_variance(c, products(columns_, c), 1);
     if (options.criterion != DesignCriterion::region_variance) return;
     to_region_.setZero(region_.cols(), columns_.cols());
     add_transposed_product(to_region_, region_, columns_);
@@ -70,11 +62,10 @@ class GrowingDesign {
   /// Brings V of some candidates up to date, all of which were last at the same time.
   VERNIER_API void update(Index first, Index count) {
     const Index from = level_[static_cast<std::size_t>(first)] * block_, rows = chosen_ * block_ - from;
-    MatrixX tail = solved(columns_.middleCols(first * block_, count * block_),
-                          known_.middleCols(first * block_, count * block_), from);
+    const MatrixX tail = solved(columns_, known_, first * block_, count * block_, from);
     known_.block(from, first * block_, rows, count * block_) = tail;
     for (Index c = 0; c < count; ++c) {
-      of(variance_, first + c) -= of(tail, c).transpose().lazyProduct(of(tail, c));
+      add_to_variance(first + c, products(tail, c), -1);
       level_[static_cast<std::size_t>(first + c)] = chosen_;
     }
     if (to_region_.size() > 0)
@@ -82,38 +73,52 @@ class GrowingDesign {
                              known_region_.middleRows(from, rows), tail, -1);
   }
   /// Information of a candidate that is up to date [nat].
-  VERNIER_API double information(Index c) const {
-    return 2 * factor_of_sum(of(variance_, c)).diagonal().array().log().sum();
-  }
+  VERNIER_API double information(Index c) const { return cholesky_log_determinant(factor(c)); }
   /// By how much it reduces the sum of the region's variances.
   VERNIER_API double reduction(Index c) const {
-    const SmallMatrix factor = factor_of_sum(of(variance_, c));
-    SmallMatrix sum = of(to_region_, c).transpose().lazyProduct(of(to_region_, c));
-    factor.triangularView<Eigen::Lower>().solveInPlace(sum);
-    factor.triangularView<Eigen::Lower>().transpose().solveInPlace(sum);
+    Matrix6 sum = products(to_region_, c);
+    solve_cholesky(factor(c), sum);
     return sum.trace();
   }
   /// Chooses a candidate that is up to date.
   VERNIER_API void choose(Index c) {
     const Index at = chosen_ * block_;
-    picks_.middleCols(at, block_) = of(columns_, c);
-    factor_.block(at, 0, block_, at) = of(known_, c).topRows(at).transpose();
-    factor_.block(at, at, block_, block_) = factor_of_sum(of(variance_, c));
+    picks_.middleCols(at, block_) = columns_.middleCols(c * block_, block_);
+    const Matrix6 own = factor(c);
+    for (Index a = 0; a < block_; ++a) {
+      for (Index k = 0; k < at; ++k) factor_(at + a, k) = known_(k, c * block_ + a);
+      for (Index b = 0; b < block_; ++b) factor_(at + a, at + b) = own(a, b);
+    }
     ++chosen_;
     if (region_.cols() == 0) return;
-    known_region_.middleRows(at, block_) = solved(region_, known_region_, at);
-    region_variance_ -= known_region_.middleRows(at, block_).colwise().squaredNorm().transpose();
+    const MatrixX tail = solved(region_, known_region_, 0, region_.cols(), at);
+    known_region_.middleRows(at, block_) = tail;
+    region_variance_ -= squared_column_norms(tail);
   }
   /// Mean variance of the region's points, three rows each.
   double region_variance() const { return 3 * region_variance_.sum() / static_cast<double>(region_.cols()); }
 
  private:
-  /// Rows `from` .. of the solution of `F known = P' columns`, of which those before are known.
-  VERNIER_API MatrixX solved(const ConstMatrixRef& columns, const ConstMatrixRef& known, Index from) const {
+  /// Products of a candidate's columns with each other; zero beyond them.
+  VERNIER_API Matrix6 products(const MatrixX& columns, Index c) const {
+    Matrix6 out = Matrix6::Zero();
+    for (Index a = 0; a < block_; ++a)
+      for (Index b = 0; b <= a; ++b)
+        out(a, b) = out(b, a) = columns.col(c * block_ + a).dot(columns.col(c * block_ + b));
+    return out;
+  }
+  void add_to_variance(Index c, const Matrix6& change, double sign) {
+    for (Index b = 0; b < block_; ++b)
+      for (Index a = 0; a < block_; ++a) variance_(a, c * block_ + b) += sign * change(a, b);
+  }
+  /// Cholesky factor of I + V of a candidate.
+  VERNIER_API Matrix6 factor(Index c) const { return factor_of_sum(variance_.middleCols(c * block_, block_)); }
+  /// Rows `from` .. of some columns of the solution of `F known = P' columns`, of which those before are known.
+  VERNIER_API MatrixX solved(const MatrixX& columns, const MatrixX& known, Index first, Index count, Index from) const {
     const Index rows = chosen_ * block_ - from;
-    MatrixX out = MatrixX::Zero(rows, columns.cols());
-    add_transposed_product(out, picks_.middleCols(from, rows), columns);
-    add_product(out, factor_.block(from, 0, rows, from), known.topRows(from), -1);
+    MatrixX out = MatrixX::Zero(rows, count);
+    add_transposed_product(out, picks_.middleCols(from, rows), columns.middleCols(first, count));
+    add_product(out, factor_.block(from, 0, rows, from), known.block(0, first, from, count), -1);
     solve_lower(factor_.block(from, from, rows, rows), out);
     return out;
   }
@@ -149,7 +154,7 @@ VERNIER_API void check_design(const ConstMatrixRef& rows, Index block, const Con
   require(region.rows() % 3 == 0, "design_poses: ", region.rows(), " rows of the region are no multiple of 3");
   require(options.criterion != DesignCriterion::region_variance || region.rows() > 0,
           "design_poses: no region whose variance could be reduced");
-  require(rows.allFinite() && measured.allFinite() && region.allFinite(), "design_poses: a row is not finite");
+  require(all_finite(rows) && all_finite(measured) && all_finite(region), "design_poses: a row is not finite");
   const Eigen::MatrixXi& bins = options.coverage.bins;
   require(bins.rows() == 0 || bins.rows() == n, "design_poses: bins of ", bins.rows(), " candidates, expected ", n);
   require(bins.size() == 0 || (bins.minCoeff() >= 0 && bins.maxCoeff() < options.coverage.missing.size()),
@@ -236,15 +241,16 @@ struct WeightedInformation {
   VectorX gradient;
 };
 VERNIER_API WeightedInformation weighted_information(const ConstMatrixRef& rows, Index block, const VectorX& weights) {
-  MatrixX columns = rows.transpose();
-  for (Index c = 0; c < weights.size(); ++c) columns.middleCols(c * block, block) *= std::sqrt(weights(c));
-  MatrixX information = MatrixX::Identity(rows.cols(), rows.cols());
-  add_product(information, columns, columns.transpose());
+  VectorX roots(rows.rows());
+  for (Index i = 0; i < roots.size(); ++i) roots(i) = std::sqrt(weights(i / block));
+  const MatrixX weighted = rows_scaled(roots, rows);
+  MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()), columns = rows.transpose();
+  add_transposed_product(information, weighted, weighted);
   require(cholesky(information), "information_bound: the rows are not usable");
-  columns = rows.transpose();
   solve_lower(information, columns);
-  WeightedInformation out{2 * information.diagonal().array().log().sum(), VectorX(weights.size())};
-  for (Index c = 0; c < weights.size(); ++c) out.gradient(c) = columns.middleCols(c * block, block).squaredNorm();
+  const VectorX squares = squared_column_norms(columns);
+  WeightedInformation out{cholesky_log_determinant(information), VectorX::Zero(weights.size())};
+  for (Index i = 0; i < squares.size(); ++i) out.gradient(i / block) += squares(i);
   return out;
 }
 

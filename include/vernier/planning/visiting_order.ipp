@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/planning/visiting_order.hpp"
 
 namespace vernier {
@@ -13,17 +15,22 @@ namespace detail {
 
 /// Times from every configuration to every other.
 VERNIER_API MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& speeds) {
-  require(joints.allFinite(), "visiting_order: a joint value is not finite");
+  require(all_finite(joints), "visiting_order: a joint value is not finite");
   require(speeds.size() == 0 || speeds.size() == joints.cols(), "visiting_order: ", speeds.size(), " speeds of ",
           joints.cols(), " joints");
-  require(speeds.size() == 0 || (speeds.allFinite() && speeds.minCoeff() > 0),
+  require(speeds.size() == 0 || (all_finite(speeds) && speeds.minCoeff() > 0),
           "visiting_order: a speed is not positive");
   MatrixX scaled = joints.transpose();
-  if (speeds.size() > 0) scaled = speeds.cwiseInverse().asDiagonal() * scaled;
+  for (Index k = 0; k < speeds.size(); ++k)
+    for (Index i = 0; i < scaled.cols(); ++i) scaled(k, i) *= 1 / speeds(k);
   const Index n = joints.rows();
   MatrixX out = MatrixX::Zero(n, n);
   for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < i; ++j) out(i, j) = out(j, i) = (scaled.col(i) - scaled.col(j)).cwiseAbs().maxCoeff();
+    for (Index j = 0; j < i; ++j) {
+      double slowest = 0;  // of the joints
+      for (Index k = 0; k < scaled.rows(); ++k) slowest = std::max(slowest, std::abs(scaled(k, i) - scaled(k, j)));
+      out(i, j) = out(j, i) = slowest;
+    }
   return out;
 }
 

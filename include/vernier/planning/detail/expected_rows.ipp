@@ -37,8 +37,8 @@ VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const Cons
                   .joint_sigma = planned.sensors.joint_sigma};
   for (Index i = 0; i < at.rows(); ++i) {
     const Isometry3& pose = poses[static_cast<std::size_t>(i)];
-    positions.row(i) = pose.translation().transpose();
-    if (planned.oriented) station.orientations.push_back(pose.linear());
+    set_point(positions, i, translation(pose));
+    if (planned.oriented) station.orientations.push_back(rotation(pose));
   }
   const CalibrationProblem problem(std::move(arm), {std::move(station)}, Loss::squared);
   MatrixX out = problem.stacked(true).jacobian;

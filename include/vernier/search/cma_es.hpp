@@ -111,6 +111,7 @@ struct CmaEs {
   VERNIER_API static void update(State& s, const MatrixX& z, const std::vector<Index>& order);
 
  private:
+  VERNIER_API static MatrixX stretched(const State& s, const MatrixX& z);
   VERNIER_API void begin_run(State& s) const;
   VERNIER_API void sample_and_update(State& s, const Box& box, Evaluate evaluate) const;
   VERNIER_API void check_convergence(State& s, double best, double worst) const;

@@ -17,9 +17,8 @@ VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
   const auto n = static_cast<double>(dimension);
   for (Index i = 0; i < individuals; ++i)
     weights(i) = std::log((static_cast<double>(individuals) + 1) / 2) - std::log(static_cast<double>(i + 1));
-  const auto effective = [](const auto& w) { return w.sum() * w.sum() / w.squaredNorm(); };
-  auto better = weights.head(mu);
-  auto worse = weights.tail(individuals - mu);
+  const auto effective = [](const VectorX& w) { return w.sum() * w.sum() / w.squaredNorm(); };
+  VectorX better = weights.head(mu), worse = weights.tail(individuals - mu);
   mu_eff = effective(better);
   c_c = (4 + mu_eff / n) / (n + 4 + 2 * mu_eff / n);
   c_1 = 2 / ((n + 1.3) * (n + 1.3) + mu_eff);
@@ -34,6 +33,8 @@ VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
         std::max(0.0, std::min({1 + c_1 / c_mu, 1 + 2 * of_worse / (of_worse + 2), (1 - c_1 - c_mu) / (n * c_mu)})) /
         sum;
   }
+  weights.head(mu) = better;
+  weights.tail(individuals - mu) = worse;
 }
 
 VERNIER_IMPL bool CmaEs::State::consistent() const {
@@ -62,6 +63,15 @@ VERNIER_IMPL void CmaEs::step(State& s, const Box& box, Evaluate evaluate) const
   ++s.generation;
 }
 
+/// Standard normal draws, one a column, as draws of the distribution. Column by column, so that a search goes on to the
+/// same bits on a machine with other vector instructions.
+VERNIER_IMPL MatrixX CmaEs::stretched(const State& s, const MatrixX& z) {
+  const MatrixX scaled = detail::rows_scaled(s.scales, z);
+  MatrixX out(z.rows(), z.cols());
+  for (Index k = 0; k < z.cols(); ++k) out.col(k) = detail::product(s.basis, scaled.col(k));
+  return out;
+}
+
 VERNIER_IMPL Index CmaEs::population_size(Index dimension, Index run) const {
   const auto first =
       individuals > 0 ? static_cast<double>(individuals) : 4 + std::floor(3 * std::log(static_cast<double>(dimension)));
@@ -73,13 +83,14 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
   const CmaEsConstants c(n, lambda);
   MatrixX sorted(n, lambda);
   for (Index i = 0; i < lambda; ++i) sorted.col(i) = z.col(order[static_cast<std::size_t>(i)]);
-  const VectorX z_mean = sorted.leftCols(c.mu) * c.weights.head(c.mu);
-  const VectorX y_mean = s.basis * s.scales.cwiseProduct(z_mean);
+  const VectorX z_mean = detail::product(sorted.leftCols(c.mu), c.weights.head(c.mu));
+  const VectorX y_mean = detail::product(s.basis, s.scales.cwiseProduct(z_mean));
   s.mean += s.sigma * y_mean;
   ++s.updates;
 
-  s.path_sigma = (1 - c.c_sigma) * s.path_sigma +
-                 std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * (s.basis * z_mean);  // C^-1/2 y = B z
+  const VectorX turned = detail::product(s.basis, z_mean);  // C^-1/2 y = B z
+  s.path_sigma *= 1 - c.c_sigma;
+  s.path_sigma += std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * turned;
   const double length = s.path_sigma.norm();
   const double settled = std::sqrt(1 - std::pow(1 - c.c_sigma, 2.0 * static_cast<double>(s.updates)));
   const bool moderate = length / settled < (1.4 + 2 / (static_cast<double>(n) + 1)) * c.expected_norm;
@@ -87,12 +98,18 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
   if (moderate) s.path_c += std::sqrt(c.c_c * (2 - c.c_c) * c.mu_eff) * y_mean;
 
   VectorX weights = c.weights;  // worse points count by direction, not by length: C stays positive definite
-  for (Index i = c.mu; i < lambda; ++i)
-    weights(i) *= static_cast<double>(n) / std::max(sorted.col(i).squaredNorm(), 1e-300);
-  const MatrixX y = s.basis * (s.scales.asDiagonal() * sorted);
+  const VectorX squares = detail::squared_column_norms(sorted);
+  for (Index i = c.mu; i < lambda; ++i) weights(i) *= static_cast<double>(n) / std::max(squares(i), 1e-300);
+  const MatrixX y = stretched(s, sorted);
   s.covariance *= 1 - c.c_1 - c.c_mu * c.weights.sum() + (moderate ? 0 : c.c_1 * c.c_c * (2 - c.c_c));
-  s.covariance.noalias() += c.c_1 * (s.path_c * s.path_c.transpose());
-  s.covariance.noalias() += (y * (c.c_mu * weights).asDiagonal()) * y.transpose();
+  const auto add_square = [&](double weight, const double* x) {
+    for (Index j = 0; j < n; ++j) {
+      const double of_j = x[j];
+      for (Index i = 0; i < n; ++i) s.covariance(i, j) += weight * (x[i] * of_j);
+    }
+  };
+  add_square(c.c_1, s.path_c.data());
+  for (Index k = 0; k < lambda; ++k) add_square(c.c_mu * weights(k), y.col(k).data());
   s.sigma *= std::exp(std::min(1.0, c.c_sigma / c.d_sigma * (length / c.expected_norm - 1)));
 
   if (static_cast<double>(s.updates - s.decomposed) > 1 / ((c.c_1 + c.c_mu) * static_cast<double>(n) * 10)) {
@@ -129,7 +146,7 @@ VERNIER_IMPL void CmaEs::sample_and_update(State& s, const Box& box, Evaluate ev
     std::copy(pair.begin(), pair.end(), z.data() + i);
   }
   if (z.size() % 2 != 0) z.data()[z.size() - 1] = s.rng.normal();
-  MatrixX points = s.basis * (s.scales.asDiagonal() * z);
+  MatrixX points = stretched(s, z);
   for (Index k = 0; k < lambda; ++k)
     for (Index d = 0; d < n; ++d) {
       const double at = reflected(s.mean(d) + s.sigma * points(d, k), 0, 1);
@@ -151,8 +168,8 @@ VERNIER_IMPL void CmaEs::check_convergence(State& s, double best, double worst) 
   const auto within = [&](double a, double b) { return a == b || std::abs(a - b) <= tolerance_f; };
   const bool flat =
       s.history.size() == length && within(s.history.minCoeff(), s.history.maxCoeff()) && within(best, worst);
-  const double spread =
-      s.sigma * std::max(s.path_c.cwiseAbs().maxCoeff(), std::sqrt(s.covariance.diagonal().maxCoeff()));
+  const double spread = s.sigma * std::max({s.path_c.maxCoeff(), -s.path_c.minCoeff(),
+                                            std::sqrt(detail::diagonal_of(s.covariance).maxCoeff())});
   s.converged = s.converged || flat || !(spread >= tolerance_x) || !(spread < 1e6);
 }
 

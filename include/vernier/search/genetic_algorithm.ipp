@@ -3,6 +3,7 @@
 #include "vernier/search/genetic_algorithm.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "vernier/search/detail/genetic_operators.hpp"
 
@@ -25,7 +26,8 @@ VERNIER_IMPL GeneticAlgorithm::State GeneticAlgorithm::start(const Box& box, std
   State s;
   s.rng = Rng(seed);
   s.codes.resize(box.dimension(), individuals);
-  for (auto& code : s.codes.reshaped()) code = static_cast<std::uint16_t>(s.rng.below(std::uint64_t{1} << bits));
+  for (Index i = 0; i < s.codes.size(); ++i)
+    s.codes.data()[i] = static_cast<std::uint16_t>(s.rng.below(std::uint64_t{1} << bits));
   const MatrixX points = decode(s.codes, box);
   evaluate(points, s.fitness);
   s.keep_best(points, s.fitness);
@@ -67,8 +69,7 @@ VERNIER_IMPL void GeneticAlgorithm::cross(Codes& codes, Index k, Index cut) cons
   const Index variable = cut / bits;
   const auto low = static_cast<std::uint16_t>((1u << (bits - static_cast<int>(cut % bits))) - 1);
   detail::exchange_bits(codes(variable, k), codes(variable, k + 1), low);
-  const Index rest = codes.rows() - variable - 1;
-  codes.col(k).tail(rest).swap(codes.col(k + 1).tail(rest));
+  for (Index d = variable + 1; d < codes.rows(); ++d) std::swap(codes(d, k), codes(d, k + 1));
 }
 
 VERNIER_IMPL void GeneticAlgorithm::validate() const {

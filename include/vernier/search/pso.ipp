@@ -12,7 +12,8 @@ VERNIER_IMPL Pso::State Pso::start(const Box& box, std::uint64_t seed, Evaluate 
   validate();
   State s;
   s.rng = Rng(seed);
-  const VectorX limit = velocity_limit * (box.upper - box.lower) / 2;
+  VectorX limit = box.upper - box.lower;
+  limit *= velocity_limit / 2;
   const auto velocity = [&](Index d, double) { return s.rng.uniform(-limit(d), limit(d)); };
   s.initialise(box, particles, velocity, evaluate);
   return s;
@@ -20,7 +21,8 @@ VERNIER_IMPL Pso::State Pso::start(const Box& box, std::uint64_t seed, Evaluate 
 
 VERNIER_IMPL void Pso::step(State& s, const Box& box, Evaluate evaluate) const {
   const double w = inertia(s.generation + 1);
-  const VectorX limit = velocity_limit * (box.upper - box.lower) / 2;
+  VectorX limit = box.upper - box.lower;
+  limit *= velocity_limit / 2;
   const Index n = s.positions.cols(), columns = grid_columns(n);
   for (Index k = 0; k < n; ++k) {
     const double* leader = s.best.data();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "vernier/search/bounds.hpp"
 #include "vernier/search/detail/genetic_operators.hpp"
@@ -39,8 +40,8 @@ VERNIER_IMPL void RealGeneticAlgorithm::step(State& s, const Box& box, Evaluate 
 VERNIER_IMPL void RealGeneticAlgorithm::cross(MatrixX& children, Index k, const Box& box, Rng& rng) const {
   const Index n = children.rows();
   if (crossover == RealCrossover::one_point) {
-    const Index rest = n - static_cast<Index>(rng.below(static_cast<std::uint64_t>(n)));
-    children.col(k).tail(rest).swap(children.col(k + 1).tail(rest));
+    const auto first = static_cast<Index>(rng.below(static_cast<std::uint64_t>(n)));
+    for (Index d = first; d < n; ++d) std::swap(children(d, k), children(d, k + 1));
     return;
   }
   for (Index d = 0; d < n; ++d) {

@@ -22,25 +22,29 @@ VERNIER_IMPL void Spso2011::step(State& s, const Box& box, Evaluate evaluate) co
   const Index dimension = s.positions.rows(), n = s.positions.cols();
   if (s.links.size() == 0) {
     s.links.resize(informed, n);
-    for (auto& link : s.links.reshaped()) link = static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(n)));
+    for (Index i = 0; i < s.links.size(); ++i)
+      s.links.data()[i] = static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(n)));
   }
   const auto leaders = best_informants(s.best_values, s.links);
   VectorX direction(dimension), centre(dimension);
   for (Index k = 0; k < n; ++k) {
-    auto x = s.positions.col(k);
-    auto v = s.velocities.col(k);
     const Index leader = leaders[static_cast<std::size_t>(k)];
-    centre = (acceleration / (leader == k ? 2 : 3)) * (s.best_positions.col(k) - x);  // relative to x
-    if (leader != k) centre += (acceleration / 3) * (s.best_positions.col(leader) - x);
+    for (Index d = 0; d < dimension; ++d) {  // relative to x
+      const double at = s.positions(d, k);
+      centre(d) = acceleration / (leader == k ? 2 : 3) * (s.best_positions(d, k) - at);
+      if (leader != k) centre(d) += acceleration / 3 * (s.best_positions(d, leader) - at);
+    }
     for (Index d = 0; d < dimension; ++d) direction(d) = s.rng.normal();
     const double length = direction.norm(), radius = s.rng.uniform() * centre.norm();
-    v = inertia * v + centre;
-    if (length > 0) v += (radius / length) * direction;
-    x += v;
+    const double turn = length > 0 ? radius / length : 0;
     for (Index d = 0; d < dimension; ++d) {
-      if (x(d) >= box.lower(d) && x(d) <= box.upper(d)) continue;
-      x(d) = x(d) < box.lower(d) ? box.lower(d) : box.upper(d);
-      v(d) *= -0.5;
+      double& x = s.positions(d, k);
+      double& v = s.velocities(d, k);
+      v = inertia * v + centre(d) + turn * direction(d);
+      x += v;
+      if (x >= box.lower(d) && x <= box.upper(d)) continue;
+      x = x < box.lower(d) ? box.lower(d) : box.upper(d);
+      v *= -0.5;
     }
   }
   const double before = s.best_fitness;

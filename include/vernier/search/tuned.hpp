@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/concepts.hpp"
 #include "vernier/search/minimize.hpp"
@@ -85,10 +86,10 @@ struct Tuned {
                            const FitOptions& options) const {
     std::vector<Index> rows = Rng(child_seed(options.seed, 1)).permutation(inputs.rows());
     rows.resize(static_cast<std::size_t>(search_samples));
-    const Eigen::Matrix<double, Eigen::Dynamic, X::ColsAtCompileTime> x = inputs(rows, Eigen::all);
-    const Eigen::Matrix<double, Eigen::Dynamic, Y::ColsAtCompileTime> y = targets(rows, Eigen::all);
+    const Eigen::Matrix<double, Eigen::Dynamic, X::ColsAtCompileTime> x = detail::rows_of(inputs.derived(), rows);
+    const Eigen::Matrix<double, Eigen::Dynamic, Y::ColsAtCompileTime> y = detail::rows_of(targets.derived(), rows);
     if (options.weights == nullptr) return search(x, y, nullptr, options);
-    const VectorX weights = (*options.weights)(rows);
+    const VectorX weights = detail::rows_of(*options.weights, rows);
     return search(x, y, &weights, options);
   }
 };

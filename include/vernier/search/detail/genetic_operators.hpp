@@ -47,9 +47,11 @@ template <class Genes>
 void keep_best_of_both(Genes& genes, VectorX& fitness, const Genes& children, const VectorX& values) {
   const Index n = genes.cols();
   Genes all(genes.rows(), n + children.cols());
-  all << genes, children;
+  all.leftCols(n) = genes;
+  all.rightCols(children.cols()) = children;
   VectorX joined(all.cols());
-  joined << fitness, values;
+  joined.head(n) = fitness;
+  joined.tail(values.size()) = values;
   const auto order = argsort(joined);
   for (Index k = 0; k < n; ++k) {
     const Index survivor = order[static_cast<std::size_t>(k)];

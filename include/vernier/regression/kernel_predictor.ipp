@@ -19,7 +19,7 @@ VERNIER_IMPL void kernel_values(Kernel kernel, VectorX& squares) {
   const VectorX s = squares.cwiseSqrt();
   squares = -1 * s;
   exponentiate(squares);
-  for (Index i = 0; i < s.size(); ++i) squares(i) *= 1 + s(i) + s(i) * s(i) / 3;
+  for (Index i = 0; i < s.size(); ++i) squares(i) *= 1 + s(i) * (1 + s(i) * (1.0 / 3));
 }
 
 VERNIER_IMPL MatrixX kernel_matrix(Kernel kernel, const ConstMatrixRef& features) {

@@ -26,7 +26,7 @@ class KernelRidgePath {
 
  private:
   VectorX root_;
-  MatrixX targets_, vectors_, projected_;
+  MatrixX targets_, vectors_, squares_, projected_;  // squares: of the elements of the vectors
   VectorX values_;
 };
 

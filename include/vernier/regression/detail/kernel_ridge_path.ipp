@@ -15,6 +15,7 @@ VERNIER_IMPL KernelRidgePath::KernelRidgePath(MatrixX k, const ConstMatrixRef& t
     for (Index r = c; r < k.rows(); ++r) k(r, c) *= root_(r) * root_(c);
   SymmetricEigen eigen = symmetric_eigen(k);
   vectors_ = std::move(eigen.vectors);
+  squares_ = vectors_.cwiseAbs2();
   values_ = std::move(eigen.values);
   for (double& value : values_) value = std::max(value, 0.0);  // below: rounding
   MatrixX right(root_.size(), 1 + targets_.cols());
@@ -42,10 +43,7 @@ VERNIER_IMPL MatrixX KernelRidgePath::leave_one_out_residuals(double lambda) con
   MatrixX alpha = rows_scaled(shares, targets);
   add_product(alpha, ones, mean.transpose(), -1);
   // of (K + lambda / W)^-1 with the mean projected out
-  const VectorX along = product(vectors_, ones);
-  VectorX diagonal = VectorX::Zero(n);
-  for (Index d = 0; d < n; ++d)
-    for (Index i = 0; i < n; ++i) diagonal(i) += shares(d) * vectors_(i, d) * vectors_(i, d);
+  const VectorX diagonal = product(squares_, shares), along = product(vectors_, ones);
   for (Index i = 0; i < n; ++i) factor(i) = root_(i) / (weights(i) * (diagonal(i) - along(i) * along(i) / precision));
   return rows_scaled(factor, matrix_product(vectors_, alpha));
 }

@@ -125,7 +125,7 @@ VERNIER_API PointRows rotation_vectors_from(std::span<const Matrix3> rotations, 
 /// `mean(l) + 3 std(l)` of the distances l from the barycentre; NaN for one point.
 VERNIER_API double repeatability(const PointRows& points);
 /// Three standard deviations of each column; NaN for one row.
-VERNIER_API Vector3 three_deviations(const PointRows& values);
+VERNIER_API VectorX three_deviations(const ConstMatrixRef& values);
 
 }  // namespace detail
 

@@ -24,7 +24,7 @@ VERNIER_IMPL Matrix3 karcher_mean(std::span<const Matrix3> rotations) {
   Matrix3 mean = rotations.front();
   double last = std::numeric_limits<double>::infinity();
   for (;;) {
-    const Vector3 step = rotation_vectors_from(rotations, mean).colwise().mean().transpose();
+    const Vector3 step = centroid(rotation_vectors_from(rotations, mean));
     if (!(step.norm() < last / 2)) break;  // only rounding is left
     last = step.norm();
     mean = exp_so3(step) * mean;
@@ -35,23 +35,24 @@ VERNIER_IMPL Matrix3 karcher_mean(std::span<const Matrix3> rotations) {
 VERNIER_IMPL PointRows rotation_vectors_from(std::span<const Matrix3> rotations, const Matrix3& reference) {
   PointRows out(static_cast<Index>(rotations.size()), 3);
   for (std::size_t i = 0; i < rotations.size(); ++i)
-    out.row(static_cast<Index>(i)) = log_so3(Matrix3(rotations[i] * reference.transpose())).transpose();
+    set_point(out, static_cast<Index>(i), rotation_difference(rotations[i], reference));
   return out;
 }
 
 VERNIER_IMPL double repeatability(const PointRows& points) {
   if (points.rows() < 2) return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::RowVector3d centre = points.colwise().mean();  // not in the expression: there it is evaluated row by row
-  const VectorX l = (points.rowwise() - centre).rowwise().norm();
+  const VectorX l = distances_from(points, column_means(points));
   const double mean = l.mean();
-  return mean + 3 * std::sqrt((l.array() - mean).square().sum() / static_cast<double>(l.size() - 1));
+  double squares = 0;
+  for (const double one : l) squares += (one - mean) * (one - mean);
+  return mean + 3 * std::sqrt(squares / static_cast<double>(l.size() - 1));
 }
 
-VERNIER_IMPL Vector3 three_deviations(const PointRows& values) {
-  if (values.rows() < 2) return Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Eigen::RowVector3d centre = values.colwise().mean();
-  const PointRows centred = values.rowwise() - centre;
-  return 3 * (centred.colwise().squaredNorm() / static_cast<double>(values.rows() - 1)).cwiseSqrt().transpose();
+VERNIER_IMPL VectorX three_deviations(const ConstMatrixRef& values) {
+  if (values.rows() < 2) return VectorX::Constant(values.cols(), std::numeric_limits<double>::quiet_NaN());
+  VectorX out = squared_column_norms(rows_minus(values, column_means(values)));
+  for (double& one : out) one = 3 * std::sqrt(one / static_cast<double>(values.rows() - 1));
+  return out;
 }
 
 /// RP of visits that are drawn `counts` times, and its standard error by the influence of each visit.
@@ -62,24 +63,22 @@ struct DrawnRepeatability {
 
 VERNIER_API DrawnRepeatability drawn_repeatability(const PointRows& points, const VectorX& counts, VectorX& l) {
   const double n = counts.sum();
-  const Eigen::RowVector3d centre = (counts.transpose() * points) / n;
-  l = ((points.col(0).array() - centre(0)).square() + (points.col(1).array() - centre(1)).square() +
-       (points.col(2).array() - centre(2)).square())
-          .sqrt();
+  const Vector3 centre = Vector3(counts.dot(points.col(0)), counts.dot(points.col(1)), counts.dot(points.col(2))) / n;
+  for (Index i = 0; i < l.size(); ++i) l(i) = (point(points, i) - centre).squaredNorm();
+  l = l.cwiseSqrt();
   const double mean = counts.dot(l) / n;
-  const auto d = (l.array() - mean);
-  const double variance = (counts.array() * d.square()).sum() / (n - 1), s = std::sqrt(variance);
+  for (double& d : l) d -= mean;
+  const double variance = counts.dot(l.cwiseAbs2()) / (n - 1), s = std::sqrt(variance);
   if (!(s > 1e-12 * mean)) return {mean, 0};
-  const auto influence = d + 1.5 / s * (d.square() - variance);
-  return {mean + 3 * s, std::sqrt((counts.array() * influence.square()).sum()) / n};
+  for (double& d : l) d += 1.5 / s * (d * d - variance);  // its influence
+  return {mean + 3 * s, std::sqrt(counts.dot(l.cwiseAbs2())) / n};
 }
 
 /// 95 % interval of RP by the bootstrap-t.
 VERNIER_API std::pair<double, double> repeatability_interval(const PointRows& points, int draws, std::uint64_t seed) {
   const Index n = points.rows();
   if (n < 3 || draws == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  const Eigen::RowVector3d centre = points.colwise().mean();
-  const PointRows centred = points.rowwise() - centre;
+  const PointRows centred = rows_minus(points, centroid(points));
   VectorX counts = VectorX::Ones(n), l(n), t(draws);
   const DrawnRepeatability all = drawn_repeatability(centred, counts, l);
   if (all.error == 0) return {all.value, all.value};
@@ -106,8 +105,9 @@ VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, c
                   .direction = visited.visits.front()->direction,
                   .n = visited.positions.rows(),
                   .mean = Isometry3::Identity()};
-  out.mean.translation() = visited.positions.colwise().mean().transpose();
-  out.ap_xyz = out.mean.translation() - command.translation();
+  const Vector3 centre = centroid(visited.positions);
+  out.mean.translation() = centre;
+  out.ap_xyz = centre - translation(command);
   out.ap = out.ap_xyz.norm();
   out.rp = repeatability(visited.positions);
   out.rp_xyz = three_deviations(visited.positions);
@@ -123,7 +123,7 @@ VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, c
   if (!options.orientations) return out;
   const Matrix3 mean = karcher_mean(visited.rotations);
   out.mean.linear() = mean;
-  out.ap_abc = log_so3(Matrix3(mean * command.linear().transpose()));
+  out.ap_abc = rotation_difference(mean, rotation(command));
   out.rp_abc = three_deviations(rotation_vectors_from(visited.rotations, mean));
   return out;
 }
@@ -134,14 +134,25 @@ VERNIER_API std::optional<Isometry3> registration_of(const std::vector<Iso9283Po
   PointRows from(n, 3), to(n, 3);
   for (Index k = 0; k < n; ++k) {
     const Iso9283Pose& one = poses[static_cast<std::size_t>(k)];
-    from.row(k) = commanded[static_cast<std::size_t>(one.pose - 1)].translation().transpose();
-    to.row(k) = one.mean.translation().transpose();
+    set_point(from, k, translation(commanded[static_cast<std::size_t>(one.pose - 1)]));
+    set_point(to, k, translation(one.mean));
   }
   if (n < 3) return {};
-  const Eigen::RowVector3d centre = from.colwise().mean();
-  const VectorX spread = right_singular(from.rowwise() - centre).values;
+  const VectorX spread = right_singular(rows_minus(from, centroid(from))).values;
   if (!(spread(1) > 1e-6 * spread(0))) return {};
   return register_points(from, to);
+}
+
+/// Distance of two poses, along each axis, and the angles between them: 1 + 3 + 3 values.
+VERNIER_API VectorX distance_and_angles(const Isometry3& a, const Isometry3& b) {
+  const Vector3 p = translation(a) - translation(b), r = rotation_difference(rotation(a), rotation(b));
+  VectorX out(7);
+  out(0) = p.norm();
+  for (Index c = 0; c < 3; ++c) {
+    out(1 + c) = std::abs(p(c));
+    out(4 + c) = std::abs(r(c));
+  }
+  return out;
 }
 
 VERNIER_API std::optional<Iso9283Distance> accuracy_of_distance(const VisitedPose& first, const VisitedPose& second,
@@ -149,34 +160,20 @@ VERNIER_API std::optional<Iso9283Distance> accuracy_of_distance(const VisitedPos
                                                                 bool oriented) {
   std::map<int, const Iso9283Visit*> cycles;
   for (const auto* v : second.visits) cycles.emplace(v->cycle, v);
-  const auto pair_of = [](const Isometry3& a, const Isometry3& b) {  // distance, its axes, its angles
-    const Vector3 p = (a.translation() - b.translation()).cwiseAbs();
-    const Vector3 r = log_so3(Matrix3(a.linear() * b.linear().transpose())).cwiseAbs();
-    return Eigen::Matrix<double, 1, 7>(
-        (Eigen::Matrix<double, 1, 7>() << p.norm(), p.transpose(), r.transpose()).finished());
-  };
-  Eigen::Matrix<double, Eigen::Dynamic, 7> d(static_cast<Index>(first.visits.size()), 7);
-  Index n = 0;
+  std::vector<VectorX> pairs;
   for (const auto* v : first.visits)
     if (const auto other = cycles.find(v->cycle); other != cycles.end())
-      d.row(n++) = pair_of(v->measured, other->second->measured);
-  if (n == 0) return {};
-  d.conservativeResize(n, 7);
-  Eigen::Matrix<double, 1, 7> accuracy = d.colwise().mean(), scatter;
-  scatter << three_deviations(d.leftCols<3>()).transpose(), three_deviations(d.middleCols<3>(3)).transpose(),
-      three_deviations(d.rightCols<3>())(2);
-  accuracy -= pair_of(from, to);
-  if (!oriented) accuracy.tail<3>().setConstant(std::numeric_limits<double>::quiet_NaN());
-  if (!oriented) scatter.tail<3>().setConstant(std::numeric_limits<double>::quiet_NaN());
-  return Iso9283Distance{first.visits.front()->pose,
-                         second.visits.front()->pose,
-                         n,
-                         accuracy(0),
-                         scatter(0),
-                         accuracy.segment<3>(1).transpose(),
-                         accuracy.tail<3>().transpose(),
-                         scatter.segment<3>(1).transpose(),
-                         scatter.tail<3>().transpose()};
+      pairs.push_back(distance_and_angles(v->measured, other->second->measured));
+  if (pairs.empty()) return {};
+  MatrixX rows(static_cast<Index>(pairs.size()), 7);
+  for (Index i = 0; i < rows.rows(); ++i)
+    for (Index c = 0; c < 7; ++c) rows(i, c) = pairs[static_cast<std::size_t>(i)](c);
+  VectorX accuracy = column_means(rows) - distance_and_angles(from, to), scatter = three_deviations(rows);
+  if (!oriented)
+    for (Index c = 4; c < 7; ++c) accuracy(c) = scatter(c) = std::numeric_limits<double>::quiet_NaN();
+  return Iso9283Distance{
+      first.visits.front()->pose, second.visits.front()->pose, rows.rows(),           accuracy(0),          scatter(0),
+      accuracy.segment(1, 3),     accuracy.segment(4, 3),      scatter.segment(1, 3), scatter.segment(4, 3)};
 }
 
 VERNIER_API Iso9283Variation variation_of(int pose, const std::map<int, VisitedPose>& directions, bool oriented) {
@@ -186,12 +183,13 @@ VERNIER_API Iso9283Variation variation_of(int pose, const std::map<int, VisitedP
   std::vector<Matrix3> rotations;
   for (const auto& [direction, visited] : directions) {
     if (direction == 0) continue;
-    centres.emplace_back(visited.positions.colwise().mean().transpose());
+    centres.push_back(centroid(visited.positions));
     if (oriented) rotations.push_back(karcher_mean(visited.rotations));
     for (std::size_t k = 0; k + 1 < centres.size(); ++k) {
       out.vap = std::max(out.vap, (centres.back() - centres[k]).norm());
-      if (oriented)
-        out.vap_abc = out.vap_abc.cwiseMax(log_so3(Matrix3(rotations.back() * rotations[k].transpose())).cwiseAbs());
+      if (!oriented) continue;
+      const Vector3 turn = rotation_difference(rotations.back(), rotations[k]);
+      for (Index c = 0; c < 3; ++c) out.vap_abc(c) = std::max(out.vap_abc(c), std::abs(turn(c)));
     }
   }
   out.directions = static_cast<int>(centres.size());
@@ -204,8 +202,7 @@ VERNIER_API Iso9283Drift drift_of(int pose, const VisitedPose& visited, const Is
     const PointRows points = visited.positions.middleRows(i, together);
     double time = 0;
     for (Index k = i; k < i + together; ++k) time += visited.visits[static_cast<std::size_t>(k)]->time_s / together;
-    out.groups.push_back(
-        {time, (points.colwise().mean().transpose() - command.translation()).norm(), repeatability(points)});
+    out.groups.push_back({time, (centroid(points) - translation(command)).norm(), repeatability(points)});
     out.dap = std::max(out.dap, std::abs(out.groups.back().ap - out.groups.front().ap));
     out.drp = std::max(out.drp, std::abs(out.groups.back().rp - out.groups.front().rp));
   }
@@ -232,7 +229,7 @@ VERNIER_IMPL Iso9283 iso9283(std::span<const Iso9283Visit> visits, std::span<con
   out.registration = detail::registration_of(out.poses, commanded);
   if (out.registration)
     for (Iso9283Pose& one : out.poses)
-      one.ap_registered = (one.mean.translation() - *out.registration * command(one.pose).translation()).norm();
+      one.ap_registered = (translation(one.mean) - *out.registration * translation(command(one.pose))).norm();
   if (visited.contains(2) && visited.contains(4))
     out.distance = detail::accuracy_of_distance(visited.at(2).begin()->second, visited.at(4).begin()->second,
                                                 command(2), command(4), options.orientations);

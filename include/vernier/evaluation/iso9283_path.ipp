@@ -17,13 +17,13 @@ namespace detail {
 
 /// The pose a share of the way from a to b.
 VERNIER_API Isometry3 between_poses(const Isometry3& a, const Isometry3& b, double share, bool oriented) {
-  Isometry3 out = Isometry3::Identity();
-  out.translation() = (1 - share) * a.translation() + share * b.translation();
+  const Vector3 from = translation(a), shift = translation(b) - from;
+  Matrix3 orientation = Matrix3::Identity();
   if (oriented) {
-    const Vector3 turn = log_so3(Matrix3(b.linear() * a.linear().transpose()));
-    out.linear() = exp_so3(Vector3(share * turn)) * a.linear();
+    const Vector3 turn = rotation_difference(rotation(b), rotation(a));
+    orientation = exp_so3(Vector3(share * turn)) * rotation(a);
   }
-  return out;
+  return rigid_motion(orientation, from + share * shift);
 }
 
 /// Poses over the length of arc.
@@ -50,10 +50,11 @@ VERNIER_API PathProjection nearest_on_path(const PoseLine& path, const Vector3& 
   for (std::size_t k = 1; k < path.arc.size(); ++k) {
     const double begin = path.arc[k - 1], length = path.arc[k] - begin;
     if (path.arc[k] < from || begin > to) continue;
-    const Vector3 a = path.poses[k - 1].translation();
-    const Vector3 direction = (path.poses[k].translation() - a) / length;
-    const double along = std::clamp(std::clamp(direction.dot(p - a), from - begin, to - begin), 0.0, length);
-    const double distance = (a + along * direction - p).norm();
+    const Vector3 a = translation(path.poses[k - 1]), step = translation(path.poses[k]) - a;
+    const Vector3 direction = step / length, arm = p - a;
+    const double along = std::clamp(std::clamp(direction.dot(arm), from - begin, to - begin), 0.0, length);
+    const Vector3 foot = along * direction;
+    const double distance = (foot - arm).norm();
     if (distance < best.distance) best = {begin + along, distance};
   }
   return best;
@@ -63,12 +64,12 @@ VERNIER_API PathProjection nearest_on_path(const PoseLine& path, const Vector3& 
 VERNIER_API PoseLine along_path(const PoseLine& path, const std::vector<Isometry3>& run) {
   PoseLine out{{}, run};
   const double length = path.arc.back();
-  PathProjection last = nearest_on_path(path, run.front().translation(), 0, length / 2);
+  PathProjection last = nearest_on_path(path, translation(run.front()), 0, length / 2);
   out.arc.push_back(last.arc);
   for (std::size_t k = 1; k < run.size(); ++k) {
     // corners that are cut short are passed in less way than the path's; noise may look like a step back
-    const double reach = 3 * ((run[k].translation() - run[k - 1].translation()).norm() + last.distance);
-    last = nearest_on_path(path, run[k].translation(), last.arc, std::min(length, last.arc + reach));
+    const double reach = 3 * ((translation(run[k]) - translation(run[k - 1])).norm() + last.distance);
+    last = nearest_on_path(path, translation(run[k]), last.arc, std::min(length, last.arc + reach));
     out.arc.push_back(last.arc);
   }
   return out;
@@ -80,17 +81,18 @@ VERNIER_API Iso9283PathPoint accuracy_at_point(double arc, const Isometry3& comm
   PointRows positions(static_cast<Index>(passed.size()), 3);
   std::vector<Matrix3> rotations;
   for (std::size_t j = 0; j < passed.size(); ++j) {
-    positions.row(static_cast<Index>(j)) = passed[j].translation().transpose();
-    rotations.emplace_back(passed[j].linear());
+    set_point(positions, static_cast<Index>(j), translation(passed[j]));
+    rotations.push_back(rotation(passed[j]));
   }
-  out.mean.translation() = positions.colwise().mean().transpose();
-  out.at = (out.mean.translation() - commanded.translation()).norm();
+  const Vector3 centre = centroid(positions);
+  out.mean.translation() = centre;
+  out.at = (centre - translation(commanded)).norm();
   out.rt = repeatability(positions);
   out.at_abc = out.rt_abc = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!oriented) return out;
   const Matrix3 mean = karcher_mean(rotations);
   out.mean.linear() = mean;
-  out.at_abc = log_so3(Matrix3(mean * commanded.linear().transpose()));
+  out.at_abc = rotation_difference(mean, rotation(commanded));
   out.rt_abc = three_deviations(rotation_vectors_from(rotations, mean));
   return out;
 }
@@ -109,7 +111,7 @@ VERNIER_IMPL Iso9283Path iso9283_path(std::span<const Isometry3> commanded,
   for (std::size_t k = 0; k < commanded.size(); ++k) {
     if (const char* fault = detail::fault_of_pose(commanded[k], oriented))
       require(false, "iso9283_path: commanded pose ", k + 1, ": ", fault);
-    const double step = k == 0 ? 0 : (commanded[k].translation() - commanded[k - 1].translation()).norm();
+    const double step = k == 0 ? 0 : (translation(commanded[k]) - translation(commanded[k - 1])).norm();
     require(k == 0 || step > 0, "iso9283_path: commanded poses ", k, " and ", k + 1, " have the same position");
     path.arc.push_back(k == 0 ? 0 : path.arc.back() + step);
     path.poses.push_back(commanded[k]);
@@ -146,9 +148,11 @@ VERNIER_IMPL Iso9283Path iso9283_path(std::span<const Isometry3> commanded,
     out.points.push_back(detail::accuracy_at_point(stations[i], path.pose(stations[i], oriented), passed[i], oriented));
     const Iso9283PathPoint& one = out.points.back();
     out.at = std::max(out.at, one.at);
-    out.at_abc = i == 0 ? Vector3(one.at_abc.cwiseAbs()) : Vector3(out.at_abc.cwiseMax(one.at_abc.cwiseAbs()));
     out.rt = i == 0 ? one.rt : std::max(out.rt, one.rt);
-    out.rt_abc = i == 0 ? one.rt_abc : Vector3(out.rt_abc.cwiseMax(one.rt_abc));
+    for (Index c = 0; c < 3; ++c) {  // NaN of all points, or of none
+      out.at_abc(c) = i == 0 ? std::abs(one.at_abc(c)) : std::max(out.at_abc(c), std::abs(one.at_abc(c)));
+      out.rt_abc(c) = i == 0 ? one.rt_abc(c) : std::max(out.rt_abc(c), one.rt_abc(c));
+    }
   }
   return out;
 }

@@ -19,7 +19,9 @@ VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
   const double t = z * (1 + (z2 + 1) / (4 * v) + ((5 * z2 + 16) * z2 + 3) / (96 * v * v) +
                         (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * v * v * v) +
                         ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / (92160 * v * v * v * v));
-  const double half = t * std::sqrt((errors.array() - mean).square().sum() / v / static_cast<double>(n));
+  double squares = 0;
+  for (const double error : errors) squares += (error - mean) * (error - mean);
+  const double half = t * std::sqrt(squares / v / static_cast<double>(n));
   return {mean, std::max(0.0, mean - half), mean + half};
 }
 

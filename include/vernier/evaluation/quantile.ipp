@@ -19,7 +19,8 @@ VERNIER_IMPL double quantile(const ConstVectorRef& values, double probability) {
 }
 
 VERNIER_IMPL double radius_95(const Matrix3& covariance) noexcept {
-  const double mean = covariance.trace(), variance = 2 * (covariance * covariance).trace();
+  const Matrix3 square = covariance * covariance;
+  const double mean = covariance.trace(), variance = 2 * square.trace();
   if (!(mean > 0)) return mean == 0 ? 0 : std::nan("");
   const double degrees = 2 * mean * mean / variance, z = 1.6448536269514722;  // 95 % of a standard normal
   const double spread = 2 / (9 * degrees);

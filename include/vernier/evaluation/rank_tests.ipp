@@ -12,6 +12,7 @@
 
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 
 namespace vernier {
 
@@ -32,7 +33,7 @@ namespace detail {
 VERNIER_API double ties(const VectorX& ranks) {
   double sum = 0;
   for (const double rank : ranks) {
-    const auto t = static_cast<double>((ranks.array() == rank).count());
+    const auto t = static_cast<double>(std::count(ranks.begin(), ranks.end(), rank));
     sum += t * t - 1;
   }
   return sum;
@@ -66,7 +67,7 @@ VERNIER_IMPL RankTest rank_sum_test(const ConstVectorRef& a, const ConstVectorRe
     ways(0, 0) = 1;
     for (Index r = 1; r <= n + m; ++r)
       for (Index k = std::min(r, n); k >= std::max<Index>(1, r - m); --k)
-        ways.col(k).tail(n * m + 1 - (r - k)) += ways.col(k - 1).head(n * m + 1 - (r - k));
+        for (Index sum = r - k; sum <= n * m; ++sum) ways(sum, k) += ways(sum - (r - k), k - 1);
     return {u, detail::two_sided({ways.col(n).begin(), ways.col(n).end()}, u), true};
   }
   const auto pairs = static_cast<double>(n * m), all = static_cast<double>(n + m);
@@ -80,9 +81,12 @@ VERNIER_IMPL RankTest signed_rank_test(const ConstVectorRef& a, const ConstVecto
   for (Index i = 0; i < a.size(); ++i)
     if (a(i) != b(i)) differences.push_back(a(i) - b(i));  // equal infinities have no difference
   const auto n = static_cast<Index>(differences.size());
-  const Eigen::Map<const VectorX> difference(differences.data(), n);
-  const VectorX rank = ranks(difference.cwiseAbs());
-  const double w = (difference.array() > 0).select(rank, 0).sum(), tied = detail::ties(rank);
+  VectorX sizes(n);
+  for (Index i = 0; i < n; ++i) sizes(i) = std::abs(differences[static_cast<std::size_t>(i)]);
+  const VectorX rank = ranks(sizes);
+  double w = 0;
+  for (Index i = 0; i < n; ++i) w += differences[static_cast<std::size_t>(i)] > 0 ? rank(i) : 0;
+  const double tied = detail::ties(rank);
   if (tied == 0 && n == a.size() && n <= exact_up_to) {
     std::vector<double> ways(static_cast<std::size_t>(n * (n + 1) / 2 + 1));
     ways[0] = 1;
@@ -112,7 +116,7 @@ VERNIER_IMPL VectorX holm(const ConstVectorRef& p_values) {
 VERNIER_IMPL VectorX average_ranks(const ConstMatrixRef& values) {
   require(values.size() > 0, "average_ranks: ", values.rows(), " cases of ", values.cols(), " methods");
   VectorX sum = VectorX::Zero(values.cols());
-  for (Index i = 0; i < values.rows(); ++i) sum += ranks(values.row(i).transpose());
+  for (Index i = 0; i < values.rows(); ++i) sum += ranks(detail::row_of(values, i));
   return sum / static_cast<double>(values.rows());
 }
 

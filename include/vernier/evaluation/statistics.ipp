@@ -26,18 +26,16 @@ namespace detail {
 
 VERNIER_IMPL VectorX position_errors_of(std::span<const Isometry3> predicted, const PointRows& positions) {
   VectorX errors(positions.rows());
-  for (Index i = 0; i < errors.size(); ++i) {
-    const Vector3 measured = positions.row(i).transpose();
-    errors(i) = (measured - predicted[static_cast<std::size_t>(i)].translation()).norm();
-  }
+  for (Index i = 0; i < errors.size(); ++i)
+    errors(i) = (point(positions, i) - translation(predicted[static_cast<std::size_t>(i)])).norm();
   return errors;
 }
 
 VERNIER_IMPL VectorX rotation_errors_of(std::span<const Isometry3> predicted, const PointRows& orientations) {
   VectorX errors(orientations.rows());
   for (Index i = 0; i < errors.size(); ++i) {
-    const Matrix3 measured = exp_so3(Vector3(orientations.row(i).transpose()));
-    errors(i) = log_so3(measured * predicted[static_cast<std::size_t>(i)].linear().transpose()).norm();
+    const Matrix3 measured = exp_so3(point(orientations, i));
+    errors(i) = rotation_difference(measured, rotation(predicted[static_cast<std::size_t>(i)])).norm();
   }
   return errors;
 }
@@ -46,9 +44,8 @@ VERNIER_IMPL PositioningErrors pose_errors(std::span<const Isometry3> desired, s
   const auto n = static_cast<Index>(desired.size());
   PositioningErrors errors{VectorX(n), VectorX(n)};
   for (std::size_t i = 0; i < desired.size(); ++i) {
-    const Vector6 e = pose_difference(desired[i], reached[i]);
-    errors.position(static_cast<Index>(i)) = e.head<3>().norm();
-    errors.rotation(static_cast<Index>(i)) = e.tail<3>().norm();
+    errors.position(static_cast<Index>(i)) = (translation(desired[i]) - translation(reached[i])).norm();
+    errors.rotation(static_cast<Index>(i)) = rotation_difference(rotation(desired[i]), rotation(reached[i])).norm();
   }
   return errors;
 }

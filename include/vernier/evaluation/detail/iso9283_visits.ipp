@@ -9,15 +9,18 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/points.hpp"
 
 namespace vernier::detail {
 
 VERNIER_IMPL const char* fault_of_pose(const Isometry3& pose, bool oriented) {
-  if (!pose.translation().allFinite()) return "the position is not finite";
+  if (!all_finite(translation(pose))) return "the position is not finite";
   if (!oriented) return nullptr;
-  const Matrix3 r = pose.linear();
-  const bool rotation = (r * r.transpose() - Matrix3::Identity()).squaredNorm() < 1e-12 && r.determinant() > 0;
-  return rotation ? nullptr : "the orientation is not a rotation";
+  const Matrix3 r = rotation(pose), back = r.transpose(), product = r * back, identity = Matrix3::Identity();
+  const Matrix3 fault = product - identity;
+  const bool turns = fault.squaredNorm() < 1e-12 && r.determinant() > 0;
+  return turns ? nullptr : "the orientation is not a rotation";
 }
 
 VERNIER_API VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
@@ -29,8 +32,8 @@ VERNIER_API VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
   VisitedPose out{std::move(visits), {}, {}};
   out.positions.resize(static_cast<Index>(out.visits.size()), 3);
   for (std::size_t i = 0; i < out.visits.size(); ++i) {
-    out.positions.row(static_cast<Index>(i)) = out.visits[i]->measured.translation().transpose();
-    out.rotations.emplace_back(out.visits[i]->measured.linear());
+    set_point(out.positions, static_cast<Index>(i), translation(out.visits[i]->measured));
+    out.rotations.push_back(rotation(out.visits[i]->measured));
   }
   return out;
 }
@@ -91,7 +94,7 @@ VERNIER_API bool on_cube(std::span<const Isometry3> p) {
   std::array<Vector3, 4> arm;
   double mean = 0;
   for (std::size_t k = 0; k < 4; ++k) {
-    arm[k] = p[k + 1].translation() - p[0].translation();
+    arm[k] = translation(p[k + 1]) - translation(p[0]);
     mean += arm[k].norm() / 4;
   }
   const double tolerance = 0.05;  // 2 % of a diagonal is a twentieth of the distance from its middle

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/data/contacts.hpp"
 
 namespace vernier {
@@ -19,7 +20,7 @@ VERNIER_IMPL Contact::Contact(std::string name, ContactKind kind, MatrixX joints
   require(known_.size() == joints_.rows(), "contact ", name_, ": ", joints_.rows(), " touches, but ", known_.size(),
           " known lengths");
   for (Index i = 0; i < size(); ++i) {
-    require(joints_.row(i).allFinite() && std::isfinite(known_(i)), "contact ", name_, ": touch ", i,
+    require(detail::all_finite(joints_.middleRows(i, 1)) && std::isfinite(known_(i)), "contact ", name_, ": touch ", i,
             " has a value that is not finite");
     require(kind_ != ContactKind::ball || known_(i) > 0, "contact ", name_, ": touch ", i, " has a radius of ",
             known_(i), " m, must be positive");

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -206,7 +207,9 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
     const auto found = table.find_plain(name);
     return found ? std::optional<VectorX>(table.numbers({*found})) : std::nullopt;
   };
-  out.times = column("time_s").value_or(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
+  out.times.resize(n);
+  std::iota(out.times.begin(), out.times.end(), 0.0);
+  if (const auto times = column("time_s")) out.times = *times;
   out.temperatures = column("temperature_c").value_or(VectorX());
   if (table.find("from_q1", false) || table.find("from_q1", true)) {
     out.previous = table.numbers(joint_columns(table, joints, types, "from_"));
@@ -215,7 +218,8 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   const std::optional<VectorX> segment = column("segment");
   out.previous.setConstant(n, joints, std::numeric_limits<double>::quiet_NaN());
   for (Index i = 1; i < n; ++i)
-    if (!segment || (*segment)(i) == (*segment)(i - 1)) out.previous.row(i) = out.values.row(i - 1).head(joints);
+    for (Index j = 0; j < joints && (!segment || (*segment)(i) == (*segment)(i - 1)); ++j)
+      out.previous(i, j) = out.values(i - 1, j);
   return out;
 }
 
@@ -260,7 +264,9 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows
   const bool oriented = orientations.rows() > 0;
   bool in_order = true, counted = true;  // whether the order of the rows says it all
   for (Index i = 0; i < joints.rows(); ++i) {
-    in_order = in_order && (i == 0 ? !previous.row(i).allFinite() : previous.row(i) == joints.row(i - 1));
+    bool follows = i > 0 || !finite_row(previous, i);
+    for (Index j = 0; i > 0 && j < joints.cols(); ++j) follows = follows && previous(i, j) == joints(i - 1, j);
+    in_order = in_order && follows;
     counted = counted && times(i) == static_cast<double>(i);
   }
   std::string out;
@@ -315,10 +321,9 @@ VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::ini
   out.times = time ? VectorX(table.numbers({*time}))
                    : VectorX(VectorX::Constant(values.rows(), std::numeric_limits<double>::quiet_NaN()));
   for (Index i = 0; i < values.rows(); ++i) {
-    Isometry3 pose = Isometry3::Identity();
-    pose.translation() = values.row(i).head<3>().transpose();
-    if (out.oriented) pose.linear() = exp_so3(Vector3(values.row(i).tail<3>().transpose()));
-    out.poses.push_back(pose);
+    Matrix3 orientation = Matrix3::Identity();
+    if (out.oriented) orientation = exp_so3(Vector3(values(i, 3), values(i, 4), values(i, 5)));
+    out.poses.push_back(rigid_motion(orientation, Vector3(values(i, 0), values(i, 1), values(i, 2))));
   }
   return out;
 }

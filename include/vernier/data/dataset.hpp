@@ -103,12 +103,7 @@ class Dataset {
   /// Measured orientation; only where `has_orientations()`.
   Matrix3 orientation(Index i) const { return exp_so3(point(orientations_, i)); }
   /// Measured pose; only where `has_orientations()`.
-  Isometry3 pose(Index i) const {
-    Isometry3 pose = Isometry3::Identity();
-    pose.translation() = position(i);
-    pose.linear() = orientation(i);
-    return pose;
-  }
+  Isometry3 pose(Index i) const { return rigid_motion(orientation(i), position(i)); }
 
   /// The named rows, in the given order.
   /// @throws std::invalid_argument on a row outside 0 .. size-1

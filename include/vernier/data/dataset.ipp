@@ -28,7 +28,7 @@ VERNIER_IMPL void copy_rows(const ConstMatrixRef& from, std::span<const Index> i
   for (Index i = 0; i < to.rows(); ++i) {
     const Index row = indices[static_cast<std::size_t>(i)];
     require(row >= 0 && row < from.rows(), "rows: row ", row, " of ", from.rows());
-    to.row(i) = from.row(row);
+    for (Index j = 0; j < to.cols(); ++j) to(i, j) = from(row, j);
   }
 }
 

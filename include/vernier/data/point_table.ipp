@@ -105,8 +105,9 @@ VERNIER_IMPL PointTable read_point_table(const std::string& path, const PointTab
     out.lines.push_back(static_cast<Index>(line.number));
   }
   if (out.lines.empty()) throw DataError(message(path, ": no points"));
-  out.points = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
-      values.data(), static_cast<Index>(out.lines.size()), 3);
+  out.points.resize(static_cast<Index>(out.lines.size()), 3);
+  for (Index i = 0; i < out.points.rows(); ++i)
+    for (Index c = 0; c < 3; ++c) out.points(i, c) = values[static_cast<std::size_t>(3 * i + c)];
   return out;
 }
 

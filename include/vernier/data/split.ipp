@@ -50,7 +50,8 @@ VERNIER_IMPL SplitRows region_rows(const PointRows& positions, const RegionOptio
   const Index n = positions.rows(), tests = num_test_rows("split_region", n, options.test_fraction);
   const int axis = static_cast<int>(options.face) / 2;
   const double sign = static_cast<int>(options.face) % 2 == 0 ? 1 : -1;
-  return split_order(argsort(sign * positions.col(axis)), tests);
+  const VectorX along = positions.col(axis);
+  return split_order(argsort(sign * along), tests);
 }
 
 VERNIER_IMPL SplitRows last_rows(Index n, double test_fraction) {

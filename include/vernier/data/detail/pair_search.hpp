@@ -37,7 +37,7 @@ struct PairSearch {
     return by_order ? static_cast<std::size_t>(std::min(rows(), points.rows())) : given.size();
   }
   /// From a point to where the nominal arm was in a row [m].
-  VERNIER_API double distance(const Found& found, Index row, Index point) const;
+  VERNIER_API double distance(const Found& found, Index row, Index measured) const;
 
   /// With the points of the nominal arm.
   VERNIER_API void set_frames(Found& found, const PointFrames& frames) const;

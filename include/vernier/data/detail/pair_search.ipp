@@ -17,19 +17,18 @@ VERNIER_API double middle_of(std::vector<double> values) {
 VERNIER_API double median_spread(const PointRows& points) {
   Vector3 centre;
   for (int k = 0; k < 3; ++k) centre(k) = middle_of({points.col(k).begin(), points.col(k).end()});
-  const VectorX distances = (points.rowwise() - centre.transpose()).rowwise().norm();
+  const VectorX distances = distances_from(points, centre);
   return middle_of({distances.begin(), distances.end()});
 }
 
-VERNIER_IMPL double PairSearch::distance(const Found& found, Index row, Index point) const {
-  return (found.nominal.row(row) - points.row(point)).norm();
+VERNIER_IMPL double PairSearch::distance(const Found& found, Index row, Index measured) const {
+  return (point(found.nominal, row) - point(points, measured)).norm();
 }
 
 VERNIER_IMPL void PairSearch::set_frames(Found& found, const PointFrames& frames) const {
   found.frames = frames;
   found.nominal.resize(rows(), 3);
-  for (Index i = 0; i < rows(); ++i)
-    found.nominal.row(i) = frames.point(flanges[static_cast<std::size_t>(i)]).transpose();
+  for (Index i = 0; i < rows(); ++i) set_point(found.nominal, i, frames.point(flanges[static_cast<std::size_t>(i)]));
 }
 
 VERNIER_IMPL std::vector<PointFrames> PairSearch::starts() const {
@@ -75,7 +74,7 @@ VERNIER_IMPL Index PairSearch::support(const Found& found, double limit) const {
 VERNIER_IMPL std::vector<PointPair> PairSearch::aligned(const Found& found, double limit) const {
   if (by_order)
     return align_with_gaps(rows(), points.rows(), [&](Index i, Index j) {
-      return (found.nominal.row(i) - points.row(j)).squaredNorm() / (limit * limit);
+      return (point(found.nominal, i) - point(points, j)).squaredNorm() / (limit * limit);
     });
   std::vector<PointPair> out;
   for (const PointPair& pair : given)
@@ -152,13 +151,13 @@ VERNIER_IMPL bool PairSearch::ambiguous(const Found& found) const {
 VERNIER_IMPL double PairSearch::scale(const Found& found) const {
   Vector3 nominal_mean = Vector3::Zero(), mean = Vector3::Zero();
   for (const PointPair& pair : found.pairs) {
-    nominal_mean += found.nominal.row(pair.row).transpose() / static_cast<double>(found.pairs.size());
-    mean += points.row(pair.point).transpose() / static_cast<double>(found.pairs.size());
+    nominal_mean += point(found.nominal, pair.row) / static_cast<double>(found.pairs.size());
+    mean += point(points, pair.point) / static_cast<double>(found.pairs.size());
   }
   double product = 0, square = 0;
   for (const PointPair& pair : found.pairs) {
-    const Vector3 nominal = found.nominal.row(pair.row).transpose() - nominal_mean;
-    product += nominal.dot(points.row(pair.point).transpose() - mean);
+    const Vector3 nominal = point(found.nominal, pair.row) - nominal_mean, arm = point(points, pair.point) - mean;
+    product += nominal.dot(arm);
     square += nominal.squaredNorm();
   }
   return product / square;
@@ -169,7 +168,7 @@ VERNIER_IMPL std::pair<PairingProof, std::optional<PairSearch::Found>> prove(con
   if (search.most_pairs() < min_pairs) return {proof, {}};
   PointRows positions(search.rows(), 3);
   for (Index i = 0; i < search.rows(); ++i)
-    positions.row(i) = search.flanges[static_cast<std::size_t>(i)].translation().transpose();
+    set_point(positions, i, translation(search.flanges[static_cast<std::size_t>(i)]));
   proof.spread_ratio = median_spread(search.points) / median_spread(positions);
   proof.status = PairingStatus::unrelated;
   std::vector<double> factors{1};
@@ -181,8 +180,10 @@ VERNIER_IMPL std::pair<PairingProof, std::optional<PairSearch::Found>> prove(con
   for (const double factor : factors)
     for (const double sign : {1.0, -1.0}) {
       PairSearch changed = search;
-      changed.points /= factor;
-      changed.points.col(0) *= sign;
+      for (Index i = 0; i < changed.points.rows(); ++i) {
+        set_point(changed.points, i, point(changed.points, i) / factor);
+        changed.points(i, 0) *= sign;
+      }
       auto found = changed.best();
       if (!found) continue;
       proof.base = found->frames.base;
@@ -191,7 +192,7 @@ VERNIER_IMPL std::pair<PairingProof, std::optional<PairSearch::Found>> prove(con
       proof.limit = found->limit;
       proof.scale = factor * changed.scale(*found);
       for (Index i = 1; i < search.rows(); ++i)
-        proof.indistinct += (found->nominal.row(i) - found->nominal.row(i - 1)).norm() <= found->limit;
+        proof.indistinct += (point(found->nominal, i) - point(found->nominal, i - 1)).norm() <= found->limit;
       proof.status = factor != 1                                    ? PairingStatus::wrong_unit
                      : sign < 0                                     ? PairingStatus::mirrored
                      : search.by_order && changed.ambiguous(*found) ? PairingStatus::ambiguous

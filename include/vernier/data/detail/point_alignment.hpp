@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vernier/core/function_ref.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/data/point_pair.hpp"
 
 namespace vernier::detail {
@@ -18,7 +19,7 @@ struct PointFrames {
   double rms = 0;                          ///< distance, corrected for nine unknowns [m]
 
   /// Where a reflector on this flange is.
-  Vector3 point(const Isometry3& flange) const { return base * (flange * offset); }
+  Vector3 point(const Isometry3& flange) const { return transformed(base, transformed(flange, offset)); }
 };
 
 /// The frames with the smallest sum of squared distances of at least six pairs: Gauss-Newton from two closed forms, the

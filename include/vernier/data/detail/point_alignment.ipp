@@ -11,29 +11,51 @@
 
 namespace vernier::detail {
 
+/// Adds three equations to normal equations, of which the lower triangle is used.
+/// @param coefficients unknowns x 3
+VERNIER_API void add_equations(const MatrixX& coefficients, const Vector3& values, MatrixX& normal, VectorX& right) {
+  for (Index j = 0; j < right.size(); ++j) {
+    const double a = coefficients(j, 0), b = coefficients(j, 1), c = coefficients(j, 2);
+    for (Index i = j; i < right.size(); ++i)
+      normal(i, j) += a * coefficients(i, 0) + b * coefficients(i, 1) + c * coefficients(i, 2);
+    right(j) += a * values(0) + b * values(1) + c * values(2);
+  }
+}
+
+/// Adds a share of the trace to the diagonal.
+VERNIER_API void damp(MatrixX& normal, double share) {
+  const double more = share * diagonal_of(normal).sum();
+  for (Index k = 0; k < normal.rows(); ++k) normal(k, k) += more;
+}
+
 /// Rotation of the base where the inverse of the base is taken for an affine map A p + b: A m - R t + b = p is linear.
 VERNIER_API Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, const PointRows& points,
                                          std::span<const PointPair> pairs) {
   constexpr int unknowns = 15;
   MatrixX normal = MatrixX::Zero(unknowns, unknowns);
   VectorX right = VectorX::Zero(unknowns);
+  MatrixX coefficients = MatrixX::Zero(unknowns, 3);
   Vector3 mean = Vector3::Zero();
-  for (const PointPair& pair : pairs) mean += points.row(pair.point).transpose();
+  for (const PointPair& pair : pairs) mean += point(points, pair.point);
   mean /= static_cast<double>(pairs.size());
   for (const PointPair& pair : pairs) {
     const Isometry3& flange = flanges[static_cast<std::size_t>(pair.row)];
-    Eigen::Matrix<double, 3, unknowns> rows = Eigen::Matrix<double, 3, unknowns>::Zero();
-    for (int k = 0; k < 3; ++k) rows.block<1, 3>(k, 3 * k) = points.row(pair.point) - mean.transpose();
-    rows.middleCols<3>(9) = -flange.linear();
-    rows.rightCols<3>().setIdentity();
-    normal += rows.transpose().lazyProduct(rows);
-    right += rows.transpose().lazyProduct(flange.translation());
+    const Vector3 arm = point(points, pair.point) - mean;
+    for (Index k = 0; k < 3; ++k) {
+      for (Index c = 0; c < 3; ++c) {
+        coefficients(3 * k + c, k) = arm(c);
+        coefficients(9 + c, k) = -flange(k, c);
+      }
+      coefficients(12 + k, k) = 1;
+    }
+    add_equations(coefficients, translation(flange), normal, right);
   }
-  normal.diagonal().array() += 1e-9 * normal.trace();
+  damp(normal, 1e-9);
   if (!cholesky(normal)) return Matrix3::Identity();
   solve_cholesky(normal, right);
   Matrix3 base;  // column k is row k of A
-  for (int k = 0; k < 3; ++k) base.col(k) = right.segment<3>(3 * k);
+  for (Index k = 0; k < 3; ++k)
+    for (Index c = 0; c < 3; ++c) base(c, k) = right(3 * k + c);
   return nearest_rotation(base);
 }
 
@@ -44,35 +66,40 @@ VERNIER_API PointFrames refined_frames(std::span<const Isometry3> flanges, const
   const auto n = static_cast<double>(pairs.size());
   PointFrames frames;
   frames.base.linear() = start;
+  MatrixX coefficients(9, 3);  // of the point by rotation, translation and offset
   for (int step_number = 0; step_number < max_steps; ++step_number) {
+    const Vector3 base = translation(frames.base);
     MatrixX normal = MatrixX::Zero(9, 9);
     VectorX step = VectorX::Zero(9);
     for (const PointPair& pair : pairs) {
       const Isometry3& flange = flanges[static_cast<std::size_t>(pair.row)];
-      const Vector3 turned = frames.base.linear() * (flange * frames.offset);
-      const Vector3 left = points.row(pair.point).transpose() - turned - frames.base.translation();
-      Eigen::Matrix<double, 3, 9> rows;                      // of the point by rotation, translation and offset
-      rows << 0, turned.z(), -turned.y(), 1, 0, 0, 0, 0, 0,  //
-          -turned.z(), 0, turned.x(), 0, 1, 0, 0, 0, 0,      //
-          turned.y(), -turned.x(), 0, 0, 0, 1, 0, 0, 0;
-      rows.rightCols<3>() = frames.base.linear() * flange.linear();
-      normal += rows.transpose().lazyProduct(rows);
-      step += rows.transpose().lazyProduct(left);
+      const Vector3 turned = transformed(frames.base, transformed(flange, frames.offset)) - base;
+      const Vector3 left = point(points, pair.point) - turned - base;
+      const Isometry3 tool = composed(frames.base, flange);
+      const Matrix3 lever = skew(turned);
+      for (Index c = 0; c < 3; ++c)
+        for (Index k = 0; k < 3; ++k) {
+          coefficients(k, c) = -lever(c, k);
+          coefficients(3 + k, c) = c == k;
+          coefficients(6 + k, c) = tool(c, k);
+        }
+      add_equations(coefficients, left, normal, step);
     }
-    normal.bottomRightCorner<3, 3>().diagonal().array() += n * offset_weight;
-    step.tail<3>() -= n * offset_weight * frames.offset;
-    normal.diagonal().array() += 1e-12 * normal.trace();
+    for (Index k = 0; k < 3; ++k) {
+      normal(6 + k, 6 + k) += n * offset_weight;
+      step(6 + k) -= n * offset_weight * frames.offset(k);
+    }
+    damp(normal, 1e-12);
     if (!cholesky(normal)) break;
     solve_cholesky(normal, step);
-    frames.base.linear() = exp_so3(Vector3(step.head<3>())) * frames.base.linear();
-    frames.base.translation() += step.segment<3>(3);
-    frames.offset += step.tail<3>();
+    const Vector3 turn = step.head(3), shift = step.segment(3, 3), further = step.tail(3);
+    frames.base = rigid_motion(exp_so3(turn) * rotation(frames.base), base + shift);
+    frames.offset += further;
     if (!(step.norm() > 1e-9)) break;
   }
   double sum = 0;
   for (const PointPair& pair : pairs)
-    sum +=
-        (points.row(pair.point).transpose() - frames.point(flanges[static_cast<std::size_t>(pair.row)])).squaredNorm();
+    sum += (point(points, pair.point) - frames.point(flanges[static_cast<std::size_t>(pair.row)])).squaredNorm();
   frames.rms = std::sqrt(sum / (n - 3));
   return frames;
 }
@@ -81,12 +108,12 @@ VERNIER_IMPL PointFrames fit_point_frames(std::span<const Isometry3> flanges, co
                                           std::span<const PointPair> pairs, int max_steps) {
   PointRows from(static_cast<Index>(pairs.size()), 3), to(static_cast<Index>(pairs.size()), 3);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    from.row(static_cast<Index>(k)) = flanges[static_cast<std::size_t>(pairs[k].row)].translation().transpose();
-    to.row(static_cast<Index>(k)) = points.row(pairs[k].point);
+    set_point(from, static_cast<Index>(k), translation(flanges[static_cast<std::size_t>(pairs[k].row)]));
+    set_point(to, static_cast<Index>(k), point(points, pairs[k].point));
   }
   const PointFrames affine =
       refined_frames(flanges, points, pairs, affine_base_rotation(flanges, points, pairs), max_steps);
-  const PointFrames rigid = refined_frames(flanges, points, pairs, register_points(from, to).linear(), max_steps);
+  const PointFrames rigid = refined_frames(flanges, points, pairs, rotation(register_points(from, to)), max_steps);
   return rigid.rms < affine.rms || !std::isfinite(affine.rms) ? rigid : affine;
 }
 

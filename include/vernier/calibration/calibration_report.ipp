@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -8,6 +9,7 @@
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/evaluation/statistics.hpp"
 
@@ -32,7 +34,9 @@ VERNIER_IMPL std::string stage_table(const std::vector<StageErrors>& stages) {
   return out;
 }
 
-VERNIER_IMPL Index CalibrationReport::extrapolated() const { return (gates.array() < 1).count(); }
+VERNIER_IMPL Index CalibrationReport::extrapolated() const {
+  return std::count_if(gates.begin(), gates.end(), [](double gate) { return gate < 1; });
+}
 
 VERNIER_IMPL const StageErrors& CalibrationReport::stage(std::string_view key) const {
   for (const StageErrors& s : stages)
@@ -152,17 +156,20 @@ VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vec
 /// How far a base moved, and when.
 VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::string& station) {
   const Index knots = drift.knots.cols();
+  const auto apart = [&](Index a, Index b, Index part) {
+    const auto change = [&](Index k) { return drift.knots(part + k, b) - drift.knots(part + k, a); };
+    return std::hypot(change(0), change(1), change(2));
+  };
   double translation = 0, rotation = 0, fastest = 0;
   Index at = 0;
   for (Index a = 0; a < knots; ++a)
     for (Index b = a + 1; b < knots; ++b) {
-      const Vector6 apart = drift.knots.col(b).head<6>() - drift.knots.col(a).head<6>();
-      translation = std::max(translation, apart.head<3>().norm());
-      rotation = std::max(rotation, apart.tail<3>().norm());
+      translation = std::max(translation, apart(a, b, 0));
+      rotation = std::max(rotation, apart(a, b, 3));
     }
   const Index window = std::max<Index>(1, knots / 8);
   for (Index k = 0; k + window < knots; ++k) {
-    const double moved = (drift.knots.col(k + window) - drift.knots.col(k)).head<3>().norm();
+    const double moved = apart(k, k + window, 0);
     if (!(moved > fastest)) continue;
     fastest = moved;
     at = k;
@@ -170,9 +177,13 @@ VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::str
   const auto time = [&](Index knot) { return std::llround(drift.begin + drift.spacing * static_cast<double>(knot)); };
   std::string zeros;
   if (drift.knots.rows() > 6) {
-    const MatrixX of_joints = drift.knots.bottomRows(drift.knots.rows() - 6);
     Index joint = 0;
-    const double largest = (of_joints.rowwise().maxCoeff() - of_joints.rowwise().minCoeff()).maxCoeff(&joint);
+    double largest = -1;
+    for (Index j = 0; j + 6 < drift.knots.rows(); ++j) {
+      const VectorX zero = row_of(drift.knots, 6 + j);
+      const double range = zero.maxCoeff() - zero.minCoeff();
+      if (range > largest) largest = range, joint = j;
+    }
     zeros = message(" The zero of joint ", joint + 1, " moved most, by ", brief(largest * 1e6), " urad [um].");
   }
   return message("During the session the base", station, " moved by up to ", brief(translation * 1e3), " mm and ",

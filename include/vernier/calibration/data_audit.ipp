@@ -116,8 +116,8 @@ VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const 
     for (Index k = 6; k < values.size() - 6; ++k)
       if (k != freed && stds(k) > 0) sum += std::pow((values(k) - centre(k)) / stds(k), 2);
     for (Index i = 0; i < fit.residuals.position.rows(); ++i) {
-      sum += 16 * std::log1p(fit.residuals.position.row(i).squaredNorm() / (16 * sigma * sigma));
-      if (rows.oriented()) sum += 16 * std::log1p(fit.residuals.rotation.row(i).squaredNorm() / (16 * turn * turn));
+      sum += 16 * std::log1p(point(fit.residuals.position, i).squaredNorm() / (16 * sigma * sigma));
+      if (rows.oriented()) sum += 16 * std::log1p(point(fit.residuals.rotation, i).squaredNorm() / (16 * turn * turn));
     }
     return sum;
   };
@@ -155,7 +155,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
   const AuditResiduals all = audit_residuals(found.fit.arm, found.hypothesis.corrected(rows, nominal));
   Index wrong = 0;
   for (Index i = 0; i < rows.size(); ++i)
-    if (all.position.row(i).norm() > 8 * found.fit.residuals.score()) ++wrong;
+    if (point(all.position, i).norm() > 8 * found.fit.residuals.score()) ++wrong;
   std::optional<RowShift> shift;
   if (wrong >= 4 || found.fit.residuals.score() > 0.01 * point_scatter(rows.positions))
     shift = find_shift(nominal, rows, found.fit.residuals.score());
@@ -163,10 +163,10 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
     AuditRows paired = rows.rows(shift->fitting);
     for (std::size_t k = 0; k < shift->fitting.size(); ++k) {
       const Index pose = shift->fitting[k] + shift->shifts[k];
-      paired.positions.row(static_cast<Index>(k)) = rows.positions.row(pose);
+      set_point(paired.positions, static_cast<Index>(k), point(rows.positions, pose));
       if (!rows.oriented()) continue;
       paired.orientations[k] = rows.orientations[static_cast<std::size_t>(pose)];
-      paired.rotation_vectors.row(static_cast<Index>(k)) = rows.rotation_vectors.row(pose);
+      set_point(paired.rotation_vectors, static_cast<Index>(k), point(rows.rotation_vectors, pose));
     }
     DataFinding finding{FaultKind::shifted_rows, -1, {}, static_cast<double>(shift->shift)};
     for (Index i = shift->first; i < shift->end; ++i) finding.rows.push_back(i);
@@ -199,7 +199,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
     }
   }
   const AuditFit frames = audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
-  out.registered = ErrorStatistics::of(frames.residuals.position.rowwise().norm());
+  out.registered = ErrorStatistics::of(distances_from(frames.residuals.position, Vector3::Zero()));
   AuditFit geometry = audit_fit(frames.arm, arm.parameters(), stds, rows, 12);
   if (data.times != nullptr) {
     VectorX times(rows.size());

@@ -169,11 +169,11 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     const std::vector<Matrix6> covariances =
         errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
     const std::vector<Isometry3> poses = detail::visited_poses(errors.models[s], data, true, {});
-    const Matrix3 turn =
-        errors.models[s].identified().base().linear() * errors.model().identified().base().linear().transpose();
+    const Matrix3 back = rotation(errors.model().identified().base()).transpose();
+    const Matrix3 turn = rotation(errors.models[s].identified().base()) * back;
     for (Index i = 0; i < data.size(); ++i) {
       const auto row = static_cast<std::size_t>(i);
-      Vector3 error = poses[row].translation() - data.position(i);
+      Vector3 error = translation(poses[row]) - data.position(i);
       if (deployed != nullptr && !deployed->on_geometry)
         error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
       Matrix3 covariance = covariances[row].template topLeftCorner<3, 3>();
@@ -187,7 +187,9 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     return normalised;
   });
   // 95 % of chi squared with 3 degrees of freedom
-  out.ellipsoid_coverage = (out.normalised_errors.array() <= std::sqrt(7.8147)).template cast<double>().mean();
+  const auto within = std::count_if(out.normalised_errors.begin(), out.normalised_errors.end(),
+                                    [](double error) { return error <= std::sqrt(7.8147); });
+  out.ellipsoid_coverage = static_cast<double>(within) / static_cast<double>(out.normalised_errors.size());
   out.left_out_errors = errors.left_out_errors;
   out.left_out_rows = errors.left_out_rows;
   const VectorX &geometry = out.stage("geometry").position, &of_chosen = out.stage(out.chosen).position;

@@ -8,7 +8,9 @@
 namespace vernier::detail {
 
 VERNIER_IMPL double normalised_error(const Vector3& error, const Matrix3& covariance) {
-  return std::sqrt(error.dot(covariance.inverse() * error));
+  const Matrix3 weight = covariance.inverse();
+  const Vector3 weighted = weight * error;
+  return std::sqrt(error.dot(weighted));
 }
 
 VERNIER_IMPL void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {

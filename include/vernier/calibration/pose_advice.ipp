@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vernier/calibration/pose_advice.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/identification/observability.hpp"
 
@@ -31,9 +32,10 @@ VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estim
   estimate.arm.linearise(0, joints, MatrixX(), blocks.data());
   std::vector<MatrixX> rows;
   for (const RowBlock& block : blocks) {
-    rows.push_back(block.dense.topRows(oriented ? 6 : 3));
-    rows.back().topRows(3) /= sensors.position_sigma;
-    if (oriented) rows.back().bottomRows(3) /= sensors.orientation_sigma;
+    MatrixX& whitened = rows.emplace_back(oriented ? 6 : 3, block.dense.cols());
+    for (Index c = 0; c < whitened.cols(); ++c)
+      for (Index v = 0; v < whitened.rows(); ++v)
+        whitened(v, c) = block.dense(v, c) / (v < 3 ? sensors.position_sigma : sensors.orientation_sigma);
   }
   const Index dense = estimate.arm.num_dense();
   const std::vector<std::string> names = estimate.arm.names();
@@ -49,7 +51,7 @@ VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estim
                       std::sqrt(estimate.covariance(at, at)) * scales(at),
                       std::sqrt(helpful.variances.back()) * scales(at),
                       {}};
-    for (const Index pose : helpful.poses) advice.poses.push_back(joints.row(pose).transpose());
+    for (const Index pose : helpful.poses) advice.poses.push_back(row_of(joints, pose));
     out.push_back(std::move(advice));
   }
   return out;

@@ -135,10 +135,11 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   detail::VerificationInput input{station, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
   input.jacobians.resize(6, N * data.size());
   input.gates.resize(data.size());
-  const Matrix3 turn = now.identified().base().linear() * model.identified().base().linear().transpose();
+  const Matrix3 before_turn = rotation(model.identified().base()), back = before_turn.transpose(),
+                turn = rotation(now.identified().base()) * back;
   for (Index i = 0; i < data.size(); ++i) {
     const JointVector<N> q = data.joints(i), previous = configuration(data.previous(), i);
-    const Vector3 error = learned.rows() > 0 ? Vector3(learned.row(i).transpose()) : Vector3(Vector3::Zero());
+    const Vector3 error = learned.rows() > 0 ? point(learned, i) : Vector3(Vector3::Zero());
     const auto warm = [&](const ErrorModel<Chain>& arm) {
       return data.temperatures().size() > 0 ? arm.at_temperature(data.temperatures()(i)) : arm;
     };

@@ -37,20 +37,21 @@ struct WhitenedResiduals {
 
 /// Takes off what columns explain, by modified Gram-Schmidt, twice; columns that depend on others are left out.
 /// @return number of columns that were taken off
-VERNIER_API Index take_off(MatrixX nuisance, VectorX& residual, MatrixX& columns) {
-  Index rank = 0;
+VERNIER_API Index take_off(const ConstMatrixRef& nuisance, VectorX& residual, MatrixX& columns) {
+  std::vector<VectorX> axes;
   for (Index k = 0; k < nuisance.cols(); ++k) {
-    const double before = nuisance.col(k).norm();
     VectorX axis = nuisance.col(k);
+    const double before = axis.norm();
     for (int pass = 0; pass < 2; ++pass)
-      for (Index j = 0; j < rank; ++j) axis -= nuisance.col(j).dot(axis) * nuisance.col(j);
+      for (const VectorX& other : axes) axis -= other.dot(axis) * other;
     if (!(axis.norm() > 1e-7 * before)) continue;
-    axis.normalize();
-    nuisance.col(rank++) = axis;
+    axis /= axis.norm();
     residual -= axis.dot(residual) * axis;
-    columns -= axis * (axis.transpose() * columns).eval();
+    const VectorX along = transposed_product(columns, axis);
+    for (Index c = 0; c < columns.cols(); ++c) columns.col(c) -= along(c) * axis;
+    axes.push_back(std::move(axis));
   }
-  return rank;
+  return static_cast<Index>(axes.size());
 }
 
 /// Chi-square of some columns together, and how many of them are independent.
@@ -63,9 +64,8 @@ VERNIER_API ColumnTest test_columns(const WhitenedResiduals& of, const std::vect
   Index used = 0;
   for (const Index k : which)
     if (of.informative(k) > least_informative) columns.col(used++) = of.columns.col(k);
-  columns.conservativeResize(Eigen::NoChange, used);
   VectorX residual = of.residual;
-  const Index rank = take_off(columns, residual, none);
+  const Index rank = take_off(columns.leftCols(used), residual, none);
   return {of.residual.squaredNorm() - residual.squaredNorm(), rank};
 }
 
@@ -79,26 +79,25 @@ VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const Ve
   std::vector<RowBlock> blocks(static_cast<std::size_t>(n));
   VectorX warmer = VectorX::Zero(n);
   if (temperatures.size() > 0 && input.estimate.mean_temperature != 0)
-    warmer = temperatures.array() - input.estimate.mean_temperature;
+    for (Index i = 0; i < n; ++i) warmer(i) = temperatures(i) - input.estimate.mean_temperature;
   input.estimate.arm.linearise(0, data.joints(), data.previous(), blocks.data(), true, warmer);
-  MatrixX rows(values * n, unknowns), half = MatrixX::Zero(values * n, unknowns);
+  MatrixX effects(unknowns, values * n);
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {
     blocks[static_cast<std::size_t>(i)].expand(input.estimate.arm.group_sizes(), one);
-    rows.middleRows(values * i, values) = one.topRows(values);
+    for (Index v = 0; v < values; ++v)
+      for (Index k = 0; k < unknowns; ++k) effects(k, values * i + v) = one(v, k);
   }
-  add_product(half, rows, input.estimate.covariance);
-  MatrixX out = MatrixX::Zero(values * n, values * n);
-  add_product(out, half, rows.transpose());
+  MatrixX out = matrix_product(transposed_matrix_product(effects, input.estimate.covariance), effects);
   // a sensor worse than that of the calibration, whose noise is in that of a visit
   const auto excess = [](double now, double then) { return std::max(0.0, now * now - then * then); };
   const double position = excess(options.sensors.position_sigma, input.estimate.position_sigma),
                orientation = excess(options.sensors.orientation_sigma, input.estimate.orientation_sigma);
   for (Index i = 0; i < n; ++i) {
     Matrix6& visit = visits[static_cast<std::size_t>(i)];
-    visit.diagonal().head<3>().array() += position;
-    visit.diagonal().tail<3>().array() += orientation;
-    out.block(values * i, values * i, values, values) = visit.topLeftCorner(values, values);
+    for (Index v = 0; v < 6; ++v) visit(v, v) += v < 3 ? position : orientation;
+    for (Index c = 0; c < values; ++c)
+      for (Index r = 0; r < values; ++r) out(values * i + r, values * i + c) = visit(r, c);
   }
   return out;
 }
@@ -111,17 +110,24 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
   for (Index i = 0; i < n; ++i)
     if (std::find(out.aside.begin(), out.aside.end(), i) == out.aside.end())
       for (Index k = 0; k < values; ++k) kept.push_back(values * i + k);
-  MatrixX factor = covariance(kept, kept);
+  const auto rows = static_cast<Index>(kept.size());
+  MatrixX factor = rows_of(covariance, kept);
+  for (Index c = 0; c < rows; ++c) factor.col(c) = factor.col(kept[static_cast<std::size_t>(c)]);  // in ascending order
+  factor.conservativeResize(rows, rows);
   require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
-  MatrixX all(static_cast<Index>(kept.size()), 1 + registered.cols() + changes.cols());
-  all << residual(kept), registered(kept, Eigen::all), changes(kept, Eigen::all);
+  MatrixX all(rows, 1 + registered.cols() + changes.cols());
+  all.col(0) = rows_of(residual, kept);
+  all.middleCols(1, registered.cols()) = rows_of(registered, kept);
+  all.rightCols(changes.cols()) = rows_of(changes, kept);
   solve_lower(factor, all);
   WhitenedResiduals whitened{all.col(0), all.rightCols(changes.cols()), {}, 0};
-  const VectorX lengths = whitened.columns.colwise().norm().transpose();
+  const VectorX before_registration = squared_column_norms(whitened.columns);
   const Index rank = take_off(all.middleCols(1, registered.cols()), whitened.residual, whitened.columns);
-  whitened.informative = whitened.columns.colwise().norm().transpose().cwiseQuotient(lengths.cwiseMax(1e-300));
+  whitened.informative = squared_column_norms(whitened.columns);
+  for (Index k = 0; k < whitened.informative.size(); ++k)
+    whitened.informative(k) = std::sqrt(whitened.informative(k) / std::max(before_registration(k), 1e-300));
   out.chi_square = whitened.residual.squaredNorm();
-  out.dof = static_cast<Index>(kept.size()) - rank;
+  out.dof = rows - rank;
   out.p_value = out.dof > 0 ? chi_square_tail(out.chi_square, static_cast<double>(out.dof)) : 1;
 
   out.joints.assign(static_cast<std::size_t>(joints), {});
@@ -135,8 +141,9 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
     const bool revolute = out.joint_types[static_cast<std::size_t>(j)] == JointType::revolute;
     if (joint.determined) {
       ++tests;
-      const double information = whitened.columns.col(j).squaredNorm();
-      joint.zero_change = -whitened.columns.col(j).dot(whitened.residual) / information;
+      const VectorX column = whitened.columns.col(j);
+      const double information = column.squaredNorm();
+      joint.zero_change = -column.dot(whitened.residual) / information;
       joint.zero_std = 1 / std::sqrt(information);
       joint.zero_p = chi_square_tail(std::pow(joint.zero_change / joint.zero_std, 2), 1);
     }
@@ -196,24 +203,25 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
   for (Index i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
     const Isometry3& pose = input.poses[row];
-    residual.segment<3>(values * i) = pose.translation() - data.position(i);
-    if (values == 6)
-      residual.segment<3>(values * i + 3) =
-          log_so3(pose.linear() * exp_so3(probe) * data.orientations[row].transpose());
+    const Vector3 shift = translation(pose) - data.position(i);
+    Vector3 turn = Vector3::Zero();
+    if (values == 6) turn = rotation_difference(rotation(pose) * exp_so3(probe), data.orientations[row]);
     const double* jacobian = input.jacobians.data() + 6 * joints * i;
-    if (registered.cols() > 0)
-      registered.middleRows(values * i, values) = update.columns(pose, jacobian).topRows(values);
-    const Eigen::Map<const Rows6> columns(jacobian, 6, joints);
-    for (Index j = 0; j < joints; ++j) {
-      const double q = data.joints()(i, j);
-      changes.col(j).segment(values * i, values) = columns.col(j).head(values);
-      changes.col(joints + 2 * j).segment(values * i, values) = std::cos(q) * columns.col(j).head(values);
-      changes.col(joints + 2 * j + 1).segment(values * i, values) = std::sin(q) * columns.col(j).head(values);
+    const Rows6 frames = update.columns(pose, jacobian);
+    for (Index v = 0; v < values; ++v) {
+      const Index k = values * i + v;
+      residual(k) = v < 3 ? shift(v) : turn(v - 3);
+      for (Index c = 0; c < registered.cols(); ++c) registered(k, c) = frames(v, c);
+      for (Index j = 0; j < joints; ++j) {
+        const double q = data.joints()(i, j), effect = jacobian[6 * j + v];
+        changes(k, j) = effect;
+        changes(k, joints + 2 * j) = std::cos(q) * effect;
+        changes(k, joints + 2 * j + 1) = std::sin(q) * effect;
+      }
     }
-    out.as_fitted(i) = (input.poses_as_fitted[row].translation() - data.position(i)).norm();
-    if (values == 6)
-      out.rotations_as_fitted(i) =
-          log_so3(input.poses_as_fitted[row].linear() * data.orientations[row].transpose()).norm();
+    const Isometry3& fitted = input.poses_as_fitted[row];
+    out.as_fitted(i) = (translation(fitted) - data.position(i)).norm();
+    if (values == 6) out.rotations_as_fitted(i) = rotation_difference(rotation(fitted), data.orientations[row]).norm();
   }
   std::vector<Matrix6> visits;
   const MatrixX covariance = residual_covariance(input, options, values, visits);
@@ -223,13 +231,15 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
   out.normalised.resize(n);
   if (values == 6) out.rotations.resize(n);
   for (Index i = 0; i < n; ++i) {
-    const Vector3 error = residual.segment<3>(values * i);
-    MatrixX factor = visits[static_cast<std::size_t>(i)].topLeftCorner<3, 3>(), whitened = error;
+    const VectorX error = residual.segment(values * i, 3);
+    const MatrixX visit = visits[static_cast<std::size_t>(i)];
+    MatrixX factor = visit.topLeftCorner(3, 3);
+    VectorX whitened = error;
     require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
     solve_lower(factor, whitened);
     out.errors(i) = error.norm();
     out.normalised(i) = whitened.norm();
-    if (values == 6) out.rotations(i) = residual.segment<3>(values * i + 3).norm();
+    if (values == 6) out.rotations(i) = VectorX(residual.segment(values * i + 3, 3)).norm();
   }
   test_all(input, covariance, residual, registered, changes, values, out);
   if (!out.consistent) {  // a reflector that was bumped is no change of the arm

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "vernier/calibration/detail/audit_hypotheses.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/frames.hpp"
 
@@ -26,18 +27,22 @@ VERNIER_IMPL std::string convention_name(int convention) {
 
 VERNIER_API Matrix3 rotation_by_convention(int convention, const Vector3& v) {
   const Vector3 angles = convention % 2 == 0 ? Vector3(v * std::numbers::pi / 180) : v;
-  const auto about = [&](int axis) { return exp_so3(Vector3(angles(axis) * Vector3::Unit(axis))); };
   if (convention == 1) return exp_so3(v).transpose();
   if (convention == 2) return exp_so3(angles);
-  if (convention <= 4) return about(2) * about(1) * about(0);
-  return about(0) * about(1) * about(2);
+  const Matrix3 x = exp_so3(Vector3(angles(0), 0, 0)), y = exp_so3(Vector3(0, angles(1), 0)),
+                z = exp_so3(Vector3(0, 0, angles(2)));
+  const bool fixed = convention <= 4;
+  const Matrix3 first = (fixed ? z : x) * y;
+  return first * (fixed ? x : z);
 }
 
 VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const ArmGeometry& arm) const {
   AuditRows out = rows;
   if (!kind) return out;
   switch (*kind) {
-    case FaultKind::length_unit: out.positions /= factor; break;
+    case FaultKind::length_unit:
+      for (Index i = 0; i < out.size(); ++i) set_point(out.positions, i, point(out.positions, i) / factor);
+      break;
     case FaultKind::joint_unit:
       for (int j = 0; j < arm.joints(); ++j)
         if (arm.chain().revolute(j)) out.joints.col(j) /= factor;
@@ -45,16 +50,18 @@ VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const A
     case FaultKind::joint_sign: out.joints.col(joint) *= -1; break;
     case FaultKind::mirrored_frame: {
       const bool turned = convention == 3;  // the orientations are mirrored, too
-      out.positions.col(turned ? 0 : convention) *= -1;
-      const Vector3 mirror(-1, 1, 1);
-      if (turned)
-        for (Matrix3& r : out.orientations) r = mirror.asDiagonal() * r * mirror.asDiagonal();
+      for (Index i = 0; i < out.size(); ++i) out.positions(i, turned ? 0 : convention) *= -1;
+      if (!turned) break;
+      for (Matrix3& r : out.orientations)
+        for (Index k = 1; k < 3; ++k) {
+          r(0, k) = -r(0, k);
+          r(k, 0) = -r(k, 0);
+        }
       break;
     }
     case FaultKind::orientation_convention:
       for (std::size_t i = 0; i < out.orientations.size(); ++i)
-        out.orientations[i] =
-            rotation_by_convention(convention, rows.rotation_vectors.row(static_cast<Index>(i)).transpose());
+        out.orientations[i] = rotation_by_convention(convention, point(rows.rotation_vectors, static_cast<Index>(i)));
       break;
     default: break;
   }
@@ -86,8 +93,7 @@ VERNIER_IMPL HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const Audi
 }
 
 VERNIER_IMPL double point_scatter(const PointRows& points) {
-  const Eigen::RowVector3d mean = points.colwise().mean();
-  return robust_scale(points.rowwise() - mean);
+  return robust_scale(rows_minus(points, centroid(points)));
 }
 
 VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const AuditRows& rows, double smallest_zero) {
@@ -162,8 +168,8 @@ VERNIER_IMPL std::optional<RowShift> find_shift(const ArmGeometry& nominal, cons
     const AuditResiduals residuals = audit_residuals(best->fit.arm, rows.rows(all, shift));
     for (std::size_t k = 0; k < all.size(); ++k) {
       const auto row = static_cast<Index>(k);
-      double size = residuals.position.row(row).norm();
-      if (rows.oriented()) size = std::max(size, 0.25 * residuals.rotation.row(row).norm());
+      double size = point(residuals.position, row).norm();
+      if (rows.oriented()) size = std::max(size, 0.25 * point(residuals.rotation, row).norm());
       cost(all[k], shift + most) = std::min(1.0, std::pow(size / limit, 2));
     }
   }

@@ -46,11 +46,11 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
   const auto exchanged = [&](Index joints, Index pose) {
     const Index index[] = {joints};
     const AuditResiduals r = audit_residuals(geometry.arm, rows.rows(index, pose - joints));
-    const Vector3 error = r.position.row(0).transpose();
-    const LeftOut& row = left[static_cast<std::size_t>(joints)];
-    const bool fits = std::sqrt(error.dot(row.position_weight * error)) < factor;
+    const Vector3 error = point(r.position, 0),
+                  weighted = left[static_cast<std::size_t>(joints)].position_weight * error;
+    const bool fits = std::sqrt(error.dot(weighted)) < factor;
     const bool turned =
-        rows.oriented() && r.rotation.row(0).norm() > 2 * rotation_limit * geometry.residuals.rotation_scale;
+        rows.oriented() && point(r.rotation, 0).norm() > 2 * rotation_limit * geometry.residuals.rotation_scale;
     return fits && !turned;
   };
   std::vector<bool> paired(wrong.size(), false);
@@ -114,7 +114,8 @@ VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotatio
           {order.begin() + static_cast<std::ptrdiff_t>(a), order.begin() + static_cast<std::ptrdiff_t>(b)}};
       bool same = true;
       for (const Index row : finding.rows)
-        same = same && data.joints().row(row) == data.joints().row(finding.rows.front());
+        for (Index j = 0; j < data.dof; ++j)
+          same = same && data.joints()(row, j) == data.joints()(finding.rows.front(), j);
       finding.message = name_rows(finding.rows) +
                         (same ? ": joints and pose are the same in all digits: leave out all but one"
                               : ": the same pose in all digits at different joints: the sensor was not read again, "

@@ -12,10 +12,8 @@ namespace vernier::detail {
 
 /// Root of the mean squared distance from the mean of points [m].
 VERNIER_API double point_spread(const PointRows& points) {
-  const Eigen::RowVector3d mean = points.colwise().mean();
-  double sum = 0;
-  for (Index i = 0; i < points.rows(); ++i) sum += (points.row(i) - mean).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(points.rows()));
+  const VectorX distances = distances_from(points, centroid(points));
+  return std::sqrt(distances.squaredNorm() / static_cast<double>(points.rows()));
 }
 
 VERNIER_IMPL void require_plausible(const ArmGeometry& nominal, const Station& poses, double frames_rms,
@@ -27,7 +25,8 @@ VERNIER_IMPL void require_plausible(const ArmGeometry& nominal, const Station& p
   const double ratio = measured / expected;
   double largest = 0;
   for (int i = 0; i < nominal.joints(); ++i)
-    if (nominal.chain().revolute(i)) largest = std::max(largest, poses.joints().col(i).cwiseAbs().maxCoeff());
+    for (Index row = 0; nominal.chain().revolute(i) && row < poses.size(); ++row)
+      largest = std::max(largest, std::abs(poses.joints()(row, i)));
   if (largest > 15)
     hint = "a joint of " + brief(largest) + " rad looks like degrees in a _rad column";
   else if (largest < 0.15)
@@ -45,10 +44,8 @@ VERNIER_IMPL void require_plausible_distances(const ArmGeometry& registered, con
                                               const std::string& data) {
   const PointRows points = registered.positions(distances.joints());
   const Vector3 fixed_point = trilaterate(points, *distances.lengths);
-  double sum = 0;
-  for (Index i = 0; i < points.rows(); ++i)
-    sum += std::pow((points.row(i).transpose() - fixed_point).norm() - (*distances.lengths)(i), 2);
-  const double rms = std::sqrt(sum / static_cast<double>(points.rows()));
+  const VectorX off = distances_from(points, fixed_point) - *distances.lengths;
+  const double rms = std::sqrt(off.squaredNorm() / static_cast<double>(points.rows()));
   if (!(rms <= 0.05))
     throw CalibrationFailure(data + ": no fixed point is consistent with these distances, the best one is off by " +
                              brief(rms * 1e3) + " mm (rms): wrong units, columns or rows?");
@@ -59,10 +56,10 @@ VERNIER_IMPL void require_plausible_contact(const ArmGeometry& registered, const
   const PointRows points = contact_arm(registered, contact, station).positions(contact.joints());
   double sum = 0;
   for (Index i = 0; i < points.rows(); ++i) {
-    const Vector3 point = points.row(i).transpose();
-    const double off = station.lengths != nullptr ? point.norm() - (*station.lengths)(i)
-                       : station.projected()      ? point.z() - station.height(i)
-                                                  : (point - station.position(i)).norm();
+    const Vector3 tool = point(points, i);
+    const double off = station.lengths != nullptr ? tool.norm() - (*station.lengths)(i)
+                       : station.projected()      ? tool.z() - station.height(i)
+                                                  : (tool - station.position(i)).norm();
     sum += off * off;
   }
   const double rms = std::sqrt(sum / static_cast<double>(points.rows()));

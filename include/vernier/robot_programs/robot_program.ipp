@@ -7,6 +7,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/robot_programs/configuration.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
@@ -46,17 +47,16 @@ VERNIER_IMPL std::vector<std::string> written_numbers(ProgramLanguage language, 
     angles(replaced.joints);
     return out;
   }
-  for (Index k = 0; k < 3; ++k)
-    out.push_back(with_decimals(replaced.pose.translation()(k) * (si ? 1 : 1e3), si ? 7 : 4));
-  const Matrix3 rotation = replaced.pose.linear();
+  for (Index k = 0; k < 3; ++k) out.push_back(with_decimals(replaced.pose(k, 3) * (si ? 1 : 1e3), si ? 7 : 4));
+  const Matrix3 turn = rotation(replaced.pose);
   if (language == ProgramLanguage::rapid) {
-    Eigen::Quaterniond q(rotation);
+    Eigen::Quaterniond q(turn);
     q.normalize();
     for (const double value : {q.w(), q.x(), q.y(), q.z()}) out.push_back(with_decimals(value, 9));
   } else if (si) {
-    angles(log_so3(rotation));
+    angles(log_so3(turn));
   } else {
-    Vector3 zyx = zyx_of_rotation(rotation);
+    Vector3 zyx = zyx_of_rotation(turn);
     if (language == ProgramLanguage::fanuc_tp) std::swap(zyx(0), zyx(2));
     angles(zyx);
   }
@@ -105,8 +105,9 @@ VERNIER_IMPL std::string replace_targets(std::string_view text, const RobotProgr
   for (const ReplacedTarget& one : replaced) {
     require(one.target < program.targets.size(), "replace_targets: no target ", one.target);
     const ProgramTarget& target = program.targets[one.target];
-    require(one.pose.matrix().allFinite() && (one.joints.array().abs() < 1e6).all(), "replace_targets: target ",
-            one.target, " is not finite");
+    require(detail::all_finite(one.pose.matrix()) &&
+                std::all_of(one.joints.begin(), one.joints.end(), [](double q) { return std::abs(q) < 1e6; }),
+            "replace_targets: target ", one.target, " is not finite");
     const std::vector<std::string> numbers = detail::written_numbers(program.language, target, one);
     for (std::size_t k = 0; k < target.numbers.size(); ++k) pieces.push_back({target.numbers[k], numbers[k]});
     if (target.kind == TargetKind::joints || target.configuration.empty()) continue;

@@ -291,7 +291,8 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
   auto robot = CalibratedRobot<N, Convention>(
       info.name, calibration.model(), info.limits,
       {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
-       calibration.errors.position_sigma, left_out.size() > 0 ? std::sqrt(left_out.array().square().mean()) : 0,
+       calibration.errors.position_sigma,
+       left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
        info.held_out_error});
   const LearnedRemainder<N>* learned = calibration.deployed();
   if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());

@@ -62,7 +62,9 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
   if (report.registration) out.rule = "the frames registered from the same poses";
   out.passed = report.valid;
   out.poses.normalised = report.normalised;
-  out.ellipsoid_coverage = (report.normalised.array() <= std::sqrt(7.8147)).cast<double>().mean();
+  const auto within = std::count_if(report.normalised.begin(), report.normalised.end(),
+                                    [](double error) { return error <= std::sqrt(7.8147); });
+  out.ellipsoid_coverage = static_cast<double>(within) / static_cast<double>(report.normalised.size());
   ReportTable joints{"Joint by joint",
                      message("Changes of zero and of transmission once a turn, each joint looked at alone; p is the "
                              "probability of a change as large by chance. A change is named at the level of ",

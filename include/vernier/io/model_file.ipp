@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/core/version.hpp"
 #include "vernier/io/detail/estimate_json.hpp"
 #include "vernier/io/model_file.hpp"
@@ -41,7 +42,7 @@ int named(const JsonNode& node, const std::array<std::string_view, K>& names) {
 }
 
 VERNIER_API OrderedJson list_of(const ConstVectorRef& values) {
-  require(values.allFinite(), "save: a value is not finite");
+  require(all_finite(values), "save: a value is not finite");
   OrderedJson out = OrderedJson::array();
   for (Index i = 0; i < values.size(); ++i) out.push_back(values(i));
   return out;
@@ -59,7 +60,7 @@ VERNIER_API DhRow row_from_json(const JsonNode& node, JointType type) {
 }
 
 VERNIER_API OrderedJson frame_to_json(const FrameParameters& frame) {
-  require(frame.values().allFinite(), "save: a frame is not finite");
+  require(all_finite(frame.values()), "save: a frame is not finite");
   OrderedJson out;
   for (std::size_t k = 0; k < 6; ++k) out[std::string(frame_keys[k])] = frame.values()(static_cast<Index>(k));
   return out;
@@ -143,6 +144,12 @@ VERNIER_API Vector3 direction_from_json(const JsonNode& node) {
   const Vector3 out = node.numbers(3);
   if (!(std::abs(out.norm() - 1) < 1e-6)) node.fail("must have length 1");
   return out;
+}
+
+/// A matrix, column by column.
+VERNIER_API MatrixX matrix_from_json(const JsonNode& node, Index rows, Index columns) {
+  const VectorX values = node.numbers(static_cast<std::size_t>(rows * columns));
+  return Eigen::Map<const MatrixX>(values.data(), rows, columns);
 }
 
 /// @param nominal the chain whose torques gravity compliance needs, and whose frames tilt
@@ -230,7 +237,9 @@ VERNIER_API FittedArm arm_from_json(const ChainTable& nominal, const JsonNode& n
 }
 
 VERNIER_API OrderedJson learned_to_json(const LearnedData& learned) {
-  const auto flat = [](const MatrixX& values) { return list_of(VectorX(values.reshaped())); };
+  const auto flat = [](const MatrixX& values) {
+    return list_of(Eigen::Map<const VectorX>(values.data(), values.size()));
+  };
   if (const FittedKernels* kernels = std::get_if<FittedKernels>(&learned.function))
     return {{"kind", "kernels"},
             {"kernel", kernel_names[static_cast<std::size_t>(kernels->kernel)]},
@@ -270,7 +279,7 @@ VERNIER_API FittedNetwork network_from_json(const JsonNode& node, int joints) {
   const auto features = static_cast<std::size_t>(layer.features(joints));
   out.scaling = {node.at("feature_offset").numbers(features), node.at("feature_factor").numbers(features)};
   out.theta = node.at("hidden_weights").numbers(static_cast<std::size_t>(layer.dimension(joints)));
-  out.beta = node.at("output_weights_m").numbers(3 * static_cast<std::size_t>(layer.nodes)).reshaped(layer.nodes, 3);
+  out.beta = matrix_from_json(node.at("output_weights_m"), layer.nodes, 3);
   out.offset = node.at("output_offset_m").numbers(3);
   return out;
 }
@@ -283,8 +292,8 @@ VERNIER_API FittedKernels kernels_from_json(const JsonNode& node, int joints) {
   const Index features = feature_count(out.input_map, joints);
   out.scaling = {node.at("feature_offset").numbers(static_cast<std::size_t>(features)),
                  node.at("feature_factor").numbers(static_cast<std::size_t>(features))};
-  out.centres = node.at("centres").numbers(static_cast<std::size_t>(samples * features)).reshaped(samples, features);
-  out.alpha = node.at("coefficients_m").numbers(3 * static_cast<std::size_t>(samples)).reshaped(samples, 3);
+  out.centres = matrix_from_json(node.at("centres"), samples, features);
+  out.alpha = matrix_from_json(node.at("coefficients_m"), samples, 3);
   out.mean = node.at("mean_m").numbers(3);
   return out;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "vernier/core/points.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/robot_file.hpp"
 
@@ -55,7 +56,7 @@ VERNIER_API void read_joint(const JsonNode& joint, RobotDescription& robot) {
 VERNIER_IMPL ArmGeometry RobotDescription::geometry() const {
   const detail::ChainTable chain(rows, modified);
   const ArmGeometry inner = modified ? detail::to_standard(chain) : ArmGeometry(chain, {}, {});
-  return inner.with_frames(base * inner.base().isometry(), tool);
+  return inner.with_frames(composed(base, inner.base().isometry()), tool);
 }
 
 VERNIER_IMPL RobotDescription load_robot(const std::string& path) {

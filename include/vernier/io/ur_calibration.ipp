@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/data/detail/text_lines.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/kinematics/detail/rows_of_axes.hpp"
@@ -94,9 +95,10 @@ VERNIER_API UrDeltas read_ur_deltas(const std::string& path) {
 VERNIER_API Isometry3 end_of_rows(const std::vector<DhRow>& rows, std::vector<JointAxis>& axes) {
   Isometry3 at = Isometry3::Identity();
   for (const DhRow& row : rows) {
-    axes.push_back({at.linear().col(2), at.translation(), row.joint});
-    at = at * Eigen::AngleAxisd(row.theta, Vector3::UnitZ()) * Eigen::Translation3d(row.a, 0, row.d) *
-         Eigen::AngleAxisd(row.alpha, Vector3::UnitX());
+    axes.push_back({{at(0, 2), at(1, 2), at(2, 2)}, translation(at), row.joint});
+    const Isometry3 turned = rigid_motion(exp_so3(Vector3(0, 0, row.theta)), Vector3::Zero());
+    const Isometry3 moved = rigid_motion(exp_so3(Vector3(row.alpha, 0, 0)), Vector3(row.a, 0, row.d));
+    at = composed(at, composed(turned, moved));
   }
   return at;
 }
@@ -125,10 +127,10 @@ VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const
   RobotDescription out = nominal;
   out.rows = found.rows;
   // What is left behind the last axis keeps a and alpha, and so d of the last row its meaning.
-  const Isometry3 left = found.frames.back().inverse() * end;
+  const Isometry3 left = composed(inverse_of(found.frames.back()), end);
   const double alpha = exact.back().alpha;
-  const Matrix3 turn = left.linear() * Eigen::AngleAxisd(-alpha, Vector3::UnitX());
-  out.rows.back() = {exact.back().a, alpha, left.translation().z(), std::atan2(turn(1, 0), turn(0, 0))};
+  // its turn about x leaves the first column as it is
+  out.rows.back() = {exact.back().a, alpha, left(2, 3), std::atan2(left(1, 0), left(0, 0))};
   double& theta = out.rows.back().theta;
   theta += std::round((thetas.back() - theta) / (2 * std::numbers::pi)) * 2 * std::numbers::pi;
 

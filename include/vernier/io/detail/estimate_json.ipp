@@ -78,7 +78,7 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
   using Json = nlohmann::ordered_json;
   constexpr Index most = 1700;
   const auto list = [](const VectorX& values) {
-    require(values.allFinite(), "save: a value of the estimate is not finite");
+    require(all_finite(values), "save: a value of the estimate is not finite");
     return Json(std::vector<double>(values.begin(), values.end()));
   };
   const ArmParameterisation& arm = estimate.arm;
@@ -91,7 +91,8 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
     if (u.thermal) one["per_kelvin"] = true;
     geometric.push_back(std::move(one));
   }
-  const VectorX stds = estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  VectorX stds = diagonal_of(estimate.covariance);
+  for (double& std : stds) std = std::sqrt(std::max(0.0, std));
   const std::vector<Index> order = unknowns_by_order(arm);
   const Index kept = std::min(most, arm.size());
   MatrixX correlation = MatrixX::Zero(kept, kept);
@@ -165,8 +166,8 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
   VectorX precisions(terms);
   for (Index k = 0; k < terms; ++k) precisions(k) = precision_of(prior_stds.at(static_cast<std::size_t>(k)));
   const VectorX stds = node.at("stds_in_scales").numbers(static_cast<std::size_t>(size));
-  if ((scales.array() <= 0).any()) node.at("coefficient_scales").fail("must be positive");
-  if ((stds.array() < 0).any()) node.at("stds_in_scales").fail("must not be negative");
+  if (terms > 0 && scales.minCoeff() <= 0) node.at("coefficient_scales").fail("must be positive");
+  if (size > 0 && stds.minCoeff() < 0) node.at("stds_in_scales").fail("must not be negative");
   const Index kept = static_cast<Index>(node.at("correlated").integer(0, size));
   const std::vector<float> factor = floats_of(node.at("correlation_factor").text(16'000'000));
   if (static_cast<Index>(factor.size()) != kept * (kept + 1) / 2 ||
@@ -175,13 +176,14 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
 
   ErrorModelEstimate out{.arm = parameterised(arm, std::move(unknowns), scales, precisions,
                                               thermal != nullptr ? thermal->parameters : VectorX())};
-  MatrixX lower = MatrixX::Zero(kept, kept), correlation = lower;
+  MatrixX upper = MatrixX::Zero(kept, kept);
   std::size_t at = 0;
   for (Index i = 0; i < kept; ++i)
-    for (Index j = 0; j <= i; ++j) lower(i, j) = static_cast<double>(factor[at++]);
-  add_product(correlation, lower, lower.transpose());
+    for (Index j = 0; j <= i; ++j) upper(j, i) = static_cast<double>(factor[at++]);
+  const MatrixX correlation = transposed_matrix_product(upper, upper);
   const std::vector<Index> order = unknowns_by_order(out.arm);
-  out.covariance = stds.cwiseAbs2().asDiagonal();
+  out.covariance.setZero(size, size);
+  for (Index k = 0; k < size; ++k) out.covariance(k, k) = stds(k) * stds(k);
   for (Index j = 0; j < kept; ++j)
     for (Index i = 0; i < kept; ++i) {
       const Index a = order[static_cast<std::size_t>(i)], b = order[static_cast<std::size_t>(j)];

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"
@@ -56,12 +57,17 @@ struct PoseBounds {
 };
 VERNIER_API PoseBounds pose_bounds(const ReportInput& input, const PoseView& view) {
   if (view.shown.empty()) return {};
-  Vector3 lower = input.poses.positions.row(view.shown.front()).transpose(), upper = lower;
-  for (const Index i : view.shown) {
-    lower = lower.cwiseMin(input.poses.positions.row(i).transpose());
-    upper = upper.cwiseMax(input.poses.positions.row(i).transpose());
+  PoseBounds out;
+  for (Index c = 0; c < 3; ++c) {
+    double lower = input.poses.positions(view.shown.front(), c), upper = lower;
+    for (const Index i : view.shown) {
+      lower = std::min(lower, input.poses.positions(i, c));
+      upper = std::max(upper, input.poses.positions(i, c));
+    }
+    out.centre(c) = (lower + upper) / 2;
+    out.half = std::max(out.half, (upper - lower) / 2);
   }
-  return {(lower + upper) / 2, std::max(1e-3, (upper - lower).maxCoeff() / 2)};
+  return out;
 }
 
 VERNIER_IMPL std::string poses_json(const ReportInput& input, const PoseView& view) {
@@ -129,7 +135,7 @@ VERNIER_IMPL std::string pose_projections(const ReportInput& input, const PoseVi
   for (const Axes& axes : all) {
     std::array<std::string, 8> paths;
     for (const Index i : view.shown) {
-      const Vector3 p = (input.poses.positions.row(i).transpose() - bounds.centre) / bounds.half * room;
+      const Vector3 arm = point(input.poses.positions, i) - bounds.centre, p = arm * (room / bounds.half);
       std::string& path = paths[error_class(view.after(i), view.after_clip)];
       path += message('M', std::llround(middle + p(axes.right)), ' ', std::llround(middle - p(axes.up)), "h0");
     }

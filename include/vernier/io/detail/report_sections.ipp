@@ -42,8 +42,10 @@ VERNIER_IMPL std::string section(const std::string& id, const std::string& headi
 VERNIER_IMPL RankCorrelation rank_correlation(const VectorX& a, const VectorX& b) {
   if (a.size() < 3) return {};
   VectorX ra = ranks(a), rb = ranks(b);
-  ra.array() -= ra.mean();
-  rb.array() -= rb.mean();
+  for (VectorX* one : {&ra, &rb}) {
+    const double mean = one->mean();
+    for (double& rank : *one) rank -= mean;
+  }
   const double size = std::sqrt(ra.squaredNorm() * rb.squaredNorm());
   if (!(size > 0)) return {};
   const double rho = ra.dot(rb) / size;
@@ -92,7 +94,9 @@ VERNIER_API std::string look_at(const ReportInput& input) {
     all.emplace_back("where", message("The predicted 95 % ellipsoids contain ", brief(100 * *input.ellipsoid_coverage),
                                       " % of the errors: predicted uncertainties are too ",
                                       *input.ellipsoid_coverage < 0.95 ? "small." : "large."));
-  if (const Index outside = (input.poses.gates.array() < 1).count(); outside > 0)
+  if (const Index outside =
+          std::count_if(input.poses.gates.begin(), input.poses.gates.end(), [](double gate) { return gate < 1; });
+      outside > 0)
     all.emplace_back("where", message(outside, " poses lie outside the measured joint ranges."));
   if (std::any_of(input.drift.begin(), input.drift.end(), [](const SessionDrift& d) { return !d.empty(); }))
     all.emplace_back("drift", "Something moved during the session.");
@@ -293,7 +297,8 @@ VERNIER_IMPL std::string joints_section(const ReportInput& input) {
   for (std::size_t j = 0; j < input.joints.size(); ++j) {
     const JointReport& joint = input.joints[j];
     const std::size_t n = joint.angle.size();
-    if (n == 0 || joint.transmission.size() != static_cast<Index>(n) || !(joint.transmission_std.array() > 0).any())
+    if (n == 0 || joint.transmission.size() != static_cast<Index>(n) ||
+        std::none_of(joint.transmission_std.begin(), joint.transmission_std.end(), [](double std) { return std > 0; }))
       continue;
     const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;
     ChartSeries function{.title = "function", .colour = 1},

@@ -192,14 +192,16 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
       if (!known[i] && temperature_std > 0) {  // what a standard deviation of temperature does
         Vector6 effect = Vector6::Zero();
         for (Index k = 0; k < static_cast<Index>(arm.geometric().size()); ++k)
-          if (arm.geometric()[static_cast<std::size_t>(k)].thermal) effect += steps(k) * column_of(warm[i].dense, k);
+          if (arm.geometric()[static_cast<std::size_t>(k)].thermal)
+            effect += steps(k) * detail::column_of(warm[i].dense, k);
         detail::add_outer_product(effect, 1, out);
       }
       const bool by_half_loops =
           !arm.terms().hysteresis.empty() && (before.rows() == 0 || !detail::known_row(before, row));
       for (int j = 0; j < static_cast<int>(rows[i].factor.cols()); ++j) {
         const double half_loop = by_half_loops ? arm.joint_errors().half_loop(j) : 0;
-        detail::add_outer_product(column_of(rows[i].factor, j), joint_sigma * joint_sigma + half_loop * half_loop, out);
+        detail::add_outer_product(detail::column_of(rows[i].factor, j),
+                                  joint_sigma * joint_sigma + half_loop * half_loop, out);
       }
       const double gate = gates(first + row);
       // errors that the suppressed terms would have corrected; a mean norm is 1.6 sigma of a component

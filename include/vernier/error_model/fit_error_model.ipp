@@ -532,7 +532,7 @@ class ErrorModelFit {
     MatrixX score = MatrixX::Zero(at.system.blocks, joints), weight = score;
     visit_blocks(at.system, 0, 1, at.system.blocks, [&](Index b, const RowBlock& rows) {
       for (Index j = 0; j < rows.factor.cols(); ++j) {
-        const Vector6 effect = column_of(rows.factor, j);
+        const Vector6 effect = detail::column_of(rows.factor, j);
         score(b, j) = effect.dot(rows.residual);
         weight(b, j) = effect.squaredNorm();
       }

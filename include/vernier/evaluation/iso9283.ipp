@@ -41,7 +41,7 @@ VERNIER_IMPL PointRows rotation_vectors_from(std::span<const Matrix3> rotations,
 
 VERNIER_IMPL double repeatability(const PointRows& points) {
   if (points.rows() < 2) return std::numeric_limits<double>::quiet_NaN();
-  const VectorX l = distances_from(points, column_means(points));
+  const VectorX l = distances_from(points, centroid(points));
   const double mean = l.mean();
   double squares = 0;
   for (const double one : l) squares += (one - mean) * (one - mean);

@@ -82,12 +82,14 @@ VERNIER_API void add_local(const BlockSystem& system, const std::vector<LocalPri
     for (const RowBlock::Local& a : rows.local) {
       if (a.state < 0) continue;
       add_transposed_product(out.coupling.middleRows(a.state * k, k), a.columns, expanded);
-      for (Index i = 0; i < k; ++i) out.local_gradient(a.state * k + i) += column_of(a.columns, i).dot(rows.residual);
+      for (Index i = 0; i < k; ++i)
+        out.local_gradient(a.state * k + i) += detail::column_of(a.columns, i).dot(rows.residual);
       for (const RowBlock::Local& b : rows.local) {
         if (b.state < 0 || b.state > a.state) continue;
         double* sum = sums.block({b.state, a.state});
         for (Index j = 0; j < k; ++j)
-          for (Index i = 0; i < k; ++i) sum[k * j + i] += column_of(a.columns, i).dot(column_of(b.columns, j));
+          for (Index i = 0; i < k; ++i)
+            sum[k * j + i] += detail::column_of(a.columns, i).dot(detail::column_of(b.columns, j));
       }
     }
   });
@@ -145,9 +147,10 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
         if (all == d) return;
         for (Index c = 0; c < all - d; ++c) h(b, c) = rows.functions(c);
         for (Index j = 0; j < groups; ++j) {
-          const Vector6 factor = column_of(rows.factor, j);
-          for (Index i = 0; i <= j; ++i) factor_product(b, i + groups * j) = column_of(rows.factor, i).dot(factor);
-          for (Index c = 0; c < d; ++c) mixed(b, c + d * j) = column_of(rows.dense, c).dot(factor);
+          const Vector6 factor = detail::column_of(rows.factor, j);
+          for (Index i = 0; i <= j; ++i)
+            factor_product(b, i + groups * j) = detail::column_of(rows.factor, i).dot(factor);
+          for (Index c = 0; c < d; ++c) mixed(b, c + d * j) = detail::column_of(rows.dense, c).dot(factor);
           factor_residual(b, j) = rows.residual.dot(factor);
         }
       });

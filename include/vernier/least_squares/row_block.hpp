@@ -15,12 +15,16 @@ namespace vernier {
 /// Six rows, any number of columns.
 using Rows6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
+namespace detail {
+
 /// The j-th column of six rows.
 inline Vector6 column_of(const Rows6& rows, Index j) {
   Vector6 out;
   std::copy_n(rows.data() + 6 * j, 6, out.data());
   return out;
 }
+
+}  // namespace detail
 
 /// Residual (model minus measured) of a block and its derivatives with respect to the unknowns, all divided by the
 /// standard deviations of the measurement. Rows that were not measured are zero. Three kinds of unknowns:

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Points among rows, and the parts of a rigid motion, as values. Expressions of `Vector3` and `Matrix3` are compiled
-/// once for the whole house; those of rows and blocks, once for each kind.
+/// Points and configurations among rows, and the parts of a rigid motion, as values: cheaper to compile than
+/// expressions of rows and blocks, each of which is a type of its own.
 
 #include "vernier/core/types.hpp"
 

@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file
-/// Products, sums and decompositions of matrices sized at run time. A call costs its compiler nothing, an expression
-/// the class of its type and Eigen's kernels for it.
+/// Products, sums and decompositions of matrices sized at run time, so that Eigen's kernels for them are compiled once.
 
 #include <span>
 

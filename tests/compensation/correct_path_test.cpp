@@ -132,8 +132,8 @@ TEST(CorrectPath, ArmsStayOnTheirLines) {
     const auto n = static_cast<double>(path.points.size() - 1);
     const auto deviation = [&](const Model& of, std::size_t i, std::size_t k, double s, double e) {
       return ::vernier::testing::detail::deviation_from_line(of, path.points[i].command, path.points[i].command,
-                                                             path.points[k].command, detail::pose_between(a, b, s),
-                                                             detail::pose_between(a, b, e));
+                                                             path.points[k].command, interpolated(a, b, s),
+                                                             interpolated(a, b, e));
     };
     before = std::max(before, deviation(arm, 0, path.points.size() - 1, 0, 1));
     for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {

@@ -22,6 +22,9 @@ TEST(Points, ConfigurationsAreRowsOfJointValues) {
   JointRows<4> joints(2, 4);
   joints << 1, 2, 3, 4, 5, 6, 7, 8;
   EXPECT_EQ(configuration(joints, 1), JointVector<4>(5, 6, 7, 8));
+  set_configuration(joints, 0, JointVector<4>(9, 10, 11, 12));
+  EXPECT_EQ(configuration(joints, 0), JointVector<4>(9, 10, 11, 12));
+  EXPECT_EQ(configuration(joints, 1), JointVector<4>(5, 6, 7, 8));
   EXPECT_EQ(configuration(JointRows<1>(JointRows<1>::Constant(3, 1, 9)), 2)(0), 9);
 }
 

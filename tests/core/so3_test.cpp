@@ -159,6 +159,10 @@ TEST(PoseDifference, TakesOneFrameToTheOther) {
     EXPECT_LE((e.head<3>() - shift).norm(), 1e-15);
     EXPECT_LE((e.tail<3>() - turn).norm(), 1e-14);
     EXPECT_LE((vn::rotation_difference(to.linear(), from.linear()) - turn).norm(), 1e-14);
+    for (const double fraction : {0.0, 0.3, 1.0}) {  // so far on the way
+      const vn::Vector6 passed = vn::pose_difference(vn::interpolated(from, to, fraction), from);
+      EXPECT_LE((passed - fraction * e).norm(), 1e-14);
+    }
   }
 }
 

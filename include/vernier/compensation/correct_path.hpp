@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "vernier/compensation/detail/path_solver.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/kinematics/all_branches.hpp"
-#include "vernier/kinematics/detail/small_systems.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 
 namespace vernier {
@@ -171,7 +171,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   goals.reserve(targets.size());
   for (const PathTarget<N>& target : targets)
     goals.push_back(
-        {target.pose, are_finite(target.joints.data(), N) ? PathJoints(target.joints) : PathJoints(), target.motion});
+        {target.pose, detail::all_finite(target.joints) ? PathJoints(target.joints) : PathJoints(), target.motion});
   const SolvedPath solved =
       solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
                  {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
@@ -193,7 +193,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
                        from.ends_only,
                        1,
                        {}};
-    if (are_finite(command.data(), N)) {
+    if (detail::all_finite(command)) {
       if constexpr (requires { arm.gate(command); }) point.gate = arm.gate(command);
       point.singularities = distances(command);
     }

@@ -106,11 +106,8 @@ JointErrorLabels<Solver::dof> joint_errors(const Solver& solver, const JointRows
     const JointVector<Solver::dof> q = configuration(from, i);
     const auto found = inverse_kinematics(solver, Isometry3(target(i)), q);
     if (found.status != IkStatus::converged) continue;
-    for (int j = 0; j < Solver::dof; ++j) {
-      out.joints(kept, j) = q(j);
-      out.errors(kept, j) = sign * (found.joints(j) - q(j));
-    }
-    ++kept;
+    set_configuration(out.joints, kept, q);
+    set_configuration<Solver::dof>(out.errors, kept++, sign * (found.joints - q));
   }
   out.failed = from.rows() - kept;
   out.joints.conservativeResize(kept, Solver::dof);

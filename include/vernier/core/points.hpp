@@ -38,6 +38,12 @@ JointVector<N> configuration(const JointRows<N>& joints, Index i) {
   return out;
 }
 
+/// Sets the i-th configuration.
+template <int N>
+void set_configuration(JointRows<N>& joints, Index i, const JointVector<N>& values) {
+  for (Index j = 0; j < values.size(); ++j) joints(i, j) = values(j);
+}
+
 /// Translation of a rigid motion [m].
 inline Vector3 translation(const Isometry3& pose) { return {pose(0, 3), pose(1, 3), pose(2, 3)}; }
 

@@ -58,4 +58,11 @@ VERNIER_IMPL Vector6 pose_difference(const Isometry3& to, const Isometry3& from)
   return out;
 }
 
+VERNIER_IMPL Isometry3 interpolated(const Isometry3& from, const Isometry3& to, double fraction) noexcept {
+  const Vector3 start = translation(from), apart = translation(to) - start;
+  const Matrix3 orientation = rotation(from);
+  const Vector3 turn = fraction * rotation_difference(rotation(to), orientation);
+  return rigid_motion(exp_so3(turn) * orientation, start + fraction * apart);
+}
+
 }  // namespace vernier

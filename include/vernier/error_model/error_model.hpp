@@ -17,10 +17,7 @@ namespace vernier {
 
 namespace detail {
 
-/// Interpolates from `far` (gate 0) to `near` (gate 1), the rotation along the geodesic.
-VERNIER_API Isometry3 blend_poses(double gate, const Isometry3& near, const Isometry3& far) noexcept;
-
-/// The Jacobian of `blend_poses(gate(q), near(q), far(q))`; `jacobian` holds that of `far` and is overwritten.
+/// The Jacobian of `interpolated(far(q), near(q), gate(q))`; `jacobian` holds that of `far` and is overwritten.
 /// @param slope gradient of the gate
 VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometry3& near, const double* near_jacobian,
                                  const Isometry3& far, Index joints, double* jacobian) noexcept;
@@ -43,7 +40,7 @@ struct GatedModels {
     const double gate = this->gate(q);
     if (gate == 1) return near.pose(q);
     const Isometry3 fallback = far->pose(q);
-    return gate == 0 ? fallback : blend_poses(gate, near.pose(q), fallback);
+    return gate == 0 ? fallback : interpolated(fallback, near.pose(q), gate);
   }
   Vector3 position(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
@@ -59,7 +56,7 @@ struct GatedModels {
     const PoseAndJacobian<N> at = near.pose_and_jacobian(q);
     const Eigen::Matrix<double, 1, N> slope = coverage->derivative(q);
     blend_jacobians(gate, slope.data(), at.pose, at.jacobian.data(), out.pose, N, out.jacobian.data());
-    out.pose = blend_poses(gate, at.pose, out.pose);
+    out.pose = interpolated(out.pose, at.pose, gate);
     return out;
   }
 };

@@ -5,13 +5,6 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL Isometry3 blend_poses(double gate, const Isometry3& near, const Isometry3& far) noexcept {
-  const Vector3 start = translation(far), apart = translation(near) - start;
-  const Matrix3 turned = rotation(far);
-  const Vector3 turn = gate * rotation_difference(rotation(near), turned);
-  return rigid_motion(exp_so3(turn) * turned, start + gate * apart);
-}
-
 VERNIER_IMPL void blend_jacobians(double gate, const double* slope, const Isometry3& near, const double* near_jacobian,
                                   const Isometry3& far, Index joints, double* jacobian) noexcept {
   // R = Exp(gate * phi) R_far with Exp(phi) = R_near R_far'

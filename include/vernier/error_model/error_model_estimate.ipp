@@ -140,13 +140,6 @@ inline void add_outer_product(const Vector6& x, double factor, Matrix6& out) {
     for (Index r = 0; r < 6; ++r) out(r, c) += factor * x(r) * x(c);
 }
 
-/// Whether all values of a row are known.
-inline bool known_row(const MatrixX& rows, Index i) {
-  for (Index c = 0; c < rows.cols(); ++c)
-    if (!std::isfinite(rows(i, c))) return false;
-  return true;
-}
-
 }  // namespace detail
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
@@ -197,7 +190,7 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
         detail::add_outer_product(effect, 1, out);
       }
       const bool by_half_loops =
-          !arm.terms().hysteresis.empty() && (before.rows() == 0 || !detail::known_row(before, row));
+          !arm.terms().hysteresis.empty() && (before.rows() == 0 || !detail::all_finite(before.middleRows(row, 1)));
       for (int j = 0; j < static_cast<int>(rows[i].factor.cols()); ++j) {
         const double half_loop = by_half_loops ? arm.joint_errors().half_loop(j) : 0;
         detail::add_outer_product(detail::column_of(rows[i].factor, j),

@@ -15,17 +15,6 @@ namespace vernier {
 
 namespace detail {
 
-/// The pose a share of the way from a to b.
-VERNIER_API Isometry3 between_poses(const Isometry3& a, const Isometry3& b, double share, bool oriented) {
-  const Vector3 from = translation(a), shift = translation(b) - from;
-  Matrix3 orientation = Matrix3::Identity();
-  if (oriented) {
-    const Vector3 turn = rotation_difference(rotation(b), rotation(a));
-    orientation = exp_so3(Vector3(share * turn)) * rotation(a);
-  }
-  return rigid_motion(orientation, from + share * shift);
-}
-
 /// Poses over the length of arc.
 struct PoseLine {
   std::vector<double> arc;  ///< ascending
@@ -36,7 +25,8 @@ struct PoseLine {
     const auto next = std::find_if(arc.begin() + 1, arc.end() - 1, [&](double s) { return s >= at; });
     const auto k = static_cast<std::size_t>(next - arc.begin());
     const double step = arc[k] - arc[k - 1];
-    return between_poses(poses[k - 1], poses[k], step > 0 ? (at - arc[k - 1]) / step : 1, oriented);
+    const Isometry3 out = interpolated(poses[k - 1], poses[k], step > 0 ? (at - arc[k - 1]) / step : 1);
+    return oriented ? out : rigid_motion(Matrix3::Identity(), translation(out));
   }
 };
 

@@ -181,11 +181,9 @@ class CalibratedRobot {
     VectorX gates(n), temperatures(n);
     for (Index k = 0; k < n; ++k) {
       const Index i = rows[static_cast<std::size_t>(k)];
-      const JointVector<N> at = configuration(commands, i), from = i > 0 ? configuration(commands, i - 1) : unknown();
-      for (int j = 0; j < N; ++j) {
-        q(k, j) = at(j);
-        previous(k, j) = from(j);
-      }
+      const JointVector<N> at = configuration(commands, i);
+      set_configuration(q, k, at);
+      set_configuration(previous, k, i > 0 ? configuration(commands, i - 1) : unknown());
       gates(k) = gate(at);
     }
     temperatures.setConstant(model_.thermal() == nullptr ? std::numeric_limits<double>::quiet_NaN()

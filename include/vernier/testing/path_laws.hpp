@@ -109,8 +109,8 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
         for (const PathPoint<N>* piece = first; piece != &p; ++piece) {
           const JointVector<N>&a = piece->command, &b = (piece + 1)->command;
           const auto k = static_cast<double>(piece - first);
-          const Isometry3 s = vernier::detail::pose_between(start, target.pose, k / n);
-          const Isometry3 e = vernier::detail::pose_between(start, target.pose, (k + 1) / n);
+          const Isometry3 s = interpolated(start, target.pose, k / n);
+          const Isometry3 e = interpolated(start, target.pose, (k + 1) / n);
           check((b - a).cwiseAbs().maxCoeff() <= options.max_joint_step, "target ", next, ": a joint leaps");
           check(detail::deviation_from_line(arm, from, a, b, s, e) <= laws.line_slack * options.tolerance, "target ",
                 next, ": the tool leaves its line");

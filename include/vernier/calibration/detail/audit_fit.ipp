@@ -44,9 +44,8 @@ VERNIER_API double median_of(std::vector<double> values) {
 constexpr double median_norm = 1.538172254;
 
 VERNIER_IMPL double robust_scale(const PointRows& residuals) {
-  std::vector<double> norms;
-  for (Index i = 0; i < residuals.rows(); ++i) norms.push_back(point(residuals, i).norm());
-  return std::max(median_of(std::move(norms)) / median_norm, 1e-9);
+  const VectorX norms = distances_from(residuals, Vector3::Zero());
+  return std::max(median_of({norms.begin(), norms.end()}) / median_norm, 1e-9);
 }
 
 VERNIER_IMPL double AuditResiduals::score() const { return std::hypot(position_scale, 0.25 * rotation_scale); }
@@ -109,12 +108,8 @@ struct AuditColumns {
 
 /// J' W J, and precisions of the unknowns.
 VERNIER_API MatrixX normal_matrix(const MatrixX& jacobian, const VectorX& weights, const VectorX& precision) {
-  MatrixX out = MatrixX::Zero(precision.size(), precision.size()), weighted = jacobian;
-  for (Index c = 0; c < weighted.cols(); ++c) {
-    out(c, c) = precision(c);
-    for (Index r = 0; r < weighted.rows(); ++r) weighted(r, c) *= weights(r);
-  }
-  add_transposed_product(out, jacobian, weighted);
+  MatrixX out = transposed_matrix_product(jacobian, rows_scaled(weights, jacobian));
+  for (Index k = 0; k < precision.size(); ++k) out(k, k) += precision(k);
   return out;
 }
 
@@ -144,7 +139,7 @@ VERNIER_API VectorX audit_whitened(const AuditResiduals& residuals) {
   return out;
 }
 
-/// Three values from k on.
+/// Three values from the k-th on.
 inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
 
 /// Weights of Cauchy's loss, positions and orientations apart.
@@ -157,8 +152,7 @@ VERNIER_API VectorX audit_weights(const VectorX& whitened) {
 }
 
 VERNIER_API double audit_cost(const VectorX& whitened, const VectorX& precision, const VectorX& deviation) {
-  double sum = 0;
-  for (Index k = 0; k < precision.size(); ++k) sum += precision(k) * deviation(k) * deviation(k);
+  double sum = weighted_square(precision, deviation);
   for (Index k = 0; k + 3 <= whitened.size(); k += 3) sum += 16 * std::log1p(three(whitened, k).squaredNorm() / 16);
   return sum;
 }
@@ -184,11 +178,8 @@ VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& 
     const VectorX whitened = audit_whitened(out.residuals), weights = audit_weights(whitened);
     const VectorX from = deviation(values);
     const MatrixX normal = normal_matrix(jacobian, weights, columns.precision);
-    VectorX right = transposed_product(jacobian, weights.cwiseProduct(whitened)), diagonal(right.size());
-    for (Index k = 0; k < right.size(); ++k) {
-      right(k) -= columns.precision(k) * from(k);
-      diagonal(k) = normal(k, k);
-    }
+    const VectorX of_prior = columns.precision.cwiseProduct(from), diagonal = diagonal_of(normal);
+    const VectorX right = transposed_product(jacobian, weights.cwiseProduct(whitened)) - of_prior;
     const double before = audit_cost(whitened, columns.precision, from);
     const double old_score = out.residuals.score();
     bool better = false;

@@ -96,9 +96,6 @@ VERNIER_API SolvedPath solve_path(const PathArm& arm, const std::vector<PathGoal
 /// @param coming  joint values from which it came to the command; not finite where unknown
 VERNIER_API PathJoints approach_on_the_way(const PathJoints& coming, const PathJoints& command, const PathJoints& q);
 
-/// A pose between two: positions linear, orientations about a fixed axis.
-VERNIER_API Isometry3 pose_between(const Isometry3& a, const Isometry3& b, double share) noexcept;
-
 }  // namespace detail
 }  // namespace vernier
 

@@ -14,12 +14,6 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL Isometry3 pose_between(const Isometry3& a, const Isometry3& b, double share) noexcept {
-  const Matrix3 start = rotation(a), turn = exp_so3(Vector3(share * rotation_difference(rotation(b), start)));
-  const Vector3 from = (1 - share) * translation(a), to = share * translation(b);
-  return rigid_motion(times3(turn, start), from + to);
-}
-
 /// The same value for each of n joints.
 inline PathJoints same_joints(int n, double value) noexcept {
   PathJoints out(n);
@@ -172,7 +166,7 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
     PathJoints q = from.joints;
     for (int k = 1; k <= n; ++k) {
       const PathJoints before = q;
-      if (!arm_.nominal_joints(pose_between(start.pose, end.pose, static_cast<double>(k) / n), q) ||
+      if (!arm_.nominal_joints(interpolated(start.pose, end.pose, static_cast<double>(k) / n), q) ||
           largest_difference(q, before) > settings_.max_joint_step || arm_.branch_id(q) != from.id)
         return std::nullopt;
     }
@@ -234,10 +228,10 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& coming, const Path
   for (const double share : {0.25, 0.5, 0.75}) {
     const PathJoints straight = joints_between(a, b, share);
     PathJoints q = straight;
-    if (!arm_.nominal_joints(pose_between(first, last, share), q) ||
+    if (!arm_.nominal_joints(interpolated(first, last, share), q) ||
         largest_difference(q, straight) > settings_.max_joint_step)
       return std::numeric_limits<double>::infinity();
-    const Isometry3 there = arm_.pose(q, approach_on_the_way(coming, a, q)), wanted = pose_between(from, to, share);
+    const Isometry3 there = arm_.pose(q, approach_on_the_way(coming, a, q)), wanted = interpolated(from, to, share);
     const double off = (translation(there) - translation(wanted)).norm();
     const double turned = rotation_difference(rotation(there), rotation(wanted)).norm();
     deviation = std::max(deviation, off);
@@ -256,7 +250,7 @@ VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const Pat
   worst = deviation = 0;
   for (int k = 1; k <= pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
-    const Isometry3 wanted = k == pieces ? end : pose_between(start, end, share);
+    const Isometry3 wanted = k == pieces ? end : interpolated(start, end, share);
     SolvedPoint point{k == pieces ? near : tracked, 0, k < pieces, PointStatus::met, 0, 0};
     if (k < pieces) {
       if (!arm_.nominal_joints(wanted, point.command)) return false;

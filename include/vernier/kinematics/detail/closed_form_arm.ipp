@@ -142,7 +142,7 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     w = rotated(turn, -w);
   }
 
-  // how far the first so many points of the axes are apart along an axis
+  // the component along an axis of the vector from the point of joint 1 to that of joint links + 1
   const auto along = [&](const Vector3& axis, int links) {
     double sum = 0;
     for (int i = 0; i < links; ++i) sum += axis.dot(p_[i]);

@@ -22,7 +22,8 @@ inline double dot6(const double* a, const double* b) noexcept {
   return ((a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])) + (a[4] * b[4] + a[5] * b[5]);
 }
 
-/// Few numbers, an even count, in vector registers. Each load has the width of the store before it: it need not wait.
+/// An even number N of values in vector registers. Loads have the width of the stores before them, so that they are
+/// forwarded.
 template <int N>
 struct FewNumbers {
   static_assert(N % 2 == 0);
@@ -46,7 +47,7 @@ struct FewNumbers {
   }
 };
 
-/// out = a x, where a has so many rows and columns.
+/// out = a x, a of Rows x Columns, column-major.
 template <int Rows, int Columns>
 VERNIER_INLINE void multiply_few(const double* a, const double* x, double* out) noexcept {
   FewNumbers<Rows> sum(a, x[0]);

@@ -70,8 +70,8 @@ VERNIER_API Vector3 rotation_difference(const Matrix3& to, const Matrix3& from);
 /// The twist that takes `from` to `to`, in the base frame: `[p_to - p_from; Log(R_to R_from')]`, m and rad.
 VERNIER_API Vector6 pose_difference(const Isometry3& to, const Isometry3& from);
 
-/// A pose between two: the position interpolated linearly, the orientation about the fixed axis from one to the other.
-/// @param fraction 0: `from`, 1: `to`
+/// A pose between two: `from` at a fraction of 0, `to` at 1; the position is interpolated linearly, the orientation
+/// about the fixed axis from one to the other.
 /// @cite Sola 2018
 VERNIER_API Isometry3 interpolated(const Isometry3& from, const Isometry3& to, double fraction) noexcept;
 

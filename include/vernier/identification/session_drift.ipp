@@ -18,7 +18,7 @@ VERNIER_IMPL SessionDrift::Position SessionDrift::position(double time) const {
 namespace detail {
 
 /// Some rows of the knots at a time.
-VERNIER_API VectorX interpolated(const SessionDrift& drift, Index first_row, Index rows, double time) {
+VERNIER_API VectorX interpolated_knots(const SessionDrift& drift, Index first_row, Index rows, double time) {
   const auto [first, share] = drift.position(time);
   VectorX out(rows);
   for (Index r = 0; r < rows; ++r) {
@@ -31,11 +31,11 @@ VERNIER_API VectorX interpolated(const SessionDrift& drift, Index first_row, Ind
 }  // namespace detail
 
 VERNIER_IMPL Vector6 SessionDrift::twist(double time) const {
-  return empty() ? Vector6(Vector6::Zero()) : Vector6(detail::interpolated(*this, 0, 6, time));
+  return empty() ? Vector6(Vector6::Zero()) : Vector6(detail::interpolated_knots(*this, 0, 6, time));
 }
 
 VERNIER_IMPL VectorX SessionDrift::joint_zeros(double time) const {
-  return knots.rows() > 6 ? detail::interpolated(*this, 6, knots.rows() - 6, time) : VectorX();
+  return knots.rows() > 6 ? detail::interpolated_knots(*this, 6, knots.rows() - 6, time) : VectorX();
 }
 
 VERNIER_IMPL Isometry3 SessionDrift::motion(double time) const {

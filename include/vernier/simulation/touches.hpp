@@ -61,8 +61,7 @@ Contact touch(const Actual& actual, const VirtualObject& object, std::string nam
     double left = 1;
     for (int step = 0; step < 12 && left > 1e-13; ++step) {
       const auto at = actual.pose_and_jacobian(q);
-      const auto [change, before] =
-          detail::step_towards(object, translation(at.pose) + noise, known(i), at.jacobian);
+      const auto [change, before] = detail::step_towards(object, translation(at.pose) + noise, known(i), at.jacobian);
       for (int j = 0; j < N; ++j) q(j) -= change(j);
       left = before;
     }

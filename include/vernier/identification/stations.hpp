@@ -46,8 +46,8 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     joints.middleRows(at, data.size()) = data.joints();
     previous.middleRows(at, data.size()) = data.previous();
     times.segment(at, data.size()) = data.times();
-    detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at, positions,
-                       orientations);
+    detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at,
+                       positions, orientations);
     at += data.size();
   }
   return Dataset<N>(joints, positions, orientations).approached_from(previous).measured_at(times);

@@ -15,8 +15,7 @@ namespace vernier::detail {
 /// @param score  of each block: whitened residual times the effect of a unit error of the joint
 /// @param weight of each block: squared norm of that effect
 /// @cite Lomb 1976
-VERNIER_API VectorX periodogram(const VectorX& angles, const VectorX& score, const VectorX& weight,
-                                int highest);
+VERNIER_API VectorX periodogram(const VectorX& angles, const VectorX& score, const VectorX& weight, int highest);
 
 /// Orders beside known ones whose chi-square exceeds a threshold, at most eight, the largest first: each is taken off
 /// before the next is looked for, so that none is the echo of another.
@@ -24,8 +23,8 @@ VERNIER_API VectorX periodogram(const VectorX& angles, const VectorX& score, con
 /// @param known     ascending
 /// @param highest   order
 /// @param threshold of the chi-square
-VERNIER_API std::vector<int> lines_of_residuals(const VectorX& angles, VectorX score, const VectorX& weight, const std::vector<int>& known,
-                                                int highest, double threshold);
+VERNIER_API std::vector<int> lines_of_residuals(const VectorX& angles, VectorX score, const VectorX& weight,
+                                                const std::vector<int>& known, int highest, double threshold);
 
 /// Whether measurements at these angles distinguish the orders 1 .. highest; on a grid of angles they do not, because
 /// different orders take the same values there (aliasing).

@@ -42,9 +42,7 @@ struct Station {
   /// Measured values of a sample.
   Index values() const { return projected() ? 1 : oriented() ? 6 : 3; }
   double height(Index i) const { return height_sign * (*heights)(i); }
-  Vector3 position(Index i) const {
-    return positions != nullptr ? point(*positions, i) : Vector3(0, 0, height(i));
-  }
+  Vector3 position(Index i) const { return positions != nullptr ? point(*positions, i) : Vector3(0, 0, height(i)); }
 };
 
 /// Rotation matrices of rotation vectors.

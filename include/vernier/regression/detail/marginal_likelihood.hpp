@@ -34,8 +34,6 @@ class MarginalLikelihood {
   VERNIER_API double operator()(const VectorX& logarithms, VectorX& gradient) const;
 
  private:
-  
-
   /// Derivative of the kernel with respect to the logarithm of a length scale, divided by the square of the distance
   /// along it.
   VERNIER_API VectorX slope(VectorX square) const;

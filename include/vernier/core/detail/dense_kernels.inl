@@ -18,24 +18,27 @@ ConstMatrix map(const MatrixAt<const double>& m) { return {m.data, m.rows, m.col
 
 }  // namespace
 
-const DenseKernels VERNIER_KERNELS{[](MatrixAt<double> out, MatrixAt<const double> a, MatrixAt<const double> b,
-                                      double factor) { map(out).noalias() += factor * (map(a) * map(b)); },
-                                   [](MatrixAt<double> out, MatrixAt<const double> a, MatrixAt<const double> b,
-                                      double factor) { map(out).noalias() += factor * (map(a).transpose() * map(b)); },
-                                   [](MatrixAt<double> matrix) {
-                                     Matrix mapped = map(matrix);
-                                     Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> in_place(mapped);
-                                     return Eigen::LLT<decltype(in_place)>(in_place).info() == Eigen::Success;
-                                   },
-                                   [](MatrixAt<const double> factor, MatrixAt<double> right) {
-                                     const ConstMatrix triangle = map(factor);
-                                     Matrix mapped = map(right);
-                                     triangle.triangularView<Eigen::Lower>().solveInPlace(mapped);
-                                   },
-                                   [](MatrixAt<const double> factor, MatrixAt<double> right) {
-                                     const ConstMatrix triangle = map(factor);
-                                     Matrix mapped = map(right);
-                                     triangle.triangularView<Eigen::Lower>().transpose().solveInPlace(mapped);
-                                   }};
+const DenseKernels VERNIER_KERNELS{
+    [](MatrixAt<double> out, MatrixAt<const double> a, MatrixAt<const double> b, double factor) {
+      map(out).noalias() += factor * (map(a) * map(b));
+    },
+    [](MatrixAt<double> out, MatrixAt<const double> a, MatrixAt<const double> b, double factor) {
+      map(out).noalias() += factor * (map(a).transpose() * map(b));
+    },
+    [](MatrixAt<double> matrix) {
+      Matrix mapped = map(matrix);
+      Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> in_place(mapped);
+      return Eigen::LLT<decltype(in_place)>(in_place).info() == Eigen::Success;
+    },
+    [](MatrixAt<const double> factor, MatrixAt<double> right) {
+      const ConstMatrix triangle = map(factor);
+      Matrix mapped = map(right);
+      triangle.triangularView<Eigen::Lower>().solveInPlace(mapped);
+    },
+    [](MatrixAt<const double> factor, MatrixAt<double> right) {
+      const ConstMatrix triangle = map(factor);
+      Matrix mapped = map(right);
+      triangle.triangularView<Eigen::Lower>().transpose().solveInPlace(mapped);
+    }};
 
 }  // namespace vernier::detail

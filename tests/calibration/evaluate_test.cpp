@@ -147,6 +147,22 @@ TEST(Calibrate, KernelsAreTriedOnFewPosesAlone) {
   EXPECT_TRUE(calibrate(robot.chain, poses, options).trials.empty());
 }
 
+// Thirty unknowns of geometry and more of the joints, estimated from 24 poses, fit those better than others.
+TEST(Calibrate, LearnersAreJudgedByErrorsOfPosesThatTheirModelHasNotSeen) {
+  const auto poses = measure(actual_arm(), joints(24, 1), noise, 2);
+  const auto found = calibrate(robot.chain, poses, quick);
+  ASSERT_EQ(found.trials.size(), 6u);
+  for (const RemainderTrial& trial : found.trials) {
+    const auto& model = trial.on_geometry ? found.errors.geometry.front() : found.errors.models.front();
+    const VectorX& unseen = trial.on_geometry ? found.errors.geometry_left_out_errors : found.errors.left_out_errors;
+    const double fitted = position_errors(model, poses).mean();
+    EXPECT_DOUBLE_EQ(trial.without, unseen.mean());
+    EXPECT_GT(trial.without, 1.2 * fitted);
+    const VectorX folds = detail::fold_errors(trial.learner, model, poses, quick.remainder, {});
+    EXPECT_NEAR(trial.with - trial.without, folds.mean() - fitted, 1e-9);
+  }
+}
+
 TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   const auto actual = actual_arm();
   CalibrateOptions options = quick;

@@ -244,6 +244,24 @@ TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
   EXPECT_TRUE(scaled);
 }
 
+// The errors of geometry alone are those of a fit that has nothing else.
+TEST(FitErrorModel, GeometryAloneHasLeaveOnePoseOutErrorsOfItsOwn) {
+  const Dataset<6> data = measured(actual_arm({}), 130, 3);
+  const ErrorModelOptions geometry{.compliance = false,
+                                   .harmonics = 0,
+                                   .hysteresis = false,
+                                   .tilt = false,
+                                   .drift = false,
+                                   .num_validation_poses = 60};
+  const auto all = fitted(data), alone = fitted(data, geometry);
+  ASSERT_EQ(all.left_out_rows.size(), 65u);
+  ASSERT_EQ(all.left_out_rows, alone.left_out_rows);
+  ASSERT_EQ(all.geometry_left_out_errors.size(), 65);
+  EXPECT_LT((all.geometry_left_out_errors - alone.left_out_errors).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(alone.geometry_left_out_errors, alone.left_out_errors);
+  EXPECT_LT(all.left_out_errors.mean(), 0.7 * all.geometry_left_out_errors.mean());
+}
+
 TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
   const Actual actual = actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0});
   const Actual in_its_base(actual.model(), {}, tool);

@@ -219,7 +219,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
                           detail::brief(prior->geometry * 100), " % and the joint errors by ",
                           detail::brief(prior->joints * 100), " % of their expected sizes, as far as evidence tells."));
   if (!trials.empty()) {
-    std::string sentence = "Left-out folds with what was learned on top: ";
+    std::string sentence = "Left-out poses with what was learned on top: ";
     for (std::size_t k = 0; k < trials.size(); ++k) {
       const RemainderTrial& trial = trials[k];
       sentence += message(k == 0 ? "" : "; ", learner_title(trial.learner),

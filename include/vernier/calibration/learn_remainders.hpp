@@ -61,18 +61,29 @@ VectorX fold_errors(Learner learner, const ErrorModel<Chain>& model, const Datas
   return out;
 }
 
-/// The best learner on one model, and its errors in cross-validation.
+/// Whether errors are smaller, by more than a standard error.
+inline bool clearly_better(const VectorX& errors, const VectorX& others) {
+  return errors.mean() < others.mean() && one_standard_error_rule({{0, errors}, {1, others}}) == 0;
+}
+
+/// The best learner on one model.
 struct BestLearner {
   std::size_t trial = 0;
-  VectorX with, without;
+  bool helps = false;  ///< by more than a standard error
+  VectorX left_out;    ///< leave-one-pose-out errors of the model, changed as learning changes those of left-out folds
 };
 
-/// Tries learners on the models of one stage, and learns the first of them from all poses.
+/// Tries learners on the models of one stage, and learns the first of them from all poses. Folds tell how learning
+/// changes the errors of models that were fitted to all poses. How these predict a pose that they have not seen is
+/// known from its leave-one-pose-out error.
 /// @param stations poses, one set a station
+/// @param left_out leave-one-pose-out errors of the model [m]
+/// @param rows     of which poses, counted over the stations
 template <class Chain>
 std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometry,
                                         const std::vector<ErrorModel<Chain>>& models,
-                                        std::span<const Dataset<Chain::dof>> stations, const RemainderOptions& options,
+                                        std::span<const Dataset<Chain::dof>> stations, const VectorX& left_out,
+                                        const std::vector<Index>& rows, const RemainderOptions& options,
                                         const FitOptions& fit) {
   constexpr Index enough = 10;
   std::vector<Isometry3> bases;
@@ -82,15 +93,24 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   out.remainders.push_back(learn_remainder(on_geometry, options.learners.front(), model, data, options, fit));
   if (data.size() < enough) return {};
   const VectorX without = position_errors(model, data);
+  const auto changed = [&](const VectorX& with) {
+    VectorX errors = left_out;
+    for (Index k = 0; k < errors.size(); ++k) {
+      const Index row = rows[static_cast<std::size_t>(k)];
+      errors(k) += with(row) - without(row);
+    }
+    return errors;
+  };
   std::vector<PriorTrial> errors;  // the preferred one last
   for (const Learner learner : options.learners) {
     if (learner == Learner::kernel_elm && data.size() > options.max_kernel_poses) continue;
     errors.insert(errors.begin(), {0, fold_errors(learner, model, data, options, fit)});
-    out.trials.push_back({on_geometry, learner, without.mean(), errors.front().errors.mean()});
+    out.trials.push_back({on_geometry, learner, left_out.mean(), changed(errors.front().errors).mean()});
   }
   if (errors.empty()) return {};
   const std::size_t best = one_standard_error_rule(errors);
-  return BestLearner{out.trials.size() - 1 - best, errors[best].errors, without};
+  const VectorX& with = errors[best].errors;
+  return BestLearner{out.trials.size() - 1 - best, clearly_better(with, without), changed(with)};
 }
 
 /// See `RemainderOptions`. What is learned on geometry is deployed where it predicts left-out poses better than the
@@ -100,25 +120,18 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
                       const RemainderOptions& options, const FitOptions& fit) {
   const FittedErrorModel<Chain>& errors = out.errors;
   if (options.learners.empty()) return;
-  const auto better = [](const VectorX& candidate, const VectorX& other) {
-    return candidate.mean() < other.mean() && one_standard_error_rule({{0, candidate}, {1, other}}) == 0;
-  };
   std::optional<BestLearner> on_geometry, on_model;
-  if (options.on_geometry) on_geometry = try_learners<Chain>(out, true, errors.geometry, stations, options, fit);
+  if (options.on_geometry)
+    on_geometry = try_learners<Chain>(out, true, errors.geometry, stations, errors.geometry_left_out_errors,
+                                      errors.left_out_rows, options, fit);
   if (options.on_error_model)
-    on_model = try_learners<Chain>(out, false, errors.models,
-                                   static_poses<Chain>(errors.models, stations, errors.drift), options, fit);
+    on_model =
+        try_learners<Chain>(out, false, errors.models, static_poses<Chain>(errors.models, stations, errors.drift),
+                            errors.left_out_errors, errors.left_out_rows, options, fit);
   std::optional<std::size_t> chosen;
-  if (on_model && better(on_model->with, on_model->without)) chosen = on_model->trial;
-  if (on_geometry && errors.left_out_errors.size() > 0) {
-    VectorX with(errors.left_out_errors.size()), without = errors.left_out_errors;
-    for (Index k = 0; k < with.size(); ++k) {
-      const Index row = errors.left_out_rows[static_cast<std::size_t>(k)];
-      with(k) = on_geometry->with(row);
-      if (chosen) without(k) += on_model->with(row) - on_model->without(row);
-    }
-    if (better(with, without)) chosen = on_geometry->trial;
-  }
+  if (on_model && on_model->helps) chosen = on_model->trial;
+  if (on_geometry && clearly_better(on_geometry->left_out, chosen ? on_model->left_out : errors.left_out_errors))
+    chosen = on_geometry->trial;
   if (!chosen) return;
   RemainderTrial& trial = out.trials[*chosen];
   trial.supported = true;

@@ -49,8 +49,8 @@ struct RemainderOptions {
 struct RemainderTrial {
   bool on_geometry;        ///< on geometry alone, not on the error model
   Learner learner;         ///< the learner
-  double without = 0;      ///< mean error of the model alone [m]
-  double with = 0;         ///< mean error of the left-out folds with what was learned on the others [m]
+  double without = 0;      ///< mean leave-one-pose-out error of the model alone [m]
+  double with = 0;         ///< the same with the change by what is learned on other folds [m]
   bool supported = false;  ///< whether it is deployed
 };
 

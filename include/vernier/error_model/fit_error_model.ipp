@@ -123,6 +123,8 @@ class ErrorModelFit {
     estimate.converged = true;
     solve(estimate);
     out.geometry = arms();
+    if (!input_.poses.empty())
+      estimate.geometry_left_out_errors = error_norms(left_out(linearised(), problem_.arm.precisions()).errors);
 
     JointTerms elastic(input_.nominal.joints());
     if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
@@ -189,14 +191,16 @@ class ErrorModelFit {
     out.all = arms();
     // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
     const bool later = hysteresis || tilt || thermal || inherited;
+    const bool geometry_alone = !later && !out.jointwise && problem_.arm.terms().size() == 0;
     if (!later) out.without_approach = out.all;
-    if (!later && !out.jointwise) (problem_.arm.terms().size() > 0 ? out.elastic : out.geometry) = out.all;
+    if (!later && !out.jointwise) (geometry_alone ? out.geometry : out.elastic) = out.all;
     out.joints = problem_.joints();
     for (int s = 0; thermal && s < problem_.arm.stations(); ++s)
       out.thermal_rates.push_back(problem_.arm.thermal_rates(s));
     estimate.drives = options_.drives;
     estimate.arm = problem_.arm;
     assess(estimate);
+    if (geometry_alone) estimate.geometry_left_out_errors = estimate.left_out_errors;
     if (inherited) {  // for the next to start from
       VectorX precisions = problem_.arm.precisions();
       for (Index k = 0, first = precisions.size() - expected_.size(); k < expected_.size(); ++k)

@@ -1,0 +1,147 @@
+#include "real_matrix.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <limits>
+#include <ostream>
+#include <stdexcept>
+
+namespace vernier_test {
+
+using vernier::MatrixX;
+using vernier::VectorX;
+
+namespace {
+
+void require_same_shape(const RealMatrix& a, const RealMatrix& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) throw std::invalid_argument("RealMatrix: shapes differ");
+}
+
+const MatrixX& value(const RealMatrix& a) { return a; }
+
+}  // namespace
+
+RealMatrix::RealMatrix(Index rows, Index cols) : values_(MatrixX::Zero(rows, cols)) {}
+RealMatrix::RealMatrix(Index rows, Index cols, std::initializer_list<double> values) : values_(rows, cols) {
+  if (static_cast<Index>(values.size()) != rows * cols)
+    throw std::invalid_argument("RealMatrix: not rows x cols values");
+  Index k = 0;
+  for (const double x : values) {
+    values_(k / cols, k % cols) = x;
+    ++k;
+  }
+}
+RealMatrix::RealMatrix(const MatrixX& a) : values_(a) {}
+RealMatrix::RealMatrix(const VectorX& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::Matrix3& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::Vector3& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::Matrix6& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::Vector6& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::PointRows& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::JointRows<6>& a) : values_(a) {}
+RealMatrix::RealMatrix(const Eigen::Matrix<double, 6, Eigen::Dynamic>& a) : values_(a) {}
+RealMatrix RealMatrix::of(const vernier::ConstMatrixRef& a) { return MatrixX(a); }
+RealMatrix RealMatrix::identity(Index n) { return MatrixX(MatrixX::Identity(n, n)); }
+RealMatrix RealMatrix::diagonal(const RealMatrix& column) { return MatrixX(VectorX(column).asDiagonal()); }
+
+RealMatrix::operator vernier::ConstMatrixRef() const { return values_; }
+RealMatrix::operator VectorX() const {
+  if (cols() != 1) throw std::invalid_argument("RealMatrix: not one column");
+  return values_.col(0);
+}
+RealMatrix::operator vernier::ConstVectorRef() const {
+  if (cols() != 1) throw std::invalid_argument("RealMatrix: not one column");
+  return values_.col(0);
+}
+RealMatrix RealMatrix::row(Index i) const { return MatrixX(values_.row(i)); }
+RealMatrix RealMatrix::col(Index j) const { return MatrixX(values_.col(j)); }
+RealMatrix RealMatrix::block(Index row, Index col, Index rows, Index cols) const {
+  return MatrixX(values_.block(row, col, rows, cols));
+}
+void RealMatrix::set_block(Index row, Index col, const RealMatrix& values) {
+  values_.block(row, col, values.rows(), values.cols()) = values.values_;
+}
+RealMatrix RealMatrix::diagonal() const { return MatrixX(values_.diagonal()); }
+RealMatrix RealMatrix::transpose() const { return MatrixX(values_.transpose()); }
+
+RealMatrix RealMatrix::inverse() const { return MatrixX(values_.fullPivLu().inverse()); }
+double RealMatrix::determinant() const { return values_.determinant(); }
+double RealMatrix::log_determinant() const {
+  const Eigen::LLT<MatrixX> factor(values_);
+  if (factor.info() != Eigen::Success) throw std::invalid_argument("RealMatrix: not positive definite");
+  return 2 * MatrixX(factor.matrixL()).diagonal().array().log().sum();
+}
+RealMatrix RealMatrix::solve(const RealMatrix& right) const {
+  return MatrixX(values_.colPivHouseholderQr().solve(right.values_));
+}
+RealMatrix RealMatrix::singular_values() const { return VectorX(values_.jacobiSvd().singularValues()); }
+RealMatrix RealMatrix::symmetric_eigenvalues() const {
+  return VectorX(Eigen::SelfAdjointEigenSolver<MatrixX>(values_, Eigen::EigenvaluesOnly).eigenvalues());
+}
+
+RealMatrix RealMatrix::times(const RealMatrix& other) const {
+  require_same_shape(*this, other);
+  return MatrixX(values_.cwiseProduct(other.values_));
+}
+RealMatrix RealMatrix::over(const RealMatrix& other) const {
+  require_same_shape(*this, other);
+  return MatrixX(values_.cwiseQuotient(other.values_));
+}
+RealMatrix RealMatrix::sqrt() const { return MatrixX(values_.cwiseSqrt()); }
+
+double RealMatrix::norm() const { return values_.norm(); }
+double RealMatrix::squared_norm() const { return values_.squaredNorm(); }
+double RealMatrix::largest() const {
+  return values_.size() == 0 ? 0 : values_.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+}
+double RealMatrix::sum() const { return values_.sum(); }
+double RealMatrix::mean() const { return values_.mean(); }
+double RealMatrix::trace() const { return values_.trace(); }
+double RealMatrix::dot(const RealMatrix& other) const {
+  require_same_shape(*this, other);
+  return values_.cwiseProduct(other.values_).sum();
+}
+
+RealMatrix& RealMatrix::operator+=(const RealMatrix& other) {
+  require_same_shape(*this, other);
+  values_ += other.values_;
+  return *this;
+}
+RealMatrix& RealMatrix::operator-=(const RealMatrix& other) {
+  require_same_shape(*this, other);
+  values_ -= other.values_;
+  return *this;
+}
+RealMatrix& RealMatrix::operator*=(double factor) {
+  values_ *= factor;
+  return *this;
+}
+RealMatrix RealMatrix::operator-() const { return MatrixX(-values_); }
+RealMatrix operator+(const RealMatrix& a, const RealMatrix& b) { return RealMatrix(a) += b; }
+RealMatrix operator-(const RealMatrix& a, const RealMatrix& b) { return RealMatrix(a) -= b; }
+RealMatrix operator*(const RealMatrix& a, const RealMatrix& b) {
+  if (a.cols() != b.rows()) throw std::invalid_argument("RealMatrix: shapes do not fit");
+  return MatrixX(value(a) * value(b));
+}
+RealMatrix operator*(double factor, const RealMatrix& a) { return RealMatrix(a) *= factor; }
+RealMatrix operator*(const RealMatrix& a, double factor) { return RealMatrix(a) *= factor; }
+RealMatrix operator/(const RealMatrix& a, double divisor) { return MatrixX(value(a) / divisor); }
+bool operator==(const RealMatrix& a, const RealMatrix& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && value(a) == value(b);
+}
+
+RealMatrix vector(std::initializer_list<double> elements) {
+  return RealMatrix(static_cast<Index>(elements.size()), 1, elements);
+}
+
+double difference(const RealMatrix& a, const RealMatrix& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return std::numeric_limits<double>::infinity();
+  return (a - b).largest();
+}
+
+void PrintTo(const RealMatrix& a, std::ostream* out) { *out << a.rows() << " x " << a.cols() << '\n' << value(a); }
+
+}  // namespace vernier_test

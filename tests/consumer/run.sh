@@ -55,18 +55,32 @@ in_background() {
 
 # refuse TEXT CMAKE ARG...: configuring must fail, and say TEXT
 refuse() {
-  local text=$1
+  local text=$1 folder
+  folder=$(mktemp -d "$build/refused.XXXXXX")
   shift
-  if cmake -S "$here/installed" -B "$build/refused" -G Ninja "-DCMAKE_PREFIX_PATH=$build/prefix" "$@" \
-    >"$build/refused.log" 2>&1; then
+  if cmake -S "$here/installed" -B "$folder" -G Ninja "-DCMAKE_PREFIX_PATH=$build/prefix" "$@" \
+    >"$folder.log" 2>&1; then
     fail "was accepted: $*"
   fi
-  tr -s ' \n' ' ' <"$build/refused.log" | grep -qF -- "$text" || {
-    cat "$build/refused.log" >&2
+  tr -s ' \n' ' ' <"$folder.log" | grep -qF -- "$text" || {
+    cat "$folder.log" >&2
     fail "was refused without saying '$text': $*"
   }
-  rm -rf "$build/refused"
+  rm -rf "$folder"
   printf '%-14s %-17s %s\n' installed refused "$text"
+}
+
+# not_aligned: a program whose Eigen types have another alignment than the library's does not link
+not_aligned() {
+  local folder="$build/aligned"
+  quietly "$build/configure.log" cmake -S "$here/installed" -B "$folder" -G Ninja -DCMAKE_CXX_FLAGS=-mavx \
+    -DCONSUMER_MODE=compiled "-DCMAKE_PREFIX_PATH=$build/prefix"
+  ! cmake --build "$folder" >"$build/aligned.log" 2>&1 || fail "a program with another alignment links"
+  grep -q 'undefined reference to .*eigen_align_32' "$build/aligned.log" || {
+    cat "$build/aligned.log" >&2
+    fail "a program with another alignment fails otherwise than by linking"
+  }
+  printf '%-14s %-17s %s\n' installed refused "another alignment of Eigen's types"
 }
 
 # Where a program does not ask for a library, that library is not looked for.
@@ -99,7 +113,7 @@ unpack() {
 
 # compile_with_pc PREFIX: as who has no CMake compiles; header-only a unit, with the library a program
 compile_with_pc() {
-  local flags libs
+  local flags libs said
   export PKG_CONFIG_PATH=$1/lib/pkgconfig
   read -r -a flags <<<"$(pkg-config --cflags vernier)"
   quietly "$build/pc.log" g++ -std=c++20 "${flags[@]}" -c "$here/library.cpp" -o "$build/library.o"
@@ -107,8 +121,8 @@ compile_with_pc() {
   read -r -a libs <<<"$(pkg-config --libs vernier-compiled)"
   quietly "$build/pc.log" g++ -std=c++20 "${flags[@]}" "$here/main.cpp" -o "$build/with_pc" "${libs[@]}"
   [[ $(pkg-config --modversion vernier) == $(cat "$build/version") ]] || fail "vernier.pc has another version"
-  printf '%-14s %-17s ' pkg-config bare
-  "$build/with_pc"
+  said=$("$build/with_pc") || fail "$build/with_pc computes something else"
+  printf '%-14s %-17s %s\n' pkg-config bare "$said"
 }
 
 # The headers are installed by a build that knows none of the libraries: the package is the same, but for what is
@@ -133,7 +147,7 @@ if [[ -d $build/deb ]]; then
   whole=$build/unpacked/usr
 fi
 if command -v pkg-config >/dev/null; then
-  compile_with_pc "$whole"
+  in_background compile_with_pc "$whole"
 fi
 
 bare=("-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}")
@@ -147,24 +161,13 @@ in_background consume installed header_only "io;urdf;ceres;cholmod;tbb;mpi"
 in_background consume installed compiled "io;urdf;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
 in_background consume in_tree compiled "" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
 in_background consume installed mixed ""
+in_background not_aligned
+in_background refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
+in_background refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres
+in_background refuse "find_package for module yaml-cpp called with REQUIRED" -DCONSUMER_COMPONENTS=urdf \
+  -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
+in_background refuse "find_package for module TBB called with REQUIRED" -DCONSUMER_COMPONENTS=tbb "${no_parallel[@]}"
+in_background refuse "find_package for module MPI called with REQUIRED" -DCONSUMER_COMPONENTS=mpi "${no_parallel[@]}"
 for process in "${running[@]}"; do
   wait "$process"
 done
-
-# A program whose Eigen types have another alignment than the library's does not link.
-folder="$build/aligned"
-quietly "$build/configure.log" cmake -S "$here/installed" -B "$folder" -G Ninja -DCMAKE_CXX_FLAGS=-mavx \
-  -DCONSUMER_MODE=compiled "-DCMAKE_PREFIX_PATH=$build/prefix"
-! cmake --build "$folder" >"$build/aligned.log" 2>&1 || fail "a program with another alignment links"
-grep -q 'undefined reference to .*eigen_align_32' "$build/aligned.log" || {
-  cat "$build/aligned.log" >&2
-  fail "a program with another alignment fails otherwise than by linking"
-}
-printf '%-14s %-17s %s\n' installed refused "another alignment of Eigen's types"
-
-refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
-refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres
-refuse "find_package for module yaml-cpp called with REQUIRED" -DCONSUMER_COMPONENTS=urdf \
-  -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
-refuse "find_package for module TBB called with REQUIRED" -DCONSUMER_COMPONENTS=tbb "${no_parallel[@]}"
-refuse "find_package for module MPI called with REQUIRED" -DCONSUMER_COMPONENTS=mpi "${no_parallel[@]}"

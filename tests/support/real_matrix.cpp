@@ -40,6 +40,7 @@ RealMatrix::RealMatrix(const vernier::Matrix3& a) : values_(a) {}
 RealMatrix::RealMatrix(const vernier::Vector3& a) : values_(a) {}
 RealMatrix::RealMatrix(const vernier::Matrix6& a) : values_(a) {}
 RealMatrix::RealMatrix(const vernier::Vector6& a) : values_(a) {}
+RealMatrix::RealMatrix(const vernier::Isometry3& a) : values_(a.matrix()) {}
 RealMatrix::RealMatrix(const vernier::PointRows& a) : values_(a) {}
 RealMatrix::RealMatrix(const vernier::JointRows<6>& a) : values_(a) {}
 RealMatrix::RealMatrix(const Eigen::Matrix<double, 6, Eigen::Dynamic>& a) : values_(a) {}

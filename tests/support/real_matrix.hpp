@@ -27,6 +27,7 @@ class RealMatrix {
   RealMatrix(const vernier::Vector3& a);
   RealMatrix(const vernier::Matrix6& a);
   RealMatrix(const vernier::Vector6& a);
+  RealMatrix(const vernier::Isometry3& a);
   RealMatrix(const vernier::PointRows& a);
   RealMatrix(const vernier::JointRows<6>& a);
   RealMatrix(const Eigen::Matrix<double, 6, Eigen::Dynamic>& a);

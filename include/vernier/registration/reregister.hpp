@@ -83,7 +83,7 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& da
 /// Where positions and orientations contradict each other by a constant rotation of the tool frame (a remounted probe),
 /// that rotation is estimated as well and reported, for orientations alone: the model's tool stays as it was.
 /// @param model   as fitted, wherever it stood then
-/// @param data    n >= 1 poses from where it stands now
+/// @param data    n >= 1 poses from where it stands now; temperatures count where the model changes with them
 /// @param options what is estimated
 /// @param sensors their accuracy, the least that residuals are taken for; they are weighted by squares, whatever its
 /// loss, and its `joint_sigma` is not used
@@ -97,9 +97,12 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
     const ErrorModel<Chain> now = moved(motion);
     poses.resize(static_cast<std::size_t>(data.size()));
     jacobians.resize(6, N * data.size());
+    const bool warm = now.thermal() != nullptr && data.temperatures().size() > 0;
     for (Index i = 0; i < data.size(); ++i) {
-      const PoseAndJacobian<N> at =
-          now.approached_from(configuration(data.previous(), i)).pose_and_jacobian(data.joints(i));
+      const auto visit = [&](const ErrorModel<Chain>& arm) {
+        return arm.approached_from(configuration(data.previous(), i)).pose_and_jacobian(data.joints(i));
+      };
+      const PoseAndJacobian<N> at = warm ? visit(now.at_temperature(data.temperatures()(i))) : visit(now);
       poses[static_cast<std::size_t>(i)] = at.pose;
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }

@@ -91,14 +91,14 @@ Errors compare(const Robot& robot, const vn::Split<6>& split, Index count, int s
         if (k < seeds) {
           out.random[static_cast<std::size_t>(k)] =
               held_out_mean(robot, vn::random_subset(split.train, count, seed), split.test);
-        } else if (k >= seeds + 2) {
-          const Data some = vn::random_subset(split.train, split.train.size() * 9 / 10, seed);
-          out.plans[static_cast<std::size_t>(k - seeds - 2)] =
-              held_out_mean(robot, planned(robot, some, count, false), split.test);
-        } else {
+        } else if (k < seeds + 2) {
           const bool geometry_alone = k == seeds;
           (geometry_alone ? out.geometry_plan : out.plan) =
               held_out_mean(robot, planned(robot, split.train, count, geometry_alone), split.test);
+        } else {
+          const Data some = vn::random_subset(split.train, split.train.size() * 9 / 10, seed);
+          out.plans[static_cast<std::size_t>(k - seeds - 2)] =
+              held_out_mean(robot, planned(robot, some, count, false), split.test);
         }
       } catch (...) {
         if (!stopped.exchange(true)) broken = std::current_exception();
@@ -162,6 +162,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const std::filesystem::path folder = argv[1], figures = argc > 3 ? argv[3] : "";
+  if (!figures.empty()) std::filesystem::create_directories(figures);
   const int seeds = argc > 2 ? std::atoi(argv[2]) : 20;
   const auto read = [&](const char* file, const Robot& robot) {
     return vn::read_dataset<6>((folder / file).string(), robot.chain.joint_types());

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
@@ -15,24 +14,19 @@ namespace vernier::evidence_test {
 namespace {
 
 using vernier_test::LocalStates;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 
 /// log density of the residuals at the prior means, over all variances of the noise; up to a constant: Student's
 /// distribution of 30 degrees of freedom in n dimensions.
 double marginal(const LocalStates& problem, const VectorX& precisions) {
-  const MatrixX jacobian = problem.jacobian();
-  const Index dense = LocalStates::dense, all = jacobian.cols();
-  MatrixX prior = MatrixX::Zero(all, all);
-  prior.diagonal().head(dense) = precisions;
-  prior.bottomRightCorner(all - dense, all - dense) = problem.prior();
-  VectorX steps(all);
-  steps << problem.steps, problem.local_steps;
-  const VectorX residual = problem.residual() - jacobian * steps;
-  const MatrixX covariance =
-      MatrixX::Identity(jacobian.rows(), jacobian.rows()) + jacobian * prior.inverse() * jacobian.transpose();
-  const Eigen::LLT<MatrixX> factor(covariance);
-  const auto n = static_cast<double>(residual.size());
-  const double log_determinant = 2 * MatrixX(factor.matrixL()).diagonal().array().log().sum();
-  return -0.5 * ((n + 30) * std::log((residual.dot(factor.solve(residual)) + 30) / (n + 30)) + log_determinant);
+  const RealMatrix jacobian = problem.jacobian();
+  const RealMatrix residual = problem.residual() - jacobian * problem.all_steps();
+  const RealMatrix covariance =
+      RealMatrix::identity(jacobian.rows()) + jacobian * problem.prior(precisions).inverse() * jacobian.transpose();
+  const auto n = static_cast<double>(residual.rows());
+  return -0.5 * ((n + 30) * std::log((residual.dot(covariance.inverse() * residual) + 30) / (n + 30)) +
+                 covariance.log_determinant());
 }
 
 double evidence(const LocalStates& problem, const NormalEquations& normal, const VectorX& precisions) {
@@ -44,7 +38,7 @@ TEST(Evidence, IsTheDensityOfTheResiduals) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const LocalStates problem(seed);
     const NormalEquations normal = problem.normal_equations();
-    const VectorX some = (VectorX(4) << 0.7, 0.02, 3.0, 40.0).finished(), others = 5 * some.reverse();
+    const VectorX some = vector({0.7, 0.02, 3.0, 40.0}), others = vector({200, 15, 0.1, 3.5});
     EXPECT_NEAR(evidence(problem, normal, some), marginal(problem, some), 1e-7 * std::abs(marginal(problem, some)));
     EXPECT_NEAR(evidence(problem, normal, others) - evidence(problem, normal, some),
                 marginal(problem, others) - marginal(problem, some), 1e-6);
@@ -107,7 +101,7 @@ TEST(Evidence, AJointPriorIsAPrior) {
   const VectorX independent = VectorX::Constant(4, 0.5), none = VectorX::Zero(4);
   const NormalEquations normal = problem.normal_equations();
   NormalEquations joint = normal;
-  joint.add({MatrixX(independent.asDiagonal()), none, 4}, problem.steps);
+  joint.add({RealMatrix::diagonal(independent), none, 4}, problem.steps);
   const Index values = 6 * LocalStates::blocks;
   EXPECT_NEAR(log_evidence(joint, FactorisedEquations(joint, none, problem.steps, problem.local_steps), none,
                            problem.steps, values, problem.local_steps),
@@ -138,8 +132,11 @@ double slope(const LocalStates& problem, const NormalEquations& normal, const Ve
 /// A problem whose unknowns are clear: steps from means of zero to values of very different sizes.
 LocalStates clear_problem() {
   LocalStates problem(7);
-  const VectorX truth = (VectorX(4) << 3, -2, 0.05, -0.04).finished();
-  for (auto& row : problem.rows) row.residual = 0.2 * row.residual - row.dense * truth;
+  const RealMatrix truth = vector({3, -2, 0.05, -0.04});
+  for (auto& row : problem.rows) {
+    const RealMatrix changed = 0.2 * RealMatrix(row.residual) - row.dense * truth;
+    for (Index k = 0; k < 6; ++k) row.residual(k) = changed(k);
+  }
   problem.steps.setZero();
   problem.local_steps.setZero();
   return problem;
@@ -163,7 +160,7 @@ TEST(Evidence, LearnedSizesHaveNoSlopeLeft) {
 TEST(Evidence, OneScaleIsTheBestOfAGrid) {
   const LocalStates problem = clear_problem();
   const NormalEquations normal = problem.normal_equations();
-  const VectorX expected = (VectorX(4) << 1, 2, 700, 600).finished();
+  const VectorX expected = vector({1, 2, 700, 600});
   const VectorX found =
       scale_priors(normal, expected, problem.steps, 6 * LocalStates::blocks, {0, 1, 3}, problem.local_steps);
   EXPECT_EQ(found(2), expected(2));  // not of the group
@@ -184,21 +181,21 @@ TEST(Evidence, AFewAreScaledAsManyAre) {
   const NormalEquations few = problem.normal_equations();
   NormalEquations many = few;
   constexpr Index more = 300;
-  many.matrix = MatrixX::Identity(4 + more, 4 + more);
-  many.matrix.topLeftCorner(4, 4) = few.matrix;
-  many.gradient = VectorX::Zero(4 + more);
-  many.gradient.head(4) = few.gradient;
-  many.coupling.setZero(few.coupling.rows(), 4 + more);
-  many.coupling.leftCols(4) = few.coupling;
-  const VectorX expected = (VectorX(4) << 1, 2, 700, 600).finished();
-  VectorX padded = VectorX::Constant(4 + more, 1e12), steps = VectorX::Zero(4 + more);
-  padded.head(4) = expected;
+  RealMatrix matrix(4 + more, 4 + more), gradient(4 + more, 1), coupling(few.coupling.rows(), 4 + more);
+  matrix.set_block(0, 0, few.matrix);
+  gradient.set_block(0, 0, few.gradient);
+  coupling.set_block(0, 0, few.coupling);
+  many.matrix = matrix;
+  many.gradient = gradient;
+  many.coupling = coupling;
+  const VectorX expected = vector({1, 2, 700, 600});
+  VectorX padded = VectorX::Ones(4 + more);  // no information of their own: evidence leaves them alone
+  const VectorX steps = VectorX::Zero(4 + more);
+  for (Index k = 0; k < 4; ++k) padded(k) = expected(k);
   UnknownGroup group{0, 1, 3};
   const VectorX of_few =
       scale_priors(few, expected, problem.steps, 6 * LocalStates::blocks, group, problem.local_steps);
   for (Index k = 0; k < more; ++k) group.push_back(4 + k);
-  padded.tail(more).setOnes();  // no information of their own: evidence leaves them alone
-  many.matrix.bottomRightCorner(more, more).setZero();
   const VectorX of_many = scale_priors(many, padded, steps, 6 * LocalStates::blocks, group, problem.local_steps);
   EXPECT_DOUBLE_EQ(of_many(0), of_few(0));
   EXPECT_DOUBLE_EQ(of_many(3), of_few(3));
@@ -208,7 +205,8 @@ TEST(FactorisedEquations, DiagonalOfTheInverse) {
   const LocalStates problem(8);
   const NormalEquations normal = problem.normal_equations();
   const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
-  EXPECT_LT((solved.inverse_diagonal() - solved.inverse().diagonal()).norm(), 1e-12 * solved.inverse().norm());
+  const RealMatrix inverse = solved.inverse();
+  EXPECT_LT((solved.inverse_diagonal() - inverse.diagonal()).norm(), 1e-12 * inverse.norm());
 }
 
 }  // namespace

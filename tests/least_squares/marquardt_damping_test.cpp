@@ -4,13 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "random_blocks.hpp"
 
 namespace vernier::marquardt_damping_test {
 namespace {
+
+using vernier_test::RealMatrix;
 
 TEST(MarquardtDamping, RaisesEverFasterAndStartsWhereThereWasNone) {
   MarquardtDamping damping;
@@ -40,15 +41,14 @@ TEST(MarquardtDamping, FollowsTheRatioOfDecreases) {
 TEST(MarquardtDamping, ADampedStepSolvesTheRaisedSystem) {
   const vernier_test::RandomBlocks blocks(15, 4);
   Rng rng(5);
-  const VectorX precisions = vernier_test::random_vector(rng, 15).cwiseAbs2(),
-                steps = vernier_test::random_vector(rng, 15);
+  const VectorX precisions = vernier_test::random_squares(rng, 15), steps = vernier_test::random_vector(rng, 15);
   const NormalEquations normal = blocks.normal();
   const double damping = 0.3;
   const FactorisedEquations solved(normal, precisions, steps, {}, eigen_sparse_solver, damping);
-  MatrixX matrix = normal.matrix;
-  matrix.diagonal() += precisions;
-  matrix.diagonal() *= 1 + damping;
-  const VectorX step = -matrix.inverse() * (normal.gradient + precisions.cwiseProduct(steps));
+  const RealMatrix prior = RealMatrix::diagonal(precisions);
+  RealMatrix matrix = normal.matrix + prior;
+  for (Index k = 0; k < 15; ++k) matrix(k, k) *= 1 + damping;
+  const RealMatrix step = -(matrix.inverse() * (normal.gradient + prior * steps));
   EXPECT_LT((solved.step() - step).norm(), 1e-9 * step.norm());
 }
 

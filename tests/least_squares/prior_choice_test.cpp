@@ -67,7 +67,7 @@ TEST(OneStandardErrorRule, WhatIsNotFiniteIsSuppressed) {
 LeftOutBlocks left_out(const std::vector<double>& errors, const std::vector<double>& log_densities) {
   const auto n = static_cast<Index>(errors.size());
   LeftOutBlocks out{Eigen::Matrix3Xd::Zero(3, n), Eigen::Map<const VectorX>(log_densities.data(), n)};
-  out.errors.row(0) = -Eigen::Map<const VectorX>(errors.data(), n).transpose();
+  for (Index b = 0; b < n; ++b) out.errors(0, b) = -errors[static_cast<std::size_t>(b)];
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
 
@@ -42,8 +43,8 @@ struct LocalStates {
       }
       rows.push_back(std::move(row));
     }
-    const MatrixX walk = 3 * MatrixX::Identity(size, size);
-    MatrixX turn = walk;  // not symmetric
+    const RealMatrix walk = 3 * RealMatrix::identity(size);
+    RealMatrix turn = walk;  // not symmetric
     turn(0, 1) = 0.4;
     priors.push_back({0, 0, 2 * walk});
     for (Index k = 0; k + 1 < states; ++k) {
@@ -68,43 +69,43 @@ struct LocalStates {
   }
 
   /// The matrix of all unknowns with priors, dense ones first.
-  MatrixX matrix() const {
-    MatrixX out = jacobian().transpose() * jacobian();
-    out.diagonal().head(dense) += precisions;
-    out.bottomRightCorner(states * size, states * size) += prior();
-    return out;
-  }
+  RealMatrix matrix() const { return jacobian().transpose() * jacobian() + prior(precisions); }
   /// The gradient of all unknowns with priors.
-  VectorX gradient() const {
-    VectorX out = jacobian().transpose() * residual();
-    out.head(dense) += precisions.cwiseProduct(steps);
-    out.tail(states * size) += prior() * local_steps;
+  RealMatrix gradient() const { return jacobian().transpose() * residual() + prior(precisions) * all_steps(); }
+
+  /// Steps of all unknowns, dense ones first.
+  RealMatrix all_steps() const {
+    RealMatrix out(dense + states * size, 1);
+    out.set_block(0, 0, steps);
+    out.set_block(dense, 0, local_steps);
     return out;
   }
-
   /// Residuals of all blocks.
-  VectorX residual() const {
-    VectorX out(6 * blocks);
-    for (Index b = 0; b < blocks; ++b) out.segment(6 * b, 6) = rows[static_cast<std::size_t>(b)].residual;
+  RealMatrix residual() const {
+    RealMatrix out(6 * blocks, 1);
+    for (Index b = 0; b < blocks; ++b) out.set_block(6 * b, 0, rows[static_cast<std::size_t>(b)].residual);
     return out;
   }
   /// Columns of all unknowns, dense ones first.
-  MatrixX jacobian() const {
-    MatrixX out = MatrixX::Zero(6 * blocks, dense + states * size);
+  RealMatrix jacobian() const {
+    RealMatrix out(6 * blocks, dense + states * size);
     for (Index b = 0; b < blocks; ++b) {
       const vernier::RowBlock& row = rows[static_cast<std::size_t>(b)];
-      out.block(6 * b, 0, 6, dense) = row.dense;
+      out.set_block(6 * b, 0, row.dense);
       for (const auto& part : row.local)
-        if (part.state >= 0) out.block(6 * b, dense + part.state * size, 6, size) += part.columns;
+        if (part.state >= 0) out.add_block(6 * b, dense + part.state * size, part.columns);
     }
     return out;
   }
-  /// Precisions of the local unknowns.
-  MatrixX prior() const {
-    MatrixX out = MatrixX::Zero(states * size, states * size);
+  /// Precisions of all unknowns.
+  /// @param of_dense those of the dense ones
+  RealMatrix prior(const VectorX& of_dense) const {
+    RealMatrix out(dense + states * size, dense + states * size);
+    out.set_block(0, 0, RealMatrix::diagonal(of_dense));
     for (const auto& p : priors) {
-      out.block(p.first * size, p.second * size, size, size) += p.precision;
-      if (p.first != p.second) out.block(p.second * size, p.first * size, size, size) += p.precision.transpose();
+      const Index a = dense + p.first * size, b = dense + p.second * size;
+      out.add_block(a, b, p.precision);
+      if (a != b) out.add_block(b, a, RealMatrix(p.precision).transpose());
     }
     return out;
   }

@@ -2,10 +2,10 @@
 
 // Least-squares problems of random numbers, in blocks.
 
-#include <Eigen/Cholesky>
 #include <utility>
 #include <vector>
 
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
 
@@ -33,6 +33,15 @@ inline VectorX random_vector(Rng& rng, Index n, double size = 1) {
   fill(rng, out, size);
   return out;
 }
+/// Squares of random numbers, added to a least one.
+inline VectorX random_squares(Rng& rng, Index n, double least = 0) {
+  VectorX out(n);
+  for (double& x : out) {
+    const double root = rng.normal();
+    x = least + root * root;
+  }
+  return out;
+}
 
 /// Blocks of random numbers.
 struct RandomBlocks {
@@ -55,7 +64,7 @@ struct RandomBlocks {
       p.unwhiten.setIdentity();
       if (!plain) {
         fill(rng, p.unwhiten, 0.3);
-        p.unwhiten.diagonal().array() += 1;
+        for (Index k = 0; k < 6; ++k) p.unwhiten(k, k) += 1;
         p.position_sigma = rng.uniform(0.01, 1);
       }
       rows.push_back(p);
@@ -85,17 +94,17 @@ struct RandomBlocks {
 /// Position error of a block that took no part: the regularised problem solved again without it.
 inline Vector3 left_out_by_force(const RandomBlocks& blocks, const VectorX& precisions, const VectorX& steps,
                                  Index without) {
-  MatrixX matrix = precisions.asDiagonal();
-  VectorX gradient = precisions.cwiseProduct(steps);
+  RealMatrix matrix = RealMatrix::diagonal(precisions), gradient = matrix * steps;
   for (Index b = 0; b < blocks.size(); ++b) {
     if (b == without) continue;
-    const MatrixX rows = blocks.expanded(b);
+    const RealMatrix rows = blocks.expanded(b);
     matrix += rows.transpose() * rows;
     gradient += rows.transpose() * blocks.row(b).residual;
   }
-  const VectorX step = -Eigen::LLT<MatrixX>(matrix).solve(gradient);
+  const RealMatrix step = -matrix.solve_by_cholesky(gradient);
   const RowBlock& p = blocks.row(without);
-  return (p.unwhiten * (p.residual + blocks.expanded(without) * step)).head<3>() * p.position_sigma;
+  const RealMatrix error = p.unwhiten * (p.residual + blocks.expanded(without) * step) * p.position_sigma;
+  return {error(0), error(1), error(2)};
 }
 
 }  // namespace vernier_test

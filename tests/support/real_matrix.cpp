@@ -65,6 +65,9 @@ RealMatrix RealMatrix::block(Index row, Index col, Index rows, Index cols) const
 void RealMatrix::set_block(Index row, Index col, const RealMatrix& values) {
   values_.block(row, col, values.rows(), values.cols()) = values.values_;
 }
+void RealMatrix::add_block(Index row, Index col, const RealMatrix& values) {
+  values_.block(row, col, values.rows(), values.cols()) += values.values_;
+}
 RealMatrix RealMatrix::diagonal() const { return MatrixX(values_.diagonal()); }
 RealMatrix RealMatrix::transpose() const { return MatrixX(values_.transpose()); }
 
@@ -74,6 +77,9 @@ double RealMatrix::log_determinant() const {
   const Eigen::LLT<MatrixX> factor(values_);
   if (factor.info() != Eigen::Success) throw std::invalid_argument("RealMatrix: not positive definite");
   return 2 * MatrixX(factor.matrixL()).diagonal().array().log().sum();
+}
+RealMatrix RealMatrix::solve_by_cholesky(const RealMatrix& right) const {
+  return MatrixX(Eigen::LLT<MatrixX>(values_).solve(right.values_));
 }
 RealMatrix RealMatrix::solve(const RealMatrix& right) const {
   return MatrixX(values_.colPivHouseholderQr().solve(right.values_));

@@ -54,6 +54,7 @@ class RealMatrix {
   RealMatrix col(Index j) const;
   RealMatrix block(Index row, Index col, Index rows, Index cols) const;
   void set_block(Index row, Index col, const RealMatrix& values);
+  void add_block(Index row, Index col, const RealMatrix& values);
   /// Its diagonal as a column.
   RealMatrix diagonal() const;
   RealMatrix transpose() const;
@@ -61,8 +62,9 @@ class RealMatrix {
   /// By LU decomposition with full pivoting.
   RealMatrix inverse() const;
   double determinant() const;
-  /// Of a symmetric positive definite matrix, by its Cholesky factor.
+  // Of a symmetric positive definite matrix, by its Cholesky factor.
   double log_determinant() const;
+  RealMatrix solve_by_cholesky(const RealMatrix& right) const;
   /// x of least |this x - right|, by QR decomposition with column pivoting.
   RealMatrix solve(const RealMatrix& right) const;
   /// Decreasing.

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "gauss_newton.hpp"
+#include "real_matrix.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
@@ -21,7 +21,10 @@
 namespace vernier::fit_error_model_test {
 namespace {
 
+using vernier_test::difference;
 using vernier_test::identify_by_gauss_newton;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 using Chain = DhChain<6>;
 using Actual = Framed<WithJointErrors<Chain>>;
 
@@ -157,7 +160,7 @@ TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
     const JointRows<6> elsewhere = abb_irb120_operating_region().sample(robot.chain, 100, 9);
     double error = 0, before = 0;
     for (Index i = 0; i < elsewhere.rows(); ++i) {
-      const JointVector<6> q = elsewhere.row(i).transpose();
+      const JointVector<6> q = configuration(elsewhere, i);
       error += (found.model().position(q) - actual.position(q)).norm() / 100;
       before += (found.jointwise.front().position(q) - actual.position(q)).norm() / 100;
     }
@@ -192,24 +195,23 @@ TEST(FitErrorModel, StatesTheDensityGainWhereThatDecided) {
 
 /// The covariance at the solution, before the noise of visits is known: (J'J + priors)^-1 times the weighted squares
 /// over the values that the unknowns leave free.
-MatrixX expected_covariance(const ErrorModelEstimate& estimate, std::vector<detail::Station> stations) {
+RealMatrix expected_covariance(const ErrorModelEstimate& estimate, std::vector<detail::Station> stations) {
   const detail::CalibrationProblem problem(estimate.arm, std::move(stations), Loss::squared);
   const detail::StackedRows rows = problem.stacked(true);
-  const VectorX precisions = estimate.arm.precisions();
-  const MatrixX information = rows.jacobian.transpose() * rows.jacobian;
-  const MatrixX inverse = (information + MatrixX(precisions.asDiagonal())).inverse();
+  const RealMatrix jacobian = rows.jacobian, information = jacobian.transpose() * jacobian;
+  const RealMatrix inverse = (information + RealMatrix::diagonal(estimate.arm.precisions())).inverse();
   const double explained = (inverse * information).trace();  // effective number of parameters
-  return inverse * rows.residuals.squaredNorm() / (static_cast<double>(rows.residuals.size()) - explained);
+  return inverse * (rows.residuals.squaredNorm() / (static_cast<double>(rows.residuals.size()) - explained));
 }
 
 /// Largest difference relative to the deviations.
-double difference(const MatrixX& a, const MatrixX& b) {
-  const VectorX std = b.diagonal().cwiseSqrt();
-  return ((a - b).array() / (std * std.transpose()).array()).abs().maxCoeff();
+double difference_in_deviations(const RealMatrix& a, const RealMatrix& b) {
+  const RealMatrix std = b.diagonal().sqrt();
+  return (a - b).over(std * std.transpose()).largest();
 }
 
 /// The factor on the covariance that leave-one-pose-out errors support.
-double supported_factor(const ErrorModelEstimate& estimate, const MatrixX& covariance, const Dataset<6>& data) {
+double supported_factor(const ErrorModelEstimate& estimate, const RealMatrix& covariance, const Dataset<6>& data) {
   const detail::CalibrationProblem problem(estimate.arm, {detail::station_of(data, squared)}, Loss::squared);
   const BlockSystem system = problem.system();
   const NormalEquations normal(system);
@@ -222,7 +224,8 @@ double supported_factor(const ErrorModelEstimate& estimate, const MatrixX& covar
   for (Index b = 0; b < data.size(); ++b) {
     const RowBlock& rows = blocks[static_cast<std::size_t>(b)];
     rows.expand(estimate.arm.group_sizes(), all);
-    const MatrixX position = all.topRows<3>(), joint = rows.factor.topRows<3>();
+    const RealMatrix position = RealMatrix(all).block(0, 0, 3, all.cols());
+    const RealMatrix joint = RealMatrix(rows.factor).block(0, 0, 3, rows.factor.cols());
     visits.push_back({errors.col(b), position * covariance * position.transpose(), joint * joint.transpose()});
   }
   return detail::visit_noise(visits).model;
@@ -235,11 +238,11 @@ TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
     const Dataset<6> data =
         measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0}), 15, seed);
     const auto found = fitted(data, {.compliance = false, .harmonics = 0});
-    const MatrixX plain = expected_covariance(found, {detail::station_of(data, squared)});
+    const RealMatrix plain = expected_covariance(found, {detail::station_of(data, squared)});
     ASSERT_EQ(found.covariance.rows(), plain.rows());
     const double factor = supported_factor(found, plain, data);
     scaled = scaled || factor < 1;
-    EXPECT_LT(difference(found.covariance, factor * plain), 1e-6) << seed;
+    EXPECT_LT(difference_in_deviations(found.covariance, factor * plain), 1e-6) << seed;
   }
   EXPECT_TRUE(scaled);
 }
@@ -257,8 +260,8 @@ TEST(FitErrorModel, GeometryAloneHasLeaveOnePoseOutErrorsOfItsOwn) {
   ASSERT_EQ(all.left_out_rows.size(), 65u);
   ASSERT_EQ(all.left_out_rows, alone.left_out_rows);
   ASSERT_EQ(all.geometry_left_out_errors.size(), 65);
-  EXPECT_LT((all.geometry_left_out_errors - alone.left_out_errors).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(alone.geometry_left_out_errors, alone.left_out_errors);
+  EXPECT_LT(difference(all.geometry_left_out_errors, alone.left_out_errors), 1e-12);
+  EXPECT_EQ(RealMatrix(alone.geometry_left_out_errors), RealMatrix(alone.left_out_errors));
   EXPECT_LT(all.left_out_errors.mean(), 0.7 * all.geometry_left_out_errors.mean());
 }
 
@@ -272,7 +275,8 @@ TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
   const auto found = fit_error_model(start, std::vector<Dataset<6>>{}, std::vector<Distances<6>>{data},
                                      {.compliance = false, .harmonics = 0}, squared);
   ASSERT_TRUE(found.converged);
-  EXPECT_LT(difference(found.covariance, expected_covariance(found, {detail::station_of(data, squared)})), 1e-6);
+  EXPECT_LT(difference_in_deviations(found.covariance, expected_covariance(found, {detail::station_of(data, squared)})),
+            1e-6);
   EXPECT_GT(found.position_sigma, 0.02e-3);
   EXPECT_LT(found.position_sigma, 0.08e-3);
 }
@@ -282,22 +286,24 @@ TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
 TEST(ErrorModelEstimate, CovariancesByHand) {
   const ArmGeometry arm(nominal);
   ErrorModelEstimate estimate{.arm = ArmParameterisation({arm}, {{0, -1, 1e-3, 0}, {1, -1, 2e-3, 0}})};
-  estimate.covariance = (Eigen::Matrix2d() << 0.01, 0.01, 0.01, 0.04).finished();
+  estimate.covariance = RealMatrix(2, 2, {0.01, 0.01, 0.01, 0.04});
   estimate.position_sigma = 0.3e-3;
   estimate.joint_sigma = 0.1e-3;
   estimate.orientation_sigma = 0.2e-3;
   estimate.fallback_error = 0.8e-3;
   const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
-  Matrix6 model = Matrix6::Zero();
-  model.topLeftCorner<2, 2>() << 0.01e-6, 0.02e-6, 0.02e-6, 0.16e-6;
+  RealMatrix model(6, 6);
+  model.set_block(0, 0, RealMatrix(2, 2, {0.01e-6, 0.02e-6, 0.02e-6, 0.16e-6}));
   EXPECT_LT((estimate.model_covariance(q) - model).norm(), 1e-18);
-  const Jacobian<6> jacobian = nominal.jacobian(q);
-  Matrix6 visit = model + 1e-8 * jacobian * jacobian.transpose();
-  visit.diagonal().head<3>().array() += 9e-8 + 0.25e-6 * 0.5625;  // three quarters of 0.8 mm / 1.6, squared
-  visit.diagonal().tail<3>().array() += 4e-8;
-  EXPECT_LT((estimate.visit_covariance(q, 0.25) - visit).norm(), 1e-12 * visit.norm());
-  visit.diagonal().head<3>().array() -= 0.25e-6 * 0.5625;
-  EXPECT_LT((estimate.visit_covariance(q, 1) - visit).norm(), 1e-12 * visit.norm());
+  const RealMatrix jacobian = nominal.jacobian(q), of_joints = 1e-8 * (jacobian * jacobian.transpose());
+  const auto visit = [&](double position, double rotation) {
+    return model + of_joints +
+           RealMatrix::diagonal(vector({position, position, position, rotation, rotation, rotation}));
+  };
+  const RealMatrix measured = visit(9e-8, 4e-8);
+  const RealMatrix outside = visit(9e-8 + 0.25e-6 * 0.5625, 4e-8);  // three quarters of 0.8 mm / 1.6, squared
+  EXPECT_LT((estimate.visit_covariance(q, 0.25) - outside).norm(), 1e-12 * outside.norm());
+  EXPECT_LT((estimate.visit_covariance(q, 1) - measured).norm(), 1e-12 * measured.norm());
 }
 
 /// Nothing is uncertain but on which side of their loops the first and the third joint stand; half a loop is 0.2 and
@@ -314,11 +320,10 @@ TEST(ErrorModelEstimate, UnknownApproachesAreUncertainByHalfTheLoop) {
   estimate.covariance = MatrixX::Zero(7, 7);
   estimate.position_sigma = estimate.joint_sigma = estimate.orientation_sigma = 0;
   const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
-  const Jacobian<6> jacobian = nominal.jacobian(q);
-  const Vector6 first = 2e-4 * jacobian.col(0), third = 3e-4 * jacobian.col(2);
-  const Matrix6 expected = first * first.transpose() + third * third.transpose();
+  const RealMatrix jacobian = nominal.jacobian(q), first = 2e-4 * jacobian.col(0), third = 3e-4 * jacobian.col(2);
+  const RealMatrix expected = first * first.transpose() + third * third.transpose();
   EXPECT_LT((estimate.visit_covariance(q, 1) - expected).norm(), 1e-12 * expected.norm());
-  const JointVector<6> previous = q.array() - 0.5;
+  const JointVector<6> previous(-0.4, -1, -0.2, 0.2, -0.9, 0.5);
   EXPECT_EQ(estimate.visit_covariance(q, 1, 0, previous).norm(), 0);
 }
 
@@ -328,17 +333,15 @@ TEST(ErrorModelEstimate, TransmissionByHand) {
   JointTerms terms(6);
   terms.transmission[1] = Fourier::up_to(1);
   terms.transmission[2] = Fourier::up_to(1);
-  estimate.arm.set_terms(terms, Eigen::Vector4d(1e-3, 2e-3, 3e-3, 4e-3), Eigen::Vector4d::Ones());
-  VectorX steps(5);
-  steps << 0, 1, 2, 5, 7;
-  estimate.arm.move(steps);
-  estimate.covariance = VectorX::LinSpaced(5, 1, 5).cwiseAbs2().asDiagonal();
+  estimate.arm.set_terms(terms, vector({1e-3, 2e-3, 3e-3, 4e-3}), VectorX::Ones(4));
+  estimate.arm.move(vector({0, 1, 2, 5, 7}));
+  estimate.covariance = RealMatrix::diagonal(vector({1, 4, 9, 16, 25}));
   const JointFunction f = estimate.transmission(2, {0, std::numbers::pi});
-  EXPECT_LT((f.value - Eigen::Vector2d(15e-3, -15e-3)).norm(), 1e-15);
-  EXPECT_LT((f.std - Eigen::Vector2d(12e-3, 12e-3)).norm(), 1e-15);  // 4 units of 3 mrad
+  EXPECT_LT((f.value - vector({15e-3, -15e-3})).norm(), 1e-15);
+  EXPECT_LT((f.std - vector({12e-3, 12e-3})).norm(), 1e-15);  // 4 units of 3 mrad
   const JointFunction mean = estimate.transmission(2, {0, 0});
   EXPECT_LT(mean.value.norm() + mean.std.norm(), 1e-15);
-  EXPECT_EQ(estimate.transmission(0, {0, 1}).value, Eigen::Vector2d::Zero());
+  EXPECT_EQ(RealMatrix(estimate.transmission(0, {0, 1}).value), vector({0, 0}));
 }
 
 }  // namespace

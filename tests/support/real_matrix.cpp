@@ -16,9 +16,10 @@ using vernier::VectorX;
 
 namespace {
 
-void require_same_shape(const RealMatrix& a, const RealMatrix& b) {
-  if (a.rows() != b.rows() || a.cols() != b.cols()) throw std::invalid_argument("RealMatrix: shapes differ");
+void require_shape(const RealMatrix& a, Index rows, Index cols) {
+  if (a.rows() != rows || a.cols() != cols) throw std::invalid_argument("RealMatrix: another shape");
 }
+void require_same_shape(const RealMatrix& a, const RealMatrix& b) { require_shape(a, b.rows(), b.cols()); }
 
 const MatrixX& value(const RealMatrix& a) { return a; }
 
@@ -50,12 +51,24 @@ RealMatrix RealMatrix::diagonal(const RealMatrix& column) { return MatrixX(Vecto
 
 RealMatrix::operator vernier::ConstMatrixRef() const { return values_; }
 RealMatrix::operator VectorX() const {
-  if (cols() != 1) throw std::invalid_argument("RealMatrix: not one column");
+  require_shape(*this, rows(), 1);
   return values_.col(0);
 }
 RealMatrix::operator vernier::ConstVectorRef() const {
-  if (cols() != 1) throw std::invalid_argument("RealMatrix: not one column");
+  require_shape(*this, rows(), 1);
   return values_.col(0);
+}
+RealMatrix::operator vernier::Matrix3() const {
+  require_shape(*this, 3, 3);
+  return values_;
+}
+RealMatrix::operator vernier::Vector3() const {
+  require_shape(*this, 3, 1);
+  return values_;
+}
+RealMatrix::operator vernier::Matrix6() const {
+  require_shape(*this, 6, 6);
+  return values_;
 }
 RealMatrix RealMatrix::row(Index i) const { return MatrixX(values_.row(i)); }
 RealMatrix RealMatrix::col(Index j) const { return MatrixX(values_.col(j)); }

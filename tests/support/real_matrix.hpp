@@ -36,11 +36,14 @@ class RealMatrix {
   /// Zeros but for its diagonal.
   static RealMatrix diagonal(const RealMatrix& column);
 
-  // What Vernier's functions take; vectors of matrices with one column alone.
+  // What Vernier's functions take, of matrices with that shape alone; vectors are one column.
   operator const vernier::MatrixX&() const { return values_; }
   operator vernier::ConstMatrixRef() const;
   operator vernier::VectorX() const;
   operator vernier::ConstVectorRef() const;
+  operator vernier::Matrix3() const;
+  operator vernier::Vector3() const;
+  operator vernier::Matrix6() const;
 
   Index rows() const { return values_.rows(); }
   Index cols() const { return values_.cols(); }

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 
 #include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/kinematics/general_six_axis.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -296,6 +299,125 @@ TEST(CorrectPath, WithoutClosedFormItFollowsTheBranchOfTheStart) {
   const auto path = correct_path(
       wam.chain, {{.pose = a}, {.pose = moved(a, Vector3(0, 0.05, -0.05)), .motion = Motion::linear}}, seven);
   EXPECT_EQ(path.first_failure(), nullptr);
+}
+
+detail::PathJoints joints_of(std::initializer_list<double> values) {
+  detail::PathJoints out(static_cast<Index>(values.size()));
+  std::copy(values.begin(), values.end(), out.begin());
+  return out;
+}
+
+/// A tool on two slides that should move along x and y, but goes along an arc: off in y by `bow` in the middle of its
+/// way from x = 0 to x = 1. Where a target has another branch, it takes 2 m of the second slide.
+struct BowedSlides {
+  double bow = 0;
+  bool other_branch = false;
+  double twist = 0;  ///< about z, as much there as `bow`
+
+  detail::SolvedPath path(const std::vector<detail::PathGoal>& goals, const detail::PathSettings& settings) const {
+    using detail::PathJoints;
+    const auto off = [&](double x) { return 4 * bow * x * (1 - x); };
+    const auto at = [](double x, double y) { return rigid_motion(Matrix3::Identity(), Vector3(x, y, 0)); };
+    const auto meet = [&](const Isometry3& target, const PathJoints&, PathJoints& command, double* errors) {
+      const Vector3 p = translation(target);
+      if (!other_branch) command = joints_of({p.x(), p.y() - off(p.x())});
+      errors[0] = errors[1] = 0;
+      return true;
+    };
+    const auto branches = [&](const Isometry3& target, const PathJoints&, std::vector<detail::PathBranch>& out) {
+      const Vector3 p = translation(target);
+      out.push_back({joints_of({p.x(), p.y() - off(p.x())}), 0});
+      if (other_branch) out.push_back({joints_of({0, 2}), 1});
+      return Reach::met;
+    };
+    const auto pose = [&](const PathJoints& q, const PathJoints&) {
+      return rigid_motion(exp_so3(Vector3(0, 0, 4 * twist * q(0) * (1 - q(0)))), Vector3(q(0), q(1) + off(q(0)), 0));
+    };
+    const auto nominal_pose = [&](const PathJoints& q) { return at(q(0), q(1)); };
+    const auto nominal_joints = [&](const Isometry3& target, PathJoints& q) {
+      q = joints_of({target(0, 3), target(1, 3)});
+      return true;
+    };
+    const auto cost = [](const PathJoints&) { return 0.0; };
+    const auto branch_id = [&](const PathJoints& q) { return other_branch && q(1) == 2 ? 1 : 0; };
+    return detail::solve_path({2, branches, meet, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
+                              settings);
+  }
+};
+
+/// Settings of two slides; no step is too long.
+detail::PathSettings slides_settings(const detail::PathJoints& speed) {
+  return {1e-3, 1, 2, 127, joints_of({-3, -3}), joints_of({3, 3}), speed, joints_of({0, 0})};
+}
+
+TEST(PathSolverWhiteBox, AJointThatTurnedRoundComesFromTheCommandBeyondATransition) {
+  const detail::PathJoints from = detail::approach_on_the_way(
+      joints_of({std::nan(""), 0, 0, 0}), joints_of({0.1, 0.1, 0.1, 0.1}), joints_of({0.3, 0.2, 0.08, 0.02}));
+  EXPECT_EQ(from(0), 0.1);  // nothing is known of its direction
+  EXPECT_EQ(from(1), 0);    // goes on
+  // 2/5 of the transition of 0.05 rad: 3/5 of it still lag behind, 2/5 of the way back lead
+  EXPECT_NEAR(from(2), 0.08 - (0.6 * 0.05 - 0.4 * 0.02), 1e-15);
+  EXPECT_NEAR(from(3), 0.1, 1e-15);  // has turned round
+}
+
+TEST(PathSolverWhiteBox, SpeedsChooseTheBranch) {
+  const BowedSlides arm{.other_branch = true};
+  const std::vector<detail::PathGoal> goals{{rigid_motion(Matrix3::Identity(), Vector3(1, 0, 0)), {}, Motion::joint}};
+  // 1 m of the first slide or 2 m of the second
+  const auto second = [&](double speed) {
+    return arm.path(goals, slides_settings(joints_of({1, speed}))).points.front().command(1);
+  };
+  EXPECT_EQ(second(1.9), 0);
+  EXPECT_EQ(second(2.1), 2);
+}
+
+TEST(PathSolverWhiteBox, DeviationsShrinkWithTheSquareOfAPiece) {
+  const BowedSlides arm{.bow = 15.5e-3};  // in units of the tolerance of 1 mm: sqrt(15.5) pieces, rounded up
+  const detail::SolvedPath path = arm.path({{rigid_motion(Matrix3::Identity(), Vector3(0, 0, 0)), {}, Motion::joint},
+                                            {rigid_motion(Matrix3::Identity(), Vector3(1, 0, 0)), {}, Motion::linear}},
+                                           slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 5u);  // both ends, and three that were inserted
+  for (std::size_t k = 1; k < 5; ++k) EXPECT_NEAR(path.points[k].command(0), 0.25 * static_cast<double>(k), 1e-15);
+  EXPECT_NEAR(path.points[2].command(1), -15.5e-3, 1e-15);
+  EXPECT_NEAR(path.before, 15.5e-3, 1e-12);
+  EXPECT_NEAR(path.after, 15.5e-3 / 16, 1e-12);
+}
+
+/// A move to x = 0, and lines to other places on the x axis.
+std::vector<detail::PathGoal> line_through(std::initializer_list<double> places) {
+  std::vector<detail::PathGoal> out{{rigid_motion(Matrix3::Identity(), Vector3(0, 0, 0)), {}, Motion::joint}};
+  for (const double x : places)
+    out.push_back({rigid_motion(Matrix3::Identity(), Vector3(x, 0, 0)), {}, Motion::linear});
+  return out;
+}
+
+TEST(PathSolverWhiteBox, TheLargestDeviationOfAllLinesIsReported) {
+  // the second line is 0.4 long, so off by 0.16 of the first, and half of it by a quarter of that
+  const detail::SolvedPath path =
+      BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.6}), slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 7u);
+  EXPECT_NEAR(path.points[6].deviation, 0.04 * 15.5e-3, 1e-12);
+  EXPECT_NEAR(path.points[6].ends_only, 0.16 * 15.5e-3, 1e-12);
+  EXPECT_NEAR(path.before, 15.5e-3, 1e-12);
+  EXPECT_NEAR(path.after, 15.5e-3 / 16, 1e-12);
+}
+
+TEST(PathSolverWhiteBox, NoStepIsLongerThanAllowed) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.max_joint_step = 0.35;
+  const detail::SolvedPath path = BowedSlides{}.path(line_through({1}), settings);  // a straight line already
+  ASSERT_EQ(path.points.size(), 4u);
+  for (std::size_t k = 1; k < 4; ++k) EXPECT_NEAR(path.points[k].command(0), static_cast<double>(k) / 3, 1e-15);
+}
+
+TEST(PathSolverWhiteBox, OrientationsHaveATolerance) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.max_inserted = 3;  // slides cannot turn the tool, however many there are
+  for (const double tolerance : {1.8e-3, 2.1e-3}) {
+    settings.rotation_tolerance = tolerance;
+    const detail::SolvedPath path = BowedSlides{.twist = 2e-3}.path(line_through({1}), settings);
+    EXPECT_EQ(path.points.back().status, tolerance > 2e-3 ? PointStatus::met : PointStatus::off_path);
+  }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "complaint.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/data/detail/pair_search.hpp"
 #include "vernier/data/detail/point_alignment.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -460,6 +461,31 @@ TEST(PairPoints, MeasuredUr10) {
 }
 TEST(PairPoints, MeasuredUr5) { expect_found_in_measured<6>("ur5_grid.csv", robots::ur5().chain, 1000, 0.006); }
 TEST(PairPoints, MeasuredWam) { expect_found_in_measured<7>("wam_grid.csv", robots::barrett_wam().chain, 216, 0.03); }
+
+TEST(PairSearchWhiteBox, PairsByNameSupportAFrameWithinTheLimit) {
+  PointRows points = PointRows::Zero(4, 3);
+  detail::PairSearch search{{}, points, false, {{0, 0}, {1, 1}, {2, 2}, {3, 3}}};
+  detail::PairSearch::Found found;
+  found.nominal = points;
+  for (Index i = 0; i < 4; ++i) found.nominal(i, 2) = 0.02 * static_cast<double>(i);
+  EXPECT_EQ(search.support(found, 0.05), 3);  // 0, 20 and 40 mm, but not 60
+}
+
+// Pairs by name prove an arm where points are off by 1 % of their spread, but not by 3 %: so are those of any arm.
+TEST(PairSearchWhiteBox, TooLargeErrorsProveNothing) {
+  for (const double size : {0.01, 0.03}) {
+    Session session = Session::simulate(60, 3);
+    std::vector<PointPair> pairs;
+    Rng rng(8);
+    for (Index i = 0; i < 60; ++i) {
+      pairs.push_back({i, i});
+      const Vector3 error(rng.normal(), rng.normal(), rng.normal());
+      set_point(session.points, i, point(session.points, i) + size * 0.8 / error.norm() * error);
+    }
+    const PairingProof proof = detail::prove({session.flanges, session.points, false, pairs}).first;
+    EXPECT_EQ(proof.status, size < 0.02 ? PairingStatus::proven : PairingStatus::unrelated) << size;
+  }
+}
 
 }  // namespace
 }  // namespace vernier::pair_points_test

@@ -152,6 +152,36 @@ TEST(ArmPrior, CoversWhatWasMeasuredBefore) {
 }
 
 // N(m, S + kappa^2 V0) of three unknowns by hand; the first is geometric.
+// A third calibration starts from the sizes that joint errors were expected to have at first, not from none.
+TEST(ArmPrior, IsHandedOnWithTheExpectedSizes) {
+  const JointErrors errors = joint_errors(5);
+  const ArmPrior prior = prior_from(arm(4, errors, 0.4), 300);
+  const auto found = fitted(measured(arm(4, errors, -0.7), 40, 3), &prior);
+  ASSERT_TRUE(found.prior && found.prior->used);
+  const Index coefficients = prior.estimate.arm.terms().size();
+  ASSERT_EQ(found.arm.terms().size(), coefficients);
+  ASSERT_GT(coefficients, 100);
+  const VectorX expected = prior.estimate.arm.precisions(), handed_on = found.arm.precisions();
+  EXPECT_GT(expected.tail(coefficients).minCoeff(), 0);
+  EXPECT_EQ(handed_on.tail(coefficients), expected.tail(coefficients));
+  EXPECT_EQ(handed_on.head(handed_on.size() - coefficients).maxCoeff(), 0);
+}
+
+// Of an earlier calibration the chain is known, from its first parameter to its last; frames are not.
+TEST(TransferredUnknownsWhiteBox, FramesAreNotTransferred) {
+  const ArmPrior prior{"before",
+                       detail::ChainTable(robot.chain.view()),
+                       {.arm = ArmParameterisation({ArmGeometry(in_frames(robot.chain))},
+                                                   {{5, -1, 1, 1}, {6, -1, 1, 1}, {35, -1, 1, 1}, {36, -1, 1, 1}})}};
+  const auto unknowns = detail::with_unknowns_of(prior, {{36, -1, 1, 2}});
+  ASSERT_EQ(unknowns.size(), 3u);
+  EXPECT_EQ(unknowns[0].parameter, 36);
+  EXPECT_EQ(unknowns[0].precision, 2);
+  EXPECT_EQ(unknowns[1].parameter, 6);
+  EXPECT_EQ(unknowns[2].parameter, 35);
+  EXPECT_EQ(unknowns[2].precision, 0);
+}
+
 TEST(TransferredUnknownsWhiteBox, PriorByHand) {
   detail::TransferredUnknowns known{{2, 0}, 1, Eigen::Vector2d(0.5, -1), MatrixX(2, 2), Eigen::Vector2d(4, 9)};
   known.covariance << 1, 0.5, 0.5, 2;

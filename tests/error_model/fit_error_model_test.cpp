@@ -281,6 +281,22 @@ TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
   EXPECT_LT(found.position_sigma, 0.08e-3);
 }
 
+// Beside poses, a fixed point has three unknowns: a position, but no orientation.
+TEST(FitErrorModel, AFixedPointBesidePosesHasAPosition) {
+  const Actual actual = actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0});
+  const Dataset<6> data = measured(actual, 40, 4);
+  const auto wire = measure_distances(actual, Vector3(0.9, -1.2, 0.3),
+                                      abb_irb120_operating_region().sample(robot.chain, 40, 5), 0.03e-3, 5);
+  const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
+  const auto found = fit_error_model(start, std::vector<Dataset<6>>{data}, std::vector<Distances<6>>{wire},
+                                     {.compliance = false, .harmonics = 0}, squared);
+  std::vector<std::vector<Index>> of_station(2);
+  for (const GeometricUnknown& unknown : found.arm.geometric())
+    if (unknown.station >= 0) of_station[static_cast<std::size_t>(unknown.station)].push_back(unknown.parameter);
+  EXPECT_EQ(of_station[0], (std::vector<Index>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(of_station[1], (std::vector<Index>{0, 1, 2}));
+}
+
 /// Base x and y in units of 1 and 2 mm, standard deviations 0.1 and 0.2 units, correlation 0.5; joints that do not
 /// repeat.
 TEST(ErrorModelEstimate, CovariancesByHand) {

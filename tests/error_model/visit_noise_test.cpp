@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "vernier/core/rng.hpp"
 
 namespace vernier::visit_noise_test {
@@ -61,6 +63,19 @@ TEST(VisitNoiseWhiteBox, NoneInNothing) {
     EXPECT_EQ(none.position, 0);
     EXPECT_EQ(none.joint, 0);
   }
+}
+
+/// Of 100 visits off in space alone, some by 4 mm and the others by 1 mm, the radius of the ellipsoids that hold 95 %.
+double radius_with_outliers(std::size_t outliers) {
+  std::vector<detail::LeftOutVisit> all(100, {Vector3(0, 1e-3, 0), Matrix3::Zero(), Matrix3::Zero()});
+  for (std::size_t k = 0; k < outliers; ++k) all[k].error *= 4;
+  return std::sqrt(7.8147) * detail::visit_noise(all).position;
+}
+
+TEST(VisitNoiseWhiteBox, NineteenOfTwentyVisitsLieWithinTheirEllipsoids) {
+  EXPECT_LT(radius_with_outliers(5), 2.6e-3);  // the likeliest noise holds the other 95
+  EXPECT_GE(radius_with_outliers(6), 4e-3);    // widened, by no more than a step too much
+  EXPECT_LT(radius_with_outliers(6), 4e-3 * 1.02);
 }
 
 }  // namespace

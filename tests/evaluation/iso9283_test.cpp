@@ -296,7 +296,8 @@ TEST(Iso9283, DriftByHand) {
     const double y = (k % 2 == 0 ? 1 : -1) * off[group];
     visits.push_back({1, k + 1, 0, pose_of(1e-3 * Vector3(at[group], y, 0)), 60.0 * k});
   }
-  std::swap(visits[0], visits[5]);  // times decide
+  std::swap(visits[0], visits[5]);
+  std::swap(visits[1].cycle, visits[4].cycle);  // times decide
   const Iso9283 result = iso9283(visits, commanded, {.drift_visits = 2});
   ASSERT_EQ(result.drift.size(), 1u);
   const Iso9283Drift& drift = result.drift[0];
@@ -308,6 +309,7 @@ TEST(Iso9283, DriftByHand) {
   }
   EXPECT_NEAR(drift.dap, 3e-3, 1e-15);
   EXPECT_NEAR(drift.drp, 2e-4, 1e-15);
+  std::swap(visits[1].cycle, visits[4].cycle);
   for (Iso9283Visit& visit : visits) visit.time_s = nan;
   const Iso9283 untimed = iso9283(visits, commanded, {.drift_visits = 2});
   EXPECT_NEAR(untimed.drift[0].dap, 3e-3, 1e-15);  // by cycles

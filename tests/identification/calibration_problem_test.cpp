@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
+#include <array>
 
 #include "random_blocks.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -213,6 +214,68 @@ TEST(CalibrationProblemWhiteBox, DistancesAreAlongTheLineOfSight) {
     const VectorX down = problem_of(arm.with_parameters(p)).stacked(false).residuals;
     EXPECT_LT((exact.jacobian.col(k) - (up - down) / 2e-6 * 1e-3).cwiseAbs().maxCoeff(), 1e-6) << k;
   }
+}
+
+TEST(CalibrationProblemWhiteBox, EachPoseHasATemperatureOfItsOwn) {
+  Measured measured(8);
+  const VectorX celsius{{20, 21, 23, 26, 30, 35, 41, 48}};
+  measured.first = measured.first.at_temperatures(celsius);
+  ArmParameterisation arm({ArmGeometry(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool))},
+                          {{11, -1, 1e-3, 0}, {11, -1, 1e-3, 0, true}});
+  Problem problem(std::move(arm), {detail::station_of(measured.first, {})}, Loss::squared);
+  problem.reference_temperature = 25;
+  std::array<RowBlock, 4> rows;
+  problem(3, 4, rows.data());
+  for (Index i = 0; i < 4; ++i) {
+    const Rows6& dense = rows[static_cast<std::size_t>(i)].dense;
+    EXPECT_GT(dense.col(0).norm(), 1);
+    EXPECT_LT((dense.col(1) - (celsius(3 + i) - 25) * dense.col(0)).norm(), 1e-9) << i;
+  }
+}
+
+TEST(CalibrationProblemWhiteBox, EveryStationDriftsByItself) {
+  Measured measured(16);
+  measured.first = measured.first.measured_at(VectorX::LinSpaced(16, 0, 150));
+  measured.second = measured.second.measured_at(VectorX::LinSpaced(8, 200, 270));
+  Problem problem = measured.problem(0, 1e-3);
+  problem.start_drift(8);  // steps of 0.03 mm and 20 urad in 200 poses are 6 um and 4 urad in 8
+  ASSERT_EQ(problem.drift[0].knots.cols(), 3);
+  ASSERT_EQ(problem.drift[1].knots.cols(), 2);
+  const double steps[] = {1, 2, 3, 4, 5};  // one a knot
+  for (Index knot = 0; knot < 5; ++knot)
+    for (Index r = 0; r < 6; ++r)
+      (knot < 3 ? problem.drift[0].knots(r, knot) : problem.drift[1].knots(r, knot - 3)) =
+          steps[knot] * (r < 3 ? 6e-6 : 4e-6);
+  const VectorX found = problem.drift_steps();
+  ASSERT_EQ(found.size(), 30);
+  for (Index k = 0; k < 30; ++k) EXPECT_NEAR(found(k), steps[k / 6], 1e-12) << k;
+}
+
+TEST(CalibrationProblemWhiteBox, TheDriftToComeIsAtLeastTheExpectedOne) {
+  Measured measured(8);
+  measured.first = measured.first.measured_at(VectorX::LinSpaced(8, 0, 70));
+  Problem problem = measured.problem(0, 1e-3);
+  problem.start_drift(50);  // half of the steps in 200 poses: 15 um, 10 urad, and 5 urad of the joints
+  problem.start_joint_drift();
+  problem.drift_precision = 4;
+  problem.joint_drift_precision = 0.25;
+  VectorX variance = problem.drift_step_variance();
+  ASSERT_EQ(variance.size(), 12);
+  for (Index k = 0; k < 12; ++k) EXPECT_NEAR(variance(k), k < 3 ? 225e-12 : 100e-12, 1e-24) << k;
+  problem.drift_precision = 0.25;
+  variance = problem.drift_step_variance();
+  for (Index k = 0; k < 12; ++k) EXPECT_NEAR(variance(k), k < 3 ? 900e-12 : k < 6 ? 400e-12 : 100e-12, 1e-24) << k;
+}
+
+// Rows are weighted so that their sum of squares is that of the weighted norms, of positions and of orientations.
+TEST(CalibrationProblemWhiteBox, WeightsOfTheLossAreThoseOfTheRows) {
+  const Measured measured(16);
+  ArmParameterisation arm({ArmGeometry(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool))},
+                          {{11, -1, 1e-3, 0}});
+  Problem problem(std::move(arm), {detail::station_of(measured.first, {})}, Loss::cauchy);
+  const std::array<double, 2> sums = problem.reweight();
+  EXPECT_LT(sums[1], 0.9 * sums[0]);
+  EXPECT_NEAR(problem.normal_equations().cost, sums[1], 1e-9 * sums[1]);
 }
 
 }  // namespace

@@ -109,6 +109,19 @@ TEST(Contacts, BallsAndABarOfSocketsRecoverTheArm) {
   EXPECT_NEAR(found.objects[2].direction.norm(), 1, 1e-12);
 }
 
+TEST(Contacts, ObjectsAreReportedInTheFrameOfTheBase) {
+  const std::vector<Contact> contacts = three_planes(true);
+  const FrameParameters base(Vector6{0.5, -1, 0.2, 0.3, -0.8, 1.5});
+  const auto found = identify_by_contacts(nominal_arm(), contacts, exact);
+  const auto moved = identify_by_contacts(
+      vernier_test::IrbArm(nominal_arm().model(), base, FrameParameters(nominal_arm().tool())), contacts, exact);
+  ASSERT_EQ(moved.objects.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_LT((moved.objects[k].point - base.isometry() * found.objects[k].point).norm(), 1e-7) << k;
+    EXPECT_LT((moved.objects[k].direction - base.isometry().linear() * found.objects[k].direction).norm(), 1e-7) << k;
+  }
+}
+
 TEST(Contacts, SocketsWithoutALengthDoNotDetermineTheScale) {
   const std::vector contacts{
       touched({ContactKind::socket, {0.35, -0.1, 0.35}, Vector3::UnitZ()}, "one", lengths(12), 0, 7),

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "real_matrix.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/registration/reregister.hpp"
@@ -19,6 +20,7 @@
 namespace vernier::contradiction_test {
 namespace {
 
+using vernier_test::RealMatrix;
 using Chain = DhChain<6>;
 using Model = ErrorModel<Chain>;
 using Joints = JointVector<6>;
@@ -213,6 +215,53 @@ TEST(Contradiction, WeightsAreThoseOfTheResiduals) {
   const auto floor = reregister(c.model, c.seen(17, 5, Vector3::Zero()), {}, worse);
   EXPECT_EQ(floor.position_sigma, worse.position_sigma);
   EXPECT_EQ(floor.orientation_sigma, worse.orientation_sigma);
+}
+
+/// Covariance of base and probe at a solution, with a prior on the probe.
+RealMatrix covariance(const Reregistered<Chain>& found, const Dataset<6>& data, double probe_std) {
+  const detail::FrameUpdate update{true, false, false, 6, true};
+  RealMatrix information(9, 9);
+  for (Index i = 0; i < data.size(); ++i) {
+    RealMatrix rows = update.columns(found.model.pose(data.joints(i)), nullptr);
+    for (Index r = 0; r < 6; ++r)
+      for (Index c = 0; c < 9; ++c) rows(r, c) /= r < 3 ? found.position_sigma : found.orientation_sigma;
+    information += rows.transpose() * rows;
+  }
+  for (Index k = 6; k < 9; ++k) information(k, k) += 1 / (probe_std * probe_std);
+  return information.inverse();
+}
+
+/// Standard deviation of the model's own orientations: what their scatter has beyond the sensor's.
+double own_deviation(const ReregistrationReport& found) {
+  return std::sqrt(std::pow(found.orientation_sigma, 2) - std::pow(sensors.orientation_sigma, 2));
+}
+
+TEST(Contradiction, IsWaldsStatistic) {
+  const Case c(5);
+  const Dataset<6> data = c.seen(17, 5, Vector3(0.5e-3, -0.4e-3, 0.3e-3));
+  const auto found = reregister(c.model, data, {}, sensors);
+  ASSERT_TRUE(found.probe_turned);
+  RealMatrix by_chance = covariance(found, data, 1).block(6, 6, 3, 3);
+  for (Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(found.probe_std(k), std::sqrt(by_chance(k, k)), 1e-6 * found.probe_std(k));
+    by_chance(k, k) += std::pow(own_deviation(found), 2);
+  }
+  const RealMatrix probe = found.motion.probe;
+  const double square = probe.dot(by_chance.inverse() * probe);
+  constexpr double redundancy = 6 * 17 - 9;  // values that the unknowns leave free
+  EXPECT_NEAR(found.contradiction, redundancy * std::log1p(square / redundancy), 1e-5 * found.contradiction);
+}
+
+// Orientations of a model that errs tell about the base no more than their mean error allows.
+TEST(Contradiction, TheModelsOwnErrorWidensTheBase) {
+  const Case c(5);
+  const Dataset<6> data = c.seen(17, 5, Vector3::Zero());
+  const auto found = reregister(c.model, data, {}, sensors);
+  ASSERT_FALSE(found.probe_turned);
+  ASSERT_GT(found.orientation_sigma, 1.2 * sensors.orientation_sigma);
+  const RealMatrix expected = covariance(found, data, own_deviation(found));
+  for (Index k = 0; k < 6; ++k)
+    EXPECT_NEAR(found.change_std(k), std::sqrt(expected(k, k)), 1e-5 * found.change_std(k)) << k;
 }
 
 TEST(HeldTool, WhereAllPosesFaceOneWay) {

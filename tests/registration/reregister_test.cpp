@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -136,6 +137,21 @@ TEST(Reregister, FindsABaseFromSixPositions) {
   const auto weighted = reregister(model, wrong);
   EXPECT_LT(weighted.rms_after, 1e-7);
   EXPECT_GT(weighted.orientation_sigma, 0.3);
+}
+
+TEST(Reregister, PosesAreThoseOfTheDirectionFromWhichTheyWereApproached) {
+  JointTerms terms(6);
+  terms.hysteresis = {0.02};
+  const Model model(robot.chain, Model::Arm({robot.chain, JointErrors(terms, VectorX::Constant(6, 3e-4))}));
+  const Model truth = model.moved(elsewhere, Joints::Zero(), still);
+  const JointRows<6> joints = samples(6, 3), previous = samples(6, 4);
+  PointRows positions(6, 3), orientations(6, 3);
+  for (Index i = 0; i < 6; ++i) {
+    const Isometry3 pose = truth.approached_from(configuration(previous, i)).pose(configuration(joints, i));
+    set_point(positions, i, translation(pose));
+    set_point(orientations, i, log_so3(rotation(pose)));
+  }
+  expect_found(reregister(model, Dataset<6>(joints, positions, orientations).approached_from(previous)), truth);
 }
 
 TEST(Reregister, FindsATool) {
@@ -449,6 +465,42 @@ TEST(RecursiveCalibration, MisuseThrows) {
   EXPECT_TRUE(mentions(with({}, 1, {1, -1}), "initial standard deviations"));
   EXPECT_TRUE(mentions(with({.base = false}, 1, {1, 1}), "nothing is to be estimated"));
   EXPECT_EQ(with({}, 1, {1, 1}), "");
+}
+
+TEST(ReregistrationReport, TheLeastCertainDirectionOfAToolIsSaid) {
+  for (Index axis = 0; axis < 3; ++axis) {
+    ReregistrationReport report;
+    report.estimated = another_tool();
+    report.change_std = VectorX::Constant(12, 0.1e-3);
+    report.change_std(6 + axis) = 2e-3;
+    report.change_std(9 + axis) = 4e-3;
+    EXPECT_EQ(report.remarks(),
+              (std::vector<std::string>{"The poses determine the position of the tool to 2.0 mm only.",
+                                        "The poses determine the rotation of the tool to 4.0 mrad only."}))
+        << axis;
+  }
+}
+
+TEST(ReregistrationReport, AToolIsFarBeyondThreeOfItsExpectedSizes) {
+  ReregistrationReport report;
+  report.estimated.tool = true;
+  report.motion.tool = frame(Vector6{0, 8.9e-3, 0, 0, 0, 14.9e-3});
+  EXPECT_TRUE(report.remarks().empty());
+  report.motion.tool = frame(Vector6{0, 9.1e-3, 0, 0, 0, 15.1e-3});
+  ASSERT_EQ(report.remarks().size(), 2u);
+  EXPECT_TRUE(mentions(report.remarks()[0], "The tool has moved by 9.10 mm, where 3.00 are expected"));
+  EXPECT_TRUE(mentions(report.remarks()[1], "The tool has turned by 15.10 mrad, where 5.00 are expected"));
+}
+
+// One pose measured three times as well as a tool is expected to be remounted: a tenth of the prior's variance is left.
+TEST(Reregister, PriorsOfAToolByHand) {
+  const ReregisterOptions options{
+      .base = false, .tool = true, .tool_position_prior_std = 3e-3, .tool_rotation_prior_std = 6e-3};
+  const SensorModel coarse{.position_sigma = 1e-3, .orientation_sigma = 2e-3};
+  const auto found = reregister(rigid(), measure(rigid(), samples(1, 3)), options, coarse);
+  EXPECT_TRUE(found.held.empty());
+  ASSERT_EQ(found.change_std.size(), 6);
+  for (Index k = 0; k < 6; ++k) EXPECT_NEAR(found.change_std(k), (k < 3 ? 3e-3 : 6e-3) / std::sqrt(10.0), 1e-12) << k;
 }
 
 }  // namespace

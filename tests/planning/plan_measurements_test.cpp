@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "complaint.hpp"
@@ -118,6 +119,27 @@ TEST(PlanMeasurements, ARegionIsPredictedBetterByAPlanForIt) {
   EXPECT_LT(variance(plan_measurements(chain, candidates, options, {}, region)), 0.95 * general);
 }
 
+// The errors of fewer measurements relative to those of all: the square root of the mean variance over the region.
+TEST(PlanMeasurements, RelativeErrorsAreThoseOfTheRegion) {
+  MeasurementCandidates<6> candidates = some_candidates(60, 4);
+  candidates.previous.resize(0, 6);
+  const auto chain = robots::abb_irb120().chain;
+  const JointRows<6> region = some_candidates(20, 5).joints;
+  const PlanOptions options = few_harmonics(30);
+  const auto plan = plan_measurements(chain, candidates, options, {}, region);
+  const detail::PlannedCalibration planned{
+      ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, false, 30};
+  const MatrixX rows = detail::expected_rows(planned, plan.joints, MatrixX());
+  const MatrixX of_region = detail::expected_rows(planned, region, MatrixX());
+  const auto variance = [&](Index count) {
+    const MatrixX some = rows.topRows(3 * count);
+    const MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()) + some.transpose() * some;
+    return (of_region * information.llt().solve(of_region.transpose())).trace();
+  };
+  for (const Index count : {0, 10, 29})
+    EXPECT_NEAR(plan.relative_error(count) / std::sqrt(variance(count) / variance(30)), 1, 1e-6) << count;
+}
+
 TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   MeasurementCandidates<6> candidates = some_candidates(60, 6);
   const auto chain = robots::abb_irb120().chain;
@@ -161,9 +183,15 @@ TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
   options.count = 3;
   const auto few = plan_measurements(chain, some_candidates(300, 8), options);
   ASSERT_FALSE(few.uncovered.empty());
-  for (const UncoveredBin& bin : few.uncovered)
+  for (const UncoveredBin& bin : few.uncovered) {
+    EXPECT_NEAR(bin.range.upper - bin.range.lower, options.bin, 1e-12);
     for (Index i = 0; i < 3; ++i)
       EXPECT_FALSE(few.joints(i, bin.joint) >= bin.range.lower && few.joints(i, bin.joint) < bin.range.upper);
+  }
+  // what was measured before covers, too
+  MeasurementCandidates<6> measured;
+  measured.joints = covering.joints;
+  EXPECT_TRUE(plan_measurements(chain, some_candidates(300, 8), options, measured).uncovered.empty());
 }
 
 TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {

@@ -56,7 +56,8 @@ TEST(DrawJointErrors, HasEverySourceByDefault) {
 }
 
 TEST(DrawJointErrors, HasTheSizesItClaims) {
-  const JointErrorSizes sizes{.harmonics = 2, .decay = 2, .ripple = 0.05e-3, .ripple_harmonic = 4};
+  const JointErrorSizes sizes{
+      .gear_ratio = 0.3e-3, .coupling = 0.1e-3, .harmonics = 2, .decay = 2, .ripple = 0.05e-3, .ripple_harmonic = 4};
   const Index n = 1000;
   VectorX sum = VectorX::Zero(6 + 5 + 21 + 6 * 6), squares = sum;
   VectorX expected = sum;

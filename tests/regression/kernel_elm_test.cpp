@@ -107,6 +107,13 @@ TEST(KernelElm, TwoSamplesByHand) {
   EXPECT_NEAR(predictor.derivative(Eigen::Matrix<double, 1, 1>(0.0))(0), alpha * 2 * 0.25 * std::exp(-0.125), 1e-15);
 }
 
+TEST(KernelElm, OneSampleIsPredictedEverywhere) {
+  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = VectorX::Constant(1, 0.3), y = VectorX::Constant(1, 7);
+  const VectorX weights = VectorX::Constant(1, 4);
+  const auto predictor = KernelElm{}.fit(x, y, {.weights = &weights});
+  EXPECT_NEAR(predictor.predict(Eigen::Matrix<double, 1, 1>(-2.0))(0), 7, 1e-14);
+}
+
 TEST(KernelElm, LeaveOneOutErrorsEqualFitsWithoutTheSample) {
   const Index n = 25;
   const Inputs x = inputs(n, 3);

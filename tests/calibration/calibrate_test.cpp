@@ -130,6 +130,8 @@ TEST(Calibrate, SeveralStationsShareTheArm) {
   }
   single = mean_error(alone.model(), actual_arm(bases[1]));
   EXPECT_LT(together, 0.8 * single);  // three times the poses
+  EXPECT_EQ(found.poses, 180);
+  EXPECT_LT(found.median_error, 0.1e-3);  // each station from its own base
   // one arm: chain and joint errors agree to the bit
   for (std::size_t s = 1; s < 3; ++s)
     EXPECT_TRUE(found.errors.models[s].identified().model().chain() ==

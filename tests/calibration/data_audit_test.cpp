@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -13,6 +14,9 @@
 #include <string>
 
 #include "planted_faults.hpp"
+#include "vernier/calibration/detail/audit_fit.hpp"
+#include "vernier/calibration/detail/audit_rows.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
@@ -240,6 +244,65 @@ TEST(DataAuditOfMeasuredPoses, Wam) {
                   .outlier_max = 0.2,
                   .drift_min = 20e-3,
                   .drift_max = 60e-3});
+}
+
+// A turn about z of 0.2 rad and a shift along z of 10 mm, half of both from the middle of the session to its end.
+TEST(BaseTrendWhiteBox, IsTakenOffTheRows) {
+  detail::BaseTrend trend;
+  trend.motion = Vector6{0, 0, 0.01, 0, 0, 0.2};
+  trend.centre = Vector3(1, 0, 0);
+  const Vector3 arm(0.5, 0.2, 0);
+  const Matrix3 orientation = exp_so3(Vector3(0.3, -0.2, 0.5));
+  detail::AuditRows rows{MatrixX::Zero(3, 6), PointRows(3, 3)};
+  for (Index i = 0; i < 3; ++i) {
+    const double share = 0.5 * static_cast<double>(i - 1);
+    const Matrix3 turn = exp_so3(Vector3(0, 0, 0.2 * share));
+    set_point(rows.positions, i, trend.centre + turn * arm + Vector3(0, 0, 0.01 * share));
+    rows.orientations.push_back(turn * orientation);
+  }
+  const detail::AuditRows found = detail::without_trend(rows, trend, Vector3(100, 110, 120));
+  for (Index i = 0; i < 3; ++i) {
+    EXPECT_LT((point(found.positions, i) - trend.centre - arm).norm(), 1e-15);
+    EXPECT_LT((found.orientations[static_cast<std::size_t>(i)] - orientation).norm(), 1e-15);
+  }
+}
+
+// Four commands, each read three times over 12 mrad: not told from other values where commands are 50 mrad apart.
+TEST(AuditRowsWhiteBox, ReadingsLieCloseTogether) {
+  const auto found = [](double apart) {
+    MatrixX joints(12, 1);
+    for (Index i = 0; i < 12; ++i)
+      joints(i, 0) = apart * static_cast<double>(i / 3) + 6e-3 * static_cast<double>(i % 3);
+    std::vector<DataFinding> findings;
+    detail::audit_joint_values(joints, findings);
+    return findings;
+  };
+  EXPECT_TRUE(found(0.05).empty());  // 12 mrad of 38
+  const std::vector<DataFinding> read = found(0.1);
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(read[0].kind, FaultKind::joints_read);
+  EXPECT_EQ(read[0].joint, 0);
+  EXPECT_NEAR(read[0].size, 12e-3, 1e-12);
+}
+
+// Of a fit of the base's position alone all covariances are isotropic: then a studentised norm is the residual times
+// the root of its weight.
+TEST(LeaveOutRowsWhiteBox, WeightsAreThoseOfTheStudentisedNorms) {
+  detail::AuditRows rows{clean_file(7, 3).joints(), {}};
+  const ArmGeometry arm(in_frames(ur5));
+  rows.positions = arm.positions(rows.joints);
+  Rng rng(4);
+  for (Index i = 0; i < 7; ++i)
+    for (Index c = 0; c < 3; ++c) rows.positions(i, c) += 1e-3 * rng.normal();
+  VectorX stds = VectorX::Zero(arm.num_parameters());
+  for (Index k = 0; k < 3; ++k) stds(k) = std::numeric_limits<double>::infinity();
+  std::vector<double> factors;
+  for (const detail::LeftOut& row : detail::leave_out_rows({arm, detail::audit_residuals(arm, rows)}, stds, rows)) {
+    EXPECT_NEAR(row.position * std::sqrt(row.position_weight(0, 0)), row.position_factor, 1e-9);
+    factors.push_back(row.position_factor);
+  }
+  std::sort(factors.begin(), factors.end());
+  EXPECT_NEAR(factors[3], 1.538172, 1e-6);  // the median of three normals
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -156,6 +157,29 @@ TEST(VerifyCalibration, SetsARowAsideThatContradictsAllOthers) {
   EXPECT_NE(report.verdict().find("row 11 set aside"), std::string::npos) << report.verdict();
 }
 
+// Half of the level is for all changes together, shared out among them: the zeros that are determined, and six
+// transmissions.
+TEST(VerifyCalibration, AChangeIsNamedWhereItsShareOfTheLevelAllowsIt) {
+  const Arm arm = changed(0.1e-3 * JointVector<6>::Unit(2), elsewhere);
+  const VerificationReport report = check(arm, 25, 3);
+  double least = 1, tests = 6;
+  for (const JointCheck& joint : report.joints) {
+    least = std::min({least, joint.zero_p, joint.once_p});
+    tests += joint.determined ? 1 : 0;
+  }
+  const double level = 2 * tests * least;
+  ASSERT_GT(level, 1e-12);
+  ASSERT_LT(level, 0.9);
+  const auto named = [&](double at_level) {
+    int out = 0;
+    for (const JointCheck& joint : check(arm, 25, 3, {.level = at_level}).joints)
+      out += joint.zero_changed || joint.transmission_changed ? 1 : 0;
+    return out;
+  };
+  EXPECT_EQ(named(0.99 * level), 0);
+  EXPECT_GT(named(1.01 * level), 0);
+}
+
 TEST(VerifyCalibration, WithALimitTheErrorDecides) {
   const Arm arm = changed(0.3e-3 * JointVector<6>::Unit(1), elsewhere);
   const VerificationReport loose = check(arm, 25, 1, {.accept = 0.5e-3}),
@@ -163,6 +187,9 @@ TEST(VerifyCalibration, WithALimitTheErrorDecides) {
   EXPECT_TRUE(loose.valid);
   EXPECT_FALSE(loose.consistent);
   EXPECT_FALSE(tight.valid);
+  // the upper end of its interval does, not the mean itself
+  EXPECT_FALSE(check(arm, 25, 1, {.accept = 0.5 * (loose.mean_error + loose.mean_upper)}).valid);
+  EXPECT_TRUE(check(arm, 25, 1, {.accept = 1.001 * loose.mean_upper}).valid);
   EXPECT_NE(loose.verdict().find("accepted up to 0.5 mm"), std::string::npos) << loose.verdict();
 }
 

@@ -1,0 +1,57 @@
+// Poses that would determine a weak parameter: within limits, and what they gain.
+
+#include "vernier/calibration/pose_advice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vernier::pose_advice_test {
+namespace {
+
+// Base x in units of 2 mm, known to half a unit; measured by 1 mm, a pose adds 4 to an information of 4.
+TEST(PoseAdviceWhiteBox, OfOneUnknownByHand) {
+  const ArmGeometry arm(in_frames(robots::abb_irb120().chain));
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({arm}, {{0, -1, 2e-3, 0}})};
+  estimate.covariance = MatrixX::Constant(1, 1, 0.25);
+  IdentificationReport identification;
+  identification.parameters.push_back(
+      {estimate.arm.names()[0], ParameterKind::length, 0, 0, 1e-3, ParameterState::weak, ""});
+  VectorX lower = VectorX::Constant(6, -0.3), upper = VectorX::Constant(6, 0.2);
+  lower(5) = -std::numeric_limits<double>::infinity();
+  const auto advice =
+      detail::pose_advice(estimate, identification, lower, upper, {.position_sigma = 1e-3}, false, 3, 3);
+  ASSERT_EQ(advice.size(), 1u);
+  EXPECT_EQ(advice[0].parameter, "base_x");
+  EXPECT_NEAR(advice[0].std_now, 1e-3, 1e-15);
+  EXPECT_NEAR(advice[0].std_then, 0.5e-3, 1e-12);
+  ASSERT_EQ(advice[0].poses.size(), 3u);
+  for (const VectorX& pose : advice[0].poses)
+    for (Index j = 0; j < 6; ++j) {
+      EXPECT_GE(pose(j), j == 5 ? -3.1416 : -0.3) << j;
+      EXPECT_LE(pose(j), 0.2) << j;
+    }
+}
+
+// The same of the base's rotation about x, measured by orientations alone: positions are hardly measured.
+TEST(PoseAdviceWhiteBox, OrientationsCountByTheirOwnDeviation) {
+  const ArmGeometry arm(in_frames(robots::abb_irb120().chain));
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({arm}, {{3, -1, 2e-3, 0}})};
+  estimate.covariance = MatrixX::Constant(1, 1, 0.25);
+  IdentificationReport identification;
+  identification.parameters.resize(
+      4, {estimate.arm.names()[0], ParameterKind::angle, 0, 0, 1e-3, ParameterState::fixed, ""});
+  identification.parameters[3].state = ParameterState::weak;
+  const VectorX limit = VectorX::Ones(6);
+  const auto advice = detail::pose_advice(estimate, identification, -limit, limit,
+                                          {.position_sigma = 1e3, .orientation_sigma = 1e-3}, true, 3, 3);
+  ASSERT_EQ(advice.size(), 1u);
+  EXPECT_NEAR(advice[0].std_now, 1e-3, 1e-15);
+  EXPECT_NEAR(advice[0].std_then, 0.5e-3, 1e-9);
+}
+
+}  // namespace
+}  // namespace vernier::pose_advice_test

@@ -90,8 +90,6 @@ class CalibrationProblem {
   VERNIER_API StackedRows stacked(bool with_jacobian) const;
   /// The same into rows of this problem, whose memory is used again.
   VERNIER_API void stack(bool with_jacobian, StackedRows& out) const;
-  /// Weighted sum of squares, of residuals and priors.
-  VERNIER_API double cost() const;
 
   /// Weights of the loss from the present residuals.
   /// @return sums of the squared norms of residuals: with the weights of before, and with the new ones
@@ -116,7 +114,7 @@ class CalibrationProblem {
   /// Adds to the drift.
   VERNIER_API void move_drift(const VectorX& steps);
   /// Moves a modelled pose by the drift, turns its columns along, and writes those of the drift.
-  VERNIER_API void add_drift(const Block& block, Isometry3& pose, RowBlock* rows) const;
+  VERNIER_API void add_drift(const Block& block, Isometry3& pose, RowBlock& rows) const;
   /// Norms of whitened residuals, blocks x 2: of positions or distances, of orientations.
   VERNIER_API MatrixX residual_norms() const;
 

@@ -164,7 +164,7 @@ VERNIER_IMPL Isometry3 CalibrationProblem::drift_motion(Index block) const {
   return drift[s].motion((*stations_[s].times)(at(block).row));
 }
 
-VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& pose, RowBlock* rows) const {
+VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& pose, RowBlock& rows) const {
   const auto s = static_cast<std::size_t>(block.station);
   if (drift.empty() || drift[s].empty()) return;
   const double time = (*stations_[s].times)(block.row);
@@ -174,15 +174,14 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
     const VectorX zeros = drift[s].joint_zeros(time);
     Vector6 shift = Vector6::Zero();  // tiny, so it adds up
     for (Index j = 0; j < joints; ++j)
-      for (Index r = 0; r < 6; ++r) shift(r) += rows->factor(r, j) * zeros(j);
+      for (Index r = 0; r < 6; ++r) shift(r) += rows.factor(r, j) * zeros(j);
     pose = shifted(pose, shift);
   }
   const Vector3 lever = translation(pose) - drift[s].centre;
   pose = composed(motion, pose);
-  if (rows == nullptr) return;
   const Matrix3 turn = rotation(motion);
-  turn_columns(turn, rows->dense);
-  turn_columns(turn, rows->factor);
+  turn_columns(turn, rows.dense);
+  turn_columns(turn, rows.factor);
   const Matrix6 of_base = effect_of_twist(lever);
   const auto [knot, share] = drift[s].position(time);
   for (std::size_t k = 0; k < 2 && (k == 0 || share > 0); ++k) {
@@ -190,8 +189,8 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
     Rows6 columns(6, 6 + joints);
     for (Index c = 0; c < columns.cols(); ++c)
       for (Index r = 0; r < 6; ++r)
-        columns(r, c) = of_knot * drift_scale_(c) * (c < 6 ? of_base(r, c) : rows->factor(r, c - 6));
-    rows->local[k] = {first_state_[s] + knot + static_cast<Index>(k), std::move(columns)};
+        columns(r, c) = of_knot * drift_scale_(c) * (c < 6 ? of_base(r, c) : rows.factor(r, c - 6));
+    rows.local[k] = {first_state_[s] + knot + static_cast<Index>(k), std::move(columns)};
   }
 }
 
@@ -257,7 +256,7 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     for (Index i = 0; i < stretch; ++i) {
       const Block& block = at(first + done + i);
       RowBlock& rows = out[done + i];
-      add_drift(block, poses[static_cast<std::size_t>(i)], &rows);
+      add_drift(block, poses[static_cast<std::size_t>(i)], rows);
       Vector3 along = Vector3::Zero();
       Matrix3 rate = Matrix3::Zero();
       rows.residual = measured_residual(station, block.row, poses[static_cast<std::size_t>(i)], along, rate);
@@ -319,34 +318,6 @@ VERNIER_IMPL void CalibrationProblem::stack(bool with_jacobian, StackedRows& out
       out.of_orientation.push_back(r >= 3);
     }
   });
-}
-
-VERNIER_IMPL double CalibrationProblem::cost() const {
-  double sum = 0;
-  Index b = 0;
-  for (std::size_t s = 0; s < stations_.size(); ++s) {
-    const Station& station = stations_[s];
-    const bool joint_drift = !drift.empty() && drift_scale_.size() > 6;
-    if (station.joint_sigma > 0 || joint_drift ||
-        arm.thermal_rates(static_cast<int>(s)).size() > 0) {  // they need the Jacobian
-      visit_blocks(system(), b, 1, station.size(),
-                   [&](Index, const RowBlock& rows) { sum += rows.residual.squaredNorm(); });
-      b += station.size();
-      continue;
-    }
-    std::vector<Isometry3> poses = arm.poses(static_cast<int>(s), station.joints(), station.previous());
-    for (Index i = 0; i < station.size(); ++i, ++b) {
-      Vector3 along = Vector3::Zero();
-      Matrix3 rate = Matrix3::Zero();
-      add_drift(at(b), poses[static_cast<std::size_t>(i)], nullptr);
-      const Vector6 residual = measured_residual(station, i, poses[static_cast<std::size_t>(i)], along, rate);
-      const Vector3 linear = residual.head<3>(), angular = residual.tail<3>();
-      sum += at(b).weight[0] * linear.squaredNorm() / (station.position_sigma * station.position_sigma) +
-             at(b).weight[1] * angular.squaredNorm() / (station.orientation_sigma * station.orientation_sigma);
-    }
-  }
-  const VectorX steps = arm.steps();
-  return sum + weighted_square(arm.precisions(), steps) + (prior ? prior->cost(steps) : 0);
 }
 
 VERNIER_IMPL MatrixX CalibrationProblem::residual_norms() const {

@@ -28,20 +28,22 @@ using vernier_test::input_maps;
 
 static_assert(Regressor<BackPropagation>);
 
+using vernier_test::above;
+using vernier_test::as_targets;
+using vernier_test::elements;
 using vernier_test::Inputs;
 using vernier_test::inputs;
+using vernier_test::lower_triangle;
+using vernier_test::moved;
+using vernier_test::RealMatrix;
+using vernier_test::samples_of;
+using vernier_test::scaled_rows;
+using vernier_test::small_whole_weights;
 using vernier_test::Targets;
 using vernier_test::targets;
 
-VectorX some_weights(Index n, std::uint64_t seed) {
-  Rng rng(seed);
-  VectorX q(n);
-  for (auto& value : q) value = static_cast<double>(1 + rng.below(3));
-  return q;
-}
-
-double error(const MatrixX& predicted, const MatrixX& expected) {
-  return (predicted - expected).norm() / (expected.rowwise() - expected.colwise().mean()).norm();
+double error(const Targets& predicted, const Targets& expected) {
+  return (predicted - expected).norm() / centred(RealMatrix::of(expected)).norm();
 }
 
 VectorX random_vector(Index size, std::uint64_t seed) {
@@ -51,10 +53,18 @@ VectorX random_vector(Index size, std::uint64_t seed) {
   return out;
 }
 
+/// Targets without meaning.
+RealMatrix random_targets(Index n, std::uint64_t seed) {
+  const VectorX values = random_vector(2 * n, seed);
+  RealMatrix out(n, 2);
+  for (Index i = 0; i < 2 * n; ++i) out(i % n, i / n) = values(i);
+  return out;
+}
+
 /// The network in naive loops: residuals of all samples and outputs, one output after the other.
-VectorX residuals(const HiddenLayer& layer, const MatrixX& x, const MatrixX& t, const VectorX& theta) {
+RealMatrix residuals(const HiddenLayer& layer, const RealMatrix& x, const RealMatrix& t, const VectorX& theta) {
   const Index n = x.rows(), f = x.cols(), h = layer.nodes, m = t.cols();
-  VectorX out(n * m);
+  RealMatrix out(n * m, 1);
   for (Index i = 0; i < n; ++i)
     for (Index o = 0; o < m; ++o) {
       const Index outputs = h * (f + 1) + o * (h + 1);
@@ -79,29 +89,30 @@ VectorX without_biases(const HiddenLayer& layer, Index f, VectorX theta) {
 
 TEST(NetworkError, IsTheWeightedMeanSquareAndTheDecay) {
   const Index n = 300;
-  const MatrixX x = inputs(n, 1), t = random_vector(2 * n, 2).reshaped(n, 2);
-  const VectorX q = some_weights(n, 3);
+  const RealMatrix x = inputs(n, 1), t = random_targets(n, 2);
+  const VectorX q = small_whole_weights(n, 3);
   for (const Activation activation : activations) {
     const HiddenLayer layer{.nodes = 5, .activation = activation};
     NetworkError problem(layer, x, t, q, 1e-2);
     ASSERT_EQ(problem.dimension(), 5 * 4 + 6 * 2);
-    const VectorX theta = random_vector(32, 4), r = residuals(layer, x, t, theta);
-    const double expected = q.dot(r.head(n).cwiseAbs2() + r.tail(n).cwiseAbs2()) / q.sum() +
-                            1e-2 * without_biases(layer, 3, theta).squaredNorm();
+    const VectorX theta = random_vector(32, 4);
+    const RealMatrix r = residuals(layer, x, t, theta), squares = r.times(r);
+    const double expected =
+        (top(squares, n) + bottom(squares, n)).dot(q) / q.sum() + 1e-2 * without_biases(layer, 3, theta).squaredNorm();
     EXPECT_NEAR(problem.evaluate(theta), expected, 1e-13 * expected);
   }
 }
 
 TEST(NetworkError, GradientEqualsDifferences) {
   const Index n = 300;
-  const MatrixX x = inputs(n, 5), t = random_vector(2 * n, 6).reshaped(n, 2);
+  const RealMatrix x = inputs(n, 5), t = random_targets(n, 6);
   for (const Activation activation : activations) {
-    NetworkError problem({.nodes = 5, .activation = activation}, x, t, some_weights(n, 7), 1e-2);
+    NetworkError problem({.nodes = 5, .activation = activation}, x, t, small_whole_weights(n, 7), 1e-2);
     const VectorX theta = random_vector(32, 8);
     problem.evaluate(theta);
     const VectorX gradient = problem.gradient();
     for (Index i = 0; i < 32; ++i) {
-      const auto at = [&](double steps) { return problem.evaluate(theta + 1e-3 * steps * VectorX::Unit(32, i)); };
+      const auto at = [&](double steps) { return problem.evaluate(moved(theta, i, 1e-3 * steps)); };
       const double difference = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / 12e-3;
       EXPECT_NEAR(gradient(i), difference, 1e-9 * gradient.norm()) << "weight " << i;
     }
@@ -110,17 +121,18 @@ TEST(NetworkError, GradientEqualsDifferences) {
 
 // With batches of one size their mean gradient is the gradient, decay and weights included.
 TEST(NetworkError, BatchesAddUpToTheGradient) {
-  const MatrixX x = inputs(60, 9), t = random_vector(120, 10).reshaped(60, 2);
-  NetworkError problem({.nodes = 4}, x, t, some_weights(60, 11), 1e-2);
+  const RealMatrix x = inputs(60, 9), t = random_targets(60, 10);
+  NetworkError problem({.nodes = 4}, x, t, small_whole_weights(60, 11), 1e-2);
   const VectorX theta = random_vector(problem.dimension(), 12);
   const double value = problem.evaluate(theta);
   const VectorX gradient = problem.gradient();
   const std::vector<Index> order = Rng(13).permutation(60);
-  VectorX sum = VectorX::Zero(theta.size()), part;
+  RealMatrix sum(theta.size(), 1);
+  VectorX part;
   double values = 0;
   for (int b = 0; b < 4; ++b) {
     values += problem.batch(theta, {order.begin() + 15 * b, order.begin() + 15 * (b + 1)}, part) / 4;
-    sum += part / 4;
+    sum += RealMatrix(part) / 4;
   }
   EXPECT_NEAR(values, value, 1e-13 * value);
   EXPECT_LT((sum - gradient).norm(), 1e-13 * gradient.norm());
@@ -128,20 +140,20 @@ TEST(NetworkError, BatchesAddUpToTheGradient) {
 
 TEST(NetworkError, CurvatureIsTheJacobiansSquare) {
   for (const Index n : {30, 1100}) {
-    const MatrixX x = inputs(n, 14), t = random_vector(2 * n, 15).reshaped(n, 2);
-    const VectorX q = some_weights(n, 16);
+    const RealMatrix x = inputs(n, 14), t = random_targets(n, 15);
+    const VectorX q = small_whole_weights(n, 16);
     for (const Activation activation : activations) {
       const HiddenLayer layer{.nodes = 7, .activation = activation};
       const VectorX theta = random_vector(7 * 4 + 8 * 2, 17);
-      MatrixX jacobian(2 * n, theta.size());
+      RealMatrix jacobian(2 * n, theta.size());
       for (Index i = 0; i < theta.size(); ++i)
-        jacobian.col(i) = (residuals(layer, x, t, theta + 1e-5 * VectorX::Unit(theta.size(), i)) -
-                           residuals(layer, x, t, theta - 1e-5 * VectorX::Unit(theta.size(), i))) /
-                          2e-5;
-      const VectorX weights = q.replicate(2, 1) / q.sum();
-      const VectorX decayed = without_biases(layer, 3, VectorX::Constant(theta.size(), 2e-2));
-      const MatrixX expected =
-          2 * jacobian.transpose() * weights.asDiagonal() * jacobian + MatrixX(decayed.asDiagonal());
+        jacobian.set_block(
+            0, i,
+            (residuals(layer, x, t, moved(theta, i, 1e-5)) - residuals(layer, x, t, moved(theta, i, -1e-5))) / 2e-5);
+      const RealMatrix weights = above(q, q) / q.sum();
+      const RealMatrix decayed = without_biases(layer, 3, VectorX::Constant(theta.size(), 2e-2));
+      const RealMatrix expected =
+          2 * jacobian.transpose() * scaled_rows(weights, jacobian) + RealMatrix::diagonal(decayed);
       for (const auto set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
         if (set > widest_instruction_set()) continue;
         NetworkError problem(layer, x, t, q, 1e-2, set);
@@ -150,11 +162,10 @@ TEST(NetworkError, CurvatureIsTheJacobiansSquare) {
         problem.curvature(curvature);  // of other weights: what it leaves behind must not matter
         problem.evaluate(theta);
         problem.curvature(curvature);
-        const MatrixX difference = curvature - expected;
-        EXPECT_LT(MatrixX(difference.triangularView<Eigen::Lower>()).norm(), 1e-8 * expected.norm());
+        EXPECT_LT(lower_triangle(curvature - expected).norm(), 1e-8 * expected.norm());
         const ThreadExecutor threads(3);
         problem.curvature(threaded, threads);
-        EXPECT_EQ(threaded, curvature);
+        EXPECT_EQ(RealMatrix(threaded), RealMatrix(curvature));
       }
     }
   }
@@ -180,10 +191,10 @@ TEST(BackPropagation, KeepsTheLaws) {
 TEST(BackPropagation, TheObserverSeesEveryEpochAndTheObjectiveIsThePredictors) {
   const Inputs x = inputs(200, 20);
   const Targets y = targets(x);
-  const VectorX q = some_weights(200, 21);
-  const Eigen::RowVectorXd mean = q.transpose() * y / q.sum();
-  const auto square = [&](const MatrixX& r) { return q.dot(r.rowwise().squaredNorm()); };
-  const double spread = square(y.rowwise() - mean);
+  const VectorX q = small_whole_weights(200, 21);
+  const RealMatrix values = RealMatrix::of(y), mean = RealMatrix(q).transpose() * values / q.sum();
+  const auto square = [&](const RealMatrix& r) { return scaled_rows(RealMatrix(q).sqrt(), r).squared_norm(); };
+  const double spread = square(plus_row(values, -mean));
   for (const bool adam : {false, true}) {
     BackPropagation recipe{.hidden_nodes = 8, .weight_decay = 1e-4};
     if (adam) {
@@ -200,18 +211,19 @@ TEST(BackPropagation, TheObserverSeesEveryEpochAndTheObjectiveIsThePredictors) {
       EXPECT_LE(seen[i].best, seen[std::max<std::size_t>(i, 1) - 1].best);
     }
     EXPECT_LT(seen.back().best, (adam ? 0.6 : 0.1) * seen.front().best);
-    const double decay = 1e-4 * (MatrixX(predictor.theta().reshaped(7, 8)).topRows(6).squaredNorm() +
-                                 predictor.beta().squaredNorm() / (spread / q.sum()));
-    EXPECT_NEAR(seen.back().best, square(predictor.predict(x) - y) / spread + decay, 1e-9 * seen.back().best);
+    double decay = predictor.beta().squaredNorm() / (spread / q.sum());
+    for (Index i = 0; i < 56; ++i)
+      if (i % 7 < 6) decay += predictor.theta()(i) * predictor.theta()(i);
+    EXPECT_NEAR(seen.back().best, square(RealMatrix::of(predictor.predict(x)) - values) / spread + 1e-4 * decay,
+                1e-9 * seen.back().best);
   }
 }
 
 /// The outputs of a network of four nodes.
 Targets planted(const Inputs& x, Activation activation) {
-  MatrixX h;
   const HiddenLayer layer{.nodes = 4, .activation = activation, .weight_limit = 1.5};
-  layer.outputs(x, layer.draw(3, 77), h);
-  return h * (MatrixX(4, 2) << 1, -2, 3, 1, -2, 2, 1, 1).finished();
+  const RealMatrix h = vernier_test::hidden_outputs(layer, x, layer.draw(3, 77));
+  return as_targets(h * RealMatrix(4, 2, {1, -2, 3, 1, -2, 2, 1, 1}));
 }
 
 TEST(BackPropagation, RecoversAPlantedNetwork) {
@@ -246,7 +258,7 @@ TEST(BackPropagation, StopsEarly) {
   const Targets expected = targets(fresh);
   Targets y = targets(x);
   Rng rng(28);
-  for (auto& value : y.reshaped()) value += 6e-4 * rng.normal();
+  for (double& value : elements(y)) value += 6e-4 * rng.normal();
   for (const bool adam : {false, true}) {
     BackPropagation recipe{.hidden_nodes = 30, .weight_decay = 0, .patience = adam ? 100 : 10};
     if (adam) recipe.training = Adam{.epochs = 1000, .batch = 20};
@@ -269,14 +281,11 @@ TEST(BackPropagation, AWeightIsSoManySamples) {
   const Index n = 40;
   const Inputs x = inputs(n, 29), fresh = inputs(20, 30);
   const Targets y = targets(x);
-  const VectorX q = some_weights(n, 31);
-  Inputs repeated_x(static_cast<Index>(q.sum()), 3);
-  Targets repeated_y(repeated_x.rows(), 2);
-  for (Index i = 0, row = 0; i < n; ++i)
-    for (int k = 0; k < static_cast<int>(q(i)); ++k, ++row) {
-      repeated_x.row(row) = x.row(i);
-      repeated_y.row(row) = y.row(i);
-    }
+  const VectorX q = small_whole_weights(n, 31);
+  std::vector<Index> rows;
+  for (Index i = 0; i < n; ++i) rows.insert(rows.end(), static_cast<std::size_t>(q(i)), i);
+  const Inputs repeated_x = samples_of(x, rows);
+  const Targets repeated_y = samples_of(y, rows);
   BackPropagation recipe{.hidden_nodes = 5, .training = LevenbergMarquardt{.epochs = 5}};
   for (const bool adam : {false, true}) {
     if (adam) recipe.training = Adam{.epochs = 10, .batch = 1000};  // all samples at once

@@ -16,9 +16,17 @@
 namespace vernier::elm_fitness_test {
 namespace {
 
+using vernier_test::above;
 using vernier_test::complaint;
+using vernier_test::difference;
+using vernier_test::elements;
+using vernier_test::hidden_outputs;
 using vernier_test::Inputs;
+using vernier_test::RealMatrix;
+using vernier_test::samples_of;
+using vernier_test::scaled_rows;
 using vernier_test::Targets;
+using vernier_test::zeros;
 
 template <class R>
 double fitness_of(const R& recipe, const Inputs& x, const Targets& y, const VectorX& theta,
@@ -39,23 +47,20 @@ struct Repeated {
       weights(i) = 1 + static_cast<double>(i % 3);
       for (Index k = 0; k <= i % 3; ++k) rows.push_back(i);
     }
-    all_x = x(rows, Eigen::all);
-    all_y = y(rows, Eigen::all);
+    all_x = samples_of(x, rows);
+    all_y = samples_of(y, rows);
   }
 };
 
-/// The ridge problem by singular values of the stacked system.
+/// The ridge problem as a stacked system.
 double training_error(const Elm& elm, const Inputs& x, const Targets& y, const VectorX& theta) {
   const MatrixX mapped = elm.layer().map(x);
-  MatrixX h;
-  elm.layer().outputs(elm.layer().scaling(mapped).apply(mapped), theta, h);
-  const MatrixX t = ColumnScaling::fit(y, elm.target_scaling).apply(y);
-  const double lambda = elm.fitness_lambda * h.squaredNorm() / elm.hidden_nodes;
-  MatrixX stacked(h.rows() + elm.hidden_nodes, elm.hidden_nodes), right = MatrixX::Zero(stacked.rows(), 2);
-  stacked << h, std::sqrt(lambda) * MatrixX::Identity(elm.hidden_nodes, elm.hidden_nodes);
-  right.topRows(h.rows()) = t;
-  const MatrixX beta = Eigen::JacobiSVD<MatrixX>(stacked, Eigen::ComputeThinU | Eigen::ComputeThinV).solve(right);
-  return (stacked * beta - right).squaredNorm() / static_cast<double>(h.rows());
+  const RealMatrix h = hidden_outputs(elm.layer(), elm.layer().scaling(mapped).apply(mapped), theta);
+  const RealMatrix t = ColumnScaling::fit(y, elm.target_scaling).apply(y);
+  const double lambda = elm.fitness_lambda * h.squared_norm() / elm.hidden_nodes;
+  const RealMatrix stacked = above(h, std::sqrt(lambda) * RealMatrix::identity(elm.hidden_nodes)),
+                   right = above(t, zeros(elm.hidden_nodes, 2));
+  return (stacked * stacked.solve(right) - right).squared_norm() / static_cast<double>(h.rows());
 }
 
 TEST(ElmFitness, IsTheTrainingError) {
@@ -74,11 +79,11 @@ TEST(ElmFitness, ParticlesAreIndependent) {
   const Inputs x = vernier_test::inputs(50, 2);
   const Targets y = vernier_test::targets(x);
   const Elm elm{.hidden_nodes = 7};
-  MatrixX population(elm.dimension(3), 3);
-  for (Index k = 0; k < 3; ++k) population.col(k) = elm.layer().draw(3, static_cast<std::uint64_t>(k));
+  std::vector<VectorX> population;
+  for (std::uint64_t k = 0; k < 3; ++k) population.push_back(elm.layer().draw(3, k));
   VectorX fitness(3);
-  elm.objective(x, y)(population, fitness);
-  for (Index k = 0; k < 3; ++k) EXPECT_EQ(fitness(k), fitness_of(elm, x, y, population.col(k)));
+  elm.objective(x, y)(vernier_test::beside(population), fitness);
+  for (Index k = 0; k < 3; ++k) EXPECT_EQ(fitness(k), fitness_of(elm, x, y, population[static_cast<std::size_t>(k)]));
 }
 
 // A sample of weight 2 counts as two: in the fitness, whichever path it takes, and in the fit.
@@ -91,8 +96,8 @@ TEST(ElmFitness, WeightsAreRepetitions) {
     EXPECT_NEAR(fitness_of(elm, at.x, at.y, theta, &at.weights) / repeated, 1, 1e-7);
     EXPECT_GT(std::abs(fitness_of(elm, at.x, at.y, theta) / repeated - 1), 1e-3) << "the weights must matter";
     const auto weighted = elm.fit_at(at.x, at.y, theta, {.weights = &at.weights});
-    EXPECT_LT((weighted.predict(at.x) - elm.fit_at(at.all_x, at.all_y, theta).predict(at.x)).cwiseAbs().maxCoeff(),
-              1e-11);
+    const auto of_all = elm.fit_at(at.all_x, at.all_y, theta);
+    EXPECT_LT(difference(weighted.predict(at.x), of_all.predict(at.x)), 1e-11);
   }
 }
 
@@ -108,43 +113,43 @@ TEST(ElmFitness, OnlyRatiosOfWeightsMatter) {
 }
 
 /// Leave-one-out with weights by refits: the ridge with a free mean, in weights whose mean is 1.
-MatrixX refits(const MatrixX& h, const MatrixX& t, const VectorX& weights, double lambda) {
+RealMatrix refits(const RealMatrix& h, const RealMatrix& t, const RealMatrix& weights, double lambda) {
   const Index n = h.rows(), nodes = h.cols();
-  const VectorX roots = (weights / weights.mean()).cwiseSqrt();
-  MatrixX out(n, t.cols());
+  const RealMatrix roots = (weights / weights.mean()).sqrt();
+  const RealMatrix a = above(beside(roots, scaled_rows(roots, h)),
+                             beside(zeros(nodes, 1), std::sqrt(lambda) * RealMatrix::identity(nodes)));
+  const RealMatrix b = above(scaled_rows(roots, t), zeros(nodes, t.cols()));
+  RealMatrix out(n, t.cols());
   for (Index left = 0; left < n; ++left) {
-    MatrixX a = MatrixX::Zero(n + nodes, nodes + 1), b = MatrixX::Zero(n + nodes, t.cols());
-    a.topLeftCorner(n, 1) = roots;
-    a.topRightCorner(n, nodes) = roots.asDiagonal() * h;
-    a.bottomRightCorner(nodes, nodes).diagonal().setConstant(std::sqrt(lambda));
-    b.topRows(n) = roots.asDiagonal() * t;
-    a.row(left).setZero();
-    b.row(left).setZero();
-    const MatrixX found = a.householderQr().solve(b);
-    out.row(left) = roots(left) * (t.row(left) - found.row(0) - h.row(left) * found.bottomRows(nodes));
+    RealMatrix others = a, targets = b;
+    others.set_block(left, 0, zeros(1, nodes + 1));
+    targets.set_block(left, 0, zeros(1, t.cols()));
+    const RealMatrix found = others.solve(targets);
+    out.set_block(left, 0, roots(left) * (t.row(left) - found.row(0) - h.row(left) * bottom(found, nodes)));
   }
   return out;
 }
 
 TEST(RidgePath, WeightedLeaveOneOutEqualsRefits) {
-  const auto random = [](Index rows, Index columns, std::uint64_t seed) {
+  const auto random = [](Index rows, Index columns, std::uint64_t seed, double mean = 0) {
     Rng rng(seed);
     MatrixX out(rows, columns);
-    for (auto& value : out.reshaped()) value = rng.normal();
+    for (double& value : elements(out)) value = rng.normal() + mean;
     return out;
   };
   for (const auto& [n, nodes] : {std::tuple<Index, Index>{30, 5}, {12, 11}, {10, 20}}) {
-    const MatrixX h = random(n, nodes, 1).array() + 2, t = random(n, 2, 2).array() + 5;
-    const VectorX weights = random(n, 1, 3).array().abs() + 0.1;
+    const MatrixX h = random(n, nodes, 1, 2), t = random(n, 2, 2, 5);
+    VectorX weights = RealMatrix(random(n, 1, 3));
+    for (double& weight : weights) weight = std::abs(weight) + 0.1;
     const RidgePath path(h, t, &weights);
     for (const double lambda : {1e-2, 1.0, 100.0})
-      EXPECT_LT((path.leave_one_out_residuals(lambda) - refits(h, t, weights, lambda)).cwiseAbs().maxCoeff(), 1e-9)
+      EXPECT_LT(difference(path.leave_one_out_residuals(lambda), refits(h, t, weights, lambda)), 1e-9)
           << n << ' ' << nodes << ' ' << lambda;
     const double infinity = std::numeric_limits<double>::infinity();
-    EXPECT_LT((path.leave_one_out_residuals(infinity) - refits(h, t, weights, 1e12)).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_LT(difference(path.leave_one_out_residuals(infinity), refits(h, t, weights, 1e12)), 1e-6);
     // as many weights of one as samples: the path without weights
     const VectorX ones = VectorX::Constant(n, 3);
-    EXPECT_LT((RidgePath(h, t, &ones).beta(0.5) - RidgePath(h, t).beta(0.5)).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT(difference(RidgePath(h, t, &ones).beta(0.5), RidgePath(h, t).beta(0.5)), 1e-12);
   }
 }
 
@@ -152,15 +157,13 @@ TEST(RidgeElm, WeightsReachFitnessAndFit) {
   const Repeated at;
   const RidgeElm ridge{.hidden_nodes = 25};
   const VectorX theta = ridge.layer().draw(3, 4);
-  MatrixX h;
-  ridge.layer().outputs(ridge.layer().map(at.x), theta, h);
-  const RidgePath path(h, at.y, &at.weights);
+  const RidgePath path(hidden_outputs(ridge.layer(), ridge.layer().map(at.x), theta), at.y, &at.weights);
   const auto choice = choose_lambda(path, 60);
   ASSERT_TRUE(std::isfinite(choice.lambda)) << "the mean alone would prove nothing";
   EXPECT_NEAR(fitness_of(ridge, at.x, at.y, theta, &at.weights) / choice.mean_squared_error, 1, 1e-12);
   const auto fitted = ridge.fit_at(at.x, at.y, theta, {.weights = &at.weights});
-  EXPECT_LT((fitted.beta() - path.beta(choice.lambda)).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_GT((fitted.beta() - ridge.fit_at(at.x, at.y, theta).beta()).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(difference(fitted.beta(), path.beta(choice.lambda)), 1e-12);
+  EXPECT_GT(difference(fitted.beta(), ridge.fit_at(at.x, at.y, theta).beta()), 1e-9);
 }
 
 TEST(ElmFitness, RefusesMisuse) {

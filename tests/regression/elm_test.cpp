@@ -6,24 +6,36 @@
 
 #include "allocation_counter.hpp"
 #include "regression_samples.hpp"
+#include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 
 namespace vernier::elm_test {
 namespace {
 
 using vernier_test::activations;
+using vernier_test::difference;
+using vernier_test::difference_quotient;
+using vernier_test::elements;
+using vernier_test::hidden_outputs;
 using vernier_test::input_maps;
 using vernier_test::Inputs;
 using vernier_test::inputs;
+using vernier_test::part;
+using vernier_test::RealMatrix;
+using vernier_test::scaled_to_range_of;
 using vernier_test::Targets;
 using vernier_test::targets;
+using vernier_test::vector;
 
-/// One node on one sample of features, from the formulas.
-double node(Activation activation, const VectorX& features, const VectorX& weights, double bias) {
+/// The k-th node on one sample of features, from the formulas.
+double node(Activation activation, const VectorX& features, const VectorX& theta, Index k) {
+  const Index first = k * (features.size() + 1);
+  const double bias = theta(first + features.size());
   double z = bias, distance = 0;
   for (Index j = 0; j < features.size(); ++j) {
-    z += features(j) * weights(j);
-    distance += (features(j) - weights(j)) * (features(j) - weights(j));
+    const double weight = theta(first + j);
+    z += features(j) * weight;
+    distance += (features(j) - weight) * (features(j) - weight);
   }
   switch (activation) {
     case Activation::sigmoid: return 1 / (1 + std::exp(-z));
@@ -34,13 +46,13 @@ double node(Activation activation, const VectorX& features, const VectorX& weigh
 }
 
 TEST(Scaling, MinMaxByHand) {
-  const MatrixX x = (MatrixX(3, 2) << 1, 10, 3, 30, 2, 15).finished();
-  const MatrixX scaled = ColumnScaling::fit(x, Scaling::min_max).apply(x);
-  EXPECT_EQ(scaled, (MatrixX(3, 2) << -1, -1, 1, 1, 0, -0.5).finished());
+  const RealMatrix x(3, 2, {1, 10, 3, 30, 2, 15});
+  const RealMatrix scaled = ColumnScaling::fit(x, Scaling::min_max).apply(x);
+  EXPECT_EQ(scaled, RealMatrix(3, 2, {-1, -1, 1, 1, 0, -0.5}));
 }
 
 TEST(Scaling, StandardByHand) {
-  const MatrixX x = (MatrixX(4, 1) << 1, 3, 5, 7).finished();  // mean 4, mean square deviation 5
+  const RealMatrix x(4, 1, {1, 3, 5, 7});  // mean 4, mean square deviation 5
   const ColumnScaling scaling = ColumnScaling::fit(x, Scaling::standard);
   EXPECT_DOUBLE_EQ(scaling.offset(0), 4);
   EXPECT_DOUBLE_EQ(scaling.factor(0), 1 / std::sqrt(5.0));
@@ -48,19 +60,18 @@ TEST(Scaling, StandardByHand) {
 }
 
 TEST(Scaling, None) {
-  const MatrixX x = inputs(5, 1);
-  EXPECT_EQ(ColumnScaling::fit(x, Scaling::none).apply(x), x);
+  const RealMatrix x = inputs(5, 1);
+  EXPECT_EQ(RealMatrix(ColumnScaling::fit(x, Scaling::none).apply(x)), x);
 }
 
 // A constant column becomes zero, also one that is constant but for rounding, and fresh values of it stay near zero.
 TEST(Scaling, ConstantColumnIsShiftedAndNotStretched) {
-  MatrixX x(3, 3);
-  x << 0.7, 1e6, 0, 0.7, 1e6 + 1e-9, 0, 0.7 + 1e-16, 1e6, 0;
+  const RealMatrix x(3, 3, {0.7, 1e6, 0, 0.7, 1e6 + 1e-9, 0, 0.7 + 1e-16, 1e6, 0});
   for (const Scaling kind : {Scaling::min_max, Scaling::standard}) {
     const ColumnScaling scaling = ColumnScaling::fit(x, kind);
-    EXPECT_EQ(scaling.factor, VectorX::Ones(3));
-    EXPECT_LT(scaling.apply(x).cwiseAbs().maxCoeff(), 1e-8);
-    MatrixX other = x.topRows(1);
+    EXPECT_EQ(scaling.factor, VectorX(VectorX::Ones(3)));
+    EXPECT_LT(RealMatrix(scaling.apply(x)).largest(), 1e-8);
+    RealMatrix other = x.row(0);
     other(0, 0) = 0.71;
     EXPECT_NEAR(scaling.apply(other)(0, 0), 0.01, 1e-12);
   }
@@ -68,7 +79,7 @@ TEST(Scaling, ConstantColumnIsShiftedAndNotStretched) {
 
 // A millimetre at ten metres is signal, not rounding (which is 4e-12 of it).
 TEST(Scaling, SmallSignalOnALargeOffset) {
-  const MatrixX x = (MatrixX(2, 1) << 10, 10.001).finished();
+  const RealMatrix x(2, 1, {10, 10.001});
   EXPECT_NEAR(ColumnScaling::fit(x, Scaling::min_max).apply(x)(1, 0), 1, 1e-11);
 }
 
@@ -80,9 +91,7 @@ TEST(HiddenLayer, EqualsNaiveLoops) {
       const Index features = input_map == InputMap::raw ? 3 : 6;
       ASSERT_EQ(layer.dimension(3), 5 * (features + 1));
       const VectorX theta = layer.draw(3, 11);
-      const MatrixX mapped = layer.map(x);
-      MatrixX h;
-      layer.outputs(mapped, theta, h);
+      const RealMatrix h = hidden_outputs(layer, layer.map(x), theta);
       for (Index i = 0; i < 7; ++i) {
         VectorX f(features);
         for (int j = 0; j < 3; ++j) {
@@ -90,9 +99,7 @@ TEST(HiddenLayer, EqualsNaiveLoops) {
           if (input_map != InputMap::raw) f(3 + j) = std::cos(x(i, j));
         }
         for (Index k = 0; k < 5; ++k) {
-          const VectorX weights = theta.segment(k * (features + 1), features);
-          const double bias = theta(k * (features + 1) + features);
-          EXPECT_NEAR(h(i, k), node(activation, f, weights, bias), 1e-14);
+          EXPECT_NEAR(h(i, k), node(activation, f, theta, k), 1e-14);
         }
       }
     }
@@ -100,8 +107,7 @@ TEST(HiddenLayer, EqualsNaiveLoops) {
 
 TEST(HiddenLayer, SaturatedNodesStayFinite) {
   const HiddenLayer layer{.nodes = 2};
-  MatrixX h;
-  layer.outputs(VectorX::Constant(1, 1), (VectorX(4) << 1e5, 0, -1e5, 0).finished(), h);
+  const RealMatrix h = hidden_outputs(layer, vector({1}), vector({1e5, 0, -1e5, 0}));
   EXPECT_EQ(h(0, 0), 1);
   EXPECT_EQ(h(0, 1), 0);
 }
@@ -114,16 +120,16 @@ TEST(HiddenLayer, DrawsUniformlyFromItsBox) {
   EXPECT_NE(theta, layer.draw(3, 6));
   EXPECT_NEAR(theta.mean(), 0, 4 * 3 / std::sqrt(3.0 * 8000));
   EXPECT_NEAR(theta.squaredNorm() / 8000, 3, 4 * 3 * std::sqrt(4.0 / 45) / std::sqrt(8000.0) * 3);
-  EXPECT_GT(theta.maxCoeff(), 2.99);
-  EXPECT_LT(theta.minCoeff(), -2.99);
+  EXPECT_GT(*std::max_element(theta.begin(), theta.end()), 2.99);
+  EXPECT_LT(*std::min_element(theta.begin(), theta.end()), -2.99);
 }
 
 /// Predictions from the parts a predictor shows: map, scale, layer, output weights, offset.
 template <class P>
-MatrixX rebuilt(const P& predictor, const Inputs& x) {
-  MatrixX h;
-  predictor.layer().outputs(predictor.scaling().apply(predictor.layer().map(x)), predictor.theta(), h);
-  return (h * predictor.beta()).rowwise() + predictor.offset().transpose();
+RealMatrix rebuilt(const P& predictor, const Inputs& x) {
+  const RealMatrix h =
+      hidden_outputs(predictor.layer(), predictor.scaling().apply(predictor.layer().map(x)), predictor.theta());
+  return plus_row(h * RealMatrix::of(predictor.beta()), RealMatrix::of(predictor.offset()).transpose());
 }
 
 template <class R>
@@ -131,17 +137,12 @@ void expect_predictor(const R& recipe) {
   const Inputs x = inputs(40, 3), fresh = inputs(15, 4);
   const auto predictor = recipe.fit(x, targets(x), {.seed = 6});
   EXPECT_EQ(predictor.theta(), recipe.layer().draw(3, 6));
-  EXPECT_LT((predictor.predict(fresh) - rebuilt(predictor, fresh)).cwiseAbs().maxCoeff(), 1e-12);
-  const double step = 1e-5;
+  EXPECT_LT(difference(predictor.predict(fresh), rebuilt(predictor, fresh)), 1e-12);
   for (Index i = 0; i < fresh.rows(); ++i) {
-    const Vector3 at = fresh.row(i).transpose();
-    const Eigen::Matrix<double, 2, 3> derivative = predictor.derivative(at);
-    for (int j = 0; j < 3; ++j) {
-      const Vector3 d = step * Vector3::Unit(j);
-      const Eigen::Vector2d difference =
-          (predictor.predict(Vector3(at + d)) - predictor.predict(Vector3(at - d))) / (2 * step);
-      EXPECT_LT((derivative.col(j) - difference).norm(), 1e-8) << "input " << j;
-    }
+    const Vector3 at = point(fresh, i);
+    const RealMatrix derivative = RealMatrix::of(predictor.derivative(at));
+    for (int j = 0; j < 3; ++j)
+      EXPECT_LT((derivative.col(j) - difference_quotient(predictor, at, j, 1e-5)).norm(), 1e-8) << "input " << j;
   }
 }
 
@@ -160,39 +161,29 @@ TEST(Elm, EqualsTheTextbook) {
   const Targets y = targets(x);
   const Elm elm{.hidden_nodes = 6};
   const VectorX theta = elm.layer().draw(3, 8);
-  const auto scale = [](const MatrixX& m, const MatrixX& by) {
-    MatrixX out = m;
-    for (Index j = 0; j < m.cols(); ++j) {
-      const double low = by.col(j).minCoeff(), high = by.col(j).maxCoeff();
-      out.col(j) = (2 * (m.col(j).array() - low) / (high - low) - 1).matrix();
-    }
-    return out;
-  };
-  const auto layer = [&](const MatrixX& scaled) {
-    MatrixX h(scaled.rows(), 6);
+  const auto layer = [&](const RealMatrix& scaled) {
+    RealMatrix h(scaled.rows(), 6);
     for (Index i = 0; i < h.rows(); ++i)
-      for (Index k = 0; k < 6; ++k)
-        h(i, k) = node(Activation::sigmoid, scaled.row(i).transpose(), theta.segment(4 * k, 3), theta(4 * k + 3));
+      for (Index k = 0; k < 6; ++k) h(i, k) = node(Activation::sigmoid, scaled.row(i).transpose(), theta, k);
     return h;
   };
-  const MatrixX beta = layer(scale(x, x)).completeOrthogonalDecomposition().solve(scale(y, y));
-  MatrixX expected = layer(scale(fresh, x)) * beta;
+  const RealMatrix t = RealMatrix::of(y);
+  const RealMatrix beta = layer(scaled_to_range_of(x, x)).solve(scaled_to_range_of(t, t));
+  RealMatrix expected = layer(scaled_to_range_of(x, fresh)) * beta;
   for (Index j = 0; j < 2; ++j) {
-    const double low = y.col(j).minCoeff(), high = y.col(j).maxCoeff();
-    expected.col(j) = ((expected.col(j).array() + 1) * (high - low) / 2 + low).matrix();
+    const auto [low, high] = range_of_column(t, j);
+    for (Index i = 0; i < 9; ++i) expected(i, j) = (expected(i, j) + 1) * (high - low) / 2 + low;
   }
-  EXPECT_LT((elm.fit_at(x, y, theta).predict(fresh) - expected).cwiseAbs().maxCoeff(), 1e-11);
+  EXPECT_LT(difference(elm.fit_at(x, y, theta).predict(fresh), expected), 1e-11);
 }
 
 // Fresh samples to a twentieth of their spread, where the best linear map leaves more than half of it.
 TEST(Elm, LearnsASmoothMap) {
   const Inputs x = inputs(400, 7), fresh = inputs(200, 8);
   const Targets y = targets(x), expected = targets(fresh);
-  const double spread = (expected.rowwise() - expected.colwise().mean()).norm();
-  MatrixX linear(400, 4), fresh_linear(200, 4);
-  linear << x, VectorX::Ones(400);
-  fresh_linear << fresh, VectorX::Ones(200);
-  EXPECT_GT((fresh_linear * minimum_norm_solution(linear, y, 0) - expected).norm(), 0.5 * spread);
+  const double spread = centred(RealMatrix::of(expected)).norm();
+  const RealMatrix linear = with_ones(RealMatrix(x)), fresh_linear = with_ones(RealMatrix(fresh));
+  EXPECT_GT((fresh_linear * minimum_norm_solution(linear, y, 0) - RealMatrix::of(expected)).norm(), 0.5 * spread);
   EXPECT_LT((Elm{.hidden_nodes = 150}.fit(x, y, {.seed = 1}).predict(fresh) - expected).norm(), 0.05 * spread);
   EXPECT_LT((RidgeElm{.hidden_nodes = 150}.fit(x, y, {.seed = 1}).predict(fresh) - expected).norm(), 0.05 * spread);
 }
@@ -202,9 +193,9 @@ TEST(RidgeElm, DoesNotFollowNoise) {
   const Inputs x = inputs(40, 9), fresh = inputs(200, 10);
   Rng rng(11);
   Targets noise(40, 2);
-  for (auto& value : noise.reshaped()) value = 1e-3 * rng.normal() + 0.3;
+  for (double& value : elements(noise)) value = 1e-3 * rng.normal() + 0.3;
   const auto excess = [&](const auto& predictor) {
-    return std::sqrt((predictor.predict(fresh).array() - 0.3).square().mean());
+    return (predictor.predict(fresh) - Targets::Constant(200, 2, 0.3)).norm() / std::sqrt(400);
   };
   EXPECT_LT(excess(RidgeElm{.hidden_nodes = 65}.fit(x, noise, {.seed = 1})), 1e-3);
   EXPECT_GT(excess(Elm{.hidden_nodes = 65}.fit(x, noise, {.seed = 1})), 3e-3);
@@ -240,7 +231,7 @@ std::string refusal(Call&& call) {
 
 TEST(Elm, RefusesMisuseWithTheNumbers) {
   const Inputs x = inputs(10, 13);
-  const Targets y = targets(x), fewer = y.topRows(9);
+  const Targets y = targets(x), fewer = part(y, 0, 9);
   EXPECT_EQ(refusal([&] { return Elm{}.fit(x, fewer); }), "Elm: 10 rows of inputs, but 9 rows of targets");
   EXPECT_EQ(refusal([&] { return RidgeElm{}.fit(x, fewer); }), "RidgeElm: 10 rows of inputs, but 9 rows of targets");
   EXPECT_EQ(refusal([&] { return Elm{}.fit(Inputs(0, 3), Targets(0, 2)); }), "Elm: no samples");
@@ -271,7 +262,7 @@ TEST(Elm, SmallestProblems) {
   EXPECT_LT((Elm{.hidden_nodes = 3}.fit(one, y).predict(one) - y).norm(), 1e-12);
   EXPECT_LT((RidgeElm{.hidden_nodes = 3}.fit(one, y).predict(one) - y).norm(), 1e-12);
   Inputs constant = inputs(20, 15);
-  constant.col(1).setConstant(0.4);
+  for (Index i = 0; i < 20; ++i) constant(i, 1) = 0.4;
   const Targets level = Targets::Constant(20, 2, 7);
   EXPECT_LT((Elm{.hidden_nodes = 4}.fit(constant, level).predict(constant) - level).norm(), 1e-12);
   EXPECT_LT((RidgeElm{.hidden_nodes = 4}.fit(constant, level).predict(constant) - level).norm(), 1e-12);

@@ -25,8 +25,11 @@ using testing::regressor_violations;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
+using vernier_test::elements;
 using vernier_test::Inputs;
 using vernier_test::inputs;
+using vernier_test::part;
+using vernier_test::RealMatrix;
 using vernier_test::Targets;
 using vernier_test::targets;
 
@@ -46,14 +49,14 @@ TEST(EnsemblePredictor, IsTheMeanAndTheSpreadOfItsMembers) {
   const auto ensemble = Ensemble{Elm{.hidden_nodes = 6}, 7}.fit(x, targets(x), {.seed = 3});
   ASSERT_EQ(ensemble.members().size(), 7u);
   for (Index i = 0; i < 10; ++i) {
-    const Vector3 at = fresh.row(i).transpose();
+    const Vector3 at = point(fresh, i);
     for (int o = 0; o < 2; ++o) {
-      VectorX values(7), slopes(7);
+      RealMatrix values(7, 1), slopes(7, 1);
       for (Index k = 0; k < 7; ++k) {
         values(k) = ensemble.members()[static_cast<std::size_t>(k)].predict(at)(o);
         slopes(k) = ensemble.members()[static_cast<std::size_t>(k)].derivative(at)(o, 1);
       }
-      const double spread = std::sqrt((values.array() - values.mean()).square().sum() / 6);
+      const double spread = centred(values).norm() / std::sqrt(6);
       EXPECT_GT(spread, 1e-6);
       EXPECT_NEAR(ensemble.predict(at)(o), values.mean(), 1e-14);
       EXPECT_NEAR(ensemble.derivative(at)(o, 1), slopes.mean(), 1e-14);
@@ -92,9 +95,12 @@ struct Noting {
 
 TEST(Ensemble, DrawsRowsAndSeedsForEachMember) {
   const Index n = 500;
-  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)),
-                                                 y = x.array() + 100;
-  const VectorX weights = x.array() + 1;
+  VectorX x(n), y(n), weights(n);
+  for (Index i = 0; i < n; ++i) {
+    x(i) = static_cast<double>(i);
+    y(i) = x(i) + 100;
+    weights(i) = x(i) + 1;
+  }
   const auto noted = [&](const Ensemble<Noting>& recipe, const VectorX* q) {
     std::vector<Noted> out;
     const auto ensemble = recipe.fit(x, y, {.seed = 5, .weights = q});
@@ -150,14 +156,16 @@ TEST(Ensemble, TheSpreadIsTheStandardError) {
   const TrigonometricRegression recipe{.max_degree = 1, .ridge = 1e-8};
   Rng rng(11);
   Targets y(200, 2);
-  y.col(0) = x.col(0).array().sin() + x.col(1).array().cos();
-  y.col(1) = x.col(2).array().sin();
-  for (auto& value : y.reshaped()) value += 0.1 * rng.normal();
+  for (Index i = 0; i < 200; ++i) {
+    y(i, 0) = std::sin(x(i, 0)) + std::cos(x(i, 1));
+    y(i, 1) = std::sin(x(i, 2));
+  }
+  for (double& value : elements(y)) value += 0.1 * rng.normal();
   const auto ensemble = Ensemble{recipe, 100}.fit(x, y, {.seed = 12});
   const auto linear = recipe.fit(x, y);
   double spread = 0, theory = 0;
   for (Index i = 0; i < 50; ++i) {
-    const Vector3 at = fresh.row(i).transpose();
+    const Vector3 at = point(fresh, i);
     spread += ensemble.standard_deviation(at).squaredNorm();
     theory += linear.standard_deviation(at).squaredNorm();
   }
@@ -194,7 +202,7 @@ TEST(EnsemblePredictor, DoesNotAllocate) {
 
 TEST(Ensemble, RefusesMisuseWithTheNumbers) {
   const Inputs x = inputs(10, 15);
-  const Targets y = targets(x), fewer = y.topRows(9);
+  const Targets y = targets(x), fewer = part(y, 0, 9);
   const auto says = [&](const Ensemble<Elm>& recipe, const VectorX* weights = nullptr) {
     return complaint([&] { static_cast<void>(recipe.fit(x, y, {.weights = weights})); });
   };

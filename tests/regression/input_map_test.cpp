@@ -26,6 +26,7 @@ using testing::regressor_violations;
 using vernier_test::complaint;
 using vernier_test::inputs;
 using vernier_test::no_violations;
+using vernier_test::RealMatrix;
 using vernier_test::targets;
 
 constexpr InputMap all_maps[] = {InputMap::raw, InputMap::sines_and_cosines, InputMap::sine_cosine_products};
@@ -105,13 +106,15 @@ TEST(InputMap, TheLayerAndThePredictorSeeTheSameFeatures) {
   for (const InputMap map : all_maps) {
     const HiddenLayer layer{.nodes = 5, .input_map = map};
     const MatrixX mapped = layer.map(x);
-    for (Index i = 0; i < 5; ++i)
-      EXPECT_LT((Mapped(map, x.row(i).transpose()).features.transpose() - mapped.row(i)).norm(), 1e-14);
+    for (Index i = 0; i < 5; ++i) {
+      const RealMatrix features = Mapped(map, point(x, i)).features;
+      EXPECT_LT((features.transpose() - RealMatrix(mapped).row(i)).norm(), 1e-14);
+    }
     const auto fitted = RidgeElm{.hidden_nodes = 5, .input_map = map}.fit(x, y, {.seed = 1});
-    MatrixX h;
-    fitted.layer().outputs(fitted.scaling().apply(mapped), fitted.theta(), h);
-    const MatrixX expected = (h * fitted.beta()).rowwise() + fitted.offset().transpose();
-    EXPECT_LT((fitted.predict(x) - expected).cwiseAbs().maxCoeff(), 1e-12);
+    const RealMatrix h = vernier_test::hidden_outputs(fitted.layer(), fitted.scaling().apply(mapped), fitted.theta());
+    const RealMatrix expected =
+        plus_row(h * RealMatrix::of(fitted.beta()), RealMatrix::of(fitted.offset()).transpose());
+    EXPECT_LT(vernier_test::difference(fitted.predict(x), expected), 1e-12);
   }
 }
 
@@ -121,7 +124,7 @@ TEST(InputMap, ProductsAreScaledLikeRawInputs) {
   HiddenLayer layer{.input_map = InputMap::sine_cosine_products};
   EXPECT_EQ(layer.scaling(mapped).factor, ColumnScaling::fit(mapped, Scaling::min_max).factor);
   layer.input_map = InputMap::sines_and_cosines;
-  EXPECT_EQ(layer.scaling(mapped).factor, VectorX::Ones(4));
+  EXPECT_EQ(layer.scaling(mapped).factor, VectorX(VectorX::Ones(4)));
 }
 
 TEST(InputMap, LearnersOnProductsKeepTheLaws) {
@@ -137,7 +140,7 @@ TEST(InputMap, LearnersOnProductsKeepTheLaws) {
 TEST(InputMap, PredictionsDoNotAllocate) {
   const auto x = inputs(30, 3);
   const auto y = targets(x);
-  const Vector3 at = x.row(4).transpose();
+  const Vector3 at = point(x, 4);
   for (const InputMap map : all_maps) {
     const auto fitted = RidgeElm{.hidden_nodes = 9, .input_map = map}.fit(x, y);
     double sum = 0;

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
@@ -23,31 +21,24 @@ using testing::SampleWeights;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
+using vernier_test::all_but;
+using vernier_test::difference;
+using vernier_test::difference_quotient;
+using vernier_test::elements;
 using vernier_test::Inputs;
 using vernier_test::inputs;
+using vernier_test::part;
+using vernier_test::random_weights;
+using vernier_test::RealMatrix;
+using vernier_test::samples_of;
 using vernier_test::Targets;
 using vernier_test::targets;
-
-VectorX random_weights(Index n) {
-  Rng rng(5);
-  VectorX w(n);
-  for (auto& value : w) value = rng.uniform(0.2, 4);
-  return w;
-}
+using vernier_test::zeros;
 
 /// What the kernel sees, from the formulas: inputs to [-1, 1], or sines and cosines.
-MatrixX seen(InputMap map, const Inputs& train, const Inputs& x) {
-  if (map == InputMap::sines_and_cosines) {
-    MatrixX out(x.rows(), 6);
-    out << x.array().sin().matrix(), x.array().cos().matrix();
-    return out;
-  }
-  MatrixX out = x;
-  for (int j = 0; j < 3; ++j) {
-    const double low = train.col(j).minCoeff(), high = train.col(j).maxCoeff();
-    out.col(j) = (2 * (x.col(j).array() - low) / (high - low) - 1).matrix();
-  }
-  return out;
+RealMatrix seen(InputMap map, const Inputs& train, const Inputs& x) {
+  return map == InputMap::sines_and_cosines ? vernier_test::sines_and_cosines(x)
+                                            : vernier_test::scaled_to_range_of(train, x);
 }
 
 double kernel_of(Kernel kernel, double r) {
@@ -56,49 +47,46 @@ double kernel_of(Kernel kernel, double r) {
   return (1 + s + s * s / 3) * std::exp(-s);
 }
 
-MatrixX kernels(Kernel kernel, const MatrixX& a, const MatrixX& b, double length) {
-  MatrixX k(a.rows(), b.rows());
+RealMatrix kernels(Kernel kernel, const RealMatrix& a, const RealMatrix& b, double length) {
+  RealMatrix k(a.rows(), b.rows());
   for (Index i = 0; i < a.rows(); ++i)
-    for (Index j = 0; j < b.rows(); ++j) k(i, j) = kernel_of(kernel, (a.row(i) - b.row(j)).norm() / length);
+    for (Index j = 0; j < b.rows(); ++j) k(i, j) = kernel_of(kernel, distance_of_rows(a, i, b, j) / length);
   return k;
 }
 
 /// Kernel ridge regression with a free mean, as one dense saddle-point system.
-MatrixX dense(InputMap map, const Inputs& x, const MatrixX& y, const VectorX& weights, double length, double lambda,
-              const Inputs& at) {
+RealMatrix dense(InputMap map, const Inputs& x, const RealMatrix& y, const VectorX& weights, double length,
+                 double lambda, const Inputs& at) {
   const Index n = x.rows();
-  const MatrixX features = seen(map, x, x);
-  MatrixX system = MatrixX::Zero(n + 1, n + 1), right = MatrixX::Zero(n + 1, y.cols());
-  system.topLeftCorner(n, n) = kernels(Kernel::squared_exponential, features, features, length);
-  system.diagonal().head(n) += lambda * weights.cwiseInverse();
-  system.col(n).head(n).setOnes();
-  system.row(n).head(n).setOnes();
-  right.topRows(n) = y;
-  const MatrixX solution = Eigen::FullPivLU<MatrixX>(system).solve(right);
-  return (kernels(Kernel::squared_exponential, seen(map, x, at), features, length) * solution.topRows(n)).rowwise() +
-         solution.row(n);
+  const RealMatrix features = seen(map, x, x), one = vernier_test::filled(n, 1, 1);
+  RealMatrix k = kernels(Kernel::squared_exponential, features, features, length);
+  for (Index i = 0; i < n; ++i) k(i, i) += lambda / weights(i);
+  const RealMatrix system = above(beside(k, one), beside(one.transpose(), zeros(1, 1)));
+  const RealMatrix solution = system.solve(above(y, zeros(1, y.cols())));
+  return plus_row(kernels(Kernel::squared_exponential, seen(map, x, at), features, length) * top(solution, n),
+                  solution.row(n));
 }
 
 TEST(KernelElm, EqualsADenseSolve) {
   const Inputs x = inputs(80, 1), fresh = inputs(30, 2);
   const Targets y = targets(x);
+  const RealMatrix t = RealMatrix::of(y);
   const VectorX weights = random_weights(80);
   for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines})
     for (const double length : {0.2, 1.0, 3.0})
       for (const double lambda : {1e-4, 1e-1}) {
         const KernelElm recipe{.input_map = map, .length_scale = length, .lambda = lambda};
-        const MatrixX expected = dense(map, x, y, VectorX::Ones(80), length, lambda, fresh);
-        EXPECT_LT((recipe.fit(x, y).predict(fresh) - expected).cwiseAbs().maxCoeff(), 1e-10 * 1e-3);
-        const MatrixX weighted = dense(map, x, y, weights, length, lambda, fresh);
-        EXPECT_LT((recipe.fit(x, y, {.weights = &weights}).predict(fresh) - weighted).cwiseAbs().maxCoeff(),
-                  1e-10 * 1e-3);
-        EXPECT_GT((weighted - expected).cwiseAbs().maxCoeff(), 1e-8);
+        const RealMatrix expected = dense(map, x, t, VectorX::Ones(80), length, lambda, fresh);
+        EXPECT_LT(difference(recipe.fit(x, y).predict(fresh), expected), 1e-10 * 1e-3);
+        const RealMatrix weighted = dense(map, x, t, weights, length, lambda, fresh);
+        EXPECT_LT(difference(recipe.fit(x, y, {.weights = &weights}).predict(fresh), weighted), 1e-10 * 1e-3);
+        EXPECT_GT(difference(weighted, expected), 1e-8);
       }
 }
 
 // One sample of each side by hand: K = [1 k; k 1], alpha = +-d / (2 (1 + lambda - k)).
 TEST(KernelElm, TwoSamplesByHand) {
-  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = Eigen::Vector2d(-1, 1), y = Eigen::Vector2d(2, 3);
+  const VectorX x = vernier_test::vector({-1, 1}), y = vernier_test::vector({2, 3});
   const auto predictor = KernelElm{.length_scale = 2.0, .lambda = 0.5}.fit(x, y);
   const double k = std::exp(-0.5), alpha = 0.5 / (1.5 - k);
   EXPECT_NEAR(predictor.mean()(0), 2.5, 1e-15);
@@ -117,25 +105,22 @@ TEST(KernelElm, OneSampleIsPredictedEverywhere) {
 TEST(KernelElm, LeaveOneOutErrorsEqualFitsWithoutTheSample) {
   const Index n = 25;
   const Inputs x = inputs(n, 3);
-  const Targets y = targets(x, 1e-4);
+  const RealMatrix y = RealMatrix::of(targets(x, 1e-4));
   const VectorX weights = random_weights(n);
-  const MatrixX features = seen(InputMap::sines_and_cosines, x, x);
+  const RealMatrix features = seen(InputMap::sines_and_cosines, x, x);
   const detail::KernelRidgePath path(detail::kernel_matrix(Kernel::squared_exponential, features), y, weights);
   for (const double lambda : {1e-3, 1e-1, 1e3, std::numeric_limits<double>::infinity()}) {
-    const MatrixX residuals = path.leave_one_out_residuals(lambda);
+    const RealMatrix residuals = path.leave_one_out_residuals(lambda);
     double error = 0;
     for (Index left = 0; left < n; ++left) {
-      std::vector<Index> rest;
-      for (Index i = 0; i < n; ++i)
-        if (i != left) rest.push_back(i);
-      const Inputs others = x(rest, Eigen::all), at = x.row(left);
-      const MatrixX t = y(rest, Eigen::all);
-      const VectorX w = weights(rest);
-      const MatrixX expected =
-          y.row(left) - (std::isfinite(lambda) ? dense(InputMap::sines_and_cosines, others, t, w, 1, lambda, at)
-                                               : MatrixX(w.transpose() * t / w.sum()));
-      EXPECT_LT((residuals.row(left) - expected).cwiseAbs().maxCoeff(), 1e-9 * y.cwiseAbs().maxCoeff());
-      error += weights(left) * expected.squaredNorm();
+      const std::vector<Index> rest = all_but(left, n);
+      const RealMatrix t = rows_of(y, rest), w = samples_of(weights, rest);
+      const RealMatrix elsewhere = std::isfinite(lambda) ? dense(InputMap::sines_and_cosines, samples_of(x, rest), t, w,
+                                                                 1, lambda, part(x, left, 1))
+                                                         : w.transpose() * t / w.sum();
+      const RealMatrix expected = y.row(left) - elsewhere;
+      EXPECT_LT(difference(residuals.row(left), expected), 1e-9 * y.largest());
+      error += weights(left) * expected.squared_norm();
     }
     EXPECT_NEAR(path.leave_one_out_error(lambda), error / weights.sum(), 1e-7 * error);
   }
@@ -164,13 +149,15 @@ TEST(KernelElm, NoiseAloneGivesTheMean) {
   const Inputs x = inputs(100, 6);
   Rng rng(7);
   Targets y(100, 2);
-  for (auto& value : y.reshaped()) value = 5 + rng.normal();
+  for (double& value : elements(y)) value = 5 + rng.normal();
   const auto predictor = KernelElm{}.fit(x, y);
-  const MatrixX off = predictor.predict(inputs(50, 8)).rowwise() - y.colwise().mean();
-  EXPECT_LT(std::sqrt(off.squaredNorm() / 100), 0.2);
+  const RealMatrix mean = column_means(RealMatrix::of(y));
+  const RealMatrix off = plus_row(RealMatrix::of(predictor.predict(inputs(50, 8))), -mean);
+  EXPECT_LT(std::sqrt(off.squared_norm() / 100), 0.2);
   const Targets constant = Targets::Constant(100, 2, 3.25);
-  EXPECT_LT((KernelElm{}.fit(x, constant).predict(inputs(5, 9)).array() - 3.25).abs().maxCoeff(), 1e-14);
-  EXPECT_LT((KernelElm{}.fit(x.topRows(1), y.topRows(1)).predict(x.row(1).eval()) - y.row(0)).norm(), 1e-15);
+  EXPECT_LT(difference(KernelElm{}.fit(x, constant).predict(inputs(5, 9)), part(constant, 0, 5)), 1e-14);
+  const auto single = KernelElm{}.fit(x.topRows(1), y.topRows(1));
+  EXPECT_LT((single.predict(part(x, 1, 1)) - part(y, 0, 1)).norm(), 1e-15);
 }
 
 TEST(KernelElm, ALargeFitIsDecidedByASample) {
@@ -178,7 +165,7 @@ TEST(KernelElm, ALargeFitIsDecidedByASample) {
   const KernelElm recipe{.max_search_samples = 150};
   const auto predictor = recipe.fit(x, targets(x), {.seed = 3});
   EXPECT_EQ(predictor.samples(), 300);
-  EXPECT_LT((predictor.predict(fresh) - targets(fresh)).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT(difference(predictor.predict(fresh), targets(fresh)), 1e-5);
   EXPECT_TRUE(same_bits(predictor.predict(fresh), recipe.fit(x, targets(x), {.seed = 3}).predict(fresh)));
 }
 
@@ -196,34 +183,31 @@ TEST(KernelElm, KeepsTheLaws) {
 
 TEST(KernelPredictor, EqualsItsFormulaForBothKernels) {
   const Inputs x = inputs(37, 12), fresh = inputs(20, 13);
-  const MatrixX alpha = targets(x);
+  const Targets alpha = targets(x);
   for (const Kernel kernel : {Kernel::squared_exponential, Kernel::matern_5_2})
     for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines}) {
       detail::KernelFeatures features(x, map, Scaling::min_max);
       features.divide(VectorX::Constant(1, 0.7));
       const KernelPredictor<3, 2> predictor(kernel, map, features.scaling, features.values, alpha, {0.1, -0.2});
-      const MatrixX expected = (kernels(kernel, seen(map, x, fresh), seen(map, x, x), 0.7) * alpha).rowwise() +
-                               Eigen::RowVector2d(0.1, -0.2);
-      EXPECT_LT((predictor.predict(fresh) - expected).cwiseAbs().maxCoeff(), 1e-14);
-      EXPECT_LT((MatrixX(detail::kernel_matrix(kernel, features.values).selfadjointView<Eigen::Lower>()) -
-                 kernels(kernel, seen(map, x, x), seen(map, x, x), 0.7))
-                    .cwiseAbs()
-                    .maxCoeff(),
+      const RealMatrix features_x = seen(map, x, x), expected_k = kernels(kernel, features_x, features_x, 0.7);
+      const RealMatrix expected =
+          plus_row(kernels(kernel, seen(map, x, fresh), features_x, 0.7) * RealMatrix::of(alpha), {1, 2, {0.1, -0.2}});
+      EXPECT_LT(difference(predictor.predict(fresh), expected), 1e-14);
+      EXPECT_LT(difference(vernier_test::lower_triangle(detail::kernel_matrix(kernel, features.values)),
+                           vernier_test::lower_triangle(expected_k)),
                 1e-14);
-      EXPECT_LT((predictor.alpha() - alpha).norm() + (predictor.centres() - features.values).norm(), 1e-300);
-      constexpr double step = 1e-5;
-      for (Index i = 0; i < fresh.rows(); ++i)
-        for (int j = 0; j < 3; ++j) {
-          const Vector3 at = fresh.row(i).transpose(), along = step * Vector3::Unit(j);
-          EXPECT_LT((predictor.derivative(at).col(j) -
-                     (predictor.predict(at + along) - predictor.predict(at - along)) / (2 * step))
-                        .norm(),
-                    1e-8);
-        }
+      EXPECT_EQ(RealMatrix::of(predictor.alpha()), RealMatrix::of(alpha));
+      EXPECT_EQ(RealMatrix(predictor.centres()), RealMatrix(features.values));
+      for (Index i = 0; i < fresh.rows(); ++i) {
+        const Vector3 at = point(fresh, i);
+        const RealMatrix derivative = RealMatrix::of(predictor.derivative(at));
+        for (int j = 0; j < 3; ++j)
+          EXPECT_LT((derivative.col(j) - difference_quotient(predictor, at, j, 1e-5)).norm(), 1e-8);
+      }
     }
   // at a sample the distance is zero
   const auto at_sample = KernelElm{.length_scale = 1.0, .lambda = 1e-2}.fit(x, targets(x));
-  EXPECT_TRUE(at_sample.derivative(x.row(0).transpose()).allFinite());
+  EXPECT_TRUE(at_sample.derivative(point(x, 0)).allFinite());
 }
 
 TEST(KernelPredictor, DoesNotAllocate) {
@@ -249,7 +233,7 @@ TEST(KernelElm, RefusesWhatItCannotUse) {
               static_cast<void>(KernelElm{.max_search_samples = 1}.fit(x, y));
             }).find("max_search_samples is 1"),
             std::string::npos);
-  const Inputs twice = x.row(0).replicate(10, 1);
+  const Inputs twice = samples_of(x, std::vector<Index>(10, 0));
   EXPECT_NE(complaint([&] {
               static_cast<void>(
                   KernelElm{.input_scaling = Scaling::none, .length_scale = 1.0, .lambda = 1e-30}.fit(twice, y));

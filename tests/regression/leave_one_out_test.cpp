@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "instruction_sets.hpp"
-#include "vernier/core/rng.hpp"
+#include "regression_samples.hpp"
 #include "vernier/regression/detail/leave_one_out.hpp"
 #include "vernier/regression/least_squares.hpp"
 #include "vernier/regression/ridge_elm.hpp"
@@ -13,40 +13,64 @@
 namespace vernier::leave_one_out_test {
 namespace {
 
+using vernier_test::beside;
+using vernier_test::elements;
+using vernier_test::filled;
+using vernier_test::hidden_outputs;
 using vernier_test::instruction_sets;
+using vernier_test::RealMatrix;
+using vernier_test::zeros;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-MatrixX random_matrix(Index rows, Index cols, std::uint64_t seed) {
+RealMatrix random_matrix(Index rows, Index cols, std::uint64_t seed, double mean = 0) {
   Rng rng(seed);
   MatrixX m(rows, cols);
-  for (auto& value : m.reshaped()) value = rng.normal();
+  for (double& value : elements(m)) value = rng.normal() + mean;
   return m;
 }
 
 /// Ridge with an unpenalised intercept by QR of the stacked system, in long double: no centring, no decomposition
-/// shared with the code, and digits to spare for a small lambda.
-MatrixX ridge_with_intercept(const MatrixX& h, const MatrixX& t, double lambda) {
+/// shared with the code, and digits to spare for a small lambda. By Gram and Schmidt: as a loop it compiles in no time.
+RealMatrix ridge_with_intercept(const RealMatrix& h, const RealMatrix& t, double lambda) {
   using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  const Index n = h.rows(), nodes = h.cols();
-  Matrix stacked = Matrix::Zero(n + nodes, nodes + 1), right = Matrix::Zero(n + nodes, t.cols());
-  stacked.topRightCorner(n, nodes) = h.cast<long double>();
-  stacked.topLeftCorner(n, 1).setOnes();
-  stacked.bottomRightCorner(nodes, nodes).diagonal().setConstant(std::sqrt(static_cast<long double>(lambda)));
-  right.topRows(n) = t.cast<long double>();
-  return Eigen::HouseholderQR<Matrix>(stacked).solve(right).cast<double>();
+  const Index n = h.rows(), unknowns = h.cols() + 1, columns = unknowns + t.cols();
+  const RealMatrix samples = beside(beside(filled(n, 1, 1), h), t);
+  Matrix a = Matrix::Zero(n + unknowns, columns), r = Matrix::Zero(unknowns, columns);  // [1 h t; 0 sqrt(lambda) I 0]
+  for (Index j = 0; j < columns; ++j)
+    for (Index i = 0; i < n; ++i) a(i, j) = static_cast<long double>(samples(i, j));
+  for (Index k = 1; k < unknowns; ++k) a(n + k, k) = std::sqrt(static_cast<long double>(lambda));
+  const auto dot = [&](Index j, Index k) {
+    long double sum = 0;
+    for (Index i = 0; i < a.rows(); ++i) sum += a(i, j) * a(i, k);
+    return sum;
+  };
+  for (Index k = 0; k < unknowns; ++k) {  // each column is taken out of those that follow
+    const long double norm = std::sqrt(dot(k, k));
+    r(k, k) = norm;
+    for (Index j = k + 1; j < columns; ++j) {
+      r(k, j) = dot(k, j) / norm;
+      for (Index i = 0; i < a.rows(); ++i) a(i, j) -= r(k, j) / norm * a(i, k);
+    }
+  }
+  RealMatrix out(unknowns, t.cols());
+  for (Index o = unknowns; o < columns; ++o)
+    for (Index k = unknowns - 1; k >= 0; --k) {  // R x = Q't
+      for (Index j = k + 1; j < unknowns; ++j) r(k, o) -= r(k, j) * r(j, o);
+      r(k, o) /= r(k, k);
+      out(k, o - unknowns) = static_cast<double>(r(k, o));
+    }
+  return out;
 }
 
 /// Residual of each sample at the fit of all others.
-MatrixX refitted_residuals(const MatrixX& h, const MatrixX& t, double lambda) {
+RealMatrix refitted_residuals(const RealMatrix& h, const RealMatrix& t, double lambda) {
   const Index n = h.rows();
-  MatrixX out(n, t.cols());
+  RealMatrix out(n, t.cols());
   for (Index i = 0; i < n; ++i) {
-    MatrixX h_rest(n - 1, h.cols()), t_rest(n - 1, t.cols());
-    h_rest << h.topRows(i), h.bottomRows(n - 1 - i);
-    t_rest << t.topRows(i), t.bottomRows(n - 1 - i);
-    const MatrixX beta = ridge_with_intercept(h_rest, t_rest, lambda);
-    out.row(i) = t.row(i) - beta.row(0) - h.row(i) * beta.bottomRows(h.cols());
+    const std::vector<Index> others = vernier_test::all_but(i, n);
+    const RealMatrix beta = ridge_with_intercept(rows_of(h, others), rows_of(t, others), lambda);
+    out.set_block(i, 0, t.row(i) - beta.row(0) - h.row(i) * bottom(beta, h.cols()));
   }
   return out;
 }
@@ -54,14 +78,13 @@ MatrixX refitted_residuals(const MatrixX& h, const MatrixX& t, double lambda) {
 // Fewer nodes than samples (through QR and not), as many, one less, and more: the closed form is exact.
 TEST(LeaveOneOut, EqualsRefits) {
   for (const auto& [n, nodes] : {std::pair<Index, Index>{25, 5}, {12, 8}, {10, 9}, {10, 10}, {10, 30}, {2, 4}}) {
-    MatrixX h = random_matrix(n, nodes, 1);
-    h.array() += 3;  // a mean that centring must deal with
-    const MatrixX t = random_matrix(n, 3, 2).array() + 5;
+    const RealMatrix h = random_matrix(n, nodes, 1, 3);  // a mean that centring must deal with
+    const RealMatrix t = random_matrix(n, 3, 2, 5);
     const RidgePath path(h, t);
     for (const double relative : {1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
       const double lambda = relative * path.scale();
-      const MatrixX expected = refitted_residuals(h, t, lambda);
-      EXPECT_LT((path.leave_one_out_residuals(lambda) - expected).norm(), 1e-9 * expected.norm())
+      const RealMatrix expected = refitted_residuals(h, t, lambda);
+      EXPECT_LT((expected - path.leave_one_out_residuals(lambda)).norm(), 1e-9 * expected.norm())
           << n << " samples, " << nodes << " nodes, lambda " << relative;
     }
   }
@@ -70,20 +93,19 @@ TEST(LeaveOneOut, EqualsRefits) {
 // The same with columns that repeat, so that fewer directions remain than nodes.
 TEST(LeaveOneOut, EqualsRefitsWhenNodesRepeat) {
   for (const Index n : {9, 30}) {
-    MatrixX h(n, 12);
-    h << random_matrix(n, 4, 3), random_matrix(n, 4, 3), random_matrix(n, 4, 3);
-    const MatrixX t = random_matrix(n, 2, 4);
+    const RealMatrix four = random_matrix(n, 4, 3), h = beside(beside(four, four), four);
+    const RealMatrix t = random_matrix(n, 2, 4);
     const RidgePath path(h, t);
     EXPECT_EQ(path.rank(), 4);
     for (const double relative : {1e-1, 1e-4}) {
-      const MatrixX expected = refitted_residuals(h, t, relative * path.scale());
-      EXPECT_LT((path.leave_one_out_residuals(relative * path.scale()) - expected).norm(), 1e-9 * expected.norm());
+      const RealMatrix expected = refitted_residuals(h, t, relative * path.scale());
+      EXPECT_LT((expected - path.leave_one_out_residuals(relative * path.scale())).norm(), 1e-9 * expected.norm());
     }
   }
 }
 
 TEST(LeaveOneOut, OfTheMeanAlone) {
-  const MatrixX t = random_matrix(7, 2, 5).array() + 2;
+  const RealMatrix t = random_matrix(7, 2, 5, 2);
   const RidgePath path(random_matrix(7, 3, 6), t);
   const MatrixX residuals = path.leave_one_out_residuals(infinity);
   for (Index i = 0; i < 7; ++i)
@@ -91,8 +113,8 @@ TEST(LeaveOneOut, OfTheMeanAlone) {
       const double mean_of_others = (t.col(k).sum() - t(i, k)) / 6;
       EXPECT_NEAR(residuals(i, k), t(i, k) - mean_of_others, 1e-14);
     }
-  EXPECT_EQ(path.beta(infinity), MatrixX::Zero(3, 2));
-  EXPECT_NEAR((path.offset(path.beta(infinity)) - t.colwise().mean().transpose()).norm(), 0, 1e-15);
+  EXPECT_EQ(RealMatrix(path.beta(infinity)), zeros(3, 2));
+  EXPECT_NEAR((column_means(t).transpose() - path.offset(path.beta(infinity))).norm(), 0, 1e-15);
 }
 
 TEST(LeaveOneOut, LambdaWithoutBoundTendsToTheMean) {
@@ -103,27 +125,27 @@ TEST(LeaveOneOut, LambdaWithoutBoundTendsToTheMean) {
 
 TEST(RidgePath, SolvesTheRidgeProblem) {
   for (const auto& [n, nodes] : {std::pair<Index, Index>{40, 6}, {8, 6}, {6, 15}}) {
-    const MatrixX h = random_matrix(n, nodes, 9).array() + 1, t = random_matrix(n, 2, 10).array() - 4;
+    const RealMatrix h = random_matrix(n, nodes, 9, 1), t = random_matrix(n, 2, 10, -4);
     const RidgePath path(h, t);
     for (const double relative : {1.0, 1e-3, 1e-6}) {
-      const MatrixX expected = ridge_with_intercept(h, t, relative * path.scale());
+      const RealMatrix expected = ridge_with_intercept(h, t, relative * path.scale());
       const MatrixX beta = path.beta(relative * path.scale());
-      EXPECT_LT((beta - expected.bottomRows(nodes)).norm(), 1e-9 * expected.norm());
+      EXPECT_LT((beta - bottom(expected, nodes)).norm(), 1e-9 * expected.norm());
       EXPECT_LT((path.offset(beta) - expected.row(0).transpose()).norm(), 1e-9 * expected.norm());
     }
   }
 }
 
 TEST(ChooseLambda, HasTheLeastErrorOfItsGrid) {
-  const MatrixX h = random_matrix(20, 8, 11), t = h * random_matrix(8, 2, 12) + 0.5 * random_matrix(20, 2, 13);
+  const RealMatrix h = random_matrix(20, 8, 11), t = h * random_matrix(8, 2, 12) + 0.5 * random_matrix(20, 2, 13);
   const RidgePath path(h, t);
   const LeaveOneOutChoice choice = choose_lambda(path, 20);
   ASSERT_TRUE(std::isfinite(choice.lambda));
-  EXPECT_NEAR(choice.mean_squared_error, refitted_residuals(h, t, choice.lambda).squaredNorm() / 20,
+  EXPECT_NEAR(choice.mean_squared_error, refitted_residuals(h, t, choice.lambda).squared_norm() / 20,
               1e-9 * choice.mean_squared_error);
   for (int half_decades = 0; half_decades <= 24; ++half_decades) {
     const double lambda = path.scale() * std::pow(10, -half_decades / 2.0);
-    EXPECT_LE(choice.mean_squared_error, refitted_residuals(h, t, lambda).squaredNorm() / 20 * (1 + 1e-9));
+    EXPECT_LE(choice.mean_squared_error, refitted_residuals(h, t, lambda).squared_norm() / 20 * (1 + 1e-9));
   }
   EXPECT_LT(choice.mean_squared_error, path.leave_one_out_residuals(infinity).squaredNorm() / 20);
 }
@@ -133,7 +155,7 @@ TEST(ChooseLambda, HasTheLeastErrorOfItsGrid) {
 TEST(ChooseLambda, PrefersTheMeanOfPureNoise) {
   int mean_wins = 0;
   for (std::uint64_t seed = 0; seed < 25; ++seed) {
-    const MatrixX t = 1e-3 * random_matrix(40, 1, 100 + seed).array() + 0.25;
+    const RealMatrix t = 1e-3 * random_matrix(40, 1, 100 + seed) + filled(40, 1, 0.25);
     const LeaveOneOutChoice choice = choose_lambda(RidgePath(random_matrix(40, 60, 200 + seed), t), 40);
     if (!std::isfinite(choice.lambda)) ++mean_wins;
   }
@@ -143,17 +165,18 @@ TEST(ChooseLambda, PrefersTheMeanOfPureNoise) {
 // More nodes than samples and next to no ridge: every sample is met exactly, and the leave-one-out error must not say
 // that nothing is left.
 TEST(ChooseLambda, IsNotFooledByInterpolation) {
-  const MatrixX h = random_matrix(15, 40, 14), t = random_matrix(15, 1, 15);
+  const RealMatrix h = random_matrix(15, 40, 14), t = random_matrix(15, 1, 15);
   const RidgePath path(h, t);
   const double lambda = 1e-12 * path.scale();
   const MatrixX beta = path.beta(lambda);
-  EXPECT_LT(((h * beta).rowwise() + path.offset(beta).transpose() - t).norm(), 1e-9 * t.norm());
+  const RealMatrix offset = path.offset(beta);
+  EXPECT_LT((plus_row(h * beta, offset.transpose()) - t).norm(), 1e-9 * t.norm());
   EXPECT_GT(path.leave_one_out_residuals(lambda).norm(), 0.5 * t.norm());
 }
 
 TEST(ChooseLambda, FewSamplesAndConstantNodes) {
   EXPECT_EQ(choose_lambda(RidgePath(random_matrix(1, 3, 16), random_matrix(1, 1, 17)), 1).lambda, infinity);
-  EXPECT_EQ(choose_lambda(RidgePath(MatrixX::Constant(5, 3, 0.5), random_matrix(5, 1, 18)), 5).lambda, infinity);
+  EXPECT_EQ(choose_lambda(RidgePath(filled(5, 3, 0.5), random_matrix(5, 1, 18)), 5).lambda, infinity);
 }
 
 /// Samples of a smooth function with noise, and hidden weights of some size.
@@ -164,7 +187,7 @@ struct Layer {
   Layer(Index samples, int nodes, double size, Activation activation, double noise = 0.05, int outputs = 3)
       : features(samples, 4), targets(samples, outputs), layer{.nodes = nodes, .activation = activation} {
     Rng rng(7);
-    for (auto& value : features.reshaped()) value = rng.uniform(-1, 1);
+    for (double& value : elements(features)) value = rng.uniform(-1, 1);
     for (Index i = 0; i < samples; ++i)
       for (Index o = 0; o < outputs; ++o)
         targets(i, o) = 4 + std::sin(3 * features(i, o % 3) + features(i, 3)) + noise * rng.normal();
@@ -173,9 +196,7 @@ struct Layer {
   }
   /// By singular values.
   double expected() const {
-    MatrixX h;
-    layer.outputs(features, theta, h);
-    return choose_lambda(RidgePath(h, targets), targets.rows()).mean_squared_error;
+    return choose_lambda(RidgePath(hidden_outputs(layer, features, theta), targets), targets.rows()).mean_squared_error;
   }
 };
 

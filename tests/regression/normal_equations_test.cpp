@@ -3,18 +3,29 @@
 #include <gtest/gtest.h>
 
 #include "instruction_sets.hpp"
+#include "regression_samples.hpp"
+#include "vernier/core/rng.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/least_squares.hpp"
 
 namespace vernier::normal_equations_test {
 namespace {
 
+using vernier_test::above;
+using vernier_test::beside;
+using vernier_test::elements;
+using vernier_test::hidden_outputs;
+using vernier_test::lower_triangle;
+using vernier_test::RealMatrix;
+using vernier_test::zeros;
+
 MatrixX uniform(Index rows, Index columns, double limit, std::uint64_t seed) {
   Rng rng(seed);
   MatrixX out(rows, columns);
-  for (auto& x : out.reshaped()) x = rng.uniform(-limit, limit);
+  for (double& x : elements(out)) x = rng.uniform(-limit, limit);
   return out;
 }
+VectorX uniform(Index size, double limit, std::uint64_t seed) { return RealMatrix(uniform(size, 1, limit, seed)); }
 
 TEST(Sigmoid, EqualsTheLibraryFunction) {
   for (double z = -760; z < 760; z += 0.37) {
@@ -35,17 +46,16 @@ TEST(NormalEquations, EqualThePlainProductsOnEveryInstructionSet) {
     for (const Activation activation : {Activation::sigmoid, Activation::tanh}) {
       const HiddenLayer layer{.nodes = nodes, .activation = activation};
       for (const double limit : {1.0, 1e-4, 300.0}) {
-        const VectorX theta = uniform(layer.dimension(inputs), 1, limit, 3);
-        MatrixX h;
-        layer.outputs(x, theta, h);
-        const MatrixX gram = h.transpose() * h, right = t.transpose() * h;
+        const VectorX theta = uniform(layer.dimension(inputs), limit, 3);
+        const RealMatrix h = hidden_outputs(layer, x, theta);
+        const RealMatrix gram = h.transpose() * h, right = RealMatrix(t).transpose() * h;
         for (const InstructionSet set : vernier_test::instruction_sets()) {
           detail::LayerEquations equations(layer, x, t, set);
           equations.form(theta);
           equations.form(theta);  // nothing is left over from before
-          const MatrixX difference = MatrixX(equations.gram()) - gram;
-          EXPECT_LT(MatrixX(difference.triangularView<Eigen::Lower>()).norm(), 1e-12 * gram.norm() + 1e-14);
-          EXPECT_LT((equations.right() - right).norm(), 1e-12 * h.norm() * t.norm() + 1e-15 * t.norm());
+          const RealMatrix found = RealMatrix::of(equations.gram());
+          EXPECT_LT(lower_triangle(found - gram).norm(), 1e-12 * gram.norm() + 1e-14);
+          EXPECT_LT((RealMatrix::of(equations.right()) - right).norm(), 1e-12 * h.norm() * t.norm() + 1e-15 * t.norm());
           EXPECT_NEAR(equations.target_square(), t.squaredNorm(), 1e-13 * t.squaredNorm());
         }
       }
@@ -53,34 +63,30 @@ TEST(NormalEquations, EqualThePlainProductsOnEveryInstructionSet) {
   }
 }
 
-/// The objective to 1e-6 against an SVD of the stacked system, at the bounds, with tiny weights and with equal nodes.
+/// The objective to 1e-6 against a QR decomposition of the stacked system, at the bounds, with tiny weights and with
+/// equal nodes.
 TEST(ElmFitness, HoldsSixDigitsWhereverTheWeightsLie) {
   const Index samples = 400, inputs = 6, outputs = 3;
-  const Eigen::Matrix<double, Eigen::Dynamic, 6> x = uniform(samples, inputs, 1, 4);
-  Eigen::Matrix<double, Eigen::Dynamic, 3> y(samples, outputs);
+  const JointRows<6> x = uniform(samples, inputs, 1, 4);
+  PointRows y(samples, outputs);
   for (Index i = 0; i < samples; ++i)
-    y.row(i) << std::sin(x(i, 0) + x(i, 1)), x(i, 2) * x(i, 3), std::cos(2 * x(i, 4)) * x(i, 5);
+    set_point(y, i, {std::sin(x(i, 0) + x(i, 1)), x(i, 2) * x(i, 3), std::cos(2 * x(i, 4)) * x(i, 5)});
   const Elm elm{.hidden_nodes = 30, .target_scaling = Scaling::none};
   const auto objective = elm.objective(x, y);
-  MatrixX population(elm.dimension(6), 6);
-  population.col(0) = uniform(population.rows(), 1, 1, 5);
-  population.col(1) = population.col(0).array().sign().matrix();  // at the bounds
-  population.col(2) = 1e-3 * population.col(0);
-  population.col(3) = 1e-7 * population.col(0);
-  population.col(4) = population.col(0).head(7).replicate(30, 1);  // equal nodes
-  population.col(5) = 1e3 * population.col(0);                     // saturated
+  const VectorX inside = uniform(elm.dimension(6), 1, 5);
+  VectorX at_the_bounds = inside, equal_nodes = inside;
+  for (double& weight : at_the_bounds) weight = weight > 0 ? 1 : -1;
+  for (Index i = 7; i < equal_nodes.size(); ++i) equal_nodes(i) = equal_nodes(i - 7);
+  const std::vector<VectorX> population{inside,        at_the_bounds, 1e-3 * inside,
+                                        1e-7 * inside, equal_nodes,   1e3 * inside};  // the last saturated
   VectorX fitness(6);
-  objective(population, fitness);
+  objective(beside(population), fitness);
   for (Index k = 0; k < 6; ++k) {
-    MatrixX h;
     const HiddenLayer layer = elm.layer();
-    layer.outputs(layer.scaling(x).apply(x), population.col(k), h);
-    const double lambda = 1e-10 * h.squaredNorm() / 30;
-    MatrixX stacked(samples + 30, 30), right = MatrixX::Zero(samples + 30, 3);
-    stacked << h, std::sqrt(lambda) * MatrixX::Identity(30, 30);
-    right.topRows(samples) = y;
-    const Eigen::JacobiSVD<MatrixX> svd(stacked, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const double expected = (stacked * svd.solve(right) - right).squaredNorm() / static_cast<double>(samples);
+    const RealMatrix h = hidden_outputs(layer, layer.scaling(x).apply(x), population[static_cast<std::size_t>(k)]);
+    const double lambda = 1e-10 * h.squared_norm() / 30;
+    const RealMatrix stacked = above(h, std::sqrt(lambda) * RealMatrix::identity(30)), right = above(y, zeros(30, 3));
+    const double expected = (stacked * stacked.solve(right) - right).squared_norm() / static_cast<double>(samples);
     EXPECT_NEAR(fitness(k), expected, 1e-6 * expected) << k;
   }
 }
@@ -90,10 +96,8 @@ TEST(ElmFitness, ANearlyPerfectFitKeepsItsDigits) {
   const Eigen::Matrix<double, Eigen::Dynamic, 2> x = uniform(300, 2, 1, 6);
   const Elm elm{
       .hidden_nodes = 10, .input_scaling = Scaling::none, .target_scaling = Scaling::none, .fitness_lambda = 1e-14};
-  const VectorX theta = uniform(elm.dimension(2), 1, 1, 7);
-  MatrixX h;
-  elm.layer().outputs(x, theta, h);
-  const Eigen::Matrix<double, Eigen::Dynamic, 1> y = h * uniform(10, 1, 1, 8);
+  const VectorX theta = uniform(elm.dimension(2), 1, 7);
+  const VectorX y = hidden_outputs(elm.layer(), x, theta) * RealMatrix(uniform(10, 1, 8));
   VectorX fitness(1);
   elm.objective(x, y)(theta, fitness);
   EXPECT_GE(fitness(0), 0);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <vector>
 
@@ -22,63 +21,52 @@ using testing::SampleWeights;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
+using vernier_test::difference;
+using vernier_test::elements;
+using vernier_test::hidden_outputs;
 using vernier_test::Inputs;
 using vernier_test::inputs;
+using vernier_test::random_weights;
+using vernier_test::RealMatrix;
+using vernier_test::samples_of;
 using vernier_test::Targets;
 using vernier_test::targets;
 
-VectorX random_weights(Index n) {
-  Rng rng(5);
-  VectorX w(n);
-  for (auto& value : w) value = rng.uniform(0.2, 4);
-  return w;
-}
-
 /// Columns drawn at random, as no layer gives them: well conditioned.
-MatrixX random_columns(Index n, Index count) {
+RealMatrix random_columns(Index n, Index count) {
   Rng rng(3);
   MatrixX h(n, count);
-  for (auto& value : h.reshaped()) value = rng.normal();
+  for (double& value : elements(h)) value = rng.normal();
   return h;
 }
 
-MatrixX with_ones(const MatrixX& h) {
-  MatrixX out(h.rows(), h.cols() + 1);
-  out << h, VectorX::Ones(h.rows());
-  return out;
-}
-
 /// Weighted least squares by the pivoted QR of the rows themselves.
-MatrixX solve(const MatrixX& design, const MatrixX& y, const VectorX& w) {
-  const VectorX root = w.cwiseSqrt();
-  return Eigen::ColPivHouseholderQR<MatrixX>(root.asDiagonal() * design).solve(MatrixX(root.asDiagonal() * y));
+RealMatrix solve(const RealMatrix& design, const RealMatrix& y, const RealMatrix& w) {
+  return scaled_rows(w.sqrt(), design).solve(scaled_rows(w.sqrt(), y));
 }
 
-double squared_error(const MatrixX& design, const MatrixX& y, const VectorX& w) {
-  return (w.cwiseSqrt().asDiagonal() * (y - design * solve(design, y, w))).squaredNorm();
+double squared_error(const RealMatrix& design, const RealMatrix& y, const RealMatrix& w) {
+  return scaled_rows(w.sqrt(), y - design * solve(design, y, w)).squared_norm();
 }
 
 TEST(RankNodes, PressEqualsLeavingEachSampleOut) {
   const Index n = 24;
   const Inputs x = inputs(n, 1);
-  const Targets y = targets(x, 1e-4);
+  const RealMatrix y = RealMatrix::of(targets(x, 1e-4));
   const HiddenLayer layer{.nodes = 9, .activation = Activation::sine, .weight_limit = 2};
-  MatrixX h;
-  layer.outputs(x, layer.draw(3, 4), h);
+  const RealMatrix h = hidden_outputs(layer, x, layer.draw(3, 4));
   for (const VectorX& w : {VectorX(VectorX::Ones(n)), random_weights(n)}) {
     const detail::RankedNodes ranked = detail::rank_nodes(h, y, w);
     ASSERT_EQ(ranked.order.size(), 9u);
     ASSERT_EQ(ranked.press.size(), 10u);
     for (std::size_t count = 0; count <= 9; ++count) {
       const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + static_cast<std::ptrdiff_t>(count));
-      const MatrixX design = with_ones(h(Eigen::all, nodes));
+      const RealMatrix design = with_ones(columns_of(h, nodes));
       double sum = 0;
       for (Index left = 0; left < n; ++left) {
-        std::vector<Index> rest;
-        for (Index i = 0; i < n; ++i)
-          if (i != left) rest.push_back(i);
-        const MatrixX beta = solve(design(rest, Eigen::all), y(rest, Eigen::all), w(rest));
-        sum += w(left) * (y.row(left) - design.row(left) * beta).squaredNorm();
+        const std::vector<Index> rest = vernier_test::all_but(left, n);
+        const RealMatrix beta = solve(rows_of(design, rest), rows_of(y, rest), samples_of(w, rest));
+        sum += w(left) * (y.row(left) - design.row(left) * beta).squared_norm();
       }
       EXPECT_NEAR(ranked.press[count], sum / w.sum(), 1e-8 * sum / w.sum()) << count;
     }
@@ -88,7 +76,7 @@ TEST(RankNodes, PressEqualsLeavingEachSampleOut) {
 // Each node taken is the one whose addition lowers the error of all outputs together by the most.
 TEST(RankNodes, TakesTheBestNodeEachTime) {
   const Index n = 40;
-  const MatrixX h = random_columns(n, 8), y = random_columns(n, 10).rightCols(2);
+  const RealMatrix h = random_columns(n, 8), y = random_columns(n, 10).block(0, 8, n, 2);
   const VectorX w = random_weights(n);
   const detail::RankedNodes ranked = detail::rank_nodes(h, y, w);
   ASSERT_EQ(ranked.order.size(), 8u);
@@ -96,11 +84,11 @@ TEST(RankNodes, TakesTheBestNodeEachTime) {
   for (const Index next : ranked.order) {
     std::vector<Index> trial = taken;
     trial.push_back(next);
-    const double chosen = squared_error(with_ones(h(Eigen::all, trial)), y, w);
+    const double chosen = squared_error(with_ones(columns_of(h, trial)), y, w);
     for (Index other = 0; other < 8; ++other) {
       if (other == next || std::find(taken.begin(), taken.end(), other) != taken.end()) continue;
       trial.back() = other;
-      EXPECT_GT(squared_error(with_ones(h(Eigen::all, trial)), y, w), chosen);
+      EXPECT_GT(squared_error(with_ones(columns_of(h, trial)), y, w), chosen);
     }
     taken.push_back(next);
   }
@@ -108,11 +96,10 @@ TEST(RankNodes, TakesTheBestNodeEachTime) {
 
 // Targets made of three columns: those come first, and no other is needed.
 TEST(RankNodes, FindsTheColumnsThatMadeTheTargets) {
-  const MatrixX h = random_columns(60, 20);
-  MatrixX y(60, 2);
-  y << 3 * h.col(4) + 0.5 * h.col(11), h.col(17) - 2 * h.col(4);
+  const RealMatrix h = random_columns(60, 20);
+  MatrixX y = beside(3 * h.col(4) + 0.5 * h.col(11), h.col(17) - 2 * h.col(4));
   Rng rng(8);
-  for (auto& value : y.reshaped()) value += 1 + 1e-3 * rng.normal();
+  for (double& value : elements(y)) value += 1 + 1e-3 * rng.normal();
   const detail::RankedNodes ranked = detail::rank_nodes(h, y, VectorX::Ones(60));
   std::vector<Index> first(ranked.order.begin(), ranked.order.begin() + 3);
   EXPECT_EQ(first[0], 4);
@@ -123,15 +110,15 @@ TEST(RankNodes, FindsTheColumnsThatMadeTheTargets) {
 }
 
 TEST(RankNodes, LeavesOutWhatDependsOnOthersAndWhatReproducesSamples) {
-  MatrixX h = random_columns(30, 6);
-  h.col(2) = h.col(0) + h.col(1);
-  h.col(5).setConstant(3);  // the mean is free already
-  const MatrixX y = random_columns(30, 9).rightCols(2);
+  RealMatrix h = random_columns(30, 6);
+  h.set_block(0, 2, h.col(0) + h.col(1));
+  h.set_block(0, 5, vernier_test::filled(30, 1, 3));  // the mean is free already
+  const RealMatrix y = random_columns(30, 9).block(0, 7, 30, 2);
   const detail::RankedNodes ranked = detail::rank_nodes(h, y, VectorX::Ones(30));
   EXPECT_EQ(ranked.order.size(), 4u);
   EXPECT_EQ(std::count(ranked.order.begin(), ranked.order.end(), 5), 0);
   // as many columns as samples: the last count reproduces them all and may not be chosen
-  const detail::RankedNodes full = detail::rank_nodes(random_columns(8, 20), y.topRows(8), VectorX::Ones(8));
+  const detail::RankedNodes full = detail::rank_nodes(random_columns(8, 20), top(y, 8), VectorX::Ones(8));
   EXPECT_EQ(full.order.size(), 7u);
   EXPECT_TRUE(std::isinf(full.press.back()));
   for (std::size_t i = 0; i < 7; ++i) EXPECT_TRUE(std::isfinite(full.press[i]));
@@ -143,10 +130,9 @@ TEST(OpElm, KeepsTheLeastPress) {
   const Targets y = targets(x, 1e-4);
   const VectorX w = random_weights(150);
   const OpElm recipe{.hidden_nodes = 60, .activation = Activation::tanh, .weight_limit = 2};
-  MatrixX h, h_fresh;
   const VectorX theta = recipe.layer().draw(3, 2);
-  recipe.layer().outputs(recipe.layer().map(x), theta, h);
-  recipe.layer().outputs(recipe.layer().map(fresh), theta, h_fresh);
+  const RealMatrix h = hidden_outputs(recipe.layer(), recipe.layer().map(x), theta),
+                   h_fresh = hidden_outputs(recipe.layer(), recipe.layer().map(fresh), theta);
   for (const VectorX* weights : {static_cast<const VectorX*>(nullptr), &w}) {
     const VectorX used = weights != nullptr ? w : VectorX(VectorX::Ones(150));
     const auto predictor = recipe.fit(x, y, {.seed = 2, .weights = weights});
@@ -156,8 +142,8 @@ TEST(OpElm, KeepsTheLeastPress) {
     EXPECT_LT(kept, 50);
     ASSERT_EQ(predictor.layer().nodes, kept);
     const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + kept);
-    const MatrixX beta = solve(with_ones(h(Eigen::all, nodes)), y, used);
-    EXPECT_LT((predictor.predict(fresh) - with_ones(h_fresh(Eigen::all, nodes)) * beta).cwiseAbs().maxCoeff(), 1e-9);
+    const RealMatrix beta = solve(with_ones(columns_of(h, nodes)), RealMatrix::of(y), used);
+    EXPECT_LT(difference(predictor.predict(fresh), with_ones(columns_of(h_fresh, nodes)) * beta), 1e-9);
   }
 }
 
@@ -166,23 +152,22 @@ TEST(OpElm, PruningBeatsAllNodes) {
   const Inputs x = inputs(100, 8), fresh = inputs(300, 9);
   const Targets y = targets(x, 2e-4), truth = targets(fresh);
   const OpElm recipe{.hidden_nodes = 80};
-  MatrixX h, h_fresh;
   const VectorX theta = recipe.layer().draw(3, 1);
-  recipe.layer().outputs(recipe.layer().map(x), theta, h);
-  recipe.layer().outputs(recipe.layer().map(fresh), theta, h_fresh);
-  const MatrixX all = with_ones(h_fresh) * solve(with_ones(h), y, VectorX::Ones(100));
+  const RealMatrix h = hidden_outputs(recipe.layer(), recipe.layer().map(x), theta),
+                   h_fresh = hidden_outputs(recipe.layer(), recipe.layer().map(fresh), theta);
+  const RealMatrix all = with_ones(h_fresh) * solve(with_ones(h), RealMatrix::of(y), vernier_test::filled(100, 1, 1));
   const double pruned = (recipe.fit(x, y, {.seed = 1}).predict(fresh) - truth).squaredNorm();
-  EXPECT_LT(pruned, 0.25 * (all - truth).squaredNorm());
-  EXPECT_LT(pruned, 0.25 * (truth.rowwise() - truth.colwise().mean()).squaredNorm());
+  EXPECT_LT(pruned, 0.25 * (all - RealMatrix::of(truth)).squared_norm());
+  EXPECT_LT(pruned, 0.25 * centred(RealMatrix::of(truth)).squared_norm());
 }
 
 TEST(OpElm, WithNothingToLearnTheMeanIsLeft) {
   const Inputs x = inputs(40, 10);
   const Targets constant = Targets::Constant(40, 2, 3.25);
   const auto predictor = OpElm{}.fit(x, constant);
-  EXPECT_LT((predictor.predict(x).array() - 3.25).abs().maxCoeff(), 1e-12);
+  EXPECT_LT(difference(predictor.predict(x), constant), 1e-12);
   const auto single = OpElm{}.fit(x.topRows(1), constant.topRows(1));
-  EXPECT_LT((single.predict(x).array() - 3.25).abs().maxCoeff(), 1e-15);
+  EXPECT_LT(difference(single.predict(x), constant), 1e-15);
   // a target that one sample alone has: leaving samples out says keep the mean
   Targets spike = Targets::Zero(40, 2);
   spike(3, 0) = 1;

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
@@ -21,62 +19,59 @@ using testing::SampleWeights;
 using vernier_test::complaint;
 using vernier_test::no_violations;
 
+using vernier_test::difference;
+using vernier_test::elements;
+using vernier_test::hidden_outputs;
 using vernier_test::Inputs;
 using vernier_test::inputs;
+using vernier_test::part;
+using vernier_test::random_weights;
+using vernier_test::RealMatrix;
+using vernier_test::target;
 using vernier_test::Targets;
 using Fitted = OsElmPredictor<3, 2>;
 
 using vernier_test::activations;
+using vernier_test::zeros;
 
 Targets targets(const Inputs& x, double noise = 0) {
   Rng rng(99);
   Targets y(x.rows(), 2);
-  y.col(0) = (2 * x.col(0).array()).sin() * x.col(1).array() + 0.5;
-  y.col(1) = (x.col(2).array() - x.col(0).array()).cos();
-  for (auto& value : y.reshaped()) value += noise * rng.normal();
+  for (Index i = 0; i < x.rows(); ++i) {
+    y(i, 0) = std::sin(2 * x(i, 0)) * x(i, 1) + 0.5;
+    y(i, 1) = std::cos(x(i, 2) - x(i, 0));
+  }
+  for (double& value : elements(y)) value += noise * rng.normal();
   return y;
-}
-
-VectorX random_weights(Index n) {
-  Rng rng(5);
-  VectorX w(n);
-  for (auto& value : w) value = rng.uniform(0.2, 4);
-  return w;
 }
 
 /// Weighted ridge regression on the hidden layer and a free constant, by normal equations with every piece explicit.
 struct Batch {
-  MatrixX coefficients, inverse;
-  VectorX variance;
+  RealMatrix coefficients, inverse, variance;
 
-  Batch(const HiddenLayer& layer, std::uint64_t seed, const Inputs& x, const Targets& y, const VectorX& w,
+  Batch(const HiddenLayer& layer, std::uint64_t seed, const Inputs& x, const Targets& targets, const RealMatrix& w,
         double lambda) {
-    const MatrixX h = hidden(layer, seed, x);
-    MatrixX gram = h.transpose() * w.asDiagonal() * h;
-    gram.diagonal().head(layer.nodes).array() += lambda;
-    const Eigen::FullPivLU<MatrixX> lu(gram);
-    coefficients = lu.solve(h.transpose() * w.asDiagonal() * y);
-    inverse = lu.inverse();
-    const MatrixX residual = w.cwiseSqrt().asDiagonal() * (y - h * coefficients);
-    variance = (residual.colwise().squaredNorm() + lambda * coefficients.topRows(layer.nodes).colwise().squaredNorm())
-                   .transpose() /
-               w.sum();
+    const RealMatrix h = hidden(layer, seed, x), weighted = scaled_rows(w, h).transpose(), y = RealMatrix::of(targets);
+    RealMatrix gram = weighted * h;
+    for (Index k = 0; k < layer.nodes; ++k) gram(k, k) += lambda;
+    inverse = gram.inverse();
+    coefficients = gram.solve(weighted * y);
+    const RealMatrix residual = scaled_rows(w.sqrt(), y - h * coefficients), beta = top(coefficients, layer.nodes);
+    variance = zeros(2, 1);
+    for (Index o = 0; o < 2; ++o)
+      variance(o) = (residual.col(o).squared_norm() + lambda * beta.col(o).squared_norm()) / w.sum();
   }
-  static MatrixX hidden(const HiddenLayer& layer, std::uint64_t seed, const Inputs& x) {
-    MatrixX nodes;
-    layer.outputs(layer.map(x), layer.draw(3, seed), nodes);
-    MatrixX h(x.rows(), layer.nodes + 1);
-    h << nodes, VectorX::Ones(x.rows());
-    return h;
+  static RealMatrix hidden(const HiddenLayer& layer, std::uint64_t seed, const Inputs& x) {
+    return with_ones(hidden_outputs(layer, layer.map(x), layer.draw(3, seed)));
   }
 };
 
 double difference(const Fitted& a, const Fitted& b) {
   const Inputs fresh = inputs(50, 77);
-  double out = (a.predict(fresh) - b.predict(fresh)).cwiseAbs().maxCoeff();
+  double out = difference(a.predict(fresh), b.predict(fresh));
   for (Index i = 0; i < 50; ++i) {
-    const Vector3 at = fresh.row(i).transpose();
-    out = std::max(out, (a.standard_deviation(at) - b.standard_deviation(at)).cwiseAbs().maxCoeff());
+    const Eigen::Vector2d of_a = a.standard_deviation(point(fresh, i)), of_b = b.standard_deviation(point(fresh, i));
+    for (int o = 0; o < 2; ++o) out = std::max(out, std::abs(of_a(o) - of_b(o)));
   }
   return out;
 }
@@ -90,13 +85,14 @@ TEST(OsElm, FitIsTheBatchSolution) {
       const OsElm recipe{.hidden_nodes = 40, .activation = activation, .input_map = map, .lambda = 1e-3};
       const auto predictor = recipe.fit(x, y, {.seed = 3, .weights = &w});
       const Batch batch(recipe.layer(), 3, x, y, w, 1e-3);
-      const MatrixX h = Batch::hidden(recipe.layer(), 3, fresh);
-      EXPECT_LT((predictor.predict(fresh) - h * batch.coefficients).cwiseAbs().maxCoeff(), 1e-10);
-      EXPECT_LT((predictor.covariance() - batch.inverse).cwiseAbs().maxCoeff(), 1e-8 * batch.inverse.norm());
-      EXPECT_LT((predictor.noise_variance() - batch.variance).norm(), 1e-10 * batch.variance.norm());
+      const RealMatrix h = Batch::hidden(recipe.layer(), 3, fresh);
+      EXPECT_LT(difference(predictor.predict(fresh), h * batch.coefficients), 1e-10);
+      EXPECT_LT(difference(predictor.covariance(), batch.inverse), 1e-8 * batch.inverse.norm());
+      EXPECT_LT((RealMatrix::of(predictor.noise_variance()) - batch.variance).norm(), 1e-10 * batch.variance.norm());
       for (Index i = 0; i < 20; ++i) {
-        const VectorX expected = (batch.variance * h.row(i).dot(batch.inverse * h.row(i).transpose())).cwiseSqrt();
-        EXPECT_LT((predictor.standard_deviation(fresh.row(i).transpose()) - expected).norm(), 1e-9 * expected.norm());
+        const RealMatrix expected = (batch.variance * (h.row(i) * batch.inverse).dot(h.row(i))).sqrt();
+        const RealMatrix found = RealMatrix::of(predictor.standard_deviation(point(fresh, i)));
+        EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm());
       }
     }
 }
@@ -111,16 +107,18 @@ TEST(OsElm, UpdatesFromAnyPrefixEqualTheBatch) {
     const Fitted all = recipe.fit(x, y, {.seed = 5}), all_weighted = recipe.fit(x, y, {.seed = 5, .weights = &w});
     EXPECT_GT(difference(all, all_weighted), 1e-4);
     for (const Index prefix : {1, 30, 65, 399}) {
-      const VectorX first = w.head(prefix);
-      Fitted one_by_one = recipe.fit(x.topRows(prefix), y.topRows(prefix), {.seed = 5});
-      Fitted weighted = recipe.fit(x.topRows(prefix), y.topRows(prefix), {.seed = 5, .weights = &first});
+      const VectorX first = part(w, 0, prefix);
+      const Inputs first_x = part(x, 0, prefix);
+      const Targets first_y = part(y, 0, prefix);
+      Fitted one_by_one = recipe.fit(first_x, first_y, {.seed = 5});
+      Fitted weighted = recipe.fit(first_x, first_y, {.seed = 5, .weights = &first});
       Fitted block = one_by_one;
       EXPECT_GT(difference(one_by_one, all), 1e-7);
       for (Index i = prefix; i < 400; ++i) {
-        one_by_one.update(x.row(i).transpose(), y.row(i).transpose());
-        weighted.update(x.row(i).transpose(), y.row(i).transpose(), w(i));
+        one_by_one.update(point(x, i), target(y, i));
+        weighted.update(point(x, i), target(y, i), w(i));
       }
-      block.update(x.bottomRows(400 - prefix), y.bottomRows(400 - prefix));
+      block.update(part(x, prefix, 400 - prefix), part(y, prefix, 400 - prefix));
       EXPECT_LT(difference(one_by_one, all), 1e-9) << prefix;
       EXPECT_LT(difference(weighted, all_weighted), 1e-9) << prefix;
       EXPECT_LT(difference(block, all), 1e-9) << prefix;
@@ -129,12 +127,14 @@ TEST(OsElm, UpdatesFromAnyPrefixEqualTheBatch) {
 }
 
 TEST(OsElm, OneInputAndOneOutput) {
-  const Eigen::Matrix<double, Eigen::Dynamic, 1> x = VectorX::LinSpaced(50, -1, 1), y = x.array().cube();
+  const VectorX x = VectorX::LinSpaced(50, -1, 1);
+  VectorX y(50);
+  for (Index i = 0; i < 50; ++i) y(i) = x(i) * x(i) * x(i);
   const OsElm recipe{.hidden_nodes = 5, .lambda = 1e-3};
   const auto all = recipe.fit(x, y);
-  auto single = recipe.fit(x.topRows(10).eval(), y.topRows(10).eval()), block = single;
+  auto single = recipe.fit(part(x, 0, 10), part(y, 0, 10)), block = single;
   for (Index i = 10; i < 50; ++i) single.update(Eigen::Matrix<double, 1, 1>(x(i)), Eigen::Matrix<double, 1, 1>(y(i)));
-  block.update(x.bottomRows(40).eval(), y.bottomRows(40).eval());
+  block.update(part(x, 10, 40), part(y, 10, 40));
   EXPECT_LT((single.predict(x) - all.predict(x)).norm(), 1e-10);
   EXPECT_LT((block.predict(x) - all.predict(x)).norm(), 1e-10);
 }
@@ -154,9 +154,9 @@ TEST(OsElm, ForgettingEqualsAnExponentiallyWeightedBatch) {
   const Inputs x = inputs(300, 7), fresh = inputs(30, 8);
   const Targets y = targets(x, 0.01);
   const OsElm recipe{.hidden_nodes = 20, .lambda = lambda, .forgetting = mu};
-  Fitted single = recipe.fit(x.topRows(200), y.topRows(200), {.seed = 9}), block = single;
-  for (Index i = 200; i < 300; ++i) single.update(x.row(i).transpose(), y.row(i).transpose());
-  for (Index i = 200; i < 300; i += 25) block.update(x.middleRows(i, 25), y.middleRows(i, 25));
+  Fitted single = recipe.fit(part(x, 0, 200), part(y, 0, 200), {.seed = 9}), block = single;
+  for (Index i = 200; i < 300; ++i) single.update(point(x, i), target(y, i));
+  for (Index i = 200; i < 300; i += 25) block.update(part(x, i, 25), part(y, i, 25));
   const auto check = [&](const Fitted& predictor, Index at_once) {
     VectorX w(300);
     const auto updates = static_cast<double>(100 / at_once);
@@ -165,10 +165,10 @@ TEST(OsElm, ForgettingEqualsAnExponentiallyWeightedBatch) {
       w(i) = std::pow(mu, updates - static_cast<double>(done));
     }
     const Batch batch(recipe.layer(), 9, x, y, w, lambda * std::pow(mu, updates));
-    const MatrixX h = Batch::hidden(recipe.layer(), 9, fresh);
-    EXPECT_LT((predictor.predict(fresh) - h * batch.coefficients).cwiseAbs().maxCoeff(), 1e-9);
+    const RealMatrix h = Batch::hidden(recipe.layer(), 9, fresh);
+    EXPECT_LT(difference(predictor.predict(fresh), h * batch.coefficients), 1e-9);
     EXPECT_LT((predictor.covariance() - batch.inverse).norm(), 1e-7 * batch.inverse.norm());
-    EXPECT_LT((predictor.noise_variance() - batch.variance).norm(), 1e-9 * batch.variance.norm());
+    EXPECT_LT((RealMatrix::of(predictor.noise_variance()) - batch.variance).norm(), 1e-9 * batch.variance.norm());
   };
   check(single, 1);
   check(block, 25);
@@ -179,9 +179,10 @@ TEST(OsElm, ForgettingFollowsAChange) {
   const Inputs before = inputs(1000, 10), after = inputs(1000, 11), fresh = inputs(100, 12);
   const auto error = [&](double mu) {
     auto predictor = OsElm{.hidden_nodes = 40, .forgetting = mu}.fit(before, targets(before, 0.01));
-    const Targets y = targets(after, 0.01).array() + 1;
-    for (Index i = 0; i < 1000; ++i) predictor.update(after.row(i).transpose(), y.row(i).transpose());
-    return (targets(fresh) - predictor.predict(fresh)).mean() + 1;
+    Targets y = targets(after, 0.01);
+    for (double& value : elements(y)) value += 1;
+    for (Index i = 0; i < 1000; ++i) predictor.update(point(after, i), target(y, i));
+    return (RealMatrix::of(targets(fresh)) - RealMatrix::of(predictor.predict(fresh))).mean() + 1;
   };
   EXPECT_LT(std::abs(error(0.995)), 0.05);
   EXPECT_GT(error(1), 0.3);
@@ -193,22 +194,20 @@ TEST(OsElm, LongRuns) {
   const Targets y = targets(x, 0.01);
   for (const double mu : {1.0, 0.99}) {
     const OsElm recipe{.hidden_nodes = 20, .lambda = 1e-3, .forgetting = mu};
-    Fitted predictor = recipe.fit(x.topRows(10), y.topRows(10), {.seed = 14});
-    for (Index i = 10; i < x.rows(); ++i) predictor.update(x.row(i).transpose(), y.row(i).transpose());
-    const MatrixX p = predictor.covariance();
+    Fitted predictor = recipe.fit(part(x, 0, 10), part(y, 0, 10), {.seed = 14});
+    for (Index i = 10; i < x.rows(); ++i) predictor.update(point(x, i), target(y, i));
+    const RealMatrix p = predictor.covariance();
     EXPECT_EQ(p, p.transpose());
     VectorX w(x.rows());
     const Index recent = mu < 1 ? 3000 : x.rows();  // 0.99^3000 = 1e-13
     for (Index i = 0; i < x.rows(); ++i) w(i) = std::pow(mu, static_cast<double>(x.rows() - 1 - i));
-    const Batch batch(recipe.layer(), 14, x.bottomRows(recent), y.bottomRows(recent), w.tail(recent),
+    const Index first = x.rows() - recent;
+    const Batch batch(recipe.layer(), 14, part(x, first, recent), part(y, first, recent), part(w, first, recent),
                       mu < 1 ? 0 : 1e-3);
     const Inputs fresh = inputs(30, 15);
-    EXPECT_LT((predictor.predict(fresh) - Batch::hidden(recipe.layer(), 14, fresh) * batch.coefficients)
-                  .cwiseAbs()
-                  .maxCoeff(),
-              1e-8)
+    EXPECT_LT(difference(predictor.predict(fresh), Batch::hidden(recipe.layer(), 14, fresh) * batch.coefficients), 1e-8)
         << mu;
-    EXPECT_LT((predictor.noise_variance() - batch.variance).norm(), 1e-8 * batch.variance.norm());
+    EXPECT_LT((RealMatrix::of(predictor.noise_variance()) - batch.variance).norm(), 1e-8 * batch.variance.norm());
   }
 }
 
@@ -249,7 +248,7 @@ TEST(OsElm, RefusesWhatItCannotUse) {
   EXPECT_THROW(predictor.update(Vector3(0, 0, std::nan("")), Eigen::Vector2d(0, 0)), std::invalid_argument);
   EXPECT_THROW(predictor.update(Vector3(0, 0, 0), Eigen::Vector2d(0, std::nan(""))), std::invalid_argument);
   EXPECT_THROW(predictor.update(Vector3(0, 0, 0), Eigen::Vector2d(0, 0), 0), std::invalid_argument);
-  EXPECT_THROW(predictor.update(x, y.topRows(3)), std::invalid_argument);
+  EXPECT_THROW(predictor.update(x, part(y, 0, 3)), std::invalid_argument);
   predictor.update(x.topRows(0), y.topRows(0));
   EXPECT_EQ(difference(predictor, before), 0);
 }

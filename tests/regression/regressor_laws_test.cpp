@@ -24,6 +24,8 @@ using vernier_test::no_violations;
 
 using vernier_test::activations;
 using vernier_test::input_maps;
+using vernier_test::RealMatrix;
+using vernier_test::scaled_rows;
 
 constexpr RegressorLaws taken{.weights = SampleWeights::taken}, counted{.weights = SampleWeights::counted};
 
@@ -82,17 +84,21 @@ struct LinearMap {
   mutable int calls = 0;
 
   Eigen::Matrix<double, Outputs, 1> predict(const Eigen::Matrix<double, Inputs, 1>& x) const noexcept {
-    Eigen::Matrix<double, Outputs, 1> y = a * x + b;
+    Eigen::Matrix<double, Outputs, 1> y = b;
+    for (int i = 0; i < Inputs; ++i)
+      for (int o = 0; o < Outputs; ++o) y(o) += a(o, i) * x(i);
     if (calls_count) y(0) += 1e-9 * ++calls;
     return y;
   }
   Eigen::Matrix<double, Eigen::Dynamic, Outputs> predict(
       const Eigen::Matrix<double, Eigen::Dynamic, Inputs>& rows) const {
     Eigen::Matrix<double, Eigen::Dynamic, Outputs> y(rows.rows(), Outputs);
-    for (Index i = 0; i < rows.rows(); ++i) {
-      y.row(i) = (a * rows.row(i).transpose() + b).transpose();
-      if (wrong_rows && i == 3) y.row(i) *= 1 + 1e-9;
-    }
+    for (Index r = 0; r < rows.rows(); ++r)
+      for (int o = 0; o < Outputs; ++o) {
+        y(r, o) = b(o);
+        for (int i = 0; i < Inputs; ++i) y(r, o) += a(o, i) * rows(r, i);
+        if (wrong_rows && r == 3) y(r, o) *= 1 + 1e-9;
+      }
     return y;
   }
   Eigen::Matrix<double, Outputs, Inputs> derivative(const Eigen::Matrix<double, Inputs, 1>&) const noexcept {
@@ -139,19 +145,24 @@ struct Linear {
       any_weights ? detail::require_samples("Linear", x, y) : detail::require_samples("Linear", x, y, options);
     }
     const Index n = std::min(x.rows(), y.rows());
-    MatrixX h(n, Inputs + 1);
-    h << x.topRows(n), VectorX::Ones(n);
-    VectorX root = VectorX::Ones(n);
+    const RealMatrix h = with_ones(top(RealMatrix::of(x), n));
+    RealMatrix root = vernier_test::filled(n, 1, 1);
     if (options.weights != nullptr && fault != Fault::ignores_weights && fault != Fault::ignores_usable_weights) {
-      root.head(std::min(n, options.weights->size())) = options.weights->head(std::min(n, options.weights->size()));
-      if (fault != Fault::squares_weights) root = root.cwiseAbs().cwiseSqrt();
+      for (Index i = 0; i < std::min(n, options.weights->size()); ++i) {
+        const double weight = (*options.weights)(i);
+        root(i) = fault == Fault::squares_weights ? weight : std::sqrt(std::abs(weight));
+      }
       if (fault == Fault::changes_weights) const_cast<double&>((*options.weights)(0)) += 1e-9;
     }
-    MatrixX solution =
-        Eigen::HouseholderQR<MatrixX>(root.asDiagonal() * h).solve(MatrixX(root.asDiagonal() * y.topRows(n)));
+    RealMatrix solution = scaled_rows(root, h).solve(scaled_rows(root, top(RealMatrix::of(y), n)));
     if (fault == Fault::scales_with_weights && options.weights != nullptr) solution *= 1 + 1e-6;
-    LinearMap<Inputs, Outputs> map{solution.topRows(Inputs).transpose(), solution.row(Inputs).transpose()};
-    if (uses_seed) map.b.array() += 1e-6 * Rng(options.seed).uniform();
+    LinearMap<Inputs, Outputs> map;
+    for (int o = 0; o < Outputs; ++o) {
+      for (int i = 0; i < Inputs; ++i) map.a(o, i) = solution(i, o);
+      map.b(o) = solution(Inputs, o);
+    }
+    if (uses_seed)
+      for (double& value : map.b) value += 1e-6 * Rng(options.seed).uniform();
     map.calls_count = fault == Fault::call_order;
     map.wrong_rows = fault == Fault::rows_differ;
     map.slope_error = fault == Fault::derivative ? 1e-5 : 0;

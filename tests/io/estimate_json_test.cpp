@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "real_matrix.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/io/model_file.hpp"
@@ -18,6 +17,9 @@
 
 namespace vernier::estimate_json_test {
 namespace {
+
+using vernier_test::difference;
+using vernier_test::RealMatrix;
 
 const Robot<6> robot = robots::abb_irb120();
 using Model = CalibratedRobot<6>::Model;
@@ -38,8 +40,9 @@ CalibratedRobot<6> example(int orders) {
       .arm = detail::parameterised(FittedArm::of(model.identified()), unknowns, VectorX::Constant(terms.size(), 2e-4),
                                    VectorX::Constant(terms.size(), 0.25), model.thermal()->parameters)};
   const Index n = estimate.arm.size();
-  MatrixX few(n, 5);
-  for (Index k = 0; k < few.size(); ++k) few.data()[k] = rng.normal();
+  RealMatrix few(n, 5);
+  for (Index j = 0; j < 5; ++j)
+    for (Index i = 0; i < n; ++i) few(i, j) = rng.normal();
   estimate.covariance = few * few.transpose();
   for (Index k = 0; k < n; ++k) estimate.covariance(k, k) += 0.1 + rng.uniform();
   estimate.position_sigma = 2e-5;
@@ -63,8 +66,9 @@ TEST(EstimateJson, KeepsTheCovarianceInSinglePrecision) {
   ASSERT_EQ(b.arm.names(), a.arm.names());
   EXPECT_LT((b.arm.scales() - a.arm.scales()).norm(), 1e-15);
   EXPECT_LT((b.arm.precisions() - a.arm.precisions()).norm(), 1e-12);
-  EXPECT_LT((b.covariance - a.covariance).cwiseAbs().maxCoeff(), 1e-5 * a.covariance.diagonal().maxCoeff());
-  EXPECT_LT((b.arm.steps().tail(70) - a.arm.steps().tail(70)).norm(), 1e-12);
+  EXPECT_LT(difference(b.covariance, a.covariance), 1e-5 * RealMatrix(a.covariance).diagonal().largest());
+  const auto last_70 = [](const RealMatrix& column) { return column.block(column.rows() - 70, 0, 70, 1); };
+  EXPECT_LT((last_70(b.arm.steps()) - last_70(a.arm.steps())).norm(), 1e-12);
   EXPECT_EQ(b.arm.thermal_rates(0)(13), saved.model().thermal()->parameters(13));
   EXPECT_EQ(b.position_sigma, a.position_sigma);
   EXPECT_EQ(b.joint_sigma, a.joint_sigma);
@@ -76,8 +80,8 @@ TEST(EstimateJson, KeepsTheCovarianceInSinglePrecision) {
   EXPECT_EQ(b.residual_variance, a.residual_variance);
   const JointRows<6> samples = sample_joints(robot.limits, 20, 9);
   for (Index i = 0; i < samples.rows(); ++i) {
-    const VectorX q = samples.row(i).transpose();
-    const Matrix6 now = b.visit_covariance(q, 0.5), then = a.visit_covariance(q, 0.5);
+    const VectorX q = configuration(samples, i);
+    const RealMatrix now = b.visit_covariance(q, 0.5), then = a.visit_covariance(q, 0.5);
     EXPECT_LT((now - then).norm(), 1e-5 * then.norm());
   }
 }
@@ -91,11 +95,10 @@ TEST(EstimateJson, RadiiOfCommandsFollowFromTheCovariance) {
   const std::vector<double> radii = arm.radii_95(commands);
   ASSERT_EQ(radii.size(), 140u);
   for (const Index i : {0, 1, 63, 64, 69, 71, 139}) {
-    const VectorX q = commands.row(i).transpose(), previous = i == 0 || i == 71
-                                                                  ? VectorX::Constant(6, std::nan(""))
-                                                                  : VectorX(commands.row(i - 1).transpose());
-    const Matrix6 covariance =
-        arm.estimate()->visit_covariance(q, arm.gate(commands.row(i).transpose()), 0, previous, 21);
+    const bool follows = i != 0 && i != 71;
+    const JointVector<6> q = configuration(commands, i),
+                         previous = follows ? configuration(commands, i - 1) : JointVector<6>::Constant(std::nan(""));
+    const Matrix6 covariance = arm.estimate()->visit_covariance(q, arm.gate(q), 0, previous, 21);
     const double expected = radius_95(covariance.topLeftCorner<3, 3>());
     EXPECT_NEAR(radii[static_cast<std::size_t>(i)], expected, 1e-12 * expected) << i;
   }
@@ -114,8 +117,9 @@ TEST(EstimateJson, LargeOnesAreThinned) {
   EXPECT_LT(std::filesystem::file_size(folder / "m.json"), 10'000'000u);
   const auto loaded = load<6>(folder / "m.json");
   const ErrorModelEstimate &a = *saved.estimate(), &b = *loaded.estimate();
-  const double largest = a.covariance.diagonal().maxCoeff();
-  EXPECT_LT((b.covariance.diagonal() - a.covariance.diagonal()).cwiseAbs().maxCoeff(), 1e-5 * largest);
+  const RealMatrix variances = RealMatrix(a.covariance).diagonal();
+  const double largest = variances.largest();
+  EXPECT_LT(difference(RealMatrix(b.covariance).diagonal(), variances), 1e-5 * largest);
   const std::vector<std::string> names = a.arm.names();
   const auto index = [&](const char* name) { return std::find(names.begin(), names.end(), name) - names.begin(); };
   EXPECT_NEAR(b.covariance(index("cos1_2"), index("sin6_130")), a.covariance(index("cos1_2"), index("sin6_130")),
@@ -138,15 +142,15 @@ TEST(Base64WhiteBox, ByHand) {
 // An arm in other frames and with other joint zeros is as certain as before.
 TEST(ErrorModelEstimate, StaysWithAnArmThatMoves) {
   const auto robot_before = example(3);
-  Isometry3 motion = Isometry3::Identity();
-  motion.linear() = Eigen::AngleAxisd(0.8, Vector3(1, 2, 3).normalized()).toRotationMatrix();
-  motion.translation() << 1, -2, 0.5;
+  const Isometry3 motion = rigid_motion(exp_so3(0.8 / std::sqrt(14) * Vector3(1, 2, 3)), Vector3(1, -2, 0.5));
   const auto moved = robot_before.with_model(
       robot_before.model().moved(motion, JointVector<6>::Zero(), Isometry3::Identity()), robot_before.provenance());
   ASSERT_NE(moved.estimate(), nullptr);
   const JointVector<6> q = JointVector<6>::Constant(0.3);
-  const Matrix3 before = robot_before.estimate()->visit_covariance(q, 1).topLeftCorner<3, 3>();
-  const Matrix3 after = moved.estimate()->visit_covariance(q, 1).topLeftCorner<3, 3>();
+  const auto of_position = [&](const auto& arm) -> Matrix3 {
+    return arm.estimate()->visit_covariance(q, 1).template topLeftCorner<3, 3>();
+  };
+  const RealMatrix before = of_position(robot_before), after = of_position(moved);
   // the base's unknown is along x of the measurements, before and after
   EXPECT_NEAR(after.trace(), before.trace(), 0.2 * before.trace());
   EXPECT_GT((after - before).norm(), 1e-3 * before.norm());

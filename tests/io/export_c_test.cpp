@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "complaint.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/rng.hpp"
@@ -27,6 +27,8 @@ namespace vernier::export_c_test {
 namespace {
 
 using testing_support::run_command;
+using vernier_test::difference;
+using vernier_test::RealMatrix;
 
 constexpr const char* strict = "-pedantic -Wall -Wextra -Werror -O2";
 
@@ -96,7 +98,9 @@ CalibratedRobot<N, Convention> with_everything(const DhChain<N, Convention>& cha
 template <int N, class Convention>
 CalibratedRobot<N, Convention> with_learned(const CalibratedRobot<N, Convention>& robot, const RidgeElm& learner) {
   const JointRows<N> joints = sample_joints(robot.limits(), 200, 8);
-  const PointRows errors = 1e-3 * joints.template leftCols<3>().array().sin();
+  PointRows errors(joints.rows(), 3);
+  for (Index i = 0; i < errors.rows(); ++i)
+    for (int j = 0; j < 3; ++j) errors(i, j) = 1e-3 * std::sin(joints(i, j));
   JointCoverage<N> coverage = JointCoverage<N>::covering(0.7 * joints);
   return robot.with_learned(learner.fit(joints, errors, {.seed = 3}), coverage);
 }
@@ -137,34 +141,40 @@ class Compiled {
   }
 
   Isometry3 pose(const JointVector<N>& q, const double* previous) const {
-    double rows[12];
-    function<void(const double*, const double*, double*)>("arm_pose")(q.data(), previous, rows);
+    double rows[3][4];
+    function<void(const double*, const double*, double*)>("arm_pose")(q.data(), previous, rows[0]);
     return from_rows(rows);
   }
   Isometry3 nominal_pose(const JointVector<N>& q) const {
-    double rows[12];
-    function<void(const double*, double*)>("arm_nominal_pose")(q.data(), rows);
+    double rows[3][4];
+    function<void(const double*, double*)>("arm_nominal_pose")(q.data(), rows[0]);
     return from_rows(rows);
   }
   Jacobian<N> jacobian(const JointVector<N>& q, const double* previous) const {
-    Eigen::Matrix<double, 6, N, Eigen::RowMajor> out;
-    function<void(const double*, const double*, double*)>("arm_jacobian")(q.data(), previous, out.data());
+    double rows[6][N];
+    function<void(const double*, const double*, double*)>("arm_jacobian")(q.data(), previous, rows[0]);
+    Jacobian<N> out;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < N; ++j) out(i, j) = rows[i][j];
     return out;
   }
   double gate(const JointVector<N>& q) const { return function<double(const double*)>("arm_gate")(q.data()); }
   Correction<N> correct(const Isometry3& target, const JointVector<N>& seed, const double* previous) const {
-    Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = target.matrix().template topRows<3>();
+    double rows[3][4];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) rows[i][j] = target(i, j);
     Correction<N> out{};
     const int status = function<int(const double*, const double*, const double*, double*, double*)>("arm_correct")(
-        rows.data(), seed.data(), previous, out.command.data(), &out.predicted_error);
+        rows[0], seed.data(), previous, out.command.data(), &out.predicted_error);
     out.status = status == 0 ? IkStatus::converged : status == 1 ? IkStatus::stalled : IkStatus::unreachable;
     return out;
   }
 
  private:
-  static Isometry3 from_rows(const double* rows) {
+  static Isometry3 from_rows(const double (&rows)[3][4]) {
     Isometry3 out = Isometry3::Identity();
-    out.matrix().topRows<3>() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) out(i, j) = rows[i][j];
     return out;
   }
   template <class Function>
@@ -188,17 +198,18 @@ Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<
   const JointRows<N> joints = test_joints(robot.limits(), n);
   const auto grow = [](double& largest, double value) { largest = std::max(largest, value); };
   for (Index i = 0; i < n; ++i) {
-    const JointVector<N> q = joints.row(i).transpose();
-    JointVector<N> previous = joints.row((i + 1) % n).transpose();
-    if (i % 4 == 1) previous = q.array() + 0.01;
+    const JointVector<N> q = configuration(joints, i);
+    JointVector<N> previous = configuration(joints, (i + 1) % n);
+    if (i % 4 == 1)
+      for (int j = 0; j < N; ++j) previous(j) = q(j) + 0.01;
     if (i % 4 == 2) previous(N / 2) = std::nan("");  // unknown at one joint
     const bool known = i % 4 != 3;
     const auto arm = robot.approached_from(known ? previous : JointVector<N>::Constant(std::nan("")));
     const double* from = known ? previous.data() : nullptr;
-    grow(out.pose, (c.pose(q, from).matrix() - arm.pose(q).matrix()).cwiseAbs().maxCoeff());
-    grow(out.pose, (c.nominal_pose(q).matrix() - robot.nominal().pose(q).matrix()).cwiseAbs().maxCoeff());
-    const Jacobian<N> jacobian = arm.jacobian(q);
-    grow(out.jacobian, (c.jacobian(q, from) - jacobian).cwiseAbs().maxCoeff());
+    grow(out.pose, difference(c.pose(q, from), arm.pose(q)));
+    grow(out.pose, difference(c.nominal_pose(q), robot.nominal().pose(q)));
+    const RealMatrix jacobian = RealMatrix::of(arm.jacobian(q));
+    grow(out.jacobian, difference(RealMatrix::of(c.jacobian(q, from)), jacobian));
     const double gate = robot.gate(q);
     EXPECT_NEAR(c.gate(q), gate, 1e-14);
     ++(gate == 1 ? out.inside : gate == 0 ? out.outside : out.between);
@@ -210,12 +221,13 @@ Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<
     const Correction<N> found = c.correct(target, q, from);
     out.met += expected.status == IkStatus::converged;
     if (found.status != expected.status) ++out.statuses;
-    const double least = jacobian.jacobiSvd().singularValues().minCoeff();
+    const double least = jacobian.singular_values()(std::min(6, N) - 1);
     if (expected.status != IkStatus::converged || least < 0.005) continue;
+    const RealMatrix command = RealMatrix::of(expected.command);
     // on its way through half a radian a redundant arm magnifies what roundings move it along its null space
-    if (N > 6 && (expected.command - q).norm() > 0.5) continue;
+    if (N > 6 && (command - RealMatrix::of(q)).norm() > 0.5) continue;
     ++out.compared;
-    grow(out.command, (found.command - expected.command).cwiseAbs().maxCoeff());
+    grow(out.command, difference(RealMatrix::of(found.command), command));
     grow(out.error, std::abs(found.predicted_error - expected.predicted_error));
   }
   return out;

@@ -3,14 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include "real_matrix.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 
 namespace vernier::robot_file_test {
 namespace {
+
+using vernier_test::difference;
+using vernier_test::RealMatrix;
 
 class RobotFile : public ::testing::Test {
  protected:
@@ -82,7 +87,7 @@ TEST_F(RobotFile, TheModifiedConventionGivesTheSamePoses) {
   for (int k = 0; k < 50; ++k) {
     JointVector<4> q;
     for (auto& value : q) value = rng.uniform(-3, 3);
-    EXPECT_LT((described.arm.pose(q).matrix() - modified.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14 * 10);
+    EXPECT_LT(difference(described.arm.pose(q), modified.pose(q)), 1e-14 * 10);
   }
 }
 
@@ -91,8 +96,8 @@ TEST_F(RobotFile, TheCatalogueSurvivesTheDescription) {
   const auto standard = robots::puma560();
   const JointRows<6> samples = sample_joints(standard.limits, 50, 4);
   for (Index i = 0; i < samples.rows(); ++i) {
-    const JointVector<6> q = samples.row(i).transpose();
-    EXPECT_LT((arm.pose(q).matrix() - standard.chain.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    const JointVector<6> q = configuration(samples, i);
+    EXPECT_LT(difference(arm.pose(q), standard.chain.pose(q)), 1e-14);
   }
   EXPECT_TRUE(RobotDescription::of(robots::barrett_wam()).arm<7>().arm.model() == robots::barrett_wam().chain);
 }
@@ -120,18 +125,16 @@ TEST_F(RobotFile, ComplaintsNameFileAndKey) {
 }
 
 TEST(RobotDescriptionFrames, AreAroundTheChain) {
-  Isometry3 base = Isometry3::Identity(), tool = Isometry3::Identity();
-  base.translate(Vector3(1, 2, 3)).rotate(Eigen::AngleAxisd(0.4, Vector3::UnitX()));
-  tool.translate(Vector3(0.1, 0, 0.2)).rotate(Eigen::AngleAxisd(-0.7, Vector3::UnitY()));
+  const Isometry3 base = rigid_motion(exp_so3(Vector3(0.4, 0, 0)), Vector3(1, 2, 3)),
+                  tool = rigid_motion(exp_so3(Vector3(0, -0.7, 0)), Vector3(0.1, 0, 0.2));
   const JointVector<6> q{0.1, -1.2, 1.3, -0.4, 0.5, 0.6};
   for (RobotDescription robot :
        {RobotDescription::of(robots::puma560()), RobotDescription::of(robots::puma560_modified())}) {
-    const Isometry3 plain = robot.arm<6>().arm.pose(q);
+    const RealMatrix framed = RealMatrix(base) * robot.arm<6>().arm.pose(q) * tool;
     robot.base = base;
     robot.tool = tool;
-    EXPECT_LE((robot.arm<6>().arm.pose(q).matrix() - (base * plain * tool).matrix()).norm(), 1e-14);
-    EXPECT_LE((robot.geometry().poses(MatrixX(q.transpose())).front().matrix() - (base * plain * tool).matrix()).norm(),
-              1e-14);
+    EXPECT_LE((RealMatrix(robot.arm<6>().arm.pose(q)) - framed).norm(), 1e-14);
+    EXPECT_LE((RealMatrix(robot.geometry().poses(RealMatrix(q).transpose()).front()) - framed).norm(), 1e-14);
   }
 }
 

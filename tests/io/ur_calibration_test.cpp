@@ -5,12 +5,15 @@
 
 #include "complaint.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "temporary_folder.hpp"
 #include "ur_published.hpp"
 #include "vernier/core/atomic_file.hpp"
 
 namespace vernier::ur_calibration_test {
 namespace {
+
+using vernier_test::RealMatrix;
 
 class UrCalibration : public ::testing::Test {
  protected:
@@ -40,8 +43,8 @@ TEST_F(UrCalibration, PosesAreThoseOfTheControllersRows) {
     double worst = 0;
     for (int sample = 0; sample < 1000; ++sample) {
       const JointVector<6> q = vernier_test::random_joints<6>(rng, 6.28);
-      const auto expected = vernier_test::ur_controller_pose(nominal, set, q);
-      worst = std::max(worst, (arm.arm.pose(q).matrix() - expected.cast<double>()).cwiseAbs().maxCoeff());
+      const Isometry3 expected = vernier_test::ur_controller_pose(nominal, set, q);
+      worst = std::max(worst, vernier_test::difference(arm.arm.pose(q), expected));
     }
     EXPECT_LE(worst, 1e-12) << set.name;
     RecordProperty(std::string("worst_") + set.name, message(worst));
@@ -99,14 +102,14 @@ TEST_F(UrCalibration, PositionsOfTheSimulator) {
 
 TEST_F(UrCalibration, FramesOfTheNominalArmStay) {
   RobotDescription nominal = RobotDescription::of(robots::ur10());
-  nominal.base.translation() = Vector3(1, 2, 3);
-  nominal.tool.translation() = Vector3(0, 0, 0.1);
+  nominal.base = rigid_motion(Matrix3::Identity(), Vector3(1, 2, 3));
+  nominal.tool = rigid_motion(Matrix3::Identity(), Vector3(0, 0, 0.1));
   const auto& set = vernier_test::ur_delta_sets()[0];
   const RobotDescription robot = read(set.conf(), nominal);
   const JointVector<6> q{0.1, -1.2, 1.3, -0.4, 0.5, 0.6};
-  Isometry3 flange;
-  flange.matrix() = vernier_test::ur_controller_pose(nominal, set, q).cast<double>();
-  EXPECT_LE((robot.arm<6>().arm.pose(q).matrix() - (nominal.base * flange * nominal.tool).matrix()).norm(), 1e-12);
+  const RealMatrix flange = vernier_test::ur_controller_pose(nominal, set, q),
+                   expected = RealMatrix(nominal.base) * flange * nominal.tool;
+  EXPECT_LE((RealMatrix(robot.arm<6>().arm.pose(q)) - expected).norm(), 1e-12);
 }
 
 TEST_F(UrCalibration, CommentsSpacesAndLineEndsAreAccepted) {

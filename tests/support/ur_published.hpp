@@ -82,22 +82,30 @@ inline vernier::RobotDescription ur_nominal(const UrDeltaSet& set) {
 }
 
 /// The controller's own pose: products of its rows, deltas added, in long double, as lengths reach 440 m.
-inline Eigen::Matrix<long double, 4, 4> ur_controller_pose(const vernier::RobotDescription& nominal,
-                                                           const UrDeltaSet& set, const vernier::JointVector<6>& q) {
-  using Matrix = Eigen::Matrix<long double, 4, 4>;
+inline vernier::Isometry3 ur_controller_pose(const vernier::RobotDescription& nominal, const UrDeltaSet& set,
+                                             const vernier::JointVector<6>& q) {
   using Real = long double;
-  Matrix pose = Matrix::Identity();
+  using Matrix = std::array<std::array<Real, 4>, 4>;
+  Matrix pose{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
   for (std::size_t i = 0; i < 6; ++i) {
     const vernier::DhRow& row = nominal.rows[i];
     const Real theta = Real(row.theta) + Real(set.theta[i]) + Real(q(static_cast<vernier::Index>(i)));
     const Real alpha = Real(row.alpha) + Real(set.alpha[i]), a = Real(row.a) + Real(set.a[i]),
                d = Real(row.d) + Real(set.d[i]);
     const Real c = std::cos(theta), s = std::sin(theta), ca = std::cos(alpha), sa = std::sin(alpha);
-    Matrix step;
-    step << c, -s * ca, s * sa, a * c, s, c * ca, -c * sa, a * s, 0, sa, ca, d, 0, 0, 0, 1;
-    pose = pose * step;
+    const Matrix before = pose,
+                 step{{{c, -s * ca, s * sa, a * c}, {s, c * ca, -c * sa, a * s}, {0, sa, ca, d}, {0, 0, 0, 1}}};
+    for (std::size_t r = 0; r < 4; ++r)
+      for (std::size_t k = 0; k < 4; ++k) {
+        pose[r][k] = 0;
+        for (std::size_t m = 0; m < 4; ++m) pose[r][k] += before[r][m] * step[m][k];
+      }
   }
-  return pose;
+  vernier::Isometry3 out;
+  for (int r = 0; r < 4; ++r)
+    for (int k = 0; k < 4; ++k)
+      out(r, k) = static_cast<double>(pose[static_cast<std::size_t>(r)][static_cast<std::size_t>(k)]);
+  return out;
 }
 
 }  // namespace vernier_test

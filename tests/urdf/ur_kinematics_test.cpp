@@ -5,6 +5,7 @@
 
 #include "complaint.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "replaced.hpp"
 #include "temporary_folder.hpp"
 #include "ur_published.hpp"
@@ -14,6 +15,9 @@
 
 namespace vernier::ur_kinematics_test {
 namespace {
+
+using vernier_test::difference;
+using vernier_test::RealMatrix;
 
 class UrKinematicsFile : public testing::Test {
  protected:
@@ -30,14 +34,26 @@ class UrKinematicsFile : public testing::Test {
   std::string path_ = (folder_ / "kinematics.yaml").string();
 };
 
+/// Rigid motions as matrices of 4 x 4: along x, y and z, and about one of them (0, 1, 2).
+RealMatrix shift(double x, double y, double z) {
+  return RealMatrix(4, 4, {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1});
+}
+RealMatrix turn(int axis, double angle) {
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  RealMatrix out = RealMatrix::identity(4);
+  out(a, a) = out(b, b) = std::cos(angle);
+  out(b, a) = std::sin(angle);
+  out(a, b) = -std::sin(angle);
+  return out;
+}
+
 /// What a URDF with these values as its origins gives.
-Isometry3 described_pose(const std::array<Vector6, 6>& values, const JointVector<6>& q) {
-  Isometry3 pose = Isometry3::Identity();
+RealMatrix described_pose(const std::array<Vector6, 6>& values, const JointVector<6>& q) {
+  RealMatrix pose = RealMatrix::identity(4);
   for (std::size_t i = 0; i < 6; ++i) {
     const Vector6& v = values[i];
-    pose = pose * Eigen::Translation3d(v.head<3>()) * Eigen::AngleAxisd(v(5), Vector3::UnitZ()) *
-           Eigen::AngleAxisd(v(4), Vector3::UnitY()) * Eigen::AngleAxisd(v(3), Vector3::UnitX()) *
-           Eigen::AngleAxisd(q(static_cast<Index>(i)), Vector3::UnitZ());
+    pose = pose * shift(v(0), v(1), v(2)) * turn(2, v(5)) * turn(1, v(4)) * turn(0, v(3)) *
+           turn(2, q(static_cast<Index>(i)));
   }
   return pose;
 }
@@ -65,17 +81,18 @@ TEST_F(UrKinematicsFile, IsExactForPublishedCalibrations) {
     const std::string text = exact.text({});
     const std::array<Vector6, 6> values = values_in(text);
     std::array<Vector6, 6> slipped;
-    for (std::size_t i = 0; i < 6; ++i)
-      slipped[i] << exact.origins[i].translation(), exact.origins[i].linear().eulerAngles(0, 1, 2);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const Vector3 at = translation(exact.origins[i]), angles = rotation(exact.origins[i]).eulerAngles(0, 1, 2);
+      slipped[i] = {at(0), at(1), at(2), angles(0), angles(1), angles(2)};
+    }
     const auto back = read(text).robot("again").arm<6>().arm;
     double worst = 0, worst_back = 0, slip = 0;
     for (int sample = 0; sample < 1000; ++sample) {
       const JointVector<6> q = vernier_test::random_joints<6>(rng);
-      const Eigen::Matrix4d truth = vernier_test::ur_controller_pose(nominal, set, q).cast<double>();
-      const auto distance = [&](const Isometry3& pose) { return (pose.matrix() - truth).cwiseAbs().maxCoeff(); };
-      worst = std::max(worst, distance(described_pose(values, q)));
-      worst_back = std::max(worst_back, distance(back.pose(q)));
-      slip = std::max(slip, (described_pose(slipped, q).translation() - truth.topRightCorner<3, 1>()).norm());
+      const RealMatrix truth = vernier_test::ur_controller_pose(nominal, set, q);
+      worst = std::max(worst, difference(described_pose(values, q), truth));
+      worst_back = std::max(worst_back, difference(back.pose(q), truth));
+      slip = std::max(slip, (described_pose(slipped, q) - truth).block(0, 3, 3, 1).norm());
     }
     EXPECT_LE(worst, 1e-12) << set.name;
     EXPECT_LE(worst_back, 1e-12) << set.name;
@@ -99,8 +116,7 @@ TEST_F(UrKinematicsFile, TheNominalUr10IsThePublishedFile) {
 TEST_F(UrKinematicsFile, OfAUrdfAreItsJointOrigins) {
   const UrdfChain chain = parse_urdf(vernier_test::ur_like_urdf(), "in", "base_link", "tool0");
   const UrKinematics kinematics = UrKinematics::of(chain, chain.robot.geometry(), "calib_3");
-  for (std::size_t i = 0; i < 6; ++i)
-    EXPECT_LE((kinematics.origins[i].matrix() - chain.origins[i + 1].matrix()).cwiseAbs().maxCoeff(), 1e-14) << i;
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_LE(difference(kinematics.origins[i], chain.origins[i + 1]), 1e-14) << i;
   EXPECT_NE(vernier_test::complaint([] {
               const UrdfChain abb = parse_urdf(vernier_test::abb_like_urdf(), "in", "base_link", "tool0");
               (void)UrKinematics::of(abb, abb.robot.geometry(), "");
@@ -132,7 +148,7 @@ TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
   const auto arm = kinematics.robot("ur10").arm<6>().arm;
   for (int i = 0; i < 100; ++i) {
     const JointVector<6> q = vernier_test::random_joints<6>(rng);
-    EXPECT_LE((arm.pose(q).matrix() - robots::ur10().chain.pose(q).matrix()).cwiseAbs().maxCoeff(), 5e-9);
+    EXPECT_LE(difference(arm.pose(q), robots::ur10().chain.pose(q)), 5e-9);
   }
   EXPECT_EQ(read(kinematics.text({})).hash, kinematics.hash);
 

@@ -5,17 +5,27 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "complaint.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/search/minimize.hpp"
 
 namespace vernier::cma_es_test {
 namespace {
 
+using vernier_test::RealMatrix;
+
 const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
-  fitness = population.colwise().squaredNorm().transpose();
+  fitness.resize(population.cols());
+  for (Index k = 0; k < population.cols(); ++k) fitness(k) = population.col(k).squaredNorm();
 };
+
+RealMatrix normal_matrix(Rng& rng, Index rows, Index columns) {
+  RealMatrix out(rows, columns);
+  for (Index j = 0; j < columns; ++j)
+    for (Index i = 0; i < rows; ++i) out(i, j) = rng.normal();
+  return out;
+}
 
 // Ten dimensions, ten individuals: the weights and effective size that Hansen's own programs print.
 TEST(CmaEs, ConstantsOfTenDimensions) {
@@ -38,14 +48,22 @@ TEST(CmaEs, ConstantsAreSound) {
   for (const Index n : {1, 2, 5, 30, 500})
     for (const Index lambda : {2, 3, 4, 14, 100, 1000}) {
       const CmaEsConstants c(n, lambda);
-      EXPECT_NEAR(c.weights.head(c.mu).sum(), 1, 1e-12);
-      EXPECT_GE(c.weights.head(c.mu).minCoeff(), 0);
-      EXPECT_LE(c.weights.tail(lambda - c.mu).maxCoeff(), 0);
+      ASSERT_EQ(c.weights.size(), lambda);
+      double positive = 0, negative = 0;
+      for (Index i = 0; i < c.mu; ++i) {
+        EXPECT_GE(c.weights(i), 0);
+        positive += c.weights(i);
+      }
+      for (Index i = c.mu; i < lambda; ++i) {
+        EXPECT_LE(c.weights(i), 0);
+        negative += c.weights(i);
+      }
+      EXPECT_NEAR(positive, 1, 1e-12);
       EXPECT_GT(c.c_1, 0);
       EXPECT_GE(c.c_mu, 0);
       EXPECT_LE(c.c_1 + c.c_mu, 1 + 1e-15);
-      EXPECT_LE(-c.weights.tail(lambda - c.mu).sum() * static_cast<double>(n) * c.c_mu, 1 - c.c_1 - c.c_mu + 1e-12);
-      EXPECT_TRUE(std::isfinite(c.weights.sum()));
+      EXPECT_LE(-negative * static_cast<double>(n) * c.c_mu, 1 - c.c_1 - c.c_mu + 1e-12);
+      EXPECT_TRUE(std::isfinite(positive + negative));
     }
 }
 
@@ -53,12 +71,11 @@ TEST(CmaEs, ConstantsAreSound) {
 CmaEs::State some_state(Index n, std::uint64_t seed) {
   Rng rng(seed);
   CmaEs::State s;
-  MatrixX root(n, n);
-  for (auto& x : root.reshaped()) x = rng.normal();
-  s.covariance = root * root.transpose() / static_cast<double>(n) + 0.1 * MatrixX::Identity(n, n);
-  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(s.covariance);
-  s.basis = eigen.eigenvectors();
-  s.scales = eigen.eigenvalues().cwiseSqrt();
+  const RealMatrix root = normal_matrix(rng, n, n);
+  s.covariance = root * root.transpose() / static_cast<double>(n) + 0.1 * RealMatrix::identity(n);
+  const detail::SymmetricEigen eigen = detail::symmetric_eigen(s.covariance);
+  s.basis = eigen.vectors;
+  s.scales = RealMatrix(eigen.values).sqrt();
   s.mean = s.path_c = s.path_sigma = VectorX::Zero(n);
   for (Index d = 0; d < n; ++d) {
     s.mean(d) = rng.uniform();
@@ -78,42 +95,44 @@ TEST(CmaEs, UpdateByItsFormulas) {
     s.path_sigma(0) += long_path;  // stops the path of C
     const CmaEs::State old = s;
     Rng rng(5);
-    MatrixX z(n, lambda);
-    for (auto& x : z.reshaped()) x = rng.normal();
+    const RealMatrix z = normal_matrix(rng, n, lambda);
     const std::vector<Index> order{3, 1, 4, 0, 5, 8, 2, 6, 7};
     CmaEs::update(s, z, order);
 
     const CmaEsConstants c(n, lambda);
-    const MatrixX inverse_root = old.basis * old.scales.cwiseInverse().asDiagonal() * old.basis.transpose();
-    ASSERT_LT((inverse_root * old.covariance * inverse_root - MatrixX::Identity(n, n)).norm(), 1e-10);
-    std::vector<VectorX> y;
-    for (const Index k : order) y.push_back(old.basis * old.scales.asDiagonal() * z.col(k));
-    VectorX step = VectorX::Zero(n);
+    const RealMatrix basis = old.basis, scales = RealMatrix::diagonal(old.scales), mean = old.mean;
+    const RealMatrix inverse_root = basis * scales.inverse() * basis.transpose();
+    ASSERT_LT((inverse_root * old.covariance * inverse_root - RealMatrix::identity(n)).norm(), 1e-10);
+    std::vector<RealMatrix> y;
+    for (const Index k : order) y.push_back(basis * scales * z.col(k));
+    RealMatrix step(n, 1);
     for (Index i = 0; i < c.mu; ++i) step += c.weights(i) * y[static_cast<std::size_t>(i)];
-    EXPECT_LT((s.mean - (old.mean + 0.2 * step)).norm(), 1e-13);
-    const VectorX path_sigma =
-        (1 - c.c_sigma) * old.path_sigma + std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * (inverse_root * step);
+    EXPECT_LT((s.mean - (mean + 0.2 * step)).norm(), 1e-13);
+    const RealMatrix path_sigma = (1 - c.c_sigma) * RealMatrix(old.path_sigma) +
+                                  std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * (inverse_root * step);
     EXPECT_LT((s.path_sigma - path_sigma).norm(), 1e-11);
     const double h = path_sigma.norm() / std::sqrt(1 - std::pow(1 - c.c_sigma, 16)) < (1.4 + 2.0 / 5) * c.expected_norm;
     EXPECT_EQ(h, long_path < 10 ? 1 : 0);  // a path of 3 is longer than expected, but not by 1.8 times
-    const VectorX path_c = (1 - c.c_c) * old.path_c + h * std::sqrt(c.c_c * (2 - c.c_c) * c.mu_eff) * step;
+    const RealMatrix path_c =
+        (1 - c.c_c) * RealMatrix(old.path_c) + h * std::sqrt(c.c_c * (2 - c.c_c) * c.mu_eff) * step;
     EXPECT_LT((s.path_c - path_c).norm(), 1e-12);
     EXPECT_NEAR(s.sigma,
                 0.2 * std::exp(std::min(1.0, c.c_sigma / c.d_sigma * (path_sigma.norm() / c.expected_norm - 1))),
                 1e-12);
-    MatrixX covariance =
-        (1 + c.c_1 * (1 - h) * c.c_c * (2 - c.c_c) - c.c_1 - c.c_mu * c.weights.sum()) * old.covariance +
+    RealMatrix covariance =
+        (1 + c.c_1 * (1 - h) * c.c_c * (2 - c.c_c) - c.c_1 - c.c_mu * c.weights.sum()) * RealMatrix(old.covariance) +
         c.c_1 * path_c * path_c.transpose();
     for (Index i = 0; i < lambda; ++i) {
-      const VectorX& yi = y[static_cast<std::size_t>(i)];
-      const double w = c.weights(i) * (c.weights(i) >= 0 ? 1 : 4 / (inverse_root * yi).squaredNorm());
+      const RealMatrix& yi = y[static_cast<std::size_t>(i)];
+      const double w = c.weights(i) * (c.weights(i) >= 0 ? 1 : 4 / (inverse_root * yi).squared_norm());
       covariance += c.c_mu * w * yi * yi.transpose();
     }
     EXPECT_LT((s.covariance - covariance).norm(), 1e-12);
     EXPECT_GT(c.weights(c.mu) - c.weights(lambda - 1), 0.1);  // negative weights are at work
     // decomposed anew
     EXPECT_EQ(s.decomposed, 8);
-    EXPECT_LT((s.basis * s.scales.cwiseAbs2().asDiagonal() * s.basis.transpose() - s.covariance).norm(), 1e-12);
+    const RealMatrix root = RealMatrix(s.basis) * RealMatrix::diagonal(s.scales);
+    EXPECT_LT((root * root.transpose() - s.covariance).norm(), 1e-12);
   }
 }
 
@@ -135,27 +154,38 @@ TEST(CmaEs, OnlyRanksCount) {
   EXPECT_EQ(points([](double f) { return f; }), points([](double f) { return 1e6 * std::sqrt(f) - 3; }));
 }
 
+/// Columns of length one at right angles to each other, by Gram and Schmidt.
+RealMatrix orthonormal(RealMatrix a) {
+  for (Index j = 0; j < a.cols(); ++j) {
+    RealMatrix column = a.col(j);
+    for (Index k = 0; k < j; ++k) column -= a.col(k).dot(column) * a.col(k);
+    a.set_block(0, j, column / column.norm());
+  }
+  return a;
+}
+
 // On an ellipsoid whose axes differ by 1000 the covariance becomes the inverse Hessian, but for a factor.
 TEST(CmaEs, LearnsTheShape) {
   const Index n = 4;
   Rng rng(2);
-  MatrixX directions(n, n);
-  for (auto& x : directions.reshaped()) x = rng.normal();
-  const MatrixX basis = directions.householderQr().householderQ();
-  const VectorX weights = (VectorX(4) << 1, 100, 1e4, 1e6).finished();
-  const MatrixX hessian = basis * weights.asDiagonal() * basis.transpose();
+  const RealMatrix basis = orthonormal(normal_matrix(rng, n, n)), weights = vernier_test::vector({1, 100, 1e4, 1e6}),
+                   hessian = basis * RealMatrix::diagonal(weights) * basis.transpose();
   const auto evaluate = [&](const MatrixX& population, VectorX& fitness) {
-    const MatrixX off = population.array() - 0.3;
-    fitness = (hessian * off).cwiseProduct(off).colwise().sum().transpose();
+    fitness.resize(population.cols());
+    RealMatrix off(n, 1);
+    for (Index k = 0; k < population.cols(); ++k) {
+      for (Index d = 0; d < n; ++d) off(d) = population(d, k) - 0.3;
+      fitness(k) = off.dot(hessian * off);
+    }
   };
   const CmaEs cma{.generations = 250};
   const Box box = Box::cube(n, -4, 4);
   CmaEs::State s = cma.start(box, 4, evaluate);
   while (!cma.done(s) && s.best_fitness > 1e-8) cma.step(s, box, evaluate);
   EXPECT_LT(s.best_fitness, 1e-8);
-  const Eigen::SelfAdjointEigenSolver<MatrixX> product(weights.cwiseSqrt().asDiagonal() * basis.transpose() *
-                                                       s.covariance * basis * weights.cwiseSqrt().asDiagonal());
-  EXPECT_LT(product.eigenvalues()(3) / product.eigenvalues()(0), 30);  // 1e6 at the start
+  const RealMatrix root = RealMatrix::diagonal(weights.sqrt()) * basis.transpose(),
+                   product = (root * s.covariance * root.transpose()).symmetric_eigenvalues();
+  EXPECT_LT(product(3) / product(0), 30);  // 1e6 at the start
 }
 
 // Runs end by their tolerances, and the next has a larger population; without restarts the search is over.

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "complaint.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/iso9283.hpp"
@@ -19,17 +21,22 @@ namespace {
 
 using namespace vernier;
 using vernier_test::complaint;
+using vernier_test::RealMatrix;
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
 
 Isometry3 pose_of(const Vector3& position, const Vector3& rotation = Vector3::Zero()) {
-  Isometry3 out = Isometry3::Identity();
-  out.translation() = position;
-  out.linear() = exp_so3(rotation);
-  return out;
+  return rigid_motion(exp_so3(rotation), position);
 }
 
 Vector3 normal3(Rng& rng, double sigma) { return sigma * Vector3(rng.normal(), rng.normal(), rng.normal()); }
+
+/// A pose moved and then turned where it is, in the frame of the base.
+Isometry3 moved_by(const Isometry3& pose, const Vector3& shift, const Vector3& turn) {
+  return rigid_motion(exp_so3(turn) * rotation(pose), translation(pose) + shift);
+}
+
+bool all_nan(const Vector3& a) { return std::isnan(a(0)) && std::isnan(a(1)) && std::isnan(a(2)); }
 
 /// Visits of poses with normal errors of positions [m] and rotation vectors [rad], in the order P5 P4 P3 P2 P1.
 std::vector<Iso9283Visit> visits_of(std::span<const Isometry3> poses, int cycles, double sigma, double angle,
@@ -38,9 +45,8 @@ std::vector<Iso9283Visit> visits_of(std::span<const Isometry3> poses, int cycles
   std::vector<Iso9283Visit> out;
   for (int cycle = 1; cycle <= cycles; ++cycle)
     for (int k = static_cast<int>(poses.size()); k >= 1; --k) {
-      Isometry3 measured = poses[static_cast<std::size_t>(k - 1)];
-      measured.translation() += normal3(rng, sigma);
-      measured.linear() = exp_so3(normal3(rng, angle)) * measured.linear();
+      const Vector3 shift = normal3(rng, sigma), turn = normal3(rng, angle);
+      const Isometry3 measured = moved_by(poses[static_cast<std::size_t>(k - 1)], shift, turn);
       out.push_back({k, cycle, 0, measured, 2.0 * static_cast<double>(out.size())});
     }
   return out;
@@ -53,10 +59,8 @@ TEST(Iso9283, FiveVisitsByHand) {
   const std::vector<double> angles{1, 3, 2, 2, 2};
   std::vector<Iso9283Visit> visits;
   for (int k = 0; k < 5; ++k) {
-    Isometry3 measured = commanded[0];
-    measured.translation() += 1e-3 * positions[static_cast<std::size_t>(k)];
-    measured.linear() = exp_so3(Vector3(0, 0, 1e-3 * angles[static_cast<std::size_t>(k)])) * measured.linear();
-    visits.push_back({1, k + 1, 0, measured});
+    const auto i = static_cast<std::size_t>(k);
+    visits.push_back({1, k + 1, 0, moved_by(commanded[0], 1e-3 * positions[i], Vector3(0, 0, 1e-3 * angles[i]))});
   }
   const Iso9283 result = iso9283(visits, commanded);
   ASSERT_EQ(result.poses.size(), 1u);
@@ -188,10 +192,10 @@ TEST(Iso9283, RegistrationTakesOutTheFrame) {
   const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
   const Isometry3 frame = pose_of({1e-3, 2e-3, -1e-3}, {1e-3, 0, 2e-3});
   std::vector<Isometry3> moved;
-  for (const Isometry3& pose : poses) moved.push_back(frame * pose);
+  for (const Isometry3& pose : poses) moved.push_back(composed(frame, pose));
   const Iso9283 exact = iso9283(visits_of(moved, 3, 0, 0, 7), poses);
   ASSERT_TRUE(exact.registration);
-  EXPECT_LT((exact.registration->matrix() - frame.matrix()).norm(), 1e-14);
+  EXPECT_LT((RealMatrix(*exact.registration) - frame).norm(), 1e-14);
   for (const Iso9283Pose& pose : exact.poses) {
     EXPECT_LT(pose.ap_registered, 1e-14);
     EXPECT_GT(pose.ap, 1e-3);
@@ -200,10 +204,10 @@ TEST(Iso9283, RegistrationTakesOutTheFrame) {
   const Iso9283 result = iso9283(visits_of(moved, 3, 1e-4, 0, 8), poses);
   PointRows from(5, 3), to(5, 3);
   for (Index k = 0; k < 5; ++k) {
-    from.row(k) = poses[static_cast<std::size_t>(k)].translation().transpose();
-    to.row(k) = result.poses[static_cast<std::size_t>(k)].mean.translation().transpose();
+    set_point(from, k, translation(poses[static_cast<std::size_t>(k)]));
+    set_point(to, k, translation(result.poses[static_cast<std::size_t>(k)].mean));
   }
-  EXPECT_LT((result.registration->matrix() - register_points(from, to).matrix()).norm(), 1e-12);
+  EXPECT_LT((RealMatrix(*result.registration) - register_points(from, to)).norm(), 1e-12);
   const std::vector<Isometry3> line{pose_of({0, 0, 0}), pose_of({1, 1, 0}), pose_of({2, 2, 0})};
   EXPECT_FALSE(iso9283(visits_of(line, 3, 1e-4, 0, 9), line).registration);
 }
@@ -214,12 +218,12 @@ TEST(Iso9283, TheFrameDoesNotMatter) {
   std::vector<Iso9283Visit> visits = visits_of(poses, 30, 1e-5, 1e-4, 12);
   for (int k = 1; k <= 2; ++k)
     for (int cycle = 1; cycle <= 5; ++cycle)
-      visits.push_back({1, cycle, k, poses[0] * pose_of({1e-4 * k, 1e-5 * cycle, 0}), 1e6 + cycle});
+      visits.push_back({1, cycle, k, composed(poses[0], pose_of({1e-4 * k, 1e-5 * cycle, 0})), 1e6 + cycle});
   const Isometry3 frame = pose_of({3, -2, 1}, {1, 2, -0.5});
   std::vector<Isometry3> moved;
-  for (const Isometry3& pose : poses) moved.push_back(frame * pose);
+  for (const Isometry3& pose : poses) moved.push_back(composed(frame, pose));
   const Iso9283 here = iso9283(visits, poses);
-  for (Iso9283Visit& visit : visits) visit.measured = frame * visit.measured;
+  for (Iso9283Visit& visit : visits) visit.measured = composed(frame, visit.measured);
   const Iso9283 there = iso9283(visits, moved);
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_NEAR(here.poses[k].ap, there.poses[k].ap, 1e-13);
@@ -228,7 +232,7 @@ TEST(Iso9283, TheFrameDoesNotMatter) {
     EXPECT_NEAR(here.poses[k].rp, there.poses[k].rp, 1e-13);
     EXPECT_NEAR(here.poses[k].rp_high, there.poses[k].rp_high, 1e-13);
     EXPECT_NEAR(here.poses[k].rp_abc.norm(), there.poses[k].rp_abc.norm(), 1e-13);
-    EXPECT_LT((frame.linear() * here.poses[k].ap_abc - there.poses[k].ap_abc).norm(), 1e-13);
+    EXPECT_LT((rotation(frame) * here.poses[k].ap_abc - there.poses[k].ap_abc).norm(), 1e-13);
   }
   EXPECT_NEAR(here.distance->ad, there.distance->ad, 1e-13);
   EXPECT_NEAR(here.distance->rd, there.distance->rd, 1e-13);
@@ -320,13 +324,13 @@ TEST(Iso9283, WithoutOrientations) {
   const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
   auto visits = visits_of(poses, 30, 1e-5, 1e-3, 10);
   const Iso9283 with = iso9283(visits, poses);
-  for (Iso9283Visit& visit : visits) visit.measured.linear().setConstant(nan);
+  for (Iso9283Visit& visit : visits) visit.measured = rigid_motion(Matrix3::Constant(nan), translation(visit.measured));
   const Iso9283 without = iso9283(visits, poses, {.orientations = false});
   EXPECT_EQ(with.poses[2].rp, without.poses[2].rp);
   EXPECT_EQ(with.poses[2].rp_low, without.poses[2].rp_low);
   EXPECT_EQ(with.distance->ad, without.distance->ad);
-  EXPECT_TRUE(without.poses[2].ap_abc.array().isNaN().all() && without.poses[2].rp_abc.array().isNaN().all());
-  EXPECT_TRUE(without.distance->ad_abc.array().isNaN().all() && without.distance->rd_abc.array().isNaN().all());
+  EXPECT_TRUE(all_nan(without.poses[2].ap_abc) && all_nan(without.poses[2].rp_abc));
+  EXPECT_TRUE(all_nan(without.distance->ad_abc) && all_nan(without.distance->rd_abc));
   EXPECT_TRUE(with.departures.empty());
   ASSERT_EQ(without.departures.size(), 1u);
   EXPECT_EQ(without.departures[0], "no orientations were measured: AP, RP, AD, RD and vAP of positions only");
@@ -350,7 +354,7 @@ TEST(Iso9283, Departures) {
   const std::vector<Isometry3> four(poses.begin(), poses.begin() + 4);
   EXPECT_EQ(departures_of(visits_of(four, 30, 1e-5, 0, 1), four), "4 commanded poses, the norm has 5\n");
   auto squashed = poses;
-  squashed[3].translation() += Vector3(0, 0, 0.03);
+  squashed[3](2, 3) += 0.03;
   EXPECT_NE(departures_of(visits_of(squashed, 30, 1e-5, 0, 1), squashed).find("are not the centre of a cube"),
             std::string::npos);
 
@@ -400,8 +404,7 @@ TEST(Iso9283, RefusesWhatCannotBe) {
   EXPECT_EQ(told({1, 1, 0, commanded[0]}), "iso9283: pose 1, cycle 1, direction 0 is there twice");
   EXPECT_EQ(told({1, 2, -1, commanded[0]}), "iso9283: pose 1, cycle 2: direction -1, must be 0 or more");
   EXPECT_EQ(told({1, 2, 0, pose_of({nan, 0, 0})}), "iso9283: pose 1, cycle 2: the position is not finite");
-  Isometry3 scaled = commanded[0];
-  scaled.linear() *= 1.01;
+  const Isometry3 scaled = rigid_motion(1.01 * rotation(commanded[0]), translation(commanded[0]));
   EXPECT_EQ(told({1, 2, 0, scaled}), "iso9283: pose 1, cycle 2: the orientation is not a rotation");
   EXPECT_EQ(complaint([&] { (void)iso9283(good, std::vector<Isometry3>{scaled}); }),
             "iso9283: commanded pose 1: the orientation is not a rotation");
@@ -416,19 +419,19 @@ TEST(Iso9283Poses, OnTheDiagonalsOfACube) {
   const double diagonal = 0.6 * std::numbers::sqrt3;
   for (int plane = 1; plane <= 4; ++plane) {
     const auto p = iso9283_poses(cube, orientation, plane);
-    EXPECT_EQ(p[0].translation(), cube.centre);
-    for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(p[k].linear(), orientation);
+    EXPECT_EQ(translation(p[0]), cube.centre);
+    for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(RealMatrix(rotation(p[k])), RealMatrix(orientation));
     // 10 % of the diagonal from each corner, so 80 % between opposite ones; the sides of a rectangle 1 to sqrt(2)
-    const auto apart = [&](std::size_t i, std::size_t k) { return (p[i].translation() - p[k].translation()).norm(); };
+    const auto apart = [&](std::size_t i, std::size_t k) { return (translation(p[i]) - translation(p[k])).norm(); };
     EXPECT_NEAR(apart(1, 3), 0.8 * diagonal, 1e-14);
     EXPECT_NEAR(apart(2, 4), 0.8 * diagonal, 1e-14);
     EXPECT_NEAR(apart(1, 2), 0.8 * 0.6, 1e-14);
     EXPECT_NEAR(apart(2, 3), 0.8 * 0.6 * std::numbers::sqrt2, 1e-14);
-    EXPECT_GT(p[1].translation().z(), 0.7);
-    EXPECT_GT(p[2].translation().z(), 0.7);
+    EXPECT_GT(p[1](2, 3), 0.7);
+    EXPECT_GT(p[2](2, 3), 0.7);
   }
-  EXPECT_LT((iso9283_poses(cube)[1].translation() - (cube.centre + Vector3::Constant(0.24))).norm(), 1e-15);  // at C1
-  EXPECT_LT((iso9283_poses(cube)[2].translation() - (cube.centre + Vector3(-0.24, 0.24, 0.24))).norm(), 1e-15);  // C2
+  EXPECT_LT((translation(iso9283_poses(cube)[1]) - (cube.centre + Vector3::Constant(0.24))).norm(), 1e-15);     // at C1
+  EXPECT_LT((translation(iso9283_poses(cube)[2]) - (cube.centre + Vector3(-0.24, 0.24, 0.24))).norm(), 1e-15);  // C2
   EXPECT_EQ(complaint([&] { (void)iso9283_poses({{0, 0, 0}, 0}); }), "iso9283_poses: an edge of 0 m, must be positive");
   EXPECT_EQ(complaint([&] { (void)iso9283_poses(cube, orientation, 5); }), "iso9283_poses: plane 5, must be 1 to 4");
   EXPECT_NE(complaint([&] { (void)iso9283_poses(cube, 2 * orientation); }).find("not a rotation"), std::string::npos);
@@ -437,18 +440,18 @@ TEST(Iso9283Poses, OnTheDiagonalsOfACube) {
 TEST(Iso9283Poses, TheLargestCubeWithinReach) {
   // all poses within a ball about the middle of the box: 0.8 x edge x sqrt(3) / 2 = radius
   const Vector3 middle(0.5, 0, 0.5), half(0.4, 0.5, 0.6);
-  const auto ball = [&](const Isometry3& pose) { return (pose.translation() - middle).norm() < 0.4; };
+  const auto ball = [&](const Isometry3& pose) { return (translation(pose) - middle).norm() < 0.4; };
   const auto found = largest_iso9283_cube(middle - half, middle + half, ball);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->centre, middle);
   EXPECT_LE(found->edge, 1.0 / std::numbers::sqrt3);
   EXPECT_GT(found->edge, 1.0 / std::numbers::sqrt3 - 0.8 / 50);
   // only in the upper part, which is a place of the search
-  const auto above = [&](const Isometry3& pose) { return pose.translation().z() > 0.6; };
+  const auto above = [&](const Isometry3& pose) { return pose(2, 3) > 0.6; };
   const auto upper = largest_iso9283_cube(middle - half, middle + half, above);
   ASSERT_TRUE(upper);
   for (const Isometry3& pose : iso9283_poses(*upper)) EXPECT_TRUE(above(pose));
-  EXPECT_LE((upper->centre - middle).cwiseAbs().z() + upper->edge / 2, 0.6 + 1e-12);
+  EXPECT_LE(std::abs(upper->centre.z() - middle.z()) + upper->edge / 2, 0.6 + 1e-12);
   EXPECT_GT(upper->edge, 0.5);  // 0.556 fills the box from 0.6 on
   EXPECT_FALSE(largest_iso9283_cube(middle - half, middle + half, [](const Isometry3&) { return false; }));
   EXPECT_NE(complaint([&] { (void)largest_iso9283_cube(middle, middle - half, ball); }).find("must be below"),

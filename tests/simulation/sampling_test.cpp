@@ -5,13 +5,17 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vernier/core/points.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/sampling.hpp>
+
+#include "real_matrix.hpp"
 
 namespace sampling_test {
 namespace {
 
 using namespace vernier;
+using vernier_test::RealMatrix;
 
 TEST(SampleJoints, UniformWithinLimits) {
   JointLimits<3> limits;
@@ -20,23 +24,27 @@ TEST(SampleJoints, UniformWithinLimits) {
   const Index n = 3000;
   const auto q = sample_joints(limits, n, 1);
   ASSERT_EQ(q.rows(), n);
-  for (Index i = 0; i < n; ++i) ASSERT_TRUE(limits.contains(q.row(i).transpose()));
-  EXPECT_EQ(q.col(1), Eigen::VectorXd::Zero(n));
+  for (Index i = 0; i < n; ++i) ASSERT_TRUE(limits.contains(configuration(q, i)));
+  const RealMatrix columns(q);
+  EXPECT_EQ(columns.col(1), RealMatrix(n, 1));
   for (const int j : {0, 2}) {
+    const VectorX values = columns.col(j);
     const double width = limits.upper(j) - limits.lower(j), middle = (limits.upper(j) + limits.lower(j)) / 2;
+    double squares = 0;
+    for (const double value : values) squares += (value - middle) * (value - middle);
     // mean and variance of a uniform distribution, to five deviations of the estimate
-    EXPECT_NEAR(q.col(j).mean(), middle, 5 * width / std::sqrt(12.0 * n));
-    EXPECT_NEAR((q.col(j).array() - middle).square().mean(), width * width / 12,
-                5 * width * width / std::sqrt(180.0 * n));
-    EXPECT_LT(q.col(j).minCoeff(), limits.lower(j) + width / 100);
-    EXPECT_GT(q.col(j).maxCoeff(), limits.upper(j) - width / 100);
+    EXPECT_NEAR(values.mean(), middle, 5 * width / std::sqrt(12.0 * n));
+    EXPECT_NEAR(squares / static_cast<double>(n), width * width / 12, 5 * width * width / std::sqrt(180.0 * n));
+    EXPECT_LT(values.minCoeff(), limits.lower(j) + width / 100);
+    EXPECT_GT(values.maxCoeff(), limits.upper(j) - width / 100);
   }
 }
 
 TEST(SampleJoints, SeedsDecideAlone) {
   const auto limits = robots::abb_irb120().limits;
-  EXPECT_TRUE(sample_joints(limits, 20, 5) == sample_joints(limits, 20, 5));
-  EXPECT_FALSE(sample_joints(limits, 20, 5) == sample_joints(limits, 20, 6));
+  const RealMatrix once = sample_joints(limits, 20, 5), again = sample_joints(limits, 20, 5);
+  EXPECT_TRUE(once == again);
+  EXPECT_FALSE(once == sample_joints(limits, 20, 6));
   EXPECT_EQ(sample_joints(limits, 0, 5).rows(), 0);
 }
 
@@ -46,7 +54,7 @@ TEST(SampleJoints, KeepsWhatIsAcceptedOnly) {
   limits.upper << 1, 1;
   const auto q = sample_joints(limits, 500, 2, [](const JointVector<2>& x) { return x.norm() < 0.5; });
   EXPECT_EQ(q.rows(), 500);
-  EXPECT_LT(q.rowwise().norm().maxCoeff(), 0.5);
+  for (Index i = 0; i < q.rows(); ++i) EXPECT_LT(configuration(q, i).norm(), 0.5);
 }
 
 template <class F>
@@ -75,13 +83,15 @@ TEST(SampleJoints, ImpossibleWishesThrow) {
   expect_complaint([&] { (void)sample_joints(half_open, 10, 1); }, "finite");
 }
 
-/// Origin of frame 5 by another way than the region's: the chain without its last link and joint.
-Vector3 wrist_centre(const DhChain<6>& chain, const JointVector<6>& q) {
+/// Distance of the origin of frame 5 from the first axis, by another way than the region's: the chain without its last
+/// link and joint.
+double wrist_distance(const DhChain<6>& chain, const JointVector<6>& q) {
   auto p = chain.parameters();
-  p.tail<5>().setZero();
+  for (Index k = p.size() - 5; k < p.size(); ++k) p(k) = 0;
   JointVector<6> held = q;
   held(5) = 0;
-  return chain.with_parameters(p).position(held);
+  const Vector3 wrist = chain.with_parameters(p).position(held);
+  return std::hypot(wrist.x(), wrist.y());
 }
 
 TEST(OperatingRegion, KeepsTheWristClearOfTheFirstAxis) {
@@ -90,10 +100,10 @@ TEST(OperatingRegion, KeepsTheWristClearOfTheFirstAxis) {
   const auto q = region.sample(robot.chain, 2000, 3);
   double nearest = 1;
   for (Index i = 0; i < q.rows(); ++i) {
-    const JointVector<6> joints = q.row(i).transpose();
+    const JointVector<6> joints = configuration(q, i);
     ASSERT_TRUE(region.limits.contains(joints));
     ASSERT_TRUE(robot.limits.contains(joints));
-    nearest = std::min(nearest, wrist_centre(robot.chain, joints).head<2>().norm());
+    nearest = std::min(nearest, wrist_distance(robot.chain, joints));
   }
   EXPECT_GE(nearest, 0.12 - 1e-12);
   EXPECT_LT(nearest, 0.15);  // the clearance is what limits it
@@ -102,7 +112,7 @@ TEST(OperatingRegion, KeepsTheWristClearOfTheFirstAxis) {
   free.wrist_clearance = 0;
   const auto anywhere = free.sample(robot.chain, 2000, 3);
   for (Index i = 0; i < anywhere.rows(); ++i)
-    nearest = std::min(nearest, wrist_centre(robot.chain, anywhere.row(i).transpose()).head<2>().norm());
+    nearest = std::min(nearest, wrist_distance(robot.chain, configuration(anywhere, i)));
   EXPECT_LT(nearest, 0.1);
 }
 
@@ -111,10 +121,10 @@ TEST(OperatingRegion, HasNoSingularity) {
   const auto q = abb_irb120_operating_region().sample(robot.chain, 1000, 4);
   double worst = 1;
   for (Index i = 0; i < q.rows(); ++i) {
-    Jacobian<6> j = robot.chain.jacobian(q.row(i).transpose());
-    j.bottomRows<3>() *= 0.3;  // m a rad
-    const Eigen::JacobiSVD<Jacobian<6>> svd(j);
-    worst = std::min(worst, svd.singularValues()(5) / svd.singularValues()(0));
+    RealMatrix j = robot.chain.jacobian(configuration(q, i));
+    j.set_block(3, 0, 0.3 * j.block(3, 0, 3, 6));  // m a rad
+    const RealMatrix s = j.singular_values();
+    worst = std::min(worst, s(5) / s(0));
   }
   EXPECT_GT(worst, 0.01);
 }

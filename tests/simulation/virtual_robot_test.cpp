@@ -6,14 +6,18 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <vernier/core/points.hpp>
 #include <vernier/core/rng.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>
+
+#include "real_matrix.hpp"
 
 namespace virtual_robot_test {
 namespace {
 
 using namespace vernier;
+using vernier_test::RealMatrix;
 
 const DhChain<6> nominal = robots::abb_irb120().chain;
 
@@ -89,7 +93,8 @@ TEST(GeometricErrors, UpsideDownRangesAreNamed) {
 JointRows<6> some_joints(Index n) {
   Rng rng(9);
   JointRows<6> q(n, 6);
-  for (auto& value : q.reshaped()) value = rng.uniform(-2, 2);
+  for (int j = 0; j < 6; ++j)
+    for (Index i = 0; i < n; ++i) q(i, j) = rng.uniform(-2, 2);
   return q;
 }
 
@@ -98,11 +103,11 @@ TEST(Measure, WithoutNoiseIsTheModel) {
   const auto data = measure(nominal, q);
   ASSERT_EQ(data.size(), 50);
   ASSERT_TRUE(data.has_orientations());
-  EXPECT_TRUE(data.joints() == q);
+  EXPECT_TRUE(RealMatrix(data.joints()) == q);
   for (Index i = 0; i < 50; ++i) {
     const Isometry3 pose = nominal.pose(data.joints(i));
-    EXPECT_EQ(data.position(i), Vector3(pose.translation()));
-    EXPECT_LT((data.orientation(i) - pose.linear()).norm(), 1e-14);
+    EXPECT_EQ(data.position(i), translation(pose));
+    EXPECT_LT((data.orientation(i) - rotation(pose)).norm(), 1e-14);
   }
 }
 
@@ -117,22 +122,24 @@ TEST(Measure, NoiseHasTheStatisticsItClaims) {
   const double sigma = 0.03e-3, angular = 0.1e-3;
   const auto q = some_joints(n);
   const auto data = measure(nominal, q, {.position = sigma, .orientation = angular}, 17);
-  PointRows off(n, 3), turned(n, 3);
+  PointRows off_rows(n, 3), turned_rows(n, 3);
   for (Index i = 0; i < n; ++i) {
     const Isometry3 pose = nominal.pose(data.joints(i));
-    off.row(i) = (data.position(i) - pose.translation()).transpose() / sigma;
-    turned.row(i) = log_so3(data.orientation(i) * pose.linear().transpose()).transpose() / angular;
+    set_point(off_rows, i, (data.position(i) - translation(pose)) / sigma);
+    const Matrix3 turn = data.orientation(i) * rotation(pose).transpose();
+    set_point(turned_rows, i, log_so3(turn) / angular);
   }
+  const RealMatrix off = off_rows, turned = turned_rows;
   // five deviations of each estimate from n unit normals
   const double mean_bound = 5 / std::sqrt(static_cast<double>(n)), variance_bound = mean_bound * std::sqrt(2.0);
-  for (const PointRows* noise : {&off, &turned}) {
+  for (const RealMatrix* noise : {&off, &turned}) {
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(noise->col(k).mean(), 0, mean_bound);
-      EXPECT_NEAR(noise->col(k).squaredNorm() / static_cast<double>(n), 1, variance_bound);
+      EXPECT_NEAR(noise->col(k).squared_norm() / static_cast<double>(n), 1, variance_bound);
       EXPECT_NEAR(noise->col(k).dot(noise->col((k + 1) % 3)) / static_cast<double>(n), 0, mean_bound);
     }
-    EXPECT_GT(noise->cwiseAbs().maxCoeff(), 3);  // tails: 12,000 draws hardly stay below 3 sigma
-    EXPECT_LT(noise->cwiseAbs().maxCoeff(), 6);
+    EXPECT_GT(noise->largest(), 3);  // tails: 12,000 draws hardly stay below 3 sigma
+    EXPECT_LT(noise->largest(), 6);
   }
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(off.col(k).dot(turned.col(k)) / static_cast<double>(n), 0, mean_bound);
 }
@@ -140,8 +147,9 @@ TEST(Measure, NoiseHasTheStatisticsItClaims) {
 TEST(Measure, SeedsDecideAlone) {
   const auto q = some_joints(10);
   const MeasurementNoise noise{.position = 1e-3};
-  EXPECT_TRUE(measure(nominal, q, noise, 1).positions() == measure(nominal, q, noise, 1).positions());
-  EXPECT_FALSE(measure(nominal, q, noise, 1).positions() == measure(nominal, q, noise, 2).positions());
+  const auto positions = [&](std::uint64_t seed) { return RealMatrix(measure(nominal, q, noise, seed).positions()); };
+  EXPECT_TRUE(positions(1) == positions(1));
+  EXPECT_FALSE(positions(1) == positions(2));
   // whether orientations are recorded does not change the positions of the first pose
   EXPECT_EQ(measure(nominal, q, noise, 1).position(0),
             measure(nominal, q, {.position = 1e-3, .with_orientations = false}, 1).position(0));

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 #include <vernier/compensation/compensated.hpp>
+#include <vernier/core/points.hpp>
+#include <vernier/core/rng.hpp>
 #include <vernier/evaluation/statistics.hpp>
 #include <vernier/identification/calibrated.hpp>
 #include <vernier/kinematics/robots.hpp>
@@ -28,6 +30,9 @@ using vernier_test::no_violations;
 
 const Robot<6> robot = robots::abb_irb120();
 const DhChain<6> nominal = robot.chain;
+
+Vector3 linear_part(const Vector6& twist) { return {twist(0), twist(1), twist(2)}; }
+Vector3 angular_part(const Vector6& twist) { return {twist(3), twist(4), twist(5)}; }
 const double infinity = std::numeric_limits<double>::infinity();
 
 DhChain<6> actual_arm(std::uint64_t seed = 1) { return with_geometric_errors(nominal, {}, seed); }
@@ -64,7 +69,7 @@ struct Dishonest : Geometry {
   int fault = 0;
   Isometry3 predict(const JointVector<6>& q) const noexcept {
     Isometry3 pose = Geometry::predict(q);
-    if (fault == 1) pose.linear() *= 1.001;
+    if (fault == 1) pose = rigid_motion(1.001 * rotation(pose), translation(pose));
     return pose;
   }
   Correction<6> correct(const JointVector<6>& q) const noexcept {
@@ -109,10 +114,11 @@ TEST(Compensated, AKnownArmLandsOnTheNominalPose) {
     EXPECT_LE(after.position.maxCoeff(), 1e-6);
     EXPECT_LE(after.rotation.maxCoeff(), 1e-6);
     for (Index i = 0; i < targets.rows(); ++i) {
-      const auto correction = arm.correct(targets.row(i).transpose());
+      const JointVector<6> q = configuration(targets, i);
+      const auto correction = arm.correct(q);
       EXPECT_EQ(correction.status, IkStatus::converged);
-      EXPECT_EQ(correction.gate, 1);                                             // nothing learned, nothing gated
-      EXPECT_LT((correction.command - targets.row(i).transpose()).norm(), 0.2);  // the branch of the target
+      EXPECT_EQ(correction.gate, 1);                    // nothing learned, nothing gated
+      EXPECT_LT((correction.command - q).norm(), 0.2);  // the branch of the target
     }
   }
 }
@@ -125,23 +131,23 @@ TEST(Compensated, APerfectArmIsCommandedAsItIs) {
 
 TEST(Compensated, ReachesAPoseAskedFor) {
   const Geometry arm(actual_arm(), nominal);
-  const JointVector<6> q = operating_targets(1).row(0).transpose();
+  const JointVector<6> q = configuration(operating_targets(1), 0);
   const Isometry3 pose = nominal.pose(q);
   const auto correction = arm.correct(pose, q + JointVector<6>::Constant(0.1));
   EXPECT_EQ(correction.status, IkStatus::converged);
   const Vector6 left = pose_difference(pose, arm.predict(correction.command));
-  EXPECT_LE(left.head<3>().norm(), 1e-6);
-  EXPECT_LE(left.tail<3>().norm(), 1e-6);
+  EXPECT_LE(linear_part(left).norm(), 1e-6);
+  EXPECT_LE(angular_part(left).norm(), 1e-6);
 }
 
 TEST(Compensated, ATargetOutOfReachSaysSo) {
   const Geometry arm(actual_arm(), nominal);
   Isometry3 far = nominal.pose(JointVector<6>::Constant(0.3));
-  far.translation() = Vector3(3, 0, 0.5);
+  far = rigid_motion(rotation(far), Vector3(3, 0, 0.5));
   const auto correction = arm.correct(far, JointVector<6>::Constant(0.3));
   EXPECT_NE(correction.status, IkStatus::converged);
   EXPECT_TRUE(correction.command.allFinite());
-  EXPECT_NEAR(correction.predicted_error, (arm.position(correction.command) - far.translation()).norm(), 1e-12);
+  EXPECT_NEAR(correction.predicted_error, (arm.position(correction.command) - translation(far)).norm(), 1e-12);
   EXPECT_GT(correction.predicted_error, 1);
 }
 
@@ -180,10 +186,10 @@ TEST(Compensated, StaysWithinLimits) {
     targets(i, i % 6) = (i / 6) % 2 == 0 ? limits.lower(i % 6) : limits.upper(i % 6);
   int outside = 0, held = 0;
   for (Index i = 0; i < targets.rows(); ++i) {
-    const JointVector<6> q = targets.row(i).transpose();
+    const JointVector<6> q = configuration(targets, i);
     const auto free = arm.correct(q), kept = limited.correct(q);
     EXPECT_EQ(free.status, IkStatus::converged);
-    EXPECT_TRUE(limits.contains(kept.command)) << kept.command.transpose();
+    EXPECT_TRUE(limits.contains(kept.command)) << i;
     if (limits.contains(free.command)) {
       EXPECT_LE((kept.command - free.command).norm(), 1e-3);
     } else {
@@ -198,20 +204,18 @@ TEST(Compensated, StaysWithinLimits) {
 
 TEST(Compensated, TheReferenceIsTheNominalArmInTheIdentifiedFrames) {
   const auto actual = actual_arm();
-  Isometry3 base = Isometry3::Identity(), tool = Isometry3::Identity();
-  base.translation() << 1, -2, 0.5;
-  base.linear() = exp_so3(Vector3(0.1, 0.2, 1.0));
-  tool.translation() << 0.01, 0.02, 0.12;
+  const Isometry3 base = rigid_motion(exp_so3(Vector3(0.1, 0.2, 1.0)), Vector3(1, -2, 0.5)),
+                  tool = rigid_motion(Matrix3::Identity(), Vector3(0.01, 0.02, 0.12));
   const Calibrated<DhChain<6>> calibrated(Framed<DhChain<6>>(actual, base, tool), nominal);
   const auto arm = compensate(calibrated);
   const auto targets = operating_targets(50);
   for (Index i = 0; i < targets.rows(); ++i) {
-    const JointVector<6> q = targets.row(i).transpose();
-    const Isometry3 wanted = base * nominal.pose(q) * tool;
-    const Isometry3 reached = base * actual.pose(arm.correct(q).command) * tool;
+    const JointVector<6> q = configuration(targets, i);
+    const Isometry3 wanted = composed(base, composed(nominal.pose(q), tool));
+    const Isometry3 reached = composed(base, composed(actual.pose(arm.correct(q).command), tool));
     const Vector6 left = pose_difference(wanted, reached);
-    EXPECT_LE(left.head<3>().norm(), 1e-6);
-    EXPECT_LE(left.tail<3>().norm(), 1e-6);
+    EXPECT_LE(linear_part(left).norm(), 1e-6);
+    EXPECT_LE(angular_part(left).norm(), 1e-6);
   }
   EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(arm, targets)));
 }
@@ -219,7 +223,7 @@ TEST(Compensated, TheReferenceIsTheNominalArmInTheIdentifiedFrames) {
 /// What inverse kinematics minimises: squared metres, a radian counting as 0.3 m.
 double cost(const Isometry3& target, const Isometry3& pose) {
   const Vector6 e = pose_difference(target, pose);
-  return e.head<3>().squaredNorm() + 0.09 * e.tail<3>().squaredNorm();
+  return linear_part(e).squaredNorm() + 0.09 * angular_part(e).squaredNorm();
 }
 
 TEST(Compensated, NoPoseIsThrownAwayNearSingularities) {
@@ -235,7 +239,7 @@ TEST(Compensated, NoPoseIsThrownAwayNearSingularities) {
     int converged = 0;
     double worst_uncorrected = 0, worst = 0;
     for (Index i = 0; i < targets.rows(); ++i) {
-      const JointVector<6> q = targets.row(i).transpose();
+      const JointVector<6> q = configuration(targets, i);
       const Isometry3 wanted = nominal.pose(q);
       const Vector6 before = pose_difference(wanted, arm.pose(q));
       for (const Geometry* which : {&arm, &limited}) {
@@ -244,12 +248,12 @@ TEST(Compensated, NoPoseIsThrownAwayNearSingularities) {
         const Vector6 after = pose_difference(wanted, arm.pose(correction.command));
         // position and orientation together never get worse, so the position by 0.3 m times the rotation at most
         EXPECT_LE(cost(wanted, arm.pose(correction.command)), cost(wanted, arm.pose(q)) * (1 + 1e-12));
-        EXPECT_LE(after.head<3>().norm(), before.head<3>().norm() + 0.3 * before.tail<3>().norm() + 1e-12);
-        worst = std::max(worst, after.head<3>().norm());
+        EXPECT_LE(linear_part(after).norm(), linear_part(before).norm() + 0.3 * angular_part(before).norm() + 1e-12);
+        worst = std::max(worst, linear_part(after).norm());
         if (which == &arm) converged += correction.status == IkStatus::converged;
       }
       EXPECT_TRUE(robot.limits.contains(limited.correct(q).command));
-      worst_uncorrected = std::max(worst_uncorrected, before.head<3>().norm());
+      worst_uncorrected = std::max(worst_uncorrected, linear_part(before).norm());
     }
     // what is not reached lies beyond the stretched elbow of an arm with shorter links
     EXPECT_GE(converged, 1100) << "of 1500";
@@ -259,7 +263,7 @@ TEST(Compensated, NoPoseIsThrownAwayNearSingularities) {
 
 TEST(Compensated, DoesNotAllocateOrThrow) {
   const Geometry arm = Geometry(actual_arm(), nominal).within(robot.limits);
-  const JointVector<6> q = operating_targets(1).row(0).transpose();
+  const JointVector<6> q = configuration(operating_targets(1), 0);
   const Isometry3 pose = nominal.pose(q);
   static_assert(noexcept(arm.correct(q))&& noexcept(arm.correct(pose, q))&& noexcept(arm.predict(q)));
   EXPECT_EQ(vernier_test::allocations([&] {

@@ -10,6 +10,8 @@
 #include <limits>
 #include <numbers>
 
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_model/error_model.hpp"
@@ -35,14 +37,15 @@ Model arm_off(std::uint64_t seed, double hysteresis = 0) {
   VectorX coefficients(terms.size());
   Rng rng(seed);
   for (double& c : coefficients) c = 1e-4 * rng.normal();
-  if (hysteresis > 0) coefficients.tail(6).setConstant(hysteresis);
+  if (hysteresis > 0) {
+    for (int j = 1; j <= 6; ++j) coefficients(coefficients.size() - j) = hysteresis;
+  }
   return Model(robot.chain,
                Model::Arm({with_geometric_errors(robot.chain, {}, seed), JointErrors(terms, coefficients)}));
 }
 
-Isometry3 moved(Isometry3 pose, const Vector3& by) {
-  pose.translation() += by;
-  return pose;
+Isometry3 moved(const Isometry3& pose, const Vector3& by) {
+  return rigid_motion(rotation(pose), translation(pose) + by);
 }
 
 /// A rectangle of 200 mm in the air, its sides linear moves.
@@ -168,7 +171,7 @@ TEST(CorrectPath, EachCommandIsForTheApproachFromTheOneBefore) {
   for (std::size_t i = 1; i < 20; ++i) {
     const auto missed = [&](const auto& of) {
       return (arm.approached_from(of.points[i - 1].command).position(of.points[i].command) -
-              targets[i].pose.translation())
+              translation(targets[i].pose))
           .norm();
     };
     EXPECT_LT(missed(path), 1e-7);
@@ -211,7 +214,7 @@ TEST(CorrectPath, ChoosesTheShortestWayOverAllTargets) {
     ASSERT_EQ(path.first_failure(), nullptr);
     for (const auto& point : path.points) {
       EXPECT_EQ(point.singularities.branch(), branch.singularities.branch());
-      EXPECT_LT((point.command - branch.joints).cwiseAbs().maxCoeff(), 1.5);
+      EXPECT_LT(vernier_test::difference(point.command, branch.joints), 1.5);
     }
   }
 }
@@ -239,8 +242,8 @@ TEST(CorrectPath, SaysWhatCannotBeMet) {
   const Model arm = arm_off(4);
   const Isometry3 good = arm.nominal().pose(home);
   Isometry3 far = moved(good, Vector3(10, 0, 0)), nan = good, mirrored = good;
-  nan.translation().x() = std::numeric_limits<double>::quiet_NaN();
-  mirrored.linear().col(0) *= -1;
+  nan(0, 3) = std::numeric_limits<double>::quiet_NaN();
+  for (int r = 0; r < 3; ++r) mirrored(r, 0) *= -1;
   PathOptions<6> options{.limits = robot.limits};
   const auto path = correct_path(
       arm, closed_form,
@@ -255,8 +258,8 @@ TEST(CorrectPath, SaysWhatCannotBeMet) {
   EXPECT_EQ(path.points[4].status, PointStatus::jump);  // its line begins at a target that was not met
   EXPECT_EQ(correct_path(robot.chain, closed_form, {{.pose = far}}).points[0].status, PointStatus::proven_out);
 
-  options.limits.lower = home.array() + 0.5;
-  options.limits.upper = home.array() + 0.6;
+  options.limits.lower = home + JointVector<6>::Constant(0.5);
+  options.limits.upper = home + JointVector<6>::Constant(0.6);
   EXPECT_EQ(correct_path(arm, closed_form, {{.pose = good}}, options).points[0].status, PointStatus::beyond_limits);
   options = {};
   options.tolerance = 0;
@@ -291,8 +294,7 @@ TEST(CorrectPath, WithoutClosedFormItFollowsTheBranchOfTheStart) {
     EXPECT_LT((general.points[i].command - chosen.points[i].command).norm(), 1e-6);
   }
   const auto wam = robots::barrett_wam();  // seven joints: Newton's method from the start
-  JointVector<7> q;
-  q << 0.2, 0.5, 0.1, 1.5, 0.3, 0.4, 0.2;
+  const JointVector<7> q{0.2, 0.5, 0.1, 1.5, 0.3, 0.4, 0.2};
   PathOptions<7> seven{.limits = wam.limits};
   seven.start = q;
   const Isometry3 a = wam.chain.pose(q);

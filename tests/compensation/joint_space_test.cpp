@@ -8,6 +8,7 @@
 #include <string>
 #include <vernier/compensation/cartesian.hpp>
 #include <vernier/compensation/joint_space.hpp>
+#include <vernier/core/points.hpp>
 #include <vernier/evaluation/statistics.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/regression/elm.hpp>
@@ -20,6 +21,7 @@
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
+#include "real_matrix.hpp"
 
 namespace joint_space_test {
 namespace {
@@ -27,6 +29,7 @@ namespace {
 using namespace vernier;
 using vernier_test::complaint;
 using vernier_test::no_violations;
+using vernier_test::RealMatrix;
 
 const Robot<6> robot = robots::abb_irb120();
 const DhChain<6> nominal = robot.chain;
@@ -55,7 +58,7 @@ TEST(JointErrorLabels, ThePapersLabelsAreTargetMinusCommand) {
   EXPECT_EQ(labels.failed, 0);
   ASSERT_TRUE(labels.joints == targets);
   for (Index i = 0; i < 100; ++i) {
-    const JointVector<6> q = targets.row(i).transpose(), command = q - labels.errors.row(i).transpose();
+    const JointVector<6> q = configuration(targets, i), command = q - configuration(labels.errors, i);
     EXPECT_LT(pose_difference(nominal.pose(q), actual.pose(command)).norm(), 2e-9);
   }
 }
@@ -65,7 +68,7 @@ TEST(JointErrorLabels, FromDataAreEffectiveMinusCommanded) {
   const auto labels = joint_error_labels(nominal, data);
   EXPECT_EQ(labels.failed, 0);
   for (Index i = 0; i < 100; ++i) {
-    const JointVector<6> effective = data.joints(i) + labels.errors.row(i).transpose();
+    const JointVector<6> effective = data.joints(i) + configuration(labels.errors, i);
     EXPECT_LT(pose_difference(data.pose(i), nominal.pose(effective)).norm(), 2e-9);
   }
 }
@@ -73,14 +76,15 @@ TEST(JointErrorLabels, FromDataAreEffectiveMinusCommanded) {
 TEST(JointErrorLabels, WhatCannotBeReachedIsLeftOut) {
   const auto whole = measure(actual_arm(), operating_targets(10, 3));
   PointRows p = whole.positions();
-  p.row(4) << 5, 0, 0;
-  p.row(7) << 0, 0, -9;
+  set_point(p, 4, Vector3(5, 0, 0));
+  set_point(p, 7, Vector3(0, 0, -9));
   const auto labels = joint_error_labels(nominal, Dataset<6>(whole.joints(), p, whole.orientations()));
   EXPECT_EQ(labels.failed, 2);
   ASSERT_EQ(labels.joints.rows(), 8);
   ASSERT_EQ(labels.errors.rows(), 8);
-  EXPECT_EQ(labels.joints.row(4), whole.joints().row(5));
-  EXPECT_EQ(labels.joints.row(7), whole.joints().row(9));
+  const RealMatrix kept = labels.joints, all = whole.joints();
+  EXPECT_EQ(kept.row(4), all.row(5));
+  EXPECT_EQ(kept.row(7), all.row(9));
   EXPECT_TRUE(labels.errors.allFinite());
 }
 
@@ -115,7 +119,7 @@ TEST(JointCompensation, ObeysTheLawsOfModelsAndCompensators) {
   const auto around = sample_joints(wider, 300, 9);
   int falling = 0;
   for (Index i = 0; i < around.rows(); ++i) {
-    const double gate = fitted.identified().gate(around.row(i).transpose());
+    const double gate = fitted.identified().gate(configuration(around, i));
     falling += gate > 0 && gate < 1;
   }
   EXPECT_GT(falling, 100);
@@ -144,21 +148,21 @@ TEST(DirectJointCompensator, TheCommandIsTargetMinusLearned) {
   const auto targets = operating_targets(100, 11);
   int inside = 0;
   for (Index i = 0; i < targets.rows(); ++i) {
-    const JointVector<6> q = targets.row(i).transpose();
+    const JointVector<6> q = configuration(targets, i);
     const auto correction = fitted.correct(q);
     EXPECT_EQ(correction.status, IkStatus::converged);
     if (correction.gate != 1) continue;
     ++inside;
     const JointVector<6> command = q - fitted.learned().predict(q);
-    EXPECT_EQ(correction.command, command);  // bit for bit
+    EXPECT_EQ(RealMatrix(correction.command), RealMatrix(command));  // bit for bit
   }
   EXPECT_GT(inside, 80);
   // far outside the measured ranges nothing is learned
-  JointVector<6> far = targets.row(0).transpose();
+  JointVector<6> far = configuration(targets, 0);
   far(0) = 2.5;
-  EXPECT_EQ(fitted.correct(far).command, far);
+  EXPECT_EQ(RealMatrix(fitted.correct(far).command), RealMatrix(far));
   EXPECT_EQ(fitted.correct(far).gate, 0);
-  EXPECT_EQ(fitted.predict(far).matrix(), nominal.pose(far).matrix());
+  EXPECT_EQ(RealMatrix(fitted.predict(far)), RealMatrix(nominal.pose(far)));
 }
 
 TEST(DirectJointCompensator, ObeysTheLaws) {
@@ -174,7 +178,7 @@ TEST(JointCompensation, DoesNotAllocateOrThrow) {
   const auto from_data = JointCompensation{small_elm}.fit(nominal, training(actual_arm()), {.seed = 1});
   const auto direct = JointCompensation{small_elm}.fit(
       nominal, joint_error_labels(nominal, actual_arm(), operating_targets(200, 10)), {.seed = 1});
-  const JointVector<6> inside = operating_targets(1, 5).row(0).transpose();
+  const JointVector<6> inside = configuration(operating_targets(1, 5), 0);
   JointVector<6> edge = inside;
   edge(0) = abb_irb120_operating_region().limits.upper(0) + 0.1;  // the gate falls
   static_assert(
@@ -201,7 +205,7 @@ TEST(JointCompensation, NeedsOrientations) {
 TEST(JointCompensation, DataInAnotherFrameAreRefused) {
   const auto whole = training(actual_arm(), 20);
   PointRows p = whole.positions();
-  p.col(2).array() -= 0.07;
+  for (Index i = 0; i < p.rows(); ++i) p(i, 2) -= 0.07;
   const auto said = complaint([&] {
     (void)JointCompensation{Elm{.hidden_nodes = 5}}.fit(nominal, Dataset<6>(whole.joints(), p, whole.orientations()));
   });
@@ -221,9 +225,13 @@ TEST(JointCompensation, NothingToLearnFromIsNamed) {
   stretched(2) = -std::numbers::pi / 2 + std::atan2(70.0, 302.0);
   const Isometry3 pose = nominal.pose(stretched);
   const Vector3 shoulder(0, 0, 0.29);
-  const Vector3 out = (pose.translation() - shoulder).normalized();
-  const Dataset<6> beyond(stretched.transpose(), (pose.translation() + 0.02 * out).transpose(),
-                          log_so3(pose.linear()).transpose());
+  const Vector3 out = (translation(pose) - shoulder).normalized();
+  JointRows<6> joints(1, 6);
+  PointRows position(1, 3), orientation(1, 3);
+  set_configuration(joints, 0, stretched);
+  set_point(position, 0, translation(pose) + 0.02 * out);
+  set_point(orientation, 0, log_so3(rotation(pose)));
+  const Dataset<6> beyond(joints, position, orientation);
   EXPECT_NE(complaint([&] { (void)recipe.fit(nominal, beyond); }).find("failed for all 1 poses"), std::string::npos);
 }
 

@@ -11,6 +11,8 @@
 #include <string>
 
 #include "complaint.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/pair_search.hpp"
@@ -39,16 +41,14 @@ struct Session {
     const auto vector = [&](double size) {
       return Vector3(rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size));
     };
-    Isometry3 base = Isometry3::Identity();
-    base.linear() = exp_so3(vector(2));
-    base.translation() = vector(3);
-    const Vector3 offset = vector(0.2);
+    const Vector3 turn = vector(2), shift = vector(3), offset = vector(0.2);
+    const Isometry3 base = rigid_motion(exp_so3(turn), shift);
     Session out{{}, PointRows(n, 3), {}};
     for (Index i = 0; i < n; ++i) {
-      const JointVector<6> q = joints.row(i).transpose();
+      const JointVector<6> q = configuration(joints, i);
       out.flanges.push_back(robot.chain.pose(q));
       const Vector3 noise(rng.normal(), rng.normal(), rng.normal());
-      out.points.row(i) = (base * (actual.pose(q) * offset) + 3e-5 * noise).transpose();
+      set_point(out.points, i, transformed(base, transformed(actual.pose(q), offset)) + 3e-5 * noise);
       out.source.push_back(i);
     }
     return out;
@@ -60,7 +60,7 @@ struct Session {
     points.resize(static_cast<Index>(order.size()), 3);
     source.clear();
     for (std::size_t k = 0; k < order.size(); ++k) {
-      points.row(static_cast<Index>(k)) = points_before.row(order[k]);
+      set_point(points, static_cast<Index>(k), point(points_before, order[k]));
       source.push_back(source_before[static_cast<std::size_t>(order[k])]);
     }
   }
@@ -97,7 +97,7 @@ std::vector<Planted> plant(Session& session, int count, int kind, Rng& rng) {
       ++i;
     } else if (here->kind == Kind::misfit) {
       order.push_back(i);
-      session.points.row(i) += Eigen::RowVector3d(0.04, 0.04, -0.02);
+      set_point(session.points, i, point(session.points, i) + Vector3(0.04, 0.04, -0.02));
       session.source[static_cast<std::size_t>(i)] = -1;
     }
   }
@@ -205,10 +205,16 @@ TEST(PairPoints, DistantPointsSwapped) {
   EXPECT_EQ(found.faults[0].rows.last, 31);
 }
 
+PointRows times(double factor, PointRows points) {
+  for (Index i = 0; i < points.rows(); ++i)
+    for (int k = 0; k < 3; ++k) points(i, k) *= factor;
+  return points;
+}
+
 TEST(PairPoints, UnitsAndHandedness) {
   const Session session = Session::simulate(40, 7);
   for (const double factor : {1000.0, 25.4, 39.37007874, 0.001}) {
-    const Pairing found = pair_by_order(session.flanges, session.points * factor);
+    const Pairing found = pair_by_order(session.flanges, times(factor, session.points));
     EXPECT_EQ(found.proof->status, PairingStatus::wrong_unit) << factor;
     EXPECT_NEAR(found.proof->scale / factor, 1, 0.01) << factor;
     EXPECT_GT(found.proof->spread_ratio, factor / 2);
@@ -216,9 +222,12 @@ TEST(PairPoints, UnitsAndHandedness) {
     EXPECT_TRUE(found.pairs.empty());
     EXPECT_NE(describe(*found.proof).find("wrong unit"), std::string::npos);
   }
-  PointRows exchanged = session.points;
-  exchanged.col(0).swap(exchanged.col(1));
-  for (const PointRows& points : {exchanged, PointRows(session.points * Eigen::DiagonalMatrix<double, 3>(1, 1, -1))}) {
+  PointRows exchanged = session.points, reflected = session.points;
+  for (Index i = 0; i < exchanged.rows(); ++i) {
+    std::swap(exchanged(i, 0), exchanged(i, 1));
+    reflected(i, 2) *= -1;
+  }
+  for (const PointRows& points : {exchanged, reflected}) {
     const Pairing found = pair_by_order(session.flanges, points);
     EXPECT_EQ(found.proof->status, PairingStatus::mirrored);
     EXPECT_TRUE(found.pairs.empty());
@@ -242,9 +251,9 @@ TEST(PairPoints, WhatCannotBeProven) {
   // equal steps along a line with one orientation: shifted by a row, the base moves by a step
   std::vector<Isometry3> line(20, Isometry3::Identity());
   PointRows points(19, 3);
-  for (Index i = 0; i < 20; ++i)
-    line[static_cast<std::size_t>(i)].translation() = Vector3(0.05 * static_cast<double>(i), 1, 0);
-  for (Index i = 0; i < 19; ++i) points.row(i) << 0.3, 0.05 * static_cast<double>(i), 2;
+  for (Index i = 0; i < 20; ++i) line[static_cast<std::size_t>(i)](0, 3) = 0.05 * static_cast<double>(i);
+  for (Isometry3& pose : line) pose(1, 3) = 1;
+  for (Index i = 0; i < 19; ++i) set_point(points, i, Vector3(0.3, 0.05 * static_cast<double>(i), 2));
   EXPECT_EQ(pair_by_order(line, points).proof->status, PairingStatus::ambiguous);
   EXPECT_EQ(vernier_test::complaint([] { (void)pair_by_order(std::vector<Isometry3>(20000), PointRows(20000, 3)); }),
             "pair_by_order: 20000 rows and 20000 points are too many: pair them by name");
@@ -255,7 +264,7 @@ TEST(PairPoints, RepeatedVisits) {
   Session session = Session::simulate(90, 10);
   for (Index i = 0; i < 90; ++i) {
     session.flanges[static_cast<std::size_t>(i)] = session.flanges[static_cast<std::size_t>(i - i % 3)];
-    session.points.row(i) = session.points.row(i - i % 3);
+    set_point(session.points, i, point(session.points, i - i % 3));
   }
   std::vector<Index> order;
   for (Index i = 0; i < 90; ++i)
@@ -308,8 +317,8 @@ TEST(PairPoints, ByName) {
 // Names are checked with the arm: two exchanged ones are put right, a wrong point is taken out, as are unit and frame.
 TEST(PairPoints, NamesAreChecked) {
   Session session = Session::simulate(40, 11);
-  session.points.row(5) += Eigen::RowVector3d(0.1, 0, 0);
-  session.points.row(12).swap(session.points.row(30));
+  session.points(5, 0) += 0.1;
+  for (int k = 0; k < 3; ++k) std::swap(session.points(12, k), session.points(30, k));
   Pairing named;
   for (Index i = 0; i < 40; ++i)
     if (i != 20) named.pairs.push_back({i, i});
@@ -325,8 +334,9 @@ TEST(PairPoints, NamesAreChecked) {
   EXPECT_EQ(found.faults[1].points.first, 30);
   EXPECT_EQ(found.faults[2].kind, Kind::missing);
   for (const PointPair& pair : found.pairs) EXPECT_EQ(pair.point, pair.row == 12 ? 30 : pair.row == 30 ? 12 : pair.row);
-  EXPECT_EQ(check_pairs(named, session.flanges, session.points / 25.4).proof->status, PairingStatus::wrong_unit);
-  EXPECT_EQ(check_pairs(named, session.flanges, -session.points).proof->status, PairingStatus::mirrored);
+  EXPECT_EQ(check_pairs(named, session.flanges, times(1 / 25.4, session.points)).proof->status,
+            PairingStatus::wrong_unit);
+  EXPECT_EQ(check_pairs(named, session.flanges, times(-1, session.points)).proof->status, PairingStatus::mirrored);
   EXPECT_EQ(vernier_test::complaint([&] {
               (void)check_pairs({{{40, 0}}, {}, {}}, session.flanges, session.points);
             }),
@@ -362,26 +372,25 @@ TEST(PointAlignment, FramesAgreeWithStartingFrames) {
   for (Index i = 0; i < 30; ++i) pairs.push_back({i, i});
   const detail::PointFrames found = detail::fit_point_frames(session.flanges, session.points, pairs);
   const auto expected = starting_frames(chain, Dataset<6>(joints, session.points), true, true);
-  EXPECT_LT((found.base.matrix() - expected.base().matrix()).norm(), 1e-4);
-  EXPECT_LT((found.offset - expected.tool().translation()).norm(), 1e-4);
-  double sum = 0;
-  for (Index i = 0; i < 30; ++i)
-    sum +=
-        (session.points.row(i).transpose() - found.point(session.flanges[static_cast<std::size_t>(i)])).squaredNorm();
+  EXPECT_LT((vernier_test::RealMatrix(found.base) - expected.base()).norm(), 1e-4);
+  EXPECT_LT((found.offset - translation(expected.tool())).norm(), 1e-4);
+  const auto squares = [&](const detail::PointFrames& frames) {
+    double sum = 0;
+    for (Index i = 0; i < 30; ++i)
+      sum += (point(session.points, i) - frames.point(session.flanges[static_cast<std::size_t>(i)])).squaredNorm();
+    return sum;
+  };
+  const double sum = squares(found);
   EXPECT_NEAR(found.rms, std::sqrt(sum / 27), 1e-12);
   // the smallest sum of squares: no small change of the nine unknowns reduces it
   for (int k = 0; k < 9; ++k)
     for (const double step : {1e-4, -1e-4}) {
+      Vector3 turn = Vector3::Zero(), shift = turn, offset = turn;
+      (k < 3 ? turn : k < 6 ? shift : offset)(k % 3) = step;
       detail::PointFrames other = found;
-      Eigen::Matrix<double, 9, 1> change = Eigen::Matrix<double, 9, 1>::Unit(k) * step;
-      other.base.linear() = exp_so3(Vector3(change.head<3>())) * other.base.linear();
-      other.base.translation() += change.segment<3>(3);
-      other.offset += change.tail<3>();
-      double more = 0;
-      for (Index i = 0; i < 30; ++i)
-        more += (session.points.row(i).transpose() - other.point(session.flanges[static_cast<std::size_t>(i)]))
-                    .squaredNorm();
-      EXPECT_GT(more, sum);
+      other.base = rigid_motion(exp_so3(turn) * rotation(found.base), translation(found.base) + shift);
+      other.offset += offset;
+      EXPECT_GT(squares(other), sum);
     }
 }
 
@@ -389,12 +398,12 @@ TEST(PointAlignment, OneOrientationOrOnePlaneOfPoints) {
   Session session = Session::simulate(20, 13);
   std::vector<PointPair> pairs;
   Rng rng(2);
+  const Isometry3 base = rigid_motion(exp_so3(Vector3(1, -2, 0.5)), Vector3(1, 2, 3));
   for (Index i = 0; i < 20; ++i) {
     pairs.push_back({i, i});
     Isometry3& flange = session.flanges[static_cast<std::size_t>(i)];
-    flange.linear() = session.flanges[0].linear();
-    flange.translation() = Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), 0.3);
-    session.points.row(i) = (exp_so3(Vector3(1, -2, 0.5)) * flange.translation() + Vector3(1, 2, 3)).transpose();
+    flange = rigid_motion(rotation(session.flanges[0]), Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), 0.3));
+    set_point(session.points, i, transformed(base, translation(flange)));
   }
   EXPECT_LT(detail::fit_point_frames(session.flanges, session.points, pairs).rms, 1e-9);
 }

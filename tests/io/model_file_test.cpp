@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "real_matrix.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -13,8 +12,6 @@
 
 namespace vernier::model_file_test {
 namespace {
-
-using vernier_test::RealMatrix;
 
 static_assert(KinematicModel<CalibratedRobot<6>> && Compensator<CalibratedRobot<6>>);
 static_assert(KinematicModel<CalibratedRobot<6>::Approached>);
@@ -25,16 +22,6 @@ Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
 }
 
 using Model = CalibratedRobot<6>::Model;
-
-bool same(const RealMatrix& a, const RealMatrix& b) { return a == b; }
-
-/// Weights of what is learned: 1e-4 times three joints of the first n rows.
-PointRows weights(const JointRows<6>& joints, Index n) {
-  PointRows out(n, 3);
-  for (Index i = 0; i < n; ++i)
-    for (int j = 0; j < 3; ++j) out(i, j) = 1e-4 * joints(i, j);
-  return out;
-}
 
 /// An arm with frames alone, or with all that a model can have.
 CalibratedRobot<6> example(bool learned) {
@@ -60,8 +47,9 @@ CalibratedRobot<6> example(bool learned) {
   const Model thermal = model.with_thermal({21.5, 19, 24.25, VectorX::LinSpaced(42, -1e-5, 2e-5)});
   const CalibratedRobot<6> out("an arm", thermal, robot.limits, from);
   const HiddenLayer layer{.nodes = 12, .input_map = InputMap::sines_and_cosines};
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> beta = 1e-4 * joints.topLeftCorner<12, 3>();
   const ElmPredictor<6, 3> network(layer, {VectorX::Constant(12, 0.01), VectorX::Constant(12, 0.9)}, layer.draw(6, 2),
-                                   weights(joints, 12), Vector3(1e-5, 0, -2e-5));
+                                   beta, Vector3(1e-5, 0, -2e-5));
   return out.with_learned(network, JointCoverage<6>::covering(joints));
 }
 
@@ -71,15 +59,15 @@ CalibratedRobot<6> example_of_kernels() {
   const JointRows<6> joints = sample_joints(out.limits(), 30, 6);
   const KernelPredictor<6, 3> kernels(Kernel::squared_exponential, InputMap::raw,
                                       {VectorX::Constant(6, 0.01), VectorX::Constant(6, 0.9)}, joints,
-                                      weights(joints, 30), Vector3(1e-5, 0, -2e-5));
+                                      1e-4 * joints.leftCols<3>(), Vector3(1e-5, 0, -2e-5));
   return out.with_learned(kernels, JointCoverage<6>::covering(joints));
 }
 
 void expect_same_bits(const Model::Arm& a, const Model::Arm& b) {
   EXPECT_TRUE(a.chain() == b.chain());
-  EXPECT_TRUE(same(a.model().joint_errors().coefficients(), b.model().joint_errors().coefficients()));
-  EXPECT_TRUE(same(a.base_frame().values(), b.base_frame().values()));
-  EXPECT_TRUE(same(a.tool_frame().values(), b.tool_frame().values()));
+  EXPECT_TRUE(a.model().joint_errors().coefficients() == b.model().joint_errors().coefficients());
+  EXPECT_TRUE(a.base_frame().values() == b.base_frame().values());
+  EXPECT_TRUE(a.tool_frame().values() == b.tool_frame().values());
 }
 
 class ModelFile : public ::testing::Test {
@@ -97,27 +85,27 @@ TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
     const auto loaded = load<6>(path);
     EXPECT_EQ(loaded.name(), saved.name());
     EXPECT_EQ(loaded.provenance(), saved.provenance());
-    EXPECT_TRUE(same(RealMatrix::of(loaded.nominal().parameters()), RealMatrix::of(saved.nominal().parameters())));
+    EXPECT_TRUE(loaded.nominal().parameters() == saved.nominal().parameters());
     expect_same_bits(loaded.identified(), saved.identified());
     EXPECT_EQ(loaded.model().fallback() != nullptr, learned);
     ASSERT_EQ(loaded.model().thermal() != nullptr, learned);
     EXPECT_TRUE(!learned || *loaded.model().thermal() == *saved.model().thermal());
-    EXPECT_TRUE(same(loaded.limits().lower, saved.limits().lower) && same(loaded.limits().upper, saved.limits().upper));
+    EXPECT_TRUE(loaded.limits().lower == saved.limits().lower && loaded.limits().upper == saved.limits().upper);
     EXPECT_EQ(loaded.learned() != nullptr, learned);
     const JointRows<6> samples = sample_joints(saved.limits(), 50, 9);
     for (Index i = 0; i < samples.rows(); ++i) {
-      const JointVector<6> joints = configuration(samples, i);
-      EXPECT_TRUE(same(loaded.pose(joints), saved.pose(joints)));
-      EXPECT_TRUE(same(loaded.jacobian(joints), saved.jacobian(joints)));
+      const JointVector<6> joints = samples.row(i).transpose();
+      EXPECT_TRUE(loaded.pose(joints).matrix() == saved.pose(joints).matrix());
+      EXPECT_TRUE(loaded.jacobian(joints) == saved.jacobian(joints));
       const auto a = loaded.correct(joints), b = saved.correct(joints);
-      EXPECT_TRUE(same(a.command, b.command) && a.predicted_error == b.predicted_error && a.gate == b.gate);
-      const JointVector<6> previous = configuration(samples, (i + 1) % 50);
+      EXPECT_TRUE(a.command == b.command && a.predicted_error == b.predicted_error && a.gate == b.gate);
+      const JointVector<6> previous = samples.row((i + 1) % 50).transpose();
       const auto approached = loaded.approached_from(previous);
-      EXPECT_TRUE(same(approached.pose(joints), saved.approached_from(previous).pose(joints)));
+      EXPECT_TRUE(approached.pose(joints).matrix() == saved.approached_from(previous).pose(joints).matrix());
       if (learned) {
         EXPECT_GT((approached.position(joints) - loaded.position(joints)).norm(), 1e-6);
       } else {
-        EXPECT_TRUE(same(approached.pose(joints), loaded.pose(joints)));
+        EXPECT_TRUE(approached.pose(joints).matrix() == loaded.pose(joints).matrix());
       }
     }
     // and once more through the file: the text is a fixed point
@@ -154,8 +142,8 @@ TEST_F(ModelFile, LimitsOfOneSideSurvive) {
   save(folder_ / "m.json",
        CalibratedRobot<3>("one-sided", {chain, CalibratedRobot<3>::Model::Arm(chain)}, limits, Provenance{}));
   const JointLimits<3> loaded = load<3>(folder_ / "m.json").limits();
-  EXPECT_EQ(RealMatrix(loaded.lower), vernier_test::vector({-1.5, -infinity, -infinity}));
-  EXPECT_EQ(RealMatrix(loaded.upper), vernier_test::vector({infinity, -0.25, 0.15}));
+  EXPECT_EQ(loaded.lower, JointVector<3>(-1.5, -infinity, -infinity));
+  EXPECT_EQ(loaded.upper, JointVector<3>(infinity, -0.25, 0.15));
 }
 
 TEST_F(ModelFile, TheConventionIsPartOfTheFile) {
@@ -177,13 +165,13 @@ TEST_F(ModelFile, CorrectsTowardsTheNominalArmInTheIdentifiedFrames) {
   const OperatingRegion<6> region = abb_irb120_operating_region();
   const JointRows<6> samples = region.sample(robot.nominal().model(), 40, 11);
   for (Index i = 0; i < samples.rows(); ++i) {
-    const JointVector<6> q = configuration(samples, i);
+    const JointVector<6> q = samples.row(i).transpose();
     const auto correction = robot.correct(q);
     ASSERT_EQ(correction.status, IkStatus::converged);
-    const RealMatrix left = pose_difference(robot.nominal().pose(q), robot.pose(correction.command));
-    EXPECT_LT(left.block(0, 0, 3, 1).norm(), 1e-6);
-    EXPECT_LT(left.block(3, 0, 3, 1).norm(), 1e-6);
-    EXPECT_GT((RealMatrix(correction.command) - q).norm(), 1e-4);  // it did something
+    const Vector6 left = pose_difference(robot.nominal().pose(q), robot.pose(correction.command));
+    EXPECT_LT(left.head<3>().norm(), 1e-6);
+    EXPECT_LT(left.tail<3>().norm(), 1e-6);
+    EXPECT_GT((correction.command - q).norm(), 1e-4);  // it did something
   }
 }
 
@@ -191,9 +179,9 @@ TEST_F(ModelFile, CorrectsForTheDirectionOfApproach) {
   const auto robot = example(true);
   const OperatingRegion<6> region = abb_irb120_operating_region();
   const JointRows<6> samples = region.sample(robot.nominal().model(), 40, 11);
-  JointVector<6> previous = configuration(samples, 39);
+  JointVector<6> previous = samples.row(39).transpose();
   for (Index i = 0; i < samples.rows(); ++i) {
-    const JointVector<6> q = configuration(samples, i);
+    const JointVector<6> q = samples.row(i).transpose();
     const auto correction = robot.correct(q, previous);
     ASSERT_EQ(correction.status, IkStatus::converged);
     const auto lands = [&](const JointVector<6>& command) {
@@ -229,8 +217,7 @@ TEST_F(ModelFile, OlderFilesStandOnALine) {
   const JointErrors &old = loaded.identified().model().joint_errors(), &now = saved.identified().model().joint_errors();
   EXPECT_EQ(old.terms().transmission, now.terms().transmission);
   EXPECT_TRUE(old.terms().hysteresis.empty() && old.terms().linear_ranges.empty() && !old.tilts());
-  const auto last_50 = [](const RealMatrix& column) { return column.block(column.rows() - 50, 0, 50, 1); };
-  EXPECT_EQ(last_50(old.coefficients()), last_50(now.coefficients()));
+  EXPECT_EQ(old.coefficients().tail(50), now.coefficients().tail(50));
 }
 
 TEST_F(ModelFile, AnArmThatIsNotFiniteIsNotSaved) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/fitted_arm.hpp"
@@ -13,6 +14,10 @@ namespace vernier::arm_parameterisation_test {
 namespace {
 
 using Chain = DhChain<6>;
+
+using vernier_test::difference;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 
 const Robot<6> robot = robots::abb_irb120();
 
@@ -45,8 +50,7 @@ TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
   few.transmission[4] = Fourier::up_to(3);
   arm.set_terms(few, VectorX::LinSpaced(few.size(), 1e-4, 2e-4), VectorX::Ones(few.size()));
   arm.move(random_vector(rng, arm.size()));
-  MatrixX joints(1, 6);
-  joints << 0.1, -0.5, 0.3, 0.7, -0.4, 1;
+  const RealMatrix joints(1, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1});
   const Isometry3 before = arm.poses(0, joints).front();
   ArmParameterisation more = arm;
   JointTerms all = few;
@@ -57,7 +61,7 @@ TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
   EXPECT_EQ(more.size(), arm.size() + 6 + 5 + 2 + 4);
   for (const std::string& name : arm.names()) EXPECT_NEAR(value(more, name), value(arm, name), 1e-16) << name;
   for (const char* added : {"gear3", "coupling2", "cos1_1", "sin5_4"}) EXPECT_EQ(value(more, added), 0) << added;
-  EXPECT_LT((more.poses(0, joints).front().matrix() - before.matrix()).norm(), 1e-15);
+  EXPECT_LT((RealMatrix(more.poses(0, joints).front()) - before).norm(), 1e-15);
 }
 
 TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
@@ -66,13 +70,13 @@ TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
   JointTerms terms(6);
   terms.transmission[2] = Fourier::up_to(2);
   arm.set_terms(terms, VectorX::Constant(4, 1e-4), VectorX::Constant(4, 7));
-  EXPECT_TRUE(arm.steps().isZero(0));
+  EXPECT_EQ(RealMatrix(arm.steps()).largest(), 0);
   const VectorX first = random_vector(rng, 7), second = random_vector(rng, 7);
   arm.move(first);
   arm.move(second);
   EXPECT_LT((arm.steps() - first - second).norm(), 1e-12);
-  EXPECT_EQ(arm.precisions(), (VectorX(7) << 0, 1, 4, 7, 7, 7, 7).finished());
-  EXPECT_EQ(arm.scales(), (VectorX(7) << 1e-3, 1e-2, 2e-3, 1e-4, 1e-4, 1e-4, 1e-4).finished());
+  EXPECT_EQ(difference(arm.precisions(), vector({0, 1, 4, 7, 7, 7, 7})), 0);
+  EXPECT_EQ(difference(arm.scales(), vector({1e-3, 1e-2, 2e-3, 1e-4, 1e-4, 1e-4, 1e-4})), 0);
   arm.set_geometric({{38, -1, 2e-3, 4}});  // values stay
   EXPECT_NEAR(arm.steps()(0), first(2) + second(2), 1e-12);
 }
@@ -92,24 +96,28 @@ TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
   terms.transmission[2] = Fourier::up_to(2);
   arm.set_terms(terms, VectorX::LinSpaced(terms.size(), 1e-2, 2e-2), VectorX::Ones(terms.size()));
   arm.move(random_vector(rng, arm.size()));
-  MatrixX joints(2, 6);
-  joints << 0.1, -0.5, 0.3, 0.7, -0.4, 1, -1.2, 0.4, 0.2, -0.7, 1.1, 0.5;
+  const RealMatrix joints(2, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1, -1.2, 0.4, 0.2, -0.7, 1.1, 0.5});
   std::vector<RowBlock> rows(2);
   const auto poses = arm.linearise(0, joints, MatrixX(), rows.data());
   const auto typed = FittedArm{arm.geometry(0), arm.joint_errors()}.typed(robot.chain);
   for (Index i = 0; i < 2; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    EXPECT_LT((poses[s].matrix() - arm.poses(0, joints)[s].matrix()).norm(), 1e-14);
-    EXPECT_LT((poses[s].matrix() - typed.pose(joints.row(i).transpose()).matrix()).norm(), 1e-14);
-    Rows6 all(6, arm.size());
-    rows[s].expand(arm.group_sizes(), all);
+    JointVector<6> q;
+    for (Index j = 0; j < 6; ++j) q(j) = joints(i, j);
+    EXPECT_LT((RealMatrix(poses[s]) - arm.poses(0, joints)[s]).norm(), 1e-14);
+    EXPECT_LT((RealMatrix(poses[s]) - typed.pose(q)).norm(), 1e-14);
+    Rows6 expanded(6, arm.size());
+    rows[s].expand(arm.group_sizes(), expanded);
+    const RealMatrix all = expanded;
     for (Index k = 0; k < arm.size(); ++k) {
       constexpr double h = 1e-4;
       ArmParameterisation ahead = arm, behind = arm;
-      ahead.move(h * VectorX::Unit(arm.size(), k));
-      behind.move(-h * VectorX::Unit(arm.size(), k));
-      const Vector6 difference = pose_difference(ahead.poses(0, joints)[s], behind.poses(0, joints)[s]) / (2 * h);
-      EXPECT_LT((all.col(k) - difference).norm(), 1e-9) << arm.names()[static_cast<std::size_t>(k)];
+      RealMatrix step(arm.size(), 1);
+      step(k) = h;
+      ahead.move(step);
+      behind.move(-step);
+      const RealMatrix apart = pose_difference(ahead.poses(0, joints)[s], behind.poses(0, joints)[s]);
+      EXPECT_LT((all.col(k) - apart / (2 * h)).norm(), 1e-9) << arm.names()[static_cast<std::size_t>(k)];
     }
   }
 }

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCholesky>
 #include <array>
+#include <cmath>
 
 #include "random_blocks.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -15,7 +18,9 @@
 namespace vernier::calibration_problem_test {
 namespace {
 
+using vernier_test::difference;
 using vernier_test::random_vector;
+using vernier_test::RealMatrix;
 using Chain = DhChain<6>;
 using Problem = detail::CalibrationProblem;
 
@@ -55,7 +60,8 @@ struct Measured {
     terms.transmission = {Fourier::up_to(3), Fourier::up_to(2), Fourier{},
                           Fourier::up_to(1), Fourier::up_to(2), Fourier::up_to(12)};
     Rng rng(17);
-    const VectorX sizes = size * (VectorX::Ones(terms.size()) + random_vector(rng, terms.size()).cwiseAbs());
+    VectorX sizes = random_vector(rng, terms.size());
+    for (double& x : sizes) x = size * (1 + std::abs(x));
     arm.set_terms(terms, sizes, VectorX::Constant(terms.size(), 3));
     arm.move(random_vector(rng, arm.size(), 1e-3 / size));
     const SensorModel of_first{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3, .joint_sigma = joint_sigma};
@@ -65,7 +71,17 @@ struct Measured {
   }
 };
 
-Rows6 expanded(const Problem& problem, Index block, RowBlock& rows) {
+/// One unknown moved.
+VectorX step_of(Index k, Index size, double step) {
+  VectorX out = VectorX::Zero(size);
+  out(k) = step;
+  return out;
+}
+
+/// Three elements of a column.
+Vector3 three(const Vector6& column, Index first) { return {column(first), column(first + 1), column(first + 2)}; }
+
+RealMatrix expanded(const Problem& problem, Index block, RowBlock& rows) {
   problem(block, 1, &rows);
   Rows6 out(6, problem.arm.size());
   rows.expand(problem.arm.group_sizes(), out);
@@ -83,16 +99,22 @@ TEST(CalibrationProblemWhiteBox, ResidualIsModelMinusMeasuredInSigmas) {
     const bool first = b < 8;
     const Dataset<6>& data = first ? measured.first : measured.second;
     const Index i = first ? b : b - 8;
-    const Isometry3 pose = problem.arm.poses(first ? 0 : 1, data.joints(i).transpose()).front();
+    const RealMatrix joints = RealMatrix(data.joints(i)).transpose();
+    const Isometry3 pose = problem.arm.poses(first ? 0 : 1, joints).front();
     const double sigma = first ? 0.03e-3 : 0.05e-3;
-    EXPECT_LT((rows.residual.head<3>() - (pose.translation() - data.position(i)) / sigma).norm(), 1e-9);
+    const Vector3 position = (translation(pose) - data.position(i)) / sigma;
+    EXPECT_LT((three(rows.residual, 0) - position).norm(), 1e-9);
     EXPECT_DOUBLE_EQ(rows.position_sigma, sigma);
-    EXPECT_EQ(rows.unwhiten, Matrix6::Identity());
-    if (first)
-      EXPECT_LT((rows.residual.tail<3>() - pose_difference(pose, data.pose(i)).tail<3>() / 0.1e-3).norm(), 1e-9);
-    else
-      EXPECT_TRUE(rows.residual.tail<3>().isZero(0) && rows.dense.bottomRows<3>().isZero(0) &&
-                  rows.factor.bottomRows<3>().isZero(0));
+    EXPECT_EQ(RealMatrix(rows.unwhiten), RealMatrix::identity(6));
+    if (first) {
+      const Vector3 turn = three(pose_difference(pose, data.pose(i)), 3) / 0.1e-3;
+      EXPECT_LT((three(rows.residual, 3) - turn).norm(), 1e-9);
+    } else {
+      const auto below = [](const RealMatrix& six_rows) { return six_rows.block(3, 0, 3, six_rows.cols()).largest(); };
+      EXPECT_EQ(below(rows.residual), 0);
+      EXPECT_EQ(below(rows.dense), 0);
+      EXPECT_EQ(below(rows.factor), 0);
+    }
   }
 }
 
@@ -102,25 +124,25 @@ TEST(CalibrationProblemWhiteBox, RowsAreCentralDifferences) {
   const Index size = problem.arm.size();
   ASSERT_EQ(size, 12 + 36 + 6 + 5 + 21 + 6 + 4 + 0 + 2 + 4 + 24);
   constexpr double step = 0.03;  // of a size: rounding and curvature both stay below 1e-8
-  std::vector<Rows6> analytic, numeric(12, Rows6(6, size));
+  std::vector<RealMatrix> analytic, numeric(12, RealMatrix(6, size));
   RowBlock rows;
   for (Index b = 0; b < 12; ++b) analytic.push_back(expanded(problem, b, rows));
   for (Index k = 0; k < size; ++k) {
     Problem above = problem, below = problem;
-    above.arm.move(step * VectorX::Unit(size, k));
-    below.arm.move(-step * VectorX::Unit(size, k));
+    above.arm.move(step_of(k, size, step));
+    below.arm.move(step_of(k, size, -step));
     for (std::size_t b = 0; b < 12; ++b) {
       above(static_cast<Index>(b), 1, &rows);
-      const Vector6 high = rows.residual;
+      const RealMatrix high = rows.residual;
       below(static_cast<Index>(b), 1, &rows);
-      numeric[b].col(k) = (high - rows.residual) / (2 * step);
+      numeric[b].set_block(0, k, (high - rows.residual) / (2 * step));
     }
   }
   const auto names = problem.arm.names();
   for (std::size_t b = 0; b < 12; ++b)
     for (Index k = 0; k < size; ++k)
       for (const int part : {0, 3}) {
-        const Vector3 a = analytic[b].col(k).segment<3>(part), n = numeric[b].col(k).segment<3>(part);
+        const RealMatrix a = analytic[b].block(part, k, 3, 1), n = numeric[b].block(part, k, 3, 1);
         EXPECT_LT((a - n).norm(), 1e-7 * (1 + n.norm())) << "pose " << b << ", " << names[static_cast<std::size_t>(k)];
       }
   // every geometric unknown is seen, those of a station's base from there alone
@@ -140,12 +162,16 @@ TEST(CalibrationProblemWhiteBox, JointNoiseWhitensWhatItAdds) {
   for (Index i = 0; i < exact.num_blocks(); ++i) {
     exact(i, 1, &a);
     noisy(i, 1, &b);
-    const Matrix6 covariance = Matrix6::Identity() + sigma * sigma * a.factor * a.factor.transpose();
-    EXPECT_LT((b.unwhiten * b.unwhiten.transpose() - covariance).norm(), 1e-12 * covariance.norm());
-    EXPECT_LT((b.unwhiten * b.residual - a.residual).norm(), 1e-12 * a.residual.norm());
-    EXPECT_LT((b.unwhiten * b.dense - a.dense).norm(), 1e-12 * a.dense.norm());
-    EXPECT_LT((b.unwhiten * b.factor - a.factor).norm(), 1e-12 * a.factor.norm());
-    EXPECT_EQ(b.functions, a.functions);
+    const RealMatrix factor = a.factor, unwhiten = b.unwhiten;
+    const RealMatrix covariance = RealMatrix::identity(6) + sigma * sigma * factor * factor.transpose();
+    EXPECT_LT((unwhiten * unwhiten.transpose() - covariance).norm(), 1e-12 * covariance.norm());
+    const auto expect_unwhitened = [&](const RealMatrix& whitened, const RealMatrix& wanted) {
+      EXPECT_LT((unwhiten * whitened - wanted).norm(), 1e-12 * wanted.norm());
+    };
+    expect_unwhitened(b.residual, a.residual);
+    expect_unwhitened(b.dense, a.dense);
+    expect_unwhitened(b.factor, a.factor);
+    EXPECT_EQ(difference(b.functions, a.functions), 0);
     EXPECT_EQ(b.position_sigma, a.position_sigma);
   }
 }
@@ -155,42 +181,32 @@ TEST(CalibrationProblemWhiteBox, ErrorsInVariablesAreThoseOfTheFullSparseSystem)
   constexpr double sigma = 0.2e-3;  // moves a pose by as much as the sensor errs, and more
   const Problem exact = measured.problem(0, 0.1e-3), noisy = measured.problem(sigma, 0.1e-3);
   const Index p = exact.arm.size(), n = exact.num_blocks(), all = p + 6 * n;
-  const VectorX steps = noisy.arm.steps();
-  VectorX precisions = noisy.arm.precisions();
+  const RealMatrix steps = noisy.arm.steps(), precisions = noisy.arm.precisions();
   const NormalEquations normal(noisy.system()), of_exact(exact.system());
   const FactorisedEquations reduced(normal, precisions, steps);
   ASSERT_TRUE(reduced.usable());
   const FactorisedEquations without(of_exact, precisions, steps);
-  ASSERT_GT((reduced.step() - without.step()).norm(), 0.1 * without.step().norm());  // joint noise matters here
+  const RealMatrix step = reduced.step(), of_exact_joints = without.step();
+  ASSERT_GT((step - of_exact_joints).norm(), 0.1 * of_exact_joints.norm());  // joint noise matters here
 
   // unknowns: those of the arm, then six joint errors a pose in units of sigma
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](Index row, Index column, const MatrixX& block) {
-    for (Index j = 0; j < block.cols(); ++j)
-      for (Index i = 0; i < block.rows(); ++i)
-        if (row + i >= column + j)
-          entries.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), block(i, j));
-  };
-  VectorX gradient = VectorX::Zero(all);
-  gradient.head(p) = precisions.cwiseProduct(steps);
-  const double ridge = 1e-12 * normal.matrix.diagonal().maxCoeff();  // as in the reduced system
-  add(0, 0, MatrixX((precisions.array() + ridge).matrix().asDiagonal()));
+  RealMatrix matrix(all, all), gradient(all, 1);
+  const double ridge = 1e-12 * RealMatrix(normal.matrix).diagonal().largest();  // as in the reduced system
+  matrix.set_block(0, 0, RealMatrix::diagonal(precisions) + ridge * RealMatrix::identity(p));
+  gradient.set_block(0, 0, precisions.times(steps));
   RowBlock rows;
   for (Index b = 0; b < n; ++b) {
-    const MatrixX own = expanded(exact, b, rows), joint = sigma * rows.factor;
+    const RealMatrix own = expanded(exact, b, rows), joint = sigma * RealMatrix(rows.factor);
     const Index at = p + 6 * b;
-    add(0, 0, own.transpose() * own);
-    add(at, 0, joint.transpose() * own);
-    add(at, at, MatrixX::Identity(6, 6) + joint.transpose() * joint);
-    gradient.head(p) += own.transpose() * rows.residual;
-    gradient.segment(at, 6) = joint.transpose() * rows.residual;
+    matrix.add_block(0, 0, own.transpose() * own);
+    matrix.set_block(at, 0, joint.transpose() * own);
+    matrix.set_block(0, at, own.transpose() * joint);
+    matrix.set_block(at, at, RealMatrix::identity(6) + joint.transpose() * joint);
+    gradient.add_block(0, 0, own.transpose() * rows.residual);
+    gradient.set_block(at, 0, joint.transpose() * rows.residual);
   }
-  Eigen::SparseMatrix<double> matrix(static_cast<int>(all), static_cast<int>(all));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
-  ASSERT_EQ(solver.info(), Eigen::Success);
-  const VectorX step = -VectorX(solver.solve(gradient)).head(p);
-  EXPECT_LT((reduced.step() - step).norm(), 1e-8 * step.norm());
+  const RealMatrix wanted = -matrix.solve_by_cholesky(gradient).block(0, 0, p, 1);
+  EXPECT_LT((step - wanted).norm(), 1e-8 * wanted.norm());
 }
 
 TEST(CalibrationProblemWhiteBox, DistancesAreAlongTheLineOfSight) {
@@ -209,10 +225,10 @@ TEST(CalibrationProblemWhiteBox, DistancesAreAlongTheLineOfSight) {
   for (Index k = 0; k < arm.parameters().size(); ++k) {
     auto p = arm.parameters();
     p(k) += 1e-6;
-    const VectorX up = problem_of(arm.with_parameters(p)).stacked(false).residuals;
+    const RealMatrix up = problem_of(arm.with_parameters(p)).stacked(false).residuals;
     p(k) -= 2e-6;
-    const VectorX down = problem_of(arm.with_parameters(p)).stacked(false).residuals;
-    EXPECT_LT((exact.jacobian.col(k) - (up - down) / 2e-6 * 1e-3).cwiseAbs().maxCoeff(), 1e-6) << k;
+    const RealMatrix down = problem_of(arm.with_parameters(p)).stacked(false).residuals;
+    EXPECT_LT(difference(RealMatrix(exact.jacobian).col(k), (up - down) / 2e-6 * 1e-3), 1e-6) << k;
   }
 }
 

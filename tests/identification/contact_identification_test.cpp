@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "complaint.hpp"
+#include "real_matrix.hpp"
 #include "touched_objects.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
@@ -15,8 +16,10 @@ namespace {
 
 using vernier_test::actual_arm;
 using vernier_test::complaint;
+using vernier_test::difference;
 using vernier_test::lengths;
 using vernier_test::nominal_arm;
+using vernier_test::RealMatrix;
 using vernier_test::three_planes;
 using vernier_test::touched;
 
@@ -27,22 +30,24 @@ template <class Arm>
 PointRows at_fresh_joints(const Arm& arm) {
   const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 50, 77);
   PointRows out(joints.rows(), 3);
-  for (Index i = 0; i < joints.rows(); ++i) out.row(i) = arm.position(joints.row(i).transpose()).transpose();
+  for (Index i = 0; i < joints.rows(); ++i) set_point(out, i, arm.position(configuration(joints, i)));
   return out;
 }
 
 /// Largest error at fresh joints, the base registered, points scaled by a factor first.
 template <class Arm>
 double registered_error(const Arm& arm, double factor = 1) {
-  const PointRows actual = at_fresh_joints(actual_arm()), points = factor * at_fresh_joints(arm);
+  const PointRows actual = at_fresh_joints(actual_arm());
+  PointRows points = at_fresh_joints(arm);
+  points *= factor;
   const Isometry3 base = register_points(points, actual);
   double out = 0;
   for (Index i = 0; i < points.rows(); ++i)
-    out = std::max(out, (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm());
+    out = std::max(out, (transformed(base, point(points, i)) - point(actual, i)).norm());
   return out;
 }
 
-double spread(const PointRows& points) { return (points.rowwise() - points.colwise().mean()).norm(); }
+double spread(const PointRows& points) { return RealMatrix(distances_from(points, centroid(points))).norm(); }
 
 TEST(Contacts, AKnownLengthRecoversTheArmExactly) {
   const auto contacts = three_planes(true);
@@ -89,7 +94,7 @@ TEST(Contacts, UnobservableDirectionsAreThoseOfTheory) {
     EXPECT_NE(unobserved.front().find("base frame (6 directions)"), std::string::npos);
     EXPECT_EQ(unobserved[1].find("the scale of the arm") == 0, !with_length);
     EXPECT_EQ(found.parameters[0].state, ParameterState::not_identifiable);
-    EXPECT_EQ(found.model.identified().base().matrix(), nominal_arm().base().matrix());
+    EXPECT_EQ(difference(found.model.identified().base(), nominal_arm().base()), 0);
   }
 }
 
@@ -227,11 +232,11 @@ TEST(Contacts, RobustLossToleratesATouchThatSlipped) {
 }
 
 TEST(Contacts, RefusesWhatDeterminesNothing) {
-  const MatrixX joints = three_planes(true)[0].joints();
-  EXPECT_EQ(complaint([&] { Contact("table", ContactKind::plane, joints.topRows(3)); }),
+  const RealMatrix joints = three_planes(true)[0].joints();
+  EXPECT_EQ(complaint([&] { Contact("table", ContactKind::plane, joints.block(0, 0, 3, 6)); }),
             "contact table: 3 touches of a plane, at least 4 are needed: fewer say where it is, and nothing about the "
             "arm");
-  EXPECT_EQ(complaint([&] { Contact("s", ContactKind::socket, joints.topRows(1)); }),
+  EXPECT_EQ(complaint([&] { Contact("s", ContactKind::socket, joints.block(0, 0, 1, 6)); }),
             "contact s: 1 touch of a socket, at least 2 are needed: fewer say where it is, and nothing about the arm");
   EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, joints); }), "contact b: a ball without its radius");
   EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, joints, VectorX::Zero(20)); }),
@@ -244,7 +249,7 @@ TEST(Contacts, RefusesWhatDeterminesNothing) {
             "contact p: touch 2 has a value that is not finite");
   EXPECT_EQ(complaint([&] { identify_by_contacts(nominal_arm(), std::span<const Contact>()); }),
             "identify_by_contacts: no contacts");
-  const std::vector five{Contact("p", ContactKind::plane, joints.leftCols(5))};
+  const std::vector five{Contact("p", ContactKind::plane, joints.block(0, 0, joints.rows(), 5))};
   EXPECT_EQ(complaint([&] { identify_by_contacts(nominal_arm(), five); }), "contact p: 5 joints, the arm has 6");
 }
 
@@ -254,7 +259,7 @@ TEST(Contacts, RefusesAPlaneTouchedAlongALine) {
   for (Index i = 0; i < 10; ++i) {
     const Vector3 point(0.3, 0.04 * static_cast<double>(i) - 0.2, 0.25);
     const Contact one = touched({ContactKind::socket, point, Vector3::UnitZ()}, "point", lengths(2), 0, 20);
-    joints.row(i) = one.joints().row(0);
+    for (Index j = 0; j < 6; ++j) joints(i, j) = one.joints()(0, j);
   }
   auto contacts = three_planes(true);
   contacts[0] = Contact("table", ContactKind::plane, joints);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "real_matrix.hpp"
 #include "touched_objects.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
@@ -11,7 +14,9 @@ namespace {
 
 using detail::CalibrationProblem;
 using detail::Station;
+using vernier_test::difference;
 using vernier_test::lengths;
+using vernier_test::RealMatrix;
 using vernier_test::touched;
 
 std::vector<Contact> every_kind() {
@@ -58,21 +63,21 @@ TEST(ContactRows, TouchesOfTheRightArmLieOnTheirObjects) {
 TEST(ContactRows, JacobianIsTheDerivativeOfTheResiduals) {
   const auto contacts = every_kind();
   CalibrationProblem problem = problem_of(contacts, vernier_test::nominal_arm());
-  const MatrixX jacobian = problem.stacked(true).jacobian;
+  const RealMatrix jacobian = problem.stacked(true).jacobian;
   const ArmParameterisation at = problem.arm;
+  const auto residuals = [&](Index k, double by) {
+    RealMatrix step(at.size(), 1);
+    step(k) = by;
+    problem.arm = at;
+    problem.arm.move(step);
+    return RealMatrix(problem.stacked(false).residuals);
+  };
   double largest = 0;
   for (Index k = 0; k < at.size(); ++k) {
     const double h = 1e-3;
-    problem.arm = at;
-    problem.arm.move(h * VectorX::Unit(at.size(), k));
-    const VectorX above = problem.stacked(false).residuals;
-    problem.arm = at;
-    problem.arm.move(-h * VectorX::Unit(at.size(), k));
-    const VectorX below = problem.stacked(false).residuals;
-    const VectorX difference = (above - below) / (2 * h);
-    EXPECT_LT((difference - jacobian.col(k)).norm(), 1e-5 * (1 + jacobian.col(k).norm()))
-        << at.names()[static_cast<std::size_t>(k)];
-    largest = std::max(largest, jacobian.col(k).norm());
+    const RealMatrix slope = (residuals(k, h) - residuals(k, -h)) / (2 * h), column = jacobian.col(k);
+    EXPECT_LT((slope - column).norm(), 1e-5 * (1 + column.norm())) << at.names()[static_cast<std::size_t>(k)];
+    largest = std::max(largest, column.norm());
   }
   EXPECT_GT(largest, 1);
 }
@@ -82,7 +87,8 @@ TEST(ContactRows, FramesTurnByARightAngleAtMost) {
   for (const Contact& contact : contacts) {
     Station station = detail::station_of(contact, {});
     const ArmGeometry arm = detail::contact_arm(ArmGeometry(vernier_test::nominal_arm()), contact, station);
-    EXPECT_LT(arm.base().values().tail<3>().norm(), 1.6) << contact.name();
+    const Vector6& base = arm.base().values();
+    EXPECT_LT(Vector3(base(3), base(4), base(5)).norm(), 1.6) << contact.name();
   }
 }
 
@@ -94,7 +100,7 @@ TEST(ContactRows, TouchingJointsAreOnTheObjectAndNear) {
     Station station = problem.station_of(block);
     block += station.size();
     const MatrixX joints = detail::touching_joints(problem.arm.geometry(static_cast<int>(c)), station);
-    EXPECT_LT((joints - contacts[c].joints()).cwiseAbs().maxCoeff(), 0.1) << contacts[c].name();
+    EXPECT_LT(difference(joints, contacts[c].joints()), 0.1) << contacts[c].name();
     station.joint_values = joints.data();
     const CalibrationProblem touching(ArmParameterisation({problem.arm.geometry(static_cast<int>(c))}, {}), {station},
                                       Loss::squared);

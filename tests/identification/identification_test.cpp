@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <cmath>
 
 #include "gauss_newton.hpp"
+#include "real_matrix.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/least_squares/loss.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -16,6 +17,7 @@ namespace vernier::identification_test {
 namespace {
 
 using vernier_test::identify_by_gauss_newton;
+using vernier_test::RealMatrix;
 using Chain = DhChain<6>;
 
 const Robot<6> robot = robots::abb_irb120();
@@ -39,18 +41,29 @@ detail::StackedRows rows_of(const Identified<Chain>& found, const Dataset<6>& da
   return problem.stacked(true);
 }
 
-VectorX scales_of(const Identified<Chain>& found) {
-  VectorX out(static_cast<Index>(found.free.size()));
-  for (Index k = 0; k < out.size(); ++k)
-    out(k) = found.parameters[static_cast<std::size_t>(found.free[static_cast<std::size_t>(k)])].scale;
+/// Expected sizes of the free parameters, as a diagonal matrix.
+RealMatrix scales_of(const Identified<Chain>& found) {
+  const auto n = static_cast<Index>(found.free.size());
+  RealMatrix out(n, n);
+  for (Index k = 0; k < n; ++k)
+    out(k, k) = found.parameters[static_cast<std::size_t>(found.free[static_cast<std::size_t>(k)])].scale;
   return out;
 }
 
 /// Largest difference of two covariances, relative to the deviations.
-double difference(const MatrixX& a, const MatrixX& b) {
-  const VectorX std = b.diagonal().cwiseSqrt();
-  return ((a - b).array() / (std * std.transpose()).array()).abs().maxCoeff();
+double relative_difference(const RealMatrix& a, const RealMatrix& b) {
+  const RealMatrix std = b.diagonal().sqrt();
+  return (a - b).over(std * std.transpose()).largest();
 }
+
+/// J'J.
+RealMatrix information_of(const detail::StackedRows& rows) {
+  const RealMatrix jacobian = rows.jacobian;
+  return jacobian.transpose() * jacobian;
+}
+
+/// r'r.
+double square_sum(const detail::StackedRows& rows) { return RealMatrix(rows.residuals).squared_norm(); }
 
 // s^2 (J'J)^-1 in units of the parameters, s^2 the sum of squares over values minus estimated parameters: of 45 values
 // and 27 parameters that is 2.5 times their mean.
@@ -62,11 +75,9 @@ TEST(IdentificationWhiteBox, CovarianceCountsTheFreeParameters) {
   const auto p = static_cast<Index>(found.free.size());
   ASSERT_EQ(p, 27);
   const detail::StackedRows rows = rows_of(found, data, squared);
-  const double variance = rows.residuals.squaredNorm() / static_cast<double>(45 - p);
-  const VectorX scales = scales_of(found);
-  const MatrixX wanted =
-      variance * (scales.asDiagonal() * (rows.jacobian.transpose() * rows.jacobian).inverse() * scales.asDiagonal());
-  EXPECT_LT(difference(found.covariance, wanted), 1e-6);
+  const double variance = square_sum(rows) / static_cast<double>(45 - p);
+  const RealMatrix scales = scales_of(found), wanted = variance * scales * information_of(rows).inverse() * scales;
+  EXPECT_LT(relative_difference(found.covariance, wanted), 1e-6);
   for (Index k = 0; k < p; ++k) {
     const ParameterEstimate& of_k = found.parameters[static_cast<std::size_t>(found.free[static_cast<std::size_t>(k)])];
     EXPECT_NEAR(of_k.std, std::sqrt(wanted(k, k)), 1e-6 * of_k.std) << of_k.name;
@@ -86,13 +97,12 @@ TEST(IdentificationWhiteBox, EverySensorHasItsOwnScale) {
   for (Index i = 0; i < 72; ++i)
     square[rows.of_orientation[static_cast<std::size_t>(i)] ? 1 : 0] += rows.residuals(i) * rows.residuals(i) / 36;
   EXPECT_GT(square[0], 4 * square[1]);  // of 0.1 mm to 0.05, and 0.1 mrad to 0.2
-  VectorX variance(72);
+  RealMatrix variance(72, 72);
   for (Index i = 0; i < 72; ++i)
-    variance(i) = factor * square[rows.of_orientation[static_cast<std::size_t>(i)] ? 1 : 0];
-  const MatrixX half = (rows.jacobian.transpose() * rows.jacobian).inverse() * rows.jacobian.transpose();
-  const VectorX scales = scales_of(found);
-  const MatrixX wanted = scales.asDiagonal() * (half * variance.asDiagonal() * half.transpose()) * scales.asDiagonal();
-  EXPECT_LT(difference(found.covariance, wanted), 1e-6);
+    variance(i, i) = factor * square[rows.of_orientation[static_cast<std::size_t>(i)] ? 1 : 0];
+  const RealMatrix half = information_of(rows).inverse() * RealMatrix(rows.jacobian).transpose();
+  const RealMatrix scales = scales_of(found), wanted = scales * half * variance * half.transpose() * scales;
+  EXPECT_LT(relative_difference(found.covariance, wanted), 1e-6);
 }
 
 TEST(IdentificationWhiteBox, ARobustLossTakesTheMedianForTheScale) {
@@ -103,14 +113,13 @@ TEST(IdentificationWhiteBox, ARobustLossTakesTheMedianForTheScale) {
                                               {.frames = Frames::base_and_tool, .priors = false}, huber);
   ASSERT_TRUE(found.converged()) << found.message;
   const detail::StackedRows rows = rows_of(found, data, huber);
+  const RealMatrix residuals = rows.residuals;
   std::vector<double> norms;
-  for (Index b = 0; b < 20; ++b) norms.push_back(rows.residuals.segment<3>(3 * b).norm());
+  for (Index b = 0; b < 20; ++b) norms.push_back(residuals.block(3 * b, 0, 3, 1).norm());
   const double sigma = robust_sigma(norms, 3), factor = 60.0 / static_cast<double>(60 - found.free.size());
-  const VectorX scales = scales_of(found);
-  const MatrixX wanted =
-      sigma * sigma * factor *
-      (scales.asDiagonal() * (rows.jacobian.transpose() * rows.jacobian).inverse() * scales.asDiagonal());
-  EXPECT_LT(difference(found.covariance, wanted), 1e-6);
+  const RealMatrix scales = scales_of(found),
+                   wanted = sigma * sigma * factor * scales * information_of(rows).inverse() * scales;
+  EXPECT_LT(relative_difference(found.covariance, wanted), 1e-6);
 }
 
 // Errors, and what is expected of them, far below the noise: then parameters of the chain are weak, and their
@@ -135,10 +144,10 @@ TEST(IdentificationWhiteBox, CovarianceOfWeakParametersHasTheirPriors) {
   ASSERT_GE(weak.size(), 3u);
   ASSERT_GE(p, static_cast<Index>(weak.size()) + 6);
   const double freedom = static_cast<double>(60 - p);
-  const double before = rows_of(loose, data, squared).residuals.squaredNorm() / freedom;
+  const double before = square_sum(rows_of(loose, data, squared)) / freedom;
   const detail::StackedRows rows = rows_of(held, data, squared);
-  const double after = rows.residuals.squaredNorm() / freedom;
-  VectorX precisions = VectorX::Zero(p), variances = precisions;
+  const double after = square_sum(rows) / freedom;
+  RealMatrix precisions(p, p), variances(p, p);  // diagonal
   for (Index k = 0; k < p; ++k) {
     const auto at = static_cast<std::size_t>(held.free[static_cast<std::size_t>(k)]);
     const ParameterEstimate &of_k = held.parameters[at], &without = loose.parameters[at];
@@ -150,18 +159,15 @@ TEST(IdentificationWhiteBox, CovarianceOfWeakParametersHasTheirPriors) {
     }
     const double width = of_k.prior_std / of_k.scale;
     EXPECT_TRUE(std::abs(width - 1) < 1e-12 || std::abs(width - 3) < 1e-12 || std::abs(width - 10) < 1e-12) << width;
-    precisions(k) = before / (width * width);
-    variances(k) = width * width;
+    precisions(k, k) = before / (width * width);
+    variances(k, k) = width * width;
     EXPECT_LT(of_k.std, of_k.prior_std) << of_k.name;
     EXPECT_LT(of_k.std, without.std) << of_k.name;
   }
-  const MatrixX information = rows.jacobian.transpose() * rows.jacobian;
-  const MatrixX inverse = (information + MatrixX(precisions.asDiagonal())).inverse();
-  const MatrixX middle =
-      after * information + MatrixX(precisions.cwiseProduct(variances).cwiseProduct(precisions).asDiagonal());
-  const VectorX scales = scales_of(held);
-  const MatrixX wanted = scales.asDiagonal() * (inverse * middle * inverse) * scales.asDiagonal();
-  EXPECT_LT(difference(held.covariance, wanted), 1e-6);
+  const RealMatrix information = information_of(rows), inverse = (information + precisions).inverse(),
+                   middle = after * information + precisions * variances * precisions;
+  const RealMatrix scales = scales_of(held), wanted = scales * inverse * middle * inverse * scales;
+  EXPECT_LT(relative_difference(held.covariance, wanted), 1e-6);
 }
 
 // Six values and six parameters: nothing is left over that would say whether the model holds.

@@ -2,43 +2,45 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 
 namespace vernier::observability_test {
 namespace {
 
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 using Candidates = std::vector<MatrixX>;
 
-MatrixX random_matrix(Rng& rng, Index rows, Index cols) {
-  MatrixX out(rows, cols);
-  for (double& x : out.reshaped()) x = rng.normal();
+RealMatrix random_matrix(Rng& rng, Index rows, Index cols) {
+  RealMatrix out(rows, cols);
+  for (Index j = 0; j < cols; ++j)
+    for (Index i = 0; i < rows; ++i) out(i, j) = rng.normal();
   return out;
 }
 
-MatrixX random_covariance(Rng& rng, Index n) {
-  const MatrixX root = random_matrix(rng, n, n);
-  return root * root.transpose() + 0.1 * MatrixX::Identity(n, n);
+RealMatrix random_covariance(Rng& rng, Index n) {
+  const RealMatrix root = random_matrix(rng, n, n);
+  return root * root.transpose() + 0.1 * RealMatrix::identity(n);
 }
 
 /// Covariance once some whitened rows are measured.
-MatrixX with_rows(const MatrixX& covariance, const MatrixX& rows) {
+RealMatrix with_rows(const RealMatrix& covariance, const RealMatrix& rows) {
   return (covariance.inverse() + rows.transpose() * rows).inverse();
 }
 
 TEST(Observability, IndicesByHand) {
-  const auto o = Observability::of(Vector3(4, 2, 1), 4);
+  const auto o = Observability::of(vector({4, 2, 1}), 4);
   EXPECT_NEAR(o.o1, 1, 1e-15);  // cube root of 8, over 2
   EXPECT_EQ(o.o2, 0.25);
   EXPECT_EQ(o.o3, 1);
   EXPECT_EQ(o.o4, 0.25);
   EXPECT_NEAR(o.o5, 4.0 / 7, 1e-15);
-  EXPECT_NEAR(Observability::of(Vector3(4, 2, 1), 16).o1, 0.5, 1e-15);  // the only one that counts poses
+  EXPECT_NEAR(Observability::of(vector({4, 2, 1}), 16).o1, 0.5, 1e-15);  // the only one that counts poses
 }
 
 TEST(Observability, TellsLengthFromRatio) {
-  const auto o = Observability::of(Vector3(8, 4, 2), 4);  // all twice as large
+  const auto o = Observability::of(vector({8, 4, 2}), 4);  // all twice as large
   EXPECT_NEAR(o.o1, 2, 1e-15);
   EXPECT_EQ(o.o2, 0.25);
   EXPECT_EQ(o.o3, 2);
@@ -48,7 +50,7 @@ TEST(Observability, TellsLengthFromRatio) {
 
 TEST(Observability, NothingSeenGivesZeros) {
   for (const double least : {0.0, -1e-18}) {
-    const auto o = Observability::of(Vector3(4, 2, least), 4);
+    const auto o = Observability::of(vector({4, 2, least}), 4);
     EXPECT_EQ(o.o1, 0);
     EXPECT_EQ(o.o2, 0);
     EXPECT_EQ(o.o3, 0);
@@ -59,12 +61,12 @@ TEST(Observability, NothingSeenGivesZeros) {
 
 TEST(Observability, MisuseThrows) {
   EXPECT_THROW(Observability::of(VectorX(), 4), std::invalid_argument);
-  EXPECT_THROW(Observability::of(Vector3(4, 2, 1), 0), std::invalid_argument);
+  EXPECT_THROW(Observability::of(vector({4, 2, 1}), 0), std::invalid_argument);
 }
 
 TEST(StrongCorrelations, ByHand) {
-  Matrix3 covariance;  // deviations 2, 3, 1; correlations 0.96, -0.99, -0.93
-  covariance << 4, 5.76, -1.98, 5.76, 9, -2.79, -1.98, -2.79, 1;
+  // deviations 2, 3, 1; correlations 0.96, -0.99, -0.93
+  const RealMatrix covariance(3, 3, {4, 5.76, -1.98, 5.76, 9, -2.79, -1.98, -2.79, 1});
   const auto strong = strong_correlations(covariance);
   ASSERT_EQ(strong.size(), 2u);
   EXPECT_EQ(strong[0].first, 0);
@@ -83,15 +85,13 @@ TEST(StrongCorrelations, ByHand) {
 }
 
 TEST(StrongCorrelations, TheLimitCounts) {
-  MatrixX covariance(2, 2);
-  covariance << 1, -0.5, -0.5, 1;
+  const RealMatrix covariance(2, 2, {1, -0.5, -0.5, 1});
   EXPECT_EQ(strong_correlations(covariance, 0.5).size(), 1u);
   EXPECT_TRUE(strong_correlations(covariance, 0.51).empty());
 }
 
 TEST(StrongCorrelations, PassesOverWhatDoesNotVary) {
-  Matrix3 covariance = Matrix3::Zero();
-  covariance.topLeftCorner<2, 2>() << 1, 1, 1, 1;
+  const RealMatrix covariance(3, 3, {1, 1, 0, 1, 1, 0, 0, 0, 0});
   const auto strong = strong_correlations(covariance, 0);
   ASSERT_EQ(strong.size(), 1u);
   EXPECT_EQ(strong[0].second, 1);
@@ -101,9 +101,12 @@ TEST(StrongCorrelations, PassesOverWhatDoesNotVary) {
 TEST(HelpfulPoses, FirstIsTheBestOfAll) {
   Rng rng(1);
   for (int trial = 0; trial < 20; ++trial) {
-    const MatrixX covariance = random_covariance(rng, 7);
+    const RealMatrix covariance = random_covariance(rng, 7);
     Candidates candidates;
-    for (int c = 0; c < 25; ++c) candidates.push_back(random_matrix(rng, c % 2 == 0 ? 3 : 6, 7) * rng.uniform(0.1, 1));
+    for (int c = 0; c < 25; ++c) {
+      const RealMatrix rows = random_matrix(rng, c % 2 == 0 ? 3 : 6, 7);
+      candidates.emplace_back(rows * rng.uniform(0.1, 1));
+    }
     const Index unknown = trial % 7;
     Index best = -1;
     double least = covariance(unknown, unknown);
@@ -122,9 +125,9 @@ TEST(HelpfulPoses, FirstIsTheBestOfAll) {
 
 TEST(HelpfulPoses, VariancesAreThoseOnceAllBeforeAreMeasured) {
   Rng rng(2);
-  MatrixX covariance = random_covariance(rng, 6);
+  RealMatrix covariance = random_covariance(rng, 6);
   Candidates candidates;
-  for (int c = 0; c < 12; ++c) candidates.push_back(random_matrix(rng, 3, 6));
+  for (int c = 0; c < 12; ++c) candidates.emplace_back(random_matrix(rng, 3, 6));
   const auto helpful = helpful_poses(covariance, candidates, 4, 8);
   ASSERT_EQ(helpful.poses.size(), 8u);
   ASSERT_EQ(helpful.variances.size(), 8u);
@@ -137,9 +140,8 @@ TEST(HelpfulPoses, VariancesAreThoseOnceAllBeforeAreMeasured) {
 }
 
 TEST(HelpfulPoses, NamesNoneThatDoNotHelp) {
-  MatrixX blind = MatrixX::Zero(3, 2), seeing = blind;
-  blind(0, 1) = seeing(0, 0) = 1;
-  const MatrixX covariance = MatrixX::Identity(2, 2);
+  const RealMatrix blind(3, 2, {0, 1, 0, 0, 0, 0}), seeing(3, 2, {1, 0, 0, 0, 0, 0});
+  const RealMatrix covariance = RealMatrix::identity(2);
   EXPECT_TRUE(helpful_poses(covariance, Candidates{blind, blind}, 0, 3).poses.empty());
   EXPECT_TRUE(helpful_poses(covariance, Candidates{}, 0, 3).poses.empty());
   // a pose may be measured more than once: precision 1, 2, 3, 4
@@ -149,7 +151,7 @@ TEST(HelpfulPoses, NamesNoneThatDoNotHelp) {
 }
 
 TEST(HelpfulPoses, MisuseThrows) {
-  const MatrixX covariance = MatrixX::Identity(2, 2);
+  const RealMatrix covariance = RealMatrix::identity(2);
   EXPECT_THROW(helpful_poses(covariance, Candidates{}, -1, 1), std::invalid_argument);
   EXPECT_THROW(helpful_poses(covariance, Candidates{}, 2, 1), std::invalid_argument);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vernier/core/points.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -35,13 +36,12 @@ double registered_mean(const Arm& arm) {
   const JointRows<6> joints = sample_joints(abb_irb120_operating_region().limits, 100, 78);
   PointRows points(100, 3), actual(100, 3);
   for (Index i = 0; i < 100; ++i) {
-    points.row(i) = arm.position(joints.row(i).transpose()).transpose();
-    actual.row(i) = actual_arm().position(joints.row(i).transpose()).transpose();
+    set_point(points, i, arm.position(configuration(joints, i)));
+    set_point(actual, i, actual_arm().position(configuration(joints, i)));
   }
   const Isometry3 base = register_points(points, actual);
   double out = 0;
-  for (Index i = 0; i < 100; ++i)
-    out += (base * Vector3(points.row(i).transpose()) - Vector3(actual.row(i).transpose())).norm() / 100;
+  for (Index i = 0; i < 100; ++i) out += (transformed(base, point(points, i)) - point(actual, i)).norm() / 100;
   return out;
 }
 
@@ -54,7 +54,7 @@ inline vernier::Contact touched(const vernier::VirtualObject& object, const char
 /// n zeros, the last m of them another value.
 inline vernier::VectorX lengths(vernier::Index n, vernier::Index m = 0, double value = 0) {
   vernier::VectorX out = vernier::VectorX::Zero(n);
-  out.tail(m).setConstant(value);
+  for (vernier::Index k = n - m; k < n; ++k) out(k) = value;
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gauss_newton.hpp"
+#include "real_matrix.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/statistics.hpp"
@@ -20,6 +21,9 @@
 namespace vernier::arm_prior_test {
 namespace {
 
+using vernier_test::difference;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 using Chain = DhChain<6>;
 using Actual = Framed<WithJointErrors<Chain>>;
 
@@ -43,7 +47,7 @@ Actual arm(std::uint64_t geometry, const JointErrors& errors, double x) {
 /// The same joint functions, changed by a share of their sizes.
 JointErrors changed(const JointErrors& before, double share, std::uint64_t seed) {
   const JointErrors other = joint_errors(seed);
-  return {before.terms(), before.coefficients() + share * other.coefficients()};
+  return {before.terms(), before.coefficients() + share * RealMatrix(other.coefficients())};
 }
 
 Dataset<6> measured(const Actual& actual, Index poses, std::uint64_t seed) {
@@ -151,7 +155,6 @@ TEST(ArmPrior, CoversWhatWasMeasuredBefore) {
   EXPECT_LT(position_errors(found.model(), measured(actual, 200, 9)).mean(), 0.1e-3);
 }
 
-// N(m, S + kappa^2 V0) of three unknowns by hand; the first is geometric.
 // A third calibration starts from the sizes that joint errors were expected to have at first, not from none.
 TEST(ArmPrior, IsHandedOnWithTheExpectedSizes) {
   const JointErrors errors = joint_errors(5);
@@ -161,10 +164,12 @@ TEST(ArmPrior, IsHandedOnWithTheExpectedSizes) {
   const Index coefficients = prior.estimate.arm.terms().size();
   ASSERT_EQ(found.arm.terms().size(), coefficients);
   ASSERT_GT(coefficients, 100);
-  const VectorX expected = prior.estimate.arm.precisions(), handed_on = found.arm.precisions();
-  EXPECT_GT(expected.tail(coefficients).minCoeff(), 0);
-  EXPECT_EQ(handed_on.tail(coefficients), expected.tail(coefficients));
-  EXPECT_EQ(handed_on.head(handed_on.size() - coefficients).maxCoeff(), 0);
+  const RealMatrix expected = prior.estimate.arm.precisions(), handed_on = found.arm.precisions();
+  const Index geometric = handed_on.rows() - coefficients;
+  const RealMatrix sizes = expected.block(expected.rows() - coefficients, 0, coefficients, 1);
+  for (Index k = 0; k < coefficients; ++k) EXPECT_GT(sizes(k), 0);
+  EXPECT_EQ(handed_on.block(geometric, 0, coefficients, 1), sizes);
+  EXPECT_EQ(handed_on.block(0, 0, geometric, 1).largest(), 0);
 }
 
 // Of an earlier calibration the chain is known, from its first parameter to its last; frames are not.
@@ -182,18 +187,19 @@ TEST(TransferredUnknownsWhiteBox, FramesAreNotTransferred) {
   EXPECT_EQ(unknowns[2].precision, 0);
 }
 
+// N(m, S + kappa^2 V0) of three unknowns by hand; the first is geometric.
 TEST(TransferredUnknownsWhiteBox, PriorByHand) {
-  detail::TransferredUnknowns known{{2, 0}, 1, Eigen::Vector2d(0.5, -1), MatrixX(2, 2), Eigen::Vector2d(4, 9)};
-  known.covariance << 1, 0.5, 0.5, 2;
+  const detail::TransferredUnknowns known{
+      {2, 0}, 1, vector({0.5, -1}), RealMatrix(2, 2, {1, 0.5, 0.5, 2}), vector({4, 9})};
   const JointPrior prior = known.prior(3, 0.5, 2);
   // S + diag(0.25 * 4, 4 * 9) = [2, 0.5; 0.5, 38], whose determinant is 75.75
   EXPECT_EQ(prior.unknowns, 2);
-  EXPECT_EQ(prior.mean, Vector3(-1, 0, 0.5));
+  EXPECT_EQ(RealMatrix(prior.mean), vector({-1, 0, 0.5}));
   EXPECT_NEAR(prior.precision(2, 2), 38 / 75.75, 1e-12);
   EXPECT_NEAR(prior.precision(0, 0), 2 / 75.75, 1e-12);
   EXPECT_NEAR(prior.precision(0, 2), -0.5 / 75.75, 1e-12);
-  EXPECT_EQ(prior.precision.row(1).norm(), 0);
-  EXPECT_NEAR(prior.cost(Vector3(0, 7, 0.5)), 2 / 75.75, 1e-12);
+  EXPECT_EQ(RealMatrix(prior.precision).row(1).norm(), 0);
+  EXPECT_NEAR(prior.cost(vector({0, 7, 0.5})), 2 / 75.75, 1e-12);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "complaint.hpp"
 #include "gauss_newton.hpp"
+#include "real_matrix.hpp"
 #include "touched_objects.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/identification/frames.hpp"
@@ -58,7 +59,8 @@ TEST(ContactsBesidePoses, NeedPosesOfTheSameArm) {
   const Dataset<6> data = poses(1e-5);
   const auto start =
       identify_by_gauss_newton(nominal_arm(), data, {.frames = Frames::base_and_tool}, {.loss = Loss::squared});
-  const std::vector five{Contact("p", ContactKind::plane, three_planes(true)[0].joints().leftCols(5))};
+  const vernier_test::RealMatrix joints = three_planes(true)[0].joints();
+  const std::vector five{Contact("p", ContactKind::plane, joints.block(0, 0, joints.rows(), 5))};
   const auto fit = [&](std::span<const Dataset<6>> stations, std::span<const Distances<6>> wires) {
     return vernier_test::complaint(
         [&] { (void)fit_error_model(start, stations, wires, geometry_alone, {}, {}, five); });

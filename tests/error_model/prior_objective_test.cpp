@@ -5,25 +5,28 @@
 #include <gtest/gtest.h>
 
 #include "random_blocks.hpp"
+#include "real_matrix.hpp"
 
 namespace vernier::prior_objective_test {
 namespace {
 
 using vernier_test::RandomBlocks;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 
 /// The joints with terms are the first and the last; two of the dense unknowns are elastic.
 TEST(PriorObjective, IsTheErrorOfPosesLeftOutWithThePriorsItNames) {
   const RandomBlocks poses(40, 21, false);
   const NormalEquations normal = poses.normal();
   const VectorX before = VectorX::LinSpaced(15, 1, 2), steps = VectorX::Zero(15);
-  const VectorX relative = (VectorX(10) << 1, 1, 0.5, 0.5, 1, 1, 0.5, 0.5, 0.25, 0.25).finished();
+  const VectorX relative = vector({1, 1, 0.5, 0.5, 1, 1, 0.5, 0.5, 0.25, 0.25});
   poses.with_system([&](const BlockSystem& system) {
     const PriorObjective objective(system, normal, before, steps, 2, relative, 3);
     ASSERT_EQ(objective.dimension(), 4);  // elastic, two joints, exponent
     EXPECT_NO_THROW(objective.box().validate());
-    const Eigen::Vector4d at(1, 2, -1, 1.5);
+    const RealMatrix at = vector({1, 2, -1, 1.5});
     const VectorX precisions = objective.precisions(at);
-    EXPECT_EQ(precisions.head(3), before.head(3));  // of geometry
+    for (Index k = 0; k < 3; ++k) EXPECT_EQ(precisions(k), before(k));  // of geometry
     EXPECT_DOUBLE_EQ(precisions(3), 10);
     EXPECT_DOUBLE_EQ(precisions(4), 10);
     EXPECT_DOUBLE_EQ(precisions(5), 100);          // a first harmonic
@@ -31,10 +34,12 @@ TEST(PriorObjective, IsTheErrorOfPosesLeftOutWithThePriorsItNames) {
     EXPECT_DOUBLE_EQ(precisions(9), 0.1);          // the last joint
     EXPECT_DOUBLE_EQ(precisions(14), 0.1 / 0.25);  // its fourth
     const FactorisedEquations solved(normal, precisions, steps);
-    const double expected = leave_one_out_errors(system, solved, 3).colwise().norm().mean();
+    const RealMatrix errors = RealMatrix::of(leave_one_out_errors(system, solved, 3));
+    double expected = 0;
+    for (Index k = 0; k < errors.cols(); ++k) expected += errors.col(k).norm() / static_cast<double>(errors.cols());
     EXPECT_DOUBLE_EQ(objective.error(precisions), expected);
-    MatrixX population(4, 2);
-    population << Eigen::Vector4d::Zero(), at;
+    RealMatrix population(4, 2);  // zeros, and these
+    population.set_block(0, 1, at);
     VectorX fitness(2);
     objective(population, fitness);
     EXPECT_DOUBLE_EQ(fitness(1), expected);

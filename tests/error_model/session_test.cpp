@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
 #include "gauss_newton.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
@@ -19,6 +22,7 @@
 namespace vernier::session_test {
 namespace {
 
+using vernier_test::RealMatrix;
 using Chain = DhChain<6>;
 using Arm = ErrorModel<Chain>::Arm;
 
@@ -41,10 +45,10 @@ Dataset<6> visited(const ErrorModel<Chain>& actual, const JointRows<6>& joints, 
   Rng rng(seed);
   PointRows positions(joints.rows(), 3), orientations(joints.rows(), 3);
   for (Index i = 0; i < joints.rows(); ++i) {
-    const Isometry3 pose =
-        motion(i) * actual.approached_from(previous.row(i).transpose()).pose(joints.row(i).transpose());
-    positions.row(i) = pose.translation().transpose();
-    orientations.row(i) = log_so3(pose.linear()).transpose();
+    const auto approached = actual.approached_from(configuration(previous, i));
+    const Isometry3 pose = composed(motion(i), approached.pose(configuration(joints, i)));
+    set_point(positions, i, translation(pose));
+    set_point(orientations, i, log_so3(rotation(pose)));
     for (int k = 0; k < 3; ++k) {
       positions(i, k) += 0.02e-3 * rng.normal();
       orientations(i, k) += 0.05e-3 * rng.normal();
@@ -55,8 +59,10 @@ Dataset<6> visited(const ErrorModel<Chain>& actual, const JointRows<6>& joints, 
 
 JointRows<6> rows_before(const JointRows<6>& joints) {
   JointRows<6> out(joints.rows(), 6);
-  out.row(0).setConstant(std::numeric_limits<double>::quiet_NaN());
-  out.bottomRows(joints.rows() - 1) = joints.topRows(joints.rows() - 1);
+  for (Index j = 0; j < 6; ++j) {
+    out(0, j) = std::numeric_limits<double>::quiet_NaN();
+    for (Index i = 1; i < joints.rows(); ++i) out(i, j) = joints(i - 1, j);
+  }
   return out;
 }
 
@@ -67,6 +73,13 @@ FittedErrorModel<Chain> fitted(const Dataset<6>& data) {
   const auto start = vernier_test::identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
   EXPECT_TRUE(start.converged()) << start.message;
   return fit_error_model(start, std::vector<Dataset<6>>{data}, {.harmonics = 2, .num_validation_poses = 100}, squared);
+}
+
+/// All joint values of a configuration, or of several, changed by the same.
+template <class Joints>
+Joints shifted(Joints joints, double by) {
+  for (Index k = 0; k < joints.size(); ++k) joints.data()[k] += by;
+  return joints;
 }
 
 bool used(const FittedErrorModel<Chain>& found, const char* name) {
@@ -84,7 +97,7 @@ TEST(Approach, HysteresisIsFoundWithItsWidth) {
   for (int j = 0; j < 6; ++j) EXPECT_NEAR(found.arm.joint_errors().half_loop(j), 60e-6, 20e-6) << j;
   // a pose from either side, against the arm
   const auto actual = arm_with_hysteresis(60e-6);
-  const JointVector<6> q = joints.row(7).transpose(), below = q.array() - 0.4, above = q.array() + 0.4;
+  const JointVector<6> q = configuration(joints, 7), below = shifted(q, -0.4), above = shifted(q, 0.4);
   const Vector3 loop = actual.approached_from(below).position(q) - actual.approached_from(above).position(q);
   const auto& model = found.model();
   EXPECT_LT((model.approached_from(below).position(q) - model.approached_from(above).position(q) - loop).norm(),
@@ -106,17 +119,15 @@ TEST(Approach, AShuffledFileFindsNothing) {
 
 // Every joint always came from the same side: its loop cannot be told from its zero.
 TEST(Approach, ApproachesThatNeverVaryFindNothing) {
-  const JointRows<6> joints = samples(250, 1), before = joints.array() - 0.5;
+  const JointRows<6> joints = samples(250, 1), before = shifted(joints, -0.5);
   EXPECT_FALSE(used(fitted(visited(arm_with_hysteresis(60e-6), joints, before, 2, still)), "approach"));
 }
 
 /// A base that moves along a wave of 0.1 mm and 100 urad.
 Isometry3 wave(Index i, Index n) {
   const double phase = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
-  Isometry3 out = Isometry3::Identity();
-  out.translation() = 0.1e-3 * std::sin(phase) * Vector3(1, -0.5, 0.3);
-  out.linear() = exp_so3(Vector3(100e-6 * std::cos(phase) * Vector3(0, 0, 1)));
-  return out;
+  return rigid_motion(exp_so3(Vector3(0, 0, 100e-6 * std::cos(phase))),
+                      0.1e-3 * std::sin(phase) * Vector3(1, -0.5, 0.3));
 }
 
 TEST(Drift, OfTheBaseIsFollowed) {
@@ -128,13 +139,12 @@ TEST(Drift, OfTheBaseIsFollowed) {
   ASSERT_EQ(found.drift.size(), 1u);
   // where the tool was, on average over the session, nothing is left but the mean
   const Vector3 centre = found.drift.front().centre;
-  Vector3 mean = Vector3::Zero();
-  for (Index i = 0; i < n; ++i)
-    mean += (wave(i, n) * centre - found.drift.front().motion(static_cast<double>(i)) * centre) / n;
-  double worst = 0;
-  for (Index i = 0; i < n; ++i)
-    worst = std::max(worst,
-                     (wave(i, n) * centre - found.drift.front().motion(static_cast<double>(i)) * centre - mean).norm());
+  PointRows left(n, 3);
+  for (Index i = 0; i < n; ++i) {
+    const Isometry3 followed = found.drift.front().motion(static_cast<double>(i));
+    set_point(left, i, transformed(wave(i, n), centre) - transformed(followed, centre));
+  }
+  const double worst = RealMatrix(distances_from(left, centroid(left))).largest();
   EXPECT_LT(worst, 0.04e-3);
 }
 
@@ -188,13 +198,15 @@ TEST(DriftWhiteBox, ColumnsAreDerivatives) {
     ASSERT_EQ(knots.rows(), with_joints ? 12 : 6);
     ASSERT_EQ(knots.cols(), 3);
     knots.setConstant(1e-4);  // not at rest
-    const VectorX scales = (1e-4 / problem.drift_steps().array()).matrix();
+    VectorX scales = problem.drift_steps();
+    for (double& x : scales) x = 1e-4 / x;
     for (const Index pose : {Index{0}, Index{13}, Index{60}}) {
       RowBlock rows, ahead, behind;
       problem(pose, 1, &rows);
       for (const RowBlock::Local& local : rows.local) {
         if (local.state < 0) continue;
-        ASSERT_EQ(local.columns.cols(), knots.rows());
+        const RealMatrix columns = local.columns;
+        ASSERT_EQ(columns.cols(), knots.rows());
         for (Index k = 0; k < knots.rows(); ++k) {
           const double scale = scales(local.state * knots.rows() + k), step = 1e-2 * scale;
           knots(k, local.state) += step;
@@ -202,8 +214,8 @@ TEST(DriftWhiteBox, ColumnsAreDerivatives) {
           knots(k, local.state) -= 2 * step;
           problem(pose, 1, &behind);
           knots(k, local.state) += step;
-          const Vector6 slope = (ahead.residual - behind.residual) / (2 * step) * scale;
-          EXPECT_LT((slope - local.columns.col(k)).norm(), 1e-3 * local.columns.norm()) << pose << ' ' << k;
+          const RealMatrix slope = (RealMatrix(ahead.residual) - behind.residual) / (2 * step) * scale;
+          EXPECT_LT((slope - columns.col(k)).norm(), 1e-3 * columns.norm()) << pose << ' ' << k;
         }
       }
     }

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "gauss_newton.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -16,6 +19,7 @@ namespace vernier::temperature_test {
 namespace {
 
 using vernier_test::identify_by_gauss_newton;
+using vernier_test::RealMatrix;
 using Chain = DhChain<6>;
 using Model = ErrorModel<Chain>;
 
@@ -33,7 +37,9 @@ Model actual_arm() {
     rates(6 + 5 * j + 2) = 20e-6 * p(6 + 5 * j + 2);
     rates(6 + 5 * j + 3) = 5e-6 * (j % 3 - 1);
   }
-  rates.head<3>() = Vector3(15e-6, -5e-6, 10e-6);
+  rates(0) = 15e-6;
+  rates(1) = -5e-6;
+  rates(2) = 10e-6;
   return model.with_thermal({22, 10, 40, rates});
 }
 
@@ -44,9 +50,9 @@ Dataset<6> measured(const Model& actual, Index poses, double spread, std::uint64
   PointRows positions(poses, 3), orientations(poses, 3);
   for (Index i = 0; i < poses; ++i) {
     celsius(i) = rng.uniform(22 - spread, 22 + spread);
-    const Isometry3 pose = actual.at_temperature(celsius(i)).pose(joints.row(i).transpose());
-    positions.row(i) = pose.translation().transpose();
-    orientations.row(i) = log_so3(pose.linear()).transpose();
+    const Isometry3 pose = actual.at_temperature(celsius(i)).pose(configuration(joints, i));
+    set_point(positions, i, translation(pose));
+    set_point(orientations, i, log_so3(rotation(pose)));
     for (int k = 0; k < 3; ++k) {
       positions(i, k) += 0.02e-3 * rng.normal();
       orientations(i, k) += 0.05e-3 * rng.normal();
@@ -72,7 +78,10 @@ const BlockChoice* block_of(const FittedErrorModel<Chain>& found) {
 double mean_error(const Model& a, const Model& b, std::uint64_t seed) {
   const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, 200, seed);
   double sum = 0;
-  for (const auto& q : joints.rowwise()) sum += (a.position(q.transpose()) - b.position(q.transpose())).norm() / 200;
+  for (Index i = 0; i < 200; ++i) {
+    const JointVector<6> q = configuration(joints, i);
+    sum += (a.position(q) - b.position(q)).norm() / 200;
+  }
   return sum;
 }
 
@@ -93,8 +102,9 @@ TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
   EXPECT_EQ(mean_error(found.model().at_temperature(100), found.model().at_temperature(27), 3), 0);
   // the spread of an unknown temperature is in the covariance
   const JointVector<6> q = JointVector<6>::Constant(0.3);
-  const double known = found.visit_covariance(q, 1, 0, VectorX(), found.mean_temperature).topLeftCorner<3, 3>().trace(),
-               unknown = found.visit_covariance(q, 1).topLeftCorner<3, 3>().trace();
+  const auto of_position = [](const RealMatrix& covariance) { return covariance.block(0, 0, 3, 3).trace(); };
+  const double known = of_position(found.visit_covariance(q, 1, 0, VectorX(), found.mean_temperature)),
+               unknown = of_position(found.visit_covariance(q, 1));
   // many visits at once are single ones
   const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, 70, 9);
   VectorX gates = VectorX::Ones(70), celsius = VectorX::LinSpaced(70, 19, 25);
@@ -103,7 +113,7 @@ TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
   const auto all = found.visit_covariances(joints, gates, 0, MatrixX(), celsius);
   ASSERT_EQ(all.size(), 70u);
   for (const Index i : {Index{0}, Index{3}, Index{63}, Index{64}, Index{69}}) {
-    const Matrix6 one = found.visit_covariance(joints.row(i).transpose(), gates(i), 0, VectorX(), celsius(i));
+    const RealMatrix one = found.visit_covariance(configuration(joints, i), gates(i), 0, VectorX(), celsius(i));
     EXPECT_LT((all[static_cast<std::size_t>(i)] - one).norm(), 1e-12 * one.norm()) << i;
   }
   EXPECT_GT(unknown, known + 0.5 * std::pow(mean_error(found.model(), found.model().at_temperature(22 + 2.3), 3), 2));

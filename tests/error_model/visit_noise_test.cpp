@@ -6,20 +6,18 @@
 
 #include <cmath>
 
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 
 namespace vernier::visit_noise_test {
 namespace {
 
-template <class M>
-void fill(Rng& rng, M&& m, double size = 1) {
-  for (Index j = 0; j < m.cols(); ++j)
-    for (Index i = 0; i < m.rows(); ++i) m(i, j) = size * rng.normal();
-}
+using vernier_test::RealMatrix;
 
-VectorX random_vector(Rng& rng, Index n, double size = 1) {
-  VectorX out(n);
-  fill(rng, out, size);
+RealMatrix random_matrix(Rng& rng, Index rows, Index cols, double size) {
+  RealMatrix out(rows, cols);
+  for (Index j = 0; j < cols; ++j)
+    for (Index i = 0; i < rows; ++i) out(i, j) = size * rng.normal();
   return out;
 }
 
@@ -28,13 +26,10 @@ std::vector<detail::LeftOutVisit> visits(double position, double joint, double m
   Rng rng(seed);
   std::vector<detail::LeftOutVisit> out;
   for (int i = 0; i < 2000; ++i) {
-    Eigen::Matrix<double, 3, 6> jacobian;
-    fill(rng, jacobian, 0.4);
-    Matrix3 root;
-    fill(rng, root, model);
-    out.push_back(
-        {jacobian * random_vector(rng, 6, joint) + root * random_vector(rng, 3) + random_vector(rng, 3, position),
-         root * root.transpose(), jacobian * jacobian.transpose()});
+    const RealMatrix jacobian = random_matrix(rng, 3, 6, 0.4), root = random_matrix(rng, 3, 3, model);
+    const RealMatrix by_joints = jacobian * random_matrix(rng, 6, 1, joint),
+                     by_model = root * random_matrix(rng, 3, 1, 1), in_space = random_matrix(rng, 3, 1, position);
+    out.push_back({by_joints + by_model + in_space, root * root.transpose(), jacobian * jacobian.transpose()});
   }
   return out;
 }

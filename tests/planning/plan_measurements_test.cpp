@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "complaint.hpp"
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -16,11 +18,14 @@
 namespace vernier {
 namespace {
 
+using vernier_test::difference;
+using vernier_test::RealMatrix;
+
 MeasurementCandidates<6> some_candidates(Index n, std::uint64_t seed) {
   MeasurementCandidates<6> out;
   out.joints = abb_irb120_operating_region().sample(robots::abb_irb120().chain, n, seed);
   out.previous = out.joints;
-  out.previous.bottomRows(n - 1) = out.joints.topRows(n - 1);
+  for (Index i = 1; i < n; ++i) set_configuration(out.previous, i, configuration(out.joints, i - 1));
   return out;
 }
 
@@ -36,7 +41,7 @@ TEST(PlanMeasurements, RowsAreDerivativesOfThePose) {
   const MeasurementCandidates<6> at = some_candidates(5, 1);
   detail::PlannedCalibration planned{
       ArmGeometry(in_frames(robot.chain)), {.frames = Frames::base_and_tool}, {.harmonics = 4}, {}, true, 30};
-  const MatrixX rows = detail::expected_rows(planned, at.joints, at.previous);
+  const RealMatrix rows = detail::expected_rows(planned, at.joints, at.previous);
   const JointTerms terms = detail::allowed_terms(planned.nominal.chain(), planned.errors, 30);
   const VectorX sizes = detail::expected_sizes(terms, planned.errors, detail::spectra_of(planned.errors, 6));
   EXPECT_TRUE(terms.gear_ratio && terms.coupling && terms.gravity && terms.tilt && !terms.hysteresis.empty());
@@ -49,25 +54,27 @@ TEST(PlanMeasurements, RowsAreDerivativesOfThePose) {
       coefficients(k) = (sign ? 1 : -1) * step * sizes(k);
       const WithJointErrors<DhChain<6>> arm(robot.chain, JointErrors(terms, coefficients));
       for (Index i = 0; i < 5; ++i) {
-        const JointVector<6> from = at.previous.row(i).transpose();
-        ends[static_cast<std::size_t>(sign)].push_back(arm.pose_from(from.data(), at.joints.row(i).transpose()));
+        const JointVector<6> from = configuration(at.previous, i);
+        ends[static_cast<std::size_t>(sign)].push_back(arm.pose_from(from.data(), configuration(at.joints, i)));
       }
     }
     for (Index i = 0; i < 5; ++i) {
       const auto& low = ends[0][static_cast<std::size_t>(i)];
       const auto& high = ends[1][static_cast<std::size_t>(i)];
-      Vector6 expected;
-      expected.head<3>() = (high.translation() - low.translation()) / (2 * step * planned.sensors.position_sigma);
-      expected.tail<3>() =
-          log_so3(Matrix3(high.linear() * low.linear().transpose())) / (2 * step * planned.sensors.orientation_sigma);
+      const Vector3 shift = translation(high) - translation(low),
+                    turn = log_so3(rotation(composed(high, inverse_of(low))));
+      RealMatrix expected(6, 1);
+      expected.set_block(0, 0, RealMatrix(shift) / (2 * step * planned.sensors.position_sigma));
+      expected.set_block(3, 0, RealMatrix(turn) / (2 * step * planned.sensors.orientation_sigma));
       EXPECT_LT((rows.block(6 * i, geometric + k, 6, 1) - expected).norm(), 1e-5 * (1 + expected.norm()))
           << terms.names()[static_cast<std::size_t>(k)] << ", pose " << i;
     }
   }
   planned.oriented = false;
-  const MatrixX positions = detail::expected_rows(planned, at.joints, at.previous);
+  const RealMatrix positions = detail::expected_rows(planned, at.joints, at.previous);
   ASSERT_EQ(positions.rows(), 15);
-  for (Index i = 0; i < 5; ++i) EXPECT_EQ(positions.middleRows(3 * i, 3), rows.middleRows(6 * i, 3));
+  for (Index i = 0; i < 5; ++i)
+    EXPECT_EQ(positions.block(3 * i, 0, 3, rows.cols()), rows.block(6 * i, 0, 3, rows.cols()));
 }
 
 TEST(PlanMeasurements, MoreInformationThanByChanceAndTheFirstOnesAreThePlanOfFewer) {
@@ -100,19 +107,24 @@ TEST(PlanMeasurements, TheBoundHolds) {
   EXPECT_LT(plan.bound, 1.2 * plan.log_det(15));
 }
 
+/// Sum of the variances of predicted rows, their unknowns known from measured rows and a prior of unit variances.
+double variance_of(const RealMatrix& predicted, const RealMatrix& measured) {
+  const RealMatrix information = RealMatrix::identity(measured.cols()) + measured.transpose() * measured;
+  return (predicted * information.solve_by_cholesky(predicted.transpose())).trace();
+}
+
 TEST(PlanMeasurements, ARegionIsPredictedBetterByAPlanForIt) {
   const MeasurementCandidates<6> candidates = some_candidates(300, 4);
   const auto chain = robots::abb_irb120().chain;
   JointRows<6> region = some_candidates(60, 5).joints;
-  region.leftCols<3>() = 0.3 * region.leftCols<3>();
+  for (Index i = 0; i < 60; ++i)
+    for (Index j = 0; j < 3; ++j) region(i, j) *= 0.3;
   PlanOptions options = few_harmonics(30);
   const auto variance = [&](const MeasurementPlan<6>& plan) {
     const detail::PlannedCalibration planned{
         ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, false, 30};
-    const MatrixX rows = detail::expected_rows(planned, plan.joints, MatrixX());
-    const MatrixX of_region = detail::expected_rows(planned, region, MatrixX());
-    const MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()) + rows.transpose() * rows;
-    return (of_region * information.llt().solve(of_region.transpose())).trace();
+    return variance_of(detail::expected_rows(planned, region, MatrixX()),
+                       detail::expected_rows(planned, plan.joints, MatrixX()));
   };
   const double general = variance(plan_measurements(chain, candidates, options, {}, region));
   options.criterion = DesignCriterion::region_variance;
@@ -129,13 +141,9 @@ TEST(PlanMeasurements, RelativeErrorsAreThoseOfTheRegion) {
   const auto plan = plan_measurements(chain, candidates, options, {}, region);
   const detail::PlannedCalibration planned{
       ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, false, 30};
-  const MatrixX rows = detail::expected_rows(planned, plan.joints, MatrixX());
-  const MatrixX of_region = detail::expected_rows(planned, region, MatrixX());
-  const auto variance = [&](Index count) {
-    const MatrixX some = rows.topRows(3 * count);
-    const MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()) + some.transpose() * some;
-    return (of_region * information.llt().solve(of_region.transpose())).trace();
-  };
+  const RealMatrix rows = detail::expected_rows(planned, plan.joints, MatrixX());
+  const RealMatrix of_region = detail::expected_rows(planned, region, MatrixX());
+  const auto variance = [&](Index count) { return variance_of(of_region, rows.block(0, 0, 3 * count, rows.cols())); };
   for (const Index count : {0, 10, 29})
     EXPECT_NEAR(plan.relative_error(count) / std::sqrt(variance(count) / variance(30)), 1, 1e-6) << count;
 }
@@ -148,7 +156,8 @@ TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   measured.joints = plan.joints;
   measured.previous.resize(20, 6);
   for (Index i = 0; i < 20; ++i)
-    measured.previous.row(i) = candidates.previous.row(plan.chosen[static_cast<std::size_t>(i)]);
+    set_configuration(measured.previous, i,
+                      configuration(candidates.previous, plan.chosen[static_cast<std::size_t>(i)]));
   const auto more = plan_measurements(chain, candidates, few_harmonics(10), measured);
   PlanOptions both = few_harmonics(30);
   const auto at_once = plan_measurements(chain, candidates, both);
@@ -167,10 +176,10 @@ TEST(PlanMeasurements, VisitsRegisterFirstAndCheckRepeatedly) {
   const PointRows points = chain.positions(plan.joints);
   double widest = 0;
   for (Index i = 0; i < 45; ++i)
-    for (Index j = 0; j < i; ++j) widest = std::max(widest, (points.row(i) - points.row(j)).norm());
-  EXPECT_DOUBLE_EQ((points.row(plan.visits[0]) - points.row(plan.visits[1])).norm(), widest);
-  const Vector3 a = points.row(plan.visits[1]) - points.row(plan.visits[0]),
-                b = points.row(plan.visits[2]) - points.row(plan.visits[0]);
+    for (Index j = 0; j < i; ++j) widest = std::max(widest, (point(points, i) - point(points, j)).norm());
+  const Vector3 first = point(points, plan.visits[0]), a = point(points, plan.visits[1]) - first,
+                b = point(points, plan.visits[2]) - first;
+  EXPECT_DOUBLE_EQ(a.norm(), widest);
   EXPECT_GT(a.cross(b).norm() / a.norm(), 0.3 * widest);  // far from the line of the other two
 }
 
@@ -199,15 +208,18 @@ TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
   MeasurementConstraints constraints{.tool_box = ToolBox{{0, -0.4, 0.1}, {0.8, 0.4, 0.9}},
                                      .tracker = Tracker{.position = {3, 0, 0.5}, .acceptance = 1}};
   const auto found = sample_candidates(robot.chain, robot.limits, constraints, 200, 3);
-  EXPECT_EQ(found.joints, sample_candidates(robot.chain, robot.limits, constraints, 200, 3).joints);
+  EXPECT_EQ(difference(found.joints, sample_candidates(robot.chain, robot.limits, constraints, 200, 3).joints), 0);
   for (Index i = 0; i < 200; ++i) {
-    const JointVector<6> q = found.joints.row(i).transpose();
+    const JointVector<6> q = configuration(found.joints, i);
     const Isometry3 pose = robot.chain.pose(q);
-    EXPECT_TRUE((q.array() >= robot.limits.lower.array() + 0.05 - 1e-12).all());
-    EXPECT_TRUE((pose.translation().array() >= constraints.tool_box->lower.array()).all());
-    EXPECT_TRUE((pose.translation().array() <= constraints.tool_box->upper.array()).all());
-    const Vector3 beam = (constraints.tracker->position - pose.translation()).normalized();
-    EXPECT_GE(beam.dot(pose.linear().col(2)), std::cos(1.0) - 1e-12);
+    const Vector3 position = translation(pose), axis(pose(0, 2), pose(1, 2), pose(2, 2));
+    for (Index j = 0; j < 6; ++j) EXPECT_GE(q(j), robot.limits.lower(j) + 0.05 - 1e-12);
+    for (Index c = 0; c < 3; ++c) {
+      EXPECT_GE(position(c), constraints.tool_box->lower(c));
+      EXPECT_LE(position(c), constraints.tool_box->upper(c));
+    }
+    const Vector3 beam = (constraints.tracker->position - position).normalized();
+    EXPECT_GE(beam.dot(axis), std::cos(1.0) - 1e-12);
   }
   EXPECT_EQ(found.rejected[static_cast<std::size_t>(Rejection::none)], 0);
   for (const Rejection r : {Rejection::joint_limits, Rejection::tool_box, Rejection::acceptance})
@@ -226,7 +238,7 @@ TEST(PlanMeasurements, EnoughIsWhereTenMoreGainLittle) {
   plan.chosen.resize(30);
   plan.relative_error = VectorX::LinSpaced(31, 4, 1);
   EXPECT_EQ(plan.enough(), 30);
-  plan.relative_error.tail(16).setConstant(plan.relative_error(15));
+  for (Index k = 16; k < 31; ++k) plan.relative_error(k) = plan.relative_error(15);
   EXPECT_EQ(plan.enough(), 15);
 }
 

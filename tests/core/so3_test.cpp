@@ -4,19 +4,25 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/core/check.hpp"
 
 namespace vn = vernier;
+using vernier_test::difference;
 using vernier_test::random_direction;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 
 namespace so3_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+const RealMatrix identity = RealMatrix::identity(3);
 
 /// Angles where something switches, and between.
 std::vector<double> angles() {
@@ -27,21 +33,26 @@ std::vector<double> angles() {
 
 TEST(Skew, IsTheCrossProduct) {
   const vn::Vector3 a(1, 2, 3), b(-4, 5, 0.5);
-  EXPECT_EQ(vn::skew(a) * b, a.cross(b));
-  EXPECT_EQ(vn::skew(a).transpose(), -vn::skew(a));
+  const RealMatrix of_a = vn::skew(a);
+  EXPECT_EQ(of_a * b, RealMatrix(vn::Vector3(a.cross(b))));
+  EXPECT_EQ(of_a.transpose(), -of_a);
 }
 
 /// Rodrigues' formula in extended precision.
 vn::Matrix3 rodrigues(const vn::Vector3& r) {
   using Real = long double;
-  const Eigen::Matrix<Real, 3, 1> v = r.cast<Real>();
-  const Real angle = v.norm();
-  if (angle < 1e-100L) return vn::Matrix3::Identity() + vn::skew(r);
-  const Eigen::Matrix<Real, 3, 3> k = vn::skew((v / angle).eval());
+  const Real x = r(0), y = r(1), z = r(2), angle = std::sqrt(x * x + y * y + z * z);
+  const bool tiny = angle < 1e-100L;
   const Real half = std::sin(angle / 2);
-  const Eigen::Matrix<Real, 3, 3> m =
-      Eigen::Matrix<Real, 3, 3>::Identity() + std::sin(angle) * k + 2 * half * half * k * k;
-  return m.cast<double>();
+  const Real odd = tiny ? 1 : std::sin(angle) / angle, even = tiny ? 0 : 2 * (half / angle) * (half / angle);
+  const Real k[3][3] = {{0, -z, y}, {z, 0, -x}, {-y, x, 0}};
+  vn::Matrix3 out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Real square = k[i][0] * k[0][j] + k[i][1] * k[1][j] + k[i][2] * k[2][j];
+      out(i, j) = static_cast<double>((i == j ? 1 : 0) + odd * k[i][j] + even * square);
+    }
+  return out;
 }
 
 TEST(ExpSo3, IsRodriguesFormulaAtEveryAngle) {
@@ -50,8 +61,8 @@ TEST(ExpSo3, IsRodriguesFormulaAtEveryAngle) {
     for (int i = 0; i < 50; ++i) {
       const vn::Vector3 r = angle * random_direction(rng);
       const vn::Matrix3 rotation = vn::exp_so3(r);
-      ASSERT_LE((rotation - rodrigues(r)).cwiseAbs().maxCoeff(), 1e-15) << angle;
-      ASSERT_LE((rotation * rotation.transpose() - vn::Matrix3::Identity()).cwiseAbs().maxCoeff(), 2e-15) << angle;
+      ASSERT_LE(difference(rotation, rodrigues(r)), 1e-15) << angle;
+      ASSERT_LE(difference(RealMatrix(rotation) * RealMatrix(rotation).transpose(), identity), 2e-15) << angle;
       // To all digits of the angle, however small: the odd part is sin(t)/t r.
       const vn::Vector3 odd(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0),
                             rotation(1, 0) - rotation(0, 1));
@@ -60,15 +71,14 @@ TEST(ExpSo3, IsRodriguesFormulaAtEveryAngle) {
       }
     }
   }
-  EXPECT_EQ(vn::exp_so3(vn::Vector3::Zero()), vn::Matrix3::Identity());
+  EXPECT_EQ(RealMatrix(vn::exp_so3(vn::Vector3::Zero())), identity);
 }
 
 TEST(ExpSo3, QuarterTurnsByHand) {
-  vn::Matrix3 about_z;
-  about_z << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  EXPECT_LE((vn::exp_so3(vn::Vector3(0, 0, pi / 2)) - about_z).norm(), 1e-15);
-  const vn::Matrix3 half = vn::exp_so3(vn::Vector3(pi, 0, 0));
-  EXPECT_LE((half - vn::Matrix3(vn::Vector3(1, -1, -1).asDiagonal())).norm(), 1e-15);
+  const RealMatrix about_z(3, 3, {0, -1, 0, 1, 0, 0, 0, 0, 1});
+  EXPECT_LE((RealMatrix(vn::exp_so3(vn::Vector3(0, 0, pi / 2))) - about_z).norm(), 1e-15);
+  const RealMatrix half = vn::exp_so3(vn::Vector3(pi, 0, 0));
+  EXPECT_LE((half - RealMatrix::diagonal(vector({1, -1, -1}))).norm(), 1e-15);
 }
 
 TEST(LogSo3, UndoesExpAtEveryAngle) {
@@ -85,16 +95,18 @@ TEST(LogSo3, UndoesExpAtEveryAngle) {
       ASSERT_LE(back.norm(), pi * (1 + 1e-15));
     }
   }
-  EXPECT_EQ(vn::log_so3(vn::Matrix3::Identity()), vn::Vector3::Zero());
+  EXPECT_EQ(RealMatrix(vn::log_so3(vn::Matrix3::Identity())), vector({0, 0, 0}));
 }
 
 TEST(LogSo3, HalfTurnsAboutEveryAxis) {
   // R = 2 a a' - I exactly; its logarithm is pi a, up to sign.
   vn::Rng rng(3);
-  std::vector<vn::Vector3> axes{vn::Vector3::UnitX(), vn::Vector3::UnitY(), vn::Vector3::UnitZ()};
+  std::vector<vn::Vector3> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int i = 0; i < 200; ++i) axes.push_back(random_direction(rng));
   for (const vn::Vector3& a : axes) {
-    const vn::Matrix3 rotation = 2 * a * a.transpose() - vn::Matrix3::Identity();
+    vn::Matrix3 rotation;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) rotation(i, j) = 2 * a(i) * a(j) - (i == j ? 1 : 0);
     const vn::Vector3 r = vn::log_so3(rotation);
     EXPECT_LE(std::min((r - pi * a).norm(), (r + pi * a).norm()), 4e-15);
   }
@@ -105,8 +117,11 @@ vn::Matrix3 left_jacobian_by_differences(const vn::Vector3& r) {
   constexpr double h = 1e-5;
   vn::Matrix3 out;
   for (int k = 0; k < 3; ++k) {
-    const vn::Vector3 d = h * vn::Vector3::Unit(k);
-    out.col(k) = vn::log_so3(vn::exp_so3(vn::Vector3(r + d)) * vn::exp_so3(vn::Vector3(r - d)).transpose()) / (2 * h);
+    vn::Vector3 ahead = r, behind = r;
+    ahead(k) += h;
+    behind(k) -= h;
+    const vn::Vector3 turned = vn::log_so3(vn::exp_so3(ahead) * vn::exp_so3(behind).transpose());
+    for (int i = 0; i < 3; ++i) out(i, k) = turned(i) / (2 * h);
   }
   return out;
 }
@@ -116,23 +131,22 @@ TEST(LeftJacobianSo3, IsTheDerivativeOfExpAndItsInverseTheInverse) {
   for (const double angle : angles()) {
     for (int i = 0; i < 20; ++i) {
       const vn::Vector3 r = angle * random_direction(rng);
-      const vn::Matrix3 jacobian = vn::left_jacobian_so3(r);
-      ASSERT_LE((jacobian - left_jacobian_by_differences(r)).cwiseAbs().maxCoeff(), 1e-9) << angle;
-      ASSERT_LE((jacobian * vn::left_jacobian_inverse_so3(r) - vn::Matrix3::Identity()).cwiseAbs().maxCoeff(), 4e-15)
-          << angle;
+      const RealMatrix jacobian = vn::left_jacobian_so3(r);
+      ASSERT_LE(difference(jacobian, left_jacobian_by_differences(r)), 1e-9) << angle;
+      ASSERT_LE(difference(jacobian * vn::left_jacobian_inverse_so3(r), identity), 4e-15) << angle;
       // A rate along r is an angular velocity along r; and Jl(-r) = Jl(r)'.
       ASSERT_LE((jacobian * r - r).norm(), 1e-15 * std::max(angle, 1e-300) * 4) << angle;
-      ASSERT_LE((vn::left_jacobian_so3(-r) - jacobian.transpose()).cwiseAbs().maxCoeff(), 1e-15) << angle;
+      ASSERT_LE(difference(vn::left_jacobian_so3(-r), jacobian.transpose()), 1e-15) << angle;
     }
   }
-  EXPECT_EQ(vn::left_jacobian_so3(vn::Vector3::Zero()), vn::Matrix3::Identity());
-  EXPECT_EQ(vn::left_jacobian_inverse_so3(vn::Vector3::Zero()), vn::Matrix3::Identity());
+  EXPECT_EQ(RealMatrix(vn::left_jacobian_so3(vn::Vector3::Zero())), identity);
+  EXPECT_EQ(RealMatrix(vn::left_jacobian_inverse_so3(vn::Vector3::Zero())), identity);
 }
 
 TEST(LeftJacobianSo3, SeriesAndFormulaMeet) {
   const vn::Vector3 axis = vn::Vector3(2, -1, 2) / 3;
   const auto jump = [&](auto&& f) {
-    return (f((1e-2 * (1 + 1e-12)) * axis) - f((1e-2 * (1 - 1e-12)) * axis)).cwiseAbs().maxCoeff();
+    return difference(f((1e-2 * (1 + 1e-12)) * axis), f((1e-2 * (1 - 1e-12)) * axis));
   };
   EXPECT_LE(jump([](const vn::Vector3& r) { return vn::left_jacobian_so3(r); }), 1e-13);
   EXPECT_LE(jump([](const vn::Vector3& r) { return vn::left_jacobian_inverse_so3(r); }), 1e-13);
@@ -141,26 +155,25 @@ TEST(LeftJacobianSo3, SeriesAndFormulaMeet) {
 TEST(LeftJacobianSo3, InverseIsFiniteBelowAFullTurn) {
   const vn::Vector3 axis = vn::Vector3(2, -1, 2) / 3;
   for (const double angle : {pi, 4.0, 5.0, 6.0}) {
-    const vn::Matrix3 product = vn::left_jacobian_so3(angle * axis) * vn::left_jacobian_inverse_so3(angle * axis);
-    EXPECT_LE((product - vn::Matrix3::Identity()).cwiseAbs().maxCoeff(), 1e-13) << angle;
+    const RealMatrix jacobian = vn::left_jacobian_so3(angle * axis);
+    EXPECT_LE(difference(jacobian * vn::left_jacobian_inverse_so3(angle * axis), identity), 1e-13) << angle;
   }
 }
 
 TEST(PoseDifference, TakesOneFrameToTheOther) {
   vn::Rng rng(5);
   for (int i = 0; i < 100; ++i) {
-    vn::Isometry3 from = vn::Isometry3::Identity(), to = from;
-    from.linear() = vn::exp_so3(rng.uniform(0, 3) * random_direction(rng));
-    from.translation() = random_direction(rng);
+    const vn::Matrix3 orientation = vn::exp_so3(rng.uniform(0, 3) * random_direction(rng));
+    const vn::Vector3 place = random_direction(rng);
     const vn::Vector3 turn = rng.uniform(0, 3) * random_direction(rng), shift = random_direction(rng);
-    to.linear() = vn::exp_so3(turn) * from.linear();
-    to.translation() = from.translation() + shift;
-    const vn::Vector6 e = vn::pose_difference(to, from);
-    EXPECT_LE((e.head<3>() - shift).norm(), 1e-15);
-    EXPECT_LE((e.tail<3>() - turn).norm(), 1e-14);
-    EXPECT_LE((vn::rotation_difference(to.linear(), from.linear()) - turn).norm(), 1e-14);
+    const vn::Isometry3 from = vn::rigid_motion(orientation, place);
+    const vn::Isometry3 to = vn::rigid_motion(vn::exp_so3(turn) * orientation, place + shift);
+    const RealMatrix e = vn::pose_difference(to, from);
+    EXPECT_LE((e.block(0, 0, 3, 1) - shift).norm(), 1e-15);
+    EXPECT_LE((e.block(3, 0, 3, 1) - turn).norm(), 1e-14);
+    EXPECT_LE((vn::rotation_difference(vn::rotation(to), vn::rotation(from)) - turn).norm(), 1e-14);
     for (const double fraction : {0.0, 0.3, 1.0}) {  // so far on the way
-      const vn::Vector6 passed = vn::pose_difference(vn::interpolated(from, to, fraction), from);
+      const RealMatrix passed = vn::pose_difference(vn::interpolated(from, to, fraction), from);
       EXPECT_LE((passed - fraction * e).norm(), 1e-14);
     }
   }

@@ -21,7 +21,6 @@
 namespace vernier::arm_prior_test {
 namespace {
 
-using vernier_test::difference;
 using vernier_test::RealMatrix;
 using vernier_test::vector;
 using Chain = DhChain<6>;

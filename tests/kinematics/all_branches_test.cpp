@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <numbers>
 #include <set>
 #include <string>
@@ -13,6 +12,7 @@
 #include "allocation_counter.hpp"
 #include "branch_helpers.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
@@ -26,6 +26,7 @@ using vernier_test::as_made;
 using vernier_test::joint_difference;
 using vernier_test::joint_distance;
 using vernier_test::random_joints;
+using vernier_test::RealMatrix;
 
 constexpr double pi = std::numbers::pi;
 constexpr double held_value = 0.3;
@@ -44,11 +45,14 @@ struct UnevenJoints {
     return out;
   }
   Isometry3 pose(const JointVector<N>& q) const noexcept { return chain.pose(effective(q)); }
-  Vector3 position(const JointVector<N>& q) const noexcept { return pose(q).translation(); }
+  Vector3 position(const JointVector<N>& q) const noexcept { return translation(pose(q)); }
   Jacobian<N> jacobian(const JointVector<N>& q) const noexcept { return pose_and_jacobian(q).jacobian; }
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     PoseAndJacobian<N> out = chain.pose_and_jacobian(effective(q));
-    for (int i = 0; i < N; ++i) out.jacobian.col(i) *= 1 + 2 * amplitude * std::cos(2 * q(i) + i);
+    for (int i = 0; i < N; ++i) {
+      const double slope = 1 + 2 * amplitude * std::cos(2 * q(i) + i);
+      for (int row = 0; row < 6; ++row) out.jacobian(row, i) *= slope;
+    }
     return out;
   }
 };
@@ -63,18 +67,18 @@ JointVector<N> random_configuration(Rng& rng, int held) {
 
 /// Jacobian of the moving joints, rotations weighted as lengths.
 template <class M>
-Eigen::Matrix<double, 6, 6> weighted_jacobian(const M& model, const JointVector<M::dof>& q, int held) {
-  const Jacobian<M::dof> all = model.jacobian(q);
-  Eigen::Matrix<double, 6, 6> out;
+RealMatrix weighted_jacobian(const M& model, const JointVector<M::dof>& q, int held) {
+  const RealMatrix all = RealMatrix::of(model.jacobian(q));
+  RealMatrix out(6, 6);
   for (int j = 0, k = 0; j < M::dof; ++j)
-    if (j != held) out.col(k++) = all.col(j);
-  out.template bottomRows<3>() *= rotation_length;
+    if (j != held) out.set_block(0, k++, all.col(j));
+  out.set_block(3, 0, rotation_length * out.block(3, 0, 3, 6));
   return out;
 }
 
 template <class M>
 double smallest_singular_value(const M& model, const JointVector<M::dof>& q, int held) {
-  return Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>>(weighted_jacobian(model, q, held)).singularValues()(5);
+  return weighted_jacobian(model, q, held).singular_values()(5);
 }
 
 template <int N>
@@ -108,10 +112,11 @@ void expect_branches(const Roots& nominal, const Make& make, const std::string& 
     }
     for (const Branch<N>& branch : branches) {
       const Vector6 left = pose_difference(target, arm.pose(branch.joints));
-      position = std::max(position, left.head<3>().norm());
-      rotation = std::max(rotation, left.tail<3>().norm());
-      understated = std::max(
-          {understated, left.head<3>().norm() - branch.position_error, left.tail<3>().norm() - branch.rotation_error});
+      const double shifted = Vector3(left(0), left(1), left(2)).norm();
+      const double turned = Vector3(left(3), left(4), left(5)).norm();
+      position = std::max(position, shifted);
+      rotation = std::max(rotation, turned);
+      understated = std::max({understated, shifted - branch.position_error, turned - branch.rotation_error});
       EXPECT_TRUE(branch.within_limits);
       EXPECT_GE(branch.radius, 0);
       if (held >= 0) moved += branch.joints(held) != held_value;
@@ -160,9 +165,7 @@ TEST(AllBranches, OfSevenJointsWithOneHeld) {
 
 TEST(AllBranches, OfArmsBetweenFramesAndWithUnevenJoints) {
   const auto ur10 = robots::ur10().chain;
-  Vector6 base, tool;
-  base << 1, -2, 0.5, 0.3, -0.2, 1.1;
-  tool << 0.02, -0.03, 0.15, 0.1, 0.4, -0.7;
+  const Vector6 base{1, -2, 0.5, 0.3, -0.2, 1.1}, tool{0.02, -0.03, 0.15, 0.1, 0.4, -0.7};
   const Framed framed(ur10, FrameParameters(base), FrameParameters(tool));
   expect_branches<6>(
       ClosedForm(framed), [&](Rng& rng) { return framed.around(as_made(ur10, rng)); }, "ur10 between frames", 3000,
@@ -262,14 +265,18 @@ TEST(AllBranches, NewtonsMethodConvergesToABranchFromWithinItsRadius) {
         for (int k = 0; k < 20; ++k) {
           Vector6 direction;
           for (int j = 0; j < 6; ++j) direction(j) = rng.normal();
-          JointVector<6> q = branch.joints + 0.999 * branch.radius * direction.normalized();
-          for (int step = 0; step < 8; ++step) {
+          const double size = 0.999 * branch.radius / direction.norm();
+          JointVector<6> q;
+          for (int j = 0; j < 6; ++j) q(j) = branch.joints(j) + size * direction(j);
+          for (int iteration = 0; iteration < 8; ++iteration) {
             Vector6 error = pose_difference(target, arm.pose(q));
-            error.tail<3>() *= rotation_length;
-            q += weighted_jacobian(arm, q, -1).partialPivLu().solve(error);
+            for (int j = 3; j < 6; ++j) error(j) *= rotation_length;
+            const RealMatrix step = weighted_jacobian(arm, q, -1).solve(error);
+            for (int j = 0; j < 6; ++j) q(j) += step(j);
           }
           // at a fold, half of the digits
-          EXPECT_LT((q - branch.joints).norm(), std::max(1e-9, std::min(1e-12 / branch.sigma_min, 1e-4))) << name;
+          EXPECT_LT((RealMatrix(q) - branch.joints).norm(), std::max(1e-9, std::min(1e-12 / branch.sigma_min, 1e-4)))
+              << name;
         }
       }
     }
@@ -307,7 +314,8 @@ TEST(NearestTurn, StaysWithinLimits) {
   EXPECT_NEAR(nearest_turn(3, 0, 9, 9.2), 3 + turn, 1e-15);  // none: the nearest to the bounds
   EXPECT_NEAR(nearest_turn(3, -100, 2, 2.5), 3, 1e-15);
   const JointVector<6> joints = JointVector<6>::Constant(0.5), near = JointVector<6>::Constant(7);
-  EXPECT_LT((nearest_turns<6>(joints, near, {}) - JointVector<6>::Constant(0.5 + turn)).norm(), 1e-14);
+  const JointVector<6> turned = JointVector<6>::Constant(0.5 + turn);
+  EXPECT_LT((RealMatrix(nearest_turns<6>(joints, near, {})) - turned).norm(), 1e-14);
 }
 
 TEST(AllBranches, TakeTheTurnNearestToTheGivenJoints) {
@@ -335,7 +343,7 @@ TEST(AllBranches, TakeTheTurnNearestToTheGivenJoints) {
     const auto same = all_branches(form, arm, arm.pose(q), {.limits = robot.limits, .near = q});
     const auto* nearest = same.nearest(q);
     ASSERT_NE(nearest, nullptr);
-    EXPECT_LT((nearest->joints - q).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT(vernier_test::difference(nearest->joints, q), 1e-5);
   }
 }
 
@@ -400,12 +408,12 @@ TEST(Reach, OfTargetsThatAreNoPose) {
   const ClosedForm form(irb);
   const Isometry3 good = irb.pose({0.3, 0.4, -0.5, 0.6, 0.9, 0.8});
   std::vector<Isometry3> bad(6, good);
-  bad[0].translation().y() = std::nan("");
-  bad[1].linear()(1, 2) = std::nan("");
-  bad[2].translation().x() = std::numeric_limits<double>::infinity();
-  bad[3].linear().col(0) *= -1;  // a reflection
-  bad[4].linear() *= 1 + 1e-6;
-  bad[5].linear().setZero();
+  bad[0](1, 3) = std::nan("");
+  bad[1](1, 2) = std::nan("");
+  bad[2](0, 3) = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) bad[3](i, 0) *= -1;  // a reflection
+  bad[4] = rigid_motion(rotation(good) * (1 + 1e-6), translation(good));
+  bad[5] = rigid_motion(Matrix3::Zero(), translation(good));
   for (const Isometry3& target : bad) {
     const auto branches = all_branches(form, irb, target);
     EXPECT_EQ(branches.reach, Reach::invalid_target);
@@ -419,8 +427,8 @@ TEST(Reach, ProvenOutWhereTheArmIsTooShort) {
   const auto expect_out = [&](const auto& nominal) {
     const ClosedForm form(nominal);
     const auto arm = as_made(nominal, rng);
-    Isometry3 target = nominal.pose(random_joints<6>(rng));
-    target.translation() = 10 * vernier_test::random_direction(rng);
+    const Matrix3 orientation = rotation(nominal.pose(random_joints<6>(rng)));
+    const Isometry3 target = rigid_motion(orientation, 10 * vernier_test::random_direction(rng));
     const auto branches = all_branches(form, arm, target);
     EXPECT_EQ(branches.reach, Reach::proven_out);
     EXPECT_EQ(branches.count, 0);
@@ -444,9 +452,10 @@ struct StraightOut {
 /// @param wrist the link whose origin is farthest from axis 2
 StraightOut straight_out(const DhChain<6>& arm, const JointVector<6>& joints, int wrist) {
   const auto links = arm.links(joints);
-  const Vector3 axis = links.axis.col(1);
-  Vector3 outward = links.origin.col(wrist) - links.point.col(1);
-  outward -= axis * axis.dot(outward);
+  const Vector3 axis(links.axis(0, 1), links.axis(1, 1), links.axis(2, 1));
+  Vector3 outward;
+  for (int i = 0; i < 3; ++i) outward(i) = links.origin(i, wrist) - links.point(i, 1);
+  outward -= axis.dot(outward) * axis;
   return {joints, arm.pose(joints), outward.normalized()};
 }
 
@@ -455,8 +464,7 @@ TEST(Reach, AMicrometreInsideAndOutsideTheReach) {
     const ClosedForm form(chain);
     EXPECT_LT(std::abs(form.distances(at.joints).elbow), 1e-12) << name;
     const auto branches_at = [&](double beyond) {
-      Isometry3 target = at.pose;
-      target.translation() += beyond * at.outward;
+      const Isometry3 target = rigid_motion(rotation(at.pose), translation(at.pose) + beyond * at.outward);
       const auto branches = all_branches(form, chain, target);
       for (const auto& branch : branches)
         EXPECT_LT(pose_difference(target, chain.pose(branch.joints)).norm(), 1e-9) << name;
@@ -499,14 +507,13 @@ TEST(Reach, EachHasASentenceOfItsOwn) {
   const Isometry3 good = irb.pose({0.3, 0.4, -0.5, 0.6, 0.9, 0.8});
   const auto met = all_branches(form, irb, good);
   BranchOptions<6> narrow;
-  narrow.limits.lower.setConstant(0.001);
-  narrow.limits.upper.setConstant(0.002);
+  narrow.limits.lower = JointVector<6>::Constant(0.001);
+  narrow.limits.upper = JointVector<6>::Constant(0.002);
   const auto beyond = all_branches(form, irb, good, narrow);
-  Isometry3 away = good;
-  away.translation() *= 10 / away.translation().norm();
+  Isometry3 away = rigid_motion(rotation(good), 10 * translation(good).normalized());
   const auto out = all_branches(form, irb, away);
   const auto lost = all_branches(form, UnevenJoints<6>{irb}, away);
-  away.translation().x() = std::nan("");
+  away(0, 3) = std::nan("");
   const auto invalid = all_branches(form, irb, away);
   EXPECT_EQ(met.reach, Reach::met);
   EXPECT_EQ(met.margin, 0);
@@ -560,7 +567,7 @@ bool same_bits(const Branches<N>& a, const Branches<N>& b) {
   for (int k = 0; same && k < a.count; ++k) {
     const Branch<N>&x = a.branches[static_cast<std::size_t>(k)], &y = b.branches[static_cast<std::size_t>(k)];
     const auto numbers = [](const Branch<N>& of) {
-      return Eigen::Vector4d(of.position_error, of.rotation_error, of.sigma_min, of.radius);
+      return vernier_test::vector({of.position_error, of.rotation_error, of.sigma_min, of.radius});
     };
     same = testing::same_bits(x.joints, y.joints) && testing::same_bits(numbers(x), numbers(y)) &&
            x.singularities.values() == y.singularities.values() && x.proven == y.proven &&
@@ -574,7 +581,7 @@ TEST(AllBranches, SameBitsOnTwoCallsAndNoAllocation) {
   const auto expect_pure = [&]<int N>(const auto& form, const auto& arm, const JointVector<N>& q) {
     const Isometry3 target = arm.pose(q);
     Isometry3 away = target;
-    away.translation().x() += 10;
+    away(0, 3) += 10;
     for (const Isometry3& at : {target, away}) {
       EXPECT_TRUE(same_bits<N>(all_branches(form, arm, at), all_branches(form, arm, at)));
       EXPECT_EQ(vernier_test::allocations([&] { vernier_test::keep(all_branches(form, arm, at)); }), 0);

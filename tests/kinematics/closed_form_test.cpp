@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -12,6 +12,7 @@
 #include "branch_helpers.hpp"
 #include "complaint.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 
@@ -23,6 +24,7 @@ using detail::ArmKind;
 using vernier_test::complaint;
 using vernier_test::joint_difference;
 using vernier_test::random_joints;
+using vernier_test::RealMatrix;
 
 constexpr double pi = std::numbers::pi;
 constexpr double exact = 1e-10;  // m, and entries of rotations
@@ -38,7 +40,17 @@ ClosedForm<N> closed_form(const DhChain<N, Convention>& arm, HeldJoint held = {-
   }
 }
 
-double difference(const Isometry3& a, const Isometry3& b) { return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff(); }
+/// Largest difference of elements of two poses.
+double difference(const Isometry3& a, const Isometry3& b) {
+  double largest = 0;
+  for (Index i = 0; i < 4; ++i)
+    for (Index j = 0; j < 4; ++j) {
+      const double at = std::abs(a(i, j) - b(i, j));
+      if (std::isnan(at)) return at;
+      largest = std::max(largest, at);
+    }
+  return largest;
+}
 
 /// What the roots of one target are like.
 struct Quality {
@@ -53,7 +65,7 @@ template <class Arm, int N>
 Quality quality(const Arm& arm, const InverseRoots<N>& roots, const Isometry3& target, const JointVector<N>& q) {
   Quality out;
   for (const InverseRoot<N>& root : roots) {
-    out.in_range = out.in_range && (root.joints.array() > -pi).all() && (root.joints.array() <= pi).all();
+    for (const double angle : root.joints) out.in_range = out.in_range && angle > -pi && angle <= pi;
     if (root.margin > rounding) continue;
     ++out.roots;
     out.residual = std::max(out.residual, difference(arm.pose(root.joints), target));
@@ -293,7 +305,9 @@ TEST(ClosedForm, OfMirrorImages) {
   for (const Case& arm : cases()) {
     const auto mirror = mirror_image(arm.chain);
     const JointVector<6> q = random_joints<6>(rng);
-    EXPECT_LT(difference(mirror.pose(-q.reverse()), arm.chain.pose(q).inverse()), 1e-14) << arm.name;
+    JointVector<6> backwards;
+    for (int j = 0; j < 6; ++j) backwards(j) = -q(5 - j);
+    EXPECT_LT(difference(mirror.pose(backwards), inverse_of(arm.chain.pose(q))), 1e-14) << arm.name;
     const auto inside = internals(mirror);
     EXPECT_TRUE(inside.mirrored()) << arm.name;
     EXPECT_EQ(inside.kind(), arm.kind) << arm.name;
@@ -354,12 +368,11 @@ TEST(ClosedForm, RefusesToHoldAJointThatIsNotThere) {
 
 /// Jacobian of the moving joints.
 template <int N, class Convention>
-Eigen::Matrix<double, 6, 6> moving_jacobian(const DhChain<N, Convention>& arm, const ClosedForm<N>& form,
-                                            const JointVector<N>& q) {
-  const Jacobian<N> all = arm.jacobian(q);
-  Eigen::Matrix<double, 6, 6> out;
+RealMatrix moving_jacobian(const DhChain<N, Convention>& arm, const ClosedForm<N>& form, const JointVector<N>& q) {
+  const RealMatrix all = RealMatrix::of(arm.jacobian(q));
+  RealMatrix out(6, 6);
   for (int j = 0, k = 0; j < N; ++j)
-    if (j != form.held_joint()) out.col(k++) = all.col(j);
+    if (j != form.held_joint()) out.set_block(0, k++, all.col(j));
   return out;
 }
 
@@ -472,8 +485,8 @@ void expect_roots_at(const DhChain<N, Convention>& arm, const ClosedForm<N>& for
   const auto roots = form.roots(target, q);
   const Quality at = quality(arm, roots, target, q);
   EXPECT_GE(at.roots, 1) << name;
-  EXPECT_LT(at.residual, exact) << name << " at " << q.transpose();
-  EXPECT_LT(at.generating, generating) << name << " at " << q.transpose();
+  EXPECT_LT(at.residual, exact) << name << " at " << ::testing::PrintToString(RealMatrix::of(q));
+  EXPECT_LT(at.generating, generating) << name << " at " << ::testing::PrintToString(RealMatrix::of(q));
 }
 
 constexpr double offsets[] = {0, 1e-12, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-3};
@@ -591,19 +604,22 @@ TEST(SingularPoses, WristCentresOnAxisOne) {
   const DhChain<6>& chain = found->chain;
   const ClosedForm form(chain);
   Rng rng(16);
-  const auto off_axis = [&](const JointVector<6>& q) { return Vector3(chain.links(q).origin.col(3)).head<2>().eval(); };
+  const auto off_axis = [&](const JointVector<6>& q) {
+    const auto origins = chain.links(q).origin;
+    return vernier_test::vector({origins(0, 3), origins(1, 3)});
+  };
   int targets = 0;
   for (int i = 0; i < 50; ++i) {
     JointVector<6> q = random_joints<6>(rng);
     for (int k = 0; k < 60; ++k) {  // Newton's method on joints 2 and 3
-      Eigen::Matrix2d derivative;
+      RealMatrix derivative(2, 2);
       for (int j = 0; j < 2; ++j) {
         JointVector<6> ahead = q;
         ahead(1 + j) += 1e-6;
-        derivative.col(j) = (off_axis(ahead) - off_axis(q)) / 1e-6;
+        derivative.set_block(0, j, (off_axis(ahead) - off_axis(q)) / 1e-6);
       }
-      const Eigen::Vector2d step = derivative.fullPivLu().solve(off_axis(q));
-      q.segment<2>(1) -= step * std::min(1.0, 0.3 / step.norm());
+      const RealMatrix step = derivative.solve(off_axis(q));
+      for (int j = 0; j < 2; ++j) q(1 + j) -= step(j) * std::min(1.0, 0.3 / step.norm());
     }
     if (!(off_axis(q).norm() < 1e-15)) continue;
     ++targets;
@@ -674,13 +690,12 @@ TEST(OutOfReach, MarginSaysByHowMuch) {
   ASSERT_NEAR(form.distances(q).elbow, 0, 1e-12);
   const Isometry3 stretched = irb.pose(q);
   const Vector3 shoulder_point(0, 0, 0.29);
-  const Vector3 centre = stretched.translation() - 0.072 * stretched.linear().col(2);
+  const Vector3 tool = translation(stretched), direction(stretched(0, 2), stretched(1, 2), stretched(2, 2));
+  const Vector3 centre = tool - 0.072 * direction;
   const Vector3 outward = (centre - shoulder_point).normalized();
   ASSERT_NEAR((centre - shoulder_point).norm(), 0.27 + forearm, 1e-12);
   const auto roots_at = [&](double beyond) {
-    Isometry3 target = stretched;
-    target.translation() += beyond * outward;
-    return form.roots(target);
+    return form.roots(rigid_motion(rotation(stretched), tool + beyond * outward));
   };
   EXPECT_EQ(roots_at(-1e-6).count, 8);
   for (const auto& root : roots_at(-1e-6)) EXPECT_EQ(root.margin, 0);
@@ -691,7 +706,7 @@ TEST(OutOfReach, MarginSaysByHowMuch) {
     for (const auto& root : roots) {
       EXPECT_GT(root.margin, before);
       // the joints at the boundary come nearest
-      EXPECT_NEAR((irb.position(root.joints) - stretched.translation()).norm(), 0, 1e-2);
+      EXPECT_NEAR((irb.position(root.joints) - tool).norm(), 0, 1e-2);
     }
     before = roots.begin()->margin;
   }
@@ -714,9 +729,9 @@ TEST(ClosedForm, AgreesWithTheSimulatorOfUniversalRobots) {
                                {0.399229880032804, 0.596883650693405, -0.667781904037628}};
   for (int i = 0; i < 2; ++i) {
     SCOPED_TRACE(i);
-    Isometry3 target = arm.pose(joints[i]);
-    EXPECT_LT((target.translation() - positions[i]).norm(), 1e-9);
-    target.translation() = positions[i];  // what the simulator printed
+    const Isometry3 pose = arm.pose(joints[i]);
+    EXPECT_LT((translation(pose) - positions[i]).norm(), 1e-9);
+    const Isometry3 target = rigid_motion(rotation(pose), positions[i]);  // what the simulator printed
     double nearest = 9;
     for (const auto& root : form.roots(target)) {
       EXPECT_EQ(root.margin, 0);

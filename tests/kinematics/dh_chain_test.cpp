@@ -8,13 +8,16 @@
 
 #include "laws.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/core/literals.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/testing/kinematic_laws.hpp"
 
 namespace vn = vernier;
 using namespace vernier::literals;
+using vernier_test::difference;
 using vernier_test::no_violations;
+using vernier_test::RealMatrix;
 
 namespace dh_chain_test {
 namespace {
@@ -83,51 +86,48 @@ TEST(DhChain, PlanarArmWorkedByHand) {
   const vn::JointVector<2> q(30_deg, 60_deg);
   const double x = 0.3 * std::sqrt(3.0) / 2, y = 0.15 + 0.2;
   const auto [pose, jacobian] = planar.pose_and_jacobian(q);
-  EXPECT_NEAR(pose.translation().x(), x, 1e-15);
-  EXPECT_NEAR(pose.translation().y(), y, 1e-15);
-  EXPECT_EQ(pose.translation().z(), 0);
-  vn::Matrix3 quarter;
-  quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  EXPECT_LE((pose.linear() - quarter).cwiseAbs().maxCoeff(), 1e-15);
-  vn::Jacobian<2> by_hand;
-  by_hand << -y, -0.2,  // z x (tool - joint)
-      x, 0,             //
-      0, 0,             //
-      0, 0,             //
-      0, 0,             //
-      1, 1;
-  EXPECT_LE((jacobian - by_hand).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_NEAR(pose(0, 3), x, 1e-15);
+  EXPECT_NEAR(pose(1, 3), y, 1e-15);
+  EXPECT_EQ(pose(2, 3), 0);
+  const RealMatrix quarter(3, 3, {0, -1, 0, 1, 0, 0, 0, 0, 1});
+  EXPECT_LE(difference(vn::rotation(pose), quarter), 1e-15);
+  const RealMatrix by_hand(6, 2,
+                           {-y, -0.2,  // z x (tool - joint)
+                            x, 0,      //
+                            0, 0,      //
+                            0, 0,      //
+                            0, 0,      //
+                            1, 1});
+  EXPECT_LE(difference(RealMatrix::of(jacobian), by_hand), 1e-15);
 }
 
 TEST(DhChain, PrismaticJointWorkedByHand) {
   // Modified: Rx(90 deg) turns the sliding axis to -y; then 0.2 along the new x, and a turn about -y.
   const vn::JointVector<2> q(0.7, 90_deg);
   const auto [pose, jacobian] = modified.pose_and_jacobian(q);
-  EXPECT_LE((pose.translation() - vn::Vector3(0.2, -0.7, 0)).norm(), 1e-15);
-  vn::Matrix3 rotation;  // columns: images of the axes
-  rotation.col(0) = vn::Vector3(0, 0, 1);
-  rotation.col(1) = vn::Vector3(-1, 0, 0);
-  rotation.col(2) = vn::Vector3(0, -1, 0);
-  EXPECT_LE((pose.linear() - rotation).cwiseAbs().maxCoeff(), 1e-15);
-  vn::Jacobian<2> by_hand;
-  by_hand << 0, 0, -1, 0, 0, 0, 0, 0, 0, -1, 0, 0;
-  EXPECT_LE((jacobian - by_hand).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LE((vn::translation(pose) - vn::Vector3(0.2, -0.7, 0)).norm(), 1e-15);
+  const RealMatrix images_of_axes(3, 3, {0, 0, 1, -1, 0, 0, 0, -1, 0});  // one a row
+  EXPECT_LE(difference(vn::rotation(pose), images_of_axes.transpose()), 1e-15);
+  const RealMatrix by_hand(6, 2, {0, 0, -1, 0, 0, 0, 0, 0, 0, -1, 0, 0});
+  EXPECT_LE(difference(RealMatrix::of(jacobian), by_hand), 1e-15);
 }
+
+// Elementary motions.
+vn::Isometry3 about_x(double angle) { return vn::Isometry3(Eigen::AngleAxisd(angle, vn::Vector3(1, 0, 0))); }
+vn::Isometry3 about_y(double angle) { return vn::Isometry3(Eigen::AngleAxisd(angle, vn::Vector3(0, 1, 0))); }
+vn::Isometry3 about_z(double angle) { return vn::Isometry3(Eigen::AngleAxisd(angle, vn::Vector3(0, 0, 1))); }
+vn::Isometry3 along(double x, double y, double z) { return vn::rigid_motion(vn::Matrix3::Identity(), {x, y, z}); }
 
 /// A row as the product of its five elementary motions, in the order its convention states.
 vn::Isometry3 link(const vn::DhRow& row, double q, vn::StandardDh) {
   const bool revolute = row.joint == vn::JointType::revolute;
-  using Eigen::AngleAxisd, Eigen::Translation3d, vn::Vector3;
-  return vn::Isometry3(AngleAxisd(row.theta + (revolute ? q : 0), Vector3::UnitZ())) *
-         Translation3d(0, 0, row.d + (revolute ? 0 : q)) * Translation3d(row.a, 0, 0) *
-         AngleAxisd(row.alpha, Vector3::UnitX()) * AngleAxisd(row.beta, Vector3::UnitY());
+  return about_z(row.theta + (revolute ? q : 0)) * along(0, 0, row.d + (revolute ? 0 : q)) * along(row.a, 0, 0) *
+         about_x(row.alpha) * about_y(row.beta);
 }
 vn::Isometry3 link(const vn::DhRow& row, double q, vn::ModifiedDh) {
   const bool revolute = row.joint == vn::JointType::revolute;
-  using Eigen::AngleAxisd, Eigen::Translation3d, vn::Vector3;
-  return vn::Isometry3(AngleAxisd(row.alpha, Vector3::UnitX())) * Translation3d(row.a, 0, 0) *
-         AngleAxisd(row.beta, Vector3::UnitY()) * AngleAxisd(row.theta + (revolute ? q : 0), Vector3::UnitZ()) *
-         Translation3d(0, 0, row.d + (revolute ? 0 : q));
+  return about_x(row.alpha) * along(row.a, 0, 0) * about_y(row.beta) * about_z(row.theta + (revolute ? q : 0)) *
+         along(0, 0, row.d + (revolute ? 0 : q));
 }
 
 template <class Convention>
@@ -142,7 +142,7 @@ TYPED_TEST(DhConvention, PoseIsTheProductOfItsElementaryMotions) {
     const vn::JointVector<5> q = vernier_test::random_joints<5>(rng);
     vn::Isometry3 product = vn::Isometry3::Identity();
     for (int i = 0; i < 5; ++i) product = product * link(chain.row(i), q(i), TypeParam{});
-    EXPECT_LE((chain.pose(q).matrix() - product.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LE(difference(chain.pose(q), product), 1e-14);
   }
 }
 
@@ -180,9 +180,9 @@ std::vector<vn::DhChain<4, Convention>> degenerate_chains() {
 TYPED_TEST(DhConvention, DegenerateChainsObeyTheLaws) {
   vn::Rng rng(13);
   vn::JointRows<4> samples = vernier_test::random_joint_rows<4>(rng, 6);
-  samples.row(0).setZero();
-  samples.row(1).setConstant(pi);
-  samples.row(2) << pi - 1e-9, 0, 0, 0;
+  vn::set_configuration<4>(samples, 0, {0, 0, 0, 0});
+  vn::set_configuration<4>(samples, 1, {pi, pi, pi, pi});
+  vn::set_configuration<4>(samples, 2, {pi - 1e-9, 0, 0, 0});
   for (const auto& chain : degenerate_chains<TypeParam>()) {
     EXPECT_TRUE(no_violations(vn::testing::kinematic_model_violations(chain, samples)));
     EXPECT_TRUE(no_violations(vn::testing::parametric_model_violations(chain, samples)));
@@ -210,7 +210,7 @@ TEST(DhChain, ParametersAreCountedRowByRow) {
     EXPECT_EQ(kinds[k] == vn::ParameterKind::length, length) << names[k];
   }
   const auto chain = vn::DhChain<1>::from_rows({vn::DhRow{.a = 1, .alpha = 2, .d = 3, .theta = 4, .beta = 5}});
-  EXPECT_EQ(chain.parameters().transpose(), (Eigen::Matrix<double, 1, 5>(1, 2, 3, 4, 5)));
+  EXPECT_EQ(RealMatrix::of(chain.parameters()), vernier_test::vector({1, 2, 3, 4, 5}));
 }
 
 TEST(DhChain, WithParametersKeepsTheJointTypes) {

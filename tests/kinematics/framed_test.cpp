@@ -8,9 +8,13 @@
 
 #include "laws.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/testing/kinematic_laws.hpp"
 
 namespace vn = vernier;
+using vernier_test::difference;
+using vernier_test::RealMatrix;
+using vernier_test::vector;
 
 namespace framed_test {
 namespace {
@@ -18,10 +22,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 vn::Isometry3 frame(const vn::Vector3& position, const vn::Vector3& rotation) {
-  vn::Isometry3 t = vn::Isometry3::Identity();
-  t.translation() = position;
-  t.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
-  return t;
+  return vn::rigid_motion(Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix(), position);
 }
 
 const vn::DhChain<4>& arm() {
@@ -41,7 +42,7 @@ TEST(Framed, PoseIsBaseTimesModelTimesTool) {
   for (int i = 0; i < 100; ++i) {
     const vn::JointVector<4> q = vernier_test::random_joints<4>(rng);
     const vn::Isometry3 product = base * arm().pose(q) * tool;
-    ASSERT_LE((framed.pose(q).matrix() - product.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    ASSERT_LE(difference(framed.pose(q), product), 1e-14);
   }
 }
 
@@ -49,9 +50,8 @@ TEST(Framed, AToolOnATurntableMovesAlongItsTangent) {
   // One joint about z, a tool 0.2 m out along x: the tool point moves along y at 0.2 m/rad. The base turns that to -x.
   const vn::DhChain<1> turntable = vn::DhChain<1>::from_rows({vn::DhRow{}});
   const vn::Framed framed(turntable, frame({5, 0, 0}, {0, 0, pi / 2}), frame({0.2, 0, 0}, {1, 0, 0}));
-  vn::Vector6 by_hand;
-  by_hand << -0.2, 0, 0, 0, 0, 1;
-  EXPECT_LE((framed.jacobian(vn::JointVector<1>(0.0)) - by_hand).norm(), 1e-15);
+  const RealMatrix by_hand = vector({-0.2, 0, 0, 0, 0, 1});
+  EXPECT_LE((RealMatrix::of(framed.jacobian(vn::JointVector<1>(0.0))) - by_hand).norm(), 1e-15);
   EXPECT_LE((framed.position(vn::JointVector<1>(0.0)) - vn::Vector3(5, 0.2, 0)).norm(), 1e-15);
 }
 
@@ -69,11 +69,11 @@ TEST(Framed, ObeysTheLaws) {
 
 TEST(Framed, ParametersAreBaseModelTool) {
   const vn::Framed framed(arm(), base, tool);
-  const auto p = framed.parameters();
-  ASSERT_EQ(p.size(), 32);
-  EXPECT_LE((p.head<6>() - (vn::Vector6() << 1, 2, 3, 0.4, -1.2, 2.0).finished()).norm(), 1e-14);
-  EXPECT_EQ((p.segment<20>(6)), arm().parameters());
-  EXPECT_LE((p.tail<6>() - (vn::Vector6() << 0.1, -0.05, 0.2, 0, 0.7, -0.1).finished()).norm(), 1e-14);
+  const RealMatrix p = RealMatrix::of(framed.parameters());
+  ASSERT_EQ(p.rows(), 32);
+  EXPECT_LE((p.block(0, 0, 6, 1) - vector({1, 2, 3, 0.4, -1.2, 2.0})).norm(), 1e-14);
+  EXPECT_EQ(p.block(6, 0, 20, 1), RealMatrix::of(arm().parameters()));
+  EXPECT_LE((p.block(26, 0, 6, 1) - vector({0.1, -0.05, 0.2, 0, 0.7, -0.1})).norm(), 1e-14);
   const auto names = vn::Framed<vn::DhChain<4>>::parameter_names();
   EXPECT_EQ(names.at(0), "base_x");
   EXPECT_EQ(names.at(5), "base_rz");
@@ -88,29 +88,29 @@ TEST(Framed, ParametersAreBaseModelTool) {
 
 TEST(Framed, AFrameLeftAloneKeepsItsBits) {
   // A rotation matrix that exp(log(R)) does not give back to the bit, so that a conversion would show.
-  ASSERT_NE(vn::exp_so3(vn::log_so3(base.linear())), base.linear());
-  ASSERT_NE(vn::exp_so3(vn::log_so3(tool.linear())), tool.linear());
+  for (const vn::Matrix3& rotation : {vn::rotation(base), vn::rotation(tool)})
+    ASSERT_NE(RealMatrix(vn::exp_so3(vn::log_so3(rotation))), RealMatrix(rotation));
   const vn::Framed framed(arm(), base, tool);
-  EXPECT_EQ(framed.base().matrix(), base.matrix());
-  EXPECT_EQ(framed.tool().matrix(), tool.matrix());
+  EXPECT_EQ(RealMatrix(framed.base()), RealMatrix(base));
+  EXPECT_EQ(RealMatrix(framed.tool()), RealMatrix(tool));
 
   auto p = framed.parameters();
   p(6) += 1e-3;  // a1
   const auto other_arm = framed.with_parameters(p);
-  EXPECT_EQ(other_arm.base().matrix(), base.matrix());
-  EXPECT_EQ(other_arm.tool().matrix(), tool.matrix());
+  EXPECT_EQ(RealMatrix(other_arm.base()), RealMatrix(base));
+  EXPECT_EQ(RealMatrix(other_arm.tool()), RealMatrix(tool));
   EXPECT_EQ(other_arm.model().row(0).a, arm().row(0).a + 1e-3);
 
   p(0) += 1e-3;  // base_x
   const auto other_base = framed.with_parameters(p);
-  EXPECT_EQ(other_base.base().translation().x(), base.translation().x() + 1e-3);
-  EXPECT_EQ(other_base.tool().matrix(), tool.matrix());
+  EXPECT_EQ(other_base.base()(0, 3), base(0, 3) + 1e-3);
+  EXPECT_EQ(RealMatrix(other_base.tool()), RealMatrix(tool));
 
   const auto same = framed.with_parameters(framed.parameters());
   vn::Rng rng(35);
   for (int i = 0; i < 20; ++i) {
     const vn::JointVector<4> q = vernier_test::random_joints<4>(rng);
-    EXPECT_EQ(same.pose(q).matrix(), framed.pose(q).matrix());
+    EXPECT_EQ(RealMatrix(same.pose(q)), RealMatrix(framed.pose(q)));
   }
 }
 
@@ -120,8 +120,8 @@ TEST(Framed, AroundAnotherModelKeepsTheFrames) {
   const auto other = vernier_test::random_chain<2, vn::ModifiedDh>(rng);
   const auto around = framed.around(other);
   static_assert(std::is_same_v<decltype(around), const vn::Framed<vn::DhChain<2, vn::ModifiedDh>>>);
-  EXPECT_EQ(around.base().matrix(), base.matrix());
-  EXPECT_EQ(around.tool().matrix(), tool.matrix());
+  EXPECT_EQ(RealMatrix(around.base()), RealMatrix(base));
+  EXPECT_EQ(RealMatrix(around.tool()), RealMatrix(tool));
   EXPECT_EQ(around.model(), other);
 }
 
@@ -130,8 +130,8 @@ TEST(Framed, FramesMayBeNested) {
   const vn::Framed flat(arm(), vn::Isometry3(tool * base), vn::Isometry3(tool * base));
   vn::Rng rng(37);
   const vn::JointVector<4> q = vernier_test::random_joints<4>(rng);
-  EXPECT_LE((nested.pose(q).matrix() - flat.pose(q).matrix()).norm(), 1e-14);
-  EXPECT_LE((nested.jacobian(q) - flat.jacobian(q)).norm(), 1e-13);
+  EXPECT_LE((RealMatrix(nested.pose(q)) - flat.pose(q)).norm(), 1e-14);
+  EXPECT_LE((RealMatrix::of(nested.jacobian(q)) - RealMatrix::of(flat.jacobian(q))).norm(), 1e-13);
 }
 
 TEST(FrameParameters, ValuesAndMatrixAgree) {
@@ -141,13 +141,14 @@ TEST(FrameParameters, ValuesAndMatrixAgree) {
     const vn::Vector3 rotation = angle * vernier_test::random_direction(rng);
     const vn::Isometry3 t = frame({rng.normal(), rng.normal(), rng.normal()}, rotation);
     const vn::FrameParameters from_matrix(t);
-    ASSERT_LE((from_matrix.values().tail<3>() - rotation).norm(), 4e-15);
+    const RealMatrix values = from_matrix.values();
+    ASSERT_LE((values.block(3, 0, 3, 1) - rotation).norm(), 4e-15);
     const vn::FrameParameters from_values(from_matrix.values());
-    ASSERT_EQ(from_values.values(), from_matrix.values());
-    ASSERT_LE((from_values.isometry().matrix() - t.matrix()).cwiseAbs().maxCoeff(), 4e-15);
+    ASSERT_EQ(RealMatrix(from_values.values()), values);
+    ASSERT_LE(difference(from_values.isometry(), t), 4e-15);
   }
-  EXPECT_EQ(vn::FrameParameters().values(), vn::Vector6::Zero());
-  EXPECT_EQ(vn::FrameParameters().isometry().matrix(), vn::Isometry3::Identity().matrix());
+  EXPECT_EQ(RealMatrix(vn::FrameParameters().values()), RealMatrix(6, 1));
+  EXPECT_EQ(RealMatrix(vn::FrameParameters().isometry()), RealMatrix::identity(4));
 }
 
 }  // namespace

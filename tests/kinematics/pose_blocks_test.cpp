@@ -6,13 +6,16 @@
 #include <limits>
 
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "turntable.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 
 namespace vn = vernier;
+using vernier_test::difference;
 using vernier_test::random_chain;
 using vernier_test::random_joint_rows;
+using vernier_test::RealMatrix;
 
 namespace pose_blocks_test {
 namespace {
@@ -49,9 +52,9 @@ TYPED_TEST(PoseBlocks, AreThePosesOneByOneToTheBit) {
       ASSERT_EQ(points.rows(), n);
       ASSERT_EQ(all.size(), static_cast<std::size_t>(n));
       for (vn::Index i = 0; i < n; ++i) {
-        const vn::JointVector<N> q = joints.row(i).transpose();
-        EXPECT_EQ(points.row(i).transpose(), arm.position(q));
-        EXPECT_EQ(all[static_cast<std::size_t>(i)].matrix(), arm.pose(q).matrix());
+        const vn::JointVector<N> q = vn::configuration<N>(joints, i);
+        EXPECT_EQ(RealMatrix(vn::point(points, i)), RealMatrix(arm.position(q)));
+        EXPECT_EQ(RealMatrix(all[static_cast<std::size_t>(i)]), RealMatrix(arm.pose(q)));
       }
     }
   });
@@ -65,10 +68,10 @@ TYPED_TEST(PoseBlocks, AndSinglePosesAreThoseOfTheLibraryFunctions) {
       const vn::JointRows<N> joints = random_joint_rows<N>(rng, 10);
       const std::vector<vn::Isometry3> all = vn::poses(arm, joints);
       for (vn::Index i = 0; i < joints.rows(); ++i) {
-        const vn::JointVector<N> q = joints.row(i).transpose();
+        const vn::JointVector<N> q = vn::configuration<N>(joints, i);
         const vn::Isometry3 expected = arm.template pose<double>(q, arm.parameters());
-        EXPECT_LE((all[static_cast<std::size_t>(i)].matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-14);
-        EXPECT_LE((arm.pose(q).matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LE(difference(all[static_cast<std::size_t>(i)], expected), 1e-14);
+        EXPECT_LE(difference(arm.pose(q), expected), 1e-14);
       }
     }
   });
@@ -81,8 +84,8 @@ TYPED_TEST(PoseBlocks, PointsOfTheToolAreWhereThePosePutsThem) {
   for (const vn::Vector3& point : {vn::Vector3(0.1, -0.2, 0.3), vn::Vector3(0, 0, 1e-9)}) {
     const vn::PointRows points = arm.positions(joints, point);
     for (vn::Index i = 0; i < joints.rows(); ++i) {
-      const vn::Vector3 expected = arm.pose(joints.row(i).transpose()) * point;
-      EXPECT_LE((points.row(i).transpose() - expected).cwiseAbs().maxCoeff(), 1e-15);
+      const vn::Vector3 expected = arm.pose(vn::configuration<6>(joints, i)) * point;
+      EXPECT_LE(difference(vn::point(points, i), expected), 1e-15);
     }
   }
 }
@@ -92,22 +95,23 @@ TYPED_TEST(PoseBlocks, StrangeJointValuesStayInTheirRow) {
   const auto arm = random_chain<6, TypeParam>(rng, {.prismatic = 0});
   const vn::JointRows<6> calm = random_joint_rows<6>(rng, 11);
   const vn::PointRows expected = vn::positions(arm, calm);
+  const auto finite = [](const RealMatrix& a) { return std::isfinite(a.largest()); };
   for (const double strange : {std::nan(""), std::numeric_limits<double>::infinity(), 3e7}) {
     for (vn::Index row = 0; row < calm.rows(); ++row) {
       vn::JointRows<6> joints = calm;
       joints(row, 2) = strange;
       const vn::PointRows points = vn::positions(arm, joints);
-      const vn::JointVector<6> q = joints.row(row).transpose();
+      const vn::JointVector<6> q = vn::configuration<6>(joints, row);
       for (vn::Index i = 0; i < calm.rows(); ++i) {
+        const RealMatrix found = vn::point(points, i);
         if (i != row) {
-          ASSERT_EQ(points.row(i), expected.row(i));
+          ASSERT_EQ(found, RealMatrix(vn::point(expected, i)));
         } else if (std::isfinite(strange)) {
-          ASSERT_EQ(points.row(i).transpose(), arm.position(q));
-          const vn::Isometry3 plain = arm.template pose<double>(q, arm.parameters());
-          ASSERT_LE((arm.pose(q).matrix() - plain.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+          ASSERT_EQ(found, RealMatrix(arm.position(q)));
+          ASSERT_LE(difference(arm.pose(q), arm.template pose<double>(q, arm.parameters())), 1e-14);
         } else {
-          ASSERT_FALSE(points.row(i).allFinite() || arm.position(q).allFinite() || arm.pose(q).linear().allFinite());
-          ASSERT_EQ(arm.pose(q).matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+          ASSERT_FALSE(finite(found) || finite(arm.position(q)) || finite(vn::rotation(arm.pose(q))));
+          ASSERT_EQ(RealMatrix(arm.pose(q)).row(3), RealMatrix(1, 4, {0, 0, 0, 1}));
         }
       }
     }
@@ -119,7 +123,7 @@ TYPED_TEST(PoseBlocksWhiteBox, TheInstructionSetDoesNotChangeABit) {
   for_all_sizes([&]<int N>(std::integral_constant<int, N>) {
     const auto arm = random_chain<N, TypeParam>(rng);
     const vn::JointRows<N> joints = random_joint_rows<N>(rng, 41);
-    const vn::JointVector<N> q = joints.row(0).transpose();
+    const vn::JointVector<N> q = vn::configuration<N>(joints, 0);
     vn::Isometry3 poses[2];
     vn::PointRows points[2] = {vn::PointRows(41, 3), vn::PointRows(41, 3)};
     for (const int k : {0, 1}) {
@@ -127,17 +131,14 @@ TYPED_TEST(PoseBlocksWhiteBox, TheInstructionSetDoesNotChangeABit) {
       vn::detail::chain_pose<TypeParam, N>(arm.view(), q.data(), poses[k].data(), set);
       vn::detail::evaluate_chain(arm.view(), {}, joints.data(), 41, 41, {.positions = points[k].data()}, set);
     }
-    EXPECT_EQ(poses[0].matrix(), poses[1].matrix());
-    EXPECT_EQ(points[0], points[1]);
-    EXPECT_EQ(points[0], vn::positions(arm, joints));
+    EXPECT_EQ(RealMatrix(poses[0]), RealMatrix(poses[1]));
+    EXPECT_EQ(RealMatrix(points[0]), RealMatrix(points[1]));
+    EXPECT_EQ(RealMatrix(points[0]), RealMatrix(vn::positions(arm, joints)));
   });
 }
 
 TEST(FramedPoseBlocks, AreThePosesOneByOne) {
-  vn::Vector6 base, tool, outer;
-  base << 1, 2, 3, 0.1, -0.2, 3.0;
-  tool << 0.1, 0, 0.2, 0, 1, 0;
-  outer << -0.5, 0.2, 0.1, 1, 0.3, -0.4;
+  const vn::Vector6 base{1, 2, 3, 0.1, -0.2, 3.0}, tool{0.1, 0, 0.2, 0, 1, 0}, outer{-0.5, 0.2, 0.1, 1, 0.3, -0.4};
   const vn::Framed inner(vn::robots::barrett_wam().chain, vn::FrameParameters(base), vn::FrameParameters(tool));
   const vn::Framed nested(inner, vn::FrameParameters(outer), vn::FrameParameters(base));
   vn::Rng rng(6);
@@ -146,9 +147,9 @@ TEST(FramedPoseBlocks, AreThePosesOneByOne) {
     const vn::PointRows points = vn::positions(model, joints);
     const std::vector<vn::Isometry3> all = vn::poses(model, joints);
     for (vn::Index i = 0; i < joints.rows(); ++i) {
-      const vn::JointVector<7> q = joints.row(i).transpose();
-      EXPECT_LE((points.row(i).transpose() - model.position(q)).cwiseAbs().maxCoeff(), 1e-14);
-      EXPECT_LE((all[static_cast<std::size_t>(i)].matrix() - model.pose(q).matrix()).cwiseAbs().maxCoeff(), 1e-14);
+      const vn::JointVector<7> q = vn::configuration<7>(joints, i);
+      EXPECT_LE(difference(vn::point(points, i), model.position(q)), 1e-14);
+      EXPECT_LE(difference(all[static_cast<std::size_t>(i)], model.pose(q)), 1e-14);
     }
   };
   check(inner);
@@ -158,16 +159,16 @@ TEST(FramedPoseBlocks, AreThePosesOneByOne) {
 
 /// Framed around a model that knows nothing of blocks.
 TEST(FramedPoseBlocks, AModelWithoutThemIsAskedOneByOne) {
-  vn::Vector6 tool;
-  tool << 1, 0, 0, 0, 0, 0;
+  const vn::Vector6 tool{1, 0, 0, 0, 0, 0};
   const vn::Framed model(vernier_test::Turntable{}, {}, vn::FrameParameters(tool));
-  const vn::JointRows<1> joints = vn::JointRows<1>::LinSpaced(5, 0, 1);
+  vn::JointRows<1> joints(5, 1);
+  for (vn::Index i = 0; i < 5; ++i) joints(i) = 0.25 * static_cast<double>(i);
   const vn::PointRows points = vn::positions(model, joints);
   for (vn::Index i = 0; i < 5; ++i) {
     EXPECT_NEAR(points(i, 0), std::cos(joints(i)), 1e-15);
     EXPECT_NEAR(points(i, 1), std::sin(joints(i)), 1e-15);
-    EXPECT_EQ(vn::poses(model, joints)[static_cast<std::size_t>(i)].matrix(),
-              model.pose(vn::JointVector<1>(joints(i))).matrix());
+    EXPECT_EQ(RealMatrix(vn::poses(model, joints)[static_cast<std::size_t>(i)]),
+              RealMatrix(model.pose(vn::JointVector<1>(joints(i)))));
   }
 }
 

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <vector>
 
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/kinematics/detail/reflections.hpp"
@@ -19,6 +19,7 @@ namespace vernier::small_systems_test {
 namespace {
 
 using namespace detail;
+using vernier_test::RealMatrix;
 
 MatrixX random(Index n, std::uint64_t seed) {
   Rng rng(seed);
@@ -30,17 +31,20 @@ MatrixX random(Index n, std::uint64_t seed) {
 
 TEST(SmallSystemsWhiteBox, ProductsAndSolutionsOfPositiveDefiniteSystems) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Matrix6 a = random(6, seed);
-    const Vector6 x = random(6, seed + 100).col(0);
-    Vector6 product;
-    multiply_few<6, 6>(a.data(), x.data(), product.data());
-    EXPECT_LT((product - a * x).norm(), 1e-14);
-    EXPECT_NEAR(dot6(a.data(), x.data()), a.col(0).dot(x), 1e-14);
-    Matrix6 positive = a * a.transpose() + Matrix6::Identity();
-    Vector6 solution = positive * x;
-    positive.triangularView<Eigen::StrictlyUpper>().setConstant(7);  // which is not read
+    const MatrixX values = random(6, seed);
+    const RealMatrix a = values;
+    const VectorX x = RealMatrix(random(6, seed + 100)).col(0);
+    VectorX product(6);
+    multiply_few<6, 6>(values.data(), x.data(), product.data());
+    EXPECT_LT((RealMatrix(product) - a * x).norm(), 1e-14);
+    EXPECT_NEAR(dot6(values.data(), x.data()), a.col(0).dot(x), 1e-14);
+    const RealMatrix square = a * a.transpose() + RealMatrix::identity(6);
+    MatrixX positive = square;
+    VectorX solution = square * x;
+    for (Index j = 0; j < 6; ++j)
+      for (Index i = 0; i < j; ++i) positive(i, j) = 7;  // which is not read
     solve_few(positive.data(), solution.data(), 6);
-    EXPECT_LT((solution - x).norm(), 1e-12);
+    EXPECT_LT((RealMatrix(solution) - x).norm(), 1e-12);
   }
   const double good[] = {1, 2}, bad[] = {1, std::numeric_limits<double>::infinity()};
   EXPECT_TRUE(are_finite(good, 2));
@@ -49,11 +53,12 @@ TEST(SmallSystemsWhiteBox, ProductsAndSolutionsOfPositiveDefiniteSystems) {
 
 TEST(SmallSystemsWhiteBox, InversesAndDeterminants) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Matrix6 a = random(6, seed);
-    Matrix6 inverse;
-    invert_few<6>(a.data(), inverse.data());
+    const MatrixX values = random(6, seed);
+    const RealMatrix a = values;
+    MatrixX inverse(6, 6);
+    invert_few<6>(values.data(), inverse.data());
     const double condition = a.norm() * a.inverse().norm();
-    EXPECT_LT((inverse * a - Matrix6::Identity()).norm(), 1e-14 * condition) << seed;
+    EXPECT_LT((RealMatrix(inverse) * a - RealMatrix::identity(6)).norm(), 1e-14 * condition) << seed;
     double rows[6][6];
     for (int j = 0; j < 6; ++j)
       for (int i = 0; i < 6; ++i) rows[j][i] = a(i, j);
@@ -87,13 +92,14 @@ std::vector<std::complex<double>> eigenvalues(MatrixX a) {
 TEST(SmallSystemsWhiteBox, EigenvaluesOfHessenbergMatrices) {
   for (const Index n : {1, 2, 3, 5, 8, 16})
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-      MatrixX hessenberg = random(n, seed).triangularView<Eigen::Upper>();
+      MatrixX hessenberg = random(n, seed);
+      for (Index j = 0; j < n; ++j)
+        for (Index i = j + 1; i < n; ++i) hessenberg(i, j) = 0;
       const MatrixX below = random(n, seed + 50);
       for (Index k = 1; k < n; ++k) hessenberg(k, k - 1) = below(k, k - 1);
       const Eigen::EigenSolver<MatrixX> solver(hessenberg, false);
-      const VectorX real = solver.eigenvalues().real(), imaginary = solver.eigenvalues().imag();
       std::vector<std::complex<double>> expected;
-      for (Index k = 0; k < n; ++k) expected.emplace_back(real(k), imaginary(k));
+      for (Index k = 0; k < n; ++k) expected.push_back(solver.eigenvalues()(k));
       EXPECT_LT(largest_mismatch(eigenvalues(hessenberg), expected), 1e-8) << n << ' ' << seed;
     }
 }
@@ -101,7 +107,8 @@ TEST(SmallSystemsWhiteBox, EigenvaluesOfHessenbergMatrices) {
 TEST(SmallSystemsWhiteBox, EigenvaluesByHand) {
   // companion matrix of (x - 1)(x - 2)(x - 3)(x^2 + 1) = x^5 - 6 x^4 + 12 x^3 - 12 x^2 + 11 x - 6
   MatrixX companion = MatrixX::Zero(5, 5);
-  companion.row(0) << 6, -12, 12, -11, 6;
+  const double first_row[] = {6, -12, 12, -11, 6};
+  for (Index k = 0; k < 5; ++k) companion(0, k) = first_row[k];
   for (Index k = 1; k < 5; ++k) companion(k, k - 1) = 1;
   EXPECT_LT(largest_mismatch(eigenvalues(companion), {1, 2, 3, {0, 1}, {0, -1}}), 1e-12);
   // a cyclic permutation, on which unshifted steps stand still: the fourth roots of one

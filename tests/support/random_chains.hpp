@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
@@ -47,11 +48,25 @@ vernier::JointVector<N> random_joints(vernier::Rng& rng, const vernier::JointLim
   return q;
 }
 
+/// n joint values in [-pi, pi], of a number that is no constant.
+inline vernier::VectorX random_joint_values(vernier::Rng& rng, vernier::Index n) {
+  vernier::VectorX q(n);
+  for (double& x : q) x = rng.uniform(-std::numbers::pi, std::numbers::pi);
+  return q;
+}
+
+/// Joint values with one of them moved.
+template <int N>
+vernier::JointVector<N> stepped(vernier::JointVector<N> q, int joint, double step) {
+  q(joint) += step;
+  return q;
+}
+
 /// n rows of joint values in [-range, range].
 template <int N>
 vernier::JointRows<N> random_joint_rows(vernier::Rng& rng, vernier::Index n, double range = std::numbers::pi) {
   vernier::JointRows<N> rows(n, N);
-  for (vernier::Index i = 0; i < n; ++i) rows.row(i) = random_joints<N>(rng, range).transpose();
+  for (vernier::Index i = 0; i < n; ++i) vernier::set_configuration<N>(rows, i, random_joints<N>(rng, range));
   return rows;
 }
 

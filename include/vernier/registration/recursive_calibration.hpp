@@ -42,8 +42,8 @@ VERNIER_API void whitened_rows(const FrameUpdate& update, const SensorModel& sen
 }  // namespace detail
 
 /// Tracks a drifting arm pose by pose: recursive least squares on base, joint zeros or tool, with forgetting. It does
-/// not test for contradictions as `reregister` does. Approach and temperature are not known to it: the arm is that of the
-/// middle of both directions at the model's temperature, see `ErrorModel::at_temperature`.
+/// not test for contradictions as `reregister` does. Approach and temperature are not known to it: the arm is that of
+/// the middle of both directions at the model's temperature, see `ErrorModel::at_temperature`.
 /// @cite Ljung and Soderstrom 1983
 template <class Chain>
 class RecursiveCalibration {

@@ -19,6 +19,7 @@
 
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "laws.hpp"
 
 namespace compensated_test {
@@ -249,7 +250,7 @@ TEST(Compensated, NoPoseIsThrownAwayNearSingularities) {
         // position and orientation together never get worse, so the position by 0.3 m times the rotation at most
         EXPECT_LE(cost(wanted, arm.pose(correction.command)), cost(wanted, arm.pose(q)) * (1 + 1e-12));
         EXPECT_LE(linear_part(after).norm(), linear_part(before).norm() + 0.3 * angular_part(before).norm() + 1e-12);
-        worst = std::max(worst, linear_part(after).norm());
+        worst = vernier_test::larger(worst, linear_part(after).norm());
         if (which == &arm) converged += correction.status == IkStatus::converged;
       }
       EXPECT_TRUE(robot.limits.contains(limited.correct(q).command));

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "gauss_newton.hpp"
+#include "larger.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
@@ -171,7 +172,7 @@ TEST(Drift, OfAJointsZeroIsFollowed) {
   ASSERT_EQ(found.drift.front().knots.rows(), 12);
   double worst = 0;
   for (Index i = 0; i < n; ++i)
-    worst = std::max(worst, std::abs(found.drift.front().joint_zeros(static_cast<double>(i))(1) - zero(i)));
+    worst = vernier_test::larger(worst, std::abs(found.drift.front().joint_zeros(static_cast<double>(i))(1) - zero(i)));
   EXPECT_LT(worst, 60e-6);
 }
 

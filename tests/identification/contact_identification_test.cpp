@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "real_matrix.hpp"
 #include "touched_objects.hpp"
 #include "vernier/identification/frames.hpp"
@@ -43,7 +44,7 @@ double registered_error(const Arm& arm, double factor = 1) {
   const Isometry3 base = register_points(points, actual);
   double out = 0;
   for (Index i = 0; i < points.rows(); ++i)
-    out = std::max(out, (transformed(base, point(points, i)) - point(actual, i)).norm());
+    out = vernier_test::larger(out, (transformed(base, point(points, i)) - point(actual, i)).norm());
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
 #include "run_command.hpp"
@@ -196,7 +197,7 @@ template <int N, class Convention>
 Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<N>& c, Index n, Index corrections) {
   Differences out;
   const JointRows<N> joints = test_joints(robot.limits(), n);
-  const auto grow = [](double& largest, double value) { largest = std::max(largest, value); };
+  const auto grow = [](double& largest, double value) { largest = vernier_test::larger(largest, value); };
   for (Index i = 0; i < n; ++i) {
     const JointVector<N> q = configuration(joints, i);
     JointVector<N> previous = configuration(joints, (i + 1) % n);

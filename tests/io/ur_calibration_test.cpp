@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
 #include "temporary_folder.hpp"
@@ -44,7 +45,7 @@ TEST_F(UrCalibration, PosesAreThoseOfTheControllersRows) {
     for (int sample = 0; sample < 1000; ++sample) {
       const JointVector<6> q = vernier_test::random_joints<6>(rng, 6.28);
       const Isometry3 expected = vernier_test::ur_controller_pose(nominal, set, q);
-      worst = std::max(worst, vernier_test::difference(arm.arm.pose(q), expected));
+      worst = vernier_test::larger(worst, vernier_test::difference(arm.arm.pose(q), expected));
     }
     EXPECT_LE(worst, 1e-12) << set.name;
     RecordProperty(std::string("worst_") + set.name, message(worst));

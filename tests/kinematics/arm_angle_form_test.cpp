@@ -8,7 +8,9 @@
 
 #include "branch_helpers.hpp"
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/kinematics/all_branches.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -70,7 +72,7 @@ void expect_all_found(const Arm& arm, int poses) {
     double nearest = 9;
     for (const InverseRoot<7>& root : roots) {
       EXPECT_EQ(root.margin, 0);
-      residual = std::max(residual, (arm.pose(root.joints).matrix() - target.matrix()).cwiseAbs().maxCoeff());
+      residual = vernier_test::larger(residual, vernier_test::difference(arm.pose(root.joints), target));
       angles = std::max(angles, std::abs(std::remainder(form.arm_angle(root.joints) - form.arm_angle(q), 2 * pi)));
       nearest = std::min(nearest, joint_difference<7>(root.joints, q));
     }
@@ -105,7 +107,7 @@ TEST(ArmAngleForm, TurnsTheElbowThroughAllArmAngles) {
     const auto roots = form.at(angle).roots(target);
     EXPECT_EQ(roots.count, 8);
     for (const auto& root : roots) {
-      EXPECT_LT((arm.pose(root.joints).matrix() - target.matrix()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT(vernier_test::difference(arm.pose(root.joints), target), 1e-12);
       EXPECT_NEAR(std::remainder(form.arm_angle(root.joints) - angle, 2 * pi), 0, 1e-9);
     }
   }
@@ -115,7 +117,7 @@ TEST(ArmAngleForm, SingularAndOutOfReach) {
   const auto arm = without_offsets();
   const ArmAngleForm form(arm, 0.3);
   const auto residual = [&](const InverseRoot<7>& root, const Isometry3& target) {
-    return (arm.pose(root.joints).matrix() - target.matrix()).cwiseAbs().maxCoeff();
+    return vernier_test::difference(arm.pose(root.joints), target);
   };
   // upright: shoulder, elbow and wrist all singular, the wrist on axis 1
   const Isometry3 upright = arm.pose(JointVector<7>::Zero());
@@ -184,7 +186,7 @@ TEST(ArmAngleForm, LeadsToAllBranchesOfARealArm) {
     const auto branches = all_branches(form, actual, target);
     expected += roots.count;
     for (const auto& branch : branches) {
-      EXPECT_LT((actual.pose(branch.joints).matrix() - target.matrix()).cwiseAbs().maxCoeff(), 1e-9);
+      EXPECT_LT(vernier_test::difference(actual.pose(branch.joints), target), 1e-9);
       double nearest = 9;
       for (const auto& root : roots) nearest = std::min(nearest, std::abs(root.joints(2) - branch.joints(2)));
       EXPECT_LT(nearest, 1e-12);

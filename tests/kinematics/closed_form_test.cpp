@@ -11,6 +11,7 @@
 
 #include "branch_helpers.hpp"
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
 #include "vernier/kinematics/framed.hpp"
@@ -68,7 +69,7 @@ Quality quality(const Arm& arm, const InverseRoots<N>& roots, const Isometry3& t
     for (const double angle : root.joints) out.in_range = out.in_range && angle > -pi && angle <= pi;
     if (root.margin > rounding) continue;
     ++out.roots;
-    out.residual = std::max(out.residual, difference(arm.pose(root.joints), target));
+    out.residual = vernier_test::larger(out.residual, difference(arm.pose(root.joints), target));
     out.generating = std::min(out.generating, joint_difference<N>(root.joints, q));
     for (const InverseRoot<N>* other = roots.begin(); other != &root; ++other)
       if (other->margin <= rounding)
@@ -93,8 +94,8 @@ std::array<int, 17> expect_all_found(const Arm& arm, const ClosedForm<N>& form, 
     const Quality at = quality(arm, roots, target, q);
     if (at.roots < 17) ++counts[static_cast<std::size_t>(at.roots)];
     worst.roots = std::max(worst.roots, at.roots);
-    worst.residual = std::max(worst.residual, at.residual);
-    worst.generating = std::max(worst.generating, at.generating);
+    worst.residual = vernier_test::larger(worst.residual, at.residual);
+    worst.generating = vernier_test::larger(worst.generating, at.generating);
     worst.nearest = std::min(worst.nearest, at.nearest);
     worst.in_range = worst.in_range && at.in_range;
   }
@@ -395,7 +396,8 @@ void expect_factors_of_determinant(const DhChain<N, Convention>& arm, const Clos
   const double ratio = determinants[widest] / products[widest];
   double worst = 0;
   for (int i = 0; i < 500; ++i)
-    worst = std::max(worst, std::abs(determinants[i] - ratio * products[i]) / std::abs(determinants[widest]));
+    worst =
+        vernier_test::larger(worst, std::abs(determinants[i] - ratio * products[i]) / std::abs(determinants[widest]));
   EXPECT_LT(worst, 1e-9) << name;
   EXPECT_GT(std::abs(products[widest]), 0.01) << name;
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "larger.hpp"
+#include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 
 namespace vernier::convert_test {
@@ -25,7 +27,7 @@ double largest_difference() {
     for (int k = 0; k < 10; ++k) {
       JointVector<N> q;
       for (auto& value : q) value = rng.uniform(-1, 1);
-      largest = std::max(largest, (standard.pose(q).matrix() - modified.pose(q).matrix()).cwiseAbs().maxCoeff());
+      largest = vernier_test::larger(largest, vernier_test::difference(standard.pose(q), modified.pose(q)));
     }
   }
   return largest;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "allocation_counter.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
@@ -47,7 +48,7 @@ DhChain<6> with_errors(const DhChain<6>& chain, Rng& rng) {
 
 double difference(const JointVector<6>& a, const JointVector<6>& b) {
   double out = 0;
-  for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(std::remainder(a(i) - b(i), 2 * pi)));
+  for (int i = 0; i < 6; ++i) out = vernier_test::larger(out, std::abs(std::remainder(a(i) - b(i), 2 * pi)));
   return out;
 }
 

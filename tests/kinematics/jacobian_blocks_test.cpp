@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "allocation_counter.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "turntable.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/framed.hpp"
@@ -31,9 +33,9 @@ double difference(const vn::PosesAndJacobians& all, const vn::JointRows<N>& join
     const auto expected = single(vn::JointVector<N>(joints.row(i).transpose()));
     EXPECT_EQ(all.jacobians.cols(), expected.jacobian.size());
     const vn::MatrixX jacobian = all.jacobians.row(i).reshaped(6, expected.jacobian.cols());
-    worst = std::max(worst, (jacobian - expected.jacobian).cwiseAbs().maxCoeff());
-    worst = std::max(worst,
-                     (all.poses[static_cast<std::size_t>(i)].matrix() - expected.pose.matrix()).cwiseAbs().maxCoeff());
+    worst = vernier_test::larger(worst, (jacobian - expected.jacobian).cwiseAbs().maxCoeff());
+    worst =
+        vernier_test::larger(worst, vernier_test::difference(all.poses[static_cast<std::size_t>(i)], expected.pose));
   }
   return worst;
 }

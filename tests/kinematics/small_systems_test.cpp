@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "larger.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/types.hpp"
@@ -77,7 +78,7 @@ double largest_mismatch(const std::vector<std::complex<double>>& found, std::vec
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < expected.size(); ++k)
       if (std::abs(expected[k] - value) < std::abs(expected[nearest] - value)) nearest = k;
-    worst = std::max(worst, std::abs(expected[nearest] - value));
+    worst = vernier_test::larger(worst, std::abs(expected[nearest] - value));
     expected.erase(expected.begin() + static_cast<std::ptrdiff_t>(nearest));
   }
   return worst;

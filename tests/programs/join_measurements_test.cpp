@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "real_matrix.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/so3.hpp"
@@ -86,7 +87,7 @@ TEST_F(JoinMeasurements, ByOrder) {
   EXPECT_NE(done.output.find("40 pairs of 40 rows and 40 points, by order"), std::string::npos) << done.output;
   const auto data = read_dataset<6>(folder_ / "measured.csv");
   EXPECT_EQ(data.joints(), joints_);
-  EXPECT_LT((data.positions() - points_).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT(vernier_test::difference(data.positions(), points_), 1e-14);
   EXPECT_EQ(data.temperatures()(39), 59);
   const CsvText text = read_csv_text(folder_ / "measured.csv");
   EXPECT_EQ(text.header.back(), "points_line");
@@ -136,7 +137,7 @@ TEST_F(JoinMeasurements, ByName) {
   CommandResult done = join(by_name);
   ASSERT_EQ(done.exit_code, 0) << done.errors;
   EXPECT_NE(done.output.find("Neither unit nor frame are checked without --robot"), std::string::npos);
-  EXPECT_LT((read_dataset<6>(folder_ / "measured.csv").positions() - points_).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT(vernier_test::difference(read_dataset<6>(folder_ / "measured.csv").positions(), points_), 1e-14);
   done = join(by_name + "--robot ur10");
   EXPECT_EQ(done.exit_code, 0) << done.errors;
   std::filesystem::remove(folder_ / "measured.csv");
@@ -169,7 +170,7 @@ TEST_F(JoinMeasurements, DecimalComma) {
       "--points tracker.txt --columns number,x,y,z --separator ';' --decimal , --header-lines 1 --unit m --robot ur10 "
       "--out measured.csv");
   ASSERT_EQ(done.exit_code, 0) << done.errors;
-  EXPECT_LT((read_dataset<6>(folder_ / "measured.csv").positions() - points_).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT(vernier_test::difference(read_dataset<6>(folder_ / "measured.csv").positions(), points_), 1e-14);
 }
 
 TEST_F(JoinMeasurements, RefusesWhatCannotBe) {

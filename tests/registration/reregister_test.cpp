@@ -11,6 +11,7 @@
 #include <string>
 
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
@@ -72,7 +73,7 @@ double difference(const Model& a, const Model& b) {
   const JointRows<6> joints = samples(50, 99);
   for (Index i = 0; i < joints.rows(); ++i) {
     const Joints q = configuration(joints, i);
-    out = std::max(out, RealMatrix(pose_difference(a.pose(q), b.pose(q))).largest());
+    out = vernier_test::larger(out, RealMatrix(pose_difference(a.pose(q), b.pose(q))).largest());
   }
   return out;
 }
@@ -375,8 +376,8 @@ TEST(RecursiveCalibration, FollowsADriftingBase) {
     if (i < 200) continue;
     const double behind = (poses.model().position(q) - position).norm();
     mean += behind / 200;
-    worst_pose = std::max(worst_pose, behind);
-    worst_position = std::max(worst_position, (positions.model().position(q) - position).norm());
+    worst_pose = vernier_test::larger(worst_pose, behind);
+    worst_position = vernier_test::larger(worst_position, (positions.model().position(q) - position).norm());
   }
   EXPECT_NEAR(mean, lag, 0.1 * lag);
   EXPECT_LT(worst_pose, 1.3 * lag);
@@ -459,7 +460,7 @@ TEST(RecursiveCalibration, DoesNotWanderWhereNothingIsExcited) {
   double worst = 0;
   for (Index i = 0; i < joints.rows(); ++i) {
     const Joints other = configuration(joints, i);
-    worst = std::max(worst, (online.model().position(other) - model.position(other)).norm());
+    worst = vernier_test::larger(worst, (online.model().position(other) - model.position(other)).norm());
   }
   EXPECT_LT(worst, 0.3e-3);
   EXPECT_THROW(online.update(q, Vector3(0, std::numeric_limits<double>::quiet_NaN(), 0)), std::invalid_argument);

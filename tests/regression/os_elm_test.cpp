@@ -6,6 +6,7 @@
 
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "laws.hpp"
 #include "regression_samples.hpp"
 #include "vernier/testing/regressor_laws.hpp"
@@ -71,7 +72,7 @@ double difference(const Fitted& a, const Fitted& b) {
   double out = difference(a.predict(fresh), b.predict(fresh));
   for (Index i = 0; i < 50; ++i) {
     const Eigen::Vector2d of_a = a.standard_deviation(point(fresh, i)), of_b = b.standard_deviation(point(fresh, i));
-    for (int o = 0; o < 2; ++o) out = std::max(out, std::abs(of_a(o) - of_b(o)));
+    for (int o = 0; o < 2; ++o) out = vernier_test::larger(out, std::abs(of_a(o) - of_b(o)));
   }
   return out;
 }

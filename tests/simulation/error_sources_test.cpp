@@ -15,6 +15,7 @@
 #include <vernier/simulation/error_sources.hpp>
 #include <vernier/testing/kinematic_laws.hpp>
 
+#include "larger.hpp"
 #include "laws.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
@@ -182,7 +183,7 @@ TEST(SimulatedArm, IsAModelLikeAnyOther) {
   double largest = 0;
   for (Index i = 0; i < q.rows(); ++i) {
     EXPECT_EQ(data.position(i), translation(actual.pose(data.joints(i))));
-    largest = std::max(largest, (data.position(i) - ideal.position(data.joints(i))).norm());
+    largest = vernier_test::larger(largest, (data.position(i) - ideal.position(data.joints(i))).norm());
   }
   EXPECT_GT(largest, 0.1e-3);  // the defaults are tenths of a millimetre at this arm's reach of 0.6 m
   EXPECT_LT(largest, 5e-3);

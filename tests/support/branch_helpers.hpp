@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "larger.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 
@@ -28,7 +29,7 @@ inline double without_turns(double angle) { return std::remainder(angle, 2 * std
 template <int N>
 double joint_difference(const vernier::JointVector<N>& a, const vernier::JointVector<N>& b) {
   double largest = 0;
-  for (int i = 0; i < N; ++i) largest = std::max(largest, std::abs(without_turns(a(i) - b(i))));
+  for (int i = 0; i < N; ++i) largest = vernier_test::larger(largest, std::abs(without_turns(a(i) - b(i))));
   return largest;
 }
 

@@ -6,6 +6,8 @@
 #include <regex>
 
 #include "complaint.hpp"
+#include "larger.hpp"
+#include "real_matrix.hpp"
 #include "replaced.hpp"
 #include "urdf_samples.hpp"
 #include "vernier/urdf/detail/origin_patch.hpp"
@@ -45,7 +47,7 @@ double worst_difference(const ArmGeometry& a, const ArmGeometry& b, Rng& rng, in
   const auto left = a.poses(q), right = b.poses(q);
   double worst = 0;
   for (std::size_t i = 0; i < left.size(); ++i)
-    worst = std::max(worst, (left[i].matrix() - right[i].matrix()).cwiseAbs().maxCoeff());
+    worst = vernier_test::larger(worst, vernier_test::difference(left[i], right[i]));
   return worst;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "complaint.hpp"
+#include "larger.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
 #include "replaced.hpp"
@@ -90,8 +91,8 @@ TEST_F(UrKinematicsFile, IsExactForPublishedCalibrations) {
     for (int sample = 0; sample < 1000; ++sample) {
       const JointVector<6> q = vernier_test::random_joints<6>(rng);
       const RealMatrix truth = vernier_test::ur_controller_pose(nominal, set, q);
-      worst = std::max(worst, difference(described_pose(values, q), truth));
-      worst_back = std::max(worst_back, difference(back.pose(q), truth));
+      worst = vernier_test::larger(worst, difference(described_pose(values, q), truth));
+      worst_back = vernier_test::larger(worst_back, difference(back.pose(q), truth));
       slip = std::max(slip, (described_pose(slipped, q) - truth).block(0, 3, 3, 1).norm());
     }
     EXPECT_LE(worst, 1e-12) << set.name;

@@ -7,6 +7,7 @@
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 
+#include "larger.hpp"
 #include "urdf_samples.hpp"
 #include "vernier/urdf/export_urdf.hpp"
 
@@ -52,7 +53,7 @@ double worst_difference(const ArmGeometry& ours, const Peer& peer, Rng& rng, int
   for (Index i = 0; i < samples; ++i) {
     const Eigen::Matrix4d difference =
         poses[static_cast<std::size_t>(i)].matrix() - peer.pose(VectorX(q.row(i).transpose()));
-    worst = std::max(worst, difference.cwiseAbs().maxCoeff());
+    worst = vernier_test::larger(worst, difference.cwiseAbs().maxCoeff());
   }
   return worst;
 }

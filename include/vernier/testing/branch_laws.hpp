@@ -44,11 +44,14 @@ JointVector<N> turnless_difference(const JointVector<N>& a, const JointVector<N>
   return out;
 }
 
-/// The largest difference of joint values.
+/// The largest difference of joint values; infinite where one is not a number.
 template <int N>
 double largest_difference(const JointVector<N>& differences) {
   double out = 0;
-  for (int i = 0; i < N; ++i) out = std::max(out, std::abs(differences(i)));
+  for (int i = 0; i < N; ++i) {
+    if (std::isnan(differences(i))) return std::numeric_limits<double>::infinity();
+    out = std::max(out, std::abs(differences(i)));
+  }
   return out;
 }
 

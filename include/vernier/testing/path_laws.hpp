@@ -59,6 +59,7 @@ double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& coming, 
     q = found.joints;
     const JointVector<Arm::dof> approach = vernier::detail::approach_on_the_way(coming, a, q);
     const Vector3 off = translation(pose_from(arm, approach, q)) - translation(between(start, end, s));
+    if (std::isnan(off.norm())) return std::numeric_limits<double>::infinity();
     worst = std::max(worst, off.norm());
   }
   return worst;

@@ -41,7 +41,8 @@ TEST(Skew, IsTheCrossProduct) {
 /// Rodrigues' formula in extended precision.
 vn::Matrix3 rodrigues(const vn::Vector3& r) {
   using Real = long double;
-  const Real x = r(0), y = r(1), z = r(2), angle = std::sqrt(x * x + y * y + z * z);
+  const auto x = static_cast<Real>(r(0)), y = static_cast<Real>(r(1)), z = static_cast<Real>(r(2)),
+             angle = std::sqrt(x * x + y * y + z * z);
   const bool tiny = angle < 1e-100L;
   const Real half = std::sin(angle / 2);
   const Real odd = tiny ? 1 : std::sin(angle) / angle, even = tiny ? 0 : 2 * (half / angle) * (half / angle);

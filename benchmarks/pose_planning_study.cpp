@@ -4,8 +4,8 @@
 //
 //   pose_planning_study FOLDER [SEEDS [FIGURE_FOLDER]]
 //
-// FOLDER has ur10_random_poses.csv and ur5_grid.csv. SEEDS (20) random choices for each number of poses. How much a
-// single plan owes to chance show half as many plans, each from another nine tenths of the training rows.
+// FOLDER has ur10_random_poses.csv and ur5_grid.csv. SEEDS (20) random choices for each number of poses. Half as many
+// plans, each from a different nine tenths of the training rows, show how much a single plan owes to chance.
 
 #include <algorithm>
 #include <atomic>

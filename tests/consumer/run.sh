@@ -55,8 +55,8 @@ in_background() {
 
 # refuse TEXT CMAKE ARG...: configuring must fail, and say TEXT
 refuse() {
-  local text=$1 folder
-  folder=$(mktemp -d "$build/refused.XXXXXX")
+  local text=$1
+  local folder="$build/refused-${text//[^A-Za-z]/}"
   shift
   if cmake -S "$here/installed" -B "$folder" -G Ninja "-DCMAKE_PREFIX_PATH=$build/prefix" "$@" \
     >"$folder.log" 2>&1; then

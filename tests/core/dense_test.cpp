@@ -16,6 +16,7 @@ namespace {
 
 using namespace detail;
 using vernier_test::difference;
+using vernier_test::lower_triangle;
 using vernier_test::RealMatrix;
 using vernier_test::vector;
 
@@ -33,12 +34,6 @@ MatrixX random(Index rows, Index cols, std::uint64_t seed) {
 RealMatrix positive(Index n, std::uint64_t seed) {
   const RealMatrix a = random(n, n, seed);
   return a * a.transpose() + RealMatrix::identity(n);
-}
-
-RealMatrix lower(MatrixX a) {
-  for (Index j = 0; j < a.cols(); ++j)
-    for (Index i = 0; i < std::min(j, a.rows()); ++i) a(i, j) = 0;
-  return a;
 }
 
 // Each entry, summed by hand.
@@ -94,7 +89,7 @@ TEST(DenseWhiteBox, CholeskyFactorsAndItsSolutions) {
     const MatrixX right = random(n, 3, 2);
     MatrixX factor = a;
     ASSERT_TRUE(cholesky(factor));
-    const RealMatrix l = lower(factor);
+    const RealMatrix l = lower_triangle(factor);
     EXPECT_LT(difference(l * l.transpose(), a), 1e-12 * a.largest()) << n;
     MatrixX solved = right;
     solve_lower(factor, solved);
@@ -138,7 +133,7 @@ TEST(DenseWhiteBox, TriangularFactors) {
       const RealMatrix a = random(rows, n, 7), r = triangular_factor(a);
       ASSERT_EQ(r.rows(), n);
       ASSERT_EQ(r.cols(), n);
-      EXPECT_EQ(lower(r), RealMatrix::diagonal(r.diagonal()));
+      EXPECT_EQ(lower_triangle(r), RealMatrix::diagonal(r.diagonal()));
       EXPECT_LT(difference(r.transpose() * r, a.transpose() * a), 1e-12 * static_cast<double>(rows + 1)) << rows;
     }
 }

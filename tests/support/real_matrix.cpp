@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <limits>
 #include <ostream>
 #include <stdexcept>
@@ -155,6 +156,12 @@ bool operator==(const RealMatrix& a, const RealMatrix& b) {
 
 RealMatrix vector(std::initializer_list<double> elements) {
   return RealMatrix(static_cast<Index>(elements.size()), 1, elements);
+}
+
+RealMatrix lower_triangle(RealMatrix a) {
+  for (Index j = 0; j < a.cols(); ++j)
+    for (Index i = 0; i < std::min(j, a.rows()); ++i) a(i, j) = 0;
+  return a;
 }
 
 double difference(const RealMatrix& a, const RealMatrix& b) {

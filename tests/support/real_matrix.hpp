@@ -111,6 +111,9 @@ class RealMatrix {
 /// One column, by its elements.
 RealMatrix vector(std::initializer_list<double> elements);
 
+/// The matrix with zeros above its diagonal.
+RealMatrix lower_triangle(RealMatrix a);
+
 /// Largest absolute difference of elements; infinite where the shapes differ, NaN where a difference is.
 double difference(const RealMatrix& a, const RealMatrix& b);
 

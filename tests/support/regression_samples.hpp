@@ -188,13 +188,6 @@ inline double distance_of_rows(const RealMatrix& a, Index i, const RealMatrix& b
   return std::sqrt(square);
 }
 
-/// What lies above the diagonal set to zero.
-inline RealMatrix lower_triangle(RealMatrix a) {
-  for (Index j = 0; j < a.cols(); ++j)
-    for (Index i = 0; i < std::min(j, a.rows()); ++i) a(i, j) = 0;
-  return a;
-}
-
 /// A vector with one element moved.
 inline vernier::VectorX moved(vernier::VectorX x, Index i, double step) {
   x(i) += step;

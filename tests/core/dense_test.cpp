@@ -166,6 +166,22 @@ TEST(DenseWhiteBox, EigenvaluesOfSymmetricMatrices) {
   EXPECT_FALSE(symmetric_eigen(MatrixX::Constant(3, 3, std::numeric_limits<double>::quiet_NaN())).converged);
 }
 
+TEST(DenseWhiteBox, TridiagonalForms) {
+  for (const Index n : sizes) {
+    const RealMatrix half = random(n, n, 12), a = half + half.transpose();
+    MatrixX given = a;
+    for (Index j = 1; j < n; ++j)
+      for (Index i = 0; i < j; ++i) given(i, j) = 99;  // not to be read
+    const TridiagonalForm form = tridiagonal_form(given);
+    ASSERT_EQ(form.subdiagonal.size(), n - 1);
+    RealMatrix t = RealMatrix::diagonal(form.diagonal);
+    for (Index i = 0; i + 1 < n; ++i) t(i, i + 1) = t(i + 1, i) = form.subdiagonal(i);
+    const RealMatrix q = form.basis;
+    EXPECT_LT(difference(q * t * q.transpose(), a), 1e-13 * static_cast<double>(n));
+    EXPECT_LT(difference(q.transpose() * q, RealMatrix::identity(n)), 1e-13 * static_cast<double>(n));
+  }
+}
+
 /// U S V'.
 RealMatrix multiplied(const ThinSvd& svd) {
   return svd.u * RealMatrix::diagonal(svd.s) * RealMatrix(svd.v).transpose();

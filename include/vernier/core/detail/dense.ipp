@@ -203,6 +203,11 @@ VERNIER_IMPL SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix) {
   return {eigen.eigenvalues(), eigen.eigenvectors(), eigen.info() == Eigen::Success};
 }
 
+VERNIER_IMPL TridiagonalForm tridiagonal_form(const ConstMatrixRef& matrix) {
+  const Eigen::Tridiagonalization<MatrixX> form(matrix);
+  return {form.matrixQ(), form.diagonal(), form.subDiagonal()};
+}
+
 using JacobiSvd = Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner>;
 
 VERNIER_IMPL RightSingular right_singular(const ConstMatrixRef& matrix) {

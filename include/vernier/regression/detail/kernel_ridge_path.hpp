@@ -3,13 +3,13 @@
 /// @file
 /// Leave-one-out errors of kernel ridge regression.
 
-#include "vernier/core/types.hpp"
+#include "vernier/core/detail/dense.hpp"
 
 namespace vernier::detail {
 
 /// Leave-one-out errors of kernel ridge regression with an unpenalised mean, for every lambda from one decomposition of
-/// the weighted kernel matrix, `W^1/2 K W^1/2 = V diag(d) V'`. A sample is left out with all its weight. O(n^3) once,
-/// then O(n^2) a lambda.
+/// the weighted kernel matrix, `W^1/2 K W^1/2 = Q T Q'` with T tridiagonal. A sample is left out with all its weight.
+/// O(n^3) once, then O(n^2) a lambda.
 /// @cite Dubrule 1983
 class KernelRidgePath {
  public:
@@ -26,8 +26,9 @@ class KernelRidgePath {
 
  private:
   VectorX root_;
-  MatrixX targets_, vectors_, squares_, projected_;  // squares: of the elements of the vectors
-  VectorX values_;
+  MatrixX targets_;
+  TridiagonalForm form_;
+  MatrixX projected_;  // Q' W^1/2 (1, targets)
 };
 
 }  // namespace vernier::detail

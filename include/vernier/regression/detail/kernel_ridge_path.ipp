@@ -2,26 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/kernel_ridge_path.hpp"
 
 namespace vernier::detail {
 
+/// T + lambda = L D L' for a tridiagonal T of no negative eigenvalue.
+class ShiftedTridiagonal {
+ public:
+  ShiftedTridiagonal(const TridiagonalForm& form, double lambda)
+      : pivots_(form.diagonal.size()), multipliers_(form.subdiagonal.size()) {
+    // no pivot is below the smallest eigenvalue, but for rounding
+    pivots_(0) = std::max(form.diagonal(0) + lambda, lambda);
+    for (Index k = 1; k < pivots_.size(); ++k) {
+      multipliers_(k - 1) = form.subdiagonal(k - 1) / pivots_(k - 1);
+      pivots_(k) = std::max(form.diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
+    }
+  }
+
+  /// (T + lambda)^-1 x, in place.
+  void solve(MatrixX& x) const {
+    const Index n = pivots_.size();
+    for (Index c = 0; c < x.cols(); ++c) {
+      for (Index k = 1; k < n; ++k) x(k, c) -= multipliers_(k - 1) * x(k - 1, c);
+      for (Index k = 0; k < n; ++k) x(k, c) /= pivots_(k);
+      for (Index k = n - 1; k > 0; --k) x(k - 1, c) -= multipliers_(k - 1) * x(k, c);
+    }
+  }
+
+  /// Diagonal of Q (T + lambda)^-1 Q'.
+  VectorX inverse_diagonal(const MatrixX& q) const {
+    VectorX row = q.col(0), sum = row.cwiseAbs2() / pivots_(0);  // rows of L^-1 Q'
+    for (Index k = 1; k < pivots_.size(); ++k) {
+      row = q.col(k) - multipliers_(k - 1) * row;
+      sum += row.cwiseAbs2() / pivots_(k);
+    }
+    return sum;
+  }
+
+ private:
+  VectorX pivots_, multipliers_;
+};
+
 VERNIER_IMPL KernelRidgePath::KernelRidgePath(MatrixX k, const ConstMatrixRef& targets, const VectorX& weights)
     : root_(weights.cwiseSqrt()), targets_(targets) {
   for (Index c = 0; c < k.cols(); ++c)
     for (Index r = c; r < k.rows(); ++r) k(r, c) *= root_(r) * root_(c);
-  SymmetricEigen eigen = symmetric_eigen(k);
-  vectors_ = std::move(eigen.vectors);
-  squares_ = vectors_.cwiseAbs2();
-  values_ = std::move(eigen.values);
-  for (double& value : values_) value = std::max(value, 0.0);  // below: rounding
+  form_ = tridiagonal_form(k);
   MatrixX right(root_.size(), 1 + targets_.cols());
   right.col(0) = root_;
   right.rightCols(targets_.cols()) = rows_scaled(root_, targets_);
-  projected_ = transposed_matrix_product(vectors_, right);
+  projected_ = transposed_matrix_product(form_.basis, right);
 }
 
 VERNIER_IMPL MatrixX KernelRidgePath::leave_one_out_residuals(double lambda) const {
@@ -33,19 +65,18 @@ VERNIER_IMPL MatrixX KernelRidgePath::leave_one_out_residuals(double lambda) con
     for (Index i = 0; i < n; ++i) factor(i) = 1 / (1 - weights(i) / total);
     return rows_scaled(factor, rows_minus(targets_, transposed_product(targets_, weights) / total));
   }
-  const VectorX of_ones = projected_.col(0);
-  VectorX shares(n);
-  for (Index d = 0; d < n; ++d) shares(d) = 1 / (values_(d) + lambda);
-  const VectorX ones = shares.cwiseProduct(of_ones);
-  const double precision = ones.dot(of_ones);
-  const MatrixX targets = projected_.rightCols(targets_.cols());
-  const VectorX mean = transposed_product(targets, ones) / precision;
-  MatrixX alpha = rows_scaled(shares, targets);
+  const ShiftedTridiagonal shifted(form_, lambda);
+  MatrixX alpha = projected_;
+  shifted.solve(alpha);
+  const VectorX ones = alpha.col(0);
+  const double precision = ones.dot(projected_.col(0));
+  const VectorX mean = transposed_product(projected_.rightCols(targets_.cols()), ones) / precision;
+  alpha = alpha.rightCols(targets_.cols()).eval();
   add_product(alpha, ones, mean.transpose(), -1);
   // of (K + lambda / W)^-1 with the mean projected out
-  const VectorX diagonal = product(squares_, shares), along = product(vectors_, ones);
+  const VectorX diagonal = shifted.inverse_diagonal(form_.basis), along = product(form_.basis, ones);
   for (Index i = 0; i < n; ++i) factor(i) = root_(i) / (weights(i) * (diagonal(i) - along(i) * along(i) / precision));
-  return rows_scaled(factor, matrix_product(vectors_, alpha));
+  return rows_scaled(factor, matrix_product(form_.basis, alpha));
 }
 
 VERNIER_IMPL double KernelRidgePath::leave_one_out_error(double lambda) const {

@@ -5,14 +5,13 @@
 
 #include <optional>
 
+#include "calibration_data.hpp"
 #include "cli.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "pose_calibration.hpp"
 #include "robot_choice.hpp"
 #include "vernier/ceres.hpp"
-#include "vernier/data/csv.hpp"
-#include "vernier/data/split.hpp"
-#include "vernier/io/report_json.hpp"
 #include "vernier/urdf.hpp"
 
 namespace {
@@ -40,51 +39,55 @@ struct Outcome {
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-/// Errors of held-out poses by an arm as a file has it, base and tool registered by the training poses.
-template <int N>
-vn::ErrorStatistics error_of(const vn::RobotDescription& exported, const vn::Split<N>& data,
-                             const vn::CalibrateOptions& options) {
-  vn::IdentifyOptions frames = options.geometry;
-  frames.geometry = false;
-  const auto registered = vn::identify(exported.arm<N>().arm, data.train, frames, options.sensors);
-  return vn::prediction_error(registered.model, data.test);
+support::CalibrationOptions calibration_options(const Settings& o, const std::string& arm_name) {
+  support::CalibrationOptions out;
+  out.data = {o.data};
+  out.test_every = o.test_every;
+  out.calibrate.arm_name = arm_name;
+  out.calibrate.station_names = out.data;
+  out.calibrate.sensors.use_orientations = !o.positions_only;
+  out.calibrate.remainder.on_geometry = true;
+  return out;
 }
 
+/// Errors of held-out poses by an arm as a file has it, base and tool registered by the training poses.
 template <int N>
-Outcome export_arm(const Settings& o, const vn::RobotDescription& description,
-                   const std::optional<vn::UrdfChain>& chain, const vn::FitOptions& fit) {
-  const vn::DescribedRobot<N> robot = description.arm<N>();
-  const vn::Dataset<N> data = vn::read_dataset<N>(o.data, robot.arm.chain().joint_types());
-  if (data.size() <= o.test_every)
-    throw vn::CalibrationFailure(o.data + ": too few rows; an export needs many poses, and held-out ones");
-  const vn::Split<N> split = vn::split_every(data, o.test_every);
-  vn::CalibrateOptions options;
-  options.arm_name = robot.name;
-  options.station_names = {o.data};
-  options.sensors.use_orientations = !o.positions_only;
-  options.errors.drives = robot.drives;
-  options.remainder.on_geometry = true;
-  const auto calibration = vn::calibrate(robot.arm, split.train, options, fit);
+vn::ErrorStatistics error_of(const vn::RobotDescription& exported, const support::CalibrationOptions& o,
+                             std::uint64_t seed) {
+  const vn::DescribedRobot<N> robot = exported.arm<N>();
+  const auto measured = support::read_measurements<N>(o, robot.arm.chain().joint_types(), seed);
+  vn::IdentifyOptions frames = o.calibrate.geometry;
+  frames.geometry = false;
+  const auto registered = vn::identify(robot.arm, measured.train[0], frames, o.calibrate.sensors);
+  return vn::prediction_error(registered.model, measured.test[0]);
+}
+
+Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const std::optional<vn::UrdfChain>& chain,
+                   const vn::FitOptions& fit) {
+  const support::CalibrationOptions options = calibration_options(o, robot.name);
+  const support::PoseCalibration calibration = support::calibrate_from_poses(robot, options, fit);
+  const vn::CalibrationReport& report = calibration.report;
 
   Outcome out;
-  out.report = vn::evaluate(calibration, split.test, robot.limits);
-  out.designed = vn::ErrorStatistics::of(out.report.stage("frames").position);
-  out.full = vn::ErrorStatistics::of(out.report.stage(out.report.chosen).position);
-  // The geometry that was identified alone: that of the error model leans on the terms that no file can hold.
-  const vn::ArmGeometry identified(calibration.geometry.model.identified());
-  const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : robot.arm.base_frame(),
-                                                          o.with_tool ? identified.tool() : robot.arm.tool_frame());
-  vn::ExportNote note{robot.name, file_name(o.data), o.date, split.train.size(), out.report.chosen, out.full, {}};
+  out.report = report;
+  out.designed = vn::ErrorStatistics::of(report.stage("frames").position);
+  out.full = vn::ErrorStatistics::of(report.stage(report.chosen).position);
+  const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
+  const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
+                                                          o.with_tool ? identified.tool() : nominal.tool());
+  const auto error = [&](const vn::RobotDescription& exported) {
+    return support::dispatch_dof(robot.dof(), [&](auto n) { return error_of<n()>(exported, options, fit.seed); });
+  };
+  vn::ExportNote note{robot.name, file_name(o.data), o.date, report.train_poses, report.chosen, out.full, {}};
   if (!o.urdf.empty()) {
     const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
-    const vn::RobotDescription read_back = vn::parse_urdf(as_file(), o.urdf, chain->base_link, chain->tip_link).robot;
-    note.error_exported = error_of<N>(read_back, split, options);
+    note.error_exported = error(vn::parse_urdf(as_file(), o.urdf, chain->base_link, chain->tip_link).robot);
     out.files.push_back({o.urdf, as_file(), note.error_exported});
   }
   if (!o.ur_kinematics.empty()) {
     const vn::UrKinematics kinematics =
         chain ? vn::UrKinematics::of(*chain, geometry, o.ur_hash) : vn::UrKinematics::of(geometry, o.ur_hash);
-    note.error_exported = error_of<N>(kinematics.robot(robot.name), split, options);
+    note.error_exported = error(kinematics.robot(robot.name));
     out.files.push_back({o.ur_kinematics, kinematics.text(note), note.error_exported});
   }
   return out;
@@ -172,7 +175,7 @@ int run(support::Program& program) {
                               "' is behind no fixed joint, which could hold the tool");
   const vn::ThreadExecutor executor(program.common().threads);
   const vn::FitOptions fit{.seed = program.common().seed, .executor = executor};
-  const Outcome out = support::dispatch_dof(robot.dof(), [&](auto n) { return export_arm<n()>(o, robot, chain, fit); });
+  const Outcome out = export_arm(o, robot, chain, fit);
   for (const ExportedFile& file : out.files) vn::write_file(file.path, file.text);
   print(o, robot, out);
   if (!program.common().json.empty()) {

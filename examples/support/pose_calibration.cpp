@@ -41,10 +41,8 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::ArmPrior> prior;
   if (!o.prior.empty()) prior = read_prior(o.prior, N);
-  PoseCalibration out;
-  out.audits = audit_files(o, robot);
+  std::vector<vn::DataAudit> audits = audit_files(o, robot);
   const Measurements<N> measured = read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed);
-  out.held_out = measured.held_out;
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
@@ -55,7 +53,11 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   const auto calibration =
       vn::calibrate(robot.arm, measured.train, measured.distances, options, fit,
                     o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search), measured.contacts);
-  out.report = vn::evaluate(calibration, measured.test, robot.limits);
+  PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
+                      .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
+                      .report = vn::evaluate(calibration, measured.test, robot.limits),
+                      .held_out = measured.held_out,
+                      .audits = std::move(audits)};
   if (!o.save.empty())
     vn::save(o.save, calibration,
              {.name = robot.name,

@@ -12,6 +12,7 @@
 #include "vernier/core/fit_options.hpp"
 #include "vernier/io/report_input.hpp"
 #include "vernier/io/robot_file.hpp"
+#include "vernier/kinematics/arm_geometry.hpp"
 
 namespace support {
 
@@ -20,6 +21,8 @@ inline constexpr vernier::Index prior_generations = 15;
 
 /// A calibration from measured poses, assessed.
 struct PoseCalibration {
+  vernier::ArmGeometry nominal;              ///< the arm as designed
+  vernier::ArmGeometry identified;           ///< by geometry alone: in the error model, joint errors have their share
   vernier::CalibrationReport report{};       ///< the assessment
   std::string held_out{};                    ///< which poses are held out, in words
   std::vector<vernier::DataAudit> audits{};  ///< of the files of poses

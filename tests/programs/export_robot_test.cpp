@@ -143,7 +143,7 @@ TEST_F(ExportRobot, MisuseIsOneLine) {
   expect("export_robot", both + "--ur-kinematics o.yaml --with-tool", 2, "it has no tool");
   expect("export_robot", both + "--ur-kinematics o.yaml --ur-hash 'a: b'", 2, "--ur-hash takes up to 64 letters");
   expect("export_robot", both + "--urdf no/such/folder.urdf", 1, "cannot be written");
-  expect("export_robot", from_urdf + "--data few.csv --urdf o.urdf", 1, "few.csv: too few rows");
+  expect("export_robot", from_urdf + "--data few.csv --urdf o.urdf", 1, "few.csv: a single row");
   expect("export_robot",
          "--robot arm.urdf --base-link base_link --tip-link wrist_3_link --with-tool --urdf o.urdf " + data, 2,
          "link 'wrist_3_link' is behind no fixed joint");

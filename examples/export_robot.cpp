@@ -12,6 +12,7 @@
 #include "pose_calibration.hpp"
 #include "robot_choice.hpp"
 #include "vernier/ceres.hpp"
+#include "vernier/core/atomic_file.hpp"
 #include "vernier/urdf.hpp"
 
 namespace {

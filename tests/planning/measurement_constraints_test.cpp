@@ -85,6 +85,20 @@ TEST(MeasurementConstraints, LinksCollide) {
   EXPECT_EQ(checked(c, {0, 0.1, 0.1}), Rejection::none);
 }
 
+// Arm, box and tracker moved together by a base: what is rejected does not change.
+TEST(MeasurementConstraints, HoldInTheFrameOfTheBase) {
+  const DhChain<3> chain{{{{.a = 1}, {.a = 1}, {.a = 1}}}};
+  const Vector3 moved(20, -30, 40);
+  const ArmGeometry there(Framed<DhChain<3>>(chain, rigid_motion(Matrix3::Identity(), moved), Isometry3::Identity()));
+  MeasurementConstraints c{.tracker = Tracker{.position = Vector3(0.5, -5, 0) + moved, .beam_radius = 0.05},
+                           .link_radii = {0.1, 0.1, 0.1}};
+  const VectorX square = Vector3(0, half_turn / 2, half_turn / 2), crossed = Vector3(0, 2.4, 2.4);
+  EXPECT_EQ(MeasurementScene(there, c).check(square), Rejection::line_of_sight);
+  c.tracker->position.z() += 40;
+  EXPECT_EQ(MeasurementScene(there, c).check(square), Rejection::none);
+  EXPECT_EQ(MeasurementScene(there, c).check(crossed), Rejection::self_collision);
+}
+
 TEST(MeasurementConstraints, DistancesOfSegmentsEqualAFineSearch) {
   Rng rng(4);
   const auto point = [&] { return Vector3(rng.normal(), rng.normal(), rng.normal()); };

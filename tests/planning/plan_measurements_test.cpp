@@ -148,6 +148,17 @@ TEST(PlanMeasurements, RelativeErrorsAreThoseOfTheRegion) {
     EXPECT_NEAR(plan.relative_error(count) / std::sqrt(variance(count) / variance(30)), 1, 1e-6) << count;
 }
 
+// Of a large region every k-th row counts, about 150 of them.
+TEST(PlanMeasurements, OfALargeRegionSomeCount) {
+  const auto chain = robots::abb_irb120().chain;
+  const MeasurementCandidates<6> candidates = some_candidates(40, 4);
+  const JointRows<6> region = some_candidates(450, 5).joints;
+  JointRows<6> thirds(150, 6);
+  for (Index i = 0; i < 150; ++i) set_configuration(thirds, i, configuration(region, 3 * i));
+  const VectorX all = plan_measurements(chain, candidates, few_harmonics(10), {}, region).relative_error;
+  EXPECT_EQ(difference(all, plan_measurements(chain, candidates, few_harmonics(10), {}, thirds).relative_error), 0);
+}
+
 TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   MeasurementCandidates<6> candidates = some_candidates(60, 6);
   const auto chain = robots::abb_irb120().chain;
@@ -201,6 +212,46 @@ TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
   MeasurementCandidates<6> measured;
   measured.joints = covering.joints;
   EXPECT_TRUE(plan_measurements(chain, some_candidates(300, 8), options, measured).uncovered.empty());
+}
+
+/// Candidates that differ in their first two joints alone, by the same.
+MeasurementCandidates<6> in_a_row(const std::vector<double>& values) {
+  MeasurementCandidates<6> out;
+  out.joints.resize(static_cast<Index>(values.size()), 6);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    set_configuration(out.joints, static_cast<Index>(i), JointVector<6>(values[i], values[i], 0.3, 0.7, -0.4, 1));
+  return out;
+}
+
+// Bins of a quarter from the smallest value to the largest, which lies in the last of them.
+TEST(PlanMeasurements, BinsByHand) {
+  const auto chain = robots::abb_irb120().chain;
+  PlanOptions options = few_harmonics(1);
+  options.bin = 0.25;
+  for (const int wanted : {0, 1}) {
+    options.bin_count = wanted;
+    // what was measured far above the bins of the first joint and below those of the second covers none of them
+    MeasurementCandidates<6> outside = in_a_row({0.8});
+    outside.joints(0, 1) = -0.3;
+    for (const auto& measured : {MeasurementCandidates<6>(), outside}) {
+      const auto plan = plan_measurements(chain, in_a_row({0, 0.5}), options, measured);
+      ASSERT_EQ(plan.uncovered.size(), 2u) << wanted;
+      for (const int joint : {0, 1}) {
+        const UncoveredBin& bin = plan.uncovered[static_cast<std::size_t>(joint)];
+        EXPECT_EQ(bin.joint, joint);
+        EXPECT_EQ(bin.range.lower, plan.chosen[0] == 0 ? 0.25 : 0);
+        EXPECT_EQ(bin.range.upper, bin.range.lower + 0.25);
+      }
+    }
+  }
+  // the half that was measured needs no further pose
+  for (const double half : {0.1, 0.4}) {
+    const auto rest = plan_measurements(chain, in_a_row({0, 0.5}), options, in_a_row({half}));
+    EXPECT_EQ(rest.chosen, std::vector<Index>{half < 0.25 ? 1 : 0});
+    EXPECT_TRUE(rest.uncovered.empty());
+  }
+  options.count = 2;
+  EXPECT_TRUE(plan_measurements(chain, in_a_row({0, 0.25, 0.5}), options).uncovered.empty());
 }
 
 TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {

@@ -104,6 +104,16 @@ TEST(PoseDesign, ReachesNearlyTheBestOfAllChoices) {
   }
 }
 
+// Of one unknown the best choice are the rows of the largest squares, 9 and 4, and the bound reaches it.
+TEST(PoseDesign, TheBoundOfOneUnknownIsItsBestChoice) {
+  const RealMatrix rows = vernier_test::vector({1, 3, -1, 2});
+  EXPECT_NEAR(information_bound(rows, 1, 2, 40), std::log(1 + 9 + 4), 1e-9);
+  EXPECT_NEAR(information_bound(rows, 1, 3, 40), std::log(1 + 9 + 4 + 1), 1e-9);
+  EXPECT_NEAR(information_bound(rows, 1, 4, 1), std::log(1 + 9 + 4 + 1 + 1), 1e-12);
+  // with weights of a half each: log 8.5, and the gradient 13 / 8.5 of the best less 7.5 / 8.5 of the weights
+  EXPECT_NEAR(information_bound(rows, 1, 2, 1), std::log(8.5) + 5.5 / 8.5, 1e-12);
+}
+
 TEST(PoseDesign, OfEqualCandidatesTakesTheFirst) {
   const RealMatrix one = random_rows(3, 6, 5);
   RealMatrix rows(30, 6);

@@ -209,6 +209,82 @@ TEST(VerifyCalibration, ErrorsAreThoseOfTheRegisteredModel) {
   EXPECT_EQ(VectorX(verify_calibration(calibration().model(), calibration().errors, data).errors), report.errors);
 }
 
+// What to do follows from what has changed: zeros alone are estimated again, a transmission needs all of it.
+TEST(VerificationReport, AdviceByHand) {
+  const auto advice = [](std::vector<JointCheck> joints) {
+    VerificationReport report;
+    for (JointCheck& joint : joints) joint.determined = true;
+    report.joints = std::move(joints);
+    report.registration.emplace();
+    report.options.tool = true;
+    const std::vector<std::string> said = report.advice();
+    EXPECT_EQ(said.size(), 1u);
+    return said.front();
+  };
+  const JointCheck zero{.zero_changed = true}, transmission{.transmission_changed = true}, kept;
+  const std::string zeros =
+                        "Estimate the zeros of the joints again: calibrate --model MODEL --free base,offsets; then "
+                        "check again.",
+                    all = "Calibrate again, with the earlier model as the prior: calibrate --prior MODEL.";
+  EXPECT_EQ(advice({kept, zero, kept}), zeros);
+  EXPECT_EQ(advice({zero, zero}), zeros);
+  EXPECT_EQ(advice({kept, transmission, kept}), all);
+  EXPECT_EQ(advice({zero, transmission}), all);
+  EXPECT_EQ(advice({transmission, zero}), all);
+  EXPECT_EQ(advice({kept, kept}), all);
+}
+
+// Each sentence where its reason is given, and not elsewhere.
+TEST(VerificationReport, EverySentenceOfAdviceHasItsReason) {
+  VerificationReport report;
+  report.joints.resize(2, {.determined = true});
+  report.joint_types.assign(2, JointType::revolute);
+  const auto said = [&](const char* words) {
+    int count = 0;
+    for (const std::string& sentence : report.advice()) count += sentence.find(words) != std::string::npos ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(said("check without --registered"), 1);
+  EXPECT_EQ(said("--tool-remounted"), 0);
+  report.registration.emplace();
+  EXPECT_EQ(said("check without --registered"), 0);
+  EXPECT_EQ(said("--tool-remounted"), 1);
+  EXPECT_EQ(said("the base as it is now"), 0);
+  report.options.tool = true;
+  EXPECT_EQ(said("--tool-remounted"), 0);
+  EXPECT_EQ(said("Measure the rows again"), 0);
+  report.aside = {4};
+  EXPECT_EQ(said("Measure the rows again"), 1);
+  report.valid = true;
+  EXPECT_EQ(said("the base as it is now"), 1);
+  EXPECT_EQ(said("Calibrate again"), 0);
+  report.options.base = false;
+  EXPECT_EQ(said("the base as it is now"), 0);
+  report.joints[1].determined = false;
+  EXPECT_EQ(said("cannot tell a change of the zero of joint 2 from"), 1);
+  EXPECT_EQ(said("cannot tell"), 1);
+}
+
+// Changes in mrad and mm, each with 1.96 standard deviations.
+TEST(VerificationReport, TableByHand) {
+  VerificationReport report;
+  report.joint_types = {JointType::revolute, JointType::prismatic, JointType::revolute};
+  report.joints = {{.determined = true,
+                    .zero_change = 0.5e-3,
+                    .zero_std = 0.1e-3,
+                    .zero_p = 0.25,
+                    .once_p = 0.5,
+                    .zero_changed = true},
+                   {.determined = true, .zero_change = -2e-3, .zero_std = 1e-3, .zero_p = 0.125, .once_p = 1},
+                   {.once_p = 0.03125, .transmission_changed = true}};
+  const std::string text = report.summary();
+  for (const char* line : {"    1      0.5000 mrad     0.1960      0.25            0.5  changed\n",
+                           "    2     -2.0000 mm       1.9600      0.12              1\n",
+                           "    3  not determined                             0.031  changed\n",
+                           "the zero of joint 1 moved by 0.5 +- 0.196 mrad; the transmission of joint 3 changed ("})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+}
+
 TEST(VerifyCalibration, RefusesWhatItCannotCheck) {
   const auto refuses = [](const Dataset<6>& data, const VerifyOptions& options, const char* words) {
     const std::string said =

@@ -12,6 +12,7 @@
 
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
+#include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
@@ -257,6 +258,7 @@ TEST(FitErrorModel, GeometryAloneHasLeaveOnePoseOutErrorsOfItsOwn) {
                                    .drift = false,
                                    .num_validation_poses = 60};
   const auto all = fitted(data), alone = fitted(data, geometry);
+  EXPECT_GT(all.leave_one_out_seconds, 0);
   ASSERT_EQ(all.left_out_rows.size(), 65u);
   ASSERT_EQ(all.left_out_rows, alone.left_out_rows);
   ASSERT_EQ(all.geometry_left_out_errors.size(), 65);
@@ -341,6 +343,105 @@ TEST(ErrorModelEstimate, UnknownApproachesAreUncertainByHalfTheLoop) {
   EXPECT_LT((estimate.visit_covariance(q, 1) - expected).norm(), 1e-12 * expected.norm());
   const JointVector<6> previous(-0.4, -1, -0.2, 0.2, -0.9, 0.5);
   EXPECT_EQ(estimate.visit_covariance(q, 1, 0, previous).norm(), 0);
+}
+
+// Of two stations the first keeps what is shared and what is its own, with their covariances.
+TEST(ErrorModelEstimate, TheFirstStationByHand) {
+  const ArmGeometry arm(nominal);
+  ErrorModelEstimate both{
+      .arm = ArmParameterisation({arm, arm},
+                                 {{0, 1, 1e-3, 0}, {0, 0, 1e-3, 0}, {7, -1, 2e-3, 4}, {8, -1, 1e-5, 1, true}})};
+  JointTerms terms(6);
+  terms.transmission[3] = Fourier::up_to(1);
+  both.arm.set_terms(terms, vector({1e-3, 2e-3}), vector({3, 5}));
+  both.arm.move(vector({50, 2, 3, 4, 5, 6}));
+  both.covariance = MatrixX(6, 6);
+  for (Index i = 0; i < 6; ++i)
+    for (Index j = 0; j < 6; ++j) both.covariance(i, j) = static_cast<double>(10 * std::min(i, j) + std::max(i, j));
+  both.converged = true;
+  both.position_sigma = 1;
+  both.joint_sigma = 2;
+  both.orientation_sigma = 3;
+  both.fallback_error = 4;
+  both.mean_temperature = 5;
+  both.temperature_std = 6;
+  both.variance_factor = 7;
+  both.residual_variance = 8;
+  const ErrorModelEstimate first = both.first_station();
+  EXPECT_TRUE(first.converged);
+  EXPECT_EQ(first.position_sigma, 1);
+  EXPECT_EQ(first.joint_sigma, 2);
+  EXPECT_EQ(first.orientation_sigma, 3);
+  EXPECT_EQ(first.fallback_error, 4);
+  EXPECT_EQ(first.mean_temperature, 5);
+  EXPECT_EQ(first.temperature_std, 6);
+  EXPECT_EQ(first.variance_factor, 7);
+  EXPECT_EQ(first.residual_variance, 8);
+  ASSERT_EQ(first.arm.geometric().size(), 3u);
+  for (const GeometricUnknown& u : first.arm.geometric()) EXPECT_EQ(u.station, -1);
+  EXPECT_EQ(RealMatrix(first.covariance), RealMatrix(both.covariance).block(1, 1, 5, 5));
+  EXPECT_EQ(RealMatrix(first.arm.geometry(0).parameters()), RealMatrix(both.arm.geometry(0).parameters()));
+  EXPECT_NEAR(first.arm.thermal_rates(0)(8), 4e-5, 1e-15);
+  const RealMatrix coefficients = first.arm.joint_errors().coefficients();
+  EXPECT_LT((coefficients - vector({5e-3, 12e-3})).norm(), 1e-15);
+  EXPECT_EQ(RealMatrix(first.arm.precisions()).block(3, 0, 2, 1), vector({3, 5}));
+  EXPECT_EQ(RealMatrix(first.arm.scales()).block(3, 0, 2, 1), vector({1e-3, 2e-3}));
+}
+
+/// A base that moves by 1 mm per unit of a thermal unknown and kelvin.
+TEST(ErrorModelEstimate, UnknownTemperaturesAreUncertainByTheirDeviation) {
+  ErrorModelEstimate estimate{
+      .arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}, {0, -1, 1e-6, 0, true}})};
+  estimate.arm.move(vector({0, 10}));  // 10 um/K along x
+  estimate.covariance = RealMatrix::diagonal(vector({0, 4}));
+  estimate.mean_temperature = 20;
+  estimate.temperature_std = 3;
+  const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
+  const auto x = [&](double celsius) { return estimate.visit_covariance(q, 1, 0, VectorX(), celsius)(0, 0); };
+  EXPECT_NEAR(x(20), 0, 1e-20);
+  EXPECT_NEAR(x(25), 100e-12, 1e-20);  // five kelvin times two standard units of 1 um/K
+  EXPECT_NEAR(x(std::nan("")), 900e-12, 1e-19);
+  estimate.temperature_std = 0;
+  EXPECT_NEAR(x(std::nan("")), 0, 1e-20);
+}
+
+// A slide between two revolute joints has no harmonics, and every kind of term its own expected size.
+TEST(ExpectedTermsWhiteBox, KindsByHand) {
+  const DhChain<3> chain{{{{.alpha = 1.5, .d = 0.3}, {.alpha = 0.5, .joint = JointType::prismatic}, {.a = 0.35}}}};
+  ErrorModelOptions options{.harmonics = 4, .spectrum = {{1, 2, 7e-5}, {3, 4, 8e-5}}};
+  options.compliance_prior_std = 1e-3;
+  options.gear_ratio_prior_std = 2e-4;
+  options.coupling_prior_std = 3e-4;
+  options.hysteresis_prior_std = 4e-5;
+  options.tilt_prior_std = 5e-3;
+  const JointTerms terms = detail::allowed_terms(detail::ChainTable(chain.view()), options, 30);
+  EXPECT_EQ(terms.transmission[0].orders, (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(terms.transmission[1].size(), 0);
+  EXPECT_EQ(terms.transmission[2].orders, (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_TRUE(terms.gear_ratio && terms.coupling && terms.gravity && terms.tilt && !terms.hysteresis.empty());
+  const VectorX sizes = detail::expected_sizes(terms, options, detail::spectra_of(options, 3));
+  const std::vector<std::string> names = terms.names();
+  std::map<double, int> count;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string& name = names[k];
+    const double size = sizes(static_cast<Index>(k));
+    ++count[size];
+    if (name.starts_with("gear")) {
+      EXPECT_EQ(size, 2e-4);
+    } else if (name.starts_with("coupling")) {
+      EXPECT_EQ(size, 3e-4);
+    } else if (name.starts_with("sag")) {
+      EXPECT_EQ(size, 1e-3);
+    } else if (name.starts_with("cos") || name.starts_with("sin")) {
+      EXPECT_EQ(size, name.back() < '3' ? 7e-5 : 8e-5) << name;
+    }
+  }
+  EXPECT_EQ(count[7e-5] + count[8e-5], 16);
+  EXPECT_EQ(count[4e-5], 3 * static_cast<int>(terms.hysteresis.size()));
+  EXPECT_GT(count[5e-3], 0);
+  options.harmonics = 0;  // gears come beside joint-wise terms alone
+  const JointTerms bare = detail::allowed_terms(detail::ChainTable(chain.view()), options, 30);
+  EXPECT_FALSE(bare.gear_ratio || bare.coupling);
 }
 
 // a cos q + b sin q at 0 and pi: a and -a, mean 0; its variance is that of a.

@@ -164,6 +164,47 @@ TEST(DataAudit, SaysWhatToDo) {
   EXPECT_NE(audit_data(ur5, data).summary().find("nothing found"), std::string::npos);
 }
 
+// A sentence names what is wrong and what to do about it, and no other fault.
+TEST(DataAudit, EveryFaultOfAllRowsHasItsOwnSentence) {
+  const Dataset<6> data = clean_file(30, 12);
+  Rng rng(8);
+  const auto said = [&](FaultKind kind) -> std::string {
+    for (;;) {
+      const auto planted = plant(ur5, data, kind, {}, rng);
+      for (const DataFinding& finding : audit_data(ur5, planted->data).findings)
+        if (finding.kind == kind && finding.joint == planted->joint) return finding.message;
+    }
+  };
+  const std::pair<FaultKind, const char*> sentences[] = {
+      {FaultKind::length_unit, "times as large as the arm's: correct the unit of x, y, z"},
+      {FaultKind::joint_unit, ": correct their unit"},
+      {FaultKind::joint_sign, "counts in the other direction: reverse the sign of its column"},
+      {FaultKind::joint_zero, "counts from a zero that is off by"},
+      {FaultKind::mirrored_frame, "measured coordinates are left-handed: reverse one axis or exchange two"},
+      {FaultKind::orientation_convention, ": convert them to rotation vectors in radians"}};
+  for (const auto& [kind, words] : sentences) {
+    const std::string sentence = said(kind);
+    EXPECT_EQ(sentence.rfind("all rows: ", 0), 0u) << sentence;
+    EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+  }
+}
+
+// Zeros that other parameters hide, in an arm whose own are off by 2 mrad: of each joint whose zero frames do not
+// absorb.
+TEST(DataAudit, FindsSmallZerosOfShoulderAndElbow) {
+  const Dataset<6> data = clean_file(100, 6);
+  for (const int joint : {1, 2}) {
+    JointRows<6> joints = data.joints();
+    for (Index i = 0; i < data.size(); ++i) joints(i, joint) += 0.007;
+    const DataAudit audit = audit_data(ur5, Dataset<6>(joints, data.positions(), data.orientations()),
+                                       {.smallest_zero = 0.003, .length_std = 1e-3, .angle_std = 1e-3});
+    ASSERT_EQ(audit.findings.size(), 1u) << joint << words(audit);
+    EXPECT_EQ(audit.findings[0].kind, FaultKind::joint_zero) << words(audit);
+    EXPECT_EQ(audit.findings[0].joint, joint) << words(audit);
+    EXPECT_NEAR(audit.findings[0].size, -0.007, 3e-3) << words(audit);  // parallel joints share their own zeros
+  }
+}
+
 TEST(DataAudit, EveryKindHasAName) {
   for (const FaultKind kind : every_kind) EXPECT_FALSE(fault_name(kind).empty());
   EXPECT_EQ(fault_name(FaultKind::joint_sign), "joint_sign");
@@ -265,6 +306,60 @@ TEST(BaseTrendWhiteBox, IsTakenOffTheRows) {
     EXPECT_LT((point(found.positions, i) - trend.centre - arm).norm(), 1e-15);
     EXPECT_LT((found.orientations[static_cast<std::size_t>(i)] - orientation).norm(), 1e-15);
   }
+}
+
+/// The trend of poses whose joints have errors and whose base moves evenly; `displacement` is how far that moved the
+/// positions, root mean square.
+template <class Error>
+detail::BaseTrend trend_of(const Error& error, const Vector6& motion, double& displacement) {
+  const Index n = 120;
+  const Dataset<6> file = clean_file(n, 21);
+  const ArmGeometry arm(in_frames(ur5));
+  detail::AuditRows rows{file.joints(), PointRows(n, 3)};
+  MatrixX actually = rows.joints;
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < 6; ++j) actually(i, j) += error(rows.joints(i, j), j);
+  const std::vector<Isometry3> poses = arm.poses(actually);
+  const PointRows modelled = arm.positions(actually);
+  const Vector3 centre = centroid(modelled);
+  Rng rng(6);
+  for (Index i = 0; i < n; ++i) {
+    const Vector6 moved = (static_cast<double>(i) / static_cast<double>(n - 1) - 0.5) * motion;
+    const Matrix3 turn = exp_so3(Vector3(moved(3), moved(4), moved(5)));
+    const Vector3 lever = turn * (point(modelled, i) - centre), shift(moved(0), moved(1), moved(2)),
+                  noise(rng.normal(), rng.normal(), rng.normal()), tilt(rng.normal(), rng.normal(), rng.normal());
+    set_point(rows.positions, i, centre + lever + shift + 0.05e-3 * noise);
+    const Matrix3 off = exp_so3(Vector3(0.1e-3 * tilt)) * turn;
+    rows.orientations.push_back(off * rotation(poses[static_cast<std::size_t>(i)]));
+  }
+  displacement = 0;
+  for (Index i = 0; i < n; ++i) {
+    const Vector3 turn(motion(3), motion(4), motion(5)), by = turn.cross(point(modelled, i) - centre);
+    displacement = std::hypot(displacement, (by + Vector3(motion(0), motion(1), motion(2))).norm() / std::sqrt(n));
+  }
+  VectorX times(n);
+  for (Index i = 0; i < n; ++i) times(i) = 1000 + 7 * static_cast<double>(i);
+  const VectorX stds = detail::audit_geometry_std(arm, true, 2e-3, 3e-3);
+  const detail::AuditFit fit = detail::audit_fit(arm, arm.parameters(), stds, rows, 12);
+  return detail::base_trend(fit, stds, rows, times);
+}
+
+// Joint errors of orders 1 to 3 are estimated beside the trend: what is left is the noise, and the motion is found.
+TEST(BaseTrendWhiteBox, IsFoundBesideJointErrors) {
+  const Vector6 none = Vector6::Zero(), motion{0.2e-3, -0.1e-3, 0.3e-3, 0.2e-3, 0.3e-3, -0.4e-3};
+  double displacement = 0;
+  for (const int order : {1, 2, 3})
+    for (const double phase : {0.0, 0.5 * std::numbers::pi})
+      for (const Vector6& moved : {none, motion}) {
+        const auto error = [&](double q, Index j) { return j == 2 || j == 4 ? 1e-3 * std::cos(order * q - phase) : 0; };
+        const detail::BaseTrend trend = trend_of(error, moved, displacement);
+        EXPECT_GT(trend.scale, 0.02e-3) << order << ' ' << phase;
+        EXPECT_LT(trend.scale, 0.06e-3) << order << ' ' << phase;
+        for (Index k = 0; k < 6; ++k)
+          EXPECT_NEAR(trend.motion(k), moved(k), 0.06e-3) << order << ' ' << phase << ' ' << k;
+        EXPECT_NEAR(trend.displacement, displacement, 0.06e-3) << order << ' ' << phase;
+        EXPECT_EQ(trend.chi_square > 28, moved(0) > 0) << trend.chi_square;  // 99.99 % of six degrees of freedom
+      }
 }
 
 // Four commands, each read three times over 12 mrad: not told from other values where commands are 50 mrad apart.

@@ -105,6 +105,53 @@ TEST(DataAudit, StatesTheSizeOfAZero) {
   EXPECT_NEAR(audit.findings[0].size, 0.05, 6e-3);  // the arm's own zeros are off by 2 mrad
 }
 
+// Orientations by other conventions, written out by hand; each is named.
+TEST(DataAudit, NamesTheConventionOfOrientations) {
+  const Dataset<6> data = clean_file(30, 13);
+  constexpr double degrees = 180 / std::numbers::pi;
+  const char* names[] = {"rotation vectors of the inverse rotation",
+                         "rotation vectors in degrees",
+                         "roll, pitch and yaw angles in radians",
+                         "roll, pitch and yaw angles in degrees",
+                         "Euler angles in radians",
+                         "Euler angles in degrees"};
+  for (int convention = 1; convention <= 6; ++convention) {
+    PointRows orientations(30, 3);
+    for (Index i = 0; i < 30; ++i) {
+      const Matrix3 r = data.orientation(i);
+      Vector3 v = log_so3(r);
+      if (convention == 1) v *= -1;
+      if (convention == 3 || convention == 4)  // r = z(c) y(b) x(a)
+        v = Vector3(std::atan2(r(2, 1), r(2, 2)), -std::asin(r(2, 0)), std::atan2(r(1, 0), r(0, 0)));
+      if (convention >= 5)  // r = x(a) y(b) z(c)
+        v = Vector3(std::atan2(-r(1, 2), r(2, 2)), std::asin(r(0, 2)), std::atan2(-r(0, 1), r(0, 0)));
+      if (convention % 2 == 0) v *= degrees;
+      set_point(orientations, i, v);
+    }
+    const DataAudit audit = audit_data(ur5, Dataset<6>(data.joints(), data.positions(), orientations));
+    ASSERT_EQ(audit.findings.size(), 1u) << words(audit);
+    EXPECT_EQ(audit.findings[0].kind, FaultKind::orientation_convention) << words(audit);
+    EXPECT_EQ(audit.findings[0].size, convention) << words(audit);
+    EXPECT_NE(audit.findings[0].message.find(names[convention - 1]), std::string::npos) << words(audit);
+    EXPECT_LT(audit.registered.median, 6e-3);
+  }
+}
+
+// So large that the arm of the stated joints is another one; whole turns are none.
+TEST(DataAudit, StatesTheSizeOfALargeZero) {
+  const Dataset<6> data = clean_file(60, 14);
+  for (const auto& [joint, zero] : {std::pair<int, double>{1, 1.2}, {2, -2.0}, {4, 2.8}, {3, 4.5}}) {
+    JointRows<6> joints = data.joints();
+    for (Index i = 0; i < 60; ++i) joints(i, joint) -= zero;
+    const DataAudit audit = audit_data(ur5, Dataset<6>(joints, data.positions(), data.orientations()));
+    ASSERT_FALSE(audit.findings.empty()) << joint;
+    EXPECT_EQ(audit.findings[0].kind, FaultKind::joint_zero) << words(audit);
+    EXPECT_EQ(audit.findings[0].joint, joint) << words(audit);
+    EXPECT_NEAR(audit.findings[0].size, std::remainder(zero, 2 * std::numbers::pi), 6e-3) << words(audit);
+    EXPECT_LT(audit.registered.median, 6e-3);
+  }
+}
+
 TEST(DataAudit, KeepsAZeroThatArmsHaveToItself) {
   const Dataset<6> data = clean_file(100, 6);
   JointRows<6> joints = data.joints();

@@ -110,6 +110,7 @@ TEST(PoseDesign, TheBoundOfOneUnknownIsItsBestChoice) {
   EXPECT_NEAR(information_bound(rows, 1, 2, 40), std::log(1 + 9 + 4), 1e-9);
   EXPECT_NEAR(information_bound(rows, 1, 3, 40), std::log(1 + 9 + 4 + 1), 1e-9);
   EXPECT_NEAR(information_bound(rows, 1, 4, 1), std::log(1 + 9 + 4 + 1 + 1), 1e-12);
+  EXPECT_NEAR(information_bound(rows.block(1, 0, 1, 1), 1, 1, 1), std::log(1 + 9), 1e-12);
   // with weights of a half each: log 8.5, and the gradient 13 / 8.5 of the best less 7.5 / 8.5 of the weights
   EXPECT_NEAR(information_bound(rows, 1, 2, 1), std::log(8.5) + 5.5 / 8.5, 1e-12);
 }

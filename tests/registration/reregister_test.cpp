@@ -552,5 +552,19 @@ TEST(Reregister, PriorsOfAToolByHand) {
   for (Index k = 0; k < 6; ++k) EXPECT_NEAR(found.change_std(k), (k < 3 ? 3e-3 : 6e-3) / std::sqrt(10.0), 1e-12) << k;
 }
 
+// Positions measured as well as expected leave half of a variance, which is more than half of a deviation: held. The
+// rotation is measured three times as well.
+TEST(Reregister, APositionAsGoodAsThePriorHalvesTheVariance) {
+  const ReregisterOptions options{
+      .base = false, .tool = true, .tool_position_prior_std = 3e-3, .tool_rotation_prior_std = 6e-3};
+  const SensorModel coarse{.position_sigma = 3e-3, .orientation_sigma = 2e-3};
+  const auto found = reregister(rigid(), measure(rigid(), samples(1, 3)), options, coarse);
+  EXPECT_TRUE(found.determined);
+  EXPECT_EQ(found.held, std::vector<std::string>{"the position of the tool"});
+  ASSERT_EQ(found.change_std.size(), 6);
+  for (Index k = 0; k < 6; ++k)
+    EXPECT_NEAR(found.change_std(k), k < 3 ? 3e-3 / std::sqrt(2.0) : 6e-3 / std::sqrt(10.0), 1e-9) << k;
+}
+
 }  // namespace
 }  // namespace vernier::reregister_test

@@ -286,6 +286,10 @@ TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
       vernier_test::complaint([&] { (void)sample_candidates(robot.chain, robot.limits, constraints, 200, 3); });
   EXPECT_NE(said.find("of 1000 configurations 0 can be measured; of the others"), std::string::npos) << said;
   EXPECT_NE(said.find("tool out of its box"), std::string::npos) << said;
+  constraints.joint_margin = 10;
+  const std::string narrow =
+      vernier_test::complaint([&] { (void)sample_candidates(robot.chain, robot.limits, constraints, 200, 3); });
+  EXPECT_NE(narrow.find("of the others 1000 are out of the joint limits"), std::string::npos) << narrow;
 }
 
 TEST(PlanMeasurements, EnoughIsWhereTenMoreGainLittle) {

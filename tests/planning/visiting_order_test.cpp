@@ -64,6 +64,30 @@ TEST(VisitingOrder, ShorterThanByChanceAndFirstRowsStay) {
   EXPECT_EQ(order, visiting_order(joints, VectorX(), 3));
 }
 
+// Neither a stretch the other way round nor a stretch of up to three elsewhere would be shorter.
+TEST(VisitingOrder, NoStretchIsBetterReversedOrElsewhere) {
+  const MatrixX joints = random_configurations(20, 5);
+  const std::vector<Index> order = visiting_order(joints, VectorX(), 2);
+  const double time = path_time(joints, order);
+  for (std::ptrdiff_t i = 2; i < 20; ++i)
+    for (std::ptrdiff_t j = i + 1; j <= 20; ++j) {
+      std::vector<Index> other = order;
+      std::reverse(other.begin() + i, other.begin() + j);
+      EXPECT_GE(path_time(joints, other), time - 1e-9) << i << ' ' << j;
+      if (j - i > 3) continue;
+      for (const auto& moved : {std::vector<Index>(order.begin() + i, order.begin() + j),
+                                std::vector<Index>(other.begin() + i, other.begin() + j)}) {
+        std::vector<Index> rest = order;
+        rest.erase(rest.begin() + i, rest.begin() + j);
+        for (auto at = static_cast<std::ptrdiff_t>(2); at <= static_cast<std::ptrdiff_t>(rest.size()); ++at) {
+          std::vector<Index> elsewhere = rest;
+          elsewhere.insert(elsewhere.begin() + at, moved.begin(), moved.end());
+          EXPECT_GE(path_time(joints, elsewhere), time - 1e-9) << i << ' ' << j << ' ' << at;
+        }
+      }
+    }
+}
+
 TEST(VisitingOrder, ChecksAreRepeated) {
   EXPECT_EQ(with_check_visits({4, 1, 2, 3, 0}, 2), (std::vector<Index>{4, 1, 4, 2, 3, 4, 0, 4}));
   EXPECT_EQ(with_check_visits({7}, 2), (std::vector<Index>{7}));

@@ -448,11 +448,12 @@ TEST(ExpectedTermsWhiteBox, KindsByHand) {
 TEST(ErrorModelEstimate, TransmissionByHand) {
   ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
   JointTerms terms(6);
+  terms.gear_ratio = true;  // six coefficients before those of the transmissions
   terms.transmission[1] = Fourier::up_to(1);
   terms.transmission[2] = Fourier::up_to(1);
-  estimate.arm.set_terms(terms, vector({1e-3, 2e-3, 3e-3, 4e-3}), VectorX::Ones(4));
-  estimate.arm.move(vector({0, 1, 2, 5, 7}));
-  estimate.covariance = RealMatrix::diagonal(vector({1, 4, 9, 16, 25}));
+  estimate.arm.set_terms(terms, vector({1, 1, 1, 1, 1, 1, 1e-3, 2e-3, 3e-3, 4e-3}), VectorX::Ones(10));
+  estimate.arm.move(vector({0, 8, 8, 8, 8, 8, 8, 1, 2, 5, 7}));
+  estimate.covariance = RealMatrix::diagonal(vector({1, 8, 8, 8, 8, 8, 8, 4, 9, 16, 25}));
   const JointFunction f = estimate.transmission(2, {0, std::numbers::pi});
   EXPECT_LT((f.value - vector({15e-3, -15e-3})).norm(), 1e-15);
   EXPECT_LT((f.std - vector({12e-3, 12e-3})).norm(), 1e-15);  // 4 units of 3 mrad

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "complaint.hpp"
@@ -86,6 +87,22 @@ TEST(VisitingOrder, NoStretchIsBetterReversedOrElsewhere) {
         }
       }
     }
+}
+
+TEST(VisitingOrder, NoLongStretchIsBetterReversed) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const MatrixX joints = random_configurations(80, seed);
+    const std::vector<Index> order = visiting_order(joints);
+    const auto time = [&](std::size_t a, std::size_t b) {
+      double slowest = 0;
+      for (Index k = 0; b < order.size() && k < 6; ++k)
+        slowest = std::max(slowest, std::abs(joints(order[a], k) - joints(order[b], k)));
+      return slowest;
+    };
+    for (std::size_t i = 1; i < order.size(); ++i)
+      for (std::size_t j = i + 1; j < order.size(); ++j)
+        EXPECT_GE(time(i - 1, j) + time(i, j + 1), time(i - 1, i) + time(j, j + 1) - 1e-9) << i << ' ' << j;
+  }
 }
 
 TEST(VisitingOrder, ChecksAreRepeated) {

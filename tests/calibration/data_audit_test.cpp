@@ -361,7 +361,8 @@ template <class Error>
 detail::BaseTrend trend_of(const Error& error, const Vector6& motion, double& displacement) {
   const Index n = 120;
   const Dataset<6> file = clean_file(n, 21);
-  const ArmGeometry arm(in_frames(ur5));
+  const ArmGeometry arm(
+      Framed<Chain>(ur5, rigid_motion(Matrix3::Identity(), Vector3(2, -1, 0.5)), Isometry3::Identity()));
   detail::AuditRows rows{file.joints(), PointRows(n, 3)};
   MatrixX actually = rows.joints;
   for (Index i = 0; i < n; ++i)

@@ -70,6 +70,11 @@ TEST(PlanMeasurements, RowsAreDerivativesOfThePose) {
           << terms.names()[static_cast<std::size_t>(k)] << ", pose " << i;
     }
   }
+  // the first unknown is the base's x, which is known to 30 times 10 mm
+  for (Index i = 0; i < 5; ++i) {
+    EXPECT_NEAR(rows(6 * i, 0), 0.3 / planned.sensors.position_sigma, 1e-6);
+    EXPECT_NEAR(rows.block(6 * i + 1, 0, 5, 1).norm(), 0, 1e-6);
+  }
   planned.oriented = false;
   const RealMatrix positions = detail::expected_rows(planned, at.joints, at.previous);
   ASSERT_EQ(positions.rows(), 15);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <numbers>
@@ -314,21 +315,29 @@ detail::PathJoints joints_of(std::initializer_list<double> values) {
 struct BowedSlides {
   double bow = 0;
   bool other_branch = false;
-  double twist = 0;  ///< about z, as much there as `bow`
+  double twist = 0;                            ///< about z, as much there as `bow`
+  std::function<double(double)> way = {};      ///< how far it is off at x, in place of an arc
+  std::function<int(double)> branch = {};      ///< in which branch it is at x
+  std::function<double(double)> cost_at = {};  ///< of being at y
+  double reach = 1e3;                          ///< how far from where it begins Newton's method finds the target
+  double left = 0;                             ///< what remains of errors: positions so much, rotations twice that
 
   detail::SolvedPath path(const std::vector<detail::PathGoal>& goals, const detail::PathSettings& settings) const {
     using detail::PathJoints;
-    const auto off = [&](double x) { return 4 * bow * x * (1 - x); };
+    const auto off = [&](double x) { return way ? way(x) : 4 * bow * x * (1 - x); };
+    const auto id_at = [&](double x) { return branch ? branch(x) : 0; };
     const auto at = [](double x, double y) { return rigid_motion(Matrix3::Identity(), Vector3(x, y, 0)); };
     const auto meet = [&](const Isometry3& target, const PathJoints&, PathJoints& command, double* errors) {
       const Vector3 p = translation(target);
-      if (!other_branch) command = joints_of({p.x(), p.y() - off(p.x())});
-      errors[0] = errors[1] = 0;
-      return true;
+      const bool near = std::abs(command(0) - p.x()) <= reach;
+      if (!other_branch && near) command = joints_of({p.x(), p.y() - off(p.x())});
+      errors[0] = left;
+      errors[1] = 2 * left;
+      return near;
     };
     const auto branches = [&](const Isometry3& target, const PathJoints&, std::vector<detail::PathBranch>& out) {
       const Vector3 p = translation(target);
-      out.push_back({joints_of({p.x(), p.y() - off(p.x())}), 0});
+      out.push_back({joints_of({p.x(), p.y() - off(p.x())}), id_at(p.x())});
       if (other_branch) out.push_back({joints_of({0, 2}), 1});
       return Reach::met;
     };
@@ -340,8 +349,8 @@ struct BowedSlides {
       q = joints_of({target(0, 3), target(1, 3)});
       return true;
     };
-    const auto cost = [](const PathJoints&) { return 0.0; };
-    const auto branch_id = [&](const PathJoints& q) { return other_branch && q(1) == 2 ? 1 : 0; };
+    const auto cost = [&](const PathJoints& q) { return cost_at ? cost_at(q(1)) : 0.0; };
+    const auto branch_id = [&](const PathJoints& q) { return other_branch && q(1) == 2 ? 1 : id_at(q(0)); };
     return detail::solve_path({2, branches, meet, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
                               settings);
   }
@@ -420,6 +429,103 @@ TEST(PathSolverWhiteBox, OrientationsHaveATolerance) {
     const detail::SolvedPath path = BowedSlides{.twist = 2e-3}.path(line_through({1}), settings);
     EXPECT_EQ(path.points.back().status, tolerance > 2e-3 ? PointStatus::met : PointStatus::off_path);
   }
+}
+
+PointStatus last_status(const BowedSlides& arm, double x, Motion motion = Motion::linear) {
+  std::vector<detail::PathGoal> goals = line_through({x});
+  goals.back().motion = motion;
+  return arm.path(goals, slides_settings(joints_of({1, 1}))).points.back().status;
+}
+
+TEST(PathSolverWhiteBox, ALineMayNotChangeTheBranch) {
+  const BowedSlides two{.branch = [](double x) { return x > 0.05 ? 1 : 0; }};
+  EXPECT_EQ(last_status(two, 0.04), PointStatus::met);
+  EXPECT_EQ(last_status(two, 0.06), PointStatus::jump);  // next to one another, but beyond a singularity
+  EXPECT_EQ(last_status(two, 0.06, Motion::joint), PointStatus::met);
+  const BowedSlides between{.branch = [](double x) { return x > 0.4 && x < 0.6 ? 1 : 0; }};
+  EXPECT_EQ(last_status(between, 0.3), PointStatus::met);
+  EXPECT_EQ(last_status(between, 1), PointStatus::jump);  // on the branch of the start again
+}
+
+TEST(PathSolverWhiteBox, ALineEndsWhereTheNominalArmComesTo) {
+  // off by more than 0.1 where the line ends: joint values of another turn, or of the same signs by chance
+  const auto ending = [](double off) { return last_status({.way = [=](double x) { return x == 1 ? off : 0; }}, 1); };
+  EXPECT_NE(ending(0.09), PointStatus::jump);
+  EXPECT_EQ(ending(0.11), PointStatus::jump);
+}
+
+TEST(PathSolverWhiteBox, ThePiecesOfALineBeginWhereTheNominalArmIs) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.max_joint_step = 0.3;
+  const BowedSlides arm{.reach = 0.1};  // from the piece before it would not be found
+  const detail::SolvedPath path = arm.path(line_through({0.8}), settings);
+  ASSERT_EQ(path.points.size(), 4u);
+  for (std::size_t k = 1; k < 4; ++k) {
+    EXPECT_EQ(path.points[k].status, PointStatus::met);
+    EXPECT_EQ(path.points[k].inserted, k < 3);
+    EXPECT_EQ(path.points[k].target, 1);
+    EXPECT_NEAR(path.points[k].command(0), 0.8 / 3 * static_cast<double>(k), 1e-15);
+  }
+}
+
+TEST(PathSolverWhiteBox, ALineIsWatchedAtItsQuarters) {
+  // off by 10 mm where x^3 (1 - x), or its mirror image, is largest, and by 6 mm in the middle
+  const auto hump = [](double x) { return 10e-3 * 256 / 27 * x * x * x * (1 - x); };
+  for (const bool late : {false, true}) {
+    const BowedSlides arm{.way = [&](double x) { return hump(late ? x : 1 - x); }};
+    EXPECT_NEAR(arm.path(line_through({1}), slides_settings(joints_of({1, 1}))).before, 10e-3, 1e-12) << late;
+  }
+}
+
+TEST(PathSolverWhiteBox, EveryPointSaysWhatIsLeft) {
+  const BowedSlides arm{.bow = 5e-3, .left = 1e-7};
+  const detail::SolvedPath path = arm.path(line_through({1}), slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 4u);
+  for (const detail::SolvedPoint& point : path.points) {
+    EXPECT_EQ(point.position_error, 1e-7);
+    EXPECT_EQ(point.rotation_error, 2e-7);
+  }
+}
+
+TEST(PathSolverWhiteBox, NothingIsAskedOfTheMoveToTheFirstTarget) {
+  std::vector<detail::PathGoal> goals = line_through({0.1});
+  goals.front().motion = Motion::linear;
+  for (const detail::SolvedPoint& point : BowedSlides{}.path(goals, slides_settings(joints_of({1, 1}))).points)
+    EXPECT_EQ(point.status, PointStatus::met);
+}
+
+TEST(PathSolverWhiteBox, WithoutAStartTheWayToTheFirstTargetHardlyCounts) {
+  std::vector<detail::PathGoal> goals = line_through({1});
+  goals.back().motion = Motion::joint;
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  const auto branch = [&] { return BowedSlides{.other_branch = true}.path(goals, settings).points.back().command(1); };
+  EXPECT_EQ(branch(), 0);  // 0 to the first target and 1 m to the second, in place of 2 m and 0
+  settings.start(1) = std::nan("");
+  EXPECT_EQ(branch(), 2);
+}
+
+TEST(PathSolverWhiteBox, CostsOfPlacesChooseTheBranch) {
+  std::vector<detail::PathGoal> goals = line_through({});
+  goals.front().pose(0, 3) = 1;
+  const auto branch = [&](double cost) {  // 1 m to the first branch, 2 m to the other
+    const BowedSlides arm{.other_branch = true, .cost_at = [=](double y) { return y == 0 ? cost : 0; }};
+    return arm.path(goals, slides_settings(joints_of({1, 1}))).points.back().command(1);
+  };
+  EXPECT_EQ(branch(0.9), 0);
+  EXPECT_EQ(branch(1.1), 2);
+}
+
+TEST(PathSolverWhiteBox, ATargetOutOfReachOfNewtonsMethodIsNotFound) {
+  BowedSlides arm{.other_branch = true, .reach = 0.5};  // the other branch begins at 0, the target is at 1
+  std::vector<detail::PathGoal> goals = line_through({});
+  goals.front().pose(0, 3) = 1;
+  detail::PathSettings settings = slides_settings(joints_of({0.1, 1}));
+  EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::not_found);
+  settings.upper(1) = 2;  // where the other branch is
+  EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::beyond_limits);
+  settings.upper(1) = 3;
+  settings.lower(1) = 2;
+  EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::beyond_limits);
 }
 
 }  // namespace

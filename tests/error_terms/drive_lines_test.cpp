@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace vernier::drive_lines_test {
 namespace {
 
@@ -31,6 +33,33 @@ TEST(DriveLines, CausesAreNamed) {
   EXPECT_EQ(cause_of(404), "probably 4 a turn of a 101:1 gear");
   EXPECT_EQ(cause_of(404, {.gear_ratio = 50}), "");
   EXPECT_EQ(cause_of(1), "once a turn: an eccentric encoder or gear");
+}
+
+TEST(DriveLines, EveryPeriodOfTheInputIsNamed) {
+  const JointDrive drive{.gear_ratio = 50.25, .encoder_periods = 4000};
+  for (const int periods : {1, 2, 4, 5, 8, 10, 12, 20, 24})
+    EXPECT_EQ(cause_of(static_cast<int>(periods * 50.25), drive),
+              std::to_string(periods) + " a turn of a 50.25:1 gear");
+  for (const int periods : {3, 6, 7, 9, 11}) EXPECT_EQ(cause_of(static_cast<int>(periods * 50.25), drive), "");
+  EXPECT_EQ(cause_of(2), "twice a turn: an oval encoder or gear");
+}
+
+TEST(DriveLines, OrdersNearALineHaveItsCause) {
+  // one and a half beside a gear's, one beside an encoder's
+  const JointDrive drive{.gear_ratio = 33.5, .encoder_periods = 512};
+  for (const int order : {32, 33, 34, 35}) EXPECT_EQ(cause_of(order, drive), "1 a turn of a 33.5:1 gear") << order;
+  for (const int order : {31, 36, 510, 514, 1022, 1026}) EXPECT_EQ(cause_of(order, drive), "") << order;
+  for (const int order : {511, 512, 513})
+    EXPECT_EQ(cause_of(order, drive), "the period of an encoder of 512 periods a turn") << order;
+  for (const int order : {1023, 1025})
+    EXPECT_EQ(cause_of(order, drive), "half the period of an encoder of 512 periods a turn") << order;
+}
+
+TEST(DriveLines, AreFromAbove140To2500) {
+  EXPECT_EQ(lines_of({.gear_ratio = 14}),  // 8 a turn are 112, 10 are 140
+            (HarmonicSpectrum{{167, 169, 7e-6}, {279, 281, 7e-6}, {335, 337, 7e-6}}));
+  EXPECT_EQ(lines_of({.gear_ratio = 625}), (HarmonicSpectrum{{1249, 1251, 7e-6}, {2496, 2504, 12e-6}}));
+  EXPECT_EQ(lines_of({.encoder_periods = 1}), (HarmonicSpectrum{{1, 3, 10e-6}, {1, 4, 6e-6}}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -465,6 +466,52 @@ TEST(JointErrors, NamesAreInOrderAndUnique) {
   many(arm);
   many(vernier_test::random_chain<1>(rng));
   many(vernier_test::random_chain<12>(rng));  // joint 1, harmonic 12 is not joint 11, harmonic 2
+}
+
+/// Blocks follow each other without gaps, up to all coefficients, and none is empty.
+void expect_blocks_in_sequence(const vn::JointTerms& terms) {
+  Index at = 0;
+  for (const vn::JointTermBlock& block : terms.blocks()) {
+    EXPECT_EQ(block.begin, at);
+    EXPECT_GT(block.count, 0);
+    if (block.joint >= 0) {
+      EXPECT_EQ(block.begin, terms.transmission_begin(block.joint));
+    }
+    at += block.count;
+  }
+  EXPECT_EQ(at, terms.size());
+}
+
+// Coefficients are the same where their names are.
+TEST(JointErrors, CommonTermsHaveTheSameNames) {
+  vn::Rng rng(9);
+  const auto arm = vernier_test::random_chain<3>(rng);
+  std::vector<vn::JointTerms> sets(4, vn::JointTerms(3));
+  sets[0] = all_terms(arm);
+  sets[0].transmission = {{{1, 3, 5}}, {{2}}, {{4, 8}}};
+  sets[0].hysteresis = {0.01, 0.3};
+  sets[0].tilt.emplace(arm);
+  sets[1].coupling = true;
+  sets[1].hysteresis = {0.02};
+  sets[1].transmission = {{{3, 4, 5, 7}}, {{1}}, {{1, 2, 8, 9}}};
+  sets[2].gear_ratio = true;
+  sets[2].tilt.emplace(arm);
+  sets[2].transmission = {vn::Fourier{}, vn::Fourier::up_to(5), {{8}}};
+  for (const vn::JointTerms& first : sets) {
+    expect_blocks_in_sequence(first);
+    const std::vector<std::string> names = first.names();
+    for (const vn::JointTerms& second : sets) {
+      const std::vector<std::string> others = second.names();
+      std::vector<std::pair<Index, Index>> expected, found;
+      for (std::size_t a = 0; a < names.size(); ++a) {
+        const auto b = std::find(others.begin(), others.end(), names[a]);
+        if (b != others.end()) expected.emplace_back(static_cast<Index>(a), b - others.begin());
+      }
+      vn::detail::visit_common_terms(first, second, [&](Index a, Index b) { found.emplace_back(a, b); });
+      std::sort(found.begin(), found.end());
+      EXPECT_EQ(found, expected);
+    }
+  }
 }
 
 TEST(JointErrors, WrongCoefficientsAreNamed) {

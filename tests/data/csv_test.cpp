@@ -169,6 +169,23 @@ TEST_F(Csv, PrismaticJointsAreLengths) {
   EXPECT_DOUBLE_EQ(data.joints()(0, 2), 0.125);
 }
 
+TEST_F(Csv, UnitsFitTheTypesOfJoints) {
+  using vernier::JointType;
+  const std::array types{JointType::prismatic, JointType::revolute};
+  const auto said = [&](std::string_view header) -> std::string {
+    const std::string path = file(std::string(header) + ",x_mm,y_mm,z_mm\n250,180,1,2,3\n");
+    try {
+      EXPECT_DOUBLE_EQ(read_dataset<2>(path, types).joints()(0, 0), 0.25);
+    } catch (const DataError& e) {
+      return std::string(e.what()).substr(path.size());
+    }
+    return {};
+  };
+  EXPECT_EQ(said("q1_mm,q2_deg"), "");
+  EXPECT_EQ(said("q1_deg,q2_rad"), ", line 1: column q1_deg, but joint 1 is prismatic: a length is needed");
+  EXPECT_EQ(said("q1_mm,q2_mm"), ", line 1: column q2_mm, but joint 2 is revolute: an angle is needed");
+}
+
 TEST_F(Csv, LineEndsMarksBlanksAndSpaces) {
   const std::string header = "q1_rad,q2_rad,x_mm,y_mm,z_mm", row = "0.5,-1.25,100,-200,300";
   for (const std::string& content : {

@@ -174,6 +174,29 @@ TEST(JointCoverage, NoGapWithinTwoMargins) {
   EXPECT_LT(gate(JointVector<1>(3.1)), 0.3);
 }
 
+// Joint 1 is measured in [-1, 1] and [5, 6], and elsewhere.
+TEST(JointCoverage, JoinedRangesAreTheUnion) {
+  using Ranges = std::vector<vernier::JointRange>;
+  JointCoverage<2> gate = example();
+  gate.ranges[0].push_back({5, 6});
+  const auto joined = [&](const Ranges& others, double margin = 0.1) {
+    return gate.joined({others, {{2, 4}}}, vernier::VectorX::Constant(2, margin));
+  };
+  EXPECT_EQ(joined({{-4, -3}, {8, 9}}).ranges[0], (Ranges{{-4, -3}, {-1, 1}, {5, 6}, {8, 9}}));
+  EXPECT_EQ(joined({{-3, -1.9}, {7, 8}}).ranges[0], (Ranges{{-3, 1}, {5, 8}}));  // within two margins of 0.5
+  EXPECT_EQ(joined({{-0.5, 0.5}, {5.5, 5.7}}).ranges[0], gate.ranges[0]);        // nothing new
+  EXPECT_EQ(joined({{0, 5}}).ranges[0], (Ranges{{-1, 6}}));
+  EXPECT_EQ(joined({{-2.2, -2.1}}).ranges[0], (Ranges{{-2.2, -2.1}, {-1, 1}, {5, 6}}));
+  EXPECT_EQ(joined({{-2.2, -2.1}}, 0.6).ranges[0], (Ranges{{-2.2, 1}, {5, 6}}));  // the larger margin counts
+  EXPECT_EQ(joined({{0, 5}}).margin, JointVector<2>(0.5, 0.25));
+  EXPECT_EQ(joined({{0, 5}}, 0.3).margin, JointVector<2>(0.5, 0.3));
+  EXPECT_EQ(joined({{0, 5}}).ranges[1], (Ranges{{2, 4}}));
+  // without ranges a joint was everywhere
+  EXPECT_TRUE(joined({}).ranges[0].empty());
+  const JointCoverage<2> everywhere = gate.joined({}, vernier::VectorX());
+  EXPECT_TRUE(everywhere.ranges[0].empty() && everywhere.ranges[1].empty());
+}
+
 TEST(JointCoverage, AJointWithoutRangesIsNotLookedAt) { EXPECT_EQ(JointCoverage<2>{}({1e6, -1e6}), 1); }
 
 TEST(JointCoverage, InfinitelyFarIsZero) {

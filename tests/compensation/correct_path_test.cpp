@@ -320,6 +320,7 @@ struct BowedSlides {
   std::function<int(double)> branch = {};      ///< in which branch it is at x
   std::function<double(double)> cost_at = {};  ///< of being at y
   double reach = 1e3;                          ///< how far from where it begins Newton's method finds the target
+  double hole = -1e3;                          ///< the x of a target that is not met
   double left = 0;                             ///< what remains of errors: positions so much, rotations twice that
 
   detail::SolvedPath path(const std::vector<detail::PathGoal>& goals, const detail::PathSettings& settings) const {
@@ -333,7 +334,7 @@ struct BowedSlides {
       if (!other_branch && near) command = joints_of({p.x(), p.y() - off(p.x())});
       errors[0] = left;
       errors[1] = 2 * left;
-      return near;
+      return near && p.x() != hole;
     };
     const auto branches = [&](const Isometry3& target, const PathJoints&, std::vector<detail::PathBranch>& out) {
       const Vector3 p = translation(target);
@@ -468,6 +469,18 @@ TEST(PathSolverWhiteBox, ThePiecesOfALineBeginWhereTheNominalArmIs) {
   }
 }
 
+TEST(PathSolverWhiteBox, ALineWhoseStepsStayTooLongIsAJump) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.max_joint_step = 0.15;
+  for (const int inserted : {5, 6}) {  // steps of 1/6, 1/7
+    settings.max_inserted = inserted;
+    const detail::SolvedPath path = BowedSlides{}.path(line_through({1}), settings);
+    EXPECT_EQ(path.points.size(), inserted == 5 ? 2u : 8u);
+    EXPECT_EQ(path.points.back().status, inserted == 5 ? PointStatus::jump : PointStatus::met);
+    EXPECT_NEAR(path.points.back().command(0), 1, 1e-15);
+  }
+}
+
 TEST(PathSolverWhiteBox, ALineIsWatchedAtItsQuarters) {
   // off by 10 mm where x^3 (1 - x), or its mirror image, is largest, and by 6 mm in the middle
   const auto hump = [](double x) { return 10e-3 * 256 / 27 * x * x * x * (1 - x); };
@@ -502,6 +515,15 @@ TEST(PathSolverWhiteBox, WithoutAStartTheWayToTheFirstTargetHardlyCounts) {
   EXPECT_EQ(branch(), 0);  // 0 to the first target and 1 m to the second, in place of 2 m and 0
   settings.start(1) = std::nan("");
   EXPECT_EQ(branch(), 2);
+}
+
+TEST(PathSolverWhiteBox, ALineFromATargetThatWasNotMetIsAJump) {
+  const detail::SolvedPath path =
+      BowedSlides{.hole = 0.5}.path(line_through({0.5, 1}), slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 3u);
+  EXPECT_EQ(path.points[0].status, PointStatus::met);
+  EXPECT_EQ(path.points[1].status, PointStatus::not_found);
+  EXPECT_EQ(path.points[2].status, PointStatus::jump);
 }
 
 TEST(PathSolverWhiteBox, CostsOfPlacesChooseTheBranch) {

@@ -445,6 +445,21 @@ TEST(JointErrors, NoneChangeNothing) {
   EXPECT_EQ(RealMatrix(vn::WithJointErrors<vn::DhChain<6>>(arm).pose(q)), RealMatrix(arm.pose(q)));
 }
 
+TEST(JointErrors, WithoutTiltsAPoseStays) {
+  vn::Rng rng(10);
+  const auto arm = vernier_test::random_chain<6>(rng);
+  vn::JointTerms terms(6);
+  terms.gear_ratio = true;
+  const vn::JointErrors gears = random_errors(rng, terms);
+  const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
+  const auto before = arm.pose_and_jacobian(q);
+  auto after = before;
+  gears.tilt(q.data(), after.pose, after.jacobian.data());
+  EXPECT_EQ(RealMatrix(after.pose), RealMatrix(before.pose));
+  EXPECT_EQ(RealMatrix::of(after.jacobian), RealMatrix::of(before.jacobian));
+  EXPECT_FALSE(gears.tilts());
+}
+
 TEST(JointErrors, NamesAreInOrderAndUnique) {
   vn::Rng rng(6);
   const auto arm = vernier_test::random_chain<3>(rng);

@@ -18,6 +18,7 @@ namespace {
 using vernier_test::actual_arm;
 using vernier_test::complaint;
 using vernier_test::difference;
+using vernier_test::IrbArm;
 using vernier_test::lengths;
 using vernier_test::nominal_arm;
 using vernier_test::RealMatrix;
@@ -199,6 +200,53 @@ TEST(Contacts, StandardDeviationsAreThoseOfTheErrors) {
   EXPECT_EQ(count, 48);
   EXPECT_GT(sum / count, 0.5);
   EXPECT_LT(sum / count, 1.8);
+}
+
+/// Covariance of estimates, symmetric, and their deviations the roots of its diagonal.
+void expect_consistent_covariance(const ContactReport& found) {
+  const auto p = static_cast<Index>(found.free.size());
+  const RealMatrix covariance = found.covariance;
+  ASSERT_EQ(covariance.rows(), p);
+  EXPECT_LT(difference(covariance, covariance.transpose()), 1e-12 * covariance.largest());
+  for (Index i = 0; i < p; ++i) {
+    const auto k = static_cast<std::size_t>(found.free[static_cast<std::size_t>(i)]);
+    EXPECT_NEAR(found.parameters[k].std, std::sqrt(covariance(i, i)), 1e-12 * found.parameters[k].std);
+    for (Index j = 0; j < p; ++j)
+      EXPECT_LE(covariance(i, j) * covariance(i, j), (1 + 1e-9) * covariance(i, i) * covariance(j, j));
+  }
+}
+
+// Priors of the chain are as wide as its errors, in units of the expected sizes of 1 mm and 3 mrad: the common width of
+// most evidence.
+TEST(Contacts, PriorsAreAsWideAsTheErrors) {
+  for (const double size : {0.1, 1.0}) {
+    const IrbArm actual(with_geometric_errors(nominal_arm().model(),
+                                              {.length_min = 0.5e-3 * size,
+                                               .length_max = 1e-3 * size,
+                                               .angle_min = 1e-3 * size,
+                                               .angle_max = 3e-3 * size},
+                                              5),
+                        {}, FrameParameters(Vector6{0.043, -0.021, 0.104, 0, 0, 0}));
+    const JointLimits<6> limits = abb_irb120_operating_region().limits;
+    const std::vector contacts{touch(actual, vernier_test::table, "table", lengths(40, 20, 0.1), limits, 20e-6, 1),
+                               touch(actual, vernier_test::front, "front", lengths(40), limits, 20e-6, 2),
+                               touch(actual, vernier_test::side, "side", lengths(40), limits, 20e-6, 3)};
+    const auto found =
+        identify_by_contacts(nominal_arm(), contacts, {.frames = Frames::tool}, {.contact_sigma = 20e-6});
+    expect_consistent_covariance(found);
+    double squares = 0, count = 0, width = 0;
+    const VectorX truth = ArmGeometry(actual).parameters();
+    for (const Index k : found.free) {
+      const ParameterEstimate& p = found.parameters[static_cast<std::size_t>(k)];
+      if (p.name.starts_with("tool")) continue;
+      squares += std::pow((truth(k) - p.nominal) / p.scale, 2);
+      width = p.prior_std / p.scale;
+      ++count;
+    }
+    const double ratio = width / std::sqrt(squares / count);
+    EXPECT_GT(ratio, 0.4) << size;
+    EXPECT_LT(ratio, 2.5) << size;
+  }
 }
 
 TEST(Contacts, TooFewTouchesAreUnderdetermined) {

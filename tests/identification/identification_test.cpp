@@ -170,6 +170,27 @@ TEST(IdentificationWhiteBox, CovarianceOfWeakParametersHasTheirPriors) {
   EXPECT_LT(relative_difference(held.covariance, wanted), 1e-6);
 }
 
+// The errors are those of the arms before and after: frames alone, then all parameters.
+TEST(IdentificationWhiteBox, ErrorsAreThoseOfTheIdentifiedArm) {
+  const Dataset<6> data = measured(30, 7, true);
+  const auto found = identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
+                                              {.frames = Frames::base_and_tool, .priors = false}, squared);
+  double squares = 0, angles = 0;
+  for (Index i = 0; i < 30; ++i) {
+    const Isometry3 pose = found.model.identified().pose(data.joints(i));
+    squares += (translation(pose) - data.position(i)).squaredNorm() / 30;
+    angles += std::pow(Eigen::AngleAxisd(rotation(pose).transpose() * data.orientation(i)).angle(), 2) / 30;
+  }
+  EXPECT_NEAR(found.rms_after, std::sqrt(squares), 1e-12);
+  EXPECT_NEAR(found.rotation_rms_after, std::sqrt(angles), 1e-10);
+  EXPECT_GT(found.rotation_rms_after, 0.1e-3);  // of noise of 0.1 mrad about three axes
+  EXPECT_GT(found.rms_before, 5 * found.rms_after);
+  EXPECT_EQ(found.message.find("Gauss-Newton after "), 0u) << found.message;
+  const auto positions = identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), measured(30, 7),
+                                                  {.frames = Frames::base_and_tool, .priors = false}, squared);
+  EXPECT_EQ(positions.rotation_rms_after, 0);
+}
+
 // Six values and six parameters: nothing is left over that would say whether the model holds.
 TEST(IdentificationWhiteBox, AsManyValuesAsParametersAreTooFew) {
   const Framed<Chain> arm(robot.chain, base, tool);

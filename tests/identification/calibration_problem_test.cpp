@@ -294,5 +294,155 @@ TEST(CalibrationProblemWhiteBox, WeightsOfTheLossAreThoseOfTheRows) {
   EXPECT_NEAR(problem.normal_equations().cost, sums[1], 1e-9 * sums[1]);
 }
 
+/// Two stations of which both drift; from no motion.
+Problem drifting(Measured& measured) {
+  measured.first = measured.first.measured_at(VectorX::LinSpaced(8, 0, 150));
+  measured.second = measured.second.measured_at(VectorX::LinSpaced(4, 200, 270));
+  Problem problem = measured.problem(0, 1e-3);
+  problem.start_drift(4);  // three knots and two
+  return problem;
+}
+
+RealMatrix residual_of(const Problem& problem, Index block) {
+  RowBlock rows;
+  problem(block, 1, &rows);
+  return rows.residual;
+}
+
+TEST(CalibrationProblemWhiteBox, RowsOfTheDriftAreCentralDifferences) {
+  Measured measured(8);
+  Problem problem = drifting(measured);
+  problem.start_joint_drift();
+  const BlockSystem system = problem.system();
+  ASSERT_EQ(system.local_states, 5);
+  ASSERT_EQ(system.local_size, 12);
+  const double root = std::sqrt(4.0 / 200);
+  RowBlock rows;
+  for (Index state = 0; state < 5; ++state)
+    for (Index r = 0; r < 12; ++r) {
+      const double scale = root * (r < 3 ? 0.03e-3 : r < 6 ? 20e-6 : 10e-6), step = 1e-6;
+      const auto moved = [&](double by) {
+        Problem out = problem;
+        out.drift[state < 3 ? 0 : 1].knots(r, state < 3 ? state : state - 3) += by;
+        return out;
+      };
+      const Problem above = moved(step), below = moved(-step);
+      for (Index b = 0; b < 12; ++b) {
+        problem(b, 1, &rows);
+        RealMatrix analytic(6, 1);
+        for (const RowBlock::Local& local : rows.local)
+          if (local.state == state) analytic += RealMatrix::of(local.columns).col(r);
+        const RealMatrix numeric = (residual_of(above, b) - residual_of(below, b)) / (2 * step) * scale;
+        EXPECT_LT((analytic - numeric).norm(), 1e-6) << "block " << b << ", knot " << state << ", row " << r;
+      }
+    }
+}
+
+TEST(CalibrationProblemWhiteBox, DriftMovesPosesAndTurnsTheirRows) {
+  Measured measured(8);
+  Problem problem = drifting(measured);
+  Rng rng(18);
+  for (SessionDrift& of_station : problem.drift)
+    for (double& x : of_station.knots.reshaped()) x = 0.1 * rng.normal();
+  const Index size = problem.arm.size();
+  RowBlock rows;
+  for (const Index b : {0, 3, 7, 8, 10, 11}) {
+    const bool first = b < 8;
+    const Dataset<6>& data = first ? measured.first : measured.second;
+    const Index i = first ? b : b - 8;
+    const Isometry3 pose = problem.arm.poses(first ? 0 : 1, RealMatrix(data.joints(i)).transpose()).front();
+    const Isometry3 motion = problem.drift[first ? 0 : 1].motion(data.times()(i));
+    EXPECT_EQ(RealMatrix(problem.drift_motion(b)), RealMatrix(motion));
+    const RealMatrix analytic = expanded(problem, b, rows);
+    const Vector3 off = transformed(motion, translation(pose)) - data.position(i);
+    EXPECT_LT((three(rows.residual, 0) - off / (first ? 0.03e-3 : 0.05e-3)).norm(), 1e-8);
+    for (Index k = 0; k < size; k += 5) {
+      constexpr double step = 0.03;
+      Problem above = problem, below = problem;
+      above.arm.move(step_of(k, size, step));
+      below.arm.move(step_of(k, size, -step));
+      const RealMatrix numeric = (residual_of(above, b) - residual_of(below, b)) / (2 * step);
+      for (const int part : {0, 3})
+        EXPECT_LT((analytic.col(k) - numeric).block(part, 0, 3, 1).norm(),
+                  1e-7 * (1 + numeric.block(part, 0, 3, 1).norm()))
+            << b << ", " << k;
+    }
+  }
+}
+
+// Steps from knot to knot have a precision, and so, of a hundredth, have the knots.
+TEST(CalibrationProblemWhiteBox, DriftIsARandomWalkNearZero) {
+  Measured measured(8);
+  Problem problem = drifting(measured);
+  problem.start_joint_drift();
+  problem.drift_precision = 4;
+  problem.joint_drift_precision = 0.25;
+  Rng rng(19);
+  const RealMatrix x = random_vector(rng, 60);
+  double wanted = 0, found = 0;
+  for (Index k = 0; k < 60; ++k) {
+    const double precision = k % 12 < 6 ? 4 : 0.25;
+    const Index state = k / 12;
+    wanted += precision * 0.01 * x(k) * x(k);
+    if (state != 0 && state != 3) wanted += precision * std::pow(x(k) - x(k - 12), 2);  // states 3 and 4 are the second
+  }
+  for (const LocalPrior& prior : problem.drift_priors()) {
+    const RealMatrix one = x.block(12 * prior.first, 0, 12, 1), other = x.block(12 * prior.second, 0, 12, 1);
+    found += (prior.first == prior.second ? 1 : 2) * one.dot(RealMatrix(prior.precision) * other);
+    EXPECT_GE(prior.first, prior.second);
+  }
+  EXPECT_NEAR(found, wanted, 1e-12 * wanted);
+}
+
+TEST(CalibrationProblemWhiteBox, TemperaturesOfAllStations) {
+  Measured measured(8);
+  const auto found = [&] { return measured.problem(0, 1e-3).temperatures(); };
+  EXPECT_EQ(found().std, 0);
+  measured.first = measured.first.at_temperatures(VectorX{{20, 22, 20, 22, 20, 22, 20, 22}});
+  EXPECT_EQ(found().std, 0);  // the second station has none
+  EXPECT_EQ(found().mean, 0);
+  measured.second = measured.second.at_temperatures(VectorX{{24, 24, 24, 18}});
+  // mean 258 / 12; squares 4 x 2.25 + 4 x 0.25 + 3 x 6.25 + 12.25
+  EXPECT_NEAR(found().mean, 21.5, 1e-12);
+  EXPECT_NEAR(found().std, std::sqrt(41.0 / 12), 1e-12);
+  EXPECT_EQ(found().range, (std::array<double, 2>{18, 24}));
+}
+
+// Undamped and with priors: x - (J'J + P)^-1 (J'r + P x).
+TEST(CalibrationProblemWhiteBox, OneIterationIsAGaussNewtonStep) {
+  const Measured measured(30);
+  Problem problem = measured.problem(0, 1e-3);
+  const RealMatrix before = problem.arm.steps(), precisions = RealMatrix::diagonal(problem.arm.precisions());
+  const detail::StackedRows rows = problem.stacked(true);
+  const RealMatrix jacobian = rows.jacobian, transposed = jacobian.transpose();
+  const RealMatrix step = (transposed * jacobian + precisions)
+                              .solve_by_cholesky(-(transposed * RealMatrix(rows.residuals)) - precisions * before);
+  EXPECT_FALSE(problem.solve(1));
+  EXPECT_LT((RealMatrix(problem.arm.steps()) - before - step).norm(), 1e-6 * step.norm());
+}
+
+// Tool and base turned far from where they are: steps that make residuals larger are taken back.
+TEST(CalibrationProblemWhiteBox, FarStartsConverge) {
+  const Robot<6> robot = robots::abb_irb120();
+  const Framed<Chain> actual(robot.chain, Measured::start_base(0), FrameParameters(Vector6{0.1, -0.2, 0.3, 0, 0, 0}));
+  const Dataset<6> data =
+      measure(actual, sample_joints(robot.limits, 40, 21), {.position = 0.05e-3, .with_orientations = false}, 22);
+  std::vector<GeometricUnknown> unknowns;
+  for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, k < 3 ? 1e-3 : 1e-2, 0});
+  for (Index k = 36; k < 39; ++k) unknowns.push_back({k, -1, 1e-3, 0});
+  Rng rng(23);
+  int converged = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    Vector6 off = Vector6(Measured::start_base(0).values());
+    for (double& x : off) x += rng.uniform(-3, 3);
+    Problem problem(ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, FrameParameters(off), {}))}, unknowns),
+                    {detail::station_of(data, {.position_sigma = 0.05e-3})}, Loss::squared);
+    const bool ended = problem.solve(60);
+    const double rms = RealMatrix(problem.stacked(false).residuals).norm() / std::sqrt(120.0);
+    converged += ended && rms < 1.2;
+  }
+  EXPECT_EQ(converged, 20);
+}
+
 }  // namespace
 }  // namespace vernier::calibration_problem_test

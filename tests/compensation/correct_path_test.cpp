@@ -320,6 +320,7 @@ struct BowedSlides {
   std::function<int(double)> branch = {};      ///< in which branch it is at x
   std::function<double(double)> cost_at = {};  ///< of being at y
   double reach = 1e3;                          ///< how far from where it begins Newton's method finds the target
+  double nominal_reach = 1e3;                  ///< the same of the nominal arm
   double hole = -1e3;                          ///< the x of a target that is not met
   double left = 0;                             ///< what remains of errors: positions so much, rotations twice that
 
@@ -347,8 +348,9 @@ struct BowedSlides {
     };
     const auto nominal_pose = [&](const PathJoints& q) { return at(q(0), q(1)); };
     const auto nominal_joints = [&](const Isometry3& target, PathJoints& q) {
+      const bool near = std::abs(q(0) - target(0, 3)) <= nominal_reach;
       q = joints_of({target(0, 3), target(1, 3)});
-      return true;
+      return near;
     };
     const auto cost = [&](const PathJoints& q) { return cost_at ? cost_at(q(1)) : 0.0; };
     const auto branch_id = [&](const PathJoints& q) { return other_branch && q(1) == 2 ? 1 : id_at(q(0)); };
@@ -414,6 +416,13 @@ TEST(PathSolverWhiteBox, TheLargestDeviationOfAllLinesIsReported) {
   EXPECT_NEAR(path.after, 15.5e-3 / 16, 1e-12);
 }
 
+TEST(PathSolverWhiteBox, AJointComesFromWhereItTurnedRound) {
+  const detail::SolvedPath path =
+      BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.6}), slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 7u);  // in four pieces from 0 to 1, in two from there to 0.6
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(path.points[k].coming(0), k < 5 ? 0 : 1, 1e-15) << k;
+}
+
 TEST(PathSolverWhiteBox, NoStepIsLongerThanAllowed) {
   detail::PathSettings settings = slides_settings(joints_of({1, 1}));
   settings.max_joint_step = 0.35;
@@ -458,7 +467,7 @@ TEST(PathSolverWhiteBox, ALineEndsWhereTheNominalArmComesTo) {
 TEST(PathSolverWhiteBox, ThePiecesOfALineBeginWhereTheNominalArmIs) {
   detail::PathSettings settings = slides_settings(joints_of({1, 1}));
   settings.max_joint_step = 0.3;
-  const BowedSlides arm{.reach = 0.1};  // from the piece before it would not be found
+  const BowedSlides arm{.reach = 0.1, .nominal_reach = 0.3};  // from the piece before it would not be found
   const detail::SolvedPath path = arm.path(line_through({0.8}), settings);
   ASSERT_EQ(path.points.size(), 4u);
   for (std::size_t k = 1; k < 4; ++k) {
@@ -524,6 +533,29 @@ TEST(PathSolverWhiteBox, ALineFromATargetThatWasNotMetIsAJump) {
   EXPECT_EQ(path.points[0].status, PointStatus::met);
   EXPECT_EQ(path.points[1].status, PointStatus::not_found);
   EXPECT_EQ(path.points[2].status, PointStatus::jump);
+}
+
+TEST(PathSolverWhiteBox, WithoutAStartItBeginsInTheMiddleOfTheLimits) {
+  std::vector<detail::PathGoal> goals = line_through({});
+  goals.front().pose(0, 3) = 1;
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.start(0) = std::nan("");
+  const auto second = [&](double lower, double upper) {  // of (1, 0) and (0, 2)
+    settings.lower(1) = lower;
+    settings.upper(1) = upper;
+    return BowedSlides{.other_branch = true}.path(goals, settings).points.back().command(1);
+  };
+  EXPECT_EQ(second(-3, 3), 0);
+  EXPECT_EQ(second(-1, 5), 2);
+}
+
+TEST(PathSolverWhiteBox, ALongLineEndsWithTheTurnsThatItTook) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.lower(0) = -10;
+  settings.upper(0) = 10;
+  const detail::SolvedPath path = BowedSlides{}.path(line_through({5}), settings);
+  EXPECT_EQ(path.points.back().status, PointStatus::met);
+  EXPECT_NEAR(path.points.back().command(0), 5, 1e-12);  // not 5 - 2 pi, which is nearer to the start
 }
 
 TEST(PathSolverWhiteBox, CostsOfPlacesChooseTheBranch) {

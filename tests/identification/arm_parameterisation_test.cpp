@@ -122,5 +122,53 @@ TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
   }
 }
 
+// Hysteresis by where each configuration came from, and rates per degree.
+TEST(ArmParameterisation, ColumnsOfHysteresisAndHeatAreDifferences) {
+  Rng rng(4);
+  ArmParameterisation arm = example();
+  arm.set_geometric({{9, -1, 1e-2, 0}, {9, -1, 1e-4, 0, true}, {2, -1, 1e-2, 0}, {17, -1, 1e-4, 0, true}});
+  JointTerms terms(6);
+  terms.hysteresis = {0.05, 0.4};
+  arm.set_terms(terms, VectorX::LinSpaced(terms.size(), 1e-3, 2e-3), VectorX::Ones(terms.size()));
+  arm.move(random_vector(rng, arm.size()));
+  const RealMatrix joints(2, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1, -1.2, 0.4, 0.2, -0.7, 1.1, 0.5});
+  RealMatrix previous = joints;
+  for (Index i = 0; i < 2; ++i)
+    for (Index j = 0; j < 6; ++j) previous(i, j) += 0.1 * rng.normal();
+  const VectorX warmer = vector({3, -2});
+  const auto poses = [&](const ArmParameterisation& of, RowBlock* rows) {
+    return of.linearise(0, joints, previous, rows, false, warmer);
+  };
+  std::vector<RowBlock> rows(2), other(2);
+  const auto found = poses(arm, rows.data());
+  for (Index k = 0; k < arm.size(); ++k) {
+    constexpr double h = 1e-3;
+    ArmParameterisation ahead = arm, behind = arm;
+    RealMatrix step(arm.size(), 1);
+    step(k) = h;
+    ahead.move(step);
+    behind.move(-step);
+    const auto after = poses(ahead, other.data()), before = poses(behind, other.data());
+    for (std::size_t i = 0; i < 2; ++i) {
+      const RealMatrix apart = pose_difference(after[i], before[i]), column = RealMatrix::of(rows[i].dense).col(k);
+      EXPECT_LT((column - apart / (2 * h)).norm(), 1e-3 * column.norm() + 1e-9)
+          << arm.names()[static_cast<std::size_t>(k)];
+      EXPECT_GT(column.norm(), 1e-7) << k;
+    }
+  }
+  // a warmer arm is one with other parameters
+  const VectorX at = arm.steps();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double degrees = warmer(static_cast<Index>(i));
+    VectorX p = arm.geometry(0).parameters();
+    p(9) += degrees * at(1) * 1e-4;
+    p(17) += degrees * at(3) * 1e-4;
+    const FittedArm warm{arm.geometry(0).with_parameters(p), arm.joint_errors()};
+    const RealMatrix q = RealMatrix(joints).row(static_cast<Index>(i)), from = previous.row(static_cast<Index>(i));
+    const Isometry3 expected = warm.geometry.poses(arm.joint_errors().effective_rows(q, from)).front();
+    EXPECT_LT((RealMatrix(found[i]) - expected).norm(), 1e-6) << i;  // to first order: 5e-4 rad and m
+  }
+}
+
 }  // namespace
 }  // namespace vernier::arm_parameterisation_test

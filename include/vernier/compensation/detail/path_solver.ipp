@@ -180,12 +180,10 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
 VERNIER_IMPL void PathSearch::advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
                                       const std::vector<PathBranch>& branches, std::vector<PathState>& out) const {
   constexpr std::size_t most_states = 40;
-  constexpr double jump_cost = 1e6;
   const auto add = [&](PathJoints joints, const PathBranch& branch, int from, bool jump) {
     const PathState& last = before[static_cast<std::size_t>(from)];
     const double cost = goal.joints.size() > 0 ? 0 : arm_.cost(joints);
-    relax(out,
-          {joints, branch.id, last.cost + duration(last.joints, joints) + cost + (jump ? jump_cost : 0), from, jump});
+    relax(out, {joints, branch.id, last.cost + duration(last.joints, joints) + cost, from, jump});
   };
   const bool linear = start != nullptr && goal.motion == Motion::linear, first = before.front().from < 0;
   if (linear)

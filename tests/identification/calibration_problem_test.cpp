@@ -444,5 +444,19 @@ TEST(CalibrationProblemWhiteBox, FarStartsConverge) {
   EXPECT_EQ(converged, 20);
 }
 
+// Moves every knot by its own step.
+TEST(CalibrationProblemWhiteBox, OneIterationMovesTheDriftByItsSteps) {
+  Measured measured(8);
+  Problem problem = drifting(measured);
+  const NormalEquations normal = problem.normal_equations();
+  const FactorisedEquations solved(normal, problem.arm.precisions(), problem.arm.steps(), problem.drift_steps(),
+                                   eigen_sparse_solver, 0);
+  ASSERT_TRUE(solved.usable());
+  const RealMatrix step = solved.local_step();
+  EXPECT_GT(step.norm(), 1e-3);
+  EXPECT_FALSE(problem.solve(1));
+  EXPECT_LT((RealMatrix(problem.drift_steps()) - step).norm(), 1e-9 * step.norm());
+}
+
 }  // namespace
 }  // namespace vernier::calibration_problem_test

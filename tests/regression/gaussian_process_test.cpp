@@ -241,6 +241,34 @@ TEST(BoundedBfgs, FindsRosenbrocksMinimumAndThatAtABound) {
   EXPECT_EQ(high.x(0), 1.5);
 }
 
+// Of a parabola two slopes tell everything: after a step against the slope, of length 1, the next leads to the minimum.
+TEST(BoundedBfgs, TakesWholeStepsOfAtMostTwo) {
+  std::vector<double> visited;
+  const auto search_from = [&](double from, double minimum, double bend) {
+    visited.clear();
+    const auto parabola = [&](const VectorX& x, VectorX& g) {
+      visited.push_back(x(0));
+      g(0) = bend * (x(0) - minimum);
+      return 0.5 * bend * (x(0) - minimum) * (x(0) - minimum);
+    };
+    const VectorX wide = VectorX::Constant(1, 100);
+    return detail::minimise_within(parabola, vector({from}), vector({-100}), wide, 50, 1e-8);
+  };
+  EXPECT_NEAR(search_from(1, -1.5, 3).x(0), -1.5, 1e-12);
+  ASSERT_EQ(visited.size(), 3u);  // 1, one less, the minimum
+  EXPECT_NEAR(visited[1], 0, 1e-15);
+  EXPECT_NEAR(visited[2], -1.5, 1e-14);
+  // a slope below 1 is the step itself
+  EXPECT_NEAR(search_from(1, 0.9, 2).x(0), 0.9, 1e-12);
+  EXPECT_NEAR(visited[1], 0.8, 1e-15);
+  EXPECT_LE(visited.size(), 4u);
+  // far off, steps of two
+  EXPECT_NEAR(search_from(0, 8, 1).x(0), 8, 1e-12);
+  ASSERT_EQ(visited.size(), 6u);
+  const double expected[] = {0, 1, 3, 5, 7, 8};
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(visited[k], expected[k], 1e-12);
+}
+
 // Samples of a known process: what it was is found again, within what so many samples tell.
 TEST(GaussianProcess, FindsWhatTheSamplesWereDrawnFrom) {
   const Index n = 200;

@@ -232,6 +232,28 @@ TEST(LeaveOneOutError, SaysWhereProductsDoNotTell) {
   EXPECT_FALSE(detail::LeaveOneOutError::supports({.nodes = 10}, 19));
 }
 
+// A node that is one at a single sample and zero at all others fits that sample alone: its leverage is one, and what is
+// left of it is a difference of nearly equal numbers. At twenty samples it is a node like any other.
+TEST(LeaveOneOutError, SaysWhereASampleStandsAlone) {
+  Layer at(400, 3, 0, Activation::sigmoid);
+  Rng rng(2);
+  for (Index i = 0; i < 400; ++i)
+    for (Index o = 0; o < 3; ++o)
+      at.targets(i, o) = std::tanh(at.features(i, 0)) + 0.5 * std::tanh(at.features(i, 1)) + 0.05 * rng.normal();
+  at.theta(0) = at.theta(5 + 1) = 2;  // two nodes for the signal
+  at.theta(10 + 3) = 60;              // and one for the last input, a step from 0 to 1
+  at.theta(10 + 4) = -30;
+  for (const Index alone : {1, 20}) {
+    for (Index i = 0; i < 400; ++i) at.features(i, 3) = i < alone ? 1 : 0;
+    const double said = detail::LeaveOneOutError(at.layer, at.features, at.targets)(at.theta);
+    if (alone == 1) {
+      EXPECT_EQ(said, -1);
+    } else {
+      EXPECT_NEAR(said / at.expected(), 1, 1e-8);
+    }
+  }
+}
+
 TEST(LeaveOneOutError, TheObjectiveIsRightWhateverTheWeights) {
   for (const double size : {0.0, 1e-6, 1e-3, 1.0, 1e3})
     for (const double noise : {0.0, 0.1}) {

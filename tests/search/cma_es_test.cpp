@@ -228,6 +228,32 @@ TEST(CmaEs, FindsACorner) {
   EXPECT_NEAR(result.best_fitness, -4, 1e-6);
 }
 
+// What was loaded is checked: a state as it is made, and with each of its members of another size.
+TEST(CmaEs, InconsistentStatesAreSeen) {
+  const CmaEs::State made = CmaEs{}.start(Box::cube(3, -1, 2), 1, evaluate_bowl);
+  EXPECT_TRUE(made.consistent());
+  for (VectorX CmaEs::State::*member :
+       {&CmaEs::State::mean, &CmaEs::State::scales, &CmaEs::State::path_c, &CmaEs::State::path_sigma}) {
+    CmaEs::State s = made;
+    s.*member = VectorX::Zero(2);
+    EXPECT_FALSE(s.consistent());
+  }
+  for (MatrixX CmaEs::State::*member : {&CmaEs::State::covariance, &CmaEs::State::basis})
+    for (const auto& [rows, cols] : {std::pair<Index, Index>{3, 2}, {2, 3}, {2, 2}}) {
+      CmaEs::State s = made;
+      s.*member = MatrixX::Zero(rows, cols);
+      EXPECT_FALSE(s.consistent()) << rows << " x " << cols;
+    }
+  CmaEs::State s = made;
+  s.best = VectorX::Zero(4);
+  EXPECT_FALSE(s.consistent());
+  s = made;
+  s.individuals = 2;
+  EXPECT_TRUE(s.consistent());
+  s.individuals = 1;
+  EXPECT_FALSE(s.consistent());
+}
+
 TEST(CmaEs, RefusesUnusableOptions) {
   const auto said = [](const CmaEs& cma) {
     return vernier_test::complaint([&] { cma.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });

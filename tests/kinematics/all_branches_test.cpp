@@ -561,6 +561,39 @@ TEST(AllBranches, MeetTargetsNextToSingularities) {
   expect_met(robots::abb_irb120().chain, 2, -std::atan2(0.302, 0.07), "irb120, elbow");
 }
 
+// Next to the stretched elbow of an arm whose third joint is off by as little, Newton's method comes from seeds on both
+// sides of the fold, with steps too long and too short. The branches are known: the nominal roots, less what joint 3 is
+// off.
+TEST(AllBranches, AreFoundAcrossAFoldFromEverySide) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  JointVector<6> q{0.3, 0.4, -std::atan2(0.302, 0.07), 0.6, 0.9, 0.8};
+  constexpr double bent = 3e-4;  // rad, of the elbow
+  q(2) += bent;
+  const Isometry3 target = irb.pose(q);
+  auto rows = irb.rows();
+  for (int k = -40; k <= 40; ++k) {
+    const double off = 0.1 * k * bent;
+    rows[2].theta = irb.row(2).theta + off;
+    const auto arm = DhChain<6>::from_rows(rows);
+    const auto branches = all_branches(form, arm, target);
+    EXPECT_EQ(branches.count, 8) << off;
+    for (const auto& branch : branches) {
+      const Vector6 left = pose_difference(target, arm.pose(branch.joints));
+      EXPECT_LT(left.norm(), 1e-10) << off;
+      EXPECT_GE(branch.position_error, 0) << off;
+      EXPECT_GE(branch.rotation_error, 0) << off;
+      EXPECT_LT(Vector3(left(0), left(1), left(2)).norm(), branch.position_error + 1e-14) << off;
+      EXPECT_LT(Vector3(left(3), left(4), left(5)).norm(), branch.rotation_error + 1e-14) << off;
+    }
+    for (const auto& root : form.roots(target)) {
+      JointVector<6> expected = root.joints;
+      expected(2) -= off;
+      EXPECT_TRUE(contains<6>(branches, expected, 1e-6)) << off;
+    }
+  }
+}
+
 template <int N>
 bool same_bits(const Branches<N>& a, const Branches<N>& b) {
   bool same = a.count == b.count && a.reach == b.reach && a.seeds_lost == b.seeds_lost && a.margin == b.margin;

@@ -155,6 +155,48 @@ TEST(ArmAngleForm, SingularAndOutOfReach) {
   EXPECT_EQ(form.roots(target).count, 0);
 }
 
+// A shoulder with oblique axes does not reach every direction of the upper arm. An arm with right angles in its place
+// says where the elbow must be; the margin is half the difference of the cosines of the angle of axes 1 and 3 and of
+// the largest or smallest one, here 60 + 50 and 60 - 50 degrees.
+TEST(ArmAngleForm, ObliqueShouldersAreOutOfReach) {
+  const auto square = without_offsets();
+  auto rows = square.rows();
+  rows[0].alpha = -60_deg;
+  rows[1].alpha = 50_deg;
+  const auto oblique = DhChain<7>::from_rows(rows);
+  Rng rng(19);
+  int out = 0, nearly = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Isometry3 target = square.pose(random_joints<7>(rng));
+    const double angle = rng.uniform(-pi, pi);
+    const auto elsewhere = ArmAngleForm(square, angle).roots(target);
+    ASSERT_EQ(elsewhere.count, 8);  // each elbow four times
+    double nearest = std::numeric_limits<double>::infinity(), margins = 0;
+    int count = 0;
+    for (const auto& root : elsewhere) {
+      const double cosine = square.links(root.joints).axis(2, 2);  // of axes 1, upright, and 3
+      const double margin = std::max({cosine - std::cos(10_deg), std::cos(110_deg) - cosine, 0.0}) / 2;
+      count += margin == 0 ? 2 : margin <= 0.05 ? 1 : 0;
+      if (margin > 0.05) nearest = std::min(nearest, margin);
+      if (margin <= 0.05) margins += margin;
+    }
+    const auto roots = ArmAngleForm(oblique, angle).roots(target);
+    EXPECT_EQ(roots.count, count / 2);  // of each elbow one or two shoulders, and two wrists
+    double sum = 0;
+    for (const auto& root : roots) sum += root.margin;
+    EXPECT_NEAR(sum, margins / 2, 1e-10);
+    if (std::isfinite(nearest)) {
+      EXPECT_NEAR(roots.nearest_margin, nearest, 1e-10);
+      ++out;
+    } else {
+      EXPECT_EQ(roots.nearest_margin, nearest);
+    }
+    nearly += margins > 0;
+  }
+  EXPECT_GT(out, 50);
+  EXPECT_GT(nearly, 20);
+}
+
 TEST(ArmAngleForm, ArmsOfOtherGeometryAreRefused) {
   const auto refused = [](const DhChain<7>& chain) { return complaint([&] { (void)ArmAngleForm(chain, 0); }); };
   const auto changed = [&](int joint, double DhRow::*entry, double value) {

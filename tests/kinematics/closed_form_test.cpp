@@ -714,8 +714,134 @@ TEST(OutOfReach, MarginSaysByHowMuch) {
   }
   const auto far = roots_at(0.5);
   EXPECT_EQ(far.count, 0);
-  EXPECT_GT(far.nearest_margin, 0.05);
-  EXPECT_TRUE(std::isfinite(far.nearest_margin));
+  // by the law of cosines: that of the elbow's angle, less one
+  const double reach = 0.27 + forearm + 0.5;
+  EXPECT_NEAR(far.nearest_margin, (reach * reach - 0.27 * 0.27 - forearm * forearm) / (2 * 0.27 * forearm) - 1, 1e-12);
+}
+
+/// Half the difference of cosines by which an angle lies outside the range of three axes, of which neighbours enclose a
+/// and b: the first and the last enclose |a - b| to a + b.
+double outside(double cosine, double a, double b) {
+  return std::max({cosine - std::cos(a - b), std::cos(a + b) - cosine, 0.0}) / 2;
+}
+
+/// A target turned about a point.
+Isometry3 turned_about(const Isometry3& target, const Vector3& centre, const Matrix3& orientation) {
+  const Vector3 lever = translation(inverse_of(target) * rigid_motion(Matrix3::Identity(), centre));
+  const Vector3 there = transformed(rigid_motion(orientation, Vector3::Zero()), lever);
+  return rigid_motion(orientation, centre - there);
+}
+
+// Wrists with oblique axes do not reach every orientation. An arm with right angles in its place says where the first
+// joints must be, and the angle of axes 4 and 6 there by how much.
+TEST(OutOfReach, OfObliqueWrists) {
+  const DhChain<6> oblique = cases()[4].chain;
+  auto rows = oblique.rows();
+  rows[3].alpha = 90_deg;
+  rows[4].alpha = -90_deg;
+  const auto square = DhChain<6>::from_rows(rows);
+  const ClosedForm form(oblique), any(square), mirrored(mirror_image(oblique));
+  ASSERT_EQ(cases()[4].name, "oblique wrist");
+  Rng rng(17);
+  int all_out = 0, some_out = 0, nearly = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Isometry3 target = square.pose(random_joints<6>(rng));
+    const auto elsewhere = any.roots(target);
+    ASSERT_EQ(elsewhere.count, 8);  // each arm branch twice
+    double nearest = std::numeric_limits<double>::infinity(), margins = 0;
+    int count = 0;
+    for (const auto& root : elsewhere) {
+      const auto links = square.links(root.joints);
+      double cosine = 0;
+      for (int k = 0; k < 3; ++k) cosine += links.axis(k, 3) * target(k, 2);
+      const double margin = outside(cosine, 60_deg, 50_deg);
+      count += margin == 0 ? 2 : margin <= 0.05 ? 1 : 0;
+      if (margin > 0.05) nearest = std::min(nearest, margin);
+      if (margin <= 0.05) margins += margin;
+    }
+    const auto roots = form.roots(target);
+    EXPECT_EQ(roots.count, count / 2);
+    double sum = 0;
+    for (const auto& root : roots) sum += root.margin;
+    EXPECT_NEAR(sum, margins / 2, 1e-12);
+    for (const double found : {roots.nearest_margin, mirrored.roots(inverse_of(target)).nearest_margin})
+      if (std::isfinite(nearest)) {
+        EXPECT_NEAR(found, nearest, 1e-12);
+      } else {
+        EXPECT_EQ(found, nearest);
+      }
+    all_out += count == 0;
+    some_out += count > 0 && std::isfinite(nearest);
+    nearly += margins > 0;
+  }
+  EXPECT_GT(all_out, 10);
+  EXPECT_GT(some_out, 100);
+  EXPECT_GT(nearly, 50);
+}
+
+// The same behind three parallel axes: the orientation is a matter of joint 1, which keeps the wrist at its distance
+// along axis 2; that distance is a sine of the joint.
+TEST(OutOfReach, OfObliqueWristsBehindThreeParallelAxes) {
+  ASSERT_EQ(cases().back().name, "three parallel, oblique");
+  const DhChain<6>& chain = cases().back().chain;
+  const ClosedForm form(chain), mirrored(mirror_image(chain));
+  const auto axis_2 = [&](double q1) {
+    const auto axis = chain.links({q1, 0, 0, 0, 0, 0}).axis;
+    return Vector3(axis(0, 1), axis(1, 1), axis(2, 1));
+  };
+  Rng rng(18);
+  int all_out = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const JointVector<6> q = random_joints<6>(rng);
+    const auto links = chain.links(q);
+    const Vector3 wrist(links.origin(0, 4), links.origin(1, 4), links.origin(2, 4));
+    const Matrix3 orientation = exp_so3(3.0 * vernier_test::random_direction(rng));
+    const Isometry3 target = turned_about(chain.pose(q), wrist, orientation);
+    const Vector3 last(target(0, 2), target(1, 2), target(2, 2));
+    // axis_2(q1) . wrist = A cos q1 + B sin q1 + C
+    const auto along = [&](double q1) { return axis_2(q1).dot(wrist); };
+    const double c = (along(0) + along(pi)) / 2, a = (along(0) - along(pi)) / 2, b = along(pi / 2) - c;
+    const double half = std::acos((along(q(0)) - c) / std::hypot(a, b));
+    double nearest = 9;
+    bool out = true;
+    for (const double q1 : {std::atan2(b, a) + half, std::atan2(b, a) - half}) {
+      ASSERT_NEAR(along(q1), along(q(0)), 1e-12);
+      const double margin = outside(axis_2(q1).dot(last), 70_deg, 60_deg);
+      nearest = std::min(nearest, margin);
+      out = out && margin > 0.05;
+    }
+    if (!out) continue;
+    ++all_out;
+    EXPECT_EQ(form.roots(target).count, 0);
+    EXPECT_NEAR(form.roots(target).nearest_margin, nearest, 1e-9);
+    EXPECT_NEAR(mirrored.roots(inverse_of(target)).nearest_margin, nearest, 1e-9);
+  }
+  EXPECT_GT(all_out, 20);
+}
+
+// A wrist centre next to axis 1, nearer than the shoulder's offset: that offset over the distance, less one.
+TEST(OutOfReach, InsideTheOffsetOfTheShoulder) {
+  const auto expect_margin = [](const DhChain<6>& chain, double offset, double tool) {
+    const ClosedForm form(chain), mirrored(mirror_image(chain));
+    for (const double share : {0.3, 0.8, 0.99}) {
+      const Vector3 wrist(share * offset * std::cos(0.7), share * offset * std::sin(0.7), 0.6);
+      const Matrix3 orientation = exp_so3(Vector3(pi, 0, 0));  // the tool down
+      const Isometry3 target = rigid_motion(orientation, wrist - Vector3(0, 0, tool));
+      for (const auto& roots : {form.roots(target), mirrored.roots(inverse_of(target))}) {
+        if (share < 0.95) {
+          EXPECT_EQ(roots.count, 0);
+          EXPECT_NEAR(roots.nearest_margin, 1 / share - 1, 1e-12);
+        } else {
+          EXPECT_GT(roots.count, 0);
+          for (const auto& root : roots) EXPECT_NEAR(root.margin, 1 / share - 1, 1e-12);
+        }
+      }
+    }
+  };
+  auto rows = robots::abb_irb120().chain.rows();
+  rows[1].d = 90_mm;
+  expect_margin(DhChain<6>::from_rows(rows), 0.09, 0.072);
+  expect_margin(robots::ur10().chain, 0.163941, 0.0922);
 }
 
 // Joint values and tool positions of a UR10 in the manufacturer's simulator, as published with the driver's calibration

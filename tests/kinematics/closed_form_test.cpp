@@ -819,6 +819,139 @@ TEST(OutOfReach, OfObliqueWristsBehindThreeParallelAxes) {
   EXPECT_GT(all_out, 20);
 }
 
+// The upper arm and forearm of a UR arm are a triangle with the distance of axes 2 and 4, which follows from the
+// direction of axis 2 and a sign of axis 5: four triangles, by points and the law of cosines alone.
+TEST(OutOfReach, OfTheElbowOfAThreeParallelArm) {
+  const ClosedForm form(robots::ur10().chain), mirrored(mirror_image(robots::ur10().chain));
+  constexpr double upper = 0.612, fore = 0.5723, offset = 0.163941, last = 0.1157;
+  Rng rng(20);
+  int out = 0, inside = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Matrix3 orientation = exp_so3(3.0 * vernier_test::random_direction(rng));
+    const Vector3 wrist = rng.uniform(0.9, 2) * vernier_test::random_direction(rng), axis_6 = orientation.col(2);
+    const double across = std::hypot(wrist.x(), wrist.y());
+    if (across < 0.2) continue;
+    double nearest = std::numeric_limits<double>::infinity(), margins = 0;
+    int count = 0;
+    for (const double side : {-1.0, 1.0})
+      for (const double sign : {-1.0, 1.0}) {
+        const double angle = std::atan2(wrist.y(), wrist.x()) + side * std::acos(offset / across);
+        const Vector3 axis_2(std::cos(angle), std::sin(angle), 0), axis_5 = sign * axis_2.cross(axis_6).normalized();
+        const Vector3 middle = wrist - last * axis_5 - offset * axis_2 - Vector3(0, 0, 0.1273);
+        const double cosine = (middle.squaredNorm() - upper * upper - fore * fore) / (2 * upper * fore);
+        const double margin = std::max(std::abs(cosine) - 1, 0.0);
+        count += margin == 0 ? 2 : margin <= 0.05 ? 1 : 0;
+        if (margin > 0.05) nearest = std::min(nearest, margin);
+        if (margin <= 0.05) margins += margin;
+      }
+    const Vector3 tool = wrist + 0.0922 * axis_6;
+    const Isometry3 target = rigid_motion(orientation, tool);
+    for (const auto& roots : {form.roots(target), mirrored.roots(inverse_of(target))}) {
+      EXPECT_EQ(roots.count, count);
+      double sum = 0;
+      for (const auto& root : roots) sum += root.margin;
+      EXPECT_NEAR(sum, margins, 1e-9);
+      if (std::isfinite(nearest)) {
+        EXPECT_NEAR(roots.nearest_margin, nearest, 1e-9);
+      } else {
+        EXPECT_EQ(roots.nearest_margin, nearest);
+      }
+    }
+    ++(count == 0 ? out : inside);
+  }
+  EXPECT_GT(out, 100);
+  EXPECT_GT(inside, 100);
+}
+
+/// A function of one joint, `middle + size cos(joint - phase)`, by three of its values.
+struct Cosine {
+  double middle, size, phase;
+  template <class F>
+  explicit Cosine(const F& f) {
+    const double at[] = {f(0.0), f(pi / 2), f(pi)};
+    middle = (at[0] + at[2]) / 2;
+    size = std::hypot(at[0] - middle, at[1] - middle);
+    phase = std::atan2(at[1] - middle, at[0] - middle);
+  }
+  /// By how much, relatively, a value lies outside.
+  double outside(double value) const { return std::max(std::abs(value - middle) / size - 1, 0.0); }
+  double joint(double value, int side) const { return phase + side * std::acos((value - middle) / size); }
+};
+
+// Joints 1 to 3 of arms with a spherical wrist: one of them follows from the target, and gives way to another. What
+// both must meet is a height, a distance or a length along an axis: a cosine of the joint, here by points of the chain.
+TEST(OutOfReach, OfTheFirstThreeJointsOfEveryKind) {
+  for (const Case& arm : cases()) {
+    if (arm.kind == ArmKind::second_parallel_to_third || arm.kind == ArmKind::three_parallel) continue;
+    const ClosedForm form(arm.chain), mirrored(mirror_image(arm.chain));
+    const auto point = [](const auto& points, int k) { return Vector3(points(0, k), points(1, k), points(2, k)); };
+    const auto wrist_at = [&](double q2, double q3) { return point(arm.chain.links({0, q2, q3, 0, 0, 0}).origin, 3); };
+    const auto square = [](const Vector3& v) { return v.squaredNorm(); };
+    Rng rng(21);
+    int first_out = 0, second_out = 0, inside = 0;
+    for (int i = 0; i < 400; ++i) {
+      const Matrix3 orientation = exp_so3(3.0 * vernier_test::random_direction(rng));
+      const Vector3 wrist = rng.uniform(0.05, 1.2) * vernier_test::random_direction(rng) + Vector3(0, 0, 0.3),
+                    tool = wrist + 0.072 * orientation.col(2);
+      // of the joint that the target determines, and of the next, with the values that they must take
+      const auto one = [&](double q) {
+        if (arm.kind == ArmKind::first_parallel_to_second) return wrist_at(0, q).z();
+        if (arm.kind == ArmKind::first_meets_second) return square(wrist_at(0, q) - Vector3(0, 0, 0.3));
+        return square(wrist - point(arm.chain.links({q, 0, 0, 0, 0, 0}).origin, 1));
+      };
+      const auto other = [&](double first, double q) {
+        if (arm.kind == ArmKind::first_parallel_to_second)
+          return square(Vector3(wrist_at(q, first).cwiseProduct(Vector3(1, 1, 0))));
+        if (arm.kind == ArmKind::first_meets_second) return wrist_at(q, first).z();
+        const auto links = arm.chain.links({first, 0, q, 0, 0, 0});
+        return point(links.axis, 1).dot(point(links.origin, 3) - point(links.origin, 1));
+      };
+      const auto wanted_of_other = [&](double first) {
+        if (arm.kind == ArmKind::first_parallel_to_second) return square(Vector3(wrist.x(), wrist.y(), 0));
+        if (arm.kind == ArmKind::first_meets_second) return wrist.z();
+        const auto links = arm.chain.links({first, 0, 0, 0, 0, 0});
+        return point(links.axis, 1).dot(wrist - point(links.origin, 1));
+      };
+      const auto shoulder = arm.chain.links(JointVector<6>::Zero()).origin;
+      const double wanted = arm.kind == ArmKind::first_parallel_to_second ? wrist.z()
+                            : arm.kind == ArmKind::first_meets_second     ? square(wrist - Vector3(0, 0, 0.3))
+                                                                      : square(point(shoulder, 3) - point(shoulder, 1));
+      const Cosine of_one(one);
+      double nearest = std::numeric_limits<double>::infinity();
+      int count = 0;
+      bool unclear = false;  // between out and in
+      const auto count_margin = [&](double margin) {
+        unclear = unclear || (margin > 0 && margin <= 0.05);
+        if (margin > 0.05) nearest = std::min(nearest, margin);
+        return margin == 0;
+      };
+      if (count_margin(of_one.outside(wanted)))
+        for (const int side : {-1, 1}) {
+          const double first = of_one.joint(wanted, side);
+          const Cosine of_other([&](double q) { return other(first, q); });
+          if (count_margin(of_other.outside(wanted_of_other(first)))) count += 4;
+        }
+      if (unclear) continue;
+      const Isometry3 target = rigid_motion(orientation, tool);
+      for (const auto& roots : {form.roots(target), mirrored.roots(inverse_of(target))}) {
+        EXPECT_EQ(roots.count, count) << arm.name;
+        if (std::isfinite(nearest)) {
+          EXPECT_NEAR(roots.nearest_margin / nearest, 1, 1e-9) << arm.name;
+        } else {
+          EXPECT_EQ(roots.nearest_margin, nearest) << arm.name;
+        }
+      }
+      ++(count > 0 ? inside : of_one.outside(wanted) > 0 ? first_out : second_out);
+    }
+    EXPECT_GT(first_out, 20) << arm.name;
+    // (what the third kind's first joint leaves, its third reaches, but for a narrow band)
+    if (arm.kind != ArmKind::second_meets_third) {
+      EXPECT_GT(second_out, 5) << arm.name;
+    }
+    EXPECT_GT(inside, 20) << arm.name;
+  }
+}
+
 // A wrist centre next to axis 1, nearer than the shoulder's offset: that offset over the distance, less one.
 TEST(OutOfReach, InsideTheOffsetOfTheShoulder) {
   const auto expect_margin = [](const DhChain<6>& chain, double offset, double tool) {

@@ -666,6 +666,32 @@ TEST(SingularPoses, NearDecidesTheJointThatIsFree) {
   }
 }
 
+// With the wrist of a UR arm straight, the sum of joints 2 to 4 is arbitrary, but near the end of the reach few values
+// bring the arm there: not the one that is near, but one is found.
+TEST(SingularPoses, AStraightWristTakesASumThatTheArmReaches) {
+  const auto ur10 = robots::ur10().chain;
+  const ClosedForm form(ur10);
+  int away = 0;
+  for (const double bent : {0.3, 0.6}) {
+    const JointVector<6> q{0.4, -0.8, bent, 0.5, 0, 0.7};
+    const Isometry3 target = ur10.pose(q);
+    for (int k = 0; k < 16; ++k) {
+      JointVector<6> near = q;
+      near(3) += k * pi / 8 + 0.03;
+      int straight = 0;
+      for (const auto& root : form.roots(target, near)) {
+        if (root.margin > 0 || std::abs(std::sin(root.joints(4))) > 1e-6) continue;
+        ++straight;
+        EXPECT_LT(difference(ur10.pose(root.joints), target), exact);
+        const double sum = root.joints(1) + root.joints(2) + root.joints(3);
+        away += std::abs(vernier_test::without_turns(sum - near(1) - near(2) - near(3))) > 0.1;
+      }
+      EXPECT_GT(straight, 0) << bent << ' ' << k;
+    }
+  }
+  EXPECT_GT(away, 5);
+}
+
 TEST(SingularPoses, SamplesOnRequest) {
   const auto irb = robots::abb_irb120().chain;
   const ClosedForm form(irb);

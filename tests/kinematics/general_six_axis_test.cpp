@@ -9,11 +9,14 @@
 #include "allocation_counter.hpp"
 #include "larger.hpp"
 #include "random_chains.hpp"
+#include "real_matrix.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/kinematics/general_six_axis.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 #include "vernier/kinematics/robots.hpp"
 
 using vernier_test::random_joints;
+using vernier_test::RealMatrix;
 
 namespace vernier::general_six_axis_test {
 namespace {
@@ -183,6 +186,34 @@ TEST(GeneralSixAxis, UnitsAndPlacementOfTheArmDoNotMatter) {
     other.point = 1000 * (base * arm.point);
     other.tool = placed(arm.tool);
     EXPECT_EQ(solve_general(arm, target).count, solve_general(other, placed(target)).count);
+  }
+}
+
+// The determinant of columns of moment over the arm's length, and direction, over the product of their lengths; by the
+// axes of the moved chain.
+TEST(GeneralSixAxis, DistanceIsTheDeterminantOfUnitColumns) {
+  Rng rng(4);
+  for (int i = 0; i < 20; ++i) {
+    const auto chain = vernier_test::random_chain<6>(rng, {.prismatic = 0});
+    const GeneralSixAxis<6> form(chain);
+    const JointVector<6> q = random_joints<6>(rng);
+    const auto links = chain.links(q);
+    RealMatrix columns(6, 6);
+    for (int j = 0; j < 6; ++j) {
+      const Vector3 axis(links.axis(0, j), links.axis(1, j), links.axis(2, j)),
+          point(links.point(0, j), links.point(1, j), links.point(2, j));
+      const Vector3 moment = point.cross(axis) / form.arm_length();
+      for (int k = 0; k < 3; ++k) {
+        columns(k, j) = moment(k) / std::hypot(moment.norm(), 1);
+        columns(3 + k, j) = axis(k) / std::hypot(moment.norm(), 1);
+      }
+    }
+    const SingularityDistances at = form.distances(q);
+    EXPECT_NEAR(at.wrist, columns.determinant(), 1e-13);
+    EXPECT_FALSE(at.factored);
+    EXPECT_EQ(at.shoulder, 1);
+    EXPECT_EQ(at.elbow, 1);
+    EXPECT_GT(std::abs(at.wrist), 1e-7);
   }
 }
 

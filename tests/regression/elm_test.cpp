@@ -155,6 +155,14 @@ TEST(ElmPredictor, EqualsItsParts) {
   expect_predictor(Elm{.hidden_nodes = 7, .input_scaling = Scaling::standard, .target_scaling = Scaling::standard});
 }
 
+// A layer may be a single node; its bias counts.
+TEST(ElmPredictor, OfOneNode) {
+  for (const Activation activation : activations) {
+    expect_predictor(Elm{.hidden_nodes = 1, .activation = activation});
+    expect_predictor(RidgeElm{.hidden_nodes = 1, .activation = activation});
+  }
+}
+
 // Elm in its own words: scale both sides, solve for beta, scale back; nothing else between samples and predictions.
 TEST(Elm, EqualsTheTextbook) {
   const Inputs x = inputs(30, 5), fresh = inputs(9, 6);

@@ -17,6 +17,7 @@ using vernier_test::elements;
 using vernier_test::hidden_outputs;
 using vernier_test::lower_triangle;
 using vernier_test::RealMatrix;
+using vernier_test::vector;
 using vernier_test::zeros;
 
 MatrixX uniform(Index rows, Index columns, double limit, std::uint64_t seed) {
@@ -89,6 +90,31 @@ TEST(ElmFitness, HoldsSixDigitsWhereverTheWeightsLie) {
     const double expected = (stacked * stacked.solve(right) - right).squared_norm() / static_cast<double>(samples);
     EXPECT_NEAR(fitness(k), expected, 1e-6 * expected) << k;
   }
+}
+
+// By the products of the layer's outputs, of which the lower triangle counts; nothing where there is no ridge or the
+// products are not positive definite.
+TEST(RidgeWeights, SolveTheNormalEquations) {
+  const RealMatrix h = uniform(30, 5, 1, 9), t = uniform(30, 2, 1, 10);
+  const RealMatrix gram = h.transpose() * h, right = t.transpose() * h;
+  const double lambda = 0.3;
+  const RealMatrix beta = (gram + lambda * RealMatrix::identity(5)).inverse() * h.transpose() * t;
+  EXPECT_LT((ridge_weights(lower_triangle(gram), right, lambda) - beta).norm(), 1e-13);
+  const double trace = gram.trace(), square = t.squared_norm(),
+               expected = (h * beta - t).squared_norm() + lambda * beta.squared_norm();
+  EXPECT_NEAR(objective_from_products(lower_triangle(gram), right, square, beta, lambda, trace), expected, 1e-12);
+  EXPECT_NEAR(relative_ridge_objective(lower_triangle(gram), right, square, lambda * 5 / trace), expected, 1e-12);
+  for (const double none : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_EQ(ridge_weights(gram, right, none).size(), 0);
+  EXPECT_EQ(ridge_weights(-gram, right, lambda).size(), 0);
+  EXPECT_EQ(objective_from_products(gram, right, square, MatrixX(), lambda, trace), -1);
+  // too few digits: a fit that leaves a ten millionth of the targets' square, or weights that are huge
+  EXPECT_EQ(objective_from_products(gram, h.transpose().row(0) * h, h.col(0).squared_norm(), vector({1, 0, 0, 0, 0}),
+                                    1e-9, trace),
+            -1);
+  EXPECT_EQ(objective_from_products(gram, right, square, beta, lambda, 1e8 * expected / beta.squared_norm() * 1.01),
+            -1);
+  EXPECT_GT(objective_from_products(gram, right, square, beta, lambda, 1e8 * expected / beta.squared_norm() * 0.99), 0);
 }
 
 TEST(ElmFitness, ANearlyPerfectFitKeepsItsDigits) {

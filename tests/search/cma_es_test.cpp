@@ -221,6 +221,34 @@ TEST(CmaEs, ConvergesAndRestarts) {
   EXPECT_LT(minimize(once, nowhere, box, {}, 1).generations, 60);
 }
 
+// A run ends where sigma times the largest standard deviation, the root of C's diagonal, or times the largest part of
+// C's path, is below the tolerance.
+TEST(CmaEs, EndsBySpread) {
+  const Box box = Box::cube(3, -1, 2);
+  const CmaEs cma{.tolerance_x = 1e-6, .tolerance_f = 0};
+  const auto ends = [&](double sigma, double variance, double path) {
+    CmaEs::State s = cma.start(box, 1, evaluate_bowl);
+    s.sigma = sigma;
+    s.covariance = MatrixX::Identity(3, 3) * (1e-4 * variance);
+    s.covariance(1, 1) = variance;
+    s.basis = MatrixX::Identity(3, 3);
+    s.scales = RealMatrix(s.covariance).diagonal().sqrt();
+    s.path_c = s.path_sigma = VectorX::Zero(3);
+    s.path_c(2) = path / (1 - CmaEsConstants(3, s.individuals).c_c);  // what a step leaves of it
+    EXPECT_FALSE(s.converged);
+    cma.step(s, box, evaluate_bowl);
+    return s.converged;
+  };
+  EXPECT_FALSE(ends(1e-3, 1e-4, 0));     // 1e-5: ten times the tolerance, whatever a step makes of it
+  EXPECT_TRUE(ends(1e-3, 1e-8, 0));      // 1e-7
+  EXPECT_FALSE(ends(1e-9, 1e8, 0));      // 1e-5
+  EXPECT_TRUE(ends(1e-11, 1e8, 0));      // 1e-7
+  EXPECT_FALSE(ends(2.5e-6, 1e-10, 1));  // by the path, in either direction; C learns a tenth of its square
+  EXPECT_FALSE(ends(2.5e-6, 1e-10, -1));
+  EXPECT_TRUE(ends(2.5e-7, 1e-10, 1));
+  EXPECT_TRUE(ends(1e3, 1e16, 0));  // wider than 1e6: it diverges
+}
+
 // The optimum in a corner: the mirrors lead there.
 TEST(CmaEs, FindsACorner) {
   const auto slope = [](const VectorX& x) { return x(0) - x(1) + x(2); };

@@ -114,6 +114,16 @@ TEST(LShade, RemembersByHand) {
   s.fitness(0) = std::numeric_limits<double>::infinity();
   LShade::remember(s, Eigen::Vector3d(4, 1, 8), Eigen::Vector3d(0.2, 0.6, 1), Eigen::Vector3d(0.5, 0.5, 1));
   EXPECT_NEAR(s.weights(0), (0.04 + 0.36) / 0.8, 1e-15);
+  // ... however small that is: gains infinite, 0.25 and 0.125 weigh as 2, 2 and 1
+  s.oldest = 0;
+  s.fitness = Eigen::Vector3d(std::numeric_limits<double>::infinity(), 1, 1);
+  LShade::remember(s, Eigen::Vector3d(9, 0.75, 0.875), Eigen::Vector3d(0.2, 0.6, 1), Eigen::Vector3d(0.5, 0.5, 1));
+  EXPECT_NEAR(s.weights(0), (2 * 0.04 + 2 * 0.36 + 1) / (2 * 0.2 + 2 * 0.6 + 1), 1e-15);
+  // ... and where none is finite, all weigh the same
+  s.oldest = 0;
+  s.fitness = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  LShade::remember(s, Eigen::Vector3d(9, 1, 5), Eigen::Vector3d(0.2, 0.6, 1), Eigen::Vector3d(0.5, 0.5, 1));
+  EXPECT_NEAR(s.weights(0), (0.04 + 0.36 + 1) / 1.8, 1e-15);
 }
 
 // Every generation: the population of the linear schedule, an archive no larger than its share and only of points once

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "real_matrix.hpp"
 #include "vernier/kinematics/robots.hpp"
 
 namespace vernier::touches_test {
@@ -28,6 +29,52 @@ TEST(Touch, FacesAreTouchedWithinTheirExtent) {
   }
   EXPECT_LE(farthest, 0.05);
   EXPECT_GT(farthest, 0.045);
+}
+
+TEST(Touch, BallsAreTouchedAtTheirRadiusAndSocketsWhereTheyAre) {
+  const DhChain<6> arm = robots::abb_irb120().chain;
+  const auto limits = abb_irb120_operating_region().limits;
+  const Vector3 centre(0.4, 0.1, 0.3), direction = Vector3(1, 2, -2) / 3;
+  VectorX known = VectorX::Constant(20, 0.03);
+  for (Index i = 0; i < 20; i += 2) known(i) = 0.05;
+  for (const ContactKind kind : {ContactKind::ball, ContactKind::socket}) {
+    const Contact contact = touch(arm, {kind, centre, direction, 0}, "object", known, limits, 0, 2);
+    const PointRows points = arm.positions(JointRows<6>(contact.joints()));
+    for (Index i = 0; i < 20; ++i) {
+      const Vector3 from = point(points, i) - centre, bar = known(i) * direction;
+      if (kind == ContactKind::ball) {
+        EXPECT_NEAR(from.norm(), known(i), 1e-9);
+      } else {
+        EXPECT_LT((from - bar).norm(), 1e-9);
+      }
+    }
+  }
+}
+
+// What a step of joint values moves the point by is what it lacks; no joint moves in vain. In metres as in millimetres.
+TEST(TouchWhiteBox, AStepOfNewtonsMethodIsTheSmallest) {
+  const MatrixX jacobian = vernier_test::RealMatrix(
+      6, 4, {0.3, -0.2, 0.5, 0.1, 0.4, 0.6, -0.1, 0.2, 0.1, 0.3, 0.2, -0.7, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9});
+  const Vector3 at(0.5, 0.2, 0.1), direction = Vector3(2, -1, 2) / 3, point(0.45, 0.25, 0.12);
+  const vernier_test::RealMatrix rows = vernier_test::RealMatrix(jacobian).block(0, 0, 3, 4);
+  for (const double unit : {1.0, 1e-3, 1e3}) {
+    const auto step = [&](ContactKind kind) {
+      return detail::step_towards({kind, unit * at, direction, 0}, unit * point, unit * 0.02, unit * jacobian);
+    };
+    const auto socket = step(ContactKind::socket);
+    const vernier_test::RealMatrix lacks(Vector3(point - at - 0.02 * direction)), gram = rows * rows.transpose();
+    EXPECT_NEAR(socket.left / unit, lacks.norm(), 1e-14);
+    EXPECT_LT((socket.step - rows.transpose() * gram.inverse() * lacks).norm(), 1e-7);
+    for (const ContactKind kind : {ContactKind::plane, ContactKind::ball}) {
+      const vernier_test::RealMatrix normal(kind == ContactKind::plane ? direction
+                                                                       : Vector3((point - at).normalized()));
+      const double gap = normal.dot(Vector3(point - at)) - 0.02;
+      const vernier_test::RealMatrix row = rows.transpose() * normal;
+      const auto one = step(kind);
+      EXPECT_NEAR(one.left / unit, std::abs(gap), 1e-14);
+      EXPECT_LT((one.step - gap / row.squared_norm() * row).norm(), 1e-8);
+    }
+  }
 }
 
 }  // namespace

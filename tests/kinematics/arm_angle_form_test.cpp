@@ -197,6 +197,37 @@ TEST(ArmAngleForm, ObliqueShouldersAreOutOfReach) {
   EXPECT_GT(nearly, 20);
 }
 
+// The volume that three axes span over the most that they can, and the sine of the elbow's angle, by axes and points.
+TEST(ArmAngleForm, DistancesAreVolumesOfAxes) {
+  auto rows = without_offsets().rows();
+  rows[0].alpha = -60_deg;
+  rows[1].alpha = 50_deg;
+  rows[4].alpha = -75_deg;
+  rows[5].alpha = 40_deg;
+  for (const auto& arm : {DhChain<7>::from_rows(rows), robots::barrett_wam().chain}) {
+    const ArmAngleForm form(arm, 0);
+    Rng rng(20);
+    for (int i = 0; i < 50; ++i) {
+      const JointVector<7> q = random_joints<7>(rng);
+      const auto links = arm.links(q);
+      const auto axis = [&](int k) { return Vector3(links.axis(0, k), links.axis(1, k), links.axis(2, k)); };
+      const auto volume = [&](int k) {
+        const Vector3 one = axis(k).cross(axis(k + 1)), two = axis(k + 1).cross(axis(k + 2));
+        return axis(k).dot(two) / (one.norm() * two.norm());
+      };
+      const SingularityDistances at = form.distances(q);
+      EXPECT_NEAR(at.shoulder, volume(0), 1e-12);
+      EXPECT_NEAR(at.wrist, volume(4), 1e-12);
+      // shoulder and wrist, and the point of axis 4 next to both
+      const auto point = [&](int k) { return Vector3(links.point(0, k), links.point(1, k), links.point(2, k)); };
+      const Vector3 shoulder = point(1), wrist = point(5);
+      const Vector3 elbow = point(3) + axis(3).dot(Vector3(shoulder - point(3))) * axis(3);
+      const Vector3 upper = elbow - shoulder, fore = wrist - elbow;
+      EXPECT_NEAR(at.elbow, axis(3).dot(upper.cross(fore)) / (upper.norm() * fore.norm()), 1e-12);
+    }
+  }
+}
+
 TEST(ArmAngleForm, ArmsOfOtherGeometryAreRefused) {
   const auto refused = [](const DhChain<7>& chain) { return complaint([&] { (void)ArmAngleForm(chain, 0); }); };
   const auto changed = [&](int joint, double DhRow::*entry, double value) {

@@ -533,6 +533,43 @@ TEST(Reach, EachHasASentenceOfItsOwn) {
   EXPECT_NE(out.describe().find("mm farther away"), std::string::npos) << out.describe();
 }
 
+// A little beyond the reach each configuration of shoulder and wrist stalls at a place of its own, at the stretched
+// arm; which is noted once, however many seeds lead there.
+TEST(BranchSetWhiteBox, NotesEachPlaceWhereSeedsStallOnce) {
+  const auto irb = robots::abb_irb120().chain;
+  const ClosedForm form(irb);
+  const auto at = straight_out(irb, {0.3, 0.4, -std::atan2(0.302, 0.07), 0.6, 0.9, 0.8}, 3);
+  const Isometry3 target = rigid_motion(rotation(at.pose), translation(at.pose) + 1e-4 * at.outward);
+  const auto roots = form.roots(target);
+  ASSERT_EQ(roots.count, 4);  // two shoulders, two wrists
+  const auto model = [&](const double* q, Isometry3& pose, double* jacobian) {
+    const auto here = irb.pose_and_jacobian(JointVector<6>(q));
+    pose = here.pose;
+    std::copy_n(here.jacobian.data(), 36, jacobian);
+  };
+  const JointLimits<6> limits;
+  const JointVector<6> near = JointVector<6>::Zero();
+  const detail::BranchProblem problem{6,           {0, 1, 2, 3, 4, 5},  model,
+                                      target,      limits.lower.data(), limits.upper.data(),
+                                      near.data(), rotation_length,     detail::lipschitz_bound(2, rotation_length)};
+  detail::BranchSet set;
+  EXPECT_FALSE(set.may_be_incomplete());
+  for (int round = 0; round < 2; ++round)
+    for (const auto& root : roots) set.refine(problem, root.joints.data(), root.margin, false);
+  EXPECT_EQ(set.count, 0);
+  EXPECT_EQ(set.seeds_lost, 0);  // they were not expected to lead to a branch
+  EXPECT_TRUE(set.may_be_incomplete());
+  EXPECT_EQ(set.stalled_count, 4);
+  for (int k = 0; k < 4; ++k)
+    EXPECT_LT(joint_difference<6>(JointVector<6>(set.stalled[k].data()), roots.begin()[k].joints), 0.1) << k;
+  set.refine(problem, near.data(), 0, false);  // one that was
+  EXPECT_EQ(set.seeds_lost, 1);
+  const int before = set.stalled_count;
+  set.refine(problem, roots.begin()->joints.data(), roots.begin()->margin, true);  // one of many samples
+  EXPECT_EQ(set.stalled_count, before);
+  EXPECT_EQ(set.seeds_lost, 1);
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // singular targets, determinism
 

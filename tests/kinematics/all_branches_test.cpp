@@ -254,6 +254,37 @@ TEST(AllBranches, RadiusIsProvenForGeometricModels) {
   EXPECT_EQ(all_proven(UnevenJoints<6>{made}), 0);
 }
 
+/// A chain that counts how often it is evaluated.
+struct Counted {
+  static constexpr int dof = 6;
+  DhChain<6> chain;
+  int* evaluations;
+  Isometry3 pose(const JointVector<6>& q) const noexcept { return chain.pose(q); }
+  Vector3 position(const JointVector<6>& q) const noexcept { return chain.position(q); }
+  Jacobian<6> jacobian(const JointVector<6>& q) const noexcept { return chain.jacobian(q); }
+  PoseAndJacobian<6> pose_and_jacobian(const JointVector<6>& q) const noexcept {
+    ++*evaluations;
+    return chain.pose_and_jacobian(q);
+  }
+};
+
+// Away from singularities every evaluation is one of a branch that was found: two or three each.
+TEST(AllBranches, IterationsAreEvaluations) {
+  Rng rng(12);
+  const auto ur10 = robots::ur10().chain;
+  const ClosedForm form(ur10);
+  int evaluations = 0, sum = 0;
+  const Counted arm{as_made(ur10, rng), &evaluations};
+  const auto branches = all_branches(form, arm, arm.pose({0.3, -1.1, 0.8, 0.4, 0.9, 1}));
+  ASSERT_EQ(branches.count, 8);
+  for (const auto& branch : branches) {
+    EXPECT_GE(branch.iterations, 2);
+    EXPECT_LE(branch.iterations, 3);
+    sum += branch.iterations;
+  }
+  EXPECT_EQ(sum, evaluations);
+}
+
 TEST(AllBranches, NewtonsMethodConvergesToABranchFromWithinItsRadius) {
   Rng rng(4);
   const auto expect_converges = [&](const auto& nominal, const char* name) {

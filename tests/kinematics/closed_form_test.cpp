@@ -692,6 +692,33 @@ TEST(SingularPoses, AStraightWristTakesASumThatTheArmReaches) {
   EXPECT_GT(away, 5);
 }
 
+// Axes 1 and 2 parallel, and forearm and upper arm of the same length: folded, the wrist centre is on axis 2, and
+// joint 2 is any value; here that of `near`.
+TEST(SingularPoses, NearDecidesTheSecondJointOfAFoldedArm) {
+  const DhChain<6> arm{{{{.a = 400_mm, .alpha = 0_deg, .d = 200_mm},
+                         {.a = 300_mm, .alpha = 90_deg, .d = 50_mm},
+                         {.a = 300_mm, .alpha = -90_deg, .d = 0_mm},
+                         {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
+                         wrist_5,
+                         wrist_6}}};
+  ASSERT_EQ(internals(arm).kind(), ArmKind::first_parallel_to_second);
+  const JointVector<6> q{0.3, 0.4, pi, 0.5, 0.6, 0.7};
+  const Isometry3 target = arm.pose(q);
+  JointVector<6> near = JointVector<6>::Constant(9);
+  for (const double value : {-2.0, 0.25, 1.25}) {
+    near(1) = value;
+    int folded = 0;
+    for (const auto& root : ClosedForm(arm).roots(target, near)) {
+      EXPECT_LT(difference(arm.pose(root.joints), target), exact);
+      if ((root.free & 2u) == 0) continue;
+      ++folded;
+      EXPECT_EQ(root.joints(1), value);
+      EXPECT_NEAR(vernier_test::without_turns(root.joints(0) - q(0)), 0, 1e-9);  // the wrist is where axis 2 is
+    }
+    EXPECT_EQ(folded, 2);  // two wrists
+  }
+}
+
 TEST(SingularPoses, SamplesOnRequest) {
   const auto irb = robots::abb_irb120().chain;
   const ClosedForm form(irb);

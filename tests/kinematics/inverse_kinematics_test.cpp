@@ -358,7 +358,9 @@ TEST(InverseKinematics, RestartsLieAboutTheSeedOrWithinTheLimits) {
   options.limits.upper(0) = 30;  // one side alone
   options.limits.lower(1) = 0.2;
   options.limits.upper(1) = 0.6;
-  EXPECT_NE(inverse_kinematics(arm, vn::Vector3(9, 0, 0), seed, options).status, vn::IkStatus::converged);
+  const auto once_each = inverse_kinematics(arm, vn::Vector3(9, 0, 0), seed, options);
+  EXPECT_NE(once_each.status, vn::IkStatus::converged);
+  EXPECT_EQ(once_each.iterations, 201);
   ASSERT_EQ(visited.size(), 201u);
   EXPECT_EQ(RealMatrix::of(visited[0]), RealMatrix::of(seed));
   double least = 100, most = -100;
@@ -371,6 +373,18 @@ TEST(InverseKinematics, RestartsLieAboutTheSeedOrWithinTheLimits) {
   }
   EXPECT_LT(least, seed(0) - 0.9 * pi);  // of 200 uniform draws some reach the last twentieth on either side
   EXPECT_GT(most, seed(0) + 0.9 * pi);
+}
+
+TEST(InverseKinematics, IterationsAreEvaluationsOfAllStarts) {
+  std::vector<vn::JointVector<2>> visited;
+  const Noting arm{planar, &visited};
+  for (const double x : {0.5, 9.0})
+    for (const int restarts : {0, 3}) {
+      visited.clear();
+      const auto found = vn::inverse_kinematics(arm, vn::Vector3(x, 0.3, 0), vn::JointVector<2>(0.1, 0.2),
+                                                {.max_iterations = 30, .restarts = restarts});
+      EXPECT_EQ(found.iterations, static_cast<int>(visited.size())) << x << ' ' << restarts;
+    }
 }
 
 TEST(InverseKinematics, WhatIsNotANumberStallsAtTheSeed) {

@@ -83,6 +83,19 @@ TEST(DenseWhiteBox, ProductsScalingsAndSums) {
   }
 }
 
+TEST(DenseWhiteBox, WhatIsNotFiniteIsSeenAnywhere) {
+  const RealMatrix fine(2, 3, {1, -2, 0, 1e300, -1e-300, 5});
+  EXPECT_TRUE(all_finite(fine));
+  EXPECT_TRUE(all_finite(MatrixX(0, 3)));
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()})
+    for (Index i = 0; i < 2; ++i)
+      for (Index j = 0; j < 3; ++j) {
+        RealMatrix a = fine;
+        a(i, j) = bad;
+        EXPECT_FALSE(all_finite(a)) << i << ", " << j;
+      }
+}
+
 TEST(DenseWhiteBox, CholeskyFactorsAndItsSolutions) {
   for (const Index n : sizes) {
     const RealMatrix a = positive(n, 1);

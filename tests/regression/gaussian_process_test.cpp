@@ -269,6 +269,22 @@ TEST(BoundedBfgs, TakesWholeStepsOfAtMostTwo) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(visited[k], expected[k], 1e-12);
 }
 
+// Values that alternate from neighbour to neighbour are more than noise, values of a polynomial have none: the ratio is
+// the largest and the smallest that is looked at.
+TEST(GaussianProcess, NoiseRatiosHaveBounds) {
+  const Index n = 40;
+  RealMatrix x(n, 1), alternating(n, 1), smooth(n, 1);
+  for (Index i = 0; i < n; ++i) {
+    x(i) = static_cast<double>(i);
+    alternating(i) = i % 2 == 0 ? 1 : -1;
+    smooth(i) = x(i) * x(i);
+  }
+  const GaussianProcess process{.length_scales = vector({1})};
+  const auto ratio = [&](const RealMatrix& y) { return process.fit(VectorX(x), VectorX(y)).noise_ratio(); };
+  EXPECT_NEAR(ratio(alternating) / 1e3, 1, 1e-9);
+  EXPECT_NEAR(ratio(smooth) / 1e-8, 1, 1e-9);
+}
+
 // Samples of a known process: what it was is found again, within what so many samples tell.
 TEST(GaussianProcess, FindsWhatTheSamplesWereDrawnFrom) {
   const Index n = 200;

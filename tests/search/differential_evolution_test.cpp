@@ -193,6 +193,35 @@ TEST(LShade, LearnsItsConstants) {
   EXPECT_GT(rates, 0.7);
 }
 
+// What was loaded is checked: each member of another size, and an index that points nowhere.
+TEST(LShade, InconsistentStatesAreSeen) {
+  const LShade::State made = LShade{.individuals_per_dimension = 5}.start(Box::cube(2, 0, 1), 1, evaluate_bowl);
+  EXPECT_TRUE(made.consistent());
+  const auto sound = [&](const auto& change) {
+    LShade::State s = made;
+    change(s);
+    return s.consistent();
+  };
+  using State = LShade::State;
+  EXPECT_FALSE(sound([](State& s) { s.best = VectorX::Zero(3); }));
+  EXPECT_FALSE(sound([](State& s) { s.fitness = VectorX::Zero(9); }));
+  EXPECT_FALSE(sound([](State& s) { s.positions = MatrixX::Zero(3, 10); }));
+  EXPECT_FALSE(sound([](State& s) { s.archive = MatrixX::Zero(3, 1); }));
+  EXPECT_TRUE(sound([](State& s) { s.archive = MatrixX::Zero(2, 7); }));
+  EXPECT_FALSE(sound([](State& s) { s.weights = s.crossover_rates = VectorX(); }));
+  EXPECT_FALSE(sound([](State& s) { s.crossover_rates = VectorX::Zero(5); }));
+  EXPECT_TRUE(sound([](State& s) { s.weights = s.crossover_rates = VectorX::Ones(1); }));
+  EXPECT_FALSE(sound([](State& s) { s.oldest = -1; }));
+  EXPECT_TRUE(sound([](State& s) { s.oldest = 5; }));
+  EXPECT_FALSE(sound([](State& s) { s.oldest = 6; }));
+  for (const Index individuals : {3, 4})
+    EXPECT_EQ(sound([&](State& s) {
+                s.positions = MatrixX::Zero(2, individuals);
+                s.fitness = VectorX::Zero(individuals);
+              }),
+              individuals == 4);
+}
+
 TEST(LShade, RefusesUnusableOptions) {
   const auto said = [](const LShade& shade) {
     return complaint([&] { shade.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });

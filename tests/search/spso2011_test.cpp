@@ -109,6 +109,32 @@ TEST(Spso2011, LinksChangeWhereNothingIsBettered) {
   EXPECT_GT(dropped, 5);
 }
 
+// What was loaded is checked: each member of another size, and links to particles that are not there.
+TEST(Spso2011, InconsistentStatesAreSeen) {
+  const Spso2011::State made = two_particles(1, true);
+  EXPECT_TRUE(made.consistent());
+  for (MatrixX Swarm::*member : {&Swarm::positions, &Swarm::velocities, &Swarm::best_positions})
+    for (const auto& [rows, cols] : {std::pair<Index, Index>{2, 3}, {3, 2}}) {
+      Spso2011::State s = made;
+      s.*member = MatrixX::Zero(rows, cols);
+      EXPECT_FALSE(s.consistent()) << rows << " x " << cols;
+    }
+  for (VectorX Swarm::*member : {&Swarm::fitness, &Swarm::best_values, static_cast<VectorX Swarm::*>(&Swarm::best)}) {
+    Spso2011::State s = made;
+    s.*member = VectorX::Zero(3);
+    EXPECT_FALSE(s.consistent());
+  }
+  Spso2011::State s = made;
+  s.links(0, 1) = 2;
+  EXPECT_FALSE(s.consistent());
+  s.links(0, 1) = -1;
+  EXPECT_FALSE(s.consistent());
+  s.links.setZero(1, 3);
+  EXPECT_FALSE(s.consistent());
+  s.links.resize(0, 0);  // to be drawn
+  EXPECT_TRUE(s.consistent());
+}
+
 TEST(Spso2011, RefusesUnusableOptions) {
   const auto said = [](const Spso2011& pso) {
     return vernier_test::complaint([&] { pso.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });

@@ -176,6 +176,33 @@ TEST(LShade, ShrinksAndSpendsItsBudget) {
   }
 }
 
+// A trial goes from its target towards one of the best, here the two at 1 and -1; all others are at 0. Only where the
+// difference of two further individuals takes that back, once in twenty draws, it stays at 0.
+TEST(LShade, TrialsGoTowardsTheBest) {
+  const Box box = Box::cube(1, -3, 3);
+  for (const double share : {0.1, 0.0}) {  // of 20, and at least two
+    const LShade shade{.individuals_per_dimension = 20, .best_share = share};
+    int up = 0, down = 0, still = 0;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+      LShade::State s = shade.start(box, seed, evaluate_bowl);
+      s.positions = MatrixX::Zero(1, 20);
+      s.positions(0, 4) = 1;
+      s.positions(0, 11) = -1;
+      s.fitness = VectorX::Ones(20);
+      s.fitness(4) = s.fitness(11) = 0.5;
+      shade.step(s, box, [&](const MatrixX& trials, VectorX& fitness) {
+        for (Index k = 0; k < trials.cols(); ++k)
+          if (k != 4 && k != 11) ++(trials(0, k) > 0 ? up : trials(0, k) < 0 ? down : still);
+        evaluate_bowl(trials, fitness);
+      });
+    }
+    ASSERT_EQ(up + down + still, 50 * 18);
+    EXPECT_GT(up, 350);
+    EXPECT_GT(down, 350);
+    EXPECT_LT(still, 90);
+  }
+}
+
 // On a bowl of steep and flat axes success comes with large CR: what is remembered moves there.
 TEST(LShade, LearnsItsConstants) {
   const auto evaluate = [](const MatrixX& population, VectorX& fitness) {

@@ -222,6 +222,20 @@ TEST(KernelPredictor, DoesNotAllocate) {
             0);
 }
 
+// Lengths that are tried follow the spread of the inputs: their unit does not matter, here a power of two.
+TEST(KernelElm, TheUnitOfTheInputsDoesNotMatter) {
+  const KernelElm recipe{.input_scaling = Scaling::none};
+  const Inputs x = inputs(40, 16), fresh = inputs(10, 17);
+  const auto expected = recipe.fit(x, targets(x, 1e-4)).predict(fresh);
+  for (const double unit : {1024.0, 1.0 / 1024}) {
+    Inputs scaled = x, scaled_fresh = fresh;
+    for (double& value : elements(scaled)) value *= unit;
+    for (double& value : elements(scaled_fresh)) value *= unit;
+    const auto found = recipe.fit(scaled, targets(x, 1e-4)).predict(scaled_fresh);
+    EXPECT_LT(difference(found, expected), 1e-9 * RealMatrix::of(expected).largest());
+  }
+}
+
 TEST(KernelElm, RefusesWhatItCannotUse) {
   const Inputs x = inputs(10, 15);
   const Targets y = targets(x);

@@ -237,8 +237,8 @@ TEST(PlanMeasurements, BinsByHand) {
   options.bin = 0.25;
   for (const int wanted : {0, 1}) {
     options.bin_count = wanted;
-    // what was measured far above the bins of the first joint and below those of the second covers none of them
-    MeasurementCandidates<6> outside = in_a_row({0.8});
+    // what was measured above the bins of the first joint and below those of the second covers none of them
+    MeasurementCandidates<6> outside = in_a_row({0.6});
     outside.joints(0, 1) = -0.3;
     for (const bool turned : {false, true})
       for (const auto& measured : {MeasurementCandidates<6>(), outside}) {

@@ -37,8 +37,8 @@ class JointBins {
   /// Bin of a value of joint j; -1 outside all.
   VERNIER_API int of(Index j, double q) const {
     const int begin = first_[static_cast<std::size_t>(j)], end = first_[static_cast<std::size_t>(j) + 1];
-    const double at = std::floor((q - lower_(j)) / width_);
-    if (!(at >= 0) || at > end - begin) return -1;
+    const double at = (q - lower_(j)) / width_;
+    if (!(at >= 0) || at > end - begin + 1e-9) return -1;
     return begin + std::min(static_cast<int>(at), end - begin - 1);
   }
   /// Bins of all joints of some configurations.

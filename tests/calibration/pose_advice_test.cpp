@@ -53,5 +53,33 @@ TEST(PoseAdviceWhiteBox, OrientationsCountByTheirOwnDeviation) {
   EXPECT_NEAR(advice[0].std_then, 0.5e-3, 1e-9);
 }
 
+// Poses in whole degrees and millimetres, or what else to do where they would not help.
+TEST(CalibrationReport, WhatToMeasureNextByHand) {
+  CalibrationReport report;
+  report.joints.resize(3);
+  for (JointReport& joint : report.joints) joint.revolute = true;
+  report.joints[1].revolute = false;
+  report.oriented = true;
+  PoseAdvice advice;
+  advice.parameter = "beta2";
+  advice.kind = ParameterKind::angle;
+  advice.std_now = 2e-3;
+  advice.std_then = 0.5e-3;
+  advice.poses = {Vector3(0.5, -0.25, 1), Vector3(-1, 0.125, 0)};
+  report.advice = {advice};
+  const auto said = [&] { return report.next().front(); };
+  EXPECT_NE(said().find("beta2 is weakly determined (standard deviation 2 mrad)"), std::string::npos) << said();
+  EXPECT_NE(said().find(": add poses like (29, -250, 57), (-57, 125, 0)"), std::string::npos) << said();
+  report.advice[0].std_then = 1.79e-3;  // nine tenths are 1.8
+  EXPECT_NE(said().find("add poses like"), std::string::npos) << said();
+  report.advice[0].std_then = 1.81e-3;
+  EXPECT_NE(said().find("; more poses would not determine it: fix it, or measure with another tool"), std::string::npos)
+      << said();
+  report.oriented = false;
+  EXPECT_NE(said().find("; more positions would not determine it: measure orientations"), std::string::npos) << said();
+  report.advice[0].kind = ParameterKind::length;
+  EXPECT_NE(said().find("(standard deviation 2 mm)"), std::string::npos) << said();
+}
+
 }  // namespace
 }  // namespace vernier::pose_advice_test

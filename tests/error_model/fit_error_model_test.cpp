@@ -66,6 +66,11 @@ TEST(FitErrorModel, PriorsStayWithTheirCoefficientsWhenGearsAreAdded) {
   for (const BlockChoice& block : found.blocks) blocks[block.name] = block;
   ASSERT_TRUE(blocks.contains("jointwise") && blocks["jointwise"].used);
   ASSERT_TRUE(blocks.contains("gears") && blocks["gears"].used);
+  ASSERT_EQ(found.arm.terms().linear_ranges.size(), 6u);  // from the smallest measured value to the largest
+  for (Index j = 0; j < 6; ++j) {
+    const auto [least, most] = std::minmax_element(data.joints().col(j).begin(), data.joints().col(j).end());
+    EXPECT_EQ(found.arm.terms().linear_ranges[static_cast<std::size_t>(j)], (JointRange{*least, *most}));
+  }
   ASSERT_TRUE(blocks.contains("elastic_with_jointwise"));
   std::map<std::string, double> wanted{{"gear", blocks["gears"].precision},
                                        {"coupling", blocks["gears"].precision},
@@ -119,8 +124,9 @@ TEST(FitErrorModel, FindsTheCoefficientsWithinTheirDeviations) {
       actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0.5e-3, .harmonics = 2});
   ErrorModelOptions transmissions = few_harmonics;
   transmissions.compliance = transmissions.gear_ratio = transmissions.coupling = false;
-  expect_found(fitted(measured_widely(rippled), transmissions), rippled, {"cos2_2", "cos3_2", "sin3_2", "sin4_2"},
-               0.04e-3);
+  const auto found = fitted(measured_widely(rippled), transmissions);
+  expect_found(found, rippled, {"cos2_2", "cos3_2", "sin3_2", "sin4_2"}, 0.04e-3);
+  EXPECT_NEAR(found.orientation_sigma / 0.1e-3, 1, 0.1);
   const Actual geared =
       actual_arm({.gear_ratio = 0.2e-3, .coupling = 0.2e-3, .compliance = 0, .harmonic = 0.5e-3, .harmonics = 2});
   expect_found(fitted(measured_widely(geared)), geared, {"coupling2", "gear6"}, 0.01e-3);

@@ -156,6 +156,14 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
   Index wrong = 0;
   for (Index i = 0; i < rows.size(); ++i)
     if (point(all.position, i).norm() > 8 * found.fit.residuals.score()) ++wrong;
+  Index zero_found = -1;  // the parameter of a joint's zero that is wrong
+  const auto put_right = [&](Index parameter, double zero) {
+    zero_found = parameter;
+    VectorX values = nominal.parameters(), start = found.fit.arm.parameters();
+    start(parameter) = values(parameter) += zero;  // not a turn apart
+    arm = nominal.with_parameters(values);
+    found.fit.arm = found.fit.arm.with_parameters(start);
+  };
   std::optional<RowShift> shift;
   if (wrong >= 4 || found.fit.residuals.score() > 0.01 * point_scatter(rows.positions))
     shift = find_shift(nominal, rows, found.fit.residuals.score());
@@ -179,9 +187,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
     found = fit_hypothesis(nominal, rows.rows(spread_rows(rows.size(), 200)), {});
   } else if (found.hypothesis.kind == FaultKind::joint_zero) {
     out.findings.push_back(zero_finding(nominal, found.hypothesis.joint, found.zero));
-    VectorX values = nominal.parameters();
-    values(zero_parameter(nominal, found.hypothesis.joint)) += found.zero;
-    arm = nominal.with_parameters(values);
+    put_right(zero_parameter(nominal, found.hypothesis.joint), found.zero);
   } else if (found.hypothesis.kind) {
     out.findings.push_back(global_finding(found));
     rows = found.hypothesis.corrected(rows, nominal);
@@ -193,11 +199,10 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
         small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), stds, options.smallest_zero);
     if (joint >= 0) {
       out.findings.push_back(zero_finding(nominal, joint, zero));
-      VectorX values = nominal.parameters();
-      values(zero_parameter(nominal, joint)) += zero;
-      arm = nominal.with_parameters(values);
+      put_right(zero_parameter(nominal, joint), zero);
     }
   }
+  if (zero_found >= 0) stds(zero_found) = std::numeric_limits<double>::infinity();  // known by these rows alone
   const AuditFit frames = audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
   out.registered = ErrorStatistics::of(distances_from(frames.residuals.position, Vector3::Zero()));
   AuditFit geometry = audit_fit(frames.arm, arm.parameters(), stds, rows, 12);

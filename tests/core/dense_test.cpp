@@ -161,13 +161,16 @@ TEST(DenseWhiteBox, LeastSquaresByQr) {
   }
 }
 
+/// A random symmetric matrix.
+RealMatrix random_symmetric(Index n, std::uint64_t seed) {
+  const RealMatrix half = random(n, n, seed);
+  return half + half.transpose();
+}
+
 TEST(DenseWhiteBox, EigenvaluesOfSymmetricMatrices) {
   for (const Index n : sizes) {
-    const RealMatrix half = random(n, n, 10), a = half + half.transpose();
-    MatrixX given = a;
-    for (Index j = 0; j < n; ++j)
-      for (Index i = 0; i < j; ++i) given(i, j) = 7;  // which is not read
-    const SymmetricEigen found = symmetric_eigen(given);
+    const RealMatrix a = random_symmetric(n, 10);
+    const SymmetricEigen found = symmetric_eigen(lower_triangle(a));  // the upper one is not read
     ASSERT_TRUE(found.converged);
     const RealMatrix vectors = found.vectors;
     EXPECT_LT(difference(a * vectors, vectors * RealMatrix::diagonal(found.values)), 1e-12 * static_cast<double>(n));
@@ -181,11 +184,8 @@ TEST(DenseWhiteBox, EigenvaluesOfSymmetricMatrices) {
 
 TEST(DenseWhiteBox, TridiagonalForms) {
   for (const Index n : sizes) {
-    const RealMatrix half = random(n, n, 12), a = half + half.transpose();
-    MatrixX given = a;
-    for (Index j = 1; j < n; ++j)
-      for (Index i = 0; i < j; ++i) given(i, j) = 99;  // not to be read
-    const TridiagonalForm form = tridiagonal_form(given);
+    const RealMatrix a = random_symmetric(n, 12);
+    const TridiagonalForm form = tridiagonal_form(lower_triangle(a));
     ASSERT_EQ(form.subdiagonal.size(), n - 1);
     RealMatrix t = RealMatrix::diagonal(form.diagonal);
     for (Index i = 0; i + 1 < n; ++i) t(i, i + 1) = t(i + 1, i) = form.subdiagonal(i);

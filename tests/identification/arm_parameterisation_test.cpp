@@ -81,6 +81,14 @@ TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
   EXPECT_NEAR(arm.steps()(0), first(2) + second(2), 1e-12);
 }
 
+/// An arm with its k-th unknown moved.
+ArmParameterisation moved(ArmParameterisation arm, Index k, double by) {
+  RealMatrix step(arm.size(), 1);
+  step(k) = by;
+  arm.move(step);
+  return arm;
+}
+
 // Every column of a pose with tilts against the difference of two poses: of both frames, the chain and all joint
 // errors.
 TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
@@ -111,12 +119,8 @@ TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
     const RealMatrix all = expanded;
     for (Index k = 0; k < arm.size(); ++k) {
       constexpr double h = 1e-4;
-      ArmParameterisation ahead = arm, behind = arm;
-      RealMatrix step(arm.size(), 1);
-      step(k) = h;
-      ahead.move(step);
-      behind.move(-step);
-      const RealMatrix apart = pose_difference(ahead.poses(0, joints)[s], behind.poses(0, joints)[s]);
+      const RealMatrix apart =
+          pose_difference(moved(arm, k, h).poses(0, joints)[s], moved(arm, k, -h).poses(0, joints)[s]);
       EXPECT_LT((all.col(k) - apart / (2 * h)).norm(), 1e-9) << arm.names()[static_cast<std::size_t>(k)];
     }
   }
@@ -143,12 +147,7 @@ TEST(ArmParameterisation, ColumnsOfHysteresisAndHeatAreDifferences) {
   const auto found = poses(arm, rows.data());
   for (Index k = 0; k < arm.size(); ++k) {
     constexpr double h = 1e-3;
-    ArmParameterisation ahead = arm, behind = arm;
-    RealMatrix step(arm.size(), 1);
-    step(k) = h;
-    ahead.move(step);
-    behind.move(-step);
-    const auto after = poses(ahead, other.data()), before = poses(behind, other.data());
+    const auto after = poses(moved(arm, k, h), other.data()), before = poses(moved(arm, k, -h), other.data());
     for (std::size_t i = 0; i < 2; ++i) {
       const RealMatrix apart = pose_difference(after[i], before[i]), column = RealMatrix::of(rows[i].dense).col(k);
       EXPECT_LT((column - apart / (2 * h)).norm(), 1e-3 * column.norm() + 1e-9)

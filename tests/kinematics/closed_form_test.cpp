@@ -23,6 +23,7 @@ namespace {
 using namespace vernier::literals;
 using detail::ArmKind;
 using vernier_test::complaint;
+using vernier_test::difference;
 using vernier_test::joint_difference;
 using vernier_test::random_joints;
 using vernier_test::RealMatrix;
@@ -39,18 +40,6 @@ ClosedForm<N> closed_form(const DhChain<N, Convention>& arm, HeldJoint held = {-
   } else {
     return ClosedForm<6>(arm);
   }
-}
-
-/// Largest difference of elements of two poses.
-double difference(const Isometry3& a, const Isometry3& b) {
-  double largest = 0;
-  for (Index i = 0; i < 4; ++i)
-    for (Index j = 0; j < 4; ++j) {
-      const double at = std::abs(a(i, j) - b(i, j));
-      if (std::isnan(at)) return at;
-      largest = std::max(largest, at);
-    }
-  return largest;
 }
 
 /// What the roots of one target are like.

@@ -156,11 +156,11 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
   Index wrong = 0;
   for (Index i = 0; i < rows.size(); ++i)
     if (point(all.position, i).norm() > 8 * found.fit.residuals.score()) ++wrong;
-  Index zero_found = -1;  // the parameter of a joint's zero that is wrong
-  const auto put_right = [&](Index parameter, double zero) {
-    zero_found = parameter;
+  Index wrong_zero = -1;  // the parameter of a joint's zero that is wrong
+  const auto correct_zero = [&](Index parameter, double zero) {
+    wrong_zero = parameter;
     VectorX values = nominal.parameters(), start = found.fit.arm.parameters();
-    start(parameter) = values(parameter) += zero;  // not a turn apart
+    start(parameter) = values(parameter) += zero;  // at the prior's mean, not a whole turn from it
     arm = nominal.with_parameters(values);
     found.fit.arm = found.fit.arm.with_parameters(start);
   };
@@ -187,7 +187,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
     found = fit_hypothesis(nominal, rows.rows(spread_rows(rows.size(), 200)), {});
   } else if (found.hypothesis.kind == FaultKind::joint_zero) {
     out.findings.push_back(zero_finding(nominal, found.hypothesis.joint, found.zero));
-    put_right(zero_parameter(nominal, found.hypothesis.joint), found.zero);
+    correct_zero(zero_parameter(nominal, found.hypothesis.joint), found.zero);
   } else if (found.hypothesis.kind) {
     out.findings.push_back(global_finding(found));
     rows = found.hypothesis.corrected(rows, nominal);
@@ -199,10 +199,10 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
         small_zero(arm, found.fit, rows.rows(spread_rows(rows.size(), 300)), stds, options.smallest_zero);
     if (joint >= 0) {
       out.findings.push_back(zero_finding(nominal, joint, zero));
-      put_right(zero_parameter(nominal, joint), zero);
+      correct_zero(zero_parameter(nominal, joint), zero);
     }
   }
-  if (zero_found >= 0) stds(zero_found) = std::numeric_limits<double>::infinity();  // known by these rows alone
+  if (wrong_zero >= 0) stds(wrong_zero) = std::numeric_limits<double>::infinity();  // known by these rows alone
   const AuditFit frames = audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
   out.registered = ErrorStatistics::of(distances_from(frames.residuals.position, Vector3::Zero()));
   AuditFit geometry = audit_fit(frames.arm, arm.parameters(), stds, rows, 12);

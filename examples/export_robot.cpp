@@ -5,13 +5,10 @@
 
 #include <optional>
 
-#include "calibration_data.hpp"
 #include "cli.hpp"
-#include "dispatch.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
 #include "robot_choice.hpp"
-#include "vernier/ceres.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/urdf.hpp"
 
@@ -51,22 +48,10 @@ support::CalibrationOptions calibration_options(const Settings& o, const std::st
   return out;
 }
 
-/// Errors of held-out poses by an arm as a file has it, base and tool registered by the training poses.
-template <int N>
-vn::ErrorStatistics error_of(const vn::RobotDescription& exported, const support::CalibrationOptions& o,
-                             std::uint64_t seed) {
-  const vn::DescribedRobot<N> robot = exported.arm<N>();
-  const auto measured = support::read_measurements<N>(o, robot.arm.chain().joint_types(), seed);
-  vn::IdentifyOptions frames = o.calibrate.geometry;
-  frames.geometry = false;
-  const auto registered = vn::identify(robot.arm, measured.train[0], frames, o.calibrate.sensors);
-  return vn::prediction_error(registered.model, measured.test[0]);
-}
-
 Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const std::optional<vn::UrdfChain>& chain,
                    const vn::FitOptions& fit) {
-  const support::CalibrationOptions options = calibration_options(o, robot.name);
-  const support::PoseCalibration calibration = support::calibrate_from_poses(robot, options, fit);
+  const support::PoseCalibration calibration =
+      support::calibrate_from_poses(robot, calibration_options(o, robot.name), fit);
   const vn::CalibrationReport& report = calibration.report;
 
   Outcome out;
@@ -76,19 +61,17 @@ Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const s
   const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
   const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
                                                           o.with_tool ? identified.tool() : nominal.tool());
-  const auto error = [&](const vn::RobotDescription& exported) {
-    return support::dispatch_dof(robot.dof(), [&](auto n) { return error_of<n()>(exported, options, fit.seed); });
-  };
   vn::ExportNote note{robot.name, file_name(o.data), o.date, report.train_poses, report.chosen, out.full, {}};
   if (!o.urdf.empty()) {
     const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
-    note.error_exported = error(vn::parse_urdf(as_file(), o.urdf, chain->base_link, chain->tip_link).robot);
+    note.error_exported =
+        calibration.error_of(vn::parse_urdf(as_file(), o.urdf, chain->base_link, chain->tip_link).robot);
     out.files.push_back({o.urdf, as_file(), note.error_exported});
   }
   if (!o.ur_kinematics.empty()) {
     const vn::UrKinematics kinematics =
         chain ? vn::UrKinematics::of(*chain, geometry, o.ur_hash) : vn::UrKinematics::of(geometry, o.ur_hash);
-    note.error_exported = error(kinematics.robot(robot.name));
+    note.error_exported = calibration.error_of(kinematics.robot(robot.name));
     out.files.push_back({o.ur_kinematics, kinematics.text(note), note.error_exported});
   }
   return out;

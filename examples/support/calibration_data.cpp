@@ -49,11 +49,11 @@ vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, s
   return vn::split_every(data, o.test_every);
 }
 
-/// Training and held-out poses of station s.
+/// Training and held-out poses of station s, whose file has these poses.
 template <int N>
-vn::Split<N> read_station(const CalibrationOptions& o, std::size_t s, std::span<const vn::JointType> types,
-                          std::uint64_t seed, std::string& rule) {
-  vn::Split<N> out{read_poses<N>(o.data[s], o, types), {}};
+vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions& o, std::size_t s,
+                           std::span<const vn::JointType> types, std::uint64_t seed, std::string& rule) {
+  vn::Split<N> out{o.no_approach ? file.without_approach() : file, {}};
   if (!o.test.empty()) {
     rule += (s == 0 ? "the rows of " : ", ") + o.test[s];
     out.test = read_poses<N>(o.test[s], o, types);
@@ -83,7 +83,8 @@ Measurements<N> read_measurements(const CalibrationOptions& o, std::span<const v
                                   std::uint64_t seed) {
   Measurements<N> out;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
-    vn::Split<N> station = read_station<N>(o, s, types, seed, out.held_out);
+    out.files.push_back(vn::read_dataset<N>(o.data[s], types));
+    vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
     out.train.push_back(std::move(station.train));
     out.test.push_back(std::move(station.test));
   }
@@ -93,23 +94,24 @@ Measurements<N> read_measurements(const CalibrationOptions& o, std::span<const v
 }
 
 template <int N>
-std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot) {
+std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot,
+                                       const std::vector<vn::Dataset<N>>& files) {
   constexpr vn::Index fewest = 10;
   std::vector<vn::DataAudit> out;
-  for (const std::string& file : o.data) {
-    const vn::Dataset<N> data = vn::read_dataset<N>(file, robot.arm.chain().joint_types());
-    out.push_back(data.size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, data));
-    if (!out.back().findings.empty()) fmt::print("{}: {}\n", file, out.back().summary());
+  for (std::size_t s = 0; s < files.size(); ++s) {
+    out.push_back(files[s].size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, files[s]));
+    if (!out.back().findings.empty()) fmt::print("{}: {}\n", o.data[s], out.back().summary());
   }
   return out;
 }
 
-#define VERNIER_INSTANTIATE(N)                                                                             \
-  template vn::Dataset<N> read_poses<N>(const std::string&, const CalibrationOptions&,                     \
-                                        std::span<const vn::JointType>);                                   \
-  template Measurements<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>, \
-                                                std::uint64_t);                                            \
-  template std::vector<vn::DataAudit> audit_files<N>(const CalibrationOptions&, const vn::DescribedRobot<N>&);
+#define VERNIER_INSTANTIATE(N)                                                                                \
+  template vn::Dataset<N> read_poses<N>(const std::string&, const CalibrationOptions&,                        \
+                                        std::span<const vn::JointType>);                                      \
+  template Measurements<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>,    \
+                                                std::uint64_t);                                               \
+  template std::vector<vn::DataAudit> audit_files<N>(const CalibrationOptions&, const vn::DescribedRobot<N>&, \
+                                                     const std::vector<vn::Dataset<N>>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 

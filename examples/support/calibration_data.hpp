@@ -18,6 +18,7 @@ namespace support {
 /// All measurements of an arm.
 template <int N>
 struct Measurements {
+  std::vector<vernier::Dataset<N>> files;        ///< poses as the files have them, one set a station
   std::vector<vernier::Dataset<N>> train;        ///< poses to learn from, one set a station
   std::vector<vernier::Dataset<N>> test;         ///< held-out poses, likewise
   std::string held_out;                          ///< which poses those are, in words
@@ -42,9 +43,10 @@ Measurements<N> read_measurements(const CalibrationOptions& options, std::span<c
                                   std::uint64_t seed);
 
 /// Looks for faults in the files of poses and prints them, before a calibration may refuse them.
+/// @param files poses of the files `options.data`
 /// @return one audit a file; without findings for files too short to be audited
-/// @throws vernier::DataError on a malformed file
 template <int N>
-std::vector<vernier::DataAudit> audit_files(const CalibrationOptions& options, const vernier::DescribedRobot<N>& robot);
+std::vector<vernier::DataAudit> audit_files(const CalibrationOptions& options, const vernier::DescribedRobot<N>& robot,
+                                            const std::vector<vernier::Dataset<N>>& files);
 
 }  // namespace support

@@ -7,7 +7,6 @@
 
 #include "dispatch.hpp"
 #include "report_page.hpp"
-#include "vernier/data/csv.hpp"
 
 namespace support {
 
@@ -29,7 +28,7 @@ PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& rob
   std::vector<vn::ReportFile>& inputs = out.held_out.provenance.inputs;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     const vn::Dataset<N>& test = measured.test[s];
-    const vn::Dataset<N> all = vn::read_dataset<N>(o.data[s], robot.arm.chain().joint_types());
+    const vn::Dataset<N>& all = measured.files[s];
     for (const vn::Index row : rows_of(all, measured.train[s]))
       out.learned_from.push_back(fmt::format("{} of {}", row, file_name(o.data[s])));
     inputs.push_back(file_read(o.data[s], all.size()));

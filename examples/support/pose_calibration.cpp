@@ -1,6 +1,7 @@
 #include "pose_calibration.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "calibration_data.hpp"
@@ -36,13 +37,23 @@ std::string file_names(const std::vector<std::string>& paths) {
 }
 
 template <int N>
+vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, const Measurements<N>& measured,
+                                   const CalibrationOptions& o) {
+  vn::IdentifyOptions frames = o.calibrate.geometry;
+  frames.geometry = false;
+  const auto registered = vn::identify(description.arm<N>().arm, measured.train[0], frames, o.calibrate.sensors);
+  return vn::prediction_error(registered.model, measured.test[0]);
+}
+
+template <int N>
 PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& o,
                               const vn::FitOptions& fit) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::ArmPrior> prior;
   if (!o.prior.empty()) prior = read_prior(o.prior, N);
-  std::vector<vn::DataAudit> audits = audit_files(o, robot);
-  const Measurements<N> measured = read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed);
+  const auto measured =
+      std::make_shared<const Measurements<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
+  std::vector<vn::DataAudit> audits = audit_files(o, robot, measured->files);
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
@@ -51,13 +62,14 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
     return search_priors(objective, box, o.priors == "ga", fit);
   };
   const auto calibration =
-      vn::calibrate(robot.arm, measured.train, measured.distances, options, fit,
-                    o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search), measured.contacts);
+      vn::calibrate(robot.arm, measured->train, measured->distances, options, fit,
+                    o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search), measured->contacts);
   PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
                       .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
-                      .report = vn::evaluate(calibration, measured.test, robot.limits),
-                      .held_out = measured.held_out,
+                      .report = vn::evaluate(calibration, measured->test, robot.limits),
+                      .held_out = measured->held_out,
                       .audits = std::move(audits)};
+  out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
   if (!o.save.empty())
     vn::save(o.save, calibration,
              {.name = robot.name,
@@ -66,7 +78,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
               .date = o.date,
               .held_out_error = out.report.stage(out.report.chosen).position.mean()});
   if (!o.report.empty()) {
-    out.page = calibration_page(out.report, o, robot, measured);
+    out.page = calibration_page(out.report, o, robot, *measured);
     out.page.audit = audit_rows(o.data, out.audits);
   }
   return out;

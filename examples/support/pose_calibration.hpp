@@ -3,6 +3,7 @@
 /// @file
 /// `calibrate` from measured poses, whatever the number of joints.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct PoseCalibration {
   std::string held_out{};                    ///< which poses are held out, in words
   std::vector<vernier::DataAudit> audits{};  ///< of the files of poses
   vernier::ReportInput page{};               ///< what an HTML page shows; empty unless it is asked for
+  /// Held-out position errors at the first station by another description of the arm, its base and tool registered by
+  /// the poses to learn from [m].
+  std::function<vernier::ErrorStatistics(const vernier::RobotDescription&)> error_of{};
 };
 
 /// Reads the measurements, calibrates, assesses the calibration and saves its model.

@@ -31,6 +31,12 @@ TEST(Message, JoinsNumbersInTheirShortestExactForm) {
   EXPECT_EQ(std::stod(vn::message(1.0 / 3)), 1.0 / 3);
 }
 
+TEST(Message, CountsInSingularAndPlural) {
+  EXPECT_EQ(vn::counted(0, "pose", "poses"), "0 poses");
+  EXPECT_EQ(vn::counted(1, "touch", "touches"), "1 touch");
+  EXPECT_EQ(vn::counted(21, "pose lies", "poses lie"), "21 poses lie");
+}
+
 TEST(Require, ThrowsTheMessageWhenTheConditionFails) {
   EXPECT_NO_THROW(vn::require(true, "never seen"));
   try {

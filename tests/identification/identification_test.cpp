@@ -200,7 +200,7 @@ TEST(IdentificationWhiteBox, AsManyValuesAsParametersAreTooFew) {
   EXPECT_EQ(exact.rank, 6);
   EXPECT_EQ(exact.status, IdentifyStatus::underdetermined);
   EXPECT_FALSE(exact.converged());
-  EXPECT_NE(exact.message.find("1 poses give 6 measured values, which determine only 6 of the 6 parameters"),
+  EXPECT_NE(exact.message.find("1 pose gives 6 measured values, which determine only 6 of the 6 parameters"),
             std::string::npos)
       << exact.message;
   EXPECT_EQ(identify_by_gauss_newton(arm, measured(2, 6, true), base_alone, squared).status, IdentifyStatus::converged);

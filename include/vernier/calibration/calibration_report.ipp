@@ -76,9 +76,8 @@ VERNIER_API void describe_accuracy(const CalibrationReport& report, std::vector<
                 report.max_degradation > 0 ? " by more than " + brief(report.max_degradation * 1e3) + " mm." : "."));
   }
   if (const Index outside = report.extrapolated(); outside > 0)
-    out.push_back(message(outside,
-                          " held-out poses lie outside those ranges; there the learned functions of the joints "
-                          "fade out."));
+    out.push_back(counted(outside, "held-out pose lies", "held-out poses lie") +
+                  " outside those ranges; there the learned functions of the joints fade out.");
 }
 
 /// Measured joint ranges, in degrees or millimetres.
@@ -154,7 +153,8 @@ VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vec
 }
 
 /// How far a base moved, and when.
-VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::string& station) {
+VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::vector<JointReport>& joints,
+                                       const std::string& station) {
   const Index knots = drift.knots.cols();
   const auto apart = [&](Index a, Index b, Index part) {
     const auto change = [&](Index k) { return drift.knots(part + k, b) - drift.knots(part + k, a); };
@@ -184,7 +184,10 @@ VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::str
       const double range = zero.maxCoeff() - zero.minCoeff();
       if (range > largest) largest = range, joint = j;
     }
-    zeros = message(" The zero of joint ", joint + 1, " moved most, by ", brief(largest * 1e6), " urad [um].");
+    const auto j = static_cast<std::size_t>(joint);
+    const bool slides = j < joints.size() && !joints[j].revolute;
+    zeros =
+        message(" The zero of joint ", joint + 1, " moved most, by ", brief(largest * 1e6), slides ? " um." : " urad.");
   }
   return message("During the session the base", station, " moved by up to ", brief(translation * 1e3), " mm and ",
                  brief(rotation * 1e6), " urad, fastest (", brief(fastest * 1e3), " mm) between ", time(at), " and ",
@@ -234,13 +237,16 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
                           " deg C, the mean of the measurements."));
   for (std::size_t s = 0; s < drift.size(); ++s)
     if (!drift[s].empty())
-      out.push_back(detail::describe_drift(drift[s], drift.size() > 1 ? message(" of station ", s + 1) : ""));
+      out.push_back(detail::describe_drift(drift[s], joints, drift.size() > 1 ? message(" of station ", s + 1) : ""));
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (std::string lines = detail::describe_lines(joints[j], j + 1); !lines.empty()) out.push_back(std::move(lines));
   for (std::string& sentence : next()) out.push_back(std::move(sentence));
-  if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size())
-    out.push_back(message(weak - advice.size(), advice.empty() ? "" : " more",
-                          " parameters are weakly determined and regularised around nominal."));
+  if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size()) {
+    const auto left = static_cast<long long>(weak - advice.size());
+    out.push_back((advice.empty() ? counted(left, "parameter is", "parameters are")
+                                  : counted(left, "more parameter is", "more parameters are")) +
+                  " weakly determined and regularised around nominal.");
+  }
   return out;
 }
 

@@ -65,6 +65,9 @@ std::string message(const Parts&... parts) {
   return detail::join({detail::MessagePart(parts)...});
 }
 
+/// A number and what it counts: `counted(n, "pose", "poses")` is "1 pose", "2 poses".
+VERNIER_API std::string counted(long long number, std::string_view one, std::string_view many);
+
 /// Throws `std::invalid_argument` with the joined parts unless `condition` holds.
 template <class... Parts>
 void require(bool condition, const Parts&... parts) {

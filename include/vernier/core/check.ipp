@@ -4,7 +4,9 @@
 
 #include <charconv>
 
-namespace vernier::detail {
+namespace vernier {
+
+namespace detail {
 
 VERNIER_IMPL std::string join(std::initializer_list<MessagePart> parts) {
   using Kind = MessagePart::Kind;
@@ -30,4 +32,10 @@ VERNIER_IMPL [[noreturn]] void throw_invalid_argument(std::initializer_list<Mess
   throw std::invalid_argument(join(parts));
 }
 
-}  // namespace vernier::detail
+}  // namespace detail
+
+VERNIER_IMPL std::string counted(long long number, std::string_view one, std::string_view many) {
+  return message(number, ' ', number == 1 ? one : many);
+}
+
+}  // namespace vernier

@@ -26,8 +26,8 @@ VERNIER_IMPL Contact::Contact(std::string name, ContactKind kind, MatrixX joints
             known_(i), " m, must be positive");
   }
   const Index fewest = kind_ != ContactKind::socket ? 4 : has_length() ? 3 : 2;
-  require(size() >= fewest, "contact ", name_, ": ", size(), size() == 1 ? " touch" : " touches", " of a ",
-          name_of(kind_), ", at least ", fewest, " are needed: fewer say where it is, and nothing about the arm");
+  require(size() >= fewest, "contact ", name_, ": ", counted(size(), "touch", "touches"), " of a ", name_of(kind_),
+          ", at least ", fewest, " are needed: fewer say where it is, and nothing about the arm");
 }
 
 VERNIER_IMPL bool Contact::has_length() const {

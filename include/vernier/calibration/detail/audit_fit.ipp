@@ -315,14 +315,17 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
     solve_cholesky(normal, columns_of_motion);
     covariance = columns_of_motion.topRows(6);
     const VectorX left = whitened - product(design, solution);
-    std::vector<double> norms;
-    for (Index k = 0; k + 3 <= left.size(); k += 3) norms.push_back(three(left, k).norm());
+    std::vector<double> norms, of_positions;
+    for (Index k = 0; k + 3 <= left.size(); k += 3) {
+      norms.push_back(three(left, k).norm());
+      if (k % values == 0) of_positions.push_back(norms.back());
+    }
     scale = median_of(norms) / median_norm;
+    out.scale = median_of(of_positions) / median_norm * fit.residuals.position_scale;
     weights = audit_weights(left / scale);
   }
   const double dof = static_cast<double>(values * n) / std::max(1.0, static_cast<double>(values * n - all));
   for (Index k = 0; k < 6; ++k) out.motion(k) = solution(k);
-  out.scale = scale * fit.residuals.position_scale;
   VectorX whitened_motion = out.motion;
   if (!cholesky(covariance)) return {};
   solve_lower(covariance, whitened_motion);

@@ -378,8 +378,9 @@ class ContactIdentification {
     report.missing = rank_by_positions(identified.with_frames({}, identified.tool())) -
                      (static_cast<Index>(estimated.size()) - of_objects);
     const Index touches = solved.num_blocks();
-    report.message = message(touches, " touches of ", contacts_.size(), contacts_.size() == 1 ? " object" : " objects",
-                             " determine ", static_cast<Index>(of_arm.size()), " parameters of the arm");
+    report.message = message(
+        touches, " touches of ", counted(static_cast<long long>(contacts_.size()), "object", "objects"), " determine ",
+        counted(static_cast<Index>(of_arm.size()), "parameter of the arm", "parameters of the arm"));
     if (!converged_) {
       report.status = IdentifyStatus::not_converged;
       report.message = message("the steps did not vanish within ", options_.max_iterations, " iterations");

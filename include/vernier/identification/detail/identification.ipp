@@ -95,9 +95,9 @@ class IdentificationRun {
     const auto estimated = static_cast<Index>(report.free.size());
     if (problem_.measured_values() <= estimated) report.status = IdentifyStatus::underdetermined;
     if (report.status == IdentifyStatus::underdetermined)
-      report.message =
-          message(data().size(), " poses give ", problem_.measured_values(), " measured values, which determine only ",
-                  estimated, " of the ", static_cast<Index>(plan_.candidates.size()), " parameters to be estimated");
+      report.message = message(counted(data().size(), "pose gives ", "poses give "), problem_.measured_values(),
+                               " measured values, which determine only ", estimated, " of the ",
+                               static_cast<Index>(plan_.candidates.size()), " parameters to be estimated");
     if (!summary_.converged) {
       report.status = IdentifyStatus::not_converged;
       report.message = summary_.message;

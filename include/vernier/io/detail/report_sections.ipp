@@ -86,9 +86,10 @@ VERNIER_API std::vector<std::vector<std::string>> suspect_rows(const ReportInput
 VERNIER_API std::string look_at(const ReportInput& input) {
   std::vector<std::pair<const char*, std::string>> all;
   if (input.audit && !input.audit->empty())
-    all.emplace_back("audit", message("The audit of the data has ", input.audit->size(), " findings."));
-  if (const std::size_t n = suspect_rows(input).size(); n > 0)
-    all.emplace_back("suspects", message(n, n == 1 ? " row is suspect." : " rows are suspect."));
+    all.emplace_back("audit", "The audit of the data has " +
+                                  counted(static_cast<long long>(input.audit->size()), "finding.", "findings."));
+  if (const auto n = static_cast<long long>(suspect_rows(input).size()); n > 0)
+    all.emplace_back("suspects", counted(n, "row is suspect.", "rows are suspect."));
   const auto n = static_cast<double>(stage_of(input, input.after).position.size());
   if (input.ellipsoid_coverage && std::abs(*input.ellipsoid_coverage - 0.95) > 1.96 * std::sqrt(0.95 * 0.05 / n))
     all.emplace_back("where", message("The predicted 95 % ellipsoids contain ", brief(100 * *input.ellipsoid_coverage),
@@ -97,7 +98,7 @@ VERNIER_API std::string look_at(const ReportInput& input) {
   if (const Index outside =
           std::count_if(input.poses.gates.begin(), input.poses.gates.end(), [](double gate) { return gate < 1; });
       outside > 0)
-    all.emplace_back("where", message(outside, " poses lie outside the measured joint ranges."));
+    all.emplace_back("where", counted(outside, "pose lies", "poses lie") + " outside the measured joint ranges.");
   if (std::any_of(input.drift.begin(), input.drift.end(), [](const SessionDrift& d) { return !d.empty(); }))
     all.emplace_back("drift", "Something moved during the session.");
   else if (input.times.size() > 0 &&

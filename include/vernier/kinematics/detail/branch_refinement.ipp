@@ -359,7 +359,7 @@ VERNIER_IMPL std::string describe_reach(Reach reach, int branches, double margin
     return digits;
   };
   switch (reach) {
-    case Reach::met: return message(branches, branches == 1 ? " branch" : " branches");
+    case Reach::met: return counted(branches, "branch", "branches");
     case Reach::beyond_limits: return message("joint limits exclude all ", branches, " branches");
     case Reach::proven_out:
       return message("out of reach: ", number(margin * 1e3), " mm farther away than the arm is long");

@@ -9,26 +9,16 @@
 
 #include "vernier/data/ranges.hpp"
 #include "vernier/error_model/arm_prior.hpp"
+#include "vernier/error_model/detail/fit_input.hpp"
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/error_model/prior_objective.hpp"
-#include "vernier/identification/detail/station.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/identification/identified.hpp"
 
 namespace vernier {
 
 namespace detail {
-
-/// Where a fit starts, and what it is fitted to.
-struct ErrorModelInput {
-  const IdentificationReport& identification;
-  ArmGeometry identified;  ///< seen from the first station
-  ChainTable nominal;      ///< for the torques of gravity
-  std::vector<Station> poses;
-  std::vector<Station> distances;
-  std::span<const Contact> contacts{};
-};
 
 /// A fitted error model without its type; a vector has one arm a station.
 struct ErrorModelOutput {

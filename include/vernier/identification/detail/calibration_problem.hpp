@@ -42,6 +42,8 @@ class CalibrationProblem {
   Index num_validation_blocks() const { return validation_blocks_; }
   const Station& station_of(Index block) const { return stations_[static_cast<std::size_t>(at(block).station)]; }
   int station_index(Index block) const { return at(block).station; }
+  /// Which sample of its station a block is.
+  Index row_of(Index block) const { return at(block).row; }
   /// Measured values: three a position, six a pose, one a distance or a height.
   VERNIER_API Index measured_values() const;
   /// Joint values of all samples, blocks x joints.

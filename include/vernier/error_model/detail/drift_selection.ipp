@@ -1,0 +1,78 @@
+#pragma once
+
+#include "vernier/error_model/detail/drift_selection.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
+
+namespace vernier::detail {
+
+/// Chooses the precisions of random walks, of unknowns first .. end - 1 of each state: their factor by evidence, in
+/// steps of four from 1 down to `lowest` or up to 64, and whether there is such a drift by leave-one-pose-out errors.
+VERNIER_API BlockChoice choose_drift(const ModelSelection& model, const char* name, Index first, Index end,
+                                     double lowest) {
+  ModelSelection::Linearised at = model.linearised();  // the precisions of the random walks are all that changes
+  SparseSymmetric& prior = at.normal.local_prior;
+  const std::vector<double> expected = prior.values;
+  const VectorX precisions = model.problem.arm.precisions();
+  const auto scale = [&](double factor) {
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      const Index unknown = prior.rows[k] % at.system.local_size;
+      prior.values[k] = expected[k] * (unknown >= first && unknown < end ? factor : 1);
+    }
+  };
+  const auto evidence = [&](double factor) {
+    scale(factor);
+    return log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
+                        at.steps, model.problem.measured_values(), at.local_steps);
+  };
+  double best = 1, most = evidence(1);
+  for (const double step : {4.0, 0.25})
+    for (double factor = step; best == factor / step && factor >= lowest && factor <= 64; factor *= step) {
+      const double reached = evidence(factor);
+      if (!(reached > most)) break;
+      most = reached;
+      best = factor;
+    }
+  scale(suppressing_precision);
+  const LeftOutBlocks without = model.left_out(at, precisions);
+  scale(best);
+  return model.choice_between(name, model.left_out(at, precisions), without, best);
+}
+
+/// Lets the joints' zeros drift beside the bases, if leave-one-pose-out errors support that.
+VERNIER_API void add_joint_drift(ModelSelection& model) {
+  CalibrationProblem& problem = model.problem;
+  problem.start_joint_drift();
+  problem.joint_drift_precision = 1;
+  model.changed();
+  const BlockChoice choice = choose_drift(model, "joint_drift", 6, 6 + problem.arm.geometry(0).joints(), 0.25);
+  model.blocks.push_back(choice);
+  problem.joint_drift_precision = choice.precision;
+  if (choice.used)
+    model.steps(1);
+  else
+    problem.stop_joint_drift();
+  model.changed();
+}
+
+VERNIER_IMPL bool add_drift(ModelSelection& model) {
+  CalibrationProblem& problem = model.problem;
+  problem.start_drift(40);
+  problem.drift_precision = 1;
+  if (problem.system().local_states == 0) {
+    problem.stop_drift();
+    return false;
+  }
+  model.changed();
+  const BlockChoice choice = choose_drift(model, "drift", 0, 6, 0.0625);
+  model.blocks.push_back(choice);
+  problem.drift_precision = choice.precision;
+  if (choice.used)
+    model.steps(1);
+  else
+    problem.stop_drift();
+  model.changed();
+  if (choice.used) add_joint_drift(model);
+  return choice.used;
+}
+
+}  // namespace vernier::detail

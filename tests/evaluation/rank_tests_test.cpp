@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "complaint.hpp"
@@ -205,6 +206,27 @@ TEST(CriticalDifference, DemsarsTable) {
   EXPECT_THROW(static_cast<void>(critical_difference(1, 5)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(critical_difference(3, 0)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(critical_difference(3, 5, 1)), std::invalid_argument);
+}
+
+// Ten pairs whose squared differences of ranks sum to 194: 1 - 6 * 194 / (10 * 99); z = -0.5273, of which a table of
+// the normal distribution has 0.598 beyond.
+TEST(RankCorrelation, ByHand) {
+  const VectorX a = of({106, 100, 86, 101, 99, 103, 97, 113, 112, 110}), b = of({7, 27, 2, 50, 28, 29, 20, 12, 6, 17});
+  const RankCorrelation found = rank_correlation(a, b);
+  EXPECT_NEAR(found.rho, -29.0 / 165, 1e-12);
+  EXPECT_NEAR(found.p_value, 0.598, 5e-4);
+  EXPECT_NEAR(rank_correlation(a, -b).rho, 29.0 / 165, 1e-12);
+  EXPECT_NEAR(rank_correlation(a, -b).p_value, found.p_value, 1e-12);
+  // ranks 1, 2.5, 2.5, 4 and 2, 1, 3.5, 3.5: deviations -1.5, 0, 0, 1.5 and -0.5, -1.5, 1, 1
+  EXPECT_NEAR(rank_correlation(of({1, 2, 2, 4}), of({3, 1, 4, 4})).rho, 2.25 / std::sqrt(4.5 * 4.5), 1e-12);
+}
+
+TEST(RankCorrelation, IsNoneOfFewOrEqualValues) {
+  for (const RankCorrelation& none :
+       {rank_correlation(of({1, 2}), of({3, 4})), rank_correlation(of({1, 2, 3, 4}), of({7, 7, 7, 7}))}) {
+    EXPECT_EQ(none.rho, 0);
+    EXPECT_EQ(none.p_value, 1);
+  }
 }
 
 }  // namespace

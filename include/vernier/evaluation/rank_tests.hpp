@@ -52,6 +52,17 @@ VERNIER_API VectorX average_ranks(const ConstMatrixRef& values);
 /// @cite Nemenyi 1963; Demsar 2006
 VERNIER_API double critical_difference(Index methods, Index cases, double alpha = 0.05);
 
+/// A rank correlation.
+struct RankCorrelation {
+  double rho = 0;      ///< in [-1, 1]
+  double p_value = 1;  ///< two-sided
+};
+
+/// Spearman's rank correlation of paired samples, with a p-value by the normal approximation. Fewer than three pairs,
+/// and samples of equal values, have none: 0 with p = 1.
+/// @cite Spearman 1904
+VERNIER_API RankCorrelation rank_correlation(const VectorX& a, const VectorX& b);
+
 }  // namespace vernier
 
 #if VERNIER_HEADER_ONLY

@@ -140,4 +140,17 @@ VERNIER_IMPL double critical_difference(Index methods, Index cases, double alpha
   return high * std::sqrt(k * (k + 1) / (12 * static_cast<double>(cases)));
 }
 
+VERNIER_IMPL RankCorrelation rank_correlation(const VectorX& a, const VectorX& b) {
+  if (a.size() < 3) return {};
+  VectorX ra = ranks(a), rb = ranks(b);
+  for (VectorX* one : {&ra, &rb}) {
+    const double mean = one->mean();
+    for (double& rank : *one) rank -= mean;
+  }
+  const double size = std::sqrt(ra.squaredNorm() * rb.squaredNorm());
+  if (!(size > 0)) return {};
+  const double rho = ra.dot(rb) / size;
+  return {rho, std::erfc(std::abs(rho) * std::sqrt(static_cast<double>(a.size() - 1) / 2))};
+}
+
 }  // namespace vernier

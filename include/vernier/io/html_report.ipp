@@ -10,8 +10,10 @@
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"
+#include "vernier/io/detail/report_functions.hpp"
 #include "vernier/io/detail/report_page.hpp"
 #include "vernier/io/detail/report_sections.hpp"
+#include "vernier/io/detail/report_verdict.hpp"
 #include "vernier/io/html_report.hpp"
 #include "vernier/io/report_json.hpp"
 

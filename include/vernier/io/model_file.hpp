@@ -6,44 +6,16 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/io/calibrated_robot.hpp"
+#include "vernier/io/detail/learned_json.hpp"
 #include "vernier/io/json.hpp"
 
 namespace vernier {
 
 namespace detail {
-
-/// The measured ranges of some joints, and the margins.
-struct CoverageData {
-  std::vector<std::vector<JointRange>> ranges;
-  VectorX margins;
-  std::vector<bool> periodic;
-
-  CoverageData() = default;
-  template <int N>
-  explicit CoverageData(const JointCoverage<N>& coverage)
-      : ranges(coverage.ranges.begin(), coverage.ranges.end()),
-        margins(coverage.margin),
-        periodic(coverage.periodic.begin(), coverage.periodic.end()) {}
-  template <int N>
-  JointCoverage<N> typed() const {
-    JointCoverage<N> out;
-    std::copy(ranges.begin(), ranges.end(), out.ranges.begin());
-    out.margin = margins;
-    std::copy(periodic.begin(), periodic.end(), out.periodic.begin());
-    return out;
-  }
-};
-
-/// A learned position error.
-struct LearnedData {
-  std::variant<FittedNetwork, FittedKernels> function;
-  CoverageData coverage;
-};
 
 /// What a model file contains, whatever the number of joints.
 struct ModelData {

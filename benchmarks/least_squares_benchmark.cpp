@@ -8,7 +8,7 @@
 
 #include "program.hpp"
 #include "vernier/core/rng.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 #ifdef VERNIER_HAS_CHOLMOD
 #include <Eigen/CholmodSupport>
 

@@ -15,7 +15,7 @@
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/kinematics/robots.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 

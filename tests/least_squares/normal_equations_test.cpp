@@ -1,6 +1,6 @@
 // Normal equations of blocks of rows, their solution, and leave-one-block-out errors.
 
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 
 #include <gtest/gtest.h>
 

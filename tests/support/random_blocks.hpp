@@ -7,7 +7,7 @@
 
 #include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 
 namespace vernier_test {
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "vernier/error_model/prior_objective.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 
 namespace vernier {
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/factorised_equations.hpp"
 
 namespace vernier {
 

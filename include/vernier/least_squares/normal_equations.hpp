@@ -1,12 +1,11 @@
 #pragma once
 
 /// @file
-/// Normal equations of a least-squares problem in blocks, dense with a sparse part for local states; Gauss-Newton steps
-/// and leave-one-block-out errors.
+/// Normal equations of a least-squares problem in blocks, dense with a sparse part for local states.
 ///
 /// A factored unknown acts through one vector of its group: its columns are `factor_j h_k`. So the rows of a block
 /// enter the sums as one row weighted by `factor_i' factor_j`: a sixth of the work, and memory that does not grow with
-/// the number of blocks. Local states are eliminated by a Schur complement; what remains is dense.
+/// the number of blocks.
 
 #include <memory>
 #include <utility>
@@ -64,104 +63,6 @@ struct NormalEquations {
 VERNIER_API double local_prior_cost(const NormalEquations& normal, const VectorX& local_steps);
 /// Slope of the cost (half its derivative) along a step of the local unknowns.
 VERNIER_API double local_gain(const NormalEquations& normal, const VectorX& step, const VectorX& local_steps);
-
-/// Normal equations with priors, factorised. Unknowns that nothing determines stay at their values.
-class FactorisedEquations {
- public:
-  /// @param normal      must outlive this, unchanged
-  /// @param precisions  of independent priors of dense and factored unknowns
-  /// @param steps       present values, relative to the means of the priors
-  /// @param local_steps present values of local unknowns, likewise
-  /// @param solve       for the local unknowns; must outlive this
-  /// @param damping     of the step, a share of the diagonal of dense and factored unknowns; 0 where the inverse is to
-  ///                    be a covariance
-  VERNIER_API FactorisedEquations(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
-                                  const VectorX& local_steps = {}, SparseSolve solve = eigen_sparse_solver,
-                                  double damping = 0);
-
-  FactorisedEquations(NormalEquations&&, const VectorX&, const VectorX&, const VectorX& = {},
-                      SparseSolve = eigen_sparse_solver, double = 0) = delete;
-
-  /// The same, undamped, with other priors of dense and factored unknowns: local ones are not eliminated again.
-  VERNIER_API FactorisedEquations with(const VectorX& precisions, const VectorX& steps) const;
-
-  /// Whether there is a solution.
-  bool usable() const { return usable_; }
-  /// Gauss-Newton step of dense and factored unknowns.
-  const VectorX& step() const { return step_; }
-  /// Gauss-Newton step of local unknowns.
-  const VectorX& local_step() const { return local_step_; }
-  /// log determinant of the whole matrix.
-  VERNIER_API double log_determinant() const;
-  /// Inverse of the matrix with local unknowns eliminated: the covariance of dense and factored unknowns.
-  VERNIER_API MatrixX inverse() const;
-  /// Its diagonal, at a third of the cost.
-  VERNIER_API VectorX inverse_diagonal() const;
-  /// Multiplies by the inverse of the Cholesky factor of that matrix, in place.
-  VERNIER_API void apply_inverse_factor(MatrixRef columns) const;
-
-  /// Rows of a block with local states eliminated.
-  /// @param block the block
-  /// @param rows  6 x unknowns, as expanded; then less what local states explain
-  VERNIER_API void eliminate_local(const RowBlock& block, Rows6& rows) const;
-  /// Covariances of the rows of blocks by local states alone: 6 x 6 of each block, side by side.
-  VERNIER_API MatrixX local_gains(const std::vector<RowBlock>& blocks) const;
-
-  /// That of the normal equations.
-  ExecutorRef executor() const { return normal_->executor; }
-
- private:
-  /// Normal equations of dense and factored unknowns, local ones eliminated.
-  struct Reduced {
-    MatrixX matrix;         // lower triangle
-    VectorX gradient;       // with the priors of local unknowns
-    SparseSymmetric local;  // with priors
-    MatrixX eliminated;     // inverse of the local part times its gradient and the coupling, side by side
-    double log_determinant = 0;
-  };
-
-  FactorisedEquations(const NormalEquations& normal, std::shared_ptr<const Reduced> reduced, SparseSolve solve)
-      : normal_(&normal), solve_(solve), reduced_(std::move(reduced)) {}
-  /// Nothing where the local part is not positive definite.
-  VERNIER_API static std::shared_ptr<const Reduced> eliminate(const NormalEquations& normal, const VectorX& local_steps,
-                                                              SparseSolve solve);
-  VERNIER_API void factorise(const VectorX& precisions, const VectorX& steps, double damping);
-
-  const NormalEquations* normal_;
-  SparseSolve solve_;
-  std::shared_ptr<const Reduced> reduced_{};  // with local unknowns
-  MatrixX factor_{};                          // lower triangle
-  VectorX step_{}, local_step_{};
-  bool usable_ = false;
-};
-
-/// Validation blocks left out one at a time.
-struct LeftOutBlocks {
-  Eigen::Matrix3Xd errors;  ///< of positions, a column a block [m]; infinite where there is no solution
-  /// Log predictive densities: of each block's measured values, predicted by all others, up to a constant [nat]. The
-  /// variance of the whitened noise has its most likely value for these blocks. Not finite where there is no solution.
-  VectorX log_densities;
-};
-
-/// Predicts blocks from all others, in closed form, at the solution of the linearised problem with given priors: the
-/// whitened error is `e_b = (I - H_bb)^-1 r_b`, its covariance that of the noise times `(I - H_bb)^-1`.
-/// @param system the problem
-/// @param solved its normal equations with priors
-/// @param stride every stride-th of the validation blocks is left out
-/// @return       ceil(validation_blocks / stride) blocks
-/// @cite Allen 1974; Vehtari 2017 (log predictive densities)
-VERNIER_API LeftOutBlocks leave_one_out(const BlockSystem& system, const FactorisedEquations& solved, Index stride);
-
-/// Position errors of `leave_one_out`, 3 x ceil(validation_blocks / stride) [m].
-VERNIER_API Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, const FactorisedEquations& solved,
-                                                  Index stride);
-
-namespace detail {
-
-/// Norm of the position error of each block [m].
-VERNIER_API VectorX error_norms(const Eigen::Matrix3Xd& errors);
-
-}  // namespace detail
 
 }  // namespace vernier
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 
 namespace vernier {
 

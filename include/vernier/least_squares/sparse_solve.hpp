@@ -37,6 +37,13 @@ struct EigenSparseSolver {
 /// The default.
 inline constexpr EigenSparseSolver eigen_sparse_solver{};
 
+namespace detail {
+
+/// `matrix x`.
+VERNIER_API VectorX multiply(const SparseSymmetric& matrix, const VectorX& x);
+
+}  // namespace detail
+
 }  // namespace vernier
 
 #if VERNIER_HEADER_ONLY

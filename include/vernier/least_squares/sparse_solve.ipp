@@ -22,4 +22,17 @@ VERNIER_IMPL SparseOutcome EigenSparseSolver::operator()(const SparseSymmetric& 
   return {true, log_determinant};
 }
 
+VERNIER_IMPL VectorX detail::multiply(const SparseSymmetric& matrix, const VectorX& x) {
+  VectorX out = VectorX::Zero(matrix.size);
+  for (Index j = 0; j < matrix.size; ++j)
+    for (int at = matrix.starts[static_cast<std::size_t>(j)]; at < matrix.starts[static_cast<std::size_t>(j + 1)];
+         ++at) {
+      const Index i = matrix.rows[static_cast<std::size_t>(at)];
+      const double value = matrix.values[static_cast<std::size_t>(at)];
+      out(i) += value * x(j);
+      if (i != j) out(j) += value * x(i);
+    }
+  return out;
+}
+
 }  // namespace vernier

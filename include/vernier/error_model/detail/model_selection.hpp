@@ -11,6 +11,7 @@
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/least_squares/evidence.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 
 namespace vernier::detail {
 

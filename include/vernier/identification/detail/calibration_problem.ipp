@@ -12,8 +12,8 @@
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/twists.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/factorised_equations.hpp"
 #include "vernier/least_squares/marquardt_damping.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
 
 namespace vernier::detail {
 

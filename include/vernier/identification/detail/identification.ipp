@@ -14,6 +14,7 @@
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identifiable_parameters.hpp"
 #include "vernier/least_squares/estimate_covariance.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier::detail {

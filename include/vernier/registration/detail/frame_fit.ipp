@@ -6,8 +6,8 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/least_squares/factorised_equations.hpp"
 #include "vernier/least_squares/marquardt_damping.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
 #include "vernier/registration/detail/frame_fit.hpp"
 
 namespace vernier::detail {

@@ -1,0 +1,203 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/identification/detail/contact_assessment.hpp"
+#include "vernier/identification/detail/contact_frames.hpp"
+#include "vernier/identification/identifiable_parameters.hpp"
+#include "vernier/least_squares/estimate_covariance.hpp"
+
+namespace vernier::detail {
+
+/// How many directions of the arm measured positions at the same joints determine, apart from its base.
+VERNIER_API Index rank_by_positions(const ContactProblem& solved, const ArmGeometry& arm) {
+  Index count = 0;
+  for (const Contact& contact : solved.contacts) count += contact.size();
+  MatrixX joints(count, arm.joints());
+  count = 0;
+  for (const Contact& contact : solved.contacts) {
+    joints.middleRows(count, contact.size()) = contact.joints();
+    count += contact.size();
+  }
+  const PointRows points = arm.positions(joints);
+  const Station ideal{.joint_values = joints.data(), .samples = count, .dof = arm.joints(), .positions = &points};
+  std::vector<GeometricUnknown> unknowns;
+  for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, solved.plan.scales(k), 0});
+  for (const GeometricUnknown& unknown : solved.unknowns_of_arm()) unknowns.push_back(unknown);
+  const CalibrationProblem measured(ArmParameterisation({arm}, std::move(unknowns)), {ideal}, Loss::squared);
+  const IdentifiableParameters columns(measured.stacked(true).jacobian);
+  return static_cast<Index>(columns.base.size()) -
+         static_cast<Index>(std::count_if(columns.base.begin(), columns.base.end(), [](Index k) { return k < 6; }));
+}
+
+/// Singular values of everything: base (which has no effect), objects, tool and chain.
+VERNIER_API VectorX contact_singular_values(const ContactProblem& solved) {
+  ArmParameterisation all = solved.problem.arm;
+  std::vector<GeometricUnknown> unknowns = solved.unknowns_of_objects();
+  for (const GeometricUnknown& unknown : solved.unknowns_of_arm()) unknowns.push_back(unknown);
+  Index without_effect = 6;
+  for (const Index k : solved.plan.candidates) without_effect += k >= solved.plan.chain_end + 3;
+  all.set_geometric(unknowns);
+  const MatrixX jacobian = solved.touching_jacobian(all);
+  MatrixX padded = MatrixX::Zero(std::max(jacobian.rows(), jacobian.cols()), jacobian.cols());
+  padded.topRows(jacobian.rows()) = jacobian;
+  const VectorX values = right_singular(triangular_factor(padded)).values;
+  VectorX out = VectorX::Zero(values.size() + without_effect);
+  out.head(values.size()) = values;
+  return out;
+}
+
+/// Parameters as they were and are; those that touches do not determine with the reason.
+VERNIER_API std::vector<ParameterEstimate> contact_parameters(const ContactProblem& solved,
+                                                              const ArmGeometry& identified,
+                                                              const ContactSelection& selection) {
+  const IdentificationPlan& plan = solved.plan;
+  const VectorX before = solved.nominal.parameters(), now = identified.parameters();
+  std::vector<ParameterEstimate> out;
+  for (Index k = 0; k < before.size(); ++k)
+    out.push_back({plan.names[static_cast<std::size_t>(k)],
+                   plan.kinds[static_cast<std::size_t>(k)],
+                   before(k),
+                   now(k),
+                   0,
+                   ParameterState::fixed,
+                   {},
+                   plan.scales(k)});
+  const auto hide = [&](Index k, std::string remark) {
+    ParameterEstimate& p = out[static_cast<std::size_t>(k)];
+    p.state = ParameterState::not_identifiable;
+    p.remark = std::move(remark);
+  };
+  for (Index k = 0; k < 6; ++k) hide(k, "contacts are relative to the arm");
+  for (const Index k : plan.candidates)
+    if (k >= plan.chain_end + 3) hide(k, "no effect on touches");
+  const auto name = [&](const GeometricUnknown& unknown) {
+    if (unknown.station >= 0) return message("the place of ", solved.contact(unknown.station).name());
+    return plan.names[static_cast<std::size_t>(unknown.parameter)];
+  };
+  for (const auto& [unknown, absorbed_by] : selection.dependent) {
+    if (unknown.station >= 0) continue;  // counted as missing
+    std::vector<std::string> others;
+    for (const GeometricUnknown& other : absorbed_by)
+      if (const std::string text = name(other); std::find(others.begin(), others.end(), text) == others.end())
+        others.push_back(text);
+    std::string remark = others.empty() ? "no effect on touches" : "absorbed by ";
+    for (std::size_t j = 0; j < others.size() && j < 4; ++j) remark += (j > 0 ? ", " : "") + others[j];
+    hide(unknown.parameter, remark + (others.size() > 4 ? ", ..." : ""));
+  }
+  return out;
+}
+
+/// Adds the covariance of what was estimated, and what follows from it, to a report with parameters.
+VERNIER_API void add_contact_covariance(const ContactProblem& solved, ContactReport& report) {
+  const CalibrationProblem& problem = solved.problem;
+  const auto& estimated = problem.arm.geometric();
+  const StackedRows rows = problem.stacked(true);
+  MatrixX stack = rows.jacobian;
+  if (problem.prior) {
+    const VectorX held = solved.scale_direction(true);
+    append_row(stack, std::sqrt(diagonal_of(problem.prior->precision).sum()) / std::max(held.norm(), 1e-300) * held);
+  }
+  const VectorX precisions = problem.arm.precisions();
+  const VectorX ones = VectorX::Ones(stack.rows());
+  VectorX variances(precisions.size());
+  for (Index k = 0; k < variances.size(); ++k) variances(k) = 1 / std::max(precisions(k), 1e-300);
+  const EstimateCovariance unit(stack, ones, precisions, variances);
+  double explained = static_cast<double>(precisions.size());
+  if (unit.inverse.size() > 0) explained -= diagonal_of(unit.inverse).dot(precisions);
+  const double freedom = static_cast<double>(rows.residuals.size()) - explained + (problem.prior ? 1 : 0);
+  const double variance = freedom >= 1 ? rows.residuals.squaredNorm() / freedom : 1;
+  report.rank = unit.rank;
+  report.condition = unit.condition;
+  if (unit.singular_values.size() > 0)
+    report.observability = Observability::of(unit.singular_values, problem.num_blocks());
+
+  std::vector<Index> of_arm;
+  for (std::size_t k = 0; k < estimated.size(); ++k)
+    if (estimated[k].station < 0) of_arm.push_back(static_cast<Index>(k));
+  if (unit.inverse.size() > 0)
+    report.covariance.resize(static_cast<Index>(of_arm.size()), static_cast<Index>(of_arm.size()));
+  for (std::size_t i = 0; i < of_arm.size(); ++i) {
+    const GeometricUnknown& u = estimated[static_cast<std::size_t>(of_arm[i])];
+    ParameterEstimate& p = report.parameters[static_cast<std::size_t>(u.parameter)];
+    report.free.push_back(u.parameter);
+    p.state = ParameterState::identified;
+    if (u.precision > 0) p.prior_std = u.scale * std::sqrt(variance / u.precision);
+    if (unit.inverse.size() == 0) continue;
+    for (std::size_t j = 0; j < of_arm.size(); ++j)
+      report.covariance(static_cast<Index>(i), static_cast<Index>(j)) =
+          variance * unit.inverse(of_arm[i], of_arm[j]) * u.scale *
+          estimated[static_cast<std::size_t>(of_arm[j])].scale;
+    p.std = std::sqrt(report.covariance(static_cast<Index>(i), static_cast<Index>(i)));
+    if (p.std * p.std > 0.5 * p.prior_std * p.prior_std) p.state = ParameterState::weak;
+  }
+}
+
+/// Status and message, of a report that has everything else about the arm.
+VERNIER_API void add_contact_status(const ContactProblem& solved, const ArmGeometry& identified, bool converged,
+                                    ContactReport& report) {
+  const CalibrationProblem& problem = solved.problem;
+  const auto estimated = static_cast<Index>(problem.arm.geometric().size()),
+             of_arm = static_cast<Index>(report.free.size());
+  report.missing = rank_by_positions(solved, identified.with_frames({}, identified.tool())) - of_arm;
+  const Index touches = problem.num_blocks();
+  report.message =
+      message(touches, " touches of ", counted(static_cast<long long>(solved.contacts.size()), "object", "objects"),
+              " determine ", counted(of_arm, "parameter of the arm", "parameters of the arm"));
+  if (!converged) {
+    report.status = IdentifyStatus::not_converged;
+    report.message = message("the steps did not vanish within ", solved.options.max_iterations, " iterations");
+  } else if (report.missing > 0) {
+    report.status = IdentifyStatus::underdetermined;
+    report.message += message("; measured positions at the same joints would determine ", report.missing, " more");
+  } else if (problem.measured_values() + (problem.prior ? 1 : 0) <= estimated) {
+    report.status = IdentifyStatus::underdetermined;
+    report.message = message(touches, " touches give ", problem.measured_values(), " measured values for ", estimated,
+                             " unknowns of arm and objects");
+  }
+}
+
+/// Where the objects are, in the frame of the base.
+VERNIER_API std::vector<TouchedObject> touched_objects(const ContactProblem& solved) {
+  std::vector<TouchedObject> out;
+  for (int c = 0; c < static_cast<int>(solved.contacts.size()); ++c) {
+    const Contact& contact = solved.contact(c);
+    const ArmGeometry& arm = solved.problem.arm.geometry(c);
+    const Isometry3 out_of = composed(solved.nominal.base().isometry(), inverse_of(arm.base().isometry()));
+    Vector3 local = Vector3::Zero();
+    if (contact.kind() == ContactKind::plane) {
+      local = centroid(arm.positions(contact.joints()));
+      local.z() = 0;
+    }
+    TouchedObject object{contact.name(),  contact.kind(),
+                         contact.size(),  transformed(out_of, local),
+                         Vector3::Zero(), ContactProblem::residual_rms(solved.problem, c)};
+    if (contact_unknowns(contact) != std::vector<Index>{0, 1, 2})
+      object.direction = solved.problem.station_of(solved.first_block(c)).height_sign *
+                         Vector3(out_of(0, 2), out_of(1, 2), out_of(2, 2));
+    out.push_back(std::move(object));
+  }
+  return out;
+}
+
+VERNIER_IMPL ContactReport contact_report(const ContactProblem& solved, const ArmGeometry& identified,
+                                          const ContactSelection& selection, bool converged) {
+  ContactReport out;
+  out.scale_observable = solved.scale_observable;
+  out.rms_after = solved.residual_rms();
+  out.singular_values = contact_singular_values(solved);
+  out.unobservable = std::count_if(out.singular_values.begin(), out.singular_values.end(),
+                                   [&](double value) { return value <= 1e-9 * out.singular_values(0); });
+  out.parameters = contact_parameters(solved, identified, selection);
+  add_contact_covariance(solved, out);
+  add_contact_status(solved, identified, converged, out);
+  out.objects = touched_objects(solved);
+  return out;
+}
+
+}  // namespace vernier::detail

@@ -28,17 +28,19 @@ VERNIER_IMPL void frame_columns(const FrameParameters& base, const FrameParamete
   const Matrix3& rate = base.rotation_vector_jacobian();
   const Matrix3 turn = rotation(tool_point), turned_rate = times3(turn, tool.rotation_vector_jacobian());
   const Vector3 arm = translation(tool_point) - translation(base.isometry());  // base origin to tool point
-  std::fill_n(of_base, 36, 0.0);
-  std::fill_n(of_tool, 36, 0.0);
-  for (Index c = 0; c < 3; ++c) {
-    const Vector3 axis(rate(0, c), rate(1, c), rate(2, c)), moved = axis.cross(arm);
-    of_base[6 * c + c] = 1;
+  const auto write = [](double* column, const Vector3& linear, const Vector3& angular) {
     for (Index r = 0; r < 3; ++r) {
-      of_base[6 * (3 + c) + r] = moved(r);
-      of_base[6 * (3 + c) + 3 + r] = axis(r);
-      of_tool[6 * c + r] = turn(r, c);
-      of_tool[6 * (3 + c) + 3 + r] = turned_rate(r, c);
+      column[r] = linear(r);
+      column[3 + r] = angular(r);
     }
+  };
+  const Vector3 none(0, 0, 0);
+  for (Index c = 0; c < 3; ++c) {
+    const Vector3 axis(rate(0, c), rate(1, c), rate(2, c));
+    write(of_base + 6 * c, Vector3(c == 0, c == 1, c == 2), none);
+    write(of_base + 6 * (3 + c), axis.cross(arm), axis);
+    write(of_tool + 6 * c, Vector3(turn(0, c), turn(1, c), turn(2, c)), none);
+    write(of_tool + 6 * (3 + c), none, Vector3(turned_rate(0, c), turned_rate(1, c), turned_rate(2, c)));
   }
 }
 

@@ -5,6 +5,7 @@
 /// run-time size cost twice as much, and those of a fixed size take a compiler a second each.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -101,8 +102,11 @@ template <int N>
 void invert_few(const double* matrix, double* out) noexcept {
   double a[N * N];
   for (int j = 0; j < N; ++j) FewNumbers<N>(matrix + j * N).store(a + j * N);
-  double unit[2 * N] = {};
-  unit[N] = 1;
+  static constexpr std::array<double, 2 * N> unit = [] {
+    std::array<double, 2 * N> zeros_and_one{};
+    zeros_and_one[N] = 1;
+    return zeros_and_one;
+  }();
   unsigned used = 0;
   int row[N];
   for (int k = 0; k < N; ++k) {
@@ -117,7 +121,7 @@ void invert_few(const double* matrix, double* out) noexcept {
     used |= 1u << pivot;
     row[k] = pivot;
     const double inverse = 1 / column[pivot];
-    const FewNumbers<N> of_pivot(unit + N - pivot), before(column);
+    const FewNumbers<N> of_pivot(unit.data() + N - pivot), before(column);
     FewNumbers<N> factor = of_pivot, left = of_pivot;
     VERNIER_UNROLL
     for (int i = 0; i < N / 2; ++i) {

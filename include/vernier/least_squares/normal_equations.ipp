@@ -85,9 +85,10 @@ VERNIER_API void add_local(const BlockSystem& system, const std::vector<LocalPri
       for (const RowBlock::Local& b : rows.local) {
         if (b.state < 0 || b.state > a.state) continue;
         double* sum = sums.block({b.state, a.state});
-        for (Index j = 0; j < k; ++j)
-          for (Index i = 0; i < k; ++i)
-            sum[k * j + i] += detail::column_of(a.columns, i).dot(detail::column_of(b.columns, j));
+        for (Index j = 0; j < k; ++j) {
+          const Vector6 right = detail::column_of(b.columns, j);
+          for (Index i = 0; i < k; ++i) sum[k * j + i] += detail::column_of(a.columns, i).dot(right);
+        }
       }
     }
   });

@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
@@ -23,6 +26,7 @@ namespace {
 using namespace vernier::literals;
 using vernier_test::identify_by_gauss_newton;
 using vernier_test::RealMatrix;
+using vernier_test::vector;
 using Chain = DhChain<3>;
 using Actual = Framed<WithJointErrors<Chain>>;
 
@@ -159,6 +163,120 @@ TEST(JointSpectrum, AnOrderByHand) {
   EXPECT_NEAR(std::exp(-line_threshold(1000) / 2) * 1000, 0.01, 1e-12);  // the tail of chi-square with 2 degrees
 }
 
+// What the measurements alone say, by hand: the information of the two coefficients of an order is I, their estimate
+// (6, -8) or so; the fit had priors P on them, so it found (I + P)^-1 I (6, -8) with the covariance (I + P)^-1.
+TEST(JointSpectrum, IsTheEstimateWithoutPriors) {
+  const DhChain<3> chain = nominal;
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(Framed<Chain>(chain))}, {{0, -1, 1e-3, 0}})};
+  JointTerms terms(3);
+  terms.gear_ratio = true;
+  terms.transmission[0] = Fourier::up_to(1);
+  terms.transmission[2] = {{2, 5, 9}};
+  estimate.arm.set_terms(terms, VectorX::Constant(11, 2e-6), vector({1, 1, 1, 1, 1, 2, 5, 3, 3, 4, 7}));
+  const std::array informations{RealMatrix(2, 2, {4, 1, 1, 3}), RealMatrix(2, 2, {1, 2, 2, 4}),
+                                RealMatrix(2, 2, {9, -2, -2, 16})};
+  const std::array values{vector({6, -8}), vector({1, 1}), vector({0, 2})};
+  RealMatrix covariance = RealMatrix::identity(12);
+  VectorX steps = VectorX::Ones(12);
+  for (Index k = 0; k < 3; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const RealMatrix precisions = RealMatrix::diagonal(RealMatrix(estimate.arm.precisions()).block(6 + 2 * k, 0, 2, 1));
+    const RealMatrix inverse = (informations[at] + precisions).inverse();
+    const RealMatrix found = inverse * informations[at] * values[at];
+    covariance.set_block(6 + 2 * k, 6 + 2 * k, inverse);
+    for (Index i = 0; i < 2; ++i) steps(6 + 2 * k + i) = found(i);
+  }
+  estimate.arm.move(steps);
+  estimate.residual_variance = 2;
+  estimate.variance_factor = 0.5;  // of the covariance
+  estimate.covariance = 0.5 * covariance;
+  const auto spectrum = joint_spectrum(estimate, 2);
+  ASSERT_EQ(spectrum.size(), 2u);  // of order 5 one combination is not determined
+  EXPECT_EQ(spectrum[0].order, 2);
+  EXPECT_NEAR(spectrum[0].amplitude, 20e-6, 1e-15);
+  // along (0.6, -0.8): inverse of [4 1; 1 3] is [3 -1; -1 4] / 11, so 4.6 / 11
+  EXPECT_NEAR(spectrum[0].std, 2e-6 * std::sqrt(2 * 4.6 / 11), 1e-15);
+  EXPECT_NEAR(spectrum[0].margin(), 1.96 * spectrum[0].std, 1e-20);
+  EXPECT_NEAR(spectrum[0].chi_square, (4 * 36 - 2 * 48 + 3 * 64) / 2.0, 1e-9);
+  EXPECT_EQ(spectrum[1].order, 9);
+  EXPECT_NEAR(spectrum[1].amplitude, 4e-6, 1e-15);
+  EXPECT_NEAR(spectrum[1].std, 2e-6 * std::sqrt(2 * 9 / 140.0), 1e-15);
+  EXPECT_NEAR(spectrum[1].chi_square, 16 * 4 / 2.0, 1e-9);
+  EXPECT_TRUE(joint_spectrum(estimate, 1).empty());
+}
+
+// The smaller of two lines is only a neighbour if it is at most a quarter of its order away, and four.
+TEST(JointSpectrum, LinesOfLowOrdersAreCloser) {
+  const auto orders = [](const std::vector<HarmonicEstimate>& spectrum) {
+    std::vector<int> out;
+    for (const HarmonicEstimate& line : lines_in(spectrum, 10)) out.push_back(line.order);
+    return out;
+  };
+  const auto one = [](int order, double amplitude) { return HarmonicEstimate{order, amplitude, 1, 10.5}; };
+  EXPECT_EQ(orders({one(1, 5), one(2, 4), one(3, 3)}), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(orders({one(9, 5), one(12, 4), one(7, 3), one(6, 2)}), (std::vector<int>{9, 7, 6}));
+  EXPECT_EQ(orders({one(12, 5), one(9, 4)}), (std::vector<int>{12, 9}));
+  EXPECT_EQ(orders({one(20, 3), one(24, 4), one(29, 2)}), (std::vector<int>{24, 29}));
+  EXPECT_TRUE(orders({{30, 9, 1, 10}, {40, 8, 1, 9}}).empty());  // not above the threshold
+}
+
+/// As many angles, all around.
+VectorX around(Index n) {
+  VectorX out(n);
+  for (Index i = 0; i < n; ++i) out(i) = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+  return out;
+}
+
+/// Orders and amplitudes of what is left.
+using Remainder = std::vector<std::pair<int, double>>;
+
+/// Scores of unit weights for a remainder.
+VectorX score_of(const Remainder& lines, const VectorX& angles) {
+  VectorX out = VectorX::Zero(angles.size());
+  for (Index i = 0; i < angles.size(); ++i)
+    for (const auto& [order, amplitude] : lines) out(i) += amplitude * std::sin(order * angles(i) + order);
+  return out;
+}
+
+// All around a turn orders are orthogonal: an amplitude of a in 202 values has a chi-square of 101 a^2.
+TEST(PeriodogramWhiteBox, LinesAreTakenOneAfterTheOther) {
+  const VectorX angles = around(202), ones = VectorX::Ones(202);
+  const Remainder lines{{3, 1.0}, {40, 3.0}, {17, 2.0}, {60, 9.0}};
+  const VectorX power = detail::periodogram(angles, score_of(lines, angles), ones, 60);
+  for (int order = 1; order <= 60; ++order) {
+    double amplitude = 0;
+    for (const auto& line : lines) amplitude += line.first == order ? line.second : 0;
+    EXPECT_NEAR(power(order - 1), 101 * amplitude * amplitude, 1e-8) << order;
+  }
+  const auto found = [&](const Remainder& of, const std::vector<int>& known, int highest, double threshold) {
+    return detail::lines_of_residuals(angles, score_of(of, angles), ones, known, highest, threshold);
+  };
+  EXPECT_EQ(found(lines, {}, 60, 1), (std::vector<int>{60, 40, 17, 3}));
+  EXPECT_EQ(found(lines, {}, 59, 1), (std::vector<int>{40, 17, 3}));
+  EXPECT_EQ(found(lines, {2, 17, 60, 200}, 60, 1), (std::vector<int>{40, 3}));
+  EXPECT_EQ(found(lines, {}, 60, 101 * 3.99), (std::vector<int>{60, 40, 17}));
+  EXPECT_EQ(found(lines, {}, 60, 101 * 4.01), (std::vector<int>{60, 40}));
+  EXPECT_TRUE(found({}, {}, 60, 1).empty());
+  Remainder many;
+  for (int k = 0; k < 10; ++k) many.push_back({5 * k + 1, 10.0 - k});
+  EXPECT_EQ(found(many, {}, 60, 1), (std::vector<int>{1, 6, 11, 16, 21, 26, 31, 36}));  // eight
+}
+
+// Over a part of a turn a line has echoes, which are none.
+TEST(PeriodogramWhiteBox, AnEchoIsNoLine) {
+  Rng rng(4);
+  VectorX angles(150), weight(150);
+  for (Index i = 0; i < 150; ++i) {
+    angles(i) = rng.uniform(-0.8, 0.8);
+    weight(i) = rng.uniform(0.2, 2);
+  }
+  VectorX score = score_of({{30, 2.0}}, angles);
+  for (Index i = 0; i < 150; ++i) score(i) *= weight(i);
+  const VectorX power = detail::periodogram(angles, score, weight, 60);
+  EXPECT_GT(power(28), 1);
+  EXPECT_EQ(detail::lines_of_residuals(angles, score, weight, {}, 60, 1), (std::vector<int>{30}));
+}
+
 TEST(PeriodogramWhiteBox, IsTheChiSquareOfARegression) {
   Rng rng(3);
   const Index n = 300;
@@ -189,6 +307,29 @@ TEST(PeriodogramWhiteBox, AGridOfAnglesTellsNoOrdersApart) {
   for (double& angle : grid) angle += rng.uniform(-0.1, 0.1);
   EXPECT_TRUE(detail::tells_orders_apart(grid, weight, 500));
   EXPECT_FALSE(detail::tells_orders_apart(grid, VectorX::Zero(200), 500));
+}
+
+// Two sets of angles whose orders 150 are half a period apart: they cancel but for their difference, a share of the
+// weight. All other orders up to 299 cancel altogether.
+TEST(PeriodogramWhiteBox, OrdersUpToTwiceTheHighestAreToldApart) {
+  const VectorX grid = around(300);
+  const auto apart = [&](double share, int highest) {
+    VectorX weight(300);
+    for (Index i = 0; i < 300; ++i) weight(i) = i % 2 == 0 ? 1 + share : 1 - share;
+    return detail::tells_orders_apart(grid, weight, highest);
+  };
+  EXPECT_TRUE(apart(0.48, 80));
+  EXPECT_FALSE(apart(0.52, 80));
+  EXPECT_FALSE(apart(0.52, 75));  // 2 * 75
+  EXPECT_TRUE(apart(0.52, 74));
+}
+
+// Over a part of a turn that is s wide, orders k are alike as sin(k s / 2) / (k s / 2): a half at k s = 3.79.
+// Neighbours of less than forty need not be told apart.
+TEST(PeriodogramWhiteBox, CloseOrdersNeedNotBeToldApart) {
+  const VectorX ones = VectorX::Ones(2000);
+  for (const auto& [width, apart] : {std::pair{3.6 / 40, false}, {4.0 / 40, true}})
+    EXPECT_EQ(detail::tells_orders_apart(VectorX::LinSpaced(2000, 0, width), ones, 100), apart) << width;
 }
 
 }  // namespace

@@ -75,5 +75,30 @@ TEST(EstimateCovariance, SaysWhenTheRankIsDeficient) {
   EXPECT_EQ(EstimateCovariance(j, VectorX::Ones(40), VectorX::Ones(3), VectorX::Ones(3)).covariance.rows(), 3);
 }
 
+// Columns count as dependent where a singular value is below 1e-12 of the largest, whatever their unit.
+TEST(EstimateCovariance, RankDoesNotDependOnTheUnit) {
+  const RealMatrix zeros(2, 1), ones = vector({1, 1});
+  for (const double unit : {1e-14, 1.0, 1e14}) {
+    const EstimateCovariance full(RealMatrix::diagonal(vector({unit, 1e-10 * unit})), ones, zeros, zeros);
+    EXPECT_EQ(full.rank, 2);
+    EXPECT_NEAR(full.condition, 1e10, 1);
+    ASSERT_EQ(full.covariance.rows(), 2);
+    EXPECT_NEAR(full.covariance(1, 1) * unit * unit, 1e20, 1e8);
+    const EstimateCovariance deficient(RealMatrix::diagonal(vector({unit, 1e-13 * unit})), ones, zeros, zeros);
+    EXPECT_EQ(deficient.rank, 1);
+    EXPECT_TRUE(std::isinf(deficient.condition));
+    EXPECT_EQ(deficient.covariance.size(), 0);
+  }
+}
+
+// Where a prior has no weight its variance may be unknown; a problem without unknowns is well conditioned.
+TEST(EstimateCovariance, WhatIsNotThereDoesNotMatter) {
+  const EstimateCovariance c(RealMatrix::identity(2), vector({4, 9}), vector({0, 1}), vector({std::nan(""), 3}));
+  EXPECT_LT((c.covariance - RealMatrix::diagonal(vector({4, 3}))).norm(), 1e-14);  // (9 + 3) / 4
+  const EstimateCovariance none(RealMatrix(3, 0), vector({1, 1, 1}), RealMatrix(0, 1), RealMatrix(0, 1));
+  EXPECT_EQ(none.rank, 0);
+  EXPECT_EQ(none.condition, 1);
+}
+
 }  // namespace
 }  // namespace vernier::estimate_covariance_test

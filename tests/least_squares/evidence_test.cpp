@@ -202,6 +202,115 @@ TEST(Evidence, AFewAreScaledAsManyAre) {
   EXPECT_DOUBLE_EQ(of_many(3), of_few(3));
 }
 
+/// Unknowns each with a row of its own, a weight for its column and a residual; one row more for a rest.
+struct SingleRows {
+  std::vector<double> weights, residuals;
+  double rest = 0;
+
+  NormalEquations normal() const {
+    const auto n = static_cast<Index>(weights.size());
+    const auto evaluate = [&](Index first, Index count, RowBlock* out) {
+      for (Index b = 0; b < count; ++b) {
+        out[b].residual.setZero();
+        out[b].dense = Rows6::Zero(6, n);
+        out[b].factor.resize(6, 0);
+        out[b].unwhiten.setIdentity();
+        if (first + b == n) {
+          out[b].residual(0) = rest;
+          continue;
+        }
+        const auto k = static_cast<std::size_t>(first + b);
+        out[b].residual(2) = residuals[k];
+        out[b].dense(2, first + b) = weights[k];
+      }
+    };
+    return NormalEquations(BlockSystem{n + 1, n + 1, n, {}, evaluate});
+  }
+};
+
+// Two unknowns by hand: the sum of squares at its minimum, and what is left to determine the noise, are those of the
+// measurements and of thirty values of the sensor.
+TEST(Evidence, OfTwoUnknownsByHand) {
+  const NormalEquations normal = SingleRows{{2, 1}, {3, -1}, 5}.normal();
+  const auto of = [&](const VectorX& precisions, const VectorX& steps, Index values) {
+    return log_evidence(normal, FactorisedEquations(normal, precisions, steps), precisions, steps, values);
+  };
+  // at present 9 + 1 + 25 + 3 * 0.04 + 0.5; slopes 6 + 0.6 and -1 - 0.5; curvatures 7 and 1.5
+  const double least = 35.62 - 6.6 * 6.6 / 7 - 1.5 * 1.5 / 1.5;
+  EXPECT_NEAR(of(vector({3, 0.5}), vector({0.2, -1}), 20),
+              -0.5 * (50 * std::log((least + 30) / 50) + std::log(7 * 1.5) - std::log(1.5)), 1e-9);
+  // without priors both rows are met, and two values are gone; one is left at least
+  const auto unpenalised = [](double freedom) { return -0.5 * (freedom * std::log(55 / freedom) + std::log(4)); };
+  const VectorX none = VectorX::Zero(2);
+  EXPECT_NEAR(of(none, none, 20), unpenalised(48), 1e-9);
+  EXPECT_NEAR(of(none, none, 3), unpenalised(31), 1e-9);
+  EXPECT_NEAR(of(none, none, 1), unpenalised(31), 1e-9);
+}
+
+// Values z that are known well, in units of the noise: evidence wants them to have the size that they have, precisions
+// of 1 / z^2. On a grid of factors of sqrt(2), from 1e-6 to 1e9.
+TEST(Evidence, ScalesPriorsToTheSizeOfTheUnknowns) {
+  for (const std::size_t count : {1u, 2u, 260u}) {  // few, and more than are scaled by their distribution
+    const NormalEquations normal =
+        SingleRows{std::vector<double>(count, 1e7), std::vector<double>(count, 0), std::sqrt(1e6)}.normal();
+    const auto n = static_cast<Index>(count);
+    const VectorX precisions = VectorX::Constant(n, 4);
+    UnknownGroup group;
+    for (Index k = 0; k < n; ++k) group.push_back(k);
+    const auto factor = [&](double size) {
+      // the noise's variance is one: a million values, as many squares, and those of the priors
+      return scale_priors(normal, precisions, VectorX::Constant(n, size), 1000000, group)(n - 1) / 4;
+    };
+    const auto expect = [&](double power) {
+      EXPECT_NEAR(std::log2(factor(0.5 * std::pow(2, -power / 2))), power, 1e-9) << count;
+    };
+    expect(4.5);
+    if (count == 260) continue;
+    for (const double power : {0.0, 0.5, 1.0, 27.0, -1.5, -6.0, -18.5}) expect(power);
+    EXPECT_NEAR(std::log2(factor(1e6)), std::log2(1e-6) + 0.25, 0.25);
+    EXPECT_NEAR(std::log2(factor(1e-9)), std::log2(1e9) - 0.25, 0.25);
+  }
+}
+
+// One step of the iteration by hand, of two groups: the number of unknowns that the data determine, times the variance
+// of the noise, over the squares of the group.
+TEST(Evidence, AStepOfTheLearningByHand) {
+  const NormalEquations normal = SingleRows{{std::sqrt(3), 2, 1}, {0, 0, 0}, 6}.normal();
+  const VectorX precisions = vector({1, 4, 2}), steps = vector({1, -0.5, 2});
+  // curvatures 4, 8, 3: the unknowns move to 3/4, -0.25 and 2/3
+  const double least = 36 + 1 + 1 + 8 - 1.0 / 4 - 4.0 / 8 - 16.0 / 3;
+  const auto learned = [&](int iterations, const std::vector<UnknownGroup>& groups) {
+    return RealMatrix(learn_priors(normal, precisions, steps, 70, groups, iterations));
+  };
+  const double variance = (least + 30) / 100;
+  const double first = 0.75 + 0.5, squares = 0.75 * 0.75 + 4 * 0.25 * 0.25;  // determined; of both
+  const double last = 1.0 / 3, square = 2 * 4.0 / 9;
+  const RealMatrix once = learned(1, {{0, 1}, {2}});
+  const double factor = first * variance / squares, other = last * variance / square;
+  EXPECT_LT((once - vector({factor, 4 * factor, 2 * other})).norm(), 1e-9);
+  EXPECT_EQ(learned(0, {{0, 1}, {2}}), RealMatrix(precisions));
+  const VectorX after = once;
+  EXPECT_LT((learned(2, {{0, 1}, {2}}) - learn_priors(normal, after, steps, 70, {{0, 1}, {2}}, 1)).norm(), 1e-9);
+  EXPECT_EQ(learned(3, {{1}})(2), 2);
+}
+
+// Ten times more or less in a step, up to 1e9; unknowns that hardly anything determines count as a thousandth of one.
+TEST(Evidence, LearningGoesInBoundedSteps) {
+  const auto learned = [](const SingleRows& rows, const VectorX& precisions, const VectorX& steps) {
+    const NormalEquations normal = rows.normal();
+    std::vector<UnknownGroup> groups;
+    for (Index k = 0; k < steps.size(); ++k) groups.push_back({k});
+    return RealMatrix(learn_priors(normal, precisions, steps, 970, groups, 1));
+  };
+  const double rest = std::sqrt(970);
+  EXPECT_LT((learned({{1e3, 1e3}, {0, 0}, rest}, vector({1, 2}), vector({100, 1e-4})) - vector({0.1, 20})).norm(),
+            1e-9);
+  EXPECT_EQ(learned({{1e3}, {0}, rest}, vector({5e8}), vector({1e-9}))(0), 1e9);
+  // a weight of 1e-4 beside a prior of 1, and a best value of 223: it moves to 0.0223, at a cost of 5
+  const double z = 223e-4 / 1.0001, variance = (1000 + 223 * 223e-4 / 1.0001) / 1000;
+  EXPECT_NEAR(learned({{1e-2}, {-2.23}, rest}, vector({1}), vector({0}))(0), 1e-3 * variance / (z * z), 1e-6);
+}
+
 TEST(FactorisedEquations, DiagonalOfTheInverse) {
   const LocalStates problem(8);
   const NormalEquations normal = problem.normal_equations();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "complaint.hpp"
 #include "random_blocks.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
@@ -186,6 +187,45 @@ TEST(LeaveOneOut, LogDensitiesAreThoseOfThePredictiveDistributions) {
   EXPECT_NEAR(found.sum(), wanted(best).sum(), 1e-6 * std::abs(found.sum()));
 }
 
+// A value counts as measured where it has a residual or depends on something. Two blocks off by three values and by
+// one, and one that is met: five values, whose mean square is 18 / 5.
+TEST(LeaveOneOut, DensitiesCountTheMeasuredValues) {
+  RandomBlocks blocks(3, 1, true, 1);
+  blocks.group_sizes = {0, 0, 0};
+  for (RowBlock& rows : blocks.rows) {
+    rows.functions.resize(0);
+    rows.residual.setZero();
+    rows.dense.setZero();
+  }
+  for (Index r = 0; r < 3; ++r) blocks.rows[0].residual(r) = r == 0 ? 1 : 2;
+  blocks.rows[1].residual(5) = 3;
+  blocks.rows[2].dense(1, 0) = 1;
+  const NormalEquations normal = blocks.normal();
+  const FactorisedEquations solved(normal, VectorX::Constant(1, 1e9), VectorX::Zero(1));
+  const VectorX found =
+      blocks.with_system([&](const BlockSystem& s) { return leave_one_out(s, solved, 1); }).log_densities;
+  const double variance = 18.0 / 5;
+  EXPECT_NEAR(found(0), -0.5 * (9 / variance + 3 * std::log(variance)), 1e-8);
+  EXPECT_NEAR(found(1), -0.5 * (9 / variance + std::log(variance)), 1e-8);
+  EXPECT_NEAR(found(2), -0.5 * std::log(variance), 1e-8);
+}
+
+// However tight a prior with correlations, of what it does not hold the data decide.
+TEST(FactorisedEquations, ATightJointPriorHoldsItsOwnUnknownsAlone) {
+  const RandomBlocks blocks(15, 19);
+  RealMatrix precision(15, 15);
+  for (const Index k : {2, 7}) precision(k, k) = 1e18;
+  NormalEquations normal = blocks.normal();
+  const RealMatrix matrix = normal.matrix, gradient = normal.gradient;
+  normal.add({precision, VectorX::Zero(15), 2}, VectorX::Zero(15));
+  const FactorisedEquations solved(normal, VectorX::Zero(15), VectorX::Zero(15));
+  const RealMatrix step = solved.step();
+  RealMatrix held = matrix;
+  for (const Index k : {2, 7}) held(k, k) = 1e18;
+  EXPECT_LT((step + held.solve_by_cholesky(gradient)).norm(), 1e-8 * step.norm());
+  EXPECT_LT(std::abs(step(2)) + std::abs(step(7)), 1e-12);
+}
+
 TEST(LeaveOneOutErrors, AreInfiniteWhereNothingCouldBeSolved) {
   const RandomBlocks blocks(15, 9);
   const NormalEquations normal = blocks.normal();
@@ -320,6 +360,28 @@ TEST(LocalStates, OtherPriorsOfTheOtherUnknowns) {
     EXPECT_NE(again.log_determinant(), solved.log_determinant());
     EXPECT_TRUE(solved.with(problem.precisions, problem.steps).usable());
     EXPECT_FALSE(solved.with(VectorX::Constant(problem.unknowns, -1e9), steps).usable());
+  });
+}
+
+TEST(LocalStates, WithoutASolutionThereIsNone) {
+  RandomStates problem(30);
+  problem.priors.push_back({2, 2, -1e6 * MatrixX::Identity(2, 2)});
+  problem.with_system([&](const BlockSystem& system) {
+    const NormalEquations normal(system, problem.priors);
+    const VectorX tight = 1e9 * problem.precisions;  // what is left is positive definite in any case
+    const FactorisedEquations solved(normal, tight, problem.steps, problem.local_steps);
+    EXPECT_FALSE(solved.usable());
+    EXPECT_FALSE(solved.with(tight, problem.steps).usable());
+  });
+}
+
+TEST(LocalStates, ABlockDependsOnAStateOnce) {
+  RandomStates problem(30);
+  RowBlock& rows = problem.blocks.rows[4];
+  rows.local[0] = rows.local[1] = {3, Rows6::Ones(6, 2)};
+  problem.with_system([&](const BlockSystem& system) {
+    EXPECT_EQ(vernier_test::complaint([&] { (void)NormalEquations(system, problem.priors); }),
+              "NormalEquations: a block depends twice on local state 3");
   });
 }
 

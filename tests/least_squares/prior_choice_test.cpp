@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "random_blocks.hpp"
 
@@ -150,6 +152,37 @@ TEST(ChoosePrior, ReportsTheErrorsOfItsChoice) {
   EXPECT_NEAR(choice.chosen_error, mean_with(choice.precision), 1e-9 * choice.chosen_error);
   EXPECT_NEAR(choice.suppressed_error, mean_with(1e20),
               1e-6 * choice.suppressed_error);  // the suppressing precision is finite
+}
+
+// Of unknowns from ten expected sizes to a hundredth, each prior from 0.3 to suppression by solving without each other
+// block.
+TEST(ChoosePrior, TriesPriorsOfAllSizes) {
+  for (const double size : {10.0, 1.0, 0.1, 0.01})
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+      RandomBlocks poses(24, seed);
+      Rng rng(seed + 10);
+      const VectorX truth = random_vector(rng, 15, size);
+      for (Index b = 0; b < 24; ++b) poses.rows[static_cast<std::size_t>(b)].residual -= poses.expanded(b) * truth;
+      const VectorX steps = VectorX::Constant(15, 0.02);
+      std::vector<PriorTrial> wanted;
+      double smallest = infinity;
+      for (const double precision : {0.3, 1.0, 3.0, 10.0, 100.0, 1e4, 1e12}) {
+        VectorX precisions = VectorX::Constant(15, 1e-3);
+        for (Index k = 5; k < 15; ++k) precisions(k) = precision;
+        VectorX errors(12);
+        for (Index b = 0; b < 12; ++b) errors(b) = left_out_by_force(poses, precisions, steps, 2 * b).norm();
+        smallest = std::min(smallest, errors.mean());
+        wanted.push_back({precision, errors});
+      }
+      const PriorChoice choice = poses.with_system([&](const BlockSystem& s) {
+        return choose_prior(s, NormalEquations(s), VectorX::Constant(15, 1e-3), steps, 5, 10, 2);
+      });
+      const PriorTrial& best = wanted[one_standard_error_rule(wanted)];
+      EXPECT_EQ(choice.precision, best.precision) << size;
+      EXPECT_NEAR(choice.chosen_error, best.errors.mean(), 1e-6 * smallest) << size;
+      EXPECT_NEAR(choice.smallest_error, smallest, 1e-6 * smallest) << size;
+      EXPECT_NEAR(choice.suppressed_error, wanted.back().errors.mean(), 1e-6 * smallest) << size;
+    }
 }
 
 TEST(ChoosePrior, SurvivesRowsThatAreNotFinite) {

@@ -55,6 +55,23 @@ TEST(DriveLines, OrdersNearALineHaveItsCause) {
     EXPECT_EQ(cause_of(order, drive), "half the period of an encoder of 512 periods a turn") << order;
 }
 
+TEST(DriveLines, TwoOrdersBesideALineHaveAnotherCause) {
+  const JointDrive drive{.gear_ratio = 101, .encoder_periods = 4000};
+  for (const int order : {99, 103, 402, 406, 2422, 2426}) EXPECT_EQ(cause_of(order, drive), "") << order;
+  for (const int order : {100, 102, 2423, 2425}) EXPECT_NE(cause_of(order, drive), "") << order;
+}
+
+TEST(DriveLines, AreAtTheNearestOrder) {
+  EXPECT_EQ(lines_of({.gear_ratio = 50.2}),  // 200.8, 251, 401.6, 502, 602.4, 1004, 1204.8
+            (HarmonicSpectrum{{197, 205, 12e-6},
+                              {250, 252, 7e-6},
+                              {401, 403, 7e-6},
+                              {501, 503, 7e-6},
+                              {601, 603, 7e-6},
+                              {1003, 1005, 7e-6},
+                              {1204, 1206, 7e-6}}));
+}
+
 TEST(DriveLines, AreFromAbove140To2500) {
   EXPECT_EQ(lines_of({.gear_ratio = 14}),  // 8 a turn are 112, 10 are 140
             (HarmonicSpectrum{{167, 169, 7e-6}, {279, 281, 7e-6}, {335, 337, 7e-6}}));

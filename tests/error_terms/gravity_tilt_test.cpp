@@ -216,7 +216,8 @@ TEST(GravityTilt, NamesAreInOrderAndUnique) {
 
 TEST(GravityTilt, MisuseIsNamed) {
   const DhChain<1> one({{.a = 1}});
-  for (const Vector3& bad : {Vector3(0, 0, -9.81), Vector3(0, 0, 0), Vector3(std::nan(""), 0, 1)})
+  for (const Vector3& bad : {Vector3(0, 0, -9.81), Vector3(0, 0, 0), Vector3(0, 1.00001, 0), Vector3(0, 0, -0.99999),
+                             Vector3(std::nan(""), 0, 1)})
     EXPECT_THROW((void)GravityTilt(one, bad), std::invalid_argument);
   JointTerms terms(2);
   terms.tilt.emplace(one);

@@ -111,6 +111,27 @@ TEST(HarmonicSpectrum, LaterBandsCountAndOrdersFollow) {
   EXPECT_EQ(vn::orders_of(vn::typical_spectrum(), 500).orders.size(), 140 + 5 + 9);
 }
 
+// Expected sizes fall with the order, but for the lines of encoders of 128 periods and of gears of 101:1.
+TEST(HarmonicSpectrum, TheTypicalOneHasItsSizesInMicroradians) {
+  const vn::HarmonicSpectrum spectrum = vn::typical_spectrum();
+  const auto expect = [&](int first, int last, double size) {
+    for (const int order : {first, last}) EXPECT_NEAR(1e6 * vn::expected_std(spectrum, order), size, 1e-9) << order;
+  };
+  expect(1, 3, 150);
+  expect(4, 6, 50);
+  expect(7, 28, 70);
+  expect(29, 40, 16);
+  expect(41, 60, 8);
+  expect(61, 125, 3.3);
+  expect(126, 130, 10);
+  expect(131, 140, 3.3);
+  expect(141, 253, 0);
+  expect(254, 258, 6);
+  expect(259, 399, 0);
+  expect(400, 408, 12);
+  expect(409, 500, 0);
+}
+
 // Joints side by side are what each is alone, with different orders at each, gaps, and more joints than lanes.
 template <int N>
 void expect_transmissions_of_single_joints() {
@@ -163,12 +184,25 @@ TEST(JointErrors, HysteresisFollowsTheDirectionOfApproach) {
   const vn::JointVector<2> unknown(std::nan(""), 0.1);
   EXPECT_EQ(errors.effective<2>(q, unknown.data()).joints(0), q(0));
   EXPECT_NE(errors.effective<2>(q, unknown.data()).joints(1), q(1));
+  const vn::JointVector<2> endless(std::numeric_limits<double>::infinity(), q(1));
+  EXPECT_EQ(errors.effective<2>(q, endless.data()).joints(0), q(0));  // from nowhere
   EXPECT_DOUBLE_EQ(errors.half_loop(0), 60e-6);
   EXPECT_DOUBLE_EQ(errors.half_loop(1), 20e-6);  // of small motions; of large ones 10
   // rows of joint values with and without previous ones
   const RealMatrix rows = nominal.transpose(), before = (nominal - vector({0.005, -0.1})).transpose();
   EXPECT_EQ(RealMatrix(errors.effective_rows(rows)), rows);
   EXPECT_LT((errors.effective_rows(rows, before) - rows - moved(0.005, -0.1).transpose()).norm(), 1e-15);
+}
+
+// Loops of joints that err in other ways, too.
+TEST(JointErrors, HalfLoopsAreThoseOfHysteresisAlone) {
+  vn::JointTerms terms(2);
+  terms.gear_ratio = terms.coupling = true;
+  terms.hysteresis = {0.01, 0.3};
+  terms.transmission[1] = vn::Fourier::up_to(1);
+  const vn::JointErrors errors(terms, vector({7, 8, 9, 50e-6, -20e-6, 10e-6, -30e-6, 5, 6}));
+  EXPECT_DOUBLE_EQ(errors.half_loop(0), 60e-6);
+  EXPECT_DOUBLE_EQ(errors.half_loop(1), 50e-6);
 }
 
 /// Linear motion and rotation of a view, by central differences.
@@ -339,7 +373,8 @@ TEST(GravityCompliance, CountsItsProductsRowByRow) {
 
 TEST(GravityCompliance, DownIsADirection) {
   const vn::DhChain<1> arm({{.a = 1}});
-  for (const vn::Vector3& bad : {vn::Vector3(0, 0, -9.81), vn::Vector3(0, 0, 0), vn::Vector3(std::nan(""), 0, 1)})
+  for (const vn::Vector3& bad : {vn::Vector3(0, 0, -9.81), vn::Vector3(0, 0, 0), vn::Vector3(0, 0, -1.00001),
+                                 vn::Vector3(0, 0.99999, 0), vn::Vector3(std::nan(""), 0, 1)})
     EXPECT_THROW((void)vn::GravityCompliance(arm, bad), std::invalid_argument);
 }
 
@@ -562,7 +597,14 @@ TEST(JointErrors, InconsistentTermsAreNamed) {
   terms.transmission[1].orders = {};
   terms.hysteresis = {0.1, 0};
   EXPECT_EQ(complaint(terms, 6), "JointErrors: a width of the hysteresis is 0, must be positive");
+  terms.hysteresis = {std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(complaint(terms, 4), "JointErrors: a width of the hysteresis is inf, must be positive");
   terms.hysteresis = {};
+  terms.linear_ranges = {{-1, 1}, {2, 1.5}};
+  EXPECT_EQ(complaint(terms, 2), "JointErrors: a linear range ends at 1.5, below its start");
+  terms.linear_ranges = {{-1, 1}, {2, 2}};  // of a joint that stood still
+  EXPECT_EQ(complaint(terms, 2), "");
+  terms.linear_ranges = {};
   terms.transmission.pop_back();
   EXPECT_EQ(complaint(terms, 2), "JointErrors: transmissions of 1 joints, expected 2");
   terms = vn::JointTerms(2);

@@ -123,6 +123,36 @@ TEST(ThreadExecutor, RethrowsAfterTheOthersAreDone) {
                std::logic_error);
 }
 
+/// Runs everything on a thread of its own.
+struct Elsewhere {
+  void for_ranges(vn::Index n, vn::RangeFunction work) const {
+    std::jthread([&] { vn::SequentialExecutor{}.for_ranges(n, work); }).join();
+  }
+};
+
+// A clock or a user's word is asked for once, by the caller, whoever else computes; values are computed by those.
+TEST(ExecutorRef, AConditionIsEvaluatedOnceByTheCaller) {
+  const Elsewhere elsewhere;
+  const vn::ExecutorRef executor(elsewhere);
+  for (const bool answer : {true, false}) {
+    std::vector<std::thread::id> askers;
+    EXPECT_EQ(executor.broadcast([&] {
+      askers.push_back(std::this_thread::get_id());
+      return answer;
+    }),
+              answer);
+    EXPECT_EQ(askers, std::vector<std::thread::id>{std::this_thread::get_id()});
+  }
+  vn::VectorX values = vn::VectorX::Zero(3);
+  std::thread::id computed;
+  executor.allgather(values, [&](vn::Index begin, vn::Index end) {
+    computed = std::this_thread::get_id();
+    for (vn::Index i = begin; i < end; ++i) values(i) = static_cast<double>(i + 1);
+  });
+  EXPECT_EQ(values(0) + values(1) + values(2), 6);
+  EXPECT_NE(computed, std::this_thread::get_id());
+}
+
 TEST(ThreadExecutor, NeedsAThread) {
   EXPECT_NO_THROW(vn::ThreadExecutor(1));
   try {

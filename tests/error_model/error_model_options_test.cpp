@@ -23,7 +23,7 @@ std::string complaint_after(const Change& change) {
 
 struct Size {
   const char* name;
-  double ErrorModelOptions::* value;
+  double ErrorModelOptions::*value;
 };
 
 TEST(ErrorModelOptions, ExpectedSizesArePositive) {

@@ -10,12 +10,14 @@
 #include <numbers>
 #include <string>
 
+#include "complaint.hpp"
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 
@@ -196,7 +198,69 @@ TEST(FitErrorModel, StatesTheDensityGainWhereThatDecided) {
     for (const BlockChoice& block : found.blocks)
       if (!block.used) {
         EXPECT_EQ(block.log_density_gain, 0) << block.name;
+        EXPECT_EQ(block.precision, suppressing_precision) << block.name;
       }
+  }
+}
+
+// A block that is not used is reported with the error under the best prior that was tried for it.
+TEST(FitErrorModel, ABlockThatIsNotUsedIsReportedAtItsBest) {
+  int better = 0, unused = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Dataset<6> data =
+        measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 2e-5, .harmonic = 0}), 40, seed);
+    const auto found = fitted(data, {.harmonics = 0, .hysteresis = false, .tilt = false, .drift = false});
+    const BlockChoice* elastic = choice_of(found, "elastic");
+    ASSERT_NE(elastic, nullptr);
+    EXPECT_LE(elastic->with, elastic->without);
+    unused += !elastic->used;
+    better += !elastic->used && elastic->with < elastic->without;
+  }
+  EXPECT_GE(unused, 3);
+  EXPECT_GE(better, 1);
+}
+
+/// Joint errors whose first order and whose next two have given sizes; signs are up to chance.
+Dataset<6> with_sizes(double first, double next, Index poses) {
+  JointTerms terms(6);
+  terms.transmission.assign(6, Fourier::up_to(3));
+  Rng rng(9);
+  VectorX coefficients(36);
+  for (Index k = 0; k < 36; ++k) coefficients(k) = rng.sign() * (k % 6 < 2 ? first : next);
+  const Actual actual({with_geometric_errors(robot.chain, {}, 4), JointErrors(terms, coefficients)}, base, tool);
+  return measure(actual, sample_joints(robot.limits, poses, 2), {.position = 0.03e-3, .orientation = 0.1e-3}, 2);
+}
+
+// Few poses size all orders by one factor, unless evidence speaks clearly against the expected spectrum; many size each
+// band of orders. Precisions are those of the sizes that there are.
+TEST(FitErrorModel, BandsOfOrdersAreSizedApartWhereThatIsClear) {
+  const ErrorModelOptions options{.compliance = false,
+                                  .gear_ratio = false,
+                                  .coupling = false,
+                                  .harmonics = 3,
+                                  .spectrum = {{1, 1, 200e-6}, {2, 3, 100e-6}},
+                                  .hysteresis = false,
+                                  .tilt = false,
+                                  .drift = false,
+                                  .num_validation_poses = 60};
+  struct Case {
+    double first, next;
+    Index poses;
+    bool apart;
+  };
+  for (const Case& c : {Case{400e-6, 200e-6, 100, false}, Case{400e-6, 280e-6, 100, false},
+                        Case{200e-6, 1000e-6, 100, true}, Case{400e-6, 280e-6, 500, true}}) {
+    const auto found = fitted(with_sizes(c.first, c.next, c.poses), options);
+    const BlockChoice* jointwise = choice_of(found, "jointwise");
+    ASSERT_TRUE(jointwise != nullptr && jointwise->used);
+    const Index begin = found.arm.num_dense();
+    const RealMatrix precisions = RealMatrix(found.arm.precisions()).block(begin, 0, 36, 1);
+    EXPECT_EQ(jointwise->precision, precisions(0));
+    for (Index k = 0; k < 36; ++k) EXPECT_EQ(precisions(k), precisions(k % 6 < 2 ? 0 : 2)) << k;
+    EXPECT_EQ(precisions(0) != precisions(2), c.apart) << c.next << ' ' << c.poses;
+    if (!c.apart) continue;
+    EXPECT_NEAR(std::sqrt(precisions(0)), 200e-6 / c.first, 0.15 * 200e-6 / c.first);
+    EXPECT_NEAR(std::sqrt(precisions(2)), 100e-6 / c.next, 0.1 * 100e-6 / c.next);
   }
 }
 
@@ -238,6 +302,22 @@ double supported_factor(const ErrorModelEstimate& estimate, const RealMatrix& co
   return detail::visit_noise(visits).model;
 }
 
+/// The variance of the residuals, of orientations alone their deviation, and the factor of the covariance.
+void expect_noise_of_residuals(const FittedErrorModel<Chain>& found, const Dataset<6>& data, double factor) {
+  const detail::CalibrationProblem problem(found.arm, {detail::station_of(data, squared)}, Loss::squared);
+  const detail::StackedRows rows = problem.stacked(true);
+  const RealMatrix jacobian = rows.jacobian, information = jacobian.transpose() * jacobian;
+  const RealMatrix inverse = (information + RealMatrix::diagonal(found.arm.precisions())).inverse();
+  const auto values = static_cast<double>(rows.residuals.size());
+  const double freedom = values - (inverse * information).trace();
+  double angular = 0;
+  for (Index k = 0; k < rows.residuals.size(); ++k)
+    if (rows.of_orientation[static_cast<std::size_t>(k)]) angular += rows.residuals(k) * rows.residuals(k);
+  EXPECT_NEAR(found.orientation_sigma / (squared.orientation_sigma * std::sqrt(2 * angular / freedom)), 1, 1e-6);
+  EXPECT_NEAR(found.residual_variance / (rows.residuals.squaredNorm() / freedom), 1, 1e-6);
+  EXPECT_NEAR(found.variance_factor / (factor * found.residual_variance), 1, 1e-6);
+}
+
 // Few poses: of 90 values about 60 are left free. Then the noise of visits scales what remains.
 TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
   bool scaled = false;
@@ -250,6 +330,7 @@ TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
     const double factor = supported_factor(found, plain, data);
     scaled = scaled || factor < 1;
     EXPECT_LT(difference_in_deviations(found.covariance, factor * plain), 1e-6) << seed;
+    expect_noise_of_residuals(found, data, factor);
   }
   EXPECT_TRUE(scaled);
 }
@@ -267,6 +348,7 @@ TEST(FitErrorModel, GeometryAloneHasLeaveOnePoseOutErrorsOfItsOwn) {
   EXPECT_GT(all.leave_one_out_seconds, 0);
   ASSERT_EQ(all.left_out_rows.size(), 65u);
   ASSERT_EQ(all.left_out_rows, alone.left_out_rows);
+  for (std::size_t k = 0; k < 65; ++k) EXPECT_EQ(all.left_out_rows[k], static_cast<Index>(2 * k));
   ASSERT_EQ(all.geometry_left_out_errors.size(), 65);
   EXPECT_LT(difference(all.geometry_left_out_errors, alone.left_out_errors), 1e-12);
   EXPECT_EQ(RealMatrix(alone.geometry_left_out_errors), RealMatrix(alone.left_out_errors));
@@ -448,6 +530,50 @@ TEST(ExpectedTermsWhiteBox, KindsByHand) {
   options.harmonics = 0;  // gears come beside joint-wise terms alone
   const JointTerms bare = detail::allowed_terms(detail::ChainTable(chain.view()), options, 30);
   EXPECT_FALSE(bare.gear_ratio || bare.coupling);
+}
+
+// Below 400 measurements orders end at 60, and drives have no lines of their own.
+TEST(ExpectedTermsWhiteBox, OrdersByTheNumberOfMeasurements) {
+  ErrorModelOptions options{.spectrum = {{1, 2, 7e-5}, {59, 62, 8e-5}, {200, 200, 1e-5}}};
+  options.drives = {{.gear_ratio = 100}, {.encoder_periods = 600}};
+  const auto spectra = detail::spectra_of(options, 2);
+  const auto orders = [&](std::size_t joint, Index measurements) {
+    return detail::orders_of_joint(options, spectra, joint, measurements).orders;
+  };
+  EXPECT_EQ(orders(0, 399), (std::vector<int>{1, 2, 59, 60}));
+  EXPECT_EQ(orders(1, 399), (std::vector<int>{1, 2, 59, 60}));
+  EXPECT_EQ(orders(1, 400), (std::vector<int>{1, 2, 59, 60, 61, 62, 200, 598, 599, 600, 601, 602, 1198, 1199, 1200,
+                                              1201, 1202}));  // lines beyond `harmonics`, too
+  EXPECT_EQ(expected_std(spectra[0], 400), 12e-6);
+  EXPECT_EQ(expected_std(spectra[0], 200), 7e-6);  // the line of the drive
+  EXPECT_EQ(expected_std(spectra[1], 200), 1e-5);
+  options.harmonics = 50;
+  EXPECT_EQ(orders(0, 399), (std::vector<int>{1, 2}));
+  EXPECT_EQ(orders(0, 400).front(), 1);
+  EXPECT_EQ(orders(0, 400)[2], 199);
+  options.drives.clear();
+  options.harmonics = 61;
+  EXPECT_EQ(orders(0, 400), (std::vector<int>{1, 2, 59, 60, 61}));
+  options.drives.resize(1);
+  EXPECT_EQ(vernier_test::complaint([&] { (void)detail::spectra_of(options, 2); }),
+            "fit_error_model: drives of 1 joints for an arm of 2");
+}
+
+TEST(ExpectedTermsWhiteBox, OnlyWhatIsAllowed) {
+  const detail::ChainTable chain(robot.chain.view());
+  ErrorModelOptions options{.harmonics = 2};
+  options.down = Vector3(0, 1, 0);
+  const JointTerms all = detail::allowed_terms(chain, options, 30);
+  EXPECT_EQ(RealMatrix(all.gravity->down()), vector({0, 1, 0}));
+  EXPECT_EQ(RealMatrix(all.tilt->down()), vector({0, 1, 0}));
+  options.gear_ratio = false;
+  EXPECT_TRUE(detail::allowed_terms(chain, options, 30).coupling);
+  EXPECT_FALSE(detail::allowed_terms(chain, options, 30).gear_ratio);
+  options.gear_ratio = true;
+  options.coupling = options.compliance = options.hysteresis = options.tilt = false;
+  const JointTerms some = detail::allowed_terms(chain, options, 30);
+  EXPECT_TRUE(some.gear_ratio);
+  EXPECT_FALSE(some.coupling || some.gravity || some.tilt || !some.hysteresis.empty());
 }
 
 // a cos q + b sin q at 0 and pi: a and -a, mean 0; its variance is that of a.

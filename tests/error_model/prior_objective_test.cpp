@@ -23,7 +23,9 @@ TEST(PriorObjective, IsTheErrorOfPosesLeftOutWithThePriorsItNames) {
   poses.with_system([&](const BlockSystem& system) {
     const PriorObjective objective(system, normal, before, steps, 2, relative, 3);
     ASSERT_EQ(objective.dimension(), 4);  // elastic, two joints, exponent
-    EXPECT_NO_THROW(objective.box().validate());
+    const Box box = objective.box();
+    EXPECT_EQ(RealMatrix(box.lower), vector({-1, -1, -1, 0.5}));  // precisions of 0.1 to 1e4, exponents of 0.5 to 2
+    EXPECT_EQ(RealMatrix(box.upper), vector({4, 4, 4, 2}));
     const RealMatrix at = vector({1, 2, -1, 1.5});
     const VectorX precisions = objective.precisions(at);
     for (Index k = 0; k < 3; ++k) EXPECT_EQ(precisions(k), before(k));  // of geometry
@@ -44,6 +46,18 @@ TEST(PriorObjective, IsTheErrorOfPosesLeftOutWithThePriorsItNames) {
     objective(population, fitness);
     EXPECT_DOUBLE_EQ(fitness(1), expected);
     EXPECT_NE(fitness(0), expected);
+  });
+}
+
+// Without elastic terms the first variable is of the first joint.
+TEST(PriorObjective, HasNoVariableForTermsThatAreNotThere) {
+  const RandomBlocks poses(10, 21, false);
+  const NormalEquations normal = poses.normal();
+  poses.with_system([&](const BlockSystem& system) {
+    const PriorObjective objective(system, normal, VectorX::Ones(15), VectorX::Zero(15), 0, VectorX::Ones(10), 1);
+    ASSERT_EQ(objective.dimension(), 3);
+    const VectorX precisions = objective.precisions(vector({2, -1, 1.5}));
+    for (Index k = 0; k < 15; ++k) EXPECT_DOUBLE_EQ(precisions(k), k < 5 ? 1 : k < 9 ? 100 : 0.1) << k;
   });
 }
 

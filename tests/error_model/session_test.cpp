@@ -7,6 +7,9 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "gauss_newton.hpp"
 #include "larger.hpp"
@@ -83,10 +86,34 @@ Joints shifted(Joints joints, double by) {
   return joints;
 }
 
-bool used(const FittedErrorModel<Chain>& found, const char* name) {
+/// What is deployed does not know the drift: errors of poses left out are nearly its errors of the same poses, because
+/// one of many poses changes little.
+void expect_left_out_as_deployed(const FittedErrorModel<Chain>& found, const std::vector<Dataset<6>>& stations) {
+  ASSERT_GT(found.left_out_rows.size(), 60u);
+  double worst = 0, largest = 0;
+  for (std::size_t k = 0; k < found.left_out_rows.size(); ++k) {
+    Index row = found.left_out_rows[k];
+    std::size_t station = 0;
+    while (row >= stations[station].size()) row -= stations[station++].size();
+    const Dataset<6>& data = stations[station];
+    const Vector3 deployed = found.models[station].position(configuration(data.joints(), row));
+    const double error = (deployed - point(data.positions(), row)).norm();
+    worst = vernier_test::larger(worst, std::abs(error - found.left_out_errors(static_cast<Index>(k))));
+    largest = vernier_test::larger(largest, error);
+  }
+  EXPECT_LT(worst, 0.02e-3);
+  EXPECT_GT(largest, 0.08e-3);
+}
+
+const BlockChoice* block_of(const FittedErrorModel<Chain>& found, const char* name) {
   for (const BlockChoice& block : found.blocks)
-    if (block.name == name) return block.used;
-  return false;
+    if (std::string(block.name) == name) return &block;
+  return nullptr;
+}
+
+bool used(const FittedErrorModel<Chain>& found, const char* name) {
+  const BlockChoice* block = block_of(found, name);
+  return block != nullptr && block->used;
 }
 
 JointRows<6> samples(Index n, std::uint64_t seed) { return abb_irb120_operating_region().sample(robot.chain, n, seed); }
@@ -147,6 +174,64 @@ TEST(Drift, OfTheBaseIsFollowed) {
   }
   const double worst = RealMatrix(distances_from(left, centroid(left))).largest();
   EXPECT_LT(worst, 0.04e-3);
+  // nothing but frames and geometry was found: they are what is deployed, and the drift is taken off them
+  EXPECT_FALSE(used(found, "jointwise") || used(found, "elastic") || used(found, "approach") || used(found, "tilt"));
+  for (Index i = 0; i < 5; ++i) {
+    const JointVector<6> q = configuration(joints, i);
+    const RealMatrix position = found.model().position(q);
+    EXPECT_EQ(RealMatrix(found.geometry.front().position(q)), position);
+    EXPECT_EQ(RealMatrix(found.jointwise.front().position(q)), position);
+  }
+  EXPECT_EQ(RealMatrix(found.geometry_left_out_errors), RealMatrix(found.left_out_errors));
+}
+
+// Two places, whose bases drift, each in its own way.
+TEST(Drift, OfTwoStationsIsTakenOffEach) {
+  const Index n = 200;
+  const JointRows<6> joints = samples(n, 1), others = samples(n, 3);
+  const Isometry3 there = FrameParameters(Vector6{-2, 1, 0.3, 0.4, -0.8, 2}).isometry();
+  const Dataset<6> first = visited(arm_with_hysteresis(0), joints, rows_before(joints), 2,
+                                   [&](Index i) { return wave(i, n); }),
+                   second = visited(arm_with_hysteresis(0), others, rows_before(others), 4,
+                                    [&](Index i) { return composed(wave((i + 70) % n, n), there); });
+  const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), first,
+                                                            {.frames = Frames::base_and_tool}, squared);
+  const auto found =
+      fit_error_model(start, std::vector{first, second}, {.harmonics = 0, .num_validation_poses = 100}, squared);
+  ASSERT_TRUE(used(found, "drift"));
+  ASSERT_EQ(found.drift.size(), 2u);
+  expect_left_out_as_deployed(found, {first, second});
+}
+
+// A base that goes by random steps from one knot to the next: the size of its steps is found, in factors of two, and
+// stands for what comes after the session.
+TEST(Drift, StepsHaveTheirSize) {
+  const Index n = 400;
+  const JointRows<6> joints = samples(n, 1);
+  const double root = std::sqrt(40.0 / 200);
+  for (const auto& [size, precision] : {std::pair{2.0, 0.25}, {0.5, 4.0}}) {
+    Rng rng(5);
+    SessionDrift walk{0, (static_cast<double>(n) - 1) / 10, Vector3(0.4, -0.3, 0.5), MatrixX::Zero(6, 11), {}};
+    for (Index k = 1; k < 11; ++k)
+      for (Index r = 0; r < 6; ++r)
+        walk.knots(r, k) = walk.knots(r, k - 1) + rng.sign() * size * root * (r < 3 ? 0.03e-3 : 20e-6);
+    const Dataset<6> data = visited(arm_with_hysteresis(0), joints, rows_before(joints), 2,
+                                    [&](Index i) { return walk.motion(static_cast<double>(i)); });
+    // priors are relative to the noise, so that is what it is stated to be
+    const SensorModel exact{.position_sigma = 0.02e-3, .orientation_sigma = 0.05e-3, .loss = Loss::squared};
+    const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
+                                                              {.frames = Frames::base_and_tool}, exact);
+    const auto found = fit_error_model(start, std::vector{data}, {.harmonics = 0, .num_validation_poses = 100}, exact);
+    ASSERT_TRUE(used(found, "drift"));
+    EXPECT_EQ(block_of(found, "drift")->precision, precision);
+    const SessionDrift& drift = found.drift.front();
+    EXPECT_EQ(drift.knots.cols(), 11);
+    ASSERT_GE(drift.step_variance.size(), 6);
+    for (Index r = 0; r < 6; ++r) {  // at least the expected one
+      const double step = root * (r < 3 ? 0.03e-3 : 20e-6);
+      EXPECT_NEAR(drift.step_variance(r) / (step * step), 1 / std::min(1.0, precision), 1e-9);
+    }
+  }
 }
 
 TEST(Drift, NothingIsFoundInABaseThatRests) {
@@ -165,8 +250,9 @@ TEST(Drift, OfAJointsZeroIsFollowed) {
   for (Index i = 0; i < n; ++i) actually(i, 1) += zero(i);
   const Dataset<6> seen =
       visited(arm_with_hysteresis(0), actually, rows_before(actually), 2, [&](Index i) { return wave(i, n); });
-  const auto found =
-      fitted(Dataset<6>(joints, seen.positions(), seen.orientations()).approached_from(rows_before(joints)));
+  const Dataset<6> data =
+      Dataset<6>(joints, seen.positions(), seen.orientations()).approached_from(rows_before(joints));
+  const auto found = fitted(data);
   ASSERT_TRUE(used(found, "drift"));
   ASSERT_TRUE(used(found, "joint_drift"));
   ASSERT_EQ(found.drift.front().knots.rows(), 12);
@@ -174,6 +260,12 @@ TEST(Drift, OfAJointsZeroIsFollowed) {
   for (Index i = 0; i < n; ++i)
     worst = vernier_test::larger(worst, std::abs(found.drift.front().joint_zeros(static_cast<double>(i))(1) - zero(i)));
   EXPECT_LT(worst, 60e-6);
+  expect_left_out_as_deployed(found, {data});
+  const double step = std::sqrt(40.0 / 200) * 10e-6;
+  ASSERT_EQ(found.drift.front().step_variance.size(), 12);
+  EXPECT_NEAR(found.drift.front().step_variance(7) / (step * step),
+              1 / std::min(1.0, block_of(found, "joint_drift")->precision), 1e-9);
+  EXPECT_LT(block_of(found, "joint_drift")->precision, 1);  // half a wave of 150 urad in 300 poses
 }
 
 TEST(Drift, OfTheBaseAloneMovesNoJoint) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
@@ -43,13 +45,13 @@ Model actual_arm() {
   return model.with_thermal({22, 10, 40, rates});
 }
 
-Dataset<6> measured(const Model& actual, Index poses, double spread, std::uint64_t seed) {
+Dataset<6> measured(const Model& actual, Index poses, double spread, std::uint64_t seed, double mean = 22) {
   const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, poses, seed);
   Rng rng(seed);
   VectorX celsius(poses);
   PointRows positions(poses, 3), orientations(poses, 3);
   for (Index i = 0; i < poses; ++i) {
-    celsius(i) = rng.uniform(22 - spread, 22 + spread);
+    celsius(i) = rng.uniform(mean - spread, mean + spread);
     const Isometry3 pose = actual.at_temperature(celsius(i)).pose(configuration(joints, i));
     set_point(positions, i, translation(pose));
     set_point(orientations, i, log_so3(rotation(pose)));
@@ -61,12 +63,13 @@ Dataset<6> measured(const Model& actual, Index poses, double spread, std::uint64
   return Dataset<6>(joints, positions, orientations).without_approach().at_temperatures(celsius);
 }
 
-FittedErrorModel<Chain> fitted(const Dataset<6>& data) {
+FittedErrorModel<Chain> fitted(const Dataset<6>& data,
+                               ErrorModelOptions options = {.harmonics = 2, .num_validation_poses = 60}) {
+  options.drift = false;
   const Framed<Chain> nominal(robot.chain, base, tool);
   const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
   EXPECT_TRUE(start.converged()) << start.message;
-  return fit_error_model(start, std::vector<Dataset<6>>{data},
-                         {.harmonics = 2, .drift = false, .num_validation_poses = 60}, squared);
+  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
 }
 
 const BlockChoice* block_of(const FittedErrorModel<Chain>& found) {
@@ -85,6 +88,18 @@ double mean_error(const Model& a, const Model& b, std::uint64_t seed) {
   return sum;
 }
 
+/// Thermal unknowns, each beside that of its parameter, in steps of their expected sizes.
+void expect_thermal_unknowns(const ErrorModelEstimate& found, double size) {
+  std::vector<std::pair<Index, int>> thermal, others;
+  for (const GeometricUnknown& u : found.arm.geometric()) {
+    (u.thermal ? thermal : others).emplace_back(u.parameter, u.station);
+    if (u.thermal) {
+      EXPECT_EQ(u.scale, size);
+    }
+  }
+  EXPECT_EQ(thermal, others);
+}
+
 TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
   const Model actual = actual_arm();
   const auto found = fitted(measured(actual, 250, 4, 1));
@@ -93,6 +108,7 @@ TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
   EXPECT_TRUE(block_of(found)->used);
   EXPECT_NEAR(found.mean_temperature, 22, 0.5);
   EXPECT_NEAR(found.temperature_std, 4 / std::sqrt(3), 0.3);
+  expect_thermal_unknowns(found, 1e-4);
   for (const double celsius : {18.5, 22.0, 25.5}) {
     const Model now = found.model().at_temperature(celsius), truth = actual.at_temperature(celsius);
     EXPECT_LT(mean_error(now, truth, 7), 0.02e-3) << celsius;
@@ -117,6 +133,76 @@ TEST(Temperature, IsFoundAndServesAtEveryMeasuredOne) {
     EXPECT_LT((all[static_cast<std::size_t>(i)] - one).norm(), 1e-12 * one.norm()) << i;
   }
   EXPECT_GT(unknown, known + 0.5 * std::pow(mean_error(found.model(), found.model().at_temperature(22 + 2.3), 3), 2));
+}
+
+// Two places at which different things move: each frame changes in its own way.
+TEST(Temperature, FramesOfTwoStationsChangeEachInItsOwnWay) {
+  const Model actual = actual_arm();
+  VectorX rates = actual.thermal()->parameters;
+  rates(0) = -40e-6;
+  rates(1) = rates(2) = 0;
+  const Model other = actual.with_thermal({22, 10, 40, rates});
+  const Dataset<6> first = measured(actual, 100, 4, 1), second = measured(other, 100, 4, 2);
+  const auto start = identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), first,
+                                              {.frames = Frames::base_and_tool}, squared);
+  ErrorModelOptions options{.harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
+  options.thermal_prior_std = 3e-5;
+  const auto found = fit_error_model(start, std::vector{first, second}, options, squared);
+  ASSERT_TRUE(block_of(found)->used);
+  expect_thermal_unknowns(found, 3e-5);
+  for (const double celsius : {18.5, 25.5}) {
+    EXPECT_LT(mean_error(found.models[0].at_temperature(celsius), actual.at_temperature(celsius), 7), 0.03e-3);
+    EXPECT_LT(mean_error(found.models[1].at_temperature(celsius), other.at_temperature(celsius), 7), 0.03e-3);
+  }
+}
+
+// A change of a few hundredths of a kelvin is one, less is the noise of a thermometer.
+TEST(Temperature, IsLookedForWhereItVaried) {
+  const Dataset<6> data = measured(actual_arm(), 60, 0, 2);
+  for (const auto& [deviation, looked_for] : {std::pair{0.019, false}, {0.021, true}}) {
+    VectorX celsius(60);
+    for (Index i = 0; i < 60; ++i) celsius(i) = 22 + (i % 2 == 0 ? deviation : -deviation);
+    const auto found = fitted(data.at_temperatures(celsius), {.harmonics = 0, .hysteresis = false, .tilt = false});
+    EXPECT_EQ(block_of(found) != nullptr, looked_for) << deviation;
+  }
+}
+
+// An earlier calibration at 18 to 26 degrees knows how the arm changes. Few poses at 31 degrees, or at none that was
+// measured, inherit that; a temperature means the same as before.
+TEST(Temperature, IsInherited) {
+  VectorX rates = actual_arm().thermal()->parameters;
+  for (Index k = 0; k < 6; ++k) rates(k) = 0;  // how a base changes is not handed on
+  const Model actual = actual_arm().with_thermal({22, 10, 40, rates});
+  const auto before = fitted(measured(actual, 250, 4, 1));
+  const ArmPrior prior = arm_prior("before", before.model(), before.first_station());
+  EXPECT_NEAR(prior.temperatures[0], 18, 0.2);
+  EXPECT_NEAR(prior.temperatures[1], 26, 0.2);
+  ErrorModelOptions options{.harmonics = 2, .num_validation_poses = 60};
+  options.prior = &prior;
+  const Dataset<6> warm = measured(actual, 12, 1, 5, 31), mild = measured(actual, 12, 0.5, 6, before.mean_temperature);
+  for (const bool measured_too : {true, false}) {
+    const auto found = fitted(measured_too ? warm : mild.at_temperatures({}), options);
+    ASSERT_TRUE(found.prior && found.prior->used);
+    EXPECT_EQ(found.mean_temperature, before.mean_temperature);
+    EXPECT_EQ(found.temperature_std, before.temperature_std);
+    ASSERT_NE(found.model().thermal(), nullptr);
+    EXPECT_EQ(found.model().thermal()->reference, before.mean_temperature);
+    EXPECT_EQ(found.model().thermal()->lower, prior.temperatures[0]);
+    if (measured_too) {
+      EXPECT_EQ(found.model().thermal()->upper,
+                *std::max_element(warm.temperatures().begin(), warm.temperatures().end()));
+    } else {
+      EXPECT_EQ(found.model().thermal()->upper, prior.temperatures[1]);
+    }
+    for (const double celsius : {19.0, measured_too ? 31.0 : 25.0})
+      EXPECT_LT(mean_error(found.model().at_temperature(celsius), actual.at_temperature(celsius), 7), 0.1e-3);
+    const auto block =
+        std::find_if(found.blocks.begin(), found.blocks.end(), [](const BlockChoice& b) { return b.name == "prior"; });
+    ASSERT_NE(block, found.blocks.end());
+    EXPECT_LT(block->with, block->without);
+    EXPECT_NEAR(block->precision, std::pow(found.prior->joints, -2), 1e-9);
+    EXPECT_EQ(found.fallback_error, block->without);  // nothing else was found
+  }
 }
 
 TEST(Temperature, NothingIsFoundWhereThereIsNothing) {

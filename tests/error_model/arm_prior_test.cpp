@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "complaint.hpp"
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
@@ -86,6 +88,11 @@ Outcome from_twenty_poses(const ArmPrior& prior, const TrueArm& true_arm, int ar
     const auto without = fitted(few, nullptr), with = fitted(few, &prior);
     EXPECT_TRUE(with.prior.has_value());
     out.transfers.push_back(*with.prior);
+    for (const BlockChoice& block : with.blocks)
+      if (block.name == "prior") {
+        EXPECT_NEAR(block.precision, std::pow(with.prior->joints, -2), 1e-9);
+        EXPECT_TRUE(!block.used || block.with < block.without);
+      }
     out.ratios.push_back(position_errors(with.model(), unseen).mean() /
                          position_errors(without.model(), unseen).mean());
   }
@@ -131,10 +138,74 @@ TEST(ArmPrior, ADifferentArmIsNamedUseless) {
   }
 }
 
+/// Fits geometry and three orders a joint.
+FittedErrorModel<Chain> fitted_plainly(const Dataset<6>& data, const ArmPrior* prior) {
+  ErrorModelOptions options{.compliance = false,
+                            .gear_ratio = false,
+                            .coupling = false,
+                            .harmonics = 3,
+                            .hysteresis = false,
+                            .tilt = false,
+                            .drift = false,
+                            .num_validation_poses = 100};
+  options.prior = prior;
+  const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain), data,
+                                                            {.frames = Frames::base_and_tool}, squared);
+  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+}
+
 TEST(ArmPrior, OfAnotherNumberOfJointsIsRefused) {
-  ArmPrior prior = prior_from(arm(4, joint_errors(5), 0.4), 60);
+  const Dataset<6> data = measured(arm(4, joint_errors(5), 0), 40, 2);
+  const auto before = fitted_plainly(data, nullptr);
+  ArmPrior prior = arm_prior("before", before.model(), before.first_station());
   prior.nominal = detail::ChainTable(robots::barrett_wam().chain.view());
-  EXPECT_THROW(fitted(measured(arm(4, joint_errors(5), 0), 40, 2), &prior), std::invalid_argument);
+  EXPECT_EQ(vernier_test::complaint([&] { fitted_plainly(data, &prior); }),
+            "fit_error_model: the earlier calibration is of an arm of 7 joints in the standard convention");
+  prior.nominal = detail::ChainTable(DhChain<6, ModifiedDh>({{}, {}, {}, {}, {}, {}}).view());
+  EXPECT_EQ(vernier_test::complaint([&] { fitted_plainly(data, &prior); }),
+            "fit_error_model: the earlier calibration is of an arm of 6 joints in the modified convention");
+}
+
+// What is found with an earlier calibration is where residuals and the prior N(m, S + kappa^2 V0) balance; the
+// covariance is the inverse of both, times the variance of the noise over the values that they leave free.
+TEST(ArmPrior, TheFitBalancesResidualsAndThePrior) {
+  JointTerms terms(6);
+  terms.transmission.assign(6, Fourier::up_to(3));
+  Rng rng(3);
+  VectorX coefficients(36), changed_coefficients(36);
+  for (Index k = 0; k < 36; ++k) {
+    coefficients(k) = rng.sign() * 0.2e-3;
+    changed_coefficients(k) = coefficients(k) + rng.sign() * 0.06e-3;
+  }
+  const auto before = fitted_plainly(measured(arm(4, JointErrors(terms, coefficients), 0.4), 100, 1), nullptr);
+  const ArmPrior prior = arm_prior("before", before.model(), before.first_station());
+  const Dataset<6> data = measured(arm(4, JointErrors(terms, changed_coefficients), -0.7), 14, 2);
+  const auto found = fitted_plainly(data, &prior);
+  ASSERT_TRUE(found.prior && found.prior->used);
+  ASSERT_NE(found.prior->geometry, found.prior->joints);
+  ArmParameterisation at({found.arm.geometry(0)}, found.arm.geometric());
+  const Index n = found.arm.terms().size(), size = at.size() + n;
+  at.set_terms(found.arm.terms(), found.arm.scales().tail(n), VectorX::Zero(n));
+  const auto known = detail::transferred_unknowns(prior, at, prior.nominal);
+  VectorX coefficient_steps = VectorX::Zero(size);
+  for (Index k = 0; k < n; ++k) coefficient_steps(size - n + k) = found.arm.steps()(size - n + k);
+  at.move(coefficient_steps);
+  const detail::CalibrationProblem problem(at, {detail::station_of(data, squared)}, Loss::squared);
+  const detail::StackedRows rows = problem.stacked(true);
+  const RealMatrix jacobian = rows.jacobian, residuals = rows.residuals;
+  const JointPrior balance = known.prior(size, found.prior->geometry, found.prior->joints);
+  const RealMatrix information = jacobian.transpose() * jacobian + balance.precision;
+  const RealMatrix offset = RealMatrix(coefficient_steps) - balance.mean;
+  const RealMatrix inverse = information.inverse();
+  const RealMatrix step = inverse * (jacobian.transpose() * residuals + RealMatrix(balance.precision) * offset);
+  EXPECT_LT(step.over(inverse.diagonal().sqrt()).largest(), 0.02);  // of a deviation
+  const double explained = static_cast<double>(size) - (inverse * balance.precision).trace();
+  const double variance = (residuals.squared_norm() + offset.dot(RealMatrix(balance.precision) * offset)) /
+                          (static_cast<double>(residuals.rows()) - explained);
+  EXPECT_NEAR(found.residual_variance / variance, 1, 1e-3);
+  const RealMatrix std = inverse.diagonal().sqrt();
+  EXPECT_LT((RealMatrix(found.covariance) / found.variance_factor - inverse).over(std * std.transpose()).largest(),
+            1e-3);
 }
 
 // What was measured by either of the two is covered.
@@ -186,6 +257,31 @@ TEST(TransferredUnknownsWhiteBox, FramesAreNotTransferred) {
   EXPECT_EQ(unknowns[1].parameter, 6);
   EXPECT_EQ(unknowns[2].parameter, 35);
   EXPECT_EQ(unknowns[2].precision, 0);
+}
+
+// A parameter and its change with temperature are two unknowns; where both calibrations know one, its prior is that of
+// the earlier one.
+TEST(TransferredUnknownsWhiteBox, WhatBothKnowHasNoPriorOfItsOwn) {
+  const ArmPrior prior{
+      "before",
+      detail::ChainTable(robot.chain.view()),
+      {.arm = ArmParameterisation({ArmGeometry(in_frames(robot.chain))}, {{7, -1, 1e-3, 1}, {8, -1, 1e-5, 1, true}})}};
+  const auto unknowns = detail::with_unknowns_of(prior, {{7, -1, 2e-3, 3}, {8, -1, 3e-3, 4}, {9, -1, 4e-3, 5}});
+  ASSERT_EQ(unknowns.size(), 4u);
+  EXPECT_EQ(unknowns[0].precision, 0);
+  EXPECT_EQ(unknowns[0].scale, 2e-3);
+  EXPECT_EQ(unknowns[1].precision, 4);
+  EXPECT_EQ(unknowns[2].precision, 5);
+  EXPECT_TRUE(unknowns[3].thermal);
+  EXPECT_EQ(unknowns[3].parameter, 8);
+  EXPECT_EQ(unknowns[3].precision, 0);
+}
+
+TEST(TransferredUnknownsWhiteBox, ACovarianceThatIsNoneIsNamed) {
+  const detail::TransferredUnknowns known{
+      {0, 1}, 2, vector({0, 0}), RealMatrix(2, 2, {1, 3, 3, 1}), vector({1e-3, 1e-3})};
+  EXPECT_EQ(vernier_test::complaint([&] { (void)known.prior(2, 0.1, 0.1); }),
+            "an earlier calibration: its covariance is not positive definite");
 }
 
 // N(m, S + kappa^2 V0) of three unknowns by hand; the first is geometric.
@@ -260,6 +356,66 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferIsWhatHasChanged) {
     const PriorTransfer found = detail::likely_transfer(problem, known);
     EXPECT_EQ(found.geometry, geometry);
     EXPECT_EQ(found.joints, joints);
+  }
+}
+
+// The likelihood of residuals, at the mean of the prior, in the directions that unknowns of the later calibration alone
+// do not reach (restricted likelihood), over all variances of the noise: at what is chosen it is as large as anywhere
+// on the grid. Of positions and of poses.
+TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) {
+  const FrameParameters tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
+  JointTerms terms(6);
+  terms.transmission[1] = terms.transmission[2] = terms.transmission[4] = Fourier::up_to(1);
+  const VectorX sizes = VectorX::Constant(6, 1e-3);
+  const std::vector<GeometricUnknown> of_chain{{7, -1, 1e-3, 0}, {11, -1, 1e-3, 0}, {21, -1, 1e-3, 0}};
+  std::vector<GeometricUnknown> unknowns = of_chain;
+  for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, 1e-3, 0});
+  const ArmGeometry there(Framed<Chain>(robot.chain, {}, tool));
+  ArmPrior prior{"before",
+                 detail::ChainTable(robot.chain.view()),
+                 {.arm = ArmParameterisation({ArmGeometry(in_frames(robot.chain))}, of_chain)}};
+  prior.estimate.arm.set_terms(terms, sizes, VectorX::Ones(6));
+  prior.estimate.covariance = 1e-4 * MatrixX::Identity(9, 9);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Rng rng(seed);
+    VectorX values = there.parameters(), coefficients(6);
+    const double geometry = std::pow(10, rng.uniform(-1.5, 0.5)), joints = std::pow(10, rng.uniform(-1.5, 0.2));
+    for (const GeometricUnknown& u : of_chain) values(u.parameter) += rng.normal() * geometry * 1e-3;
+    for (double& c : coefficients) c = rng.normal() * joints * 1e-3;
+    const FittedArm actual{there.with_parameters(values), JointErrors(terms, coefficients)};
+    Dataset<6> data = measure(actual.typed(robot.chain), sample_joints(robot.limits, 9, seed),
+                              {.position = 0.06e-3, .orientation = 0.2e-3}, seed);
+    if (seed % 2 == 0) data = data.without_orientations();
+    const SensorModel sensors{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3, .loss = Loss::squared};
+    detail::CalibrationProblem problem(ArmParameterisation({there}, unknowns), {detail::station_of(data, sensors)},
+                                       Loss::squared);
+    problem.arm.set_terms(terms, sizes, VectorX::Zero(6));
+    const auto known = detail::transferred_unknowns(prior, problem.arm, prior.nominal);
+    const PriorTransfer found = detail::likely_transfer(problem, known);
+    const detail::StackedRows rows = problem.stacked(true);
+    const RealMatrix jacobian = rows.jacobian, all = RealMatrix::identity(rows.residuals.size());
+    RealMatrix shared(rows.residuals.size(), 9);  // of chain and joints; the frame is the later one's own
+    shared.set_block(0, 0, jacobian.block(0, 0, shared.rows(), 3));
+    shared.set_block(0, 3, jacobian.block(0, 9, shared.rows(), 6));
+    const RealMatrix own = jacobian.block(0, 3, shared.rows(), 6);
+    // instead of a basis of the rest: a variance of `own` that is large, its own determinant taken off
+    const RealMatrix gram = own.transpose() * own;
+    const auto likelihood = [&](double g, double j) {
+      RealMatrix variances(9, 1);
+      for (Index k = 0; k < 9; ++k) variances(k) = 1e-4 + std::pow(k < 3 ? g : j, 2);
+      const RealMatrix covariance = all + shared * RealMatrix::diagonal(variances) * shared.transpose();
+      const RealMatrix inverse = covariance.inverse(), middle = own.transpose() * inverse * own;
+      const RealMatrix error = RealMatrix(rows.residuals) + shared * known.mean;  // mean less present values, zero
+      const RealMatrix seen = own.transpose() * inverse * error;
+      const double square = error.dot(inverse * error) - seen.dot(middle.inverse() * seen);
+      const double freedom = static_cast<double>(all.rows() - 6);
+      return -0.5 * (freedom * std::log(square / freedom) + covariance.log_determinant() + middle.log_determinant() -
+                     gram.log_determinant());
+    };
+    double most = -1e300;
+    for (const double g : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2})
+      for (const double j : {0.02, 0.05, 0.1, 0.15, 0.2, 0.4, 0.8, 1.6}) most = std::max(most, likelihood(g, j));
+    EXPECT_GT(likelihood(found.geometry, found.joints), most - 1e-3) << seed;
   }
 }
 

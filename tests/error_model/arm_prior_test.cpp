@@ -380,6 +380,7 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
     Rng rng(seed);
     VectorX values = there.parameters(), coefficients(6);
     const double geometry = std::pow(10, rng.uniform(-1.5, 0.5)), joints = std::pow(10, rng.uniform(-1.5, 0.2));
+    for (Index k = 0; k < 3; ++k) values(k) += 0.03 * rng.sign();  // it stands somewhere else
     for (const GeometricUnknown& u : of_chain) values(u.parameter) += rng.normal() * geometry * 1e-3;
     for (double& c : coefficients) c = rng.normal() * joints * 1e-3;
     const FittedArm actual{there.with_parameters(values), JointErrors(terms, coefficients)};

@@ -374,8 +374,9 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
   ArmPrior prior{"before",
                  detail::ChainTable(robot.chain.view()),
                  {.arm = ArmParameterisation({ArmGeometry(in_frames(robot.chain))}, of_chain)}};
-  prior.estimate.arm.set_terms(terms, sizes, VectorX::Ones(6));
+  prior.estimate.arm.set_terms(terms, sizes, VectorX::Constant(6, 4));
   prior.estimate.covariance = 1e-4 * MatrixX::Identity(9, 9);
+  prior.estimate.variance_factor = 2;  // of its noise; expected variances are then 1 / 2 and 1 / 4
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Rng rng(seed);
     VectorX values = there.parameters(), coefficients(6);
@@ -403,7 +404,7 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
     const RealMatrix gram = own.transpose() * own;
     const auto likelihood = [&](double g, double j) {
       RealMatrix variances(9, 1);
-      for (Index k = 0; k < 9; ++k) variances(k) = 1e-4 + std::pow(k < 3 ? g : j, 2);
+      for (Index k = 0; k < 9; ++k) variances(k) = 0.5e-4 + (k < 3 ? g * g / 2 : j * j / 4);
       const RealMatrix covariance = all + shared * RealMatrix::diagonal(variances) * shared.transpose();
       const RealMatrix inverse = covariance.inverse(), middle = own.transpose() * inverse * own;
       const RealMatrix error = RealMatrix(rows.residuals) + shared * known.mean;  // mean less present values, zero

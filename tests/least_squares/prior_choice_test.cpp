@@ -50,6 +50,11 @@ TEST(OneStandardErrorRule, DifferencesArePaired) {
   EXPECT_EQ(one_standard_error_rule(trials({{1, 9, 4, 20}, {1.5, 9.5, 4.5, 20.5}})), 0u);
 }
 
+// A trial that is much better in all blocks but one is the best. The other exceeds it by 6, standard error 1.
+TEST(OneStandardErrorRule, TheBestHasTheSmallestMean) {
+  EXPECT_EQ(one_standard_error_rule(trials({{1, 1, 1, 1, 1, 1, 1, 9}, {8, 8, 8, 8, 8, 8, 8, 8}})), 0u);
+}
+
 TEST(OneStandardErrorRule, TakesTheTightestOfThoseAllowed) {
   const std::vector<double> best{1, 1, 1}, allowed{1.3, 0.9, 0.9}, worse{2, 2, 2.01};
   EXPECT_EQ(one_standard_error_rule(trials({best, allowed, allowed})), 2u);

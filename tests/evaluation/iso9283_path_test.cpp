@@ -79,6 +79,47 @@ TEST(Iso9283Path, LineByHand) {
   EXPECT_EQ(result.departures[1], "2 runs, the norm asks for 10");
 }
 
+// Errors that shrink from the beginning on, and one that grows: the largest are those of the first point, and of the
+// last, whatever their sign.
+TEST(Iso9283Path, TheLargestErrorMayBeThatOfAnyPoint) {
+  const Poses path{pose_at({0, 0, 0}), pose_at({1, 0, 0})};
+  std::vector<Poses> runs(2);
+  for (int k = 0; k <= 40; ++k) {
+    const double x = k / 40.0, left = 1 - x;  // both runs on one side, their scatter shrinks likewise
+    runs[0].push_back(pose_at({x, 4e-3 * left, 0}, {-4e-3 * left, 1e-3 * left, -2e-3 * x}));
+    runs[1].push_back(pose_at({x, 6e-3 * left, 0}, {-8e-3 * left, 3e-3 * left, -2e-3 * x}));
+  }
+  const Iso9283Path result = iso9283_path(path, runs, {.points = 4});
+  const double left = 0.875;  // at the first of four points
+  EXPECT_NEAR(result.at, 5e-3 * left, 1e-12);
+  EXPECT_NEAR(result.rt, 1e-3 * left, 1e-12);
+  EXPECT_LT((result.points[0].at_abc - Vector3(-6e-3 * left, 2e-3 * left, -0.25e-3)).norm(), 1e-5);  // of 6 mrad
+  EXPECT_LT((result.at_abc - left * Vector3(6e-3, 2e-3, 2e-3)).norm(), 1e-5);
+  // deviations of -4 and -8, 1 and 3
+  EXPECT_LT((result.rt_abc - 3e-3 * left * Vector3(std::sqrt(8), std::sqrt(2), 0)).norm(), 1e-5);
+  ASSERT_EQ(result.departures.size(), 2u);
+}
+
+// A run that lingers beyond a corner passes it where it came to it first.
+TEST(Iso9283Path, ACornerIsPassedWhereItIsReachedFirst) {
+  const Poses path = path_of({{0, 0, 0}, {0.25, 0, 0}, {0.25, 0.25, 0}});
+  const Poses run = path_of({{0, 0, 0}, {0.25, 0, 1e-3}, {0.251, -1e-3, 5e-3}, {0.25, 0.25, 0}});
+  const Iso9283Path result = iso9283_path(path, std::vector<Poses>{run}, {.points = 1});  // at the corner
+  EXPECT_EQ(result.points[0].arc_length, 0.25);
+  EXPECT_NEAR(result.points[0].at, 1e-3, 1e-12);
+}
+
+// A gap between poses is one as soon as a point to compare may lie in it alone.
+TEST(Iso9283Path, PosesFartherApartThanThePointsAreToldOf) {
+  const Poses path = path_of({{0, 0, 0}, {1, 0, 0}});
+  const auto told = [&](double step) {
+    const auto none = [](double) { return Vector3(0, 0, 0); };
+    return iso9283_path(path, std::vector<Poses>(10, run_along({{0, 0, 0}, {1, 0, 0}}, step, none))).departures.size();
+  };
+  EXPECT_EQ(told(0.099), 0u);
+  EXPECT_EQ(told(0.101), 10u);
+}
+
 TEST(Iso9283Path, RepeatabilityIsTheMeanPlusThreeDeviations) {
   const Poses path = path_of({{0, 0, 0}, {1, 0, 0}});
   std::vector<Poses> runs;
@@ -150,11 +191,12 @@ TEST(Iso9283Path, ACircleOfAnotherRadiusAndNoise) {
 }
 
 TEST(Iso9283Path, WithoutOrientationsAndSparse) {
-  const Poses path = path_of({{0, 0, 0}, {1, 0, 0}});
+  const Poses path{pose_at({0, 0, 0}, {0.3, 0, 0}), pose_at({1, 0, 0}, {0, 0.3, 0})};
   std::vector<Poses> runs(10, path_of({{0, 1e-3, 0}, {0.5, 1e-3, 0}, {1, 1e-3, 0}}));
   for (Isometry3& pose : runs[3]) pose.linear().setZero();
   const Iso9283Path result = iso9283_path(path, runs, {.orientations = false});
   EXPECT_NEAR(result.at, 1e-3, 1e-15);
+  EXPECT_EQ(result.points[4].commanded.linear(), Matrix3(Matrix3::Identity()));  // and not what the path says
   EXPECT_TRUE(result.at_abc.array().isNaN().all() && result.rt_abc.array().isNaN().all());
   ASSERT_EQ(result.departures.size(), 11u);
   EXPECT_EQ(result.departures[0],

@@ -131,6 +131,60 @@ TEST(Iso9283, IntervalsContainTheRepeatability) {
   EXPECT_NEAR(width, 0.44, 0.05);
 }
 
+/// RP of positions that are drawn some times each, and its standard error by the influence of each: by hand, in one
+/// sum.
+std::pair<double, double> drawn_repeatability(const std::vector<Vector3>& points, const std::vector<int>& times) {
+  double n = 0, mean = 0, squares = 0, influences = 0;
+  Vector3 centre = Vector3::Zero();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    n += times[k];
+    centre += times[k] * points[k];
+  }
+  centre /= n;
+  std::vector<double> l;
+  for (const Vector3& one : points) l.push_back((one - centre).norm());
+  for (std::size_t k = 0; k < points.size(); ++k) mean += times[k] * l[k] / n;
+  for (std::size_t k = 0; k < points.size(); ++k) squares += times[k] * (l[k] - mean) * (l[k] - mean);
+  const double variance = squares / (n - 1), s = std::sqrt(variance);
+  for (std::size_t k = 0; k < points.size(); ++k) {  // of the mean, and of three deviations
+    const double off = l[k] - mean, influence = off + 3 * (off * off - variance) / (2 * s);
+    influences += times[k] * influence * influence;
+  }
+  return {mean + 3 * s, std::sqrt(influences) / n};
+}
+
+// Of four visits there are 256 equally probable draws; 40 are of one visit alone or of two twice each, at equal
+// distances. Both quantiles of t are shared by several draws: no matter how often a seed makes each.
+TEST(Iso9283, IntervalOfFourVisitsByAllDraws) {
+  const std::vector<Vector3> points{{0, 0, 0}, {3e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 2e-3}};
+  const auto all = drawn_repeatability(points, {1, 1, 1, 1});
+  std::vector<double> t;
+  for (int draw = 0; draw < 256; ++draw) {
+    std::vector<int> times(4, 0);
+    for (int k = 0, rest = draw; k < 4; ++k, rest /= 4) ++times[static_cast<std::size_t>(rest % 4)];
+    const auto twice = std::count(times.begin(), times.end(), 2), never = std::count(times.begin(), times.end(), 0);
+    if (never == 3 || twice == 2) continue;
+    const auto one = drawn_repeatability(points, times);
+    t.push_back((one.first - all.first) / one.second);
+  }
+  std::sort(t.begin(), t.end());
+  ASSERT_EQ(t.size(), 216u);
+  const double low = t[5], high = t[210];  // at 2.5 % and 97.5 % of 215
+  for (const std::size_t same_low : {0u, 11u}) ASSERT_NEAR(t[same_low], low, 1e-9);
+  for (const std::size_t same_high : {208u, 211u}) ASSERT_NEAR(t[same_high], high, 1e-9);
+
+  const std::vector<Isometry3> commanded(2, pose_of({0, 0, 0}));
+  std::vector<Iso9283Visit> visits;
+  for (const int pose : {1, 2})
+    for (int k = 0; k < 4; ++k) visits.push_back({pose, k + 1, 0, pose_of(points[static_cast<std::size_t>(k)])});
+  const Iso9283 found = iso9283(visits, commanded, {.draws = 20'000});
+  for (const Iso9283Pose& pose : found.poses) {
+    EXPECT_NEAR(pose.rp, all.first, 1e-15);
+    EXPECT_NEAR(pose.rp_low, all.first - high * all.second, 1e-12);
+    EXPECT_NEAR(pose.rp_high, all.first - low * all.second, 1e-12);
+  }
+}
+
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 TEST(Iso9283, SameSeedSameBitsWhateverTheOrder) {
@@ -146,6 +200,19 @@ TEST(Iso9283, SameSeedSameBitsWhateverTheOrder) {
     EXPECT_NE(first.poses[k].rp_low, other.poses[k].rp_low);
     EXPECT_NEAR(first.poses[k].rp_low, other.poses[k].rp_low, 0.1 * first.poses[k].rp);
   }
+}
+
+// Poses with equal visits have intervals by different draws, so that chance does not favour or spoil all poses alike.
+TEST(Iso9283, EveryPoseHasDrawsOfItsOwn) {
+  const std::vector<Isometry3> commanded(2, pose_of({0, 0, 0}));
+  std::vector<Iso9283Visit> visits = visits_of(std::span(commanded).first(1), 30, 1e-5, 0, 4);
+  for (int cycle = 0; cycle < 30; ++cycle) {
+    visits.push_back(visits[static_cast<std::size_t>(cycle)]);
+    visits.back().pose = 2;
+  }
+  const Iso9283 result = iso9283(visits, commanded, {.draws = 200});
+  EXPECT_EQ(result.poses[0].rp, result.poses[1].rp);
+  EXPECT_NE(result.poses[0].rp_high, result.poses[1].rp_high);
 }
 
 TEST(Iso9283, IntervalsOfFewOrEqualVisits) {
@@ -285,6 +352,7 @@ TEST(Iso9283, DirectionsByHand) {
   EXPECT_NEAR(result.variations[0].vap, std::sqrt(26.0) * 1e-3, 1e-15);  // beside 5 and 1
   EXPECT_LT((result.variations[0].vap_abc - Vector3(0.03, 0, 0)).norm(), 1e-14);
   // accuracy and repeatability are those of the first direction
+  EXPECT_EQ(result.poses[0].direction, 1);
   EXPECT_EQ(result.poses[0].n, 2);
   EXPECT_NEAR(result.poses[0].ap, 0, 1e-15);
   EXPECT_NEAR(result.poses[0].rp, 1e-4, 1e-15);
@@ -318,6 +386,22 @@ TEST(Iso9283, DriftByHand) {
   const Iso9283 untimed = iso9283(visits, commanded, {.drift_visits = 2});
   EXPECT_NEAR(untimed.drift[0].dap, 3e-3, 1e-15);  // by cycles
   EXPECT_TRUE(std::isnan(untimed.drift[0].groups[0].time_s));
+}
+
+// Accuracy that gets better drifts, too, and counts from the first group.
+TEST(Iso9283, DriftIsTheLargestChangeSinceTheFirstGroup) {
+  const std::vector<double> at{5, 3, 6, 4}, off{0.5, 0.1, 0.7, 0.2};
+  std::vector<Iso9283Visit> visits;
+  for (int k = 0; k < 8; ++k) {
+    const auto group = static_cast<std::size_t>(k / 2);
+    visits.push_back({1, k + 1, 0, pose_of(1e-3 * Vector3(at[group], (k % 2 == 0 ? 1 : -1) * off[group], 0))});
+  }
+  const std::vector<Isometry3> commanded{pose_of({0, 0, 0})};
+  const Iso9283 result = iso9283(visits, commanded, {.drift_visits = 2});
+  ASSERT_EQ(result.drift.size(), 1u);
+  EXPECT_EQ(result.drift[0].pose, 1);
+  EXPECT_NEAR(result.drift[0].dap, 2e-3, 1e-15);  // from group to group it changes by 3
+  EXPECT_NEAR(result.drift[0].drp, 0.4e-3, 1e-15);
 }
 
 TEST(Iso9283, WithoutOrientations) {
@@ -392,6 +476,91 @@ TEST(Iso9283, Departures) {
             std::string::npos);
 }
 
+/// Whether five commanded poses are those of the norm.
+bool on_cube(const std::vector<Vector3>& positions) {
+  std::vector<Isometry3> poses;
+  for (const Vector3& one : positions) poses.push_back(pose_of(one));
+  return departures_of(visits_of(poses, 30, 1e-6, 0, 1), poses).empty();
+}
+
+// Diagonals of a diagonal plane cross at 70.5 and 109.5 degrees; whichever of them lies between P2 and P3. Each
+// distance and angle may be off by a twentieth, and is told where it is more.
+TEST(Iso9283, CommandedPosesWithinTheTolerancesOfACube) {
+  const double half = std::atan(std::numbers::sqrt2);  // of the larger angle
+  const auto five = [&](double angle, double stretch, double bend_second, double bend_third) {
+    const auto at = [](double turned, double radius) {
+      return Vector3(0.5 + radius * std::cos(turned), 0.1, radius * std::sin(turned));
+    };
+    const double pi = std::numbers::pi;
+    return std::vector<Vector3>{{0.5, 0.1, 0},
+                                at(0, 0.3 * stretch),
+                                at(angle, 0.3),
+                                at(pi + bend_second, 0.3),
+                                at(pi + angle + bend_third, 0.3)};
+  };
+  EXPECT_TRUE(on_cube(five(2 * half, 1, 0, 0)));
+  EXPECT_TRUE(on_cube(five(std::numbers::pi - 2 * half, 1, 0, 0)));
+  EXPECT_FALSE(on_cube(five(std::numbers::pi / 2, 1, 0, 0)));
+  for (const double within : {-0.045, 0.045}) {
+    EXPECT_TRUE(on_cube(five(2 * half + within, 1, 0, 0)));
+    EXPECT_TRUE(on_cube(five(2 * half, 1, within, 0)));
+    EXPECT_TRUE(on_cube(five(2 * half, 1, 0, within)));
+    EXPECT_TRUE(on_cube(five(2 * half, 1 + within, 0, 0)));
+  }
+  for (const double beyond : {-0.07, 0.07}) {  // a longer arm lengthens the mean, too
+    EXPECT_FALSE(on_cube(five(2 * half + beyond, 1, 0, 0)));
+    EXPECT_FALSE(on_cube(five(2 * half, 1, beyond, 0)));
+    EXPECT_FALSE(on_cube(five(2 * half, 1, 0, beyond)));
+    EXPECT_FALSE(on_cube(five(2 * half, 1 + beyond, 0, 0)));
+  }
+}
+
+// A direction has an order of its own, and a disorder of a pose is told once.
+TEST(Iso9283, OrderOfCyclesByPoseAndDirection) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  std::vector<Iso9283Visit> visits = visits_of(poses, 30, 1e-5, 1e-5, 11);
+  // P3 of cycles 1 and 2, 5 and 6
+  std::swap(visits[2].time_s, visits[7].time_s);
+  std::swap(visits[22].time_s, visits[27].time_s);
+  EXPECT_EQ(departures_of(visits, poses), "pose 3: cycle 1 was measured after cycle 2\n");
+  // where one time is not known, none tells an order
+  visits[0].time_s = nan;
+  EXPECT_EQ(departures_of(visits, poses), "");
+  visits[0].time_s = 0;
+  visits[149].time_s = nan;
+  EXPECT_EQ(departures_of(visits, poses), "");
+}
+
+TEST(Iso9283, FourDirectionsAreNotTheThreeOfTheNorm) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  std::vector<Iso9283Visit> visits = visits_of(poses, 30, 1e-5, 1e-5, 11);
+  for (const int pose : {1, 2, 4})
+    for (int direction = 1; direction <= (pose == 1 ? 4 : 3); ++direction)
+      for (int cycle = 1; cycle <= 30; ++cycle)
+        visits.push_back({pose, cycle, direction, poses[static_cast<std::size_t>(pose - 1)], 1e6 + 100 * cycle});
+  EXPECT_EQ(departures_of(visits, poses), "pose 1: 4 directions of approach, vAP of the norm needs 3\n");
+  // the direction of what is reported is its number
+  std::erase_if(visits, [](const Iso9283Visit& v) { return v.pose == 2 && v.direction < 2; });
+  const Iso9283 result = iso9283(visits, poses, {.draws = 0});
+  EXPECT_EQ(result.poses[0].direction, 0);
+  EXPECT_EQ(result.poses[1].direction, 2);
+  ASSERT_EQ(result.variations.size(), 3u);  // two directions vary, too
+  EXPECT_EQ(result.variations[1].pose, 2);
+  EXPECT_EQ(result.variations[1].directions, 2);
+}
+
+// Of one time that is not known nobody knows which visits were first: cycles decide.
+TEST(Iso9283, DriftIsByCyclesWhereATimeIsMissing) {
+  const std::vector<Isometry3> commanded{pose_of({0, 0, 0})};
+  std::vector<Iso9283Visit> visits;  // 1 mm, then 2 mm, by cycles; mixed by times
+  for (int k = 0; k < 4; ++k)
+    visits.push_back({1, k + 1, 0, pose_of({(k < 2 ? 1e-3 : 2e-3), 0, 0}), k == 0 ? nan : 100.0 - k});
+  const Iso9283 result = iso9283(visits, commanded, {.drift_visits = 2});
+  ASSERT_EQ(result.drift.size(), 1u);
+  EXPECT_NEAR(result.drift[0].groups[0].ap, 1e-3, 1e-15);
+  EXPECT_NEAR(result.drift[0].groups[1].ap, 2e-3, 1e-15);
+}
+
 TEST(Iso9283, RefusesWhatCannotBe) {
   const std::vector<Isometry3> commanded{pose_of({0, 0, 0})};
   const std::vector<Iso9283Visit> good{{1, 1, 0, commanded[0]}};
@@ -404,8 +573,10 @@ TEST(Iso9283, RefusesWhatCannotBe) {
   EXPECT_EQ(told({1, 1, 0, commanded[0]}), "iso9283: pose 1, cycle 1, direction 0 is there twice");
   EXPECT_EQ(told({1, 2, -1, commanded[0]}), "iso9283: pose 1, cycle 2: direction -1, must be 0 or more");
   EXPECT_EQ(told({1, 2, 0, pose_of({nan, 0, 0})}), "iso9283: pose 1, cycle 2: the position is not finite");
-  const Isometry3 scaled = rigid_motion(1.01 * rotation(commanded[0]), translation(commanded[0]));
+  const Isometry3 scaled = rigid_motion(1.0002 * rotation(commanded[0]), translation(commanded[0]));
   EXPECT_EQ(told({1, 2, 0, scaled}), "iso9283: pose 1, cycle 2: the orientation is not a rotation");
+  const Isometry3 mirrored = rigid_motion(-1 * rotation(commanded[0]), translation(commanded[0]));
+  EXPECT_EQ(told({1, 2, 0, mirrored}), "iso9283: pose 1, cycle 2: the orientation is not a rotation");
   EXPECT_EQ(complaint([&] { (void)iso9283(good, std::vector<Isometry3>{scaled}); }),
             "iso9283: commanded pose 1: the orientation is not a rotation");
   EXPECT_EQ(complaint([&] { (void)iso9283(good, commanded, {.draws = -1}); }), "iso9283: -1 draws, must be 0 or more");

@@ -89,6 +89,29 @@ TEST(SignedRank, TiesNarrowTheDistribution) {
   EXPECT_NEAR(tied.p_value, std::erfc(2.5 / std::sqrt(2 * 7.0)), 1e-15);
 }
 
+// A pair without a difference is dropped, and then the distribution is the normal one: rank sum 6 of 3 about 3,
+// variance 3 x 4 x 7 / 24. So it is where either sample is large.
+TEST(RankTests, NormalWhereCountingIsNotMeant) {
+  const RankTest dropped = signed_rank_test(of({1, 2, 3, 0}), VectorX::Zero(4));
+  EXPECT_EQ(dropped.statistic, 6);
+  EXPECT_FALSE(dropped.exact);
+  EXPECT_NEAR(dropped.p_value, std::erfc(2.5 / std::sqrt(2 * 3.5)), 1e-15);
+  for (const Index many : {49, 50}) {
+    const VectorX large = VectorX::LinSpaced(many, 1, 2), one = of({0});
+    EXPECT_EQ(rank_sum_test(one, large).exact, many == 49);
+    EXPECT_EQ(rank_sum_test(large, one).exact, many == 49);
+    EXPECT_EQ(signed_rank_test(large, VectorX::Zero(many)).exact, many == 49);
+  }
+}
+
+// Ranks 1 and 4 beside 2.5 and 2.5: exactly in the middle, nearer than the correction of a half.
+TEST(RankTests, NothingIsLessSignificantThanTheMiddle) {
+  const RankTest middle = rank_sum_test(of({1, 3}), of({2, 2}));
+  EXPECT_EQ(middle.statistic, 2);
+  EXPECT_FALSE(middle.exact);
+  EXPECT_EQ(middle.p_value, 1);
+}
+
 /// Share of all ways to deal n + m ranks whose U is as far from its mean as the given one, or farther.
 double dealt(Index n, Index m, double u) {
   const double mean = static_cast<double>(n * m) / 2;

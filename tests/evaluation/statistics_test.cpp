@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vernier/compensation/compensated.hpp>
@@ -43,6 +44,30 @@ TEST(ErrorStatistics, QuantilesInterpolate) {
   EXPECT_DOUBLE_EQ(e.p95, 6 + 0.85 * 2);
   // 0 .. 100 has its quantiles at their own names
   EXPECT_NEAR(ErrorStatistics::of(VectorX::LinSpaced(101, 100, 0)).p95, 95, 1e-12);
+}
+
+TEST(Quantile, OfValuesInAnyOrderBothEndsIncluded) {
+  VectorX values(5);
+  values << 7, -1, 3, 5, 4;  // sorted: -1 3 4 5 7
+  EXPECT_EQ(quantile(values, 0), -1);
+  EXPECT_EQ(quantile(values, 1), 7);
+  EXPECT_EQ(quantile(values, 0.5), 4);
+  EXPECT_DOUBLE_EQ(quantile(values, 0.2), 2.2);  // at 0.8
+  EXPECT_THROW((void)quantile(values, 1.01), std::invalid_argument);
+  EXPECT_THROW((void)quantile(values, -0.01), std::invalid_argument);
+  EXPECT_THROW((void)quantile(VectorX(), 0.5), std::invalid_argument);
+  values(3) = std::nan("");
+  EXPECT_THROW((void)quantile(values, 0.5), std::invalid_argument);
+}
+
+// Between two infinite values lies an infinite one.
+TEST(Quantile, OfInfiniteValues) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  VectorX values(4);
+  values << 1, infinity, 2, infinity;
+  EXPECT_EQ(quantile(values, 0.9), infinity);
+  EXPECT_EQ(quantile(values, 0.5), infinity);  // half of the way to one
+  EXPECT_DOUBLE_EQ(quantile(values, 0.2), 1.6);
 }
 
 Matrix3 diagonal(const Vector3& values) {

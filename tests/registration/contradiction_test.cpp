@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "real_matrix.hpp"
@@ -166,7 +167,7 @@ TEST(Contradiction, ARotationBelowTheThresholdDoesNoHarm) {
 // Mounted another way round altogether: the prior is no bound.
 TEST(Contradiction, AProbeMayBeTurnedByAnyAngle) {
   for (std::uint64_t seed = 0; seed < 10; ++seed)
-    for (const double angle : {0.03, 0.3, std::numbers::pi / 2}) {
+    for (const double angle : {0.03, 0.3, std::numbers::pi / 2, 3.0}) {
       Case c(seed);
       const Vector3 probe = angle * direction(c.rng);
       const auto found = reregister(c.model, c.seen(17, seed, probe), {}, sensors);
@@ -253,6 +254,24 @@ TEST(Contradiction, IsWaldsStatistic) {
   EXPECT_NEAR(found.contradiction, redundancy * std::log1p(square / redundancy), 1e-5 * found.contradiction);
 }
 
+// Two poses hardly tell base from probe: what they leave open is as uncertain as the prior of the probe, 1 rad, which
+// takes the place of values that are left over.
+TEST(Contradiction, TwoPosesLeaveTheProbeToItsPrior) {
+  const Case c(5);
+  const Dataset<6> data = c.seen(2, 5, Vector3(0.2, -0.1, 0.15));
+  const auto found = reregister(c.model, data, {.contradiction_threshold = 1e-3}, sensors);
+  ASSERT_TRUE(found.probe_turned);
+  RealMatrix by_chance = covariance(found, data, 1).block(6, 6, 3, 3);
+  const double redundancy = 6 * 2 - 9 + by_chance.trace();
+  for (Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(found.probe_std(k), std::sqrt(by_chance(k, k)), 0.01 * found.probe_std(k)) << k;
+    by_chance(k, k) += std::pow(own_deviation(found), 2);
+  }
+  const RealMatrix probe = found.motion.probe;
+  const double square = probe.dot(by_chance.inverse() * probe);
+  EXPECT_NEAR(found.contradiction, redundancy * std::log1p(square / redundancy), 0.01 * found.contradiction);
+}
+
 // Orientations of a model that errs tell about the base no more than their mean error allows.
 TEST(Contradiction, TheModelsOwnErrorWidensTheBase) {
   const Case c(5);
@@ -292,6 +311,7 @@ TEST(HeldTool, WhereAllPosesFaceOneWay) {
 // Poses that face almost one way would move the tool by a centimetre, for errors of the model alone.
 TEST(HeldTool, WherePosesFaceAlmostOneWay) {
   double farthest = 0;
+  int all_held = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Case c(seed);
     JointRows<6> joints(17, 6);
@@ -308,6 +328,10 @@ TEST(HeldTool, WherePosesFaceAlmostOneWay) {
     ASSERT_FALSE(found.held.empty()) << seed;
     EXPECT_TRUE(mentions(found.held[0], "the position of the tool")) << seed;
     EXPECT_LT(translation(found.motion.tool).norm(), 3e-3) << seed;
+    if (found.held[0] == "the position of the tool") {
+      EXPECT_LT(translation(found.motion.tool).norm(), 5e-6) << seed;
+      ++all_held;
+    }
     // of another tool nothing is known, and that is said, too
     ReregisterOptions another{.tool = true};
     another.tool_position_prior_std = another.tool_rotation_prior_std = std::numeric_limits<double>::infinity();
@@ -317,6 +341,7 @@ TEST(HeldTool, WherePosesFaceAlmostOneWay) {
     EXPECT_TRUE(mentions(free.remarks()[0], "The poses determine the position of the tool to ")) << free.summary();
   }
   EXPECT_GT(farthest, 0.01);
+  EXPECT_GT(all_held, 0);
 }
 
 TEST(HeldTool, AlongAnAxisThatDoesNotTilt) {
@@ -335,6 +360,30 @@ TEST(HeldTool, AlongAnAxisThatDoesNotTilt) {
   EXPECT_EQ(found.held[0], "the position of the tool along (0.00, 0.00, 1.00) of its frame");
   EXPECT_LT((translation(found.motion.tool) - Vector3(1e-3, -1e-3, 0)).norm(), 0.05e-3);
   EXPECT_LT(std::abs(found.motion.tool(2, 3)), 1e-7);
+}
+
+// The last joint alone moves, and the tool point is on its axis: along that axis, and about it, the tool may move as
+// the base does. The axis is named with its larger component positive, however the tool's frame is turned.
+TEST(HeldTool, AlongAndAboutTheOnlyAxisThatTurns) {
+  const Case c(3);
+  JointRows<6> joints = sample_joints(cell(), 17, 2);
+  for (Index i = 0; i < joints.rows(); ++i)
+    for (Index j = 0; j < 5; ++j) joints(i, j) = joints(0, j);
+  const double quarter = std::numbers::pi / 2;
+  const std::pair<Vector3, const char*> tools[] = {
+      {{0, 0, 0}, "(0.00, 0.00, 1.00)"},       {{2 * quarter, 0, 0}, "(0.00, 0.00, 1.00)"},
+      {{0, quarter, 0}, "(1.00, 0.00, 0.00)"}, {{0, -quarter, 0}, "(1.00, 0.00, 0.00)"},
+      {{quarter, 0, 0}, "(0.00, 1.00, 0.00)"}, {{-quarter, 0, 0}, "(0.00, 1.00, 0.00)"},
+      {{0, 0.12, 0}, "(-0.12, 0.00, 0.99)"},   {{0.02, 0, 0}, "(0.00, 0.02, 1.00)"}};
+  for (const auto& [turn, axis] : tools) {
+    const Isometry3 tool = rigid_motion(exp_so3(turn), Vector3(0, 0, 0.12));
+    const Model model{robot.chain,
+                      Model::Arm(WithJointErrors<Chain>(robot.chain), FrameParameters(), FrameParameters(tool))};
+    const auto found = reregister(model, measure(model, joints, noise, 2), {.tool = true}, sensors);
+    ASSERT_EQ(found.held.size(), 2U) << found.summary();
+    EXPECT_EQ(found.held[0], std::string("the position of the tool along ") + axis + " of its frame");
+    EXPECT_EQ(found.held[1], std::string("the rotation of the tool about ") + axis + " of its frame");
+  }
 }
 
 TEST(HeldTool, FewPositionsSayLittle) {

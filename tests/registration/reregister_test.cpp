@@ -226,6 +226,15 @@ TEST(Reregister, FindsZerosInNoise) {
     EXPECT_LT(found.change_std(i), 0.05e-3) << i;  // the data speak, not the prior
   }
   EXPECT_NEAR(found.rms_after, std::sqrt(3) * 0.03e-3, 0.01e-3);
+  EXPECT_TRUE(found.estimated.offsets && !found.estimated.base);
+  const auto data = measure(truth, samples(40, 9), noise, 10);
+  double before = 0, after = 0;
+  for (Index i = 0; i < 40; ++i) {
+    before += (model.position(data.joints(i)) - data.position(i)).squaredNorm() / 40;
+    after += (found.model.position(data.joints(i)) - data.position(i)).squaredNorm() / 40;
+  }
+  EXPECT_NEAR(found.rms_before, std::sqrt(before), 1e-12);
+  EXPECT_NEAR(found.rms_after, std::sqrt(after), 1e-12);
   EXPECT_GT(found.rms_before, 5 * found.rms_after);
 }
 
@@ -256,6 +265,27 @@ TEST(Reregister, PriorsPullZerosAsMuchAsPosesDo) {
   }
   EXPECT_GT(pull.norm(), 1e3);
   EXPECT_LT((push - pull).norm(), 1e-6 * pull.norm());
+}
+
+// Three values for six zeros that have priors: what is left over of them is more than nothing, and less than three.
+TEST(Reregister, WeightsCountWhatTheUnknownsLeave) {
+  const Model model = rigid();
+  const ReregisterOptions options{.base = false, .offsets = true, .offset_prior_std = 0.5e-3};
+  const Dataset<6> at = measure(model, samples(1, 26), {.with_orientations = false});
+  PointRows positions = at.positions();
+  set_point(positions, 0, point(positions, 0) + Vector3(0.8e-3, -0.5e-3, 0.7e-3));
+  const Dataset<6> data(at.joints(), positions);
+  const auto found = reregister(model, data, options, {.position_sigma = 0.3e-3});
+  ASSERT_TRUE(found.converged);
+  EXPECT_GT(found.position_sigma, 0.35e-3);
+  const RealMatrix effect = effect_of_changes(found.model, data.joints(0)).block(0, 6, 3, 6) / found.position_sigma;
+  const double precision = 1 / (options.offset_prior_std * options.offset_prior_std);
+  const RealMatrix covariance = (effect.transpose() * effect + precision * RealMatrix::identity(6)).inverse();
+  const double redundancy = 3 - (effect * covariance * effect.transpose()).trace();
+  EXPECT_GT(redundancy, 1.1);
+  EXPECT_LT(redundancy, 2.95);
+  const double left = (found.model.position(data.joints(0)) - data.position(0)).squaredNorm();
+  EXPECT_NEAR(left / redundancy, found.position_sigma * found.position_sigma, 5e-3 * left / redundancy);
 }
 
 TEST(Reregister, SaysWhatPosesDoNotDetermine) {
@@ -539,6 +569,90 @@ TEST(ReregistrationReport, AToolIsFarBeyondThreeOfItsExpectedSizes) {
   ASSERT_EQ(report.remarks().size(), 2u);
   EXPECT_TRUE(mentions(report.remarks()[0], "The tool has moved by 9.10 mm, where 3.00 are expected"));
   EXPECT_TRUE(mentions(report.remarks()[1], "The tool has turned by 15.10 mrad, where 5.00 are expected"));
+}
+
+/// A report of an arm with a revolute and a sliding joint, of which everything was estimated.
+ReregistrationReport of_two_joints() {
+  ReregistrationReport report;
+  report.estimated = {.base = true, .tool = true, .offsets = true};
+  report.joint_types = {JointType::revolute, JointType::prismatic};
+  report.motion.base = frame(Vector6{1e-3, -2e-3, 3e-3, 4e-3, -5e-3, 6e-3});
+  report.motion.offsets = VectorX{{0.125e-3, -0.25e-3}};
+  report.motion.tool = frame(Vector6{0.5e-3, 0.25e-3, -0.75e-3, 1.5e-3, 1.25e-3, -1.75e-3});
+  report.change_std.resize(14);
+  for (Index k = 0; k < 14; ++k) report.change_std(k) = 0.01e-3 * static_cast<double>(k + 1);
+  report.position_sigma = 0.05e-3;
+  report.orientation_sigma = 0.2e-3;
+  return report;
+}
+
+TEST(ReregistrationReport, SummaryByHand) {
+  ReregistrationReport report = of_two_joints();
+  EXPECT_EQ(report.summary(),
+            "Base moved by (1.000, -2.000, 3.000) +- (0.010, 0.020, 0.030) mm, turned by (4.000, -5.000, 6.000) +- "
+            "(0.040, 0.050, 0.060) mrad\n"
+            "Zero of joint 1 moved by +0.1250 +- 0.0700 mrad\n"
+            "Zero of joint 2 moved by -0.2500 +- 0.0800 mm\n"
+            "Tool moved by (0.500, 0.250, -0.750) +- (0.090, 0.100, 0.110) mm, turned by (1.500, 1.250, -1.750) +- "
+            "(0.120, 0.130, 0.140) mrad\n"
+            "Weighted for residuals of 0.050 mm and 0.200 mrad a component\n");
+  report.change_std.resize(0);  // not determined
+  report.orientation_sigma = 0;
+  report.estimated.offsets = false;
+  EXPECT_EQ(report.summary(),
+            "Base moved by (1.000, -2.000, 3.000) mm, turned by (4.000, -5.000, 6.000) mrad\n"
+            "Tool moved by (0.500, 0.250, -0.750) mm, turned by (1.500, 1.250, -1.750) mrad\n"
+            "Weighted for residuals of 0.050 mm a component\n");
+  report.held = {"the position of the tool"};  // remarks end it
+  EXPECT_TRUE(mentions(report.summary(),
+                       "component\nThe poses do not determine the position of the tool: held where it was.\n"));
+}
+
+TEST(ReregistrationReport, AProbeThatTurnedIsSaidInNumbers) {
+  ReregistrationReport report;
+  report.probe_turned = true;
+  report.motion.probe = Vector3(1.2e-3, 0.25e-3, -0.9e-3);
+  report.probe_std = Vector3(0.1e-3, 0.2e-3, 0.3e-3);
+  report.contradiction = 52.4;
+  EXPECT_EQ(report.remarks(),
+            std::vector<std::string>{
+                "Measured orientations are turned by 1.52 mrad against the tool, (1.20, 0.25, -0.90) +- (0.10, 0.20, "
+                "0.30) in its frame (statistic 52, by chance up to 16.3): was the probe remounted? The rotation is "
+                "taken off the orientations; the model's tool is kept."});
+}
+
+// A zero is little known where more than half of its prior is left, wherever the zeros stand among what is estimated.
+TEST(ReregistrationReport, ZerosOfWhichMoreThanHalfThePriorIsLeft) {
+  for (const bool base : {false, true}) {
+    ReregistrationReport report;
+    report.estimated = {.base = base, .offsets = true, .offset_prior_std = 2e-3};
+    report.motion.offsets = VectorX::Zero(3);
+    report.change_std = VectorX::Constant(base ? 9 : 3, 5e-3);
+    const Index zeros = base ? 6 : 0;
+    report.change_std(zeros) = 0.9e-3;
+    report.change_std(zeros + 1) = 1.1e-3;
+    report.change_std(zeros + 2) = 0.95e-3;
+    EXPECT_EQ(report.remarks(), std::vector<std::string>{"The poses tell little about the zeros of joints 2: held near "
+                                                         "where they were."})
+        << base;
+  }
+}
+
+// Another tool is known to a millimetre and a milliradian, or that is said; one with a prior is known as well as that.
+TEST(ReregistrationReport, AToolIsVagueBeyondAThousandthWithoutItsPrior) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  ReregistrationReport report;
+  report.estimated = {.base = false, .tool = true};
+  report.change_std = VectorX::Constant(6, 1.1e-3);
+  EXPECT_TRUE(report.remarks().empty());
+  report.estimated.tool_position_prior_std = infinity;
+  EXPECT_EQ(report.remarks(), std::vector<std::string>{"The poses determine the position of the tool to 1.1 mm only."});
+  report.estimated.tool_position_prior_std = 3e-3;
+  report.estimated.tool_rotation_prior_std = infinity;
+  EXPECT_EQ(report.remarks(),
+            std::vector<std::string>{"The poses determine the rotation of the tool to 1.1 mrad only."});
+  report.change_std.setConstant(0.9e-3);
+  EXPECT_TRUE(report.remarks().empty());
 }
 
 // One pose measured three times as well as a tool is expected to be remounted: a tenth of the prior's variance is left.

@@ -81,6 +81,89 @@ TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
   EXPECT_NEAR(arm.steps()(0), first(2) + second(2), 1e-12);
 }
 
+/// Two places of one arm: the base's x of each, a length that both share, and what changes with temperature.
+ArmParameterisation from_two_places() {
+  const ArmGeometry arm(Framed<Chain>(robot.chain, {}, {}));
+  const ArmGeometry beside = arm.with_frames(FrameParameters(Vector6{1, 2, 3, 0, 0, 0}), arm.tool());
+  return ArmParameterisation({arm, beside}, {{0, 0, 1e-3, 1},
+                                             {0, 1, 2e-3, 2},
+                                             {6, -1, 5e-3, 3},
+                                             {0, 1, 1e-6, 4, true},
+                                             {6, -1, 4e-6, 5, true},
+                                             {7, -1, 8e-6, 6, true}});
+}
+
+TEST(ArmParameterisation, UnknownsOfAStationAreItsOwn) {
+  ArmParameterisation arm = from_two_places();
+  EXPECT_EQ(arm.names(), (std::vector<std::string>{"base_x", "base_x@2", "a1", "base_x@2/K", "a1/K", "alpha1/K"}));
+  EXPECT_EQ(arm.thermal_rates(0).size(), 0);
+  const RealMatrix step = vector({1, 2, 3, 5, 7, 11});
+  arm.move(step);
+  EXPECT_LT(difference(arm.steps(), step), 1e-9);
+  const VectorX first = arm.geometry(0).parameters(), second = arm.geometry(1).parameters(),
+                nominal = ArmGeometry(Framed<Chain>(robot.chain, {}, {})).parameters();
+  EXPECT_NEAR(first(0), 1e-3, 1e-15);
+  EXPECT_NEAR(second(0), 1 + 4e-3, 1e-15);
+  EXPECT_NEAR(first(6), nominal(6) + 15e-3, 1e-15);
+  EXPECT_NEAR(second(6), nominal(6) + 15e-3, 1e-15);
+  EXPECT_EQ(first(7), nominal(7));  // of a rate nothing is left at the mean temperature
+  // rates [m/K, rad/K] by parameter
+  VectorX rates = VectorX::Zero(first.size());
+  rates(6) = 7 * 4e-6;
+  rates(7) = 11 * 8e-6;
+  EXPECT_LT(difference(arm.thermal_rates(0), rates), 1e-18);
+  rates(0) = 5 * 1e-6;
+  EXPECT_LT(difference(arm.thermal_rates(1), rates), 1e-18);
+}
+
+TEST(ArmParameterisation, PrecisionsAreSetByUnknown) {
+  ArmParameterisation arm = from_two_places();
+  JointTerms terms(6);
+  terms.transmission[2] = Fourier::up_to(1);
+  arm.set_terms(terms, VectorX::Constant(2, 1e-4), VectorX::Constant(2, 7));
+  const RealMatrix precisions = vector({9, 8, 7, 6, 5, 4, 3, 2});
+  arm.set_precisions(precisions);
+  EXPECT_EQ(difference(arm.precisions(), precisions), 0);
+  EXPECT_THROW(arm.set_precisions(VectorX::Ones(7)), std::invalid_argument);
+}
+
+// Only hysteresis is that of the other arm, all of it; what else there is stays, joint by joint.
+TEST(FittedArm, TakesTheHysteresisOfAnother) {
+  JointTerms terms(6), others(6);
+  terms.gear_ratio = others.gear_ratio = true;
+  terms.gravity.emplace(robot.chain);
+  others.gravity.emplace(robot.chain);
+  terms.hysteresis = {0.05};
+  others.hysteresis = {0.02, 0.3};
+  terms.transmission[1] = Fourier::up_to(2);
+  terms.transmission[4] = Fourier::up_to(2);
+  others.transmission[1] = Fourier::up_to(2);
+  Rng rng(5);
+  const ArmGeometry geometry(in_frames(robot.chain));
+  const FittedArm arm{geometry, JointErrors(terms, random_vector(rng, terms.size()))},
+      other{geometry, JointErrors(others, random_vector(rng, others.size()))},
+      rigid{geometry, JointErrors(JointTerms(6), VectorX())};
+  const auto expect_joined = [&](const FittedArm& found, const FittedArm& own) {
+    EXPECT_EQ(found.errors.terms().hysteresis, others.hysteresis);
+    const auto names = found.errors.terms().names();
+    Index of_other = 0;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const bool hysteresis = names[k].starts_with("hysteresis");
+      const JointErrors& from = hysteresis ? other.errors : own.errors;
+      const auto known = from.terms().names();
+      const Index at = std::find(known.begin(), known.end(), names[k]) - known.begin();
+      ASSERT_LT(at, from.coefficients().size()) << names[k];
+      EXPECT_EQ(found.errors.coefficients()(static_cast<Index>(k)), from.coefficients()(at)) << names[k];
+      of_other += hysteresis ? 1 : 0;
+    }
+    EXPECT_EQ(of_other, 12);  // two widths of six joints
+  };
+  expect_joined(arm.with_hysteresis_of(other), arm);
+  EXPECT_EQ(arm.with_hysteresis_of(other).errors.terms().size(), terms.size() + 6);
+  expect_joined(rigid.with_hysteresis_of(other), rigid);
+  EXPECT_EQ(rigid.with_hysteresis_of(other).errors.terms().size(), 12);
+}
+
 /// An arm with its k-th unknown moved.
 ArmParameterisation moved(ArmParameterisation arm, Index k, double by) {
   RealMatrix step(arm.size(), 1);

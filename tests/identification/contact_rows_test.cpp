@@ -42,6 +42,23 @@ CalibrationProblem problem_of(const std::vector<Contact>& contacts, const vernie
   return {ArmParameterisation(std::move(arms), std::move(unknowns)), std::move(stations), Loss::squared};
 }
 
+TEST(ContactRows, StationsOfContacts) {
+  const auto contacts = every_kind();
+  const SensorModel sensors{.position_sigma = 1, .distance_sigma = 2, .contact_sigma = 3e-5, .joint_sigma = 4e-5};
+  for (const Contact& contact : contacts) {
+    const Station station = detail::station_of(contact, sensors);
+    const bool ball = contact.kind() == ContactKind::ball, socket = contact.kind() == ContactKind::socket;
+    EXPECT_EQ(station.position_sigma, 3e-5);
+    EXPECT_EQ(station.joint_sigma, 4e-5);
+    EXPECT_EQ(station.lengths, ball ? &contact.known() : nullptr);
+    EXPECT_EQ(station.heights, ball ? nullptr : &contact.known());
+    EXPECT_EQ(station.on_axis, socket);
+    EXPECT_EQ(station.values(), socket ? 3 : 1);
+    EXPECT_EQ(station.dof, 6);
+    EXPECT_EQ(difference(RealMatrix::of(station.joints()), contact.joints()), 0);
+  }
+}
+
 TEST(ContactRows, NumberOfUnknownsAndValues) {
   const auto contacts = every_kind();
   const CalibrationProblem problem = problem_of(contacts, vernier_test::actual_arm());

@@ -77,5 +77,24 @@ TEST(StartingFrames, KnownFramesStay) {
   EXPECT_LT(translation(found.tool()).norm(), 1e-12);
 }
 
+// Distances say where the base is: its origin becomes the fixed point, its orientation and the tool stay.
+TEST(StartingFrames, OfDistancesPutTheFixedPointAtTheOrigin) {
+  const auto robot = robots::ur10();
+  const Framed<DhChain<6>> arm(robot.chain, FrameParameters(Vector6{0.4, -0.2, 0.3, 0.5, -0.7, 1.1}),
+                               FrameParameters(Vector6{0.02, 0.03, 0.11, 0.1, 0.2, 0.3}));
+  const Vector3 anchor(0.9, -1.2, 0.3);
+  const auto data = measure_distances(arm, anchor, sample_joints(robot.limits, 40, 1));
+  const detail::Station station = detail::station_of(data, {});
+  const ArmGeometry start(arm);
+  for (const bool tool : {false, true}) {
+    const ArmGeometry found = detail::starting_frames(start, station, true, tool);
+    EXPECT_EQ(difference(found.tool().values(), arm.tool_frame().values()), 0);
+    const PointRows before = start.positions(data.joints()), after = found.positions(data.joints());
+    for (Index i = 0; i < 40; ++i) EXPECT_LT((point(after, i) - point(before, i) + anchor).norm(), 1e-10) << i;
+    const ArmGeometry known = detail::starting_frames(start, station, false, tool);
+    EXPECT_EQ(difference(known.parameters(), start.parameters()), 0);
+  }
+}
+
 }  // namespace
 }  // namespace vernier::frames_test

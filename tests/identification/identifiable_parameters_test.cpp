@@ -29,6 +29,24 @@ TEST(IdentifiableParameters, KeepsTheFirstOfDependentOnesAndNamesWhatAbsorbsTheR
   EXPECT_TRUE(columns.dependent[1].absorbed_by.empty());
 }
 
+// Small is no effect from a thousand-millionth of the largest column on; who absorbs less than a twentieth is not
+// named.
+TEST(IdentifiableParameters, LimitsOfEffectAndOfShares) {
+  MatrixX j = random_matrix(30, 6, 3);
+  j.col(1) *= 1e-7;
+  j.col(2) *= 1e-11;
+  j.col(5) = j.col(0) - 0.07 * j.col(3) + 0.03 * j.col(4) + 30 * j.col(1);
+  const IdentifiableParameters columns(j);
+  EXPECT_EQ(columns.base, (std::vector<Index>{0, 1, 3, 4}));
+  ASSERT_EQ(columns.dependent.size(), 2u);
+  EXPECT_EQ(columns.dependent[0].column, 2);
+  EXPECT_TRUE(columns.dependent[0].absorbed_by.empty());
+  EXPECT_EQ(columns.dependent[1].column, 5);
+  EXPECT_EQ(columns.dependent[1].absorbed_by, std::vector<Index>{1});  // a step thirty times as large as the next
+  j.col(5) = j.col(0) - 0.07 * j.col(3) + 0.03 * j.col(4);
+  EXPECT_EQ(IdentifiableParameters(j).dependent[1].absorbed_by, (std::vector<Index>{0, 3}));
+}
+
 TEST(IdentifiableParameters, MoreColumnsThanRows) {
   EXPECT_EQ(IdentifiableParameters(random_matrix(4, 9, 2)).base.size(), 4u);
 }

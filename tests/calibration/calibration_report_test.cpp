@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
+
+#include "vernier/error_terms/drive_lines.hpp"
 
 namespace vernier::calibration_report_test {
 namespace {
@@ -61,6 +64,228 @@ TEST(CalibrationReport, CountsPosesAndParameters) {
   EXPECT_TRUE(says(report.verdict(), "2 parameters are" + weak));
   report.advice.resize(1);
   EXPECT_TRUE(says(report.verdict(), "1 more parameter is" + weak));
+}
+
+/// Position errors [mm] of five held-out poses by geometry and by joint-wise terms; the fourth pose is out of range.
+CalibrationReport five_poses() {
+  CalibrationReport report;
+  report.stages.push_back({"geometry", "geometry", 1e-3 * VectorX{{0.5, 0.4, 0.3, 0.2, 0.1}}, {}});
+  report.stages.push_back({"jointwise", "joint-wise", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});
+  report.gates = VectorX{{1, 1, 1, 0.5, 1}};
+  report.chosen = "jointwise";
+  return report;
+}
+
+bool says(const std::vector<std::string>& sentences, const std::string& one) {
+  return std::find(sentences.begin(), sentences.end(), one) != sentences.end();
+}
+
+/// All of them, a line each.
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string out;
+  for (const std::string& one : sentences) out += one + "\n";
+  return out;
+}
+
+// Mean, rms, maximum, minimum and 95 % of 1, 2 and 4: 7/3, sqrt(7), 4, 1 and 3.8.
+TEST(CalibrationReport, TableByHand) {
+  const VectorX errors = 1e-3 * VectorX{{2, 4, 1}};
+  std::vector<StageErrors> stages{{"frames", "frames", errors, {}}};
+  EXPECT_EQ(stage_table(stages),
+            "stage                      mean      rms      max      min      p95\n"
+            "frames                   2.3333   2.6458   4.0000   1.0000   3.8000\n");
+  stages[0].rotation = 1e-3 * VectorX{{1, 2, 6}};
+  stages.push_back({"geometry_pso_elm", "geometry + PSO-ELM", 0.5 * errors, 0.5 * stages[0].rotation});
+  EXPECT_EQ(stage_table(stages),
+            "stage                      mean      rms      max      min      p95  mean [mrad]\n"
+            "frames                   2.3333   2.6458   4.0000   1.0000   3.8000       3.0000\n"
+            "geometry + PSO-ELM       1.1667   1.3229   2.0000   0.5000   1.9000       1.5000\n");
+}
+
+TEST(CalibrationReport, AccuracyByHand) {
+  CalibrationReport report = five_poses();
+  report.max_degradation = 0.05e-3;
+  EXPECT_EQ(report.extrapolated(), 1);
+  std::vector<std::string> said = report.verdict();
+  ASSERT_GE(said.size(), 2u);
+  // 0.1, 0.15, 0.2 and 0.3: mean 0.1875; at 2.85 of 3 they are 0.2 + 0.85 x 0.1
+  EXPECT_EQ(said[0],
+            "Accurate to 0.188 mm mean, 0.285 mm (95 %), 0.3 mm maximum, inside the measured joint ranges: 4 of 5 "
+            "held-out poses. None of them is worse than with geometry alone by more than 0.05 mm.");
+  EXPECT_EQ(said[1], "1 held-out poses lie outside those ranges; there the learned functions of the joints fade out.");
+  EXPECT_TRUE(says(said, "Chosen by left-out poses: joint-wise.")) << joined(said);
+  report.max_degradation = 0;
+  EXPECT_TRUE(report.verdict()[0].ends_with("None of them is worse than with geometry alone."));
+  report.chosen = "geometry";
+  EXPECT_EQ(report.verdict()[0].rfind("Accurate to 0.325 mm mean", 0), 0u) << report.verdict()[0];
+  EXPECT_TRUE(says(report.verdict(), "Chosen by left-out poses: geometry."));
+  report.gates.setConstant(0.5);  // nothing is said of no poses
+  EXPECT_EQ(report.verdict()[0].rfind("5 held-out poses lie outside", 0), 0u) << report.verdict()[0];
+  EXPECT_EQ(report.extrapolated(), 5);
+}
+
+TEST(CalibrationReport, RangesInDegreesAndMillimetres) {
+  CalibrationReport report = five_poses();
+  report.joints.resize(2);
+  report.joints[0].measured_ranges = {{-1, 0.5}, {1, 2}};
+  report.joints[1].revolute = false;
+  for (int k = 0; k < 6; ++k) report.joints[1].measured_ranges.push_back({0.1 * k, 0.1 * k + 0.05});
+  EXPECT_TRUE(says(report.verdict(),
+                   "Measured joint ranges [deg, mm]: q1 -57..29, 57..115; q2 0..50, 100..150, 200..250, 300..350, and "
+                   "2 more."))
+      << joined(report.verdict());
+  report.joints[1].measured_ranges.resize(4);
+  EXPECT_TRUE(says(report.verdict(),
+                   "Measured joint ranges [deg, mm]: q1 -57..29, 57..115; q2 0..50, 100..150, 200..250, 300..350."))
+      << joined(report.verdict());
+}
+
+// Each block has a sentence of its own for either decision.
+TEST(CalibrationReport, DecisionsByHand) {
+  const char* sentences[][3] = {
+      {"elastic", "Gravity compliance helps ", "Gravity compliance alone does not help "},
+      {"jointwise", "Joint-wise terms help ",
+       "Joint-wise terms are left out: this robot's errors are not functions of single joints "},
+      {"elastic_with_jointwise", "Beside joint-wise terms gravity compliance is kept ",
+       "Beside joint-wise terms gravity compliance is left out "},
+      {"gears", "Gear ratios and coupling help ", "Gear ratios and coupling do not help "},
+      {"approach", "Hysteresis by the direction of approach helps ",
+       "Hysteresis is left out: errors do not depend on the direction of approach "},
+      {"tilt", "Tilts of joint frames under gravity help ", "Tilts of joint frames under gravity do not help "},
+      {"temperature", "The geometry changes with temperature: that helps ",
+       "No change of the geometry with temperature is noticeable "},
+      {"prior", "An earlier calibration as the prior helps ", "The earlier calibration is useless here: left out "},
+      {"lines", "Orders that stand out of what the model left help ",
+       "Orders that stand out of what the model left are left out "},
+      {"drift", "The base drifted during the session ", "No drift of the base is noticeable "},
+      {"joint_drift", "The zeros of the joints drifted, too ", "No drift of the joints' zeros is noticeable "},
+      {"tuned_priors", "Optimised priors help ", "Optimised priors are left out: they do not help "}};
+  for (const auto& [name, helps, does_not] : sentences)
+    for (const bool used : {true, false}) {
+      CalibrationReport report = five_poses();
+      report.blocks = {{name, 0.25e-3, 0.125e-3, used, 1, used ? 0.5 : 0}};
+      EXPECT_TRUE(says(report.verdict(),
+                       std::string(used ? helps : does_not) +
+                           "(leave-one-pose-out error: 0.25 mm without, 0.125 mm with" +
+                           (used ? "; log predictive density of a left-out pose greater by 0.5 nat)." : ").")))
+          << name << '\n'
+          << joined(report.verdict());
+    }
+}
+
+TEST(CalibrationReport, WhatWasLearnedAndKnownBefore) {
+  CalibrationReport report = five_poses();
+  report.trials = {{true, Learner::pso_elm, 0.5e-3, 0.25e-3}, {false, Learner::kernel_elm, 0.1e-3, 0.125e-3}};
+  report.mean_temperature = 21.5;
+  report.prior = PriorTransfer{"last year", 0.25, 0.5, true};
+  EXPECT_TRUE(says(report.verdict(),
+                   "Left-out poses with what was learned on top: PSO-ELM on geometry 0.25 mm (0.5 without); kernel ELM "
+                   "on the error model 0.125 mm (0.1 without)."))
+      << joined(report.verdict());
+  EXPECT_TRUE(says(report.verdict(),
+                   "Where no temperature is given, the model is that of 21.5 deg C, the mean of the measurements."));
+  const std::string of_prior =
+      "Of the calibration 'last year' the geometry has changed by 25 % and the joint errors by 50 % of their expected "
+      "sizes, as far as evidence tells.";
+  EXPECT_TRUE(says(report.verdict(), of_prior)) << joined(report.verdict());
+  report.prior->used = false;
+  EXPECT_FALSE(says(report.verdict(), of_prior));
+}
+
+TEST(CalibrationReport, RemarksByHand) {
+  CalibrationReport report = five_poses();
+  EXPECT_TRUE(report.remarks().empty());
+  report.converged = false;
+  EXPECT_EQ(joined(report.remarks()), "The fit of the joint errors stopped before it converged.\n");
+  report.converged = true;
+  report.trials = {{true, Learner::pso_elm, 0.5e-3, 0.25e-3}};
+  EXPECT_TRUE(report.remarks().empty());
+  report.trials.push_back({false, Learner::ridge_elm, 0.1e-3, 0.125e-3});
+  EXPECT_TRUE(report.remarks().empty());
+  report.trials.push_back({false, Learner::pso_elm, 0.1e-3, 0.125e-3});
+  const char* not_used = "What learners find in what the error model leaves does not help left-out poses: not used.\n";
+  EXPECT_EQ(joined(report.remarks()), not_used);
+  report.chosen = "jointwise_kernel_elm";
+  EXPECT_TRUE(report.remarks().empty());
+  report.outliers = 3;
+  report.median_error = 0.5e-6;  // of exact data nothing is an outlier
+  EXPECT_TRUE(report.remarks().empty());
+  report.median_error = 0.04e-3;
+  EXPECT_EQ(joined(report.remarks()),
+            "3 of the training rows have errors above eight times the median of 0.04 mm: outliers? The loss reduces "
+            "their weight in the fit; check them.\n");
+  report.loss = Loss::squared;
+  EXPECT_EQ(joined(report.remarks()),
+            "3 of the training rows have errors above eight times the median of 0.04 mm: outliers? A robust loss "
+            "(huber) reduces their weight.\n");
+  report.chosen = "jointwise";
+  EXPECT_NE(report.summary().find(not_used), std::string::npos);
+}
+
+// Of joints' lines those beyond the orders of an assembly, three at most, with half of their 95 % intervals.
+TEST(CalibrationReport, LinesOfTheDrivesByHand) {
+  CalibrationReport report = five_poses();
+  report.joints.resize(2);
+  report.joints[1].drive = {.gear_ratio = 50, .encoder_periods = 64};
+  report.joints[1].lines = {{1, 90e-6, 1e-6, 0},  {28, 80e-6, 1e-6, 0}, {29, 70e-6, 10e-6, 0},
+                            {64, 60e-6, 5e-6, 0}, {37, 50e-6, 5e-6, 0}, {41, 40e-6, 5e-6, 0}};
+  const std::string cause = cause_of(64, report.joints[1].drive);
+  ASSERT_FALSE(cause.empty());
+  for (const int order : {29, 37}) ASSERT_EQ(cause_of(order, report.joints[1].drive), "");
+  EXPECT_TRUE(says(report.verdict(), "Joint 2: 70 urad (+-20) at order 29; 60 urad (+-10) at order 64, " + cause +
+                                         "; 50 urad (+-10) at order 37."))
+      << joined(report.verdict());
+  EXPECT_EQ(joined(report.verdict()).find("Joint 1:"), std::string::npos);
+}
+
+// A base that creeps, jumps and creeps: the fastest eighth of its seventeen knots, two steps, is where it jumps.
+TEST(CalibrationReport, DriftOfStationsIsFastestWithinAnEighthOfTheSession) {
+  SessionDrift drift{.begin = 0, .spacing = 5};
+  drift.knots = MatrixX::Zero(6, 17);
+  for (Index k = 0; k < 17; ++k) {
+    const double jump = k < 14 ? 0 : k == 14 ? 0.5 : 1;
+    drift.knots(0, k) = 3e-5 * jump;
+    drift.knots(1, k) = 2e-6 * static_cast<double>(k);
+    drift.knots(2, k) = 4e-5 * jump;
+    drift.knots(3, k) = -1e-6 * static_cast<double>(k);
+  }
+  CalibrationReport report = five_poses();
+  report.drift = {SessionDrift{}, drift};
+  // from the first knot to the last (30, 32, 40) um; between knots 13 and 15 (30, 4, 40) um
+  EXPECT_TRUE(says(report.verdict(),
+                   "During the session the base of station 2 moved by up to 0.0594 mm and 16 urad, fastest (0.0502 mm) "
+                   "between 65 and 75 of 0 .. 80 [row, or time_s]. The model that is saved is without drift."))
+      << joined(report.verdict());
+  // a jump at the very end
+  drift.knots.setZero();
+  drift.knots(0, 16) = 1e-5;
+  report.drift = {drift};
+  EXPECT_NE(joined(report.verdict())
+                .find("the base moved by up to 0.01 mm and 0 urad, fastest (0.01 mm) between 70 and "
+                      "80 of 0 .. 80"),
+            std::string::npos)
+      << joined(report.verdict());
+}
+
+// Weak parameters are counted less those for which poses are advised.
+TEST(CalibrationReport, WeakParametersAreCountedBesideAdvice) {
+  CalibrationReport report = five_poses();
+  report.joints.resize(1);
+  for (const char* name : {"a1", "d2", "alpha3"})
+    report.identification.parameters.push_back({name, ParameterKind::length, 0, 0, 0, ParameterState::weak, ""});
+  report.identification.parameters.push_back({"a2", ParameterKind::length, 0, 0, 0, ParameterState::identified, ""});
+  EXPECT_TRUE(says(report.verdict(), "3 parameters are weakly determined and regularised around nominal."));
+  PoseAdvice advice{"a1", ParameterKind::length, 2e-3, 0.5e-3, {VectorX::Ones(1), VectorX::Zero(1)}};
+  report.advice = {advice};
+  EXPECT_TRUE(says(report.verdict(), "2 more parameters are weakly determined and regularised around nominal."))
+      << joined(report.verdict());
+  EXPECT_TRUE(
+      says(report.verdict(),
+           "a1 is weakly determined (standard deviation 2 mm): add poses like (57), (0); 2 of them reduce it to "
+           "0.5."))
+      << joined(report.verdict());
+  report.advice = {advice, advice, advice};
+  EXPECT_EQ(joined(report.verdict()).find("regularised"), std::string::npos);
 }
 
 }  // namespace

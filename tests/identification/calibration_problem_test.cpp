@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "random_blocks.hpp"
 #include "real_matrix.hpp"
@@ -456,6 +458,170 @@ TEST(CalibrationProblemWhiteBox, OneIterationMovesTheDriftByItsSteps) {
   EXPECT_GT(step.norm(), 1e-3);
   EXPECT_FALSE(problem.solve(1));
   EXPECT_LT((RealMatrix(problem.drift_steps()) - step).norm(), 1e-9 * step.norm());
+}
+
+/// Poses from one place and distances from another fixed point; the base of each is free.
+struct WithWire {
+  Measured measured;
+  Distances<6> wire;
+
+  explicit WithWire(Index poses)
+      : measured(poses),
+        wire(measure_distances(Framed<Chain>(measured.robot.chain, Measured::start_base(1), measured.tool),
+                               Vector3::Zero(), sample_joints(measured.robot.limits, 21, 31), 2e-3, 32)) {}
+
+  Problem problem(Loss loss, bool poses_too = true) const {
+    const ArmGeometry here(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool)),
+        there(Framed<Chain>(measured.robot.chain, Measured::start_base(1), measured.tool));
+    const detail::Station lengths = detail::station_of(wire, {.distance_sigma = 0.5e-3});
+    if (!poses_too) return {ArmParameterisation({there}, {{0, 0, 1e-3, 0}}), {lengths}, loss};
+    return {ArmParameterisation({here, there}, {{0, 0, 1e-3, 0}, {0, 1, 1e-3, 0}}),
+            {detail::station_of(measured.first, {}), lengths},
+            loss};
+  }
+};
+
+/// Norms of unweighted residuals of a block: position or distance, orientation.
+std::array<double, 2> norms_of(const Problem& problem, Index block) {
+  const RealMatrix residual = residual_of(problem, block);
+  return {residual.block(0, 0, 3, 1).norm(), residual.block(3, 0, 3, 1).norm()};
+}
+
+TEST(CalibrationProblemWhiteBox, MeasuredPositionsValidateWhereThereAreAny) {
+  const WithWire both(16);
+  EXPECT_EQ(both.problem(Loss::squared).num_blocks(), 16 + 21);
+  EXPECT_EQ(both.problem(Loss::squared).num_validation_blocks(), 16);
+  EXPECT_EQ(both.problem(Loss::squared, false).num_validation_blocks(), 21);
+}
+
+// Of each kind the median: 2.8 deviations of three components, 1.345 of a single number.
+TEST(CalibrationProblemWhiteBox, ThresholdsAndWeightsByKind) {
+  const WithWire both(17);
+  Problem problem = both.problem(Loss::cauchy);
+  std::array<std::vector<double>, 3> kinds;  // positions, orientations, distances
+  std::vector<std::array<double, 2>> norms;
+  for (Index b = 0; b < 38; ++b) {
+    norms.push_back(norms_of(problem, b));
+    kinds[b < 17 ? 0 : 2].push_back(norms.back()[0]);
+    if (b < 17) kinds[1].push_back(norms.back()[1]);
+  }
+  std::array<double, 3> expected{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::sort(kinds[k].begin(), kinds[k].end());
+    expected[k] = kinds[k][kinds[k].size() / 2] * (k == 2 ? 1.345 / 0.6745 : 2.8 / 1.538);
+    EXPECT_NEAR(problem.thresholds()[k], expected[k], 1e-9 * expected[k]) << k;
+  }
+  const double unweighted = problem.normal_equations().cost;
+  const std::array<double, 2> sums = problem.reweight();
+  EXPECT_NEAR(sums[0], unweighted, 1e-9 * unweighted);
+  double weighted = 0;
+  for (Index b = 0; b < 38; ++b) {
+    const auto now = norms_of(problem, b), before = norms[static_cast<std::size_t>(b)];
+    for (std::size_t part = 0; part < (b < 17 ? 2u : 1u); ++part) {
+      const double ratio = before[part] / expected[b < 17 ? part : 2], weight = 1 / (1 + ratio * ratio);
+      EXPECT_NEAR(now[part] * now[part], weight * before[part] * before[part], 1e-9 * before[part] * before[part]) << b;
+      weighted += weight * before[part] * before[part];
+    }
+  }
+  EXPECT_NEAR(sums[1], weighted, 1e-9 * weighted);
+  // weights are those of unweighted residuals, however often
+  const std::array<double, 2> again = problem.reweight();
+  EXPECT_NEAR(again[0], weighted, 1e-9 * weighted);
+  EXPECT_NEAR(again[1], weighted, 1e-9 * weighted);
+}
+
+// Where the weighted residuals are least, under the weights of these residuals.
+TEST(CalibrationProblemWhiteBox, ARobustLossIsReweightedUntilItConverges) {
+  const WithWire both(60);
+  Problem problem = both.problem(Loss::cauchy);
+  ASSERT_TRUE(problem.solve(60));
+  problem.reweight();
+  const NormalEquations normal = problem.normal_equations();
+  for (Index k = 0; k < 2; ++k)
+    EXPECT_LT(normal.gradient(k) * normal.gradient(k) / normal.matrix(k, k), 2e-5 * normal.cost) << k;
+}
+
+// Wires have no temperature and no drift; nor has a session without duration.
+TEST(CalibrationProblemWhiteBox, TemperatureAndDriftAreThoseOfPoses) {
+  WithWire both(16);
+  both.measured.first = both.measured.first.at_temperatures(VectorX::LinSpaced(16, 20, 35));
+  EXPECT_NEAR(both.problem(Loss::squared).temperatures().mean, 27.5, 1e-12);
+  EXPECT_EQ(both.problem(Loss::squared, false).temperatures().std, 0);
+  both.measured.first = both.measured.first.measured_at(VectorX::LinSpaced(16, 0, 150));
+  Problem problem = both.problem(Loss::squared);
+  problem.start_drift(8);
+  ASSERT_EQ(problem.drift.size(), 2u);
+  EXPECT_EQ(problem.drift[0].knots.cols(), 3);
+  EXPECT_TRUE(problem.drift[1].empty());
+  EXPECT_EQ(problem.system().local_states, 3);
+  both.measured.first = both.measured.first.measured_at(VectorX::Constant(16, 5));
+  Problem at_once = both.problem(Loss::squared);
+  at_once.start_drift(8);
+  EXPECT_TRUE(at_once.drift[0].empty());
+}
+
+TEST(CalibrationProblemWhiteBox, ZerosOfTheJointsDriftByStationUntilTheyStop) {
+  Measured measured(8);
+  Problem problem = drifting(measured);
+  EXPECT_EQ(problem.drift_joint_zeros(9).size(), 0);
+  problem.start_joint_drift();
+  for (Index knot = 0; knot < 2; ++knot) problem.drift[1].knots(8, knot) = 1e-5 * static_cast<double>(1 + 2 * knot);
+  for (Index i = 0; i < 4; ++i) {  // times 200, 223, 247 and 270: a third of the way each
+    const VectorX zeros = problem.drift_joint_zeros(8 + i);
+    ASSERT_EQ(zeros.size(), 6);
+    EXPECT_NEAR(zeros(2), 1e-5 * (1 + 2.0 / 3 * static_cast<double>(i)), 1e-18) << i;
+    EXPECT_EQ(zeros(1), 0);
+  }
+  problem.drift[1].knots(5, 1) = 7e-6;
+  problem.stop_joint_drift();
+  EXPECT_EQ(problem.system().local_size, 6);
+  for (const SessionDrift& of_station : problem.drift) EXPECT_EQ(of_station.knots.rows(), 6);
+  EXPECT_EQ(problem.drift[1].knots(5, 1), 7e-6);
+  EXPECT_EQ(problem.drift_joint_zeros(9).size(), 0);
+}
+
+// Columns of the drift are whitened as all others are, and joint noise has columns of its own where no term needs them.
+TEST(CalibrationProblemWhiteBox, JointNoiseWhitensTheDriftToo) {
+  Measured measured(8);
+  measured.first = measured.first.measured_at(VectorX::LinSpaced(8, 0, 150));
+  const auto problem_of = [&](double joint_sigma) {
+    ArmParameterisation arm({ArmGeometry(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool))},
+                            {{11, -1, 1e-3, 0}});
+    Problem out(std::move(arm), {detail::station_of(measured.first, {.joint_sigma = joint_sigma})}, Loss::squared);
+    out.start_drift(4);
+    return out;
+  };
+  Problem exact = problem_of(0), noisy = problem_of(0.2e-3);
+  noisy.joint_columns = false;
+  RowBlock a, b;
+  for (Index i = 0; i < 8; ++i) {
+    exact(i, 1, &a);
+    noisy(i, 1, &b);
+    const RealMatrix factor = a.factor, unwhiten = b.unwhiten;
+    ASSERT_EQ(factor.cols(), 6);
+    const RealMatrix covariance = RealMatrix::identity(6) + 4e-8 * factor * factor.transpose();
+    EXPECT_LT((unwhiten * unwhiten.transpose() - covariance).norm(), 1e-12 * covariance.norm());
+    for (std::size_t k = 0; k < 2; ++k) {
+      ASSERT_EQ(a.local[k].state, b.local[k].state);
+      if (a.local[k].state < 0) continue;
+      const RealMatrix plain = a.local[k].columns, whitened = b.local[k].columns;
+      EXPECT_LT((unwhiten * whitened - plain).norm(), 1e-12 * plain.norm());
+    }
+  }
+}
+
+// Priors with correlations count by their own precision, beside the rows.
+TEST(CalibrationProblemWhiteBox, APriorWithCorrelationsIsAdded) {
+  const WithWire both(8);
+  Problem problem = both.problem(Loss::squared);
+  problem.arm.move(RealMatrix(2, 1, {3, -1}));
+  const NormalEquations without = problem.normal_equations();
+  const RealMatrix precision(2, 2, {4, 1, 1, 2}), centre(2, 1, {0.5, 0.25}), off(2, 1, {2.5, -1.25});
+  problem.prior = JointPrior{precision, centre, 1};
+  const NormalEquations with = problem.normal_equations();
+  EXPECT_LT(difference(with.matrix, RealMatrix(without.matrix) + precision), 1e-9 * without.matrix.norm());
+  EXPECT_LT(difference(with.gradient, RealMatrix(without.gradient) + precision * off), 1e-9 * without.gradient.norm());
+  EXPECT_NEAR(with.cost, without.cost + off.dot(precision * off), 1e-9 * without.cost);
 }
 
 }  // namespace

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <string>
 
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -51,6 +54,39 @@ TEST(PoseAdviceWhiteBox, OrientationsCountByTheirOwnDeviation) {
   ASSERT_EQ(advice.size(), 1u);
   EXPECT_NEAR(advice[0].std_now, 1e-3, 1e-15);
   EXPECT_NEAR(advice[0].std_then, 0.5e-3, 1e-9);
+}
+
+// Each weak parameter by its own unknown, up to a number; joints that slide within half a metre where nothing bounds
+// them.
+TEST(PoseAdviceWhiteBox, OfSeveralUnknownsAndJointsThatSlide) {
+  std::array<DhRow, 6> rows;
+  for (int i = 0; i < 6; ++i) rows[static_cast<std::size_t>(i)] = robots::abb_irb120().chain.row(i);
+  rows[2] = {.a = 0.1, .alpha = 1.5, .d = 0.2, .theta = 0.3, .joint = JointType::prismatic};
+  const ArmGeometry arm(in_frames(DhChain<6>::from_rows(rows)));
+  ErrorModelEstimate estimate{.arm =
+                                  ArmParameterisation({arm}, {{0, -1, 2e-3, 0}, {1, -1, 4e-3, 0}, {2, -1, 8e-3, 0}})};
+  estimate.covariance = MatrixX::Zero(3, 3);
+  for (Index k = 0; k < 3; ++k) estimate.covariance(k, k) = 0.25;
+  IdentificationReport identification;
+  for (const char* name : {"base_x", "base_y", "base_z"})
+    identification.parameters.push_back({name, ParameterKind::length, 0, 0, 1e-3, ParameterState::weak, ""});
+  identification.parameters[0].state = ParameterState::identified;
+  VectorX free = VectorX::Constant(6, std::numeric_limits<double>::infinity());
+  for (const std::size_t most : {2u, 1u}) {
+    const auto advice =
+        detail::pose_advice(estimate, identification, -free, free, {.position_sigma = 4e-3}, false, most, 2);
+    ASSERT_EQ(advice.size(), most);
+    EXPECT_EQ(advice[0].parameter, "base_y");
+    EXPECT_NEAR(advice[0].std_now, 2e-3, 1e-15);
+    EXPECT_NEAR(advice[0].std_then, 4e-3 / std::sqrt(6), 1e-12);  // information of 4, and 1 by each of two poses
+    ASSERT_EQ(advice[0].poses.size(), 2u);
+    for (const VectorX& pose : advice[0].poses)
+      for (Index j = 0; j < 6; ++j) EXPECT_LE(std::abs(pose(j)), j == 2 ? 0.5 : 3.1416) << j;
+    if (most == 1) continue;
+    EXPECT_EQ(advice[1].parameter, "base_z");
+    EXPECT_NEAR(advice[1].std_now, 4e-3, 1e-15);
+    EXPECT_NEAR(advice[1].std_then, 8e-3 / std::sqrt(12), 1e-12);  // 4 by each
+  }
 }
 
 // Poses in whole degrees and millimetres, or what else to do where they would not help.

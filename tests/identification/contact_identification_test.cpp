@@ -295,6 +295,48 @@ TEST(Contacts, RobustLossToleratesATouchThatSlipped) {
   EXPECT_LT(registered_error(robust.model), 0.6 * registered_error(squared.model));
 }
 
+// A tool that is known stays, however badly it fits.
+TEST(Contacts, AKnownToolIsNotSought) {
+  const auto contacts = three_planes(true);
+  const IrbArm off(nominal_arm().model(), {}, FrameParameters(Vector6{0.1, 0.03, -0.02, 0, 0, 0}));
+  const auto found = identify_by_contacts(off, contacts, {.frames = Frames::none});
+  EXPECT_EQ(difference(found.model.identified().tool(), off.tool()), 0);
+  EXPECT_GT(found.rms_before, 5e-3);
+}
+
+// A gauge of half a millimetre says little of the scale, but more than nothing.
+TEST(Contacts, AShortLengthIsALength) {
+  const std::vector contacts{touched(vernier_test::table, "table", lengths(20, 10, 0.5e-3)),
+                             touched(vernier_test::front, "front", lengths(20)),
+                             touched(vernier_test::side, "side", lengths(20))};
+  EXPECT_TRUE(identify_by_contacts(nominal_arm(), contacts, exact).scale_observable);
+}
+
+// What is left of the touches of each object, and of all of them.
+TEST(Contacts, EveryObjectHasItsOwnResiduals) {
+  const std::vector contacts{touched(vernier_test::table, "table", lengths(40, 20, 0.1), 0, 1),
+                             touched(vernier_test::front, "front", lengths(30), 0.1e-3, 2),
+                             touched(vernier_test::side, "side", lengths(20), 0, 3)};
+  const auto found = identify_by_contacts(nominal_arm(), contacts, exact, {.loss = Loss::squared});
+  ASSERT_EQ(found.objects.size(), 3u);
+  double squares = 0, touches = 0;
+  for (const TouchedObject& object : found.objects) {
+    squares += static_cast<double>(object.touches) * object.rms * object.rms;
+    touches += static_cast<double>(object.touches);
+  }
+  EXPECT_EQ(touches, 90);
+  EXPECT_NEAR(found.rms_after, std::sqrt(squares / touches), 1e-12);
+  EXPECT_GT(found.objects[1].rms, 1.5 * found.objects[0].rms);
+  EXPECT_GT(found.objects[1].rms, 1.5 * found.objects[2].rms);
+  // its normal, and a point of it: where the middle of its touches lies
+  EXPECT_GT(std::abs(found.objects[0].direction.z()), 0.999);
+  EXPECT_GT(std::abs(found.objects[1].direction.x()), 0.999);
+  EXPECT_LT(std::abs(found.objects[0].point.x() - 0.35), 0.1);
+  EXPECT_LT(std::abs(found.objects[0].point.z() - 0.25), 0.02);
+  EXPECT_LT(std::abs(found.objects[1].point.x() - 0.45), 0.02);
+  EXPECT_LT(std::abs(found.objects[1].point.z() - 0.4), 0.1);
+}
+
 TEST(Contacts, RefusesWhatDeterminesNothing) {
   const RealMatrix joints = three_planes(true)[0].joints();
   EXPECT_EQ(complaint([&] { Contact("table", ContactKind::plane, joints.block(0, 0, 3, 6)); }),

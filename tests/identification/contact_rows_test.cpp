@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "complaint.hpp"
 #include "real_matrix.hpp"
 #include "touched_objects.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
@@ -97,6 +98,29 @@ TEST(ContactRows, JacobianIsTheDerivativeOfTheResiduals) {
     largest = std::max(largest, column.norm());
   }
   EXPECT_GT(largest, 1);
+}
+
+// Two lines of touches side by side: too narrow below a millimetre, and below a fiftieth of their length.
+TEST(ContactRows, PlanesNeedTouchesAcrossAndAlong) {
+  const auto said = [](double apart, double half_width) {
+    MatrixX joints(20, 6);
+    for (Index i = 0; i < 20; ++i) {
+      const Vector3 point(0.3 + (i < 10 ? 1 : -1) * half_width, apart * (static_cast<double>(i % 10) - 4.5), 0.25);
+      const Contact one = touched({ContactKind::socket, point, Vector3::UnitZ()}, "point", lengths(2), 0, 20);
+      for (Index j = 0; j < 6; ++j) joints(i, j) = one.joints()(0, j);
+    }
+    const Contact strip("strip", ContactKind::plane, joints);
+    Station station = detail::station_of(strip, {});
+    const ArmGeometry arm = detail::contact_arm(ArmGeometry(vernier_test::actual_arm()), strip, station);
+    return vernier_test::complaint([&] { detail::require_spread(arm, strip); });
+  };
+  // 40 mm apart, ten touches have a deviation of 114.9 mm along their line
+  EXPECT_EQ(said(0.04, 1.5e-3),
+            "contact strip: all touches of the plane are along a line (1.5 mm across, 114.9 mm along), which does not "
+            "determine its normal; spread them over the plane");
+  EXPECT_EQ(said(0.04, 3e-3), "");
+  EXPECT_NE(said(0.005, 0.7e-3), "");  // a twentieth of 14.4 mm
+  EXPECT_EQ(said(0.005, 1.3e-3), "");
 }
 
 TEST(ContactRows, FramesTurnByARightAngleAtMost) {

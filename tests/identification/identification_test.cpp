@@ -315,6 +315,42 @@ TEST(IdentificationWhiteBox, SaysWhatAbsorbsAParameter) {
   EXPECT_EQ(still.free.size(), 3u);
 }
 
+// Of more than four parameters that absorb one, four are named.
+TEST(IdentificationWhiteBox, NamesFourOfWhatAbsorbsAParameter) {
+  const FrameParameters far(Vector6{0.8, -0.7, 0.3, 0.2, -0.1, 0.5});
+  const Framed<Chain> arm(robot.chain, base, far);
+  const auto found =
+      identify_by_gauss_newton(arm, measure(arm, abb_irb120_operating_region().sample(robot.chain, 40, 11), {}, 1),
+                               {.frames = Frames::base_and_tool, .priors = false}, squared);
+  EXPECT_EQ(named(found, "theta6").remark, "absorbed by tool_x, tool_y, tool_rx, tool_ry, ...");
+}
+
+// Parameters that are dependent where axes are parallel exactly are not so in an arm as it is made.
+TEST(IdentificationWhiteBox, WhatIsDependentAtNominalMayBeFreeAtTheSolution) {
+  const Robot<6> parallel = robots::ur10();
+  const Framed<Chain> actual(with_geometric_errors(parallel.chain, {}, 9), base, tool);
+  JointLimits<6> limits;
+  limits.lower.setConstant(-2.5);
+  limits.upper.setConstant(2.5);
+  const auto found =
+      identify_by_gauss_newton(Framed<Chain>(parallel.chain, base, tool),
+                               measure(actual, sample_joints(limits, 60, 3), {.with_orientations = false}),
+                               {.frames = Frames::base_and_tool, .priors = false}, squared);
+  EXPECT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.free.size(), 27u);  // 4 R + 6 - 3 of six revolute joints
+  EXPECT_LT(found.rms_after, 1e-7);
+}
+
+TEST(IdentificationWhiteBox, ASolverThatGivesUpIsReported) {
+  const Framed<Chain> arm(robot.chain, base, tool);
+  const Dataset<6> data = measured(30, 7);
+  const auto gives_up = [](detail::CalibrationProblem&, int) { return detail::SolverSummary{false, 3, "gave up"}; };
+  const auto found = detail::identify_geometry(ArmGeometry(arm), detail::station_of(data, squared),
+                                               {.frames = Frames::base_and_tool, .priors = false}, squared, gives_up);
+  EXPECT_EQ(found.report.status, IdentifyStatus::not_converged);
+  EXPECT_EQ(found.report.message, "gave up");
+}
+
 // Expected sizes by kind of parameter; beta in place of d where axes are parallel; frames before the chain.
 TEST(IdentificationPlanWhiteBox, ScalesAndCandidates) {
   const ArmGeometry arm(Framed<Chain>(robot.chain, base, tool));

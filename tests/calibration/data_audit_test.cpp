@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -182,6 +183,9 @@ TEST(DataAudit, AnswersInTheRowsOfTheFileBehindALostRow) {
       EXPECT_EQ(finding.rows.front(), 30);
       EXPECT_EQ(finding.rows.back(), 118);
       EXPECT_EQ(finding.size, -1);
+      EXPECT_EQ(finding.message,
+                "rows 30 to 118: the pose of a row lies 1 rows above its joints: pair them again, a row was lost or "
+                "added");
     }
     // the pose of row 80 belongs to the joints of row 81
     if (finding.kind == FaultKind::outlier) {
@@ -241,6 +245,85 @@ TEST(DataAudit, EveryFaultOfAllRowsHasItsOwnSentence) {
     EXPECT_EQ(sentence.rfind("all rows: ", 0), 0u) << sentence;
     EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
   }
+}
+
+/// The only finding.
+DataFinding only(const DataAudit& audit) {
+  EXPECT_EQ(audit.findings.size(), 1u) << words(audit);
+  return audit.findings.empty() ? DataFinding{FaultKind::outlier} : audit.findings[0];
+}
+
+/// The number behind some words.
+double number_behind(const std::string& text, const std::string& words) {
+  const auto at = text.find(words);
+  EXPECT_NE(at, std::string::npos) << text;
+  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + words.size()));
+}
+
+TEST(DataAudit, UnitsOfJointsAreNamedByTheirDirection) {
+  const Dataset<6> data = clean_file(30, 12);
+  const double degrees = 180 / std::numbers::pi;
+  const DataFinding large = only(audit_data(ur5, Dataset<6>(degrees * data.joints(), data.positions())));
+  EXPECT_EQ(large.message, "all rows: joint angles look like degrees taken as radians: correct their unit");
+  EXPECT_NEAR(large.size, degrees, 1e-9);
+  const DataFinding small = only(audit_data(ur5, Dataset<6>(data.joints() / degrees, data.positions())));
+  EXPECT_EQ(small.message, "all rows: joint angles look like radians taken as degrees: correct their unit");
+  EXPECT_NEAR(small.size, 1 / degrees, 1e-9);
+}
+
+// A zero in degrees or millimetres, to be added to the column.
+TEST(DataAudit, ZerosAreStatedInTheUnitOfTheirJoint) {
+  const Dataset<6> data = clean_file(60, 6);
+  JointRows<6> joints = data.joints();
+  for (Index i = 0; i < 60; ++i) joints(i, 2) -= 0.35;
+  const DataFinding angle = only(audit_data(ur5, Dataset<6>(joints, data.positions(), data.orientations())));
+  EXPECT_EQ(angle.joint, 2);
+  EXPECT_NEAR(number_behind(angle.message, "all rows: joint 3 counts from a zero that is off by "), 20.05, 0.5);
+  EXPECT_NE(angle.message.find(" deg: add that to its column, or correct the nominal theta"), std::string::npos);
+
+  std::array<DhRow, 6> rows;
+  for (int i = 0; i < 6; ++i) rows[static_cast<std::size_t>(i)] = ur5.row(i);
+  rows[2] = {.a = 0.1, .alpha = 1.5, .d = 0.2, .theta = 0.3, .joint = JointType::prismatic};
+  const Chain sliding = Chain::from_rows(rows);
+  joints = data.joints();
+  joints.col(2) *= 0.1;  // within 0.2 m
+  const Dataset<6> seen = measure(sliding, joints, {.position = 0.03e-3, .orientation = 0.1e-3}, 1);
+  for (Index i = 0; i < 60; ++i) joints(i, 2) += 0.03;
+  const DataFinding length = only(audit_data(sliding, Dataset<6>(joints, seen.positions(), seen.orientations())));
+  EXPECT_EQ(length.joint, 2);
+  EXPECT_NEAR(length.size, -0.03, 0.5e-3);
+  EXPECT_NEAR(number_behind(length.message, "joint 3 counts from a zero that is off by "), -30, 0.5);
+  EXPECT_NE(length.message.find(" mm: add that to its column, or correct the nominal d"), std::string::npos);
+}
+
+// A row of joints was lost: the pose of a row is farther down.
+TEST(DataAudit, PosesBelowTheirJoints) {
+  const Dataset<6> data = clean_file(100, 7);
+  JointRows<6> joints(99, 6);
+  for (Index i = 0; i < 99; ++i) set_configuration(joints, i, data.joints(i < 40 ? i : i + 1));
+  const DataFinding found = only(audit_data(ur5, Dataset<6>(joints, data.positions().topRows(99))));
+  EXPECT_EQ(found.kind, FaultKind::shifted_rows);
+  EXPECT_EQ(found.size, 1);
+  EXPECT_EQ(found.message,
+            "rows 40 to 98: the pose of a row lies 1 rows below its joints: pair them again, a row was lost or added");
+}
+
+// Drift from the first row to the last, and how far the arm is off beside it.
+TEST(DataAudit, DriftAndRegisteredErrorsAreStated) {
+  const Dataset<6> data = clean_file(100, 15);
+  PointRows positions = data.positions();
+  for (Index i = 0; i < 100; ++i) positions(i, 1) += 8e-3 * static_cast<double>(i) / 99;
+  const DataAudit audit = audit_data(ur5, Dataset<6>(data.joints(), positions, data.orientations()));
+  const DataFinding found = only(audit);
+  EXPECT_EQ(found.kind, FaultKind::session_drift);
+  EXPECT_NEAR(found.size, 8e-3, 1e-3);
+  EXPECT_NEAR(number_behind(found.message, "all rows: base and sensor move against each other by "), 8, 1);
+  EXPECT_NE(found.message.find(" mm from the first row to the last"), std::string::npos);
+  const std::string text = audit.summary();
+  EXPECT_NEAR(number_behind(text, "with registered frames the nominal arm is off by "), audit.registered.median * 1e3,
+              6e-3 * audit.registered.median * 1e3);
+  EXPECT_NEAR(number_behind(text, "mm (median), "), audit.registered.max * 1e3, 6e-3 * audit.registered.max * 1e3);
+  EXPECT_NE(text.find(" mm (largest), 100 rows"), std::string::npos) << text;
 }
 
 // Zeros that other parameters hide, in an arm whose own are off by 2 mrad: of each joint whose zero frames do not

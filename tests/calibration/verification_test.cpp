@@ -24,6 +24,12 @@ using vernier_test::RealMatrix;
 
 const Robot<6> robot = robots::abb_irb120();
 
+/// Shifted by a millimetre, and turned by one milliradian where it is.
+Isometry3 moved_aside(const Isometry3& pose) {
+  const Matrix3 turned = exp_so3(Vector3(0, 0, 1e-3)) * rotation(pose);
+  return rigid_motion(turned, translation(pose) + Vector3(0, 0, 1e-3));
+}
+
 /// Poses of an arm of which the zero of joint 3 is uncertain, and its change with temperature.
 struct Check {
   Dataset<6> data;
@@ -50,7 +56,7 @@ struct Check {
       const PoseAndJacobian<6> at = robot.chain.pose_and_jacobian(q);
       const Isometry3 actual = robot.chain.pose(q + zeros);
       poses.push_back(at.pose);
-      as_fitted.push_back(rigid_motion(rotation(at.pose), translation(at.pose) + Vector3(0, 0, 1e-3)));
+      as_fitted.push_back(moved_aside(at.pose));
       std::copy_n(at.jacobian.data(), 36, jacobians.data() + 36 * i);
       set_point(positions, i, translation(actual) + Vector3(errors(0, i), errors(1, i), errors(2, i)));
       const Matrix3 turned = exp_so3(Vector3(errors(3, i), errors(4, i), errors(5, i))) * rotation(actual);
@@ -177,11 +183,36 @@ TEST(VerificationWhiteBox, IsGeneralisedLeastSquares) {
       EXPECT_NEAR(found.rotations(i), r.block(6 * i + 3, 0, 3, 1).norm(), 1e-12);
       const Isometry3& fitted = check.as_fitted[static_cast<std::size_t>(i)];
       EXPECT_NEAR(found.as_fitted(i), (translation(fitted) - check.data.position(i)).norm(), 1e-12);
-      EXPECT_NEAR(found.rotations_as_fitted(i), found.rotations(i), 1e-12);
+      const RealMatrix apart = pose_difference(fitted, check.data.pose(i));
+      EXPECT_NEAR(found.rotations_as_fitted(i), apart.block(3, 0, 3, 1).norm(), 1e-12);
     }
     EXPECT_NEAR(found.mean_error, RealMatrix(found.errors).mean(), 1e-12);
     EXPECT_GT(found.mean_upper, found.mean_error);
   }
+}
+
+// Orientations of a probe that was found to be turned count as if it were not, less the three values that told so.
+TEST(VerificationWhiteBox, ATurnedProbeIsTakenOff) {
+  Check check(RealMatrix(6, 8));
+  const Vector3 probe(0.01, -0.02, 0.03);
+  PointRows turned(8, 3);
+  for (Index i = 0; i < 8; ++i) {
+    const Matrix3 seen = rotation(check.poses[static_cast<std::size_t>(i)]) * exp_so3(probe);
+    set_point(turned, i, log_so3(seen));
+  }
+  check.data =
+      Dataset<6>(check.data.joints(), check.data.positions(), turned).at_temperatures(check.data.temperatures());
+  const detail::Station station = detail::station_of(check.data, check.sensors);
+  ReregistrationReport registration;
+  registration.motion.probe = probe;
+  registration.probe_turned = true;
+  const VerifyOptions options{.sensors = check.sensors};
+  const auto found = detail::verify(
+      {station, check.estimate, check.poses, check.jacobians, check.as_fitted, check.gates, check.types, registration},
+      options);
+  EXPECT_LT(RealMatrix(found.rotations).largest(), 1e-9);
+  EXPECT_LT(found.chi_square, 1e-6);
+  EXPECT_EQ(found.dof, 48 - 6 - 3);
 }
 
 // Half of the level is for everything together.

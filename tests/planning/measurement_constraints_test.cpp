@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "complaint.hpp"
@@ -37,6 +38,14 @@ TEST(MeasurementConstraints, TheToolStaysInItsBox) {
   const MeasurementConstraints c{.tool_box = ToolBox{{2.5, -1, -0.1}, {3.5, 1, 0.1}}};
   EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
   EXPECT_EQ(checked(c, {1, 0, 0}), Rejection::tool_box);
+  // the tool at (3, 0, 0) out of each side of a box by a tenth
+  for (Index k = 0; k < 3; ++k)
+    for (const double side : {-0.4, 0.4}) {
+      ToolBox box{{2.7, -0.3, -0.3}, {3.3, 0.3, 0.3}};
+      box.lower(k) += side;
+      box.upper(k) += side;
+      EXPECT_EQ(checked({.tool_box = box}, {0, 0, 0}), Rejection::tool_box) << k << ' ' << side;
+    }
 }
 
 TEST(MeasurementConstraints, RangeOfTheTracker) {
@@ -85,6 +94,69 @@ TEST(MeasurementConstraints, LinksCollide) {
   EXPECT_EQ(checked(c, {0, 0.1, 0.1}), Rejection::none);
 }
 
+// The beam from the tool at (0, 1) to (1, -1, 1.5) passes the first link, along x, at 0.6 m and the second, along y, at
+// 1.5 / sqrt(3.25) = 0.832 m: a link blocks it where its radius and that of the beam are larger together.
+TEST(MeasurementConstraints, BeamsKeepTheirRadiusFromEachLink) {
+  const auto seen = [](double first, double second) {
+    const MeasurementConstraints c{.tracker = Tracker{.position = {1, -1, 1.5}, .beam_radius = 0.05},
+                                   .link_radii = {first, second, 0.1}};
+    return checked(c, {0, half_turn / 2, half_turn / 2});
+  };
+  EXPECT_EQ(seen(0.54, 0.1), Rejection::none);
+  EXPECT_EQ(seen(0.56, 0.1), Rejection::line_of_sight);
+  EXPECT_EQ(seen(0.1, 0.78), Rejection::none);
+  EXPECT_EQ(seen(0.1, 0.79), Rejection::line_of_sight);
+  // the first link is 2 m from the reflector along the arm: beside it is only what is farther away than it is wide
+  EXPECT_EQ(seen(1.5, 0.1), Rejection::line_of_sight);
+  EXPECT_EQ(seen(1.96, 0.1), Rejection::none);
+}
+
+// Half a metre of tool carries the reflector away from the last link, which then may hide it.
+TEST(MeasurementConstraints, TheToolIsPartOfTheWayToTheReflector) {
+  const DhChain<3> chain{{{{.a = 1}, {.a = 1}, {.a = 1}}}};
+  const ArmGeometry arm(
+      Framed<DhChain<3>>(chain, Isometry3::Identity(), rigid_motion(Matrix3::Identity(), {0.5, 0, 0})));
+  const VectorX bent = Vector3(0, 0, half_turn / 2);  // the last link from (2, 0) to (2, 1), the tool at (2, 1.5)
+  for (const double radius : {0.4, 0.6}) {
+    const MeasurementConstraints c{.tracker = Tracker{.position = {2, -5, 0}, .beam_radius = 0},
+                                   .link_radii = {0, 0, radius}};
+    EXPECT_EQ(MeasurementScene(arm, c).check(bent), radius < 0.5 ? Rejection::line_of_sight : Rejection::none);
+  }
+}
+
+// The third link ends 0.4 m above the first, with a link of 1 m between them.
+TEST(MeasurementConstraints, LinksThatAreNearerThanTheirRadiiCollide) {
+  const Vector3 q(0, half_turn / 2, half_turn / 2 + std::asin(0.6));
+  const auto with = [&](double first, double third) { return checked({.link_radii = {first, 0, third}}, q); };
+  EXPECT_EQ(with(0.1, 0.29), Rejection::none);
+  EXPECT_EQ(with(0.1, 0.31), Rejection::self_collision);
+  EXPECT_EQ(with(0.29, 0.1), Rejection::none);
+  EXPECT_EQ(with(0.31, 0.1), Rejection::self_collision);
+  EXPECT_EQ(with(0.5, 0.49), Rejection::self_collision);
+  EXPECT_EQ(with(0.5, 0.51), Rejection::none);  // as wide as the link between them is long
+}
+
+// The fourth link comes back to 0.2 m from the first: both overlap, but for the 2 m of links between them.
+TEST(MeasurementConstraints, AllLinksBetweenTwoKeepThemApart) {
+  const DhChain<4> chain{{{{.a = 1}, {.a = 1}, {.a = 1}, {.a = 0.8}}}};
+  VectorX square = VectorX::Constant(4, half_turn / 2);
+  square(0) = 0;
+  for (const double radius : {0.7, 1.1}) {
+    const MeasurementScene scene(ArmGeometry(in_frames(chain)), {.link_radii = {radius, 0, 0, radius}});
+    EXPECT_EQ(scene.check(square), radius < 1 ? Rejection::self_collision : Rejection::none) << radius;
+  }
+}
+
+TEST(MeasurementConstraints, EachRejectionHasItsWords) {
+  EXPECT_STREQ(name_of(Rejection::none), "possible");
+  EXPECT_STREQ(name_of(Rejection::joint_limits), "out of the joint limits");
+  EXPECT_STREQ(name_of(Rejection::tool_box), "tool out of its box");
+  EXPECT_STREQ(name_of(Rejection::range), "out of the tracker's range");
+  EXPECT_STREQ(name_of(Rejection::acceptance), "reflector turned away");
+  EXPECT_STREQ(name_of(Rejection::line_of_sight), "beam blocked by a link");
+  EXPECT_STREQ(name_of(Rejection::self_collision), "links collide");
+}
+
 // Arm, box and tracker moved together by a base: what is rejected does not change.
 TEST(MeasurementConstraints, HoldInTheFrameOfTheBase) {
   const DhChain<3> chain{{{{.a = 1}, {.a = 1}, {.a = 1}}}};
@@ -127,6 +199,19 @@ TEST(MeasurementConstraints, RefusesWhatIsNotUsable) {
   EXPECT_EQ(complaint({.tool_box = ToolBox{{0, 0, 0}, {1, 0, 1}}}),
             "MeasurementScene: the lower corner of the tool box is not below the upper one");
   EXPECT_EQ(complaint({.tracker = Tracker{.acceptance = 0}}), "MeasurementScene: acceptance is 0, must be positive");
+  EXPECT_EQ(complaint({.joint_margin = -0.5}), "MeasurementScene: joint_margin is -0.5, must not be negative");
+  EXPECT_EQ(complaint({.joint_margin = 0}), "");
+  EXPECT_EQ(complaint({.upper = VectorX::Zero(4)}), "MeasurementScene: limits of 4 joints for an arm of 3");
+  EXPECT_EQ(complaint({.link_radii = {0, 0.5, -1}}), "MeasurementScene: the radius of a link is -1");
+  EXPECT_EQ(complaint({.link_radii = {0, 0.5, 1 / 0.0}}), "MeasurementScene: the radius of a link is inf");
+  EXPECT_EQ(complaint({.tracker = Tracker{.position = {0, std::nan(""), 0}}}),
+            "MeasurementScene: the tracker's position is not finite");
+  EXPECT_EQ(complaint({.tracker = Tracker{.reflector_direction = {0, 0, 0}}}),
+            "MeasurementScene: the reflector has no direction");
+  EXPECT_EQ(complaint({.tracker = Tracker{.min_range = 2, .max_range = 2}}),
+            "MeasurementScene: the tracker's range is empty");
+  EXPECT_EQ(vernier_test::complaint([&] { (void)MeasurementScene(planar_arm(), {}).check(VectorX::Zero(2)); }),
+            "MeasurementScene: 2 joint values for an arm of 3");
 }
 
 }  // namespace

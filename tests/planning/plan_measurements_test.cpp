@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
@@ -80,6 +81,119 @@ TEST(PlanMeasurements, RowsAreDerivativesOfThePose) {
   ASSERT_EQ(positions.rows(), 15);
   for (Index i = 0; i < 5; ++i)
     EXPECT_EQ(positions.block(3 * i, 0, 3, rows.cols()), rows.block(6 * i, 0, 3, rows.cols()));
+}
+
+/// The parameters that `identify` estimates of an IRB 120: frames first; its second and third axes are parallel.
+std::vector<std::string> estimated_of_irb120() {
+  std::vector<std::string> out;
+  for (const char* frame : {"base_", "tool_"})
+    for (const char* axis : {"x", "y", "z", "rx", "ry", "rz"}) out.push_back(std::string(frame) + axis);
+  for (int row = 1; row <= 6; ++row)
+    for (const char* name : {"a", "alpha", row == 2 ? "" : "d", "theta", row == 2 ? "beta" : ""})
+      if (*name != 0) out.push_back(name + std::to_string(row));
+  return out;
+}
+
+// Geometry likewise: of the chain by the expected sizes of its errors, of the frames by 30 times 10 mm and 10 mrad.
+TEST(PlanMeasurements, RowsOfGeometryAreDerivativesOfThePose) {
+  const MeasurementCandidates<6> at = some_candidates(3, 1);
+  ErrorModelOptions no_errors{.compliance = false, .harmonics = 0, .hysteresis = false, .tilt = false};
+  const SensorModel sensors{.position_sigma = 2e-3, .orientation_sigma = 5e-3};
+  IdentifyOptions geometry{.frames = Frames::base_and_tool};
+  geometry.length_prior_std = 2e-3;
+  geometry.angle_prior_std = 3e-3;
+  geometry.joint_zero_prior_std = 7e-3;
+  const detail::PlannedCalibration planned{
+      ArmGeometry(in_frames(robots::abb_irb120().chain)), geometry, no_errors, sensors, true, 30};
+  const RealMatrix rows = detail::expected_rows(planned, at.joints, MatrixX());
+  const std::vector<std::string> estimated = estimated_of_irb120(), names = planned.nominal.parameter_names();
+  ASSERT_EQ(rows.cols(), static_cast<Index>(estimated.size()));
+  constexpr double step = 1e-6;
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    const std::string& name = estimated[k];
+    const Index parameter = std::find(names.begin(), names.end(), name) - names.begin();
+    VectorX low = planned.nominal.parameters(), high = low;
+    low(parameter) -= step;
+    high(parameter) += step;
+    const auto below = planned.nominal.with_parameters(low).poses(at.joints),
+               above = planned.nominal.with_parameters(high).poses(at.joints);
+    const double size = k < 12 ? 0.3 : name[0] == 't' ? 7e-3 : name[0] == 'd' || name[1] < 'a' ? 2e-3 : 3e-3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3 shift = translation(above[i]) - translation(below[i]),
+                    turn = log_so3(rotation(composed(above[i], inverse_of(below[i]))));
+      RealMatrix expected(6, 1);
+      expected.set_block(0, 0, RealMatrix(shift) * (size / (2 * step * 2e-3)));
+      expected.set_block(3, 0, RealMatrix(turn) * (size / (2 * step * 5e-3)));
+      const RealMatrix found = rows.block(6 * static_cast<Index>(i), static_cast<Index>(k), 6, 1);
+      EXPECT_LT((found - expected).norm(), 1e-6 * (1 + expected.norm())) << name << ", pose " << i;
+    }
+  }
+}
+
+// Errors of the joint readings move the tool by the Jacobian: what a pose says about the unknowns is A' C^-1 A.
+TEST(PlanMeasurements, RowsCountErrorsOfTheJointReadings) {
+  const auto chain = robots::abb_irb120().chain;
+  const MeasurementCandidates<6> at = some_candidates(1, 1);
+  detail::PlannedCalibration planned{
+      ArmGeometry(in_frames(chain)), {.frames = Frames::base_and_tool}, {.harmonics = 2}, {}, true, 30};
+  const RealMatrix exact = detail::expected_rows(planned, at.joints, at.previous);
+  planned.sensors.joint_sigma = 0.2e-3;
+  const RealMatrix rows = detail::expected_rows(planned, at.joints, at.previous);
+  RealMatrix covariance(6, 6), unwhitened = exact;
+  for (Index k = 0; k < 6; ++k) {
+    const double sigma = k < 3 ? planned.sensors.position_sigma : planned.sensors.orientation_sigma;
+    covariance(k, k) = sigma * sigma;
+    for (Index c = 0; c < exact.cols(); ++c) unwhitened(k, c) *= sigma;
+  }
+  const RealMatrix jacobian = 0.2e-3 * RealMatrix::of(chain.jacobian(configuration(at.joints, 0)));
+  covariance += jacobian * jacobian.transpose();
+  const RealMatrix expected = unwhitened.transpose() * covariance.inverse() * unwhitened;
+  EXPECT_LT((rows.transpose() * rows - expected).norm(), 1e-6 * expected.norm());
+}
+
+// From 400 measurements on, orders above 60 may be fitted, of each of six joints with a cosine and a sine; those that
+// were made count, too.
+TEST(PlanMeasurements, MeasurementsOfBeforeDecideOnTheOrders) {
+  PlanOptions options{.count = 2};
+  options.errors.spectrum = {{1, 1, 1e-4}, {70, 70, 1e-4}};
+  options.errors.harmonics = 100;
+  const auto chain = robots::abb_irb120().chain;
+  const MeasurementCandidates<6> candidates = some_candidates(5, 9);
+  Index before = 0;
+  for (const Index made : {397, 398}) {
+    const Index unknowns = plan_measurements(chain, candidates, options, some_candidates(made, 10)).unknowns;
+    EXPECT_EQ(unknowns - before, made == 397 ? unknowns : 12);
+    before = unknowns;
+  }
+}
+
+// A plan is a design of what its measurements are expected to say, poses in blocks of three rows or, with orientations,
+// six; the region is one of positions.
+TEST(PlanMeasurements, IsTheDesignOfExpectedRows) {
+  const auto chain = robots::abb_irb120().chain;
+  const MeasurementCandidates<6> candidates = some_candidates(25, 11);
+  const JointRows<6> region = some_candidates(7, 12).joints;
+  for (const bool oriented : {false, true})
+    for (const auto criterion : {DesignCriterion::information, DesignCriterion::region_variance}) {
+      PlanOptions options = few_harmonics(8);
+      options.oriented = oriented;
+      options.criterion = criterion;
+      options.bound_iterations = 3;
+      const auto plan = plan_measurements(chain, candidates, options, {}, region);
+      detail::PlannedCalibration planned{
+          ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, oriented, 8};
+      const MatrixX rows = detail::expected_rows(planned, candidates.joints, candidates.previous);
+      planned.oriented = false;
+      const MatrixX of_region = detail::expected_rows(planned, region, MatrixX());
+      const Index block = oriented ? 6 : 3;
+      const PoseDesign design = design_poses(rows, block, {8, criterion, {}}, MatrixX(), of_region);
+      EXPECT_EQ(plan.chosen, design.chosen);
+      EXPECT_EQ(plan.unknowns, rows.cols());
+      EXPECT_LT(difference(plan.log_det, design.log_det), 1e-9);
+      EXPECT_NEAR(plan.bound, information_bound(rows, block, 8, 3), 1e-9);
+      for (Index k = 0; k <= 8; ++k)
+        EXPECT_NEAR(plan.relative_error(k) / std::sqrt(design.region_variance(k) / design.region_variance(8)), 1, 1e-6);
+    }
 }
 
 TEST(PlanMeasurements, MoreInformationThanByChanceAndTheFirstOnesAreThePlanOfFewer) {
@@ -180,6 +294,10 @@ TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   for (const Index c : more.chosen) EXPECT_EQ(std::find(plan.chosen.begin(), plan.chosen.end(), c), plan.chosen.end());
   EXPECT_EQ(more.chosen, (std::vector<Index>(at_once.chosen.begin() + 20, at_once.chosen.end())));
   EXPECT_NEAR(more.log_det(10), at_once.log_det(30) - at_once.log_det(20), 1e-6);
+  // the bound is one without them
+  PlanOptions bounded = few_harmonics(10);
+  bounded.bound_iterations = 2;
+  EXPECT_TRUE(std::isinf(plan_measurements(chain, candidates, bounded, measured).bound));
 }
 
 TEST(PlanMeasurements, VisitsRegisterFirstAndCheckRepeatedly) {
@@ -263,6 +381,47 @@ TEST(PlanMeasurements, BinsByHand) {
   EXPECT_TRUE(plan_measurements(chain, in_a_row({0, 0.25, 0.5}), options).uncovered.empty());
 }
 
+// Of the ends of a range two measurements each are wanted.
+TEST(PlanMeasurements, BinsMayWantSeveralMeasurements) {
+  const auto chain = robots::abb_irb120().chain;
+  PlanOptions options;
+  options.errors.harmonics = 6;
+  options.bin = 0.25;
+  options.bin_count = 2;
+  const auto uncovered = [&](Index count, const MeasurementCandidates<6>& measured) {
+    options.count = count;
+    return plan_measurements(chain, in_a_row({0, 0.05, 0.1, 0.55, 0.6, 0.65}), options, measured).uncovered;
+  };
+  for (const UncoveredBin& bin : uncovered(3, {})) EXPECT_LT(bin.joint, 2);
+  EXPECT_EQ(uncovered(3, {}).size(), 2u);  // one bin of each of the joints that move
+  EXPECT_TRUE(uncovered(4, {}).empty());
+  EXPECT_EQ(uncovered(2, in_a_row({0.1})).size(), 2u);  // two bins were half covered before
+  EXPECT_TRUE(uncovered(3, in_a_row({0.1})).empty());
+}
+
+// Behind the three that register, the shortest way at the speeds of the joints; the first pose again and again.
+TEST(PlanMeasurements, VisitsGoAtTheSpeedsOfTheJoints) {
+  const auto chain = robots::abb_irb120().chain;
+  PlanOptions options = few_harmonics(15);
+  options.speeds = VectorX::Constant(6, 1);
+  options.speeds(0) = 0.05;
+  options.check_every = 100;
+  const auto candidates = some_candidates(40, 13);
+  const auto plan = plan_measurements(chain, candidates, options);
+  ASSERT_EQ(plan.visits.size(), 16u);
+  std::vector<Index> rows(plan.visits.begin(), plan.visits.begin() + 3);
+  for (Index i = 0; i < 15; ++i)
+    if (std::find(rows.begin(), rows.begin() + 3, i) == rows.begin() + 3) rows.push_back(i);
+  JointRows<6> joints(15, 6);
+  for (Index i = 0; i < 15; ++i)
+    set_configuration(joints, i, configuration(plan.joints, rows[static_cast<std::size_t>(i)]));
+  const std::vector<Index> order = visiting_order(joints, options.speeds, 3);
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(plan.visits[i], rows[static_cast<std::size_t>(order[i])]) << i;
+  options.check_every = 7;
+  const auto checked = plan_measurements(chain, candidates, options);
+  EXPECT_EQ(checked.visits, with_check_visits({plan.visits.begin(), plan.visits.begin() + 15}, 7));
+}
+
 TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
   const auto robot = robots::abb_irb120();
   MeasurementConstraints constraints{.tool_box = ToolBox{{0, -0.4, 0.1}, {0.8, 0.4, 0.9}},
@@ -281,6 +440,9 @@ TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
     const Vector3 beam = (constraints.tracker->position - position).normalized();
     EXPECT_GE(beam.dot(axis), std::cos(1.0) - 1e-12);
   }
+  EXPECT_GT(difference(found.joints, sample_candidates(robot.chain, robot.limits, constraints, 200, 4).joints), 0);
+  for (Index i = 0; i < 200; ++i)  // each approached from the one before, the first from where it is
+    EXPECT_EQ(configuration(found.previous, i), configuration(found.joints, std::max<Index>(i - 1, 0)));
   EXPECT_EQ(found.rejected[static_cast<std::size_t>(Rejection::none)], 0);
   for (const Rejection r : {Rejection::joint_limits, Rejection::tool_box, Rejection::acceptance})
     EXPECT_GT(found.rejected[static_cast<std::size_t>(r)], 0) << name_of(r);
@@ -302,6 +464,9 @@ TEST(PlanMeasurements, EnoughIsWhereTenMoreGainLittle) {
   plan.chosen.resize(30);
   plan.relative_error = VectorX::LinSpaced(31, 4, 1);
   EXPECT_EQ(plan.enough(), 30);
+  // the first ten of thirty even steps from 4 to 1 reduce it by a quarter, later ones by more
+  EXPECT_EQ(plan.enough(0.24), 30);
+  EXPECT_EQ(plan.enough(0.26), 0);
   for (Index k = 16; k < 31; ++k) plan.relative_error(k) = plan.relative_error(15);
   EXPECT_EQ(plan.enough(), 15);
 }

@@ -124,6 +124,21 @@ TEST(DrawJointErrors, SwitchingOneOffLeavesTheOthers) {
   EXPECT_TRUE(draw_joint_errors(nominal, {0, 0, 0, 0}, 7).empty());
 }
 
+// Sources of the same size differ in every coefficient: each joint of each has its own random numbers.
+TEST(DrawJointErrors, NoRandomNumberIsUsedTwice) {
+  const auto errors = draw_joint_errors(nominal, {1, 1, 1, 1, 3, 0, 1, 20}, 7);
+  std::vector<double> sizes;
+  for (const double coefficient : errors.coefficients()) sizes.push_back(std::abs(coefficient));
+  ASSERT_EQ(sizes.size(), 6u + 5u + 21u + 6u * 2u * 4u);
+  std::sort(sizes.begin(), sizes.end());
+  for (std::size_t k = 1; k < sizes.size(); ++k) EXPECT_GT(sizes[k], sizes[k - 1]);
+}
+
+TEST(DrawJointErrors, TheRippleIsOfTheOrderAskedFor) {
+  const auto errors = draw_joint_errors(nominal, {.harmonics = 2, .ripple = 1e-5, .ripple_harmonic = 81});
+  for (const Fourier& of_joint : errors.terms().transmission) EXPECT_EQ(of_joint.orders, (std::vector<int>{1, 2, 81}));
+}
+
 TEST(DrawJointErrors, MoreHarmonicsKeepTheFormer) {
   const auto few = draw_joint_errors(nominal, {.harmonics = 3}, 8);
   const auto many = draw_joint_errors(nominal, {.harmonics = 60}, 8);

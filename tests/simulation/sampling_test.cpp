@@ -83,6 +83,23 @@ TEST(SampleJoints, ImpossibleWishesThrow) {
   expect_complaint([&] { (void)sample_joints(half_open, 10, 1); }, "finite");
 }
 
+// A thousand tries for each configuration, and ten more for luck.
+TEST(SampleJoints, GivesUpAfterAThousandTriesEach) {
+  JointLimits<2> limits;
+  limits.lower << -1, -1;
+  limits.upper << 1, 1;
+  int tries = 0;
+  expect_complaint(
+      [&] {
+        (void)sample_joints(limits, 3, 1, [&](const JointVector<2>&) {
+          ++tries;
+          return false;
+        });
+      },
+      "one configuration in a thousand");
+  EXPECT_EQ(tries, 13000);
+}
+
 /// Distance of the origin of frame 5 from the first axis, by another way than the region's: the chain without its last
 /// link and joint.
 double wrist_distance(const DhChain<6>& chain, const JointVector<6>& q) {
@@ -92,6 +109,16 @@ double wrist_distance(const DhChain<6>& chain, const JointVector<6>& q) {
   held(5) = 0;
   const Vector3 wrist = chain.with_parameters(p).position(held);
   return std::hypot(wrist.x(), wrist.y());
+}
+
+TEST(OperatingRegion, HasTheRangesItSays) {
+  const auto region = abb_irb120_operating_region();
+  const double lower[] = {-90, -60, -60, -90, 20, -180}, upper[] = {90, 60, 50, 90, 110, 180};
+  for (int j = 0; j < 6; ++j) {
+    EXPECT_NEAR(region.limits.lower(j) * 180 / std::acos(-1), lower[j], 1e-12) << j;
+    EXPECT_NEAR(region.limits.upper(j) * 180 / std::acos(-1), upper[j], 1e-12) << j;
+  }
+  EXPECT_EQ(region.wrist_clearance, 0.12);
 }
 
 TEST(OperatingRegion, KeepsTheWristClearOfTheFirstAxis) {

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "complaint.hpp"
 #include "real_matrix.hpp"
 #include "vernier/kinematics/robots.hpp"
 
@@ -49,6 +51,41 @@ TEST(Touch, BallsAreTouchedAtTheirRadiusAndSocketsWhereTheyAre) {
       }
     }
   }
+}
+
+// Noise lies between the tool point and what is touched: across a plane, one of its components is left. Five deviations
+// of the estimate.
+TEST(Touch, ScattersAsItsSensorDoes) {
+  const DhChain<6> arm = robots::abb_irb120().chain;
+  const Vector3 normal(0.6, 0, 0.8), centre(0.4, 0.1, 0.3);
+  const auto limits = abb_irb120_operating_region().limits;
+  const Index n = 500;
+  const double sigma = 0.1e-3;
+  const auto heights = [&](std::uint64_t seed) {
+    const Contact contact =
+        touch(arm, {ContactKind::plane, centre, normal, 0.1}, "plate", VectorX::Zero(n), limits, sigma, seed);
+    const PointRows points = arm.positions(JointRows<6>(contact.joints()));
+    vernier_test::RealMatrix out(n, 1);
+    for (Index i = 0; i < n; ++i) {
+      out(i) = normal.dot(point(points, i) - centre) / sigma;
+      EXPECT_TRUE(limits.contains(configuration(JointRows<6>(contact.joints()), i)));
+    }
+    return out;
+  };
+  const auto height = heights(3);
+  EXPECT_NEAR(height.mean(), 0, 5 / std::sqrt(500.0));
+  EXPECT_NEAR(height.squared_norm() / 500, 1, 5 * std::sqrt(2 / 500.0));
+  EXPECT_EQ(height, heights(3));
+  EXPECT_NE(height(0), heights(4)(0));
+}
+
+TEST(Touch, WhatIsOutOfReachIsSaid) {
+  const DhChain<6> arm = robots::abb_irb120().chain;
+  EXPECT_EQ(vernier_test::complaint([&] {
+              (void)touch(arm, {ContactKind::socket, Vector3(2, 0, 0)}, "far socket", VectorX::Zero(1),
+                          robots::abb_irb120().limits, 0, 1);
+            }),
+            "touch: the arm hardly reaches far socket");
 }
 
 // What a step of joint values moves the point by is what it lacks; no joint moves in vain. In metres as in millimetres.

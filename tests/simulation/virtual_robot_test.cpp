@@ -79,7 +79,8 @@ TEST(GeometricErrors, ZeroSizesChangeNothing) {
 TEST(GeometricErrors, UpsideDownRangesAreNamed) {
   for (const GeometricErrors& bad :
        {GeometricErrors{.length_min = 2e-3, .length_max = 1e-3}, GeometricErrors{.length_min = -1e-3},
-        GeometricErrors{.angle_min = 4e-3, .angle_max = 3e-3}, GeometricErrors{.angle_max = std::nan("")}}) {
+        GeometricErrors{.angle_min = 4e-3, .angle_max = 3e-3}, GeometricErrors{.angle_min = -1e-3},
+        GeometricErrors{.angle_max = std::nan("")}}) {
     EXPECT_THROW((void)with_geometric_errors(nominal, bad, 1), std::invalid_argument);
   }
   try {
@@ -153,6 +154,28 @@ TEST(Measure, SeedsDecideAlone) {
   // whether orientations are recorded does not change the positions of the first pose
   EXPECT_EQ(measure(nominal, q, noise, 1).position(0),
             measure(nominal, q, {.position = 1e-3, .with_orientations = false}, 1).position(0));
+}
+
+TEST(MeasureDistances, AreThoseFromTheAnchor) {
+  const Vector3 anchor(0.5, -0.25, 1);
+  const Index n = 2000;
+  const auto q = some_joints(n);
+  const auto exact = measure_distances(nominal, anchor, q);
+  const double sigma = 0.05e-3;
+  const auto noisy = measure_distances(nominal, anchor, q, sigma, 3),
+             again = measure_distances(nominal, anchor, q, sigma, 3),
+             other = measure_distances(nominal, anchor, q, sigma, 4);
+  EXPECT_TRUE(RealMatrix(exact.joints()) == q);
+  RealMatrix off(n, 1);
+  for (Index i = 0; i < n; ++i) {
+    EXPECT_NEAR(exact.lengths()(i), (nominal.position(configuration(q, i)) - anchor).norm(), 1e-15);
+    off(i) = (noisy.lengths()(i) - exact.lengths()(i)) / sigma;
+  }
+  // five deviations of the estimates from n unit normals
+  EXPECT_NEAR(off.mean(), 0, 5 / std::sqrt(2000.0));
+  EXPECT_NEAR(off.squared_norm() / 2000, 1, 5 * std::sqrt(2 / 2000.0));
+  EXPECT_EQ(RealMatrix(noisy.lengths()), RealMatrix(again.lengths()));
+  EXPECT_NE(noisy.lengths()(0), other.lengths()(0));
 }
 
 }  // namespace

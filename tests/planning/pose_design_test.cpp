@@ -115,6 +115,37 @@ TEST(PoseDesign, TheBoundOfOneUnknownIsItsBestChoice) {
   EXPECT_NEAR(information_bound(rows, 1, 2, 1), std::log(8.5) + 5.5 / 8.5, 1e-12);
 }
 
+// Of two unknowns with weights of a fifth each: log det of ((10.4, -4.8), (-4.8, 7.4)), and the gradients, of which the
+// fifth is largest. The next iteration gives a larger bound, a later one a smaller.
+TEST(PoseDesign, TheBoundIsTheSmallestOfAllIterations) {
+  const RealMatrix rows(5, 2, {3, -4, 3, 0, -3, 4, 2, 0, 4, 0});
+  const double determinant = 10.4 * 7.4 - 4.8 * 4.8, first = 7.4 * 9 - 2 * 4.8 * 12 + 10.4 * 16;
+  const double sum = 2 * first + 7.4 * (9 + 4 + 16);
+  const double by_hand = std::log(determinant) + (7.4 * 16 - 0.2 * sum) / determinant;
+  EXPECT_NEAR(information_bound(rows, 1, 1, 1), by_hand, 1e-12);
+  EXPECT_NEAR(information_bound(rows, 1, 1, 2), by_hand, 1e-12);
+  EXPECT_NEAR(information_bound(rows, 1, 1, 4), by_hand, 1e-12);
+  EXPECT_LT(information_bound(rows, 1, 1, 5), by_hand - 0.01);
+}
+
+// One unknown: each measurement adds its square to a precision that begins with 1, and with what was measured.
+TEST(PoseDesign, OfOneUnknownByHand) {
+  const RealMatrix rows = vernier_test::vector({0.1, 2, 0.01, 1}), measured = vernier_test::vector({3}),
+                   region = vernier_test::vector({1, 2, 3});
+  for (const bool before : {false, true}) {
+    const PoseDesign design =
+        design_poses(rows, 1, {.count = 4, .coverage = {}}, before ? MatrixX(measured) : MatrixX(), region);
+    EXPECT_EQ(design.chosen, (std::vector<Index>{1, 3, 0, 2}));
+    const double start = before ? 10 : 1;
+    double precision = start;
+    for (const Index k : {0, 1, 2, 3, 4}) {
+      if (k > 0) precision += std::pow(rows(design.chosen[static_cast<std::size_t>(k - 1)]), 2);
+      EXPECT_NEAR(design.log_det(k), std::log(precision / start), 1e-13) << k;
+      EXPECT_NEAR(design.region_variance(k), (1 + 4 + 9) / precision, 1e-12) << k;  // of a point, of three rows
+    }
+  }
+}
+
 TEST(PoseDesign, OfEqualCandidatesTakesTheFirst) {
   const RealMatrix one = random_rows(3, 6, 5);
   RealMatrix rows(30, 6);
@@ -135,6 +166,21 @@ TEST(PoseDesign, CoversMissingBinsFirst) {
   EXPECT_EQ(still_missing, (std::vector<int>{0, 0, 0, 1}));  // nothing lies in the last bin
 }
 
+// Bins count, not what they lack; each choice is one of what they lack.
+TEST(PoseDesign, BinsThatLackSeveralCountOnceEach) {
+  const RealMatrix equal = vernier_test::vector({1, 1, 1});
+  const Eigen::MatrixXi two_each{{2, 3}, {0, 1}, {3, 3}};
+  const PoseDesign several =
+      design_poses(equal, 1, {.count = 2, .coverage = {two_each, Eigen::VectorXi{{1, 1, 5, 0}}}});
+  EXPECT_EQ(several.chosen, (std::vector<Index>{1, 0}));  // two bins before one
+  EXPECT_EQ(std::vector<int>(several.missing.begin(), several.missing.end()), (std::vector<int>{0, 0, 4, 0}));
+
+  const RealMatrix rows = vernier_test::vector({5, 0.1, 0.2, 0.3});
+  const Eigen::MatrixXi one_each{{1}, {0}, {0}, {0}};
+  const PoseDesign twice = design_poses(rows, 1, {.count = 4, .coverage = {one_each, Eigen::VectorXi{{2, 0}}}});
+  EXPECT_EQ(twice.chosen, (std::vector<Index>{3, 2, 0, 1}));  // two for the bin, then by what they say
+}
+
 TEST(PoseDesign, RefusesWhatDoesNotMatch) {
   using vernier_test::complaint;
   const RealMatrix rows = random_rows(12, 4, 1);
@@ -147,6 +193,22 @@ TEST(PoseDesign, RefusesWhatDoesNotMatch) {
   EXPECT_EQ(design(3, 5), "design_poses: 5 of 4 candidates");
   EXPECT_EQ(design(3, 1, random_rows(3, 5, 1)), "design_poses: measured rows of 5 unknowns, candidates of 4");
   EXPECT_EQ(design(3, 1, {}, random_rows(3, 5, 1)), "design_poses: a region of 5 unknowns, candidates of 4");
+  EXPECT_EQ(design(3, 1, {}, random_rows(4, 4, 1)), "design_poses: 4 rows of the region are no multiple of 3");
+  EXPECT_EQ(design(2, 1, {}, random_rows(4, 4, 1)), "design_poses: 4 rows of the region are no multiple of 3");
+  EXPECT_EQ(design(0, 1), "design_poses: 0 rows a candidate, must be 1 to 6");
+  EXPECT_EQ(design(12, 1), "design_poses: 12 rows a candidate, must be 1 to 6");
+  EXPECT_EQ(design(3, -1), "design_poses: -1 of 4 candidates");
+  const auto in_bins = [&](const Eigen::MatrixXi& bins) {
+    const PoseDesignOptions options{.count = 1, .coverage = {bins, Eigen::VectorXi{{1, 1}}}};
+    return complaint([&] { (void)design_poses(rows, 3, options); });
+  };
+  EXPECT_EQ(in_bins(Eigen::MatrixXi{{0}, {1}, {1}, {0}}), "");
+  EXPECT_EQ(in_bins(Eigen::MatrixXi{{0}, {1}, {2}, {0}}), "design_poses: a bin is not in 0 .. 1");
+  EXPECT_EQ(in_bins(Eigen::MatrixXi{{0}, {-1}, {1}, {0}}), "design_poses: a bin is not in 0 .. 1");
+  EXPECT_EQ(in_bins(Eigen::MatrixXi{{0}, {1}, {1}}), "design_poses: bins of 3 candidates, expected 4");
+  EXPECT_EQ(complaint([&] { (void)information_bound(rows, 5, 1); }), "information_bound: 12 rows are no multiple of 5");
+  EXPECT_EQ(complaint([&] { (void)information_bound(rows, 3, 1, 0); }),
+            "information_bound: 0 iterations, must be at least 1");
   EXPECT_EQ(design(3, 1, {}, {}, DesignCriterion::region_variance),
             "design_poses: no region whose variance could be reduced");
   EXPECT_NE(design(3, 1, MatrixX::Constant(3, 4, std::nan(""))), "");

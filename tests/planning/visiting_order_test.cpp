@@ -105,9 +105,35 @@ TEST(VisitingOrder, NoLongStretchIsBetterReversed) {
   }
 }
 
+// One to three visits between any two others, in either direction: none would make the way shorter.
+TEST(VisitingOrder, NoFewVisitsAreBetterElsewhere) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const MatrixX joints = random_configurations(150, seed).leftCols(2);
+    const std::vector<Index> order = visiting_order(joints);
+    const auto n = static_cast<Index>(order.size());
+    const auto time = [&](Index a, Index b) {  // nothing leads on from the last
+      double slowest = 0;
+      for (Index k = 0; b < n && a < n && k < 2; ++k)
+        slowest = std::max(slowest, std::abs(joints(order[static_cast<std::size_t>(a)], k) -
+                                             joints(order[static_cast<std::size_t>(b)], k)));
+      return slowest;
+    };
+    for (Index length = 1; length <= 3; ++length)
+      for (Index i = 1; i + length <= n; ++i)
+        for (Index j = 0; j < n; ++j) {
+          const Index last = i + length - 1;
+          if (j >= i - 1 && j <= last) continue;
+          const double saved = time(i - 1, i) + time(last, last + 1) - time(i - 1, last + 1);
+          const double forth = time(j, i) + time(last, j + 1), back = time(j, last) + time(i, j + 1);
+          EXPECT_GE(std::min(forth, back) - time(j, j + 1), saved - 1e-9) << length << ' ' << i << ' ' << j;
+        }
+  }
+}
+
 TEST(VisitingOrder, ChecksAreRepeated) {
   EXPECT_EQ(with_check_visits({4, 1, 2, 3, 0}, 2), (std::vector<Index>{4, 1, 4, 2, 3, 4, 0, 4}));
   EXPECT_EQ(with_check_visits({7}, 2), (std::vector<Index>{7}));
+  EXPECT_EQ(with_check_visits({3, 7}, 2), (std::vector<Index>{3, 7, 3}));
 }
 
 TEST(VisitingOrder, RefusesWhatIsNotUsable) {
@@ -116,6 +142,15 @@ TEST(VisitingOrder, RefusesWhatIsNotUsable) {
   EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX::Ones(5)); }), "visiting_order: 5 speeds of 6 joints");
   EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX::Zero(6)); }),
             "visiting_order: a speed is not positive");
+  EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX(), -1); }),
+            "visiting_order: -1 of 4 rows are to stay first");
+  EXPECT_EQ(visiting_order(joints, VectorX(), 4), (std::vector<Index>{0, 1, 2, 3}));
+  EXPECT_EQ(complaint([&] { (void)visiting_order(MatrixX::Constant(2, 6, std::nan(""))); }),
+            "visiting_order: a joint value is not finite");
+  EXPECT_EQ(complaint([&] {
+              (void)with_check_visits({0, 1}, 0);
+            }),
+            "with_check_visits: every is 0, must be at least 1");
   EXPECT_EQ(complaint([&] { (void)visiting_order(joints, VectorX(), 5); }),
             "visiting_order: 5 of 4 rows are to stay first");
   EXPECT_TRUE(visiting_order(MatrixX(0, 6)).empty());

@@ -10,6 +10,7 @@
 #include "real_matrix.hpp"
 #include "replaced.hpp"
 #include "urdf_samples.hpp"
+#include "vernier/core/version.hpp"
 #include "vernier/urdf/detail/origin_patch.hpp"
 
 namespace vernier::export_urdf_test {
@@ -131,6 +132,89 @@ TEST(ExportUrdf, OriginsThatAreMissingArePutIn) {
   EXPECT_NE(out.find("<joint name='none' type='revolute'>\n    <origin xyz=\""), std::string::npos) << out;
   EXPECT_NE(out.find("\"/>\n    <parent link='b'/>"), std::string::npos) << out;
   EXPECT_NE(out.find("<origin xyz=\""), std::string::npos);
+}
+
+TEST(ExportUrdf, TheNoteSaysEveryNumberInItsPlace) {
+  ExportNote out{"arm\n\x7f", "a\tb.csv", "2026\xc3\xa9", 80, "joint\rwise", {}, {}};
+  out.error_full.n = 21;
+  out.error_full.mean = 0.0000612;
+  out.error_full.p95 = 0.0001326;
+  out.error_full.max = 0.002;
+  out.error_exported.n = 20;
+  out.error_exported.mean = 0.0001234;
+  out.error_exported.p95 = 0.0003004;
+  out.error_exported.max = 0.0104997;
+  EXPECT_EQ(out.lines(),
+            (std::vector<std::string>{
+                message("geometry of arm??, calibrated by Vernier ", VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR,
+                        ".", VERNIER_VERSION_PATCH, ", 2026??"),
+                "fitted to 80 poses of a?b.csv; position errors of 21 held-out poses:",
+                "this file: mean 0.123 mm, 95 % 0.3 mm, max 10.5 mm",
+                "full model (joint?wise): mean 0.061 mm, 95 % 0.133 mm, max 2 mm",
+                "Do not send commands that were corrected by that model to whatever uses this file: they would be "
+                "corrected twice."}));
+}
+
+// Elements called joint or origin elsewhere, in comments and in texts are no joints and no origins; nor do signs in
+// quoted values end a tag.
+TEST(ExportUrdf, OnlyOriginsOfJointsAreTouched) {
+  const std::string text =
+      "<?xml version='1.0'?>\n<?note <joint name='x'> ?>\n<robot name='two'><link name='a'/><link "
+      "name='b'><visual><origin "
+      "xyz='9 9 9'/></visual></link><link name='c'/>\n"
+      "<transmission name='t'><joint name='one'><origin xyz='7 7 7'/></joint></transmission>\n"
+      "<!-- <joint name='z'><origin xyz='6 6 6'/> -->\n"
+      "<joint name='one' type='revolute' note='a > b'>"
+      "<text><![CDATA[ <origin xyz='5 5 5'/> ]]></text><sensor><origin xyz='8 8 8'/></sensor>"
+      "<parent link='a'/><child link='b'/><axis xyz='0 0 1'/><origin note=\"it's\" xyz='1 0 0'/></joint>\n"
+      "<joint name='two' type='fixed'><parent link='b'/><child link='c'/><origin xyz='0 0 2' rpy='0 0 0'/></joint>"
+      "</robot>\n";
+  const UrdfChain chain = parse_urdf(text, "in");
+  const ArmGeometry arm = chain.robot.geometry();
+  Isometry3 base = arm.base().isometry(), tool = arm.tool().isometry();
+  base.translation().y() += 0.25;
+  tool.translation().z() += 0.5;
+  std::string expected = text;
+  expected = testing_support::replaced(expected, "<origin note=\"it's\" xyz='1 0 0'/>",
+                                       "<origin rpy=\"0 0 0\" note=\"it's\" xyz='1 0.25 0'/>");
+  expected = testing_support::replaced(expected, "xyz='0 0 2'", "xyz='0 0 2.5'");
+  std::string out = export_urdf(chain, arm.with_frames(FrameParameters(base), FrameParameters(tool)), note());
+  const std::size_t comment = out.find("\n  <!-- geometry of ");
+  ASSERT_NE(comment, std::string::npos);
+  EXPECT_EQ(out.substr(0, comment), text.substr(0, comment));
+  EXPECT_EQ(text.substr(0, comment).substr(comment - 18), "<robot name='two'>");
+  out.erase(comment, out.find("-->", comment) + 3 - comment);
+  EXPECT_EQ(out, expected);
+}
+
+// Half a micrometre is written, too.
+TEST(ExportUrdf, SmallChangesAreWritten) {
+  const UrdfChain chain = parse_urdf(vernier_test::abb_like_urdf(), "in", "base_link", "tool0");
+  const ArmGeometry arm = chain.robot.geometry();
+  Isometry3 base = arm.base().isometry(), tool = arm.tool().isometry();
+  base.translation().x() += 5e-7;
+  tool.translation().x() += 5e-7;
+  const ArmGeometry moved_frames = arm.with_frames(FrameParameters(base), FrameParameters(tool));
+  const UrdfChain back = parse_urdf(export_urdf(chain, moved_frames, note()), "out", "base_link", "tool0");
+  Rng rng(5);
+  EXPECT_LE(worst_difference(moved_frames, back.robot.geometry(), rng, 20), 1e-12);
+}
+
+TEST(ExportUrdf, TheGeometryHasTheJointsOfTheChain) {
+  const std::string text =
+      "<robot name='two'><link name='a'/><link name='b'/><link name='c'/>"
+      "<joint name='one' type='revolute'><parent link='a'/><child link='b'/></joint>"
+      "<joint name='two' type='prismatic'><parent link='b'/><child link='c'/></joint></robot>";
+  const UrdfChain chain = parse_urdf(text, "in");
+  const auto told = [&](const ArmGeometry& arm) {
+    return vernier_test::complaint([&] { (void)joint_origins(chain, arm); });
+  };
+  const DhRow turns, slides{.joint = JointType::prismatic};
+  EXPECT_EQ(told(chain.robot.geometry()), "");
+  EXPECT_EQ(told({detail::ChainTable({turns, turns}, false), {}, {}}),
+            "joint_origins: the geometry is not of the chain to 'c', 2 joints");
+  EXPECT_NE(told({detail::ChainTable({turns, slides}, true), {}, {}}), "");
+  EXPECT_NE(told({detail::ChainTable({turns}, false), {}, {}}), "");
 }
 
 TEST(ExportUrdf, AnotherToolNeedsAFixedJoint) {

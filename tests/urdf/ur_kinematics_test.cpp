@@ -114,6 +114,72 @@ TEST_F(UrKinematicsFile, TheNominalUr10IsThePublishedFile) {
     for (int k = 0; k < 6; ++k) EXPECT_NEAR(values[i](k), expected[i][k], 1e-15) << i << k;
 }
 
+// Rows of any geometry on a base: the same arm but for what lies behind the last axis, which is left to the tool.
+TEST_F(UrKinematicsFile, OfAnyRowsIsTheArmUpToItsLastAxis) {
+  Rng rng(3);
+  const auto chain = vernier_test::random_chain<6>(rng, {.prismatic = 0});
+  const Vector6 base_values{0.1, -0.2, 0.3, 0.4, -0.5, 0.6};
+  const ArmGeometry arm(Framed<DhChain<6>>(chain, FrameParameters(base_values), FrameParameters()));
+  const UrKinematics kinematics = UrKinematics::of(arm, "calib_4");
+  EXPECT_EQ(kinematics.hash, "calib_4");
+  const std::array<Vector6, 6> values = values_in(kinematics.text({}));
+  const DhRow last = chain.row(5);
+  const RealMatrix behind = shift(last.a, 0, 0) * turn(0, last.alpha) * turn(1, last.beta);
+  MatrixX q(20, 6);
+  for (Index i = 0; i < 20; ++i)
+    for (Index j = 0; j < 6; ++j) q(i, j) = rng.uniform(-3, 3);
+  const auto poses = arm.poses(q);
+  for (Index i = 0; i < 20; ++i) {
+    JointVector<6> joints;
+    for (Index j = 0; j < 6; ++j) joints(j) = q(i, j);
+    EXPECT_LE(difference(described_pose(values, joints) * behind, poses[static_cast<std::size_t>(i)]), 1e-14) << i;
+  }
+  const RobotDescription again = kinematics.robot("again");
+  EXPECT_EQ(again.name, "again");
+  EXPECT_EQ(again.joint_names,
+            (std::vector<std::string>{"shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"}));
+  for (const auto& [lower, upper] : again.limits) {
+    EXPECT_TRUE(std::isinf(lower) && lower < 0);
+    EXPECT_TRUE(std::isinf(upper) && upper > 0);
+  }
+}
+
+TEST_F(UrKinematicsFile, OtherArmsAreRefused) {
+  const auto told = [](int prismatic, bool modified) {
+    std::vector<DhRow> rows(6, DhRow{.a = 0.1, .alpha = 0.5});
+    if (prismatic >= 0) rows[static_cast<std::size_t>(prismatic)].joint = JointType::prismatic;
+    const ArmGeometry arm(detail::ChainTable(rows, modified), {}, {});
+    return vernier_test::complaint([&] { (void)UrKinematics::of(arm, ""); });
+  };
+  const std::string other = "UrKinematics: not an arm of six revolute joints in the standard convention";
+  EXPECT_EQ(told(-1, false), "");
+  EXPECT_EQ(told(-1, true), other);
+  for (const int joint : {0, 3, 5}) EXPECT_EQ(told(joint, false), other);
+}
+
+// Joints of a URDF must turn about their own z, one next to the other.
+TEST_F(UrKinematicsFile, JointsOfAUrdfFollowOneAnotherAboutTheirZ) {
+  const auto told = [](const std::string& from, const std::string& to) {
+    const std::string text = testing_support::replaced(vernier_test::ur_like_urdf(), from, to);
+    const UrdfChain chain = parse_urdf(text, "in", "base_link", "tool0");
+    return vernier_test::complaint([&] { (void)UrKinematics::of(chain, chain.robot.geometry(), ""); });
+  };
+  const std::string elbow = "xyz=\"-0.612 0 0\"/>\n    <axis xyz=\"0 0 1\"/>";
+  EXPECT_EQ(told(elbow, elbow), "");
+  const std::string refused =
+      "UrKinematics: joint 'elbow_joint' does not turn about its z axis next to the joint before, as those of "
+      "Universal Robots do";
+  EXPECT_EQ(told(elbow, "xyz=\"-0.612 0 0\"/>\n    <axis xyz=\"0 0 -1\"/>"), refused);
+  EXPECT_EQ(told("<joint name=\"elbow_joint\" type=\"revolute\">", "<joint name=\"elbow_joint\" type=\"prismatic\">"),
+            refused);
+  EXPECT_EQ(
+      told("<joint name=\"elbow_joint\" type=\"revolute\">\n    <parent link=\"upper_arm_link\"/>",
+           "<link name=\"between\"/><joint name=\"bracket\" type=\"fixed\"><parent link=\"upper_arm_link\"/><child "
+           "link=\"between\"/></joint>\n<joint name=\"elbow_joint\" type=\"revolute\">\n    <parent "
+           "link=\"between\"/>"),
+      refused);
+}
+
 TEST_F(UrKinematicsFile, OfAUrdfAreItsJointOrigins) {
   const UrdfChain chain = parse_urdf(vernier_test::ur_like_urdf(), "in", "base_link", "tool0");
   const UrKinematics kinematics = UrKinematics::of(chain, chain.robot.geometry(), "calib_3");
@@ -160,7 +226,7 @@ TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
     EXPECT_EQ(told.find('\n'), std::string::npos) << told;
   };
   expect("kinematics", "dynamics", "key 'kinematics' is missing");
-  expect("  shoulder", "  - shoulder", "not valid YAML");
+  expect("  shoulder", "  - shoulder", "line 9: not valid YAML");
   expect(published, "", "must be a map of keys");
   expect("  forearm", "  fore", "key 'kinematics.forearm' is missing");
   expect("x: -0.612,", "", "line 10: key 'kinematics.forearm.x' is missing");
@@ -174,6 +240,12 @@ TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
   for (const char* hash : {"a b", "\"a\\nb\"", "'~'", "''", "a#b"})
     expect("calib_17452164853672886207", hash,
            "line 14: 'kinematics.hash' must be of up to 64 letters, digits and underscores");
+  expect("x: -0.612", "x: 1000.5", "'kinematics.forearm.x': 1000.5 is beyond any length or angle");
+  EXPECT_EQ(read(testing_support::replaced(published, "x: -0.612", "x: +1000")).origins[2](0, 3), 1000);
+  const std::string longest(64, 'f');
+  EXPECT_EQ(read(testing_support::replaced(published, "calib_17452164853672886207", longest)).hash, longest);
+  expect("calib_17452164853672886207", longest + "f", "must be of up to 64 letters");
+  EXPECT_EQ(read(published + "#" + std::string((1 << 16) - 1 - published.size(), ' ')).hash, kinematics.hash);
   const std::string large = "#" + std::string(1 << 16, ' ');
   expect(published, large, "65537 bytes, more than 65536");
   EXPECT_EQ(read(testing_support::replaced(published, "  hash: calib_17452164853672886207\n", "")).hash, "");

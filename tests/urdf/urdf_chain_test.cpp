@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "complaint.hpp"
+#include "real_matrix.hpp"
 #include "replaced.hpp"
 #include "temporary_folder.hpp"
 #include "urdf_samples.hpp"
@@ -14,6 +16,8 @@
 
 namespace vernier::urdf_chain_test {
 namespace {
+
+using vernier_test::RealMatrix;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -52,6 +56,88 @@ TEST(UrdfChain, RowsOfAnIrb120AreThoseOfTheCatalogue) {
   EXPECT_EQ(chain.robot.limits.back(), (std::pair{-infinity, infinity}));  // continuous
   ASSERT_EQ(chain.remarks.size(), 1u);
   EXPECT_EQ(chain.remarks[0], "joint 'joint_3': <calibration> is ignored");
+}
+
+/// A rigid motion as a matrix of 4 x 4: a shift, and a rotation about a unit vector by Rodrigues' formula.
+RealMatrix motion(const Vector3& shift, const Vector3& axis, double angle) {
+  const RealMatrix cross(3, 3, {0, -axis(2), axis(1), axis(2), 0, -axis(0), -axis(1), axis(0), 0});
+  RealMatrix out = RealMatrix::identity(4);
+  out.set_block(0, 0, RealMatrix::identity(3) + std::sin(angle) * cross + (1 - std::cos(angle)) * (cross * cross));
+  out.set_block(0, 3, shift);
+  return out;
+}
+RealMatrix origin_of(const Vector3& xyz, const Vector3& rpy) {
+  return motion(xyz, {0, 0, 1}, rpy(2)) * motion({0, 0, 0}, {0, 1, 0}, rpy(1)) * motion({0, 0, 0}, {1, 0, 0}, rpy(0));
+}
+
+/// Joints of all kinds, axes of any length, or none, which means x; fixed joints everywhere.
+const std::string mixed_urdf =
+    "<robot name='mixed'><link name='a'/><link name='b'/><link name='c'/><link name='d'/><link name='e'/><link "
+    "name='f'/><link name='g'/><link name='h'/>\n"
+    "<joint name='foot' type='fixed'><parent link='a'/><child link='b'/><origin xyz='0.1 -0.2 0.3' rpy='0.4 0.5 "
+    "-0.6'/></joint>\n"
+    "<joint name='turn' type='revolute'><parent link='b'/><child link='c'/><origin xyz='+0.2 0 0.1' rpy='0 0 "
+    "1'/><axis xyz='3 6 6'/><limit upper='1.5'/></joint>\n"
+    "<joint name='spin' type='continuous'><parent link='c'/><child link='d'/><origin rpy='0.7 0 0.2'/><limit "
+    "lower='-1' upper='1'/></joint>\n"
+    "<joint name='bracket' type='fixed'><parent link='d'/><child link='e'/><origin xyz='0 0.3 0' rpy='0 -0.3 "
+    "0'/><limit lower='1' upper='1'/></joint>\n"
+    "<joint name='slide' type='prismatic'><parent link='e'/><child link='f'/><origin xyz='0 0 0.4'/><axis xyz='0 "
+    "0.001 -0.001'/><limit lower='-0.2' upper='0.3'/><safety_controller/></joint>\n"
+    "<joint name='hinge' type='revolute'><parent link='f'/><child link='g'/><origin xyz='0.3 0 0' rpy='0 1 "
+    "0'/><axis xyz='0 -1 0'/><limit lower='0.5' upper='0.5'/></joint>\n"
+    "<joint name='hand' type='fixed'><parent link='g'/><child link='h'/><origin xyz='0.05 0.06 0.07' rpy='1 2 "
+    "3'/><mimic joint='turn'/></joint></robot>";
+
+TEST(UrdfChain, PosesAreProductsOfOriginsAndJointMotions) {
+  const UrdfChain chain = parse_urdf(mixed_urdf, "mixed.urdf");
+  const ArmGeometry arm = chain.robot.geometry();
+  ASSERT_EQ(arm.joints(), 4);
+  MatrixX q(5, 4);
+  Rng rng(3);
+  for (double& value : q.reshaped()) value = rng.uniform(-3, 3);
+  const auto poses = arm.poses(q);
+  for (Index i = 0; i < 5; ++i) {
+    const Vector3 slid(0, q(i, 2) * std::sqrt(0.5), -q(i, 2) * std::sqrt(0.5));
+    const RealMatrix expected = origin_of({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}) * origin_of({0.2, 0, 0.1}, {0, 0, 1}) *
+                                motion({0, 0, 0}, Vector3(1, 2, 2) / 3, q(i, 0)) * origin_of({0, 0, 0}, {0.7, 0, 0.2}) *
+                                motion({0, 0, 0}, {1, 0, 0}, q(i, 1)) * origin_of({0, 0.3, 0}, {0, -0.3, 0}) *
+                                origin_of({0, 0, 0.4}, {0, 0, 0}) * motion(slid, {1, 0, 0}, 0) *
+                                origin_of({0.3, 0, 0}, {0, 1, 0}) * motion({0, 0, 0}, {0, -1, 0}, q(i, 3)) *
+                                origin_of({0.05, 0.06, 0.07}, {1, 2, 3});
+    EXPECT_LT(vernier_test::difference(poses[static_cast<std::size_t>(i)], expected), 1e-14) << i;
+  }
+  EXPECT_EQ(chain.joints, (std::vector<std::string>{"foot", "turn", "spin", "bracket", "slide", "hinge", "hand"}));
+  EXPECT_EQ(chain.robot.joint_names, (std::vector<std::string>{"turn", "spin", "slide", "hinge"}));
+  EXPECT_EQ(chain.moving, (std::vector<int>{1, 2, 4, 5}));
+}
+
+// A limit that is not given is 0; a joint that turns on and on has none, nor one whose limits leave nothing.
+TEST(UrdfChain, LimitsAndRemarksAreThoseOfJointsThatMove) {
+  const UrdfChain chain = parse_urdf(mixed_urdf, "mixed.urdf");
+  using Limits = std::vector<std::pair<double, double>>;
+  EXPECT_EQ(chain.robot.limits, (Limits{{0, 1.5}, {-infinity, infinity}, {-0.2, 0.3}, {-infinity, infinity}}));
+  EXPECT_EQ(chain.remarks, (std::vector<std::string>{
+                               "joint 'slide': <safety_controller> is ignored",
+                               "joint 'hinge': its limit, whose upper value is not above the lower one, is ignored"}));
+}
+
+TEST(UrdfChain, UpTo64JointsMayMove) {
+  const auto chain_of = [](int joints) {
+    std::string out = "<robot name='snake'><link name='l0'/>";
+    for (int i = 1; i <= joints; ++i)
+      out += message("<link name='l", i, "'/><joint name='j", i, "' type='revolute'><parent link='l", i - 1,
+                     "'/><child link='l", i, "'/><origin xyz='0.1 0 0'/></joint>");
+    return out + "</robot>";
+  };
+  EXPECT_EQ(parse_urdf(chain_of(64), "snake.urdf").robot.dof(), 64);
+  EXPECT_EQ(vernier_test::complaint([&] { (void)parse_urdf(chain_of(65), "snake.urdf"); }),
+            "snake.urdf: 65 joints move between link 'l0' and link 'l65'; there must be 1 to 64");
+  // of many links some are named
+  EXPECT_EQ(vernier_test::complaint([&] { (void)parse_urdf(chain_of(7), "snake.urdf", "l0", "l8"); }),
+            "snake.urdf: there is no link 'l8'; there are 'l0', 'l1', 'l2', 'l3', 'l4', 'l5', 'l6', 'l7'");
+  EXPECT_EQ(vernier_test::complaint([&] { (void)parse_urdf(chain_of(8), "snake.urdf", "l0", "l9"); }),
+            "snake.urdf: there is no link 'l9'; there are 'l0', 'l1', 'l2', 'l3', 'l4', 'l5', 'l6', 'l7', ... (9)");
 }
 
 TEST(UrdfChain, BaseAndTipAreFoundWhereThereIsOneOfEach) {
@@ -149,6 +235,8 @@ TEST(UrdfChain, DamageIsNamedInOneLine) {
   expect(with("xyz=\"0 0 0.1575\"", "xyz=\"0 0 0,1575\""), "'0,1575' is not a number");
   expect(with("xyz=\"0 0 0.1575\"", "xyz=\"0 0 nan\""), "'nan' is not a number");
   expect(with("xyz=\"0 0 0.1575\"", "xyz=\"0 0 1575\""), "1575 is beyond any length or angle");
+  expect(with("xyz=\"0 0 0.1575\"", "xyz=\"0 0 -1000.5\""), "-1000.5 is beyond any length or angle");
+  EXPECT_EQ(parse_urdf(with("xyz=\"0 0 0.1575\"", "xyz=\"0 0 1000\""), "a.urdf").origins[0](2, 3), 1000);
   expect(with("lower=\"-2.9\"", "lower=\"x\""), "lower of joint 'joint_a1': 'x' is not a number");
   expect(good, "there is no link 'flange'", "link_0", "flange");
   expect(good, "link 'link_0' is not behind link 'link_7'; it is behind none", "link_7", "link_0");

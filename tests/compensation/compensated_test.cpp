@@ -290,6 +290,7 @@ TEST(CorrectionOptions, UnusableValuesAreNamed) {
   EXPECT_NE(complaint({.position_tolerance = std::nan("")}).find("nan"), std::string::npos);
   EXPECT_NE(complaint({.max_iterations = 0}).find("max_iterations is 0"), std::string::npos);
   EXPECT_EQ(complaint({.moving_joints = 6}), "");
+  EXPECT_EQ(complaint({.max_iterations = 1}), "");
 }
 
 }  // namespace

@@ -322,7 +322,10 @@ struct BowedSlides {
   double reach = 1e3;                          ///< how far from where it begins Newton's method finds the target
   double nominal_reach = 1e3;                  ///< the same of the nominal arm
   double hole = -1e3;                          ///< the x of a target that is not met
+  double leap = -1e3;                          ///< the x at which the nominal arm's first slide is off by 2.5
+  std::vector<double>* asked = nullptr;        ///< takes the x near which branches are asked for
   double left = 0;                             ///< what remains of errors: positions so much, rotations twice that
+  std::vector<double> more = {};               ///< further branches, at x = 0 and these y
 
   detail::SolvedPath path(const std::vector<detail::PathGoal>& goals, const detail::PathSettings& settings) const {
     using detail::PathJoints;
@@ -337,10 +340,12 @@ struct BowedSlides {
       errors[1] = 2 * left;
       return near && p.x() != hole;
     };
-    const auto branches = [&](const Isometry3& target, const PathJoints&, std::vector<detail::PathBranch>& out) {
+    const auto branches = [&](const Isometry3& target, const PathJoints& near, std::vector<detail::PathBranch>& out) {
+      if (asked != nullptr) asked->push_back(near(0));
       const Vector3 p = translation(target);
       out.push_back({joints_of({p.x(), p.y() - off(p.x())}), id_at(p.x())});
       if (other_branch) out.push_back({joints_of({0, 2}), 1});
+      for (const double y : more) out.push_back({joints_of({0, y}), 2});
       return Reach::met;
     };
     const auto pose = [&](const PathJoints& q, const PathJoints&) {
@@ -349,7 +354,7 @@ struct BowedSlides {
     const auto nominal_pose = [&](const PathJoints& q) { return at(q(0), q(1)); };
     const auto nominal_joints = [&](const Isometry3& target, PathJoints& q) {
       const bool near = std::abs(q(0) - target(0, 3)) <= nominal_reach;
-      q = joints_of({target(0, 3), target(1, 3)});
+      q = joints_of({target(0, 3) + (target(0, 3) == leap ? 2.5 : 0), target(1, 3)});
       return near;
     };
     const auto cost = [&](const PathJoints& q) { return cost_at ? cost_at(q(1)) : 0.0; };
@@ -365,13 +370,16 @@ detail::PathSettings slides_settings(const detail::PathJoints& speed) {
 }
 
 TEST(PathSolverWhiteBox, AJointThatTurnedRoundComesFromTheCommandBeyondATransition) {
-  const detail::PathJoints from = detail::approach_on_the_way(
-      joints_of({std::nan(""), 0, 0, 0}), joints_of({0.1, 0.1, 0.1, 0.1}), joints_of({0.3, 0.2, 0.08, 0.02}));
+  const detail::PathJoints from =
+      detail::approach_on_the_way(joints_of({std::nan(""), 0, 0, 0, 0.1, 0}), joints_of({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}),
+                                  joints_of({0.3, 0.2, 0.08, 0.02, 0.12, 0.1}));
   EXPECT_EQ(from(0), 0.1);  // nothing is known of its direction
   EXPECT_EQ(from(1), 0);    // goes on
   // 2/5 of the transition of 0.05 rad: 3/5 of it still lag behind, 2/5 of the way back lead
   EXPECT_NEAR(from(2), 0.08 - (0.6 * 0.05 - 0.4 * 0.02), 1e-15);
   EXPECT_NEAR(from(3), 0.1, 1e-15);  // has turned round
+  EXPECT_EQ(from(4), 0.1);           // stood still before
+  EXPECT_EQ(from(5), 0);             // has not moved since
 }
 
 TEST(PathSolverWhiteBox, SpeedsChooseTheBranch) {
@@ -547,6 +555,9 @@ TEST(PathSolverWhiteBox, WithoutAStartItBeginsInTheMiddleOfTheLimits) {
   };
   EXPECT_EQ(second(-3, 3), 0);
   EXPECT_EQ(second(-1, 5), 2);
+  settings.lower(0) = -1;  // from (0.5, 2), not from the lower limits
+  settings.upper(0) = 2;
+  EXPECT_EQ(second(-1, 5), 2);
 }
 
 TEST(PathSolverWhiteBox, ALongLineEndsWithTheTurnsThatItTook) {
@@ -569,16 +580,133 @@ TEST(PathSolverWhiteBox, CostsOfPlacesChooseTheBranch) {
   EXPECT_EQ(branch(1.1), 2);
 }
 
+/// Settings of slides that count turns: 10 m either way.
+detail::PathSettings wide_settings() {
+  detail::PathSettings out = slides_settings(joints_of({1, 1}));
+  out.lower = joints_of({-10, -10});
+  out.upper = joints_of({10, 10});
+  return out;
+}
+
+// A target outside the measured ranges costs 100; a turn of the second slide that is measured is farther, but cheaper.
+TEST(PathSolverWhiteBox, CostsOfPlacesChooseTheTurn) {
+  const std::vector<detail::PathGoal> goals = line_through({});
+  for (const double sign : {-1.0, 1.0}) {
+    const BowedSlides arm{.other_branch = true, .cost_at = [&](double y) { return sign * y > 4 ? 0 : 100; }};
+    const double found = arm.path(goals, wide_settings()).points.back().command(1);
+    EXPECT_NEAR(std::remainder(found, 2 * pi), found > 0 ? 0 : 2, 1e-12);  // of 0 or 2, whichever is nearer by a turn
+    EXPECT_GT(sign * found, 4);
+  }
+}
+
+// With joint values of its own a target has no choice, nor a price.
+TEST(PathSolverWhiteBox, TargetsWithJointValuesCostNothing) {
+  std::vector<detail::PathGoal> goals = line_through({});
+  const auto found = [&] {
+    const BowedSlides arm{.other_branch = true, .cost_at = [](double y) { return y > 4 ? 0 : 100; }};
+    return arm.path(goals, wide_settings()).points.back().command(1);
+  };
+  EXPECT_NEAR(found(), 2 * pi, 1e-12);
+  goals.front().joints = joints_of({0, 0});
+  EXPECT_EQ(found(), 0);
+}
+
+// The first target is measured at y = 0, the second at 1 + 2 pi alone: a turn on the way to it.
+TEST(PathSolverWhiteBox, TurnsMayChangeOnTheWay) {
+  std::vector<detail::PathGoal> goals = line_through({0});
+  goals.back().motion = Motion::joint;
+  goals.back().pose(1, 3) = 1;
+  const auto measured = [](double y) { return std::abs(y) < 0.1 || std::abs(y - 1 - 2 * pi) < 0.1; };
+  const BowedSlides arm{.other_branch = true, .cost_at = [&](double y) { return measured(y) ? 0 : 100; }};
+  std::vector<double> found;
+  for (const detail::SolvedPoint& point : arm.path(goals, wide_settings()).points) found.push_back(point.command(1));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0], 0);
+  EXPECT_NEAR(found[1], 1 + 2 * pi, 1e-12);
+}
+
+// At the first target the turns of all branches are tried, not those of the nearest two alone.
+TEST(PathSolverWhiteBox, TheFirstTargetMayBeginWithAnyTurnOfAnyBranch) {
+  const std::vector<detail::PathGoal> goals = line_through({});
+  const auto measured = [](double y) { return std::abs(y - 2.7 - 2 * pi) < 0.1; };
+  const BowedSlides arm{
+      .other_branch = true, .cost_at = [&](double y) { return measured(y) ? 0 : 100; }, .more = {2.7}};
+  EXPECT_NEAR(arm.path(goals, wide_settings()).points.back().command(1), 2.7 + 2 * pi, 1e-12);
+}
+
+// In four pieces the arm leaves its line by twice the tolerance, in eight by three times, as gears may: four it is.
+TEST(PathSolverWhiteBox, FinerPiecesThatAreWorseAreNotTaken) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.max_joint_step = 0.3;
+  settings.max_inserted = 7;
+  const BowedSlides arm{.way = [](double x) { return x == 0.125 ? 2e-3 : x == 0.03125 ? 3e-3 : 0; }};
+  const detail::SolvedPath path = arm.path(line_through({1}), settings);
+  ASSERT_EQ(path.points.size(), 5u);
+  EXPECT_EQ(path.points.back().status, PointStatus::off_path);
+  EXPECT_NEAR(path.after, 2e-3, 1e-15);
+  // ends_only says what the line would be without them
+  EXPECT_EQ(path.points.back().ends_only, 0);
+}
+
+// Where nobody knows how far the arm leaves its line, as the nominal arm leaps on the way, eight pieces are tried
+// first.
+TEST(PathSolverWhiteBox, EightPiecesAreTriedWhereTheNominalArmLeaps) {
+  const detail::SolvedPath path = BowedSlides{.leap = 0.25}.path(line_through({1}), slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 9u);
+  for (std::size_t k = 0; k < 9; ++k) {
+    EXPECT_EQ(path.points[k].status, PointStatus::met);
+    EXPECT_NEAR(path.points[k].command(0), 0.125 * static_cast<double>(k), 1e-15);
+  }
+}
+
+TEST(PathSolverWhiteBox, BranchesAreAskedForNearTheTargetBefore) {
+  std::vector<double> asked;
+  BowedSlides arm;
+  arm.asked = &asked;
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.start(0) = -0.5;
+  (void)arm.path(line_through({1, 0.6}), settings);
+  EXPECT_EQ(asked, (std::vector<double>{-0.5, 0, 1}));
+}
+
+TEST(PathSolverWhiteBox, ALineThatNeedsNoPointsDeviatesAsItDid) {
+  const detail::SolvedPath path =
+      BowedSlides{.bow = 0.75e-3}.path(line_through({1}), slides_settings(joints_of({1, 1})));
+  ASSERT_EQ(path.points.size(), 2u);
+  for (const double deviation : {path.before, path.after, path.points[1].deviation, path.points[1].ends_only})
+    EXPECT_NEAR(deviation, 0.75e-3, 1e-15);
+}
+
+// Two pieces are too few for the first line, but the second begins where it ends.
+TEST(PathSolverWhiteBox, ALineGoesOnFromOneThatWasLeft) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  settings.max_inserted = 1;
+  const detail::SolvedPath path = BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.9}), settings);
+  ASSERT_EQ(path.points.size(), 4u);
+  EXPECT_EQ(path.points[2].status, PointStatus::off_path);
+  EXPECT_EQ(path.points[3].status, PointStatus::met);
+  EXPECT_NEAR(path.after, 15.5e-3 / 4, 1e-15);
+}
+
+TEST(PathSolverWhiteBox, ALineMayNotEndBeyondALimit) {
+  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  for (const double upper : {0.9, 1.1}) {
+    settings.upper(0) = upper;
+    EXPECT_EQ(BowedSlides{}.path(line_through({1}), settings).points.back().status,
+              upper < 1 ? PointStatus::beyond_limits : PointStatus::met);
+  }
+}
+
 TEST(PathSolverWhiteBox, ATargetOutOfReachOfNewtonsMethodIsNotFound) {
   BowedSlides arm{.other_branch = true, .reach = 0.5};  // the other branch begins at 0, the target is at 1
   std::vector<detail::PathGoal> goals = line_through({});
   goals.front().pose(0, 3) = 1;
   detail::PathSettings settings = slides_settings(joints_of({0.1, 1}));
   EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::not_found);
-  settings.upper(1) = 2;  // where the other branch is
+  settings.upper(1) = 2 + 1e-10;  // where the other branch is, but for rounding errors
   EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::beyond_limits);
   settings.upper(1) = 3;
-  settings.lower(1) = 2;
+  settings.lower(1) = 2 - 1e-10;
   EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::beyond_limits);
 }
 

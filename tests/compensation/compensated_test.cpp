@@ -279,6 +279,22 @@ TEST(Compensated, DoesNotAllocateOrThrow) {
   EXPECT_NE(arm.correct(bad).status, IkStatus::converged);
 }
 
+// Within its tolerances a command stays as it is; each of them counts, and a model is evaluated no more than allowed.
+TEST(CorrectionOptions, TolerancesEndTheSearch) {
+  const JointVector<6> q = configuration(operating_targets(1), 0);
+  const auto corrected = [&](const CorrectionOptions& options) {
+    return Geometry(actual_arm(), nominal, options).correct(q);
+  };
+  const auto loose = corrected({.position_tolerance = 0.05, .rotation_tolerance = 0.05});
+  EXPECT_EQ(loose.status, IkStatus::converged);
+  EXPECT_TRUE(loose.command == q);
+  EXPECT_FALSE(corrected({.position_tolerance = 1e-6, .rotation_tolerance = 0.05}).command == q);
+  EXPECT_FALSE(corrected({.position_tolerance = 0.05, .rotation_tolerance = 1e-6}).command == q);
+  const auto once = corrected({.max_iterations = 1});
+  EXPECT_EQ(once.status, IkStatus::stalled);
+  EXPECT_TRUE(once.command == q);
+}
+
 TEST(CorrectionOptions, UnusableValuesAreNamed) {
   const auto complaint = [](const CorrectionOptions& options) {
     return vernier_test::complaint([&] { (void)Geometry(nominal, nominal, options); });

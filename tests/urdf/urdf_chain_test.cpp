@@ -78,7 +78,7 @@ const std::string mixed_urdf =
     "-0.6'/></joint>\n"
     "<joint name='turn' type='revolute'><parent link='b'/><child link='c'/><origin xyz='+0.2 0 0.1' rpy='0 0 "
     "1'/><axis xyz='3 6 6'/><limit upper='1.5'/></joint>\n"
-    "<joint name='spin' type='continuous'><parent link='c'/><child link='d'/><origin rpy='0.7 0 0.2'/><limit "
+    "<joint name='spin' type='continuous'><parent link='c'/><child link='d'/><origin rpy='0.7 0 0.2'/><axis/><limit "
     "lower='-1' upper='1'/></joint>\n"
     "<joint name='bracket' type='fixed'><parent link='d'/><child link='e'/><origin xyz='0 0.3 0' rpy='0 -0.3 "
     "0'/><limit lower='1' upper='1'/></joint>\n"
@@ -239,6 +239,8 @@ TEST(UrdfChain, DamageIsNamedInOneLine) {
   EXPECT_EQ(parse_urdf(with("xyz=\"0 0 0.1575\"", "xyz=\"0 0 1000\""), "a.urdf").origins[0](2, 3), 1000);
   expect(with("lower=\"-2.9\"", "lower=\"x\""), "lower of joint 'joint_a1': 'x' is not a number");
   expect(good, "there is no link 'flange'", "link_0", "flange");
+  expect(with("<link name=\"link_0\"/>", "<link name=\"a&#10;b\"/><link name=\"link_0\"/>"),
+         "there is no link 'flange'; there are 'a", "link_0", "flange");
   expect(good, "link 'link_0' is not behind link 'link_7'; it is behind none", "link_7", "link_0");
   expect(vernier_test::ur_like_urdf(), "link 'tool0' is not behind link 'base'; it is behind 'flange', 'wrist_3_link'",
          "base", "tool0");

@@ -564,6 +564,19 @@ TEST(Reach, EachHasASentenceOfItsOwn) {
   EXPECT_NE(out.describe().find("mm farther away"), std::string::npos) << out.describe();
 }
 
+TEST(ReachWhiteBox, SentencesCountBranchesAndMargins) {
+  using detail::describe_reach;
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(describe_reach(Reach::met, 1, 0), "1 branch");
+  EXPECT_EQ(describe_reach(Reach::met, 6, 0), "6 branches");
+  EXPECT_EQ(describe_reach(Reach::beyond_limits, 3, 0), "joint limits exclude all 3 branches");
+  EXPECT_EQ(describe_reach(Reach::proven_out, 0, 0.01234), "out of reach: 12.3 mm farther away than the arm is long");
+  EXPECT_EQ(describe_reach(Reach::invalid_target, 0, unknown), "the target is no pose: not finite, or no rotation");
+  EXPECT_EQ(describe_reach(Reach::not_found, 0, 0.0567),
+            "no branch found: the target lies 5.67 % beyond a boundary of the nominal arm");
+  EXPECT_EQ(describe_reach(Reach::not_found, 0, unknown), "no branch found");
+}
+
 // A little beyond the reach each configuration of shoulder and wrist stalls at a place of its own, at the stretched
 // arm; which is noted once, however many seeds lead there.
 TEST(BranchSetWhiteBox, NotesEachPlaceWhereSeedsStallOnce) {

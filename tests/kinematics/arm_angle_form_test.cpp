@@ -240,6 +240,16 @@ TEST(ArmAngleForm, ArmsOfOtherGeometryAreRefused) {
   EXPECT_NE(refused(changed(2, &DhRow::d, 0.0)).find("axis of joint 4 passes through"), std::string::npos);
   EXPECT_NE(refused(changed(3, &DhRow::d, 0.02)).find("beside the plane"), std::string::npos);
   EXPECT_NE(refused(changed(0, &DhRow::alpha, 0.0)).find("joints 1 and 2 are parallel"), std::string::npos);
+  EXPECT_NE(refused(changed(1, &DhRow::alpha, 0.0)).find("joints 2 and 3 are parallel"), std::string::npos);
+  EXPECT_NE(refused(changed(4, &DhRow::alpha, 0.0)).find("joints 5 and 6 are parallel"), std::string::npos);
+  EXPECT_NE(refused(changed(5, &DhRow::alpha, 0.0)).find("joints 6 and 7 are parallel"), std::string::npos);
+  // axes 2 and 3 are 10 mm from axis 1: the point next to all three is a third of that from two of them
+  const auto number_behind = [](const std::string& what, const std::string& words) {
+    const std::size_t at = what.find(words);
+    return at == std::string::npos ? -1 : std::stod(what.substr(at + words.size()));
+  };
+  EXPECT_NEAR(number_behind(refused(changed(0, &DhRow::a, 0.01)), "point by "), 20.0 / 3, 1e-6);
+  EXPECT_NEAR(number_behind(refused(changed(3, &DhRow::d, 0.02)), "the wrist lies "), 20, 1e-6);
   EXPECT_NE(complaint([] { (void)ArmAngleForm(robots::barrett_wam().chain, std::nan("")); }).find("nan"),
             std::string::npos);
 }

@@ -333,6 +333,20 @@ TEST(ClosedForm, RefusesArmsThatHaveNoneAndSaysWhatMisses) {
   EXPECT_NE(complaint([&] { ClosedForm{identified}; }), "");
 }
 
+// Axes 4 and 6 of a UR10 are 115.7 mm apart, so the point nearest to them half of that from each; here axis 3 is off by
+// 10 mrad, which is 0.573 degrees.
+TEST(ClosedForm, SaysByHowMuchAnArmMisses) {
+  auto rows = robots::ur10().chain.rows();
+  rows[1].alpha = 0.01;
+  const std::string what = complaint([&] { ClosedForm{DhChain<6>::from_rows(rows)}; });
+  const auto number_behind = [&](const std::string& words) {
+    const std::size_t at = what.find(words);
+    return at == std::string::npos ? -1 : std::stod(what.substr(at + words.size()));
+  };
+  EXPECT_NEAR(number_behind("miss a common point by "), 57.85, 1e-6) << what;
+  EXPECT_NEAR(number_behind("the middle three are "), 0.01 * 180 / pi, 1e-6) << what;
+}
+
 TEST(ClosedForm, RefusesAWristOnAnArmThatDoesNotBend) {
   // Joint 4 of the WAM is its elbow: without it, two spheres are left.
   const std::string what = complaint([] { ClosedForm(robots::barrett_wam().chain, HeldJoint{3, 0.3}); });

@@ -189,6 +189,40 @@ TYPED_TEST(DhConvention, DegenerateChainsObeyTheLaws) {
   }
 }
 
+/// Axes and their points by the columns of the Jacobian; a link's frame is where the chain ends that its row ends.
+template <class Convention>
+void expect_links_of_random_chains() {
+  vn::Rng rng(9);
+  for (int sample = 0; sample < 20; ++sample) {
+    const auto chain = vernier_test::random_chain<4, Convention>(rng);
+    const vn::JointVector<4> q = vernier_test::random_joints<4>(rng);
+    const auto links = chain.links(q);
+    const RealMatrix jacobian = RealMatrix::of(chain.jacobian(q));
+    const vn::Vector3 tool = chain.position(q);
+    for (int i = 0; i < 4; ++i) {
+      const vn::Vector3 axis(links.axis(0, i), links.axis(1, i), links.axis(2, i));
+      const vn::Vector3 lever = tool - vn::Vector3(links.point(0, i), links.point(1, i), links.point(2, i));
+      const bool revolute = chain.row(i).joint == vn::JointType::revolute;
+      const vn::Vector3 moved = revolute ? vn::Vector3(axis.cross(lever)) : axis;
+      EXPECT_LT(difference(jacobian.block(0, i, 3, 1), moved), 1e-14) << i;
+      EXPECT_LT(difference(jacobian.block(3, i, 3, 1), revolute ? axis : vn::Vector3(0, 0, 0)), 1e-14) << i;
+      auto rows = chain.rows();
+      vn::JointVector<4> first = q;
+      for (std::size_t k = static_cast<std::size_t>(i) + 1; k < 4; ++k) {
+        rows[k] = {};
+        first(static_cast<vn::Index>(k)) = 0;
+      }
+      const vn::Vector3 end = vn::DhChain<4, Convention>::from_rows(rows).position(first);
+      EXPECT_LT((end - vn::Vector3(links.origin(0, i), links.origin(1, i), links.origin(2, i))).norm(), 1e-14) << i;
+    }
+  }
+}
+
+TEST(DhChain, LinksAreWhereTheJointsMoveThem) {
+  expect_links_of_random_chains<vn::StandardDh>();
+  expect_links_of_random_chains<vn::ModifiedDh>();
+}
+
 TEST(DhChain, EqualityAndRows) {
   vn::Rng rng(14);
   const auto chain = vernier_test::random_chain<4>(rng);

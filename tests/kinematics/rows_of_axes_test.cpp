@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "complaint.hpp"
@@ -13,6 +14,8 @@
 
 namespace vernier::rows_of_axes_test {
 namespace {
+
+using vernier_test::RealMatrix;
 
 /// Axes of a chain at zero, and where it ends.
 template <int N>
@@ -83,6 +86,29 @@ TEST(RowsOfAxes, ThetaIsTheOneNextToTheGivenAngle) {
   const std::vector<detail::JointAxis> tie{{Vector3::UnitZ(), Vector3::Zero()},
                                            {Vector3::UnitZ(), Vector3(1e-9, -0.3, 0)}};
   EXPECT_NEAR(detail::rows_of_axes(tie).rows[0].a, 0.3, 1e-9);
+  const std::vector<detail::JointAxis> other{{Vector3::UnitZ(), Vector3::Zero()},
+                                             {Vector3::UnitZ(), Vector3(-1e-9, -0.3, 0)}};
+  EXPECT_NEAR(detail::rows_of_axes(other).rows[0].a, 0.3, 1e-9);
+}
+
+// The first frame has its origin where the axis is next to the base, and its x next to that of the base, or to y.
+TEST(RowsOfAxes, TheFirstFrameIsNextToTheBase) {
+  const RealMatrix up = detail::rows_of_axes(std::vector<detail::JointAxis>{{Vector3(0, 0, 1), Vector3(1, 2, 3)}}).base;
+  EXPECT_LE(vernier_test::difference(up, RealMatrix(4, 4, {1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 0, 0, 0, 0, 1})), 1e-15);
+  const RealMatrix along =
+      detail::rows_of_axes(std::vector<detail::JointAxis>{{Vector3(1, 0, 0), Vector3(5, 1, 2)}}).base;
+  EXPECT_LE(vernier_test::difference(along, RealMatrix(4, 4, {0, 0, 1, 0, 1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 0, 1})), 1e-15);
+}
+
+// Up to 0.2 rad from parallel axes have Hayati's row, without d; beyond that the common normal, without beta.
+TEST(RowsOfAxes, NearlyParallelAxesHaveBeta) {
+  for (const double angle : {0.19, 0.21}) {
+    const std::vector<detail::JointAxis> axes{{Vector3(0, 0, 1), Vector3(0, 0, 0)},
+                                              {Vector3(std::sin(angle), 0, std::cos(angle)), Vector3(0.3, 0.1, 0.2)}};
+    const DhRow row = detail::rows_of_axes(axes).rows[0];
+    EXPECT_EQ(row.beta != 0, angle < 0.2);
+    EXPECT_EQ(row.d == 0, angle < 0.2);
+  }
 }
 
 TEST(RowsOfAxes, MisuseIsNamed) {

@@ -564,6 +564,36 @@ TEST(Reach, EachHasASentenceOfItsOwn) {
   EXPECT_NE(out.describe().find("mm farther away"), std::string::npos) << out.describe();
 }
 
+// Six joints, each second derivative at most as long as the arm and the weight of rotations together, twice for the
+// logarithm of rotations.
+TEST(LipschitzBoundWhiteBox, GrowsWithArmAndWeightOfRotations) {
+  EXPECT_NEAR(detail::lipschitz_bound(3, 4), 2 * 6 * 5, 1e-12);
+}
+
+// A seed whose tool is at the target, but half a turn off about its axis, is no solution.
+TEST(BranchSetWhiteBox, HalfATurnIsNotMet) {
+  const auto irb = robots::abb_irb120().chain;
+  const JointVector<6> q{0.3, 0.4, -0.5, 0.6, 0.9, 0.8};
+  const Isometry3 target = irb.pose(q);
+  const auto model = [&](const double* at, Isometry3& pose, double* jacobian) {
+    const auto here = irb.pose_and_jacobian(JointVector<6>(at));
+    pose = here.pose;
+    std::copy_n(here.jacobian.data(), 36, jacobian);
+  };
+  const JointLimits<6> limits;
+  const detail::BranchProblem problem{6,        {0, 1, 2, 3, 4, 5},  model,
+                                      target,   limits.lower.data(), limits.upper.data(),
+                                      q.data(), rotation_length,     detail::lipschitz_bound(2, rotation_length)};
+  JointVector<6> turned = q;
+  turned(5) += pi;
+  detail::BranchSet set;
+  set.refine(problem, turned.data(), 0, false);
+  for (int k = 0; k < set.count; ++k) {
+    const auto& branch = set.branches[static_cast<std::size_t>(k)];
+    EXPECT_LT(pose_difference(target, irb.pose(JointVector<6>(branch.q))).norm(), 1e-9);
+  }
+}
+
 TEST(ReachWhiteBox, SentencesCountBranchesAndMargins) {
   using detail::describe_reach;
   constexpr double unknown = std::numeric_limits<double>::infinity();

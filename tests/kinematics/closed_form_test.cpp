@@ -353,6 +353,13 @@ TEST(ClosedForm, RefusesAWristOnAnArmThatDoesNotBend) {
   EXPECT_NE(what.find("the last three axes meet in a point, but the other three"), std::string::npos) << what;
 }
 
+TEST(ClosedForm, RefusesAnArmWithoutUpperArm) {
+  auto rows = robots::abb_irb120().chain.rows();
+  rows[1].a = 0;  // joints 2 and 3 turn about the same axis
+  const std::string what = complaint([&] { ClosedForm{DhChain<6>::from_rows(rows)}; });
+  EXPECT_NE(what.find("bend the arm"), std::string::npos) << what;
+}
+
 TEST(ClosedForm, RefusesPrismaticJoints) {
   auto rows = robots::abb_irb120().chain.rows();
   rows[2].joint = JointType::prismatic;
@@ -653,6 +660,23 @@ TEST(SingularPoses, NearDecidesTheJointThatIsFree) {
     EXPECT_EQ(straight, 1);
   }
 
+  // the same arm held by its tool: joints 3 and 1 turn about one axis
+  const auto mirror = mirror_image(irb);
+  const JointVector<6> backwards{-0.8, 0, -0.6, 0.5, -0.4, -0.3};
+  for (const double value : {-2.0, 0.0, 1.25}) {
+    JointVector<6> near = JointVector<6>::Zero();
+    near(2) = value;
+    int straight = 0;
+    for (const auto& root : ClosedForm(mirror).roots(mirror.pose(backwards), near)) {
+      if (std::abs(root.joints(1)) > 1e-9) continue;
+      ++straight;
+      EXPECT_EQ(root.free, 1u << 2);
+      EXPECT_EQ(root.joints(2), value);
+      EXPECT_LT(difference(mirror.pose(root.joints), mirror.pose(backwards)), exact);
+    }
+    EXPECT_EQ(straight, 1);
+  }
+
   // wrist centre on axis 1
   q = {0.3, 0.4, -0.5, 0.6, 0.9, 0.8};
   ASSERT_TRUE(make_singular(form, shoulder, q));
@@ -675,8 +699,17 @@ TEST(SingularPoses, AStraightWristTakesASumThatTheArmReaches) {
   const auto ur10 = robots::ur10().chain;
   const ClosedForm form(ur10);
   int away = 0;
-  for (const double bent : {0.3, 0.6}) {
-    const JointVector<6> q{0.4, -0.8, bent, 0.5, 0, 0.7};
+  for (const auto& [bent, turned] : {std::pair{0.3, 0.5},
+                                     {0.6, 0.5},
+                                     {0.1, 0.0},
+                                     {0.1, 0.8},
+                                     {0.1, 1.6},
+                                     {0.1, 2.4},
+                                     {0.1, 3.2},
+                                     {0.1, 4.0},
+                                     {0.1, 4.8},
+                                     {0.1, 5.6}}) {
+    const JointVector<6> q{0.4, -0.8, bent, turned, 0, 0.7};
     const Isometry3 target = ur10.pose(q);
     for (int k = 0; k < 16; ++k) {
       JointVector<6> near = q;
@@ -689,7 +722,7 @@ TEST(SingularPoses, AStraightWristTakesASumThatTheArmReaches) {
         const double sum = root.joints(1) + root.joints(2) + root.joints(3);
         away += std::abs(vernier_test::without_turns(sum - near(1) - near(2) - near(3))) > 0.1;
       }
-      EXPECT_GT(straight, 0) << bent << ' ' << k;
+      EXPECT_GT(straight, 0) << bent << ' ' << turned << ' ' << k;
     }
   }
   EXPECT_GT(away, 5);
@@ -735,6 +768,34 @@ TEST(SingularPoses, SamplesOnRequest) {
   }
   const JointVector<6> regular{0.3, 0.4, -0.5, 0.6, 0.5, 0.8};
   EXPECT_EQ(form.roots(irb.pose(regular)).count, form.roots(irb.pose(regular), q, 0.01).count);
+}
+
+// Samples say that they are: without them there are as many roots as where none were asked for.
+TEST(SingularPoses, SamplesAreMarked) {
+  Rng rng(22);
+  int samples = 0;
+  for_all_arms([&](const std::string& name, const auto& chain) {
+    const ClosedForm form(chain);
+    for (const Factor factor : {shoulder, elbow, wrist}) {
+      JointVector<6> q = random_joints<6>(rng);
+      if (!make_singular(form, factor, q)) continue;
+      for (double& value : q) value += 1e-4;
+      const auto plain = form.roots(chain.pose(q), q), sampled = form.roots(chain.pose(q), q, 0.01);
+      int met = 0, met_of_plain = 0, unmarked = 0;
+      for (const auto& root : plain) met_of_plain += root.margin == 0;
+      for (const auto& root : sampled) {
+        met += root.margin == 0 && !root.sampled;
+        samples += root.sampled;
+        unmarked += !root.sampled;
+      }
+      // behind three parallel axes those of a straight wrist are always to be tried
+      if (factor != wrist || internals(chain).kind() != ArmKind::three_parallel) {
+        EXPECT_LE(unmarked, 8) << name << ' ' << factor;
+      }
+      EXPECT_EQ(met, met_of_plain) << name << ' ' << factor;
+    }
+  });
+  EXPECT_GT(samples, 100);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

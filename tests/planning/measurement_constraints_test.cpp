@@ -63,6 +63,11 @@ TEST(MeasurementConstraints, AcceptanceOfTheReflector) {
   EXPECT_EQ(checked(c, {0, 0, 0.4}), Rejection::none);  // the beam turns a little, too
   EXPECT_EQ(checked(c, {0, 0, 0.5}), Rejection::acceptance);
   EXPECT_EQ(checked(c, {0, 0, half_turn}), Rejection::acceptance);
+  c.tracker->acceptance = 3;  // hardly anything is turned away, but half a turn is
+  EXPECT_EQ(checked(c, {0, 0, half_turn}), Rejection::acceptance);
+  c.tracker->acceptance = half_turn;
+  EXPECT_EQ(checked(c, {0, 0, half_turn}), Rejection::none);
+  c.tracker->acceptance = 0.5;
   c.tracker->reflector_direction = {0, 0, 1};
   EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::acceptance);
 }

@@ -1,0 +1,154 @@
+// Results by ISO 9283 as JSON: every number under its name, in its unit.
+
+#include "vernier/io/iso9283_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "vernier/core/points.hpp"
+#include "vernier/core/so3.hpp"
+
+namespace vernier::iso9283_json_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+void expect_list(const Json& json, std::initializer_list<double> expected) {
+  ASSERT_EQ(json.size(), expected.size());
+  std::size_t k = 0;
+  for (const double value : expected) EXPECT_NEAR(json.at(k++).get<double>(), value, 1e-9);
+}
+
+// Each value is another number of micrometres or microradians, so that no two can be exchanged.
+TEST(Iso9283Json, PosesDistanceVariationsAndDrift) {
+  Iso9283 result;
+  Iso9283Pose pose;
+  pose.pose = 4;
+  pose.direction = 2;
+  pose.n = 30;
+  pose.ap = 1e-6;
+  pose.ap_debiased = 2e-6;
+  pose.ap_registered = unknown;
+  pose.rp = 3e-6;
+  pose.rp_low = 4e-6;
+  pose.rp_high = 5e-6;
+  pose.ap_xyz = Vector3(6e-6, 7e-6, 8e-6);
+  pose.rp_xyz = Vector3(9e-6, 10e-6, 11e-6);
+  pose.ap_abc = Vector3(12e-6, 13e-6, 14e-6);
+  pose.rp_abc = Vector3(15e-6, unknown, 17e-6);
+  result.poses = {pose, pose};
+  result.poses[1].ap_registered = 18e-6;
+  Iso9283Distance distance;
+  distance.first = 3;
+  distance.second = 5;
+  distance.n = 29;
+  distance.ad = -19e-6;
+  distance.rd = 20e-6;
+  distance.ad_xyz = Vector3(21e-6, 22e-6, 23e-6);
+  distance.rd_xyz = Vector3(24e-6, 25e-6, 26e-6);
+  distance.ad_abc = Vector3(27e-6, 28e-6, 29e-6);
+  distance.rd_abc = Vector3(30e-6, 31e-6, 32e-6);
+  result.distance = distance;
+  result.variations = {{1, 3, 33e-6, Vector3(34e-6, 35e-6, 36e-6)}};
+  result.drift = {{2, {{37, 38e-6, 39e-6}, {unknown, 40e-6, unknown}}, 41e-6, 42e-6}};
+  result.registration = rigid_motion(exp_so3(Vector3(0, 0, 0.25)), Vector3(1, -2, 3));
+  result.departures = {"ten cycles"};
+
+  const Json json = to_json(result);
+  ASSERT_EQ(json.at("poses").size(), 2u);
+  const Json& p = json.at("poses").at(0);
+  EXPECT_EQ(p.at("pose"), 4);
+  EXPECT_EQ(p.at("direction"), 2);
+  EXPECT_EQ(p.at("visits"), 30);
+  EXPECT_NEAR(p.at("ap_mm").get<double>(), 1e-3, 1e-12);
+  EXPECT_NEAR(p.at("ap_debiased_mm").get<double>(), 2e-3, 1e-12);
+  EXPECT_TRUE(p.at("ap_registered_mm").is_null());
+  EXPECT_NEAR(json.at("poses").at(1).at("ap_registered_mm").get<double>(), 18e-3, 1e-12);
+  EXPECT_NEAR(p.at("rp_mm").get<double>(), 3e-3, 1e-12);
+  expect_list(p.at("rp_interval_95_mm"), {4e-3, 5e-3});
+  expect_list(p.at("ap_xyz_mm"), {6e-3, 7e-3, 8e-3});
+  expect_list(p.at("rp_xyz_mm"), {9e-3, 10e-3, 11e-3});
+  expect_list(p.at("ap_abc_mrad"), {12e-3, 13e-3, 14e-3});
+  EXPECT_NEAR(p.at("rp_abc_mrad").at(0).get<double>(), 15e-3, 1e-12);
+  EXPECT_TRUE(p.at("rp_abc_mrad").at(1).is_null());
+  EXPECT_NEAR(p.at("rp_abc_mrad").at(2).get<double>(), 17e-3, 1e-12);
+
+  const Json& d = json.at("distance");
+  EXPECT_EQ(d.at("poses"), (std::vector<int>{3, 5}));
+  EXPECT_EQ(d.at("cycles"), 29);
+  EXPECT_NEAR(d.at("ad_mm").get<double>(), -19e-3, 1e-12);
+  EXPECT_NEAR(d.at("rd_mm").get<double>(), 20e-3, 1e-12);
+  expect_list(d.at("ad_xyz_mm"), {21e-3, 22e-3, 23e-3});
+  expect_list(d.at("rd_xyz_mm"), {24e-3, 25e-3, 26e-3});
+  expect_list(d.at("ad_abc_mrad"), {27e-3, 28e-3, 29e-3});
+  expect_list(d.at("rd_abc_mrad"), {30e-3, 31e-3, 32e-3});
+
+  const Json& v = json.at("variations").at(0);
+  EXPECT_EQ(v.at("pose"), 1);
+  EXPECT_EQ(v.at("directions"), 3);
+  EXPECT_NEAR(v.at("vap_mm").get<double>(), 33e-3, 1e-12);
+  expect_list(v.at("vap_abc_mrad"), {34e-3, 35e-3, 36e-3});
+
+  const Json& drift = json.at("drift").at(0);
+  EXPECT_EQ(drift.at("pose"), 2);
+  EXPECT_NEAR(drift.at("dap_mm").get<double>(), 41e-3, 1e-12);
+  EXPECT_NEAR(drift.at("drp_mm").get<double>(), 42e-3, 1e-12);
+  ASSERT_EQ(drift.at("groups").size(), 2u);
+  EXPECT_EQ(drift.at("groups").at(0).at("time_s"), 37);  // not in thousandths
+  EXPECT_NEAR(drift.at("groups").at(0).at("ap_mm").get<double>(), 38e-3, 1e-12);
+  EXPECT_NEAR(drift.at("groups").at(0).at("rp_mm").get<double>(), 39e-3, 1e-12);
+  EXPECT_TRUE(drift.at("groups").at(1).at("time_s").is_null());
+  EXPECT_TRUE(drift.at("groups").at(1).at("rp_mm").is_null());
+
+  expect_list(json.at("registration_m_rad"), {1, -2, 3, 0, 0, 0.25});
+  EXPECT_EQ(json.at("departures"), std::vector<std::string>{"ten cycles"});
+}
+
+TEST(Iso9283Json, WhatThereIsNotIsNullOrEmpty) {
+  const Json json = to_json(Iso9283{});
+  EXPECT_TRUE(json.at("distance").is_null());
+  EXPECT_TRUE(json.at("registration_m_rad").is_null());
+  for (const char* list : {"poses", "variations", "drift", "departures"})
+    EXPECT_TRUE(json.at(list).is_array() && json.at(list).empty()) << list;
+}
+
+TEST(Iso9283Json, Paths) {
+  Iso9283Path result;
+  result.at = 1e-6;
+  result.rt = 2e-6;
+  result.at_abc = Vector3(3e-6, 4e-6, 5e-6);
+  result.rt_abc = Vector3(6e-6, 7e-6, 8e-6);
+  result.length = 0.9;
+  result.runs = 10;
+  Iso9283PathPoint point;
+  point.arc_length = 0.25;
+  point.at = 11e-6;
+  point.rt = unknown;
+  point.at_abc = Vector3(12e-6, 13e-6, 14e-6);
+  point.rt_abc = Vector3(15e-6, 16e-6, 17e-6);
+  result.points = {point};
+  result.departures = {"one run"};
+
+  const Json json = to_json(result);
+  EXPECT_NEAR(json.at("at_mm").get<double>(), 1e-3, 1e-12);
+  EXPECT_NEAR(json.at("rt_mm").get<double>(), 2e-3, 1e-12);
+  expect_list(json.at("at_abc_mrad"), {3e-3, 4e-3, 5e-3});
+  expect_list(json.at("rt_abc_mrad"), {6e-3, 7e-3, 8e-3});
+  EXPECT_NEAR(json.at("length_mm").get<double>(), 900, 1e-9);
+  EXPECT_EQ(json.at("runs"), 10);
+  const Json& p = json.at("points").at(0);
+  EXPECT_NEAR(p.at("arc_length_mm").get<double>(), 250, 1e-9);
+  EXPECT_NEAR(p.at("at_mm").get<double>(), 11e-3, 1e-12);
+  EXPECT_TRUE(p.at("rt_mm").is_null());
+  expect_list(p.at("at_abc_mrad"), {12e-3, 13e-3, 14e-3});
+  expect_list(p.at("rt_abc_mrad"), {15e-3, 16e-3, 17e-3});
+  EXPECT_EQ(json.at("departures"), std::vector<std::string>{"one run"});
+}
+
+}  // namespace
+}  // namespace vernier::iso9283_json_test

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -226,6 +230,199 @@ Targets planted(const Inputs& x, Activation activation) {
   return as_targets(h * RealMatrix(4, 2, {1, -2, 3, 1, -2, 2, 1, 1}));
 }
 
+/// The smallest network, `v tanh(w x + b) + c`, trained by Adam as the paper has it: moments of gradient and square,
+/// both divided by their bias, and a rate that falls as half a cosine over all steps.
+struct SmallestNetwork {
+  static constexpr double decay = 0.01;
+  VectorX x, t;  // targets in units of their spread
+
+  /// F of some samples, and its gradient by w, b, v, c.
+  double error(const VectorX& theta, const std::vector<Index>& rows, VectorX& gradient) const {
+    gradient = VectorX::Zero(4);
+    for (const Index k : {0, 2}) gradient(k) = 2 * decay * theta(k);
+    double value = decay * (theta(0) * theta(0) + theta(2) * theta(2));
+    for (const Index i : rows) {
+      const double h = std::tanh(theta(0) * x(i) + theta(1)), left = theta(2) * h + theta(3) - t(i),
+                   share = 2 * left / static_cast<double>(rows.size()), back = share * theta(2) * (1 - h * h);
+      value += left * left / static_cast<double>(rows.size());
+      const double parts[] = {back * x(i), back, share * h, share};
+      for (Index k = 0; k < 4; ++k) gradient(k) += parts[k];
+    }
+    return value;
+  }
+
+  /// The best weights after some epochs of batches, and the error before and after each.
+  VectorX trained(VectorX theta, const Adam& adam, const std::vector<std::vector<std::vector<Index>>>& epochs,
+                  std::vector<double>& errors) const {
+    const std::vector<Index> all{0, 1, 2, 3};
+    VectorX gradient, mean = VectorX::Zero(4), square = VectorX::Zero(4), best = theta;
+    errors = {error(theta, all, gradient)};
+    double steps = 0, step = 0;
+    for (const auto& batches : epochs) steps += static_cast<double>(batches.size());
+    for (const auto& batches : epochs) {
+      for (const std::vector<Index>& rows : batches) {
+        error(theta, rows, gradient);
+        const double rate = adam.learning_rate * (1 + std::cos(std::numbers::pi * step / steps)) / 2;
+        step += 1;
+        for (Index k = 0; k < 4; ++k) {
+          mean(k) = adam.momentum * mean(k) + (1 - adam.momentum) * gradient(k);
+          square(k) = adam.memory * square(k) + (1 - adam.memory) * gradient(k) * gradient(k);
+          theta(k) -= rate * mean(k) / (1 - std::pow(adam.momentum, step)) /
+                      (std::sqrt(square(k) / (1 - std::pow(adam.memory, step))) + 1e-8);
+        }
+      }
+      errors.push_back(error(theta, all, gradient));
+      if (errors.back() < *std::min_element(errors.begin(), errors.end() - 1)) best = theta;
+    }
+    return best;
+  }
+};
+
+/// The four samples of the smallest network, and what a fit makes of its weights.
+class BackPropagationByHand : public ::testing::Test {
+ protected:
+  BackPropagationByHand() : x_(4), y_(4) {
+    for (Index i = 0; i < 4; ++i) {
+      x_(i) = i == 0 ? -1.2 : 0.7 * static_cast<double>(i) - 1;
+      y_(i) = 3 + 0.5 * x_(i) * x_(i) - x_(i);
+    }
+    mean_ = y_.mean();
+    double sum = 0;
+    for (const double value : y_) sum += (value - mean_) * (value - mean_);
+    spread_ = std::sqrt(sum / 4);
+    network_.x = network_.t = x_;
+    for (Index i = 0; i < 4; ++i) network_.t(i) = (y_(i) - mean_) / spread_;
+  }
+
+  VectorX fitted(const Adam& adam, std::uint64_t seed, std::vector<double>* seen = nullptr) const {
+    const BackPropagation recipe{.hidden_nodes = 1,
+                                 .activation = Activation::tanh,
+                                 .input_map = InputMap::raw,
+                                 .input_scaling = Scaling::none,
+                                 .weight_decay = SmallestNetwork::decay,
+                                 .training = adam};
+    const auto observer = [&](const Progress& progress) {
+      if (seen != nullptr) seen->push_back(progress.best);
+    };
+    const auto network = recipe.fit(x_, y_, {.seed = seed, .observer = observer});
+    const Eigen::Matrix<double, 1, 1> none(0.0);
+    const double at_zero = network.predict(none)(0), v = network.beta()(0, 0);
+    return vernier_test::vector({network.theta()(0), network.theta()(1), v / spread_,
+                                 (at_zero - v * std::tanh(network.theta()(1)) - mean_) / spread_});
+  }
+
+  VectorX x_, y_;
+  double mean_ = 0, spread_ = 0;
+  SmallestNetwork network_;
+};
+
+TEST_F(BackPropagationByHand, AdamOnAllSamplesAtOnce) {
+  const Adam none{.epochs = 0}, adam{.epochs = 6, .batch = 9, .learning_rate = 0.05, .momentum = 0.5, .memory = 0.9};
+  for (const std::uint64_t seed : {1u, 2u}) {
+    std::vector<double> seen, expected;
+    const VectorX start = fitted(none, seed), found = fitted(adam, seed, &seen);
+    const std::vector<std::vector<Index>> one_batch{{0, 1, 2, 3}};
+    const VectorX best = network_.trained(start, adam, std::vector(6, one_batch), expected);
+    EXPECT_LT((found - best).norm(), 1e-9);
+    EXPECT_GT((found - start).norm(), 0.1);
+    ASSERT_EQ(seen.size(), 7u);
+    double least = expected[0];
+    for (std::size_t k = 0; k < 7; ++k) {
+      least = std::min(least, expected[k]);
+      EXPECT_NEAR(seen[k], least, 1e-12);
+    }
+  }
+}
+
+// Two batches of two samples: each epoch is one of six orders, drawn from the seed, and anew.
+TEST_F(BackPropagationByHand, AdamDrawsItsBatchesAnew) {
+  const std::vector<std::vector<std::vector<Index>>> orders{{{0, 1}, {2, 3}}, {{0, 2}, {1, 3}}, {{0, 3}, {1, 2}},
+                                                            {{1, 2}, {0, 3}}, {{1, 3}, {0, 2}}, {{2, 3}, {0, 1}}};
+  const Adam none{.epochs = 0}, adam{.epochs = 2, .batch = 2, .learning_rate = 0.01, .momentum = 0.5, .memory = 0.9};
+  std::set<std::size_t> first;
+  bool anew = false;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const VectorX start = fitted(none, seed), found = fitted(adam, seed);
+    std::vector<std::pair<std::size_t, std::size_t>> same;
+    std::vector<double> errors;
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b)
+        if ((network_.trained(start, adam, {orders[a], orders[b]}, errors) - found).norm() < 1e-10)
+          same.emplace_back(a, b);
+    ASSERT_FALSE(same.empty()) << seed;
+    if (same.size() > 1) continue;
+    first.insert(same[0].first);
+    anew = anew || same[0].first != same[0].second;
+  }
+  EXPECT_GE(first.size(), 3u);
+  EXPECT_TRUE(anew);
+}
+
+// Output weights start in [-1, 1] over the number of nodes, in units of the spread.
+TEST(BackPropagation, StartsWithSmallOutputWeights) {
+  const Inputs x = inputs(30, 36);
+  const Targets y = targets(x);
+  const BackPropagation recipe{.hidden_nodes = 100, .training = Adam{.epochs = 0}};
+  const double spread = centred(RealMatrix::of(y)).norm() / std::sqrt(30.0);
+  const RealMatrix beta = RealMatrix::of(recipe.fit(x, y, {.seed = 1}).beta());
+  EXPECT_LE(beta.largest(), spread / 100);
+  EXPECT_GT(beta.largest(), 0.9 * spread / 100);
+  EXPECT_NEAR(beta.norm(), spread / 100 * std::sqrt(200.0 / 3), 0.1 * beta.norm());  // uniform: variance 1/3
+}
+
+// A rate that overshoots: what the observer is told never rises.
+TEST(BackPropagation, TheObserverIsToldTheLowestObjective) {
+  const Inputs x = inputs(60, 37);
+  const Targets y = targets(x);
+  std::vector<double> seen;
+  const auto observer = [&](const Progress& progress) { seen.push_back(progress.best); };
+  const BackPropagation recipe{.hidden_nodes = 5, .training = Adam{.epochs = 40, .batch = 20, .learning_rate = 0.9}};
+  static_cast<void>(recipe.fit(x, y, {.seed = 1, .observer = observer}));
+  bool level = false;
+  for (std::size_t k = 1; k < seen.size(); ++k) {
+    EXPECT_LE(seen[k], seen[k - 1]);
+    level = level || seen[k] == seen[k - 1];
+  }
+  EXPECT_TRUE(level);
+}
+
+// Training ends where ten steps that lowered the objective lowered it by less than the tolerance together.
+TEST(BackPropagation, TenStepsThatHardlyHelpEndIt) {
+  const Inputs x = inputs(150, 38);
+  const Targets y = targets(x, 2e-4);
+  for (const double tolerance : {0.02, 0.2}) {
+    std::vector<double> lowered;
+    const auto observer = [&](const Progress& progress) {
+      if (lowered.empty() || progress.best < lowered.back()) lowered.push_back(progress.best);
+    };
+    const BackPropagation recipe{.hidden_nodes = 6,
+                                 .training = LevenbergMarquardt{.epochs = 2000, .tolerance = tolerance}};
+    static_cast<void>(recipe.fit(x, y, {.seed = 1, .observer = observer}));
+    const std::size_t steps = lowered.size() - 1;
+    EXPECT_EQ(steps % 10, 0u);
+    for (std::size_t k = 10; k <= steps; k += 10)
+      EXPECT_EQ(lowered[k - 10] - lowered[k] < tolerance * lowered[k], k == steps) << k;
+  }
+}
+
+// So many epochs after the best one: stopped there by hand the network is the same, one earlier it is another.
+TEST(BackPropagation, PatienceCountsFromTheBestEpoch) {
+  const Inputs x = inputs(60, 39);
+  const Targets y = targets(x, 4e-4);
+  BackPropagation recipe{.hidden_nodes = 12, .validation_share = 0.5, .patience = 5};
+  const auto trained = [&](int epochs, Index& last) {
+    recipe.training = LevenbergMarquardt{.epochs = epochs, .tolerance = 0};
+    const auto observer = [&](const Progress& progress) { last = progress.generation; };
+    return RealMatrix(recipe.fit(x, y, {.seed = 1, .observer = observer}).theta());
+  };
+  Index last = 0, unused = 0;
+  const RealMatrix found = trained(500, last);
+  ASSERT_LT(last, 500);
+  ASSERT_GT(last, 5);
+  EXPECT_EQ(trained(static_cast<int>(last) - 5, unused), found);
+  EXPECT_FALSE(trained(static_cast<int>(last) - 6, unused) == found);
+}
+
 TEST(BackPropagation, RecoversAPlantedNetwork) {
   const Inputs x = inputs(400, 22), fresh = inputs(200, 23);
   for (const Activation activation : activations) {
@@ -275,6 +472,22 @@ TEST(BackPropagation, StopsEarly) {
     }
     EXPECT_LT(stopped, 0.8 * followed);
   }
+}
+
+// Decay that only shrinks the weights lowers what is trained, but not the error of other samples: that decides.
+TEST(BackPropagation, ValidationCountsErrorsAlone) {
+  const Inputs x = inputs(40, 41);
+  const Targets y = targets(x);
+  BackPropagation recipe{.hidden_nodes = 4, .weight_decay = 0.9, .validation_share = 0.5};
+  int kept = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    recipe.training = LevenbergMarquardt{.epochs = 0};
+    const RealMatrix start(recipe.fit(x, y, {.seed = seed}).theta());
+    recipe.training = LevenbergMarquardt{.epochs = 1};
+    kept += start == RealMatrix(recipe.fit(x, y, {.seed = seed}).theta());
+  }
+  EXPECT_GE(kept, 3);
+  EXPECT_LE(kept, 27);
 }
 
 TEST(BackPropagation, AWeightIsSoManySamples) {

@@ -285,6 +285,58 @@ TEST(GaussianProcess, NoiseRatiosHaveBounds) {
   EXPECT_NEAR(ratio(smooth) / 1e-8, 1, 1e-9);
 }
 
+// Length scales lie between a thirtieth and a hundred times the spread of their input: values that alternate want the
+// one, an input that does not matter the other.
+TEST(GaussianProcess, LengthScalesHaveBounds) {
+  const Index n = 40;
+  VectorX alternating(n), smooth(n);
+  Eigen::Matrix<double, Eigen::Dynamic, 2> two(n, 2), angles(n, 2);
+  Rng rng(20);
+  for (Index i = 0; i < n; ++i) {
+    alternating(i) = i % 2 == 0 ? 1 : -1;
+    two(i, 0) = rng.uniform(-1, 1);
+    two(i, 1) = rng.uniform(-1, 1);
+    smooth(i) = std::sin(3 * two(i, 0));
+    angles(i, 0) = 0.05 * static_cast<double>(i);
+    angles(i, 1) = 1e-3 * static_cast<double>(i % 3);
+  }
+  const auto spread = [](const RealMatrix& column) {
+    return vernier_test::centred(column).norm() / std::sqrt(static_cast<double>(column.rows()));
+  };
+  GaussianProcess process{.input_scaling = Scaling::none, .noise_ratio = 1e-6};
+  EXPECT_NEAR(process.fit(two, smooth).scaling().factor(1) * spread(RealMatrix::of(two).col(1)) * 100, 1, 1e-9);
+  // of an angle the spread is that of its sine and cosine together
+  process.input_map = InputMap::sines_and_cosines;
+  const RealMatrix seen = vernier_test::sines_and_cosines(RealMatrix::of(angles));
+  EXPECT_NEAR(process.fit(angles, alternating).scaling().factor(0) *
+                  std::hypot(spread(seen.col(0)), spread(seen.col(2))) * std::pow(10, -1.5),
+              1, 1e-9);
+}
+
+// Few samples have several explanations: of all starts the most likely one is kept.
+TEST(GaussianProcess, TheBestOfSeveralStartsIsKept) {
+  Rng rng(22);
+  double gained = 0;
+  for (int repeat = 0; repeat < 12; ++repeat) {
+    VectorX x(8), y(8);
+    for (Index i = 0; i < 8; ++i) {
+      x(i) = rng.uniform(-3, 3);
+      y(i) = rng.normal();
+    }
+    const detail::MarginalLikelihood likelihood(Kernel::squared_exponential, RealMatrix(x), 1, RealMatrix(y),
+                                                VectorX::Ones(8));
+    const auto value = [&](int starts) {
+      const auto found = GaussianProcess{.input_scaling = Scaling::none, .starts = starts}.fit(x, y, {.seed = 3});
+      VectorX unused;
+      return likelihood(vector({-std::log(found.scaling().factor(0)), std::log(found.noise_ratio())}), unused);
+    };
+    const double first = value(1), best = value(6);
+    EXPECT_LE(best, first + 1e-9);
+    gained = std::max(gained, first - best);
+  }
+  EXPECT_GT(gained, 1e-3);
+}
+
 // Samples of a known process: what it was is found again, within what so many samples tell.
 TEST(GaussianProcess, FindsWhatTheSamplesWereDrawnFrom) {
   const Index n = 200;

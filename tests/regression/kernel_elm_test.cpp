@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
 #include "laws.hpp"
@@ -142,6 +147,79 @@ TEST(KernelElm, ChoosesByLeaveOneOut) {
   EXPECT_LT(chosen, 1.2 * best);
   EXPECT_LT(rms({.lambda = 1e-3}), 2 * best);
   EXPECT_LT(rms({.length_scale = 1.0}), 1.2 * best);
+}
+
+/// Length scale and ridge of the least error left out: octaves of the typical distance of two samples, from 8 down to a
+/// sixteenth, then the half octaves beside the best; half decades from 100 down to 1e-8, and the mean.
+std::pair<double, double> best_of_the_grid(const VectorX& x, const VectorX& y) {
+  const Index n = x.size();
+  const VectorX ones = VectorX::Ones(n);
+  double square = 0, least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < n; ++i) square += 2 * std::pow(x(i) - x.mean(), 2) / static_cast<double>(n);
+  std::pair<double, double> best{1, least};
+  const auto consider = [&](double length) {
+    MatrixX kernel(n, n);
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j < n; ++j) kernel(i, j) = std::exp(-0.5 * std::pow((x(i) - x(j)) / length, 2));
+    const detail::KernelRidgePath path(kernel, y, ones);
+    for (int k = 5; k >= -16; --k) {
+      const double lambda = k == 5 ? std::numeric_limits<double>::infinity() : std::pow(10, 0.5 * k),
+                   error = path.leave_one_out_error(lambda);
+      if (error < least) {
+        least = error;
+        best = {length, lambda};
+      }
+    }
+  };
+  for (int power = 3; power >= -4; --power) consider(std::sqrt(square) * std::pow(2.0, power));
+  const double octave = best.first;
+  consider(octave * std::sqrt(2.0));
+  consider(octave / std::sqrt(2.0));
+  return best;
+}
+
+// Values that want the ends of both grids: a parabola, pairs of samples close together, noise about a curve, and a
+// line whose neighbours lie on either side.
+TEST(KernelElm, LooksAtTheWholeGrid) {
+  const Index n = 24;
+  VectorX x(n), parabola(n), pairs(n), noisy(n), line(n);
+  Rng rng(21);
+  for (Index i = 0; i < n; ++i) {
+    x(i) = static_cast<double>(i / 2) + 0.05 * static_cast<double>(i % 2);
+    parabola(i) = 0.01 * x(i) * x(i);
+    pairs(i) = i % 2 == 0 ? rng.normal() : pairs(i - 1);
+    noisy(i) = std::sin(x(i)) + 0.3 * rng.normal();
+    line(i) = x(i) + (i % 2 == 0 ? 0.5 : -0.5);
+  }
+  std::set<double> lengths;
+  for (const VectorX& y : {parabola, pairs, noisy, line}) {
+    const auto [length, lambda] = best_of_the_grid(x, y);
+    lengths.insert(length);
+    ASSERT_TRUE(std::isfinite(lambda));
+    const auto expected = KernelElm{.input_scaling = Scaling::none, .length_scale = length, .lambda = lambda}.fit(x, y);
+    const auto found = KernelElm{.input_scaling = Scaling::none}.fit(x, y);
+    EXPECT_NEAR(found.scaling().factor(0) * length, 1, 1e-9);
+    for (const double at : {-1.0, 0.3, 5.5, 14.0}) {
+      const Eigen::Matrix<double, 1, 1> point(at);
+      EXPECT_NEAR(found.predict(point)(0), expected.predict(point)(0), 1e-6);
+    }
+  }
+  EXPECT_EQ(lengths.size(), 4u);
+  const double typical = std::sqrt(2.0) * centred(RealMatrix(x)).norm() / std::sqrt(static_cast<double>(n));
+  EXPECT_NEAR(*lengths.rbegin() / typical, 8 * std::sqrt(2.0), 1e-9);
+}
+
+// Neighbours that say the opposite: nothing is better than the mean, in which heavy samples count for more.
+TEST(KernelElm, TheMeanIsWeighted) {
+  VectorX x(20), y(20);
+  for (Index i = 0; i < 20; ++i) {
+    x(i) = static_cast<double>(i);
+    y(i) = i % 2 == 0 ? 1 : -1;
+  }
+  const VectorX w = vernier_test::random_weights(20);
+  const auto predictor = KernelElm{}.fit(x, y, {.weights = &w});
+  EXPECT_EQ(predictor.alpha().norm(), 0);
+  EXPECT_NEAR(predictor.predict(Eigen::Matrix<double, 1, 1>(3.0))(0), w.dot(y) / w.sum(), 1e-14);
 }
 
 // Where there is nothing to learn, the mean.

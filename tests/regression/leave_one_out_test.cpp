@@ -179,6 +179,34 @@ TEST(ChooseLambda, FewSamplesAndConstantNodes) {
   EXPECT_EQ(choose_lambda(RidgePath(filled(5, 3, 0.5), random_matrix(5, 1, 18)), 5).lambda, infinity);
 }
 
+// Targets that are constant are those of the mean alone, targets that the nodes make exactly want the least ridge.
+TEST(ChooseLambda, EndsOfItsGrid) {
+  const RealMatrix h = random_matrix(30, 4, 19);
+  EXPECT_EQ(choose_lambda(RidgePath(h, filled(30, 1, 0.25)), 30).lambda, infinity);
+  const RidgePath exact(h, h * random_matrix(4, 1, 20));
+  EXPECT_NEAR(choose_lambda(exact, 30).lambda / exact.scale(), 1e-12, 1e-18);
+}
+
+// The t-statistic of the differences of squared left-out errors.
+TEST(EvidenceAgainstMean, IsAMeanOverItsStandardError) {
+  for (const Index n : {3, 5, 40}) {
+    const RealMatrix h = random_matrix(n, 2, 21), t = h * random_matrix(2, 2, 22) + random_matrix(n, 2, 23);
+    const RidgePath path(h, t);
+    const double lambda = 0.1 * path.scale(), count = static_cast<double>(n);
+    const RealMatrix off = refitted_residuals(h, t, lambda);
+    double sum = 0, squares = 0;
+    for (Index i = 0; i < n; ++i) {
+      double gain = -off.row(i).squared_norm();
+      for (Index o = 0; o < 2; ++o) gain += std::pow((t(i, o) - t.col(o).mean()) * count / (count - 1), 2);
+      sum += gain;
+      squares += gain * gain;
+    }
+    const double mean = sum / count, variance = (squares - sum * mean) / (count - 1);
+    EXPECT_NEAR(evidence_against_mean(path, lambda, n), mean / std::sqrt(variance / count), 1e-8);
+    EXPECT_EQ(evidence_against_mean(path, infinity, n), 0);
+  }
+}
+
 /// Samples of a smooth function with noise, and hidden weights of some size.
 struct Layer {
   MatrixX features, targets;

@@ -117,6 +117,19 @@ TEST(RidgeWeights, SolveTheNormalEquations) {
   EXPECT_GT(objective_from_products(gram, right, square, beta, lambda, 1e8 * expected / beta.squared_norm() * 0.99), 0);
 }
 
+// At other weights than the best it is the objective there; below a ten millionth of the targets' square nothing.
+TEST(ObjectiveFromProducts, IsTheObjectiveAtAnyWeights) {
+  const RealMatrix h = uniform(20, 3, 1, 11), t = uniform(20, 2, 1, 12), beta = uniform(3, 2, 1, 13);
+  const RealMatrix gram = h.transpose() * h, right = t.transpose() * h;
+  const double expected = (h * beta - t).squared_norm() + 0.3 * beta.squared_norm();
+  EXPECT_NEAR(objective_from_products(lower_triangle(gram), right, t.squared_norm(), beta, 0.3, gram.trace()), expected,
+              1e-12);
+  // one sample that a node of value 1 meets, and one of value r that it does not
+  const MatrixX one = MatrixX::Ones(1, 1);
+  EXPECT_EQ(objective_from_products(one, one, 1 + 0.9e-7, one, 1e-12, 1), -1);
+  EXPECT_NEAR(objective_from_products(one, one, 1 + 1.1e-7, one, 1e-12, 1), 1.1e-7, 1e-11);
+}
+
 TEST(ElmFitness, ANearlyPerfectFitKeepsItsDigits) {
   // targets that the layer can represent: the products alone would lose everything
   const Eigen::Matrix<double, Eigen::Dynamic, 2> x = uniform(300, 2, 1, 6);

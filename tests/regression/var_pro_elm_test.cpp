@@ -97,6 +97,15 @@ TEST(VarProObjective, IsTheLeastOverTheOutputWeights) {
       }
 }
 
+// In units of the spread the mean alone has 1, also where the spread is a ten-millionth of the mean.
+TEST(VarProObjective, ASmallSignalOnALargeOffset) {
+  const Inputs x = inputs(50, 40);
+  Targets y = targets(x);
+  for (double& value : elements(y)) value = 1 + 1e-4 * value;
+  const VarProElm recipe{.hidden_nodes = 2};
+  EXPECT_NEAR(value(recipe, x, y, VectorX::Zero(recipe.dimension(3))), 1, 1e-5);
+}
+
 TEST(VarProObjective, GradientEqualsDifferences) {
   const Inputs x = inputs(40, 3);
   const Targets y = targets(x);

@@ -10,6 +10,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/pair_search.hpp"
+#include "vernier/data/detail/point_alignment.hpp"
 #include "vernier/data/pair_points.hpp"
 
 namespace vernier::pairing_proof_test {
@@ -121,6 +122,41 @@ TEST(PairingProof, CountsPosesThatCannotBeToldApart) {
   ASSERT_EQ(found.proof->status, PairingStatus::proven);
   EXPECT_NEAR(found.proof->limit, 1e-4, 1e-12);
   EXPECT_EQ(found.proof->indistinct, 10);
+}
+
+TEST(PairingProof, TheFirstPoseMayBeSwapped) {
+  Rng rng(36);
+  Measured session(30, 1, 0.1, rng);
+  Pairing named;
+  for (Index i = 0; i < 30; ++i) named.pairs.push_back({i, i});
+  const Vector3 first = point(session.points, 0);
+  set_point(session.points, 0, point(session.points, 5));
+  set_point(session.points, 5, first);
+  const Pairing found = check_pairs(named, session.flanges, session.points);
+  ASSERT_EQ(found.faults.size(), 1u);
+  EXPECT_EQ(found.faults[0].kind, Kind::swapped);
+  EXPECT_EQ(found.faults[0].rows.first, 0);
+  EXPECT_EQ(found.faults[0].rows.last, 5);
+  EXPECT_EQ(found.faults[0].points.first, 5);
+  EXPECT_EQ(found.faults[0].points.last, 0);
+  EXPECT_EQ(found.pairs.size(), 30u);
+}
+
+// Where the flange only turns, its positions say nothing about the base, and the reflector's circles say all.
+TEST(PairingProof, AFlangeThatOnlyTurns) {
+  Rng rng(37);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    Measured session(15, 1e-3, 0.4, rng);
+    const Isometry3 moved = rigid_motion(exp_so3(drawn(rng, 1.7)), drawn(rng, 2));
+    std::vector<PointPair> pairs;
+    for (Index i = 0; i < 15; ++i) {
+      set_point(session.points, i, transformed(moved, point(session.points, i)));
+      pairs.push_back({i, i});
+    }
+    const detail::PointFrames found = detail::fit_point_frames(session.flanges, session.points, pairs);
+    EXPECT_LT(found.rms, 1e-6) << repeat;
+    EXPECT_NEAR(found.offset.norm(), 0.4, 1e-5);
+  }
 }
 
 /// Whether poses along a line, one beside it, would be as good shifted.

@@ -136,6 +136,24 @@ TEST(Excerpts, AreShortAndPrintable) {
   EXPECT_EQ(detail::excerpt(" a \t\r\n b\xff "), "a b?");
 }
 
+TEST(Places, CountBytesFromTheBeginningOfTheLine) {
+  const detail::ProgramText text{"ab\ncd\n", "m", {}};
+  ProgramTarget target;
+  const auto column = [&](std::size_t byte) {
+    detail::place(text, byte, 7, target);
+    return target.column;
+  };
+  EXPECT_EQ(column(0), 1u);
+  EXPECT_EQ(column(1), 2u);
+  EXPECT_EQ(column(3), 1u);
+  EXPECT_EQ(column(4), 2u);
+  EXPECT_EQ(target.line, 7u);
+}
+
+TEST(ProgramLanguages, AMarkOfTheEncodingIsNoPartOfAWord) {
+  EXPECT_EQ(complaint([] { (void)parse_program(rapid, "\xEF\xBB\xBFMODULE m\nENDMODULE\n", "m.mod"); }), "");
+}
+
 TEST(ProgramLanguages, ByEveryEnding) {
   for (const char* name : {"a.mod", "a.modx", "a.prg", "a.sys"}) EXPECT_EQ(program_language(name), rapid) << name;
 }
@@ -168,6 +186,10 @@ TEST(UsesOfTargets, OneUsedTwiceHasNoPrevious) {
   EXPECT_EQ(program.targets.back().name, "s");  // no move uses it
   EXPECT_EQ(program.end_of_line, "\n");
   EXPECT_EQ(remarks(program), "");
+  const RobotProgram again =
+      rapid_program("MoveL q,v1,fine,gun;\nMoveL p,v1,fine,gun;\nMoveL r,v1,fine,gun;\nMoveL p,v1,fine,gun;\n");
+  EXPECT_EQ(before(again, "p"), "");
+  EXPECT_EQ(before(again, "r"), "p");
 }
 
 TEST(UsesOfTargets, AnUnknownToolContradictsNone) {
@@ -433,6 +455,18 @@ TEST(FanucRules, PositionsThatAreRefused) {
   for (const char* wrong : {"X = 1 deg, Y = 2 mm, Z = 3 mm, W = 4 deg, P = 5 deg, R = 6 deg",
                             "X = 1 mm, Y = 2 mm, Z = 3 mm, W = 4 deg, P = 5 deg, R = 6 mm"})
     EXPECT_EQ(told(fanuc_position(1, usual, wrong)), "5 P[1]: a component is missing or no number\n");
+}
+
+// Of a position that one move takes as a difference nobody knows what the other means; zinc is no option.
+TEST(FanucRules, IncrementalMoves) {
+  const std::string position = fanuc_position(1, "N U T, 0, 0, 0", fanuc_values);
+  const RobotProgram program =
+      fanuc_program("   1:L P[1] 100mm/sec FINE ;\n   2:L P[1] 100mm/sec FINE INC ;\n", position);
+  EXPECT_TRUE(program.targets.empty());
+  EXPECT_EQ(remarks(program), "4 L P[1] 100mm/sec FINE INC: a relative move\n6 P[1]: no move of this file uses it\n");
+  const RobotProgram other = fanuc_program("   1:L P[1] 100mm/sec FINE TA .1sec,DO[3:zinc]=ON ;\n", position);
+  EXPECT_EQ(other.targets.size(), 1u);
+  EXPECT_EQ(remarks(other), "");
 }
 
 TEST(FanucRules, OrderOfMoves) {

@@ -429,6 +429,7 @@ TEST(ReportSections, PosesInSpace) {
                     side = between(flat, "aria-label=\"poses from the side\"", "</svg>");
   EXPECT_TRUE(has(above, "M930 285h0") && has(above, "M70 715h0")) << above;
   EXPECT_TRUE(has(side, "M715 500h0") && has(side, "M285 500h0")) << side;
+  EXPECT_FALSE(has(side, "M930"));  // x, which reaches further, is not seen
   EXPECT_TRUE(has(side, "z up, y to the right"));
   EXPECT_TRUE(has(above, "d=\"M20 1000h215\"") && has(above, ">100 mm<")) << above;
   // the largest error has the last colour, an error of 1 mm the first

@@ -134,6 +134,16 @@ TEST_F(Columns, OffsetsHaveSigns) {
             "c.csv, line 2, column radius_mm: a radius must be positive");
 }
 
+// A ball's radius is a length even though all its touches have the same; of faces and sockets differences are.
+TEST(Lengths, OfEachKindOfContact) {
+  const MatrixX joints = MatrixX::Zero(4, 1);
+  EXPECT_TRUE(Contact("b", ContactKind::ball, joints, VectorX::Constant(4, 0.01)).has_length());
+  for (const ContactKind kind : {ContactKind::plane, ContactKind::socket}) {
+    EXPECT_FALSE(Contact("c", kind, joints, VectorX::Constant(4, 0.01)).has_length());
+    EXPECT_TRUE(Contact("c", kind, joints, VectorX::LinSpaced(4, 0, 0.01)).has_length());
+  }
+}
+
 TEST_F(Columns, ALongHeaderIsCutOff) {
   EXPECT_EQ(refused([&] { (void)read_joints<1>(file("a,b,c,d,e,f,g,h,i,j,k,l\n1,1,1,1,1,1,1,1,1,1,1,1\n")); }),
             "c.csv: no column q1_rad or q1_deg in the header (a, b, c, d, e, f, g, h, i, j, k, l)");

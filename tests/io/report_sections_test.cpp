@@ -348,6 +348,19 @@ TEST(ReportSections, FunctionsOfAJoint) {
   EXPECT_EQ(envelope[0], envelope[2]);
 }
 
+// 360 values in 240 columns of one and two by turns: drawn at the middles of columns, which are equally far apart.
+TEST(ReportSections, ColumnsOfAFunctionStandAtTheirMiddles) {
+  ReportInput input = input_of();
+  JointReport joint;
+  for (int k = 0; k < 360; ++k) joint.angle.push_back(0.01 * k);
+  joint.transmission = VectorX::LinSpaced(360, 0, 1e-3);
+  joint.transmission_std = VectorX::Constant(360, 1e-4);
+  input.joints = {joint};
+  const std::vector<double> band = numbers_of(between(detail::joints_section(input), "class=\"band c1\" d=\"", "\""));
+  ASSERT_EQ(band.size(), 960u);
+  for (std::size_t c = 0; c < 240; ++c) EXPECT_NEAR(band[2 * c], 62 + 564 * static_cast<double>(c) / 239, 0.051);
+}
+
 TEST(ReportSections, LinesOfAJoint) {
   ReportInput input = input_of();
   JointReport joint = joint_of({0, 1, 0}, {1, 0, 0}, 0.5e-3);
@@ -525,6 +538,7 @@ TEST(SvgCharts, AxesHoldEverything) {
   EXPECT_NEAR(found[0], 344, 0.051);
   EXPECT_NEAR(found[1], 115, 0.051);
   for (const char* tick : {">5<", ">10<", ">20<"}) EXPECT_TRUE(has(detail::chart_svg(chart), tick));
+  EXPECT_FALSE(has(detail::chart_svg(chart), ">1<"));  // x from 1.5 to 6
   // labels right of the middle end at their point
   chart = {.title = "t", .height = 250};
   chart.series = {{.x = {0, 564}, .y = {0, 1}}};

@@ -108,6 +108,29 @@ TEST(CmaEsEnds, WhereItDiverges) {
   EXPECT_TRUE(diverges(2e7));
 }
 
+// C takes its path in unless that of sigma is longer than 1.4 + 2 / (n + 1) times expected, by what it has had time to
+// grow to; all points at the mean, so that nothing else changes C.
+TEST(CmaEsSteps, APathThatIsTooLongIsLeftOut) {
+  const Index n = 4, lambda = 9;
+  const CmaEsConstants c(n, lambda);
+  std::vector<Index> order;
+  for (Index k = 0; k < lambda; ++k) order.push_back(k);
+  for (const int updates : {0, 7})
+    for (const double share : {0.99, 1.01}) {
+      CmaEs::State s;
+      s.covariance = s.basis = MatrixX::Identity(n, n);
+      s.scales = VectorX::Ones(n);
+      s.mean = s.path_c = s.path_sigma = VectorX::Zero(n);
+      s.sigma = 1;
+      s.updates = s.decomposed = updates;
+      const double grown = std::sqrt(1 - std::pow(1 - c.c_sigma, 2.0 * (updates + 1)));
+      s.path_sigma(1) = share * (1.4 + 2.0 / 5) * c.expected_norm * grown / (1 - c.c_sigma);
+      CmaEs::update(s, MatrixX::Zero(n, lambda), order);
+      const double made_up = share < 1 ? 0 : c.c_1 * c.c_c * (2 - c.c_c);
+      EXPECT_NEAR(s.covariance(0, 0), 1 - c.c_1 - c.c_mu * c.weights.sum() + made_up, 1e-12) << updates << ' ' << share;
+    }
+}
+
 // In many dimensions C changes little in a step, and is decomposed after 1 / (10 n (c_1 + c_mu)) of them.
 TEST(CmaEsSteps, DecomposeNowAndThen) {
   const Index n = 200;

@@ -16,6 +16,8 @@ TEST(AuditJson, HasEveryFinding) {
   audit.registered.n = 50;
   audit.registered.median = 0.002;
   audit.registered.max = 0.01;
+  audit.registered.rms = 0.003;
+  audit.registered.p95 = 0.008;
   const nlohmann::ordered_json json = to_json(audit);
   ASSERT_EQ(json["findings"].size(), 2u);
   EXPECT_EQ(json["findings"][0]["kind"], "joint_sign");
@@ -28,6 +30,8 @@ TEST(AuditJson, HasEveryFinding) {
   EXPECT_EQ(json["registered"]["rows"], 50);
   EXPECT_DOUBLE_EQ(json["registered"]["median_mm"], 2);
   EXPECT_DOUBLE_EQ(json["registered"]["max_mm"], 10);
+  EXPECT_DOUBLE_EQ(json["registered"]["rms_mm"], 3);
+  EXPECT_DOUBLE_EQ(json["registered"]["p95_mm"], 8);
 }
 
 TEST(AuditJson, IsWellFormedWithoutFindings) {

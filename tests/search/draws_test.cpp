@@ -12,6 +12,7 @@
 #include "vernier/core/argsort.hpp"
 #include "vernier/search/bounds.hpp"
 #include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/l_shade.hpp"
 #include "vernier/search/minimize.hpp"
 #include "vernier/search/parent_selection.hpp"
@@ -200,6 +201,20 @@ TEST(LShadeDraws, TrialsByHand) {
     }
   }
   EXPECT_GT(std::min({archived, repaired, capped, none}), 3);
+}
+
+// A trial that is as good as its target takes its place: a plateau is crossed.
+TEST(DifferentialEvolutionDraws, EqualTrialsAreTaken) {
+  const auto constant = [](const MatrixX& population, VectorX& fitness) { fitness = VectorX::Ones(population.cols()); };
+  const Box box = Box::cube(2, -1, 1);
+  const DifferentialEvolution de{.individuals = 8};
+  DifferentialEvolution::State s = de.start(box, 1, constant);
+  MatrixX asked;
+  de.step(s, box, [&](const MatrixX& trials, VectorX& fitness) {
+    asked = trials;
+    constant(trials, fitness);
+  });
+  EXPECT_EQ(s.positions, asked);
 }
 
 // In proportion to how much better they are than the worst finite one; who is not finite is no parent.

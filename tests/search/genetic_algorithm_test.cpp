@@ -189,7 +189,7 @@ TEST(GeneticAlgorithm, RouletteTurnsInProportion) {
 }
 
 // Every bit of a pair comes from one parent, its opposite from the other, half of them each way and one as free as the
-// other.
+// other, also from those of another variable.
 TEST(GeneticAlgorithm, UniformCrossoverMixesEveryBit) {
   const GeneticAlgorithm ga{.individuals = 100,
                             .generations = 1,
@@ -200,6 +200,7 @@ TEST(GeneticAlgorithm, UniformCrossoverMixesEveryBit) {
                             .crossover = BitCrossover::uniform};
   std::array<int, 10> ones{};
   int pairs = 0, equal_neighbours = 0;
+  std::array<int, 10> equal_variables{};
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     GeneticAlgorithm::State s = uniform_state(ga, 2, 0, seed);
     s.codes.rightCols(50).setConstant(0b1111111111);
@@ -210,12 +211,15 @@ TEST(GeneticAlgorithm, UniformCrossoverMixesEveryBit) {
       ASSERT_EQ(a ^ b, 0b1111111111u);
       ++pairs;
       for (unsigned bit = 0; bit < 10; ++bit) ones[bit] += (a >> bit) & 1u;
+      const unsigned c = s.codes(1, k);
+      for (unsigned bit = 0; bit < 10; ++bit) equal_variables[bit] += ((a >> bit) & 1u) == ((c >> bit) & 1u);
       for (unsigned bit = 0; bit < 9; ++bit) equal_neighbours += ((a >> bit) & 1u) == ((a >> (bit + 1)) & 1u);
     }
   }
   ASSERT_GT(pairs, 2000);
   for (const int count : ones) EXPECT_NEAR(count, pairs / 2.0, 4 * std::sqrt(pairs / 4.0));
   EXPECT_NEAR(equal_neighbours, 9 * pairs / 2.0, 4 * std::sqrt(9 * pairs / 4.0));
+  for (const int count : equal_variables) EXPECT_NEAR(count, pairs / 2.0, 4 * std::sqrt(pairs / 4.0));
 }
 
 // Parents 0000000000 and 1111111111 in equal parts: a pair of unlike parents, every second one, exchanges bits with the

@@ -144,6 +144,21 @@ TEST(Lengths, OfEachKindOfContact) {
   }
 }
 
+TEST(Lengths, FewestTouches) {
+  const auto told = [](ContactKind kind, Index touches, const VectorX& known) {
+    return complaint([&] { (void)Contact("c", kind, MatrixX::Zero(touches, 1), known); });
+  };
+  for (const auto& [kind, fewest] :
+       {std::pair{ContactKind::plane, 4}, {ContactKind::ball, 4}, {ContactKind::socket, 2}}) {
+    EXPECT_EQ(told(kind, fewest, VectorX::Constant(fewest, 0.01)), "");
+    EXPECT_NE(told(kind, fewest - 1, VectorX::Constant(fewest - 1, 0.01)).find(message("at least ", fewest, " are")),
+              std::string::npos);
+  }
+  EXPECT_NE(told(ContactKind::ball, 4, VectorX::Zero(4)).find("touch 0 has a radius of 0 m, must be positive"),
+            std::string::npos);
+  EXPECT_EQ(told(ContactKind::plane, 4, VectorX::Zero(4)), "");
+}
+
 TEST_F(Columns, ALongHeaderIsCutOff) {
   EXPECT_EQ(refused([&] { (void)read_joints<1>(file("a,b,c,d,e,f,g,h,i,j,k,l\n1,1,1,1,1,1,1,1,1,1,1,1\n")); }),
             "c.csv: no column q1_rad or q1_deg in the header (a, b, c, d, e, f, g, h, i, j, k, l)");

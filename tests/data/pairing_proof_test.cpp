@@ -124,6 +124,19 @@ TEST(PairingProof, CountsPosesThatCannotBeToldApart) {
   EXPECT_EQ(found.proof->indistinct, 10);
 }
 
+// Links that are three thousandths too long, or a tracker's scale: the proof holds, and says so.
+TEST(PairingProof, TellsTheScale) {
+  Rng rng(38);
+  Measured session(40, 1, 0.1, rng);
+  for (const double scale : {1.003, 1003.0}) {
+    Measured scaled = session;
+    for (Index i = 0; i < 40; ++i) set_point(scaled.points, i, scale * point(session.points, i));
+    const Pairing found = pair_by_order(scaled.flanges, scaled.points);
+    EXPECT_EQ(found.proof->status, scale < 2 ? PairingStatus::proven : PairingStatus::wrong_unit);
+    EXPECT_NEAR(found.proof->scale / scale, 1, 5e-4);
+  }
+}
+
 TEST(PairingProof, TheFirstPoseMayBeSwapped) {
   Rng rng(36);
   Measured session(30, 1, 0.1, rng);

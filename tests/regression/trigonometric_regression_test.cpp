@@ -304,6 +304,26 @@ TEST(TrigonometricRegression, KnowsAnArmExactly) {
   EXPECT_NEAR(std::sqrt(believed), left, 0.3 * left);
 }
 
+// Samples at two angles determine a mean and a difference, whatever the number of features: two degrees of freedom are
+// used, and the noise is what is left within both groups.
+TEST(TrigonometricRegression, NoiseCountsWhatWasUsed) {
+  VectorX x(8), y(8);
+  double within = 0;
+  for (Index i = 0; i < 8; ++i) {
+    const double off = 0.01 * static_cast<double>(i / 2) * static_cast<double>(i / 2);  // 0 1 4 9: a mean of 3.5
+    x(i) = i % 2 == 0 ? 0.3 : 1.1;
+    y(i) = (i % 2 == 0 ? 1 : -2) + off;
+    within += (off - 0.035) * (off - 0.035);
+  }
+  const Eigen::Matrix<double, 1, 1> first(0.3), second(1.1);
+  for (const double ridge : {1e-15, 1e-9}) {
+    const auto found = TrigonometricRegression{.ridge = ridge}.fit(x, y);
+    EXPECT_NEAR(found.predict(first)(0), 1.035, 1e-6);
+    EXPECT_NEAR(found.predict(second)(0), -1.965, 1e-6);
+    EXPECT_NEAR(found.noise()(0), std::sqrt(within / 6), 1e-6) << ridge;
+  }
+}
+
 TEST(TrigonometricRegression, SmallestProblems) {
   const Inputs one = inputs(1, 20);
   const Targets y = targets(one);

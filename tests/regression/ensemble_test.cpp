@@ -141,6 +141,16 @@ TEST(Ensemble, DrawsRowsAndSeedsForEachMember) {
 }
 
 // What one random layer gets wrong another gets wrong otherwise.
+// The nearest whole number of rows, and at least one.
+TEST(DrawRows, Counts) {
+  for (const bool replacement : {true, false}) {
+    EXPECT_EQ(detail::draw_rows(10, 0.26, replacement, 1).size(), 3u);
+    EXPECT_EQ(detail::draw_rows(10, 0.24, replacement, 1).size(), 2u);
+    EXPECT_EQ(detail::draw_rows(10, 0.01, replacement, 1).size(), 1u);
+    EXPECT_EQ(detail::draw_rows(10, 1, replacement, 1).size(), 10u);
+  }
+}
+
 TEST(Ensemble, BeatsItsMembers) {
   const Inputs x = inputs(150, 6), fresh = inputs(200, 7);
   const Targets expected = targets(fresh);

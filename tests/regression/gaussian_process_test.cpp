@@ -386,6 +386,21 @@ TEST(GaussianProcess, ErrorsAreAsLargeAsItSays) {
   EXPECT_LT((predictor.predict(Vector3(1e3, 1e3, 1e3)) - predictor.mean()).norm(), 1e-15);
 }
 
+// A hundred-millionth of an offset is a signal, and as certain as the same signal alone.
+TEST(GaussianProcess, ASmallSignalOnALargeOffset) {
+  const Inputs x = inputs(30, 23);
+  const Targets y = targets(x);
+  Targets small = y;
+  for (double& value : elements(small)) value = 1 + 1e-5 * value;
+  const GaussianProcess recipe{.length_scales = Vector3(1, 2, 3), .noise_ratio = 1e-2};
+  const auto alone = recipe.fit(x, y), offset = recipe.fit(x, small);
+  const Vector3 at(0.1, 0.2, 0.3);
+  for (int o = 0; o < 2; ++o) {
+    EXPECT_NEAR(offset.standard_deviation(at)(o) / alone.standard_deviation(at)(o), 1e-5, 1e-10);
+    EXPECT_NEAR((offset.predict(at)(o) - 1) / alone.predict(at)(o), 1e-5, 1e-10);
+  }
+}
+
 TEST(GaussianProcess, ConstantOutputsAndSingleSamples) {
   const Inputs x = inputs(30, 12);
   Targets y = targets(x);

@@ -358,6 +358,25 @@ TEST(VarProElm, TheBestOfSeveralStartsIsKept) {
   EXPECT_EQ(value(recipe, x, y, recipe.fit(x, y, {.seed = 6}).theta()), least);
 }
 
+// The first start is what an ELM of the same seed draws, the observer is told the best of all starts so far.
+TEST(VarProElm, TheObserverIsToldTheBestOfAllStarts) {
+  const Inputs x = inputs(100, 41);
+  const Targets y = targets(x);
+  VarProElm recipe{.hidden_nodes = 3, .iterations = 6, .tolerance = 0, .starts = 5};
+  std::vector<double> seen;
+  const auto observer = [&](const Progress& progress) {
+    EXPECT_EQ(progress.generation, static_cast<Index>(seen.size()));
+    seen.push_back(progress.best);
+  };
+  const auto found = recipe.fit(x, y, {.seed = 2, .observer = observer});
+  for (std::size_t k = 1; k < seen.size(); ++k) EXPECT_LE(seen[k], seen[k - 1]);
+  EXPECT_NEAR(seen.back(), value(recipe, x, y, found.theta()), 1e-9 * seen.back());
+  EXPECT_NEAR(seen.front(), value(recipe, x, y, recipe.layer().draw(3, 2)), 1e-9 * seen.front());
+  recipe.iterations = 0;
+  recipe.starts = 1;
+  EXPECT_EQ(recipe.fit(x, y, {.seed = 2}).theta(), recipe.layer().draw(3, 2));
+}
+
 TEST(VarProElm, AnObserverStopsIt) {
   const Inputs x = inputs(100, 22);
   const Targets y = targets(x);

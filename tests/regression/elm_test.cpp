@@ -77,10 +77,11 @@ TEST(Scaling, ConstantColumnIsShiftedAndNotStretched) {
   }
 }
 
-// A millimetre at ten metres is signal, not rounding (which is 4e-12 of it).
+// A millimetre at ten metres is signal, not rounding (which is 4e-12 of it), and so is a nanometre.
 TEST(Scaling, SmallSignalOnALargeOffset) {
-  const RealMatrix x(2, 1, {10, 10.001});
+  const RealMatrix x(2, 1, {10, 10.001}), tiny(2, 1, {10, 10.000000001});
   EXPECT_NEAR(ColumnScaling::fit(x, Scaling::min_max).apply(x)(1, 0), 1, 1e-11);
+  EXPECT_NEAR(ColumnScaling::fit(tiny, Scaling::standard).apply(tiny)(1, 0), 1, 1e-5);
 }
 
 TEST(HiddenLayer, EqualsNaiveLoops) {

@@ -245,6 +245,21 @@ TEST(LeaveOneOutError, FromProductsIsThatOfSingularValues) {
         }
 }
 
+// Of noise the mean alone is often best, also by products.
+TEST(LeaveOneOutError, OfTheMeanAlone) {
+  int mean_wins = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Layer of(40, 6, 1, Activation::tanh);
+    of.targets = random_matrix(40, 3, 300 + seed, 2);
+    const LeaveOneOutChoice expected =
+        choose_lambda(RidgePath(hidden_outputs(of.layer, of.features, of.theta), of.targets), 40);
+    mean_wins += !std::isfinite(expected.lambda);
+    EXPECT_NEAR(detail::LeaveOneOutError(of.layer, of.features, of.targets)(of.theta), expected.mean_squared_error,
+                1e-8 * expected.mean_squared_error);
+  }
+  EXPECT_GE(mean_wins, 3);
+}
+
 TEST(LeaveOneOutError, SaysWhereProductsDoNotTell) {
   const auto says = [](const Layer& at) {
     return detail::LeaveOneOutError(at.layer, at.features, at.targets)(at.theta);

@@ -199,6 +199,12 @@ TEST(UsesOfTargets, AnUnknownToolContradictsNone) {
   EXPECT_EQ(named(program, "q").tool, "");
 }
 
+TEST(UsesOfTargets, DifferentWorkObjectsContradictEachOther) {
+  const RobotProgram program = rapid_program("MoveL p,v1,fine,gun\\WObj:=a;\nMoveL p,v1,fine,gun\\WObj:=b;\nn:=n+1;\n");
+  EXPECT_EQ(program.targets.size(), 3u);
+  EXPECT_EQ(remarks(program), "2 p: moves use it with different tools or work objects\n");  // n is none of its targets
+}
+
 TEST(UsesOfTargets, JointValuesHaveNoTool) {
   const RobotProgram program = rapid_program("MoveAbsJ home,v1,fine,gun;\nMoveAbsJ home,v1,fine,tool0;\n",
                                              "CONST jointtarget home:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n");
@@ -333,7 +339,7 @@ TEST(KrlRules, BitsAndNumbers) {
   EXPECT_EQ(configuration("S 'H2',T 'H32'"), (std::vector<int>{2, 50}));
   EXPECT_EQ(configuration("S 'b110',T 'hFF'"), (std::vector<int>{6, 255}));
   EXPECT_EQ(configuration("S 2"), std::vector<int>{});  // one of them says nothing
-  for (const char* wrong : {"S 2.5,T 3", "S 2000,T 3", "S -1,T 3", "S x,T 3", "E1 x", "E1 5"})
+  for (const char* wrong : {"S 2.5,T 3", "S 2000,T 3", "S -1,T 3", "S x,T 3", "E1 x", "E1 5", "E6 -5"})
     EXPECT_EQ(configuration(wrong), std::vector<int>{-1}) << wrong;
   EXPECT_EQ(remarks(krl_program("PTP {X 1,Y 2,Z 3,A 4,B 5,C 6,S 2.5,T 3}\n")),
             "2 {X 1,Y 2,Z 3,A 4,B 5,C 6,S 2.5,T 3}: S or T is no number of bits\n");
@@ -467,6 +473,12 @@ TEST(FanucRules, IncrementalMoves) {
   const RobotProgram other = fanuc_program("   1:L P[1] 100mm/sec FINE TA .1sec,DO[3:zinc]=ON ;\n", position);
   EXPECT_EQ(other.targets.size(), 1u);
   EXPECT_EQ(remarks(other), "");
+}
+
+TEST(FanucRules, AllSectionsAreThere) {
+  for (const char* text : {"/MN\n/POS\n/END\n", "/PROG A\n/POS\n/END\n", "/PROG A\n/POS\n/MN\n/END\n"})
+    EXPECT_NE(complaint([&] { (void)parse_program(fanuc_tp, text, "a.ls"); }), "") << text;
+  EXPECT_EQ(complaint([] { (void)parse_program(fanuc_tp, "/PROG A\n/MN\n/POS\n/END\n", "a.ls"); }), "");
 }
 
 TEST(FanucRules, OrderOfMoves) {

@@ -469,6 +469,7 @@ TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   report.left_out_errors = list({1e-3, 1.5382e-3, 1.6e-3, 3.9e-3, 4.1e-3, 1.2e-3, 0});  // a median of 1.5382 sigma
   report.left_out_rows = {0, 1, 2, 3, 4, 5, 6};
   report.train_poses = 7;
+  report.converged = false;
   const ReportInput named = report_input(report, "arm", {"r0", "r1", "r2", "r3", "r4"}),
                     numbered = report_input(report, "arm");
   EXPECT_EQ(named.left_out, 7);
@@ -477,6 +478,10 @@ TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   EXPECT_EQ(named.suspects[0].error, 4.1e-3);
   EXPECT_NEAR(named.suspects[0].normalised, 4.1, 1e-9);
   EXPECT_EQ(numbered.suspects[0].row, "4 of those learned from");
+  EXPECT_EQ(named.after, "geometry");
+  EXPECT_EQ(named.sentences.size(), report.verdict().size() + report.remarks().size());
+  ASSERT_EQ(report.remarks().size(), 1u);
+  EXPECT_EQ(named.sentences.back(), report.remarks().back());
   EXPECT_TRUE(named.held_out);
 }
 
@@ -494,6 +499,9 @@ TEST(ReportInputs, OfACheckHaveATableOfJoints) {
   report.options.level = 0.02;
   const ReportInput input = report_input(report, "arm");
   EXPECT_FALSE(input.held_out);
+  EXPECT_EQ(input.before, "as_fitted");
+  EXPECT_EQ(input.after, "as_fitted");
+  EXPECT_EQ(input.rule, "");
   EXPECT_EQ(input.passed, std::optional<bool>(true));
   EXPECT_EQ(input.ellipsoid_coverage, std::optional<double>(0.5));
   ASSERT_EQ(input.tables.size(), 1u);
@@ -504,6 +512,17 @@ TEST(ReportInputs, OfACheckHaveATableOfJoints) {
   EXPECT_EQ(rows[2].back(), "as calibrated");
   EXPECT_EQ(rows[3], (std::vector<std::string>{"4", "", "", "mrad", "", "0.5", "not determined"}));
   EXPECT_TRUE(has(input.tables[0].note, "at the level of 2 % for all tests together"));
+  EXPECT_EQ(input.headline, report.verdict());
+  EXPECT_EQ(input.advice, report.advice());
+  report.registration.emplace();
+  report.registration->joint_types = report.joint_types;
+  report.registration->motion.offsets = VectorX::Zero(4);
+  report.registration->change_std = VectorX::Zero(16);
+  const ReportInput registered = report_input(report, "arm");
+  EXPECT_EQ(registered.before, "as_fitted");
+  EXPECT_EQ(registered.after, "registered");
+  EXPECT_EQ(registered.rule, "the frames registered from the same poses");
+  EXPECT_EQ(registered.tables.size(), 2u);
 }
 
 // ---- charts and tables ----
@@ -546,6 +565,8 @@ TEST(SvgCharts, AxesHoldEverything) {
   const std::string svg = detail::chart_svg(chart);
   EXPECT_TRUE(has(svg, "<text class=\"tick \" x=\"166\" y=\"112\">left</text>")) << svg;
   EXPECT_TRUE(has(svg, "<text class=\"tick end\" x=\"558\" y=\"112\">right</text>")) << svg;
+  EXPECT_TRUE(has(svg, "M162 206V24")) << svg;  // a line of the grid, and its number below
+  EXPECT_TRUE(has(svg, "<text class=\"tick mid\" x=\"162\" y=\"222\">100</text>")) << svg;
 }
 
 TEST(SvgCharts, TicksOverManyDecades) {

@@ -214,6 +214,20 @@ TEST(VarProObjective, WeightsAreRepeatedSamples) {
 }
 
 // Equal nodes and hardly any ridge: the products cannot be factorised, the samples take over.
+// By products or from the samples, weights of any sum count alike.
+TEST(VarProObjective, ProductsCountWeightsAsSamplesDo) {
+  const Inputs x = inputs(60, 42);
+  const Targets y = targets(x);
+  const VectorX q = 0.1 * vernier_test::random_weights(60);
+  const VarProElm recipe{.hidden_nodes = 5, .ridge = 1e-2};
+  const VectorX theta = recipe.layer().draw(3, 3);
+  const detail::CommonScaling scaling(y, &q);
+  const MatrixX mapped = recipe.layer().map(x), features = recipe.layer().scaling(mapped).apply(mapped);
+  detail::VariableProjection projection(recipe.layer(), features, scaling.apply(y), recipe.ridge, &q);
+  const double expected = projection.evaluate(theta);
+  EXPECT_NEAR(value(recipe, x, y, theta, &q), expected, 1e-9 * expected);
+}
+
 TEST(VarProObjective, EqualNodes) {
   const Inputs x = inputs(60, 7);
   const Targets y = targets(x);

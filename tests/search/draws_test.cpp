@@ -16,6 +16,7 @@
 #include "vernier/search/l_shade.hpp"
 #include "vernier/search/minimize.hpp"
 #include "vernier/search/parent_selection.hpp"
+#include "vernier/search/pso.hpp"
 
 namespace vernier::draws_test {
 namespace {
@@ -215,6 +216,26 @@ TEST(DifferentialEvolutionDraws, EqualTrialsAreTaken) {
     constant(trials, fitness);
   });
   EXPECT_EQ(s.positions, asked);
+}
+
+// A particle keeps its best place until a better one is found.
+TEST(SwarmDraws, APlaceAsGoodIsNoBetter) {
+  const auto constant = [](const MatrixX& population, VectorX& fitness) { fitness = VectorX::Ones(population.cols()); };
+  const Box box = Box::cube(2, -1, 1);
+  const Pso pso{.particles = 6};
+  Pso::State s = pso.start(box, 1, constant);
+  const MatrixX first = s.positions;
+  pso.step(s, box, constant);
+  EXPECT_EQ(s.best_positions, first);
+  EXPECT_NE(s.positions, first);
+}
+
+// A value that is exactly what suffices suffices.
+TEST(Targets, AreReachedByEquality) {
+  const auto two = [](const VectorX&) { return 2.0; };
+  const SearchResult found = minimize(Pso{.particles = 4}, two, Box::cube(2, -1, 1), {.target = 2}, 1);
+  EXPECT_EQ(found.status, SearchStatus::target_reached);
+  EXPECT_EQ(found.generations, 0);
 }
 
 // In proportion to how much better they are than the worst finite one; who is not finite is no parent.

@@ -470,6 +470,8 @@ TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   report.left_out_rows = {0, 1, 2, 3, 4, 5, 6};
   report.train_poses = 7;
   report.converged = false;
+  report.stages.push_back({"session", "session", VectorX::Ones(4), {}});
+  report.normalised_errors = list({0.5, 1, 1.5, 2});
   const ReportInput named = report_input(report, "arm", {"r0", "r1", "r2", "r3", "r4"}),
                     numbered = report_input(report, "arm");
   EXPECT_EQ(named.left_out, 7);
@@ -479,6 +481,7 @@ TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   EXPECT_NEAR(named.suspects[0].normalised, 4.1, 1e-9);
   EXPECT_EQ(numbered.suspects[0].row, "4 of those learned from");
   EXPECT_EQ(named.after, "geometry");
+  EXPECT_EQ(named.poses.normalised, report.normalised_errors);
   EXPECT_EQ(named.sentences.size(), report.verdict().size() + report.remarks().size());
   ASSERT_EQ(report.remarks().size(), 1u);
   EXPECT_EQ(named.sentences.back(), report.remarks().back());

@@ -96,6 +96,27 @@ TEST_F(ControllerJointsOfIrb120, WithoutConfigurationTheNearest) {
   EXPECT_FALSE(far.reason.empty());
 }
 
+// Near the joint values for which makers state no flags there are none; turned over, the wrist's is set.
+TEST_F(ControllerJointsOfIrb120, FlagsOfKukaAndFanuc) {
+  JointLimits<6> limits;
+  limits.lower.setConstant(-350 * degree);
+  limits.upper.setConstant(350 * degree);
+  const JointVector<6> unknown = JointVector<6>::Constant(std::nan(""));
+  const auto apart = [&](ProgramLanguage language, const std::vector<int>& configuration, const JointVector<6>& q) {
+    const ControllerArm arm{.negative_noflip = false};
+    const ControllerJoints one =
+        controller_joints(roots_, robot_.chain, limits, language, arm, robot_.chain.pose(q), configuration, unknown);
+    return one.joints ? (*one.joints - q).norm() : 1e9;
+  };
+  EXPECT_LT(apart(krl, {2, 0b000010}, degrees(10, -80, 80, 5, 20, 10)), 1e-9);
+  EXPECT_LT(apart(krl, {6, 0b111010}, degrees(10, -80, 80, -175, -20, -170)), 1e-9);
+  EXPECT_GT(apart(krl, {3, 0b000010}, degrees(10, -80, 80, 5, 20, 10)), 0.1);  // from behind
+  EXPECT_GT(apart(krl, {0, 0b000010}, degrees(10, -80, 80, 5, 20, 10)), 0.1);  // with the other elbow
+  EXPECT_LT(apart(fanuc_tp, {0, 1, 1, 0, 0, 0}, degrees(5, 3, 2, 5, 20, 10)), 1e-9);
+  EXPECT_LT(apart(fanuc_tp, {1, 1, 1, 0, 0, 0}, degrees(5, 3, 2, -175, -20, -170)), 1e-9);
+  EXPECT_GT(apart(fanuc_tp, {1, 1, 1, 0, 0, 0}, degrees(5, 3, 2, 5, 20, 10)), 0.1);
+}
+
 // What makers say of their arms: ABB's cfx 0 is in front of axis 1 and of the lower arm with axis 5 positive; KUKA's
 // home position (0, -90, 90, 0, 0, 0) has S 2, and bit 2 where A5 is negative.
 TEST(StatedBranch, BitsOfTheLanguages) {

@@ -59,6 +59,12 @@ TEST(ReferenceJointsWhiteBox, AreTheMakers) {
   EXPECT_EQ(detail::binding_bits(urscript), 0);
 }
 
+// Bits in which signs differ.
+TEST(BranchWhiteBox, IsRelativeToTheReference) {
+  EXPECT_EQ(detail::branch_from({-1, 1, -1}, {-1, -1, 1}), 0b110);
+  EXPECT_EQ(detail::branch_from({-1, 1, -1}, {-1, 1, -1}), 0);
+}
+
 /// In degrees; limits of 400 unless stated.
 double turned(ProgramLanguage language, const std::vector<int>& configuration, int joint, double angle,
               double near = unknown, double lower = -400, double upper = 400) {

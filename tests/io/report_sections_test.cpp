@@ -209,6 +209,23 @@ TEST(ReportSections, ErrorsOverTime) {
   EXPECT_EQ(detail::drift_section(few), "");
 }
 
+// Measured in the opposite order, in three groups of 11, 12 and 12: the first has the errors from 24 to 34 mm.
+TEST(ReportSections, GroupsAreThoseOfTime) {
+  ReportInput input = input_of(35);
+  input.times = VectorX::LinSpaced(35, 34, 0);
+  const std::string text = detail::drift_section(input);
+  const std::vector<double> median = numbers_of(between(text, "class=\"line c1\" d=\"", "\"")),
+                            p95 = numbers_of(between(text, "class=\"line c2\" d=\"", "\""));
+  ASSERT_EQ(median.size(), 6u);
+  const auto at = [](double value) { return 206 - 182 * (value - 4.1) / 30.8; };
+  EXPECT_NEAR(median[1], at(29), 0.051);
+  EXPECT_NEAR(median[3], at(17.5), 0.051);
+  EXPECT_NEAR(median[5], at(5.5), 0.051);
+  EXPECT_NEAR(p95[1], at(33.5), 0.051);
+  EXPECT_NEAR(p95[5], at(10.45), 0.051);
+  EXPECT_NEAR(median[2], 62 + 564 * (16.5 - 5) / (28.5 - 5), 0.051);  // at the mean times 5, 16.5 and 28.5
+}
+
 // Two knots from 1000 on, 100 apart: y moves by 4 um, the base turns about z by 300 urad.
 TEST(ReportSections, DriftOfABase) {
   ReportInput input = input_of();
@@ -377,6 +394,25 @@ TEST(ReportSections, LinesOfAJoint) {
             3u);  // three named
 }
 
+// Of orders that hardly matter a stick is left, a thousandth of the highest.
+TEST(ReportSections, SpectraReachThreeDecadesDown) {
+  ReportInput input = input_of();
+  JointReport joint = joint_of({0, 1, 0}, {1, 0, 0}, 0.5e-3);
+  joint.spectrum = {{1, 1e-4, 1e-6, 50}, {2, 1e-9, 1e-6, 50}};
+  input.joints = {joint};
+  const std::string spectrum = between(detail::joints_section(input), "aria-label=\"Spectrum of joint 1\"", "</svg>");
+  for (const char* tick : {">0.1<", ">1<", ">10<", ">100<"}) EXPECT_TRUE(has(spectrum, tick)) << tick;
+  EXPECT_FALSE(has(spectrum, ">0.01<"));
+}
+
+TEST(ReportSections, WhatIsEmptyIsNotLinked) {
+  const std::string page = report_html(input_of());
+  for (const char* id : {"verdict", "errors", "provenance"})
+    EXPECT_TRUE(has(page, message("<a href=\"#", id, "\">"))) << id;
+  for (const char* id : {"audit", "poses", "where", "parameters", "joints", "suspects", "drift", "next"})
+    EXPECT_FALSE(has(page, message("<a href=\"#", id, "\">"))) << id;
+}
+
 TEST(ReportSections, Suspects) {
   ReportInput input = input_of();
   input.poses.normalised = VectorX::Constant(21, 1);
@@ -442,6 +478,7 @@ TEST(ReportSections, PosesInSpace) {
                     side = between(flat, "aria-label=\"poses from the side\"", "</svg>");
   EXPECT_TRUE(has(above, "M930 285h0") && has(above, "M70 715h0")) << above;
   EXPECT_TRUE(has(side, "M715 500h0") && has(side, "M285 500h0")) << side;
+  EXPECT_TRUE(has(above, "stroke=\"" + std::string(detail::error_colours[7]) + "\" stroke-width=\"26\""));
   EXPECT_FALSE(has(side, "M930"));  // x, which reaches further, is not seen
   EXPECT_TRUE(has(side, "z up, y to the right"));
   EXPECT_TRUE(has(above, "d=\"M20 1000h215\"") && has(above, ">100 mm<")) << above;

@@ -239,6 +239,12 @@ TEST(RapidRules, KindsOfMoves) {
   EXPECT_EQ(remarks(more), "");
 }
 
+TEST(RapidRules, CirclesWithSignalsHaveTwoTargets) {
+  const RobotProgram program = rapid_program("MoveCDO p,q,v1,fine,gun,do1,1;\nMoveL r,v1,fine,gun;\n");
+  EXPECT_EQ(before(program, "q"), "p");
+  EXPECT_EQ(before(program, "r"), "q");
+}
+
 TEST(RapidRules, EachRoutineBeginsAnew) {
   const RobotProgram program = rapid_program(
       "MoveL p,v1,fine,gun;\nENDPROC\nFUNC num f()\nMoveL q,v1,fine,gun;\nENDFUNC\nTRAP t\nMoveL r,v1,fine,gun;\n"
@@ -265,27 +271,31 @@ TEST(RapidRules, WhatIsRefused) {
                                   "CONST robtarget a:=[[1,2,3],[1,0,0,0],[0,0,0,0],rail];\n"
                                   "CONST robtarget b:=[[1,2,3],[0.9,0,0,0],[0,0,0,0],"
                                   "[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+                                  "CONST robtarget d:=[[1,2,3],[1,0,0,0],5,[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
                                   "CONST robtarget c:=[[1,2,3],[1,0,0,0],[0,0,0,1000],"
                                   "[9E9,9E9,9E9,9E9,9E9,9E9]];\n")),
             "7 [[1,2,3],[1,0,0,0],[0,0,0,0],rail]: external axes are in use\n"
             "8 [[1,2,3],[0.9,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]: its orientation is no unit quaternion\n"
-            "9 [[1,2,3],[1,0,0,0],[0,0,0,1000],[9E9,9E9,9E9,9E9,9E9,9E9]]: its configuration is out of range\n");
+            "9 robtarget d:=[[1,2,3],[1,0,0,0],5,[9E9,9E9,9E9,9E9,9E9,9E9]]: no literal of this type\n"
+            "10 [[1,2,3],[1,0,0,0],[0,0,0,1000],[9E9,9E9,9E9,9E9,9E9,9E9]]: its configuration is out of range\n");
 }
 
 // Tools that stand still and work objects that the robot holds, or that move, are no constant frames.
 TEST(RapidRules, FramesThatDoNotMove) {
   const std::string frame = "[[1,2,3],[1,0,0,0]]", load = "[1,[0,0,1],[1,0,0,0],0,0,0]";
-  const RobotProgram program =
-      rapid_program("", "PERS tooldata held:=[TRUE," + frame + "," + load + "];\nPERS tooldata still:=[FALSE," + frame +
-                            "," + load + "];\nPERS wobjdata fixed:=[FALSE,TRUE,\"\"," + frame + "," + frame +
-                            "];\nPERS wobjdata carried:=[TRUE,TRUE,\"\"," + frame + "," + frame +
-                            "];\nPERS wobjdata moved:=[FALSE,FALSE,\"u\"," + frame + "," + frame + "];\n");
+  const RobotProgram program = rapid_program(
+      "", "PERS tooldata held:=[TRUE," + frame + "," + load + "];\nPERS tooldata still:=[FALSE," + frame + "," + load +
+              "];\nPERS wobjdata fixed:=[FALSE,TRUE,\"\"," + frame + "," + frame +
+              "];\nPERS wobjdata carried:=[TRUE,TRUE,\"\"," + frame + "," + frame +
+              "];\nPERS wobjdata bent:=[FALSE,TRUE,\"\"," + frame +
+              ",[[1,2,3],[0.5,0,0,0]]];\nPERS wobjdata moved:=[FALSE,FALSE,\"u\"," + frame + "," + frame + "];\n");
   EXPECT_EQ(program.tools.count("held"), 1u);
   EXPECT_EQ(program.tools.count("still"), 0u);
   ASSERT_EQ(program.workobjects.count("fixed"), 1u);
   EXPECT_LT((program.workobjects.at("fixed").translation() - Vector3(2e-3, 4e-3, 6e-3)).norm(), 1e-15);
   EXPECT_EQ(program.workobjects.count("carried"), 0u);
   EXPECT_EQ(program.workobjects.count("moved"), 0u);
+  EXPECT_EQ(program.workobjects.count("bent"), 0u);  // its quaternion is none
 }
 
 // ---- KRL ----
@@ -321,6 +331,14 @@ TEST(KrlRules, ToolsAndBases) {
   EXPECT_EQ(before(program, "p6"), "p5");
   EXPECT_FALSE(named(program, "p1").joints.allFinite());
   EXPECT_EQ(remarks(program), "");
+}
+
+TEST(KrlRules, FramesAreTheLastOnes) {
+  const RobotProgram program = krl_program(
+      "TOOL_DATA[3]={X 0,Y 0,Z 100,A 0,B 0,C 0}\nTOOL_DATA[3]={X 0,Y 0,Z 200,A 0,B 0,C 0}\n$BASE=$NULLFRAME:f\n"
+      "p={X 1,Y 2,Z 3,A 0,B 0,C 0}\nPTP p\n");
+  EXPECT_NEAR(program.tools.at("3")(2, 3), 0.2, 1e-15);
+  EXPECT_EQ(named(program, "p").workobject, "?");  // computed
 }
 
 TEST(KrlRules, AssignmentsAndWhatNoMoveUses) {
@@ -464,6 +482,9 @@ TEST(FanucRules, PositionsThatAreRefused) {
   for (const char* turns : {"N U T, 1, 0, 0", "N U T, 0, 1, 0"})
     EXPECT_EQ(told(fanuc_position(1, turns, fanuc_values)),
               "5 P[1]: turn numbers whose axes depend on the type of robot\n");
+  EXPECT_EQ(told(fanuc_position(1, "N U T, 0, 0, -100", fanuc_values)), "");
+  EXPECT_EQ(told(fanuc_position(1, "N U T, 0, 0, 101", fanuc_values)),
+            "5 P[1]: its configuration is missing or of another kind\n");
   for (const char* wrong : {"X = 1 deg, Y = 2 mm, Z = 3 mm, W = 4 deg, P = 5 deg, R = 6 deg",
                             "X = 1 mm, Y = 2 mm, Z = 3 mm, W = 4 deg, P = 5 deg, R = 6 mm"})
     EXPECT_EQ(told(fanuc_position(1, usual, wrong)), "5 P[1]: a component is missing or no number\n");

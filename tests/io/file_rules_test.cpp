@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -12,6 +13,7 @@
 #include "temporary_folder.hpp"
 #include "ur_published.hpp"
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/robot_file.hpp"
@@ -71,6 +73,21 @@ TEST_F(FileRules, JointsOfRobots) {
   EXPECT_EQ(robot.drives[1].gear_ratio, 101);
   EXPECT_EQ(robot.drives[1].encoder_periods, 128);
   EXPECT_EQ(robot.drives[0], JointDrive{});
+}
+
+// The first row of a modified chain moves its base, behind the base that the arm stands on.
+TEST_F(FileRules, AModifiedChainStandsOnItsBase) {
+  Json text = Json::parse(robot_text({{"a_mm", 50}, {"theta_deg", 20}}));
+  text["convention"] = "modified";
+  RobotDescription robot = load_robot(file(text.dump()));
+  robot.base = rigid_motion(exp_so3(Vector3(0.4, -0.3, 0.2)), Vector3(1, 2, 3));
+  std::array<DhRow, 3> rows{};
+  std::copy(robot.rows.begin(), robot.rows.end(), rows.begin());
+  const JointVector<3> q(0.1, -0.7, 1.2);
+  MatrixX joints(1, 3);
+  for (Index j = 0; j < 3; ++j) joints(0, j) = q(j);
+  const Isometry3 expected = robot.base * DhChain<3, ModifiedDh>::from_rows(rows).pose(q);
+  EXPECT_LT((robot.geometry().poses(joints).front().matrix() - expected.matrix()).norm(), 1e-13);
 }
 
 TEST_F(FileRules, FactoryCalibrations) {

@@ -60,8 +60,8 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
   IdentificationReport& id = report.identification;
   id.parameters = {{"a2", ParameterKind::length, 0.1, 0.2, 0.3, ParameterState::identified, "", 1e-3},
                    {"theta3", ParameterKind::angle, 0.4, 0.5, 0.6, ParameterState::weak, "", 1e-3}};
-  id.free = {0, 1};
-  id.rank = 1;
+  id.free = {1};
+  id.rank = 3;
   id.condition = 250;
   id.observability = {1, 2, 3, 4, 5};
 
@@ -106,8 +106,8 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
   EXPECT_NEAR(angle.at("nominal").get<double>(), 400, 1e-9);
 
   const Json& known = json.at("identifiability");
-  EXPECT_EQ(known.at("rank"), 1);
-  EXPECT_EQ(known.at("free"), 2);
+  EXPECT_EQ(known.at("rank"), 3);
+  EXPECT_EQ(known.at("free"), 1);
   EXPECT_EQ(known.at("condition"), 250);
   EXPECT_EQ(known.at("weak"), std::vector<std::string>{"theta3"});
   for (int k = 1; k <= 5; ++k) EXPECT_EQ(known.at("observability").at(message('O', k)), k);

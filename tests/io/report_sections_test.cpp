@@ -469,6 +469,8 @@ TEST(ReportSections, PosesInSpace) {
   EXPECT_EQ(json.at("row").at(3), 103);
   EXPECT_EQ(json.at("before").at(3), 23000);
   EXPECT_EQ(json.at("after").at(3), 3000);
+  EXPECT_EQ(json.at("xyz").at(9), 60);
+  EXPECT_EQ(json.at("xyz").at(11), 500);
   EXPECT_EQ(json.at("units"), (std::vector<std::string>{"deg", "mm"}));
   EXPECT_EQ(json.at("joints").at(0), 2865);  // hundredths of degrees and of millimetres
   EXPECT_EQ(json.at("joints").at(1), 12500);
@@ -605,6 +607,7 @@ TEST(SvgCharts, AxesHoldEverything) {
   const std::string svg = detail::chart_svg(chart);
   EXPECT_TRUE(has(svg, "<text class=\"tick \" x=\"166\" y=\"112\">left</text>")) << svg;
   EXPECT_TRUE(has(svg, "<text class=\"tick end\" x=\"558\" y=\"112\">right</text>")) << svg;
+  EXPECT_FALSE(has(svg, "class=\"key"));        // without a title there is no legend
   EXPECT_TRUE(has(svg, "M162 206V24")) << svg;  // a line of the grid, and its number below
   EXPECT_TRUE(has(svg, "<text class=\"tick mid\" x=\"162\" y=\"222\">100</text>")) << svg;
 }

@@ -277,12 +277,16 @@ TEST(CalibrationProblemWhiteBox, TheDriftToComeIsAtLeastTheExpectedOne) {
   problem.start_joint_drift();
   problem.drift_precision = 4;
   problem.joint_drift_precision = 0.25;
-  VectorX variance = problem.drift_step_variance();
+  VectorX variance = problem.drift_step_variance(1);
   ASSERT_EQ(variance.size(), 12);
   for (Index k = 0; k < 12; ++k) EXPECT_NEAR(variance(k), k < 3 ? 225e-12 : 100e-12, 1e-24) << k;
   problem.drift_precision = 0.25;
-  variance = problem.drift_step_variance();
+  variance = problem.drift_step_variance(1);
   for (Index k = 0; k < 12; ++k) EXPECT_NEAR(variance(k), k < 3 ? 900e-12 : k < 6 ? 400e-12 : 100e-12, 1e-24) << k;
+  // precisions are relative to the noise: of half the stated deviation, the same random walk has a quarter of them
+  problem.drift_precision = 0.0625;
+  variance = problem.drift_step_variance(0.25);
+  for (Index k = 0; k < 12; ++k) EXPECT_NEAR(variance(k), k < 3 ? 900e-12 : k < 6 ? 400e-12 : 25e-12, 1e-24) << k;
 }
 
 // Rows are weighted so that their sum of squares is that of the weighted norms, of positions and of orientations.

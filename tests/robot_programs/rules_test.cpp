@@ -298,6 +298,21 @@ TEST(RapidRules, FramesThatDoNotMove) {
   EXPECT_EQ(program.workobjects.count("bent"), 0u);  // its quaternion is none
 }
 
+// A correction by a frame that does not hold where the target is used would be wrong: better none is known.
+TEST(RapidRules, FramesThatTheProgramChangesAreUnknown) {
+  const std::string frame = "[[1,2,3],[1,0,0,0]]", tool = "[TRUE," + frame + ",[1,[0,0,1],[1,0,0,0],0,0,0]]";
+  const std::string declared = "PERS tooldata gun:=" + tool + ";\nPERS tooldata other:=" + tool +
+                               ";\nPERS wobjdata tab:=[FALSE,TRUE,\"\"," + frame + "," + frame + "];\n";
+  for (const std::string change :
+       {"gun.tframe.trans.z:=120;", "gun:=other;", "gun:=[TRUE,[[1,2,4],[1,0,0,0]],load];"}) {
+    const RobotProgram program = rapid_program(change + "\n", declared);
+    EXPECT_EQ(program.tools.count("gun"), 0u) << change;
+    EXPECT_EQ(program.tools.count("other"), 1u) << change;
+    EXPECT_EQ(program.workobjects.count("tab"), 1u) << change;
+  }
+  EXPECT_EQ(rapid_program("tab.uframe.trans.x:=50;\n", declared).workobjects.count("tab"), 0u);
+}
+
 // ---- KRL ----
 
 RobotProgram krl_program(const std::string& lines) {
@@ -333,12 +348,27 @@ TEST(KrlRules, ToolsAndBases) {
   EXPECT_EQ(remarks(program), "");
 }
 
-TEST(KrlRules, FramesAreTheLastOnes) {
-  const RobotProgram program = krl_program(
-      "TOOL_DATA[3]={X 0,Y 0,Z 100,A 0,B 0,C 0}\nTOOL_DATA[3]={X 0,Y 0,Z 200,A 0,B 0,C 0}\n$BASE=$NULLFRAME:f\n"
-      "p={X 1,Y 2,Z 3,A 0,B 0,C 0}\nPTP p\n");
-  EXPECT_NEAR(program.tools.at("3")(2, 3), 0.2, 1e-15);
-  EXPECT_EQ(named(program, "p").workobject, "?");  // computed
+// A correction by a frame that does not hold where the target is used would be wrong: better none is known.
+TEST(KrlRules, FramesThatTheProgramChangesAreUnknown) {
+  const std::string at = "={X 1,Y 2,Z 3,A 0,B 0,C 0}\n", frame = "={X 0,Y 0,Z 100,A 0,B 0,C 0}\n";
+  const std::string stated = "TOOL_DATA[3]" + frame + "TOOL_DATA[4]" + frame + "BASE_DATA[3]" + frame;
+  const auto count = [&](const std::string& lines, const char* number) {
+    return krl_program(stated + lines).tools.count(number);
+  };
+  EXPECT_EQ(count("TOOL_DATA[3]" + frame, "3"), 1u);  // the same again
+  EXPECT_EQ(count("TOOL_DATA[3]={X 0,Y 0,Z 200,A 0,B 0,C 0}\n", "3"), 0u);
+  EXPECT_EQ(count("TOOL_DATA[3].Z=250\n", "3"), 0u);
+  EXPECT_EQ(count("TOOL_DATA[3].Z=250\nTOOL_DATA[3]" + frame, "3"), 0u);
+  EXPECT_EQ(count("TOOL_DATA[3].Z=250\n", "4"), 1u);
+  EXPECT_EQ(count("TOOL_DATA[n].Z=250\n", "4"), 0u);  // any
+  EXPECT_EQ(count("BASE_DATA[3].Z=250\n", "3"), 1u);
+  EXPECT_EQ(krl_program(stated + "BASE_DATA[3].Z=250\n").workobjects.count("3"), 0u);
+  EXPECT_EQ(krl_program(stated + "TOOL_DATA[n].Z=250\n").workobjects.count("3"), 1u);
+  EXPECT_EQ(krl_program(stated + "TOOL_DATA[n].Z=250\n").tools.count("0"), 1u);  // the flange
+  const RobotProgram program = krl_program("p" + at + "q" + at + "$TOOL=TOOL_DATA[3]\n$BASE=BASE_DATA[3]\nPTP p\n" +
+                                           "$TOOL.Z=120\n$BASE.X=5\nPTP q\n$BASE=$NULLFRAME:f\n");
+  EXPECT_EQ(named(program, "p").tool + named(program, "p").workobject, "33");
+  EXPECT_EQ(named(program, "q").tool + named(program, "q").workobject, "??");
 }
 
 TEST(KrlRules, AssignmentsAndWhatNoMoveUses) {
@@ -497,9 +527,12 @@ TEST(FanucRules, IncrementalMoves) {
       fanuc_program("   1:L P[1] 100mm/sec FINE ;\n   2:L P[1] 100mm/sec FINE INC ;\n", position);
   EXPECT_TRUE(program.targets.empty());
   EXPECT_EQ(remarks(program), "4 L P[1] 100mm/sec FINE INC: a relative move\n6 P[1]: no move of this file uses it\n");
-  const RobotProgram other = fanuc_program("   1:L P[1] 100mm/sec FINE TA .1sec,DO[3:zinc]=ON ;\n", position);
-  EXPECT_EQ(other.targets.size(), 1u);
-  EXPECT_EQ(remarks(other), "");
+  for (const std::string option : {"TA .1sec,DO[3:zinc]=ON", "TB .10sec,CALL INCOUNT", "TB .1sec,CALL INC_A"}) {
+    const RobotProgram other = fanuc_program("   1:L P[1] 100mm/sec FINE " + option + " ;\n", position);
+    EXPECT_EQ(other.targets.size(), 1u) << option;
+    EXPECT_EQ(remarks(other), "") << option;
+  }
+  EXPECT_TRUE(fanuc_program("   1:L P[1] 100mm/sec FINE TB .1sec,CALL INC_A INC ;\n", position).targets.empty());
 }
 
 TEST(FanucRules, AllSectionsAreThere) {

@@ -42,6 +42,16 @@ TEST(CmaEs, ConstantsOfTenDimensions) {
   EXPECT_NEAR(c.expected_norm, 3.0847, 1e-4);
 }
 
+// Ten dimensions, four individuals: by the tutorial's equations the negative weights sum to
+// -(1 + 2 * 1.67435 / (1.45979 + 2)), for that is less than 1 + c_1 / c_mu = 3.86 and what leaves C positive
+// definite, 18.
+TEST(CmaEs, NegativeWeightsByHand) {
+  const CmaEsConstants c(10, 4);
+  EXPECT_NEAR(c.mu_eff, 1.45979, 1e-5);
+  EXPECT_NEAR(c.weights(2) + c.weights(3), -1.96789, 1e-5);
+  EXPECT_NEAR(c.weights(2) / c.weights(3), std::log(2.5 / 3) / std::log(2.5 / 4), 1e-12);
+}
+
 // In every dimension the rates leave C positive definite: no more than all of it is replaced, and the negative weights
 // sum to no more than allows.
 TEST(CmaEs, ConstantsAreSound) {

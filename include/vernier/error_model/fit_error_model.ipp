@@ -93,8 +93,6 @@ class ErrorModelFit {
     if (out.jointwise && options_.find_lines && !inherited) find_lines(model_);
     model_.solve();
     out.estimate.drift = problem_.drift;
-    for (SessionDrift& of_station : out.estimate.drift)
-      if (!of_station.empty()) of_station.step_variance = problem_.drift_step_variance();
     out.all = arms();
     // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
     const bool later = hysteresis || tilt || thermal || inherited;
@@ -109,6 +107,8 @@ class ErrorModelFit {
     estimate.blocks = model_.blocks;
     estimate.converged = model_.converged;
     assess(model_, estimate);
+    for (SessionDrift& of_station : estimate.drift)
+      if (!of_station.empty()) of_station.step_variance = problem_.drift_step_variance(estimate.residual_variance);
     if (geometry_alone) estimate.geometry_left_out_errors = estimate.left_out_errors;
     if (inherited) {  // for the next to start from
       VectorX precisions = problem_.arm.precisions();
@@ -201,11 +201,9 @@ class ErrorModelFit {
     if (estimate.fallback_error == 0) estimate.fallback_error = error_without;
     expected_ = before.arm.precisions().tail(terms.size());
     if (before.temperature_std > 0) {
-      const double measured_mean = estimate.mean_temperature;
-      out.temperatures = estimate.temperature_std > 0 && measured_mean != 0
-                             ? std::array{std::min(out.temperatures[0], prior.temperatures[0]),
-                                          std::max(out.temperatures[1], prior.temperatures[1])}
-                             : prior.temperatures;
+      out.temperatures = estimate.temperature_std > 0 ? std::array{std::min(out.temperatures[0], prior.temperatures[0]),
+                                                                   std::max(out.temperatures[1], prior.temperatures[1])}
+                                                      : prior.temperatures;
       estimate.mean_temperature = before.mean_temperature;
       estimate.temperature_std = before.temperature_std;
     } else {

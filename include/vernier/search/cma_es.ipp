@@ -30,8 +30,7 @@ VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
   if (const double sum = -worse.sum(); sum > 0) {
     const double of_worse = effective(worse);
     worse *=
-        std::max(0.0, std::min({1 + c_1 / c_mu, 1 + 2 * of_worse / (of_worse + 2), (1 - c_1 - c_mu) / (n * c_mu)})) /
-        sum;
+        std::max(0.0, std::min({1 + c_1 / c_mu, 1 + 2 * of_worse / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)})) / sum;
   }
   weights.head(mu) = better;
   weights.tail(individuals - mu) = worse;

@@ -77,7 +77,8 @@ class CalibrationProblem {
   VERNIER_API VectorX drift_joint_zeros(Index block) const;
   /// Variance of the drift's change from knot to knot beyond the session: at least the expected one, because a session
   /// without drift says little about the next hours.
-  VERNIER_API VectorX drift_step_variance() const;
+  /// @param noise_variance of the whitened noise, to which precisions are relative
+  VERNIER_API VectorX drift_step_variance(double noise_variance) const;
   /// The motion of a block's base by drift.
   VERNIER_API Isometry3 drift_motion(Index block) const;
 

@@ -145,10 +145,11 @@ VERNIER_IMPL void CalibrationProblem::move_drift(const VectorX& steps) {
         drift[s].knots(r, k) += steps(size * (first_state_[s] + k) + r) * drift_scale_(r);
 }
 
-VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance() const {
+VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance(double noise_variance) const {
   VectorX out(drift_scale_.size());
   for (Index k = 0; k < out.size(); ++k)
-    out(k) = drift_scale_(k) * drift_scale_(k) / std::min(1.0, k < 6 ? drift_precision : joint_drift_precision);
+    out(k) = drift_scale_(k) * drift_scale_(k) *
+             std::max(1.0, noise_variance / (k < 6 ? drift_precision : joint_drift_precision));
   return out;
 }
 

@@ -68,8 +68,9 @@ VERNIER_API bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std
     lines.o[4] = lines.o[5] = meeting;
     return true;
   }
-  why += message("the last three axes miss a common point by ", spherical * 1e3, " mm, the middle three are ",
-                 parallel * 180 / std::numbers::pi, " deg from parallel and the last two ", last * 1e3, " mm apart");
+  why +=
+      message("the last three axes miss a common point by ", spherical * 1e3, " mm, the middle three are ",
+              parallel * 180 / std::numbers::pi, " deg from parallel and the last two ", 2 * last * 1e3, " mm apart");
   return false;
 }
 

@@ -211,7 +211,12 @@ class FanucReader {
     }
     const std::string rest = lower_case(text.substr(std::min(options, text.size())));
     if (rest.find("offset") != std::string::npos) remark("an offset that a register adds");
-    if (rest.find(" inc") != std::string::npos) {
+    const std::string increment = " inc";  // not the beginning of a longer word
+    std::size_t at = rest.find(increment);
+    while (at != std::string::npos && at + increment.size() < rest.size() &&
+           is_word_character(rest[at + increment.size()]))
+      at = rest.find(increment, at + 1);
+    if (at != std::string::npos) {
       remark("a relative move");
       incremental(steps_.back());
     }

@@ -30,6 +30,7 @@ class KrlReader {
     }
     for (const Use& use : uses_) resolve(use);
     for (std::size_t k = 0; k < program_.targets.size(); ++k) flange_data(program_.targets[k]);
+    for (const auto& [tool, number] : changed_frames_) forget(tool ? program_.tools : program_.workobjects, number);
     for (const auto& [name, change] : changes_)
       if (names_.count(name) != 0)
         program_.uncorrected.push_back({text_.tokens[change.first].line, excerpt(text_, change.first, change.second),
@@ -107,14 +108,23 @@ class KrlReader {
     if (text_.is(k, '[')) k = behind_brackets(text_, k, end);
     const std::size_t behind_name = k;
     while (text_.is(k, '.') && text_.is_word(k + 1)) k += 2;
-    if (k >= end || !text_.is(k, '=') || text_.is(k + 1, '=')) {
-      if (text_.is_word(i + 1) && i + 2 < end && text_.is(i + 2, '=')) return;  // a declaration of another type
-      return;
-    }
+    if (k >= end || !text_.is(k, '=') || text_.is(k + 1, '=')) return;
     if (k != behind_name)
-      changes_.push_back({first, {i, end}});
+      component(first, i, end);
     else
       value(first, i, k + 1, end);
+  }
+
+  // name.X = value, at tokens from i to end
+  void component(const std::string& name, std::size_t i, std::size_t end) {
+    if (name == "$tool")
+      tool_ = "?";
+    else if (name == "$base")
+      base_ = "?";
+    else if (name == "tool_data" || name == "base_data")
+      changed_frames_.insert({name == "tool_data", index(i + 1)});
+    else
+      changes_.push_back({name, {i, end}});
   }
 
   // name = value, at tokens from i to end
@@ -138,15 +148,16 @@ class KrlReader {
       const std::string key = number.empty() ? message(text_.at(at), " of line ", text_.tokens[at].line) : number;
       const std::vector<Component> parts = components(i, end);
       const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
-      if (frame)
-        frames[key] = *frame;
+      const auto stated = frames.find(key);
+      if (!frame || (stated != frames.end() && !stated->second.isApprox(*frame, 0)))
+        changed_frames_.insert({tool, key});
       else
-        frames.erase(key);
+        frames[key] = *frame;
       if (number.empty()) current = frame ? key : "?";
       return;
     }
     if (!number.empty()) {
-      frames.erase(number);
+      changed_frames_.insert({tool, number});
       return;
     }
     current = "?";
@@ -155,6 +166,14 @@ class KrlReader {
     if (source == (tool ? "tool_data" : "base_data") && behind_brackets(text_, i + 1, end) == end)
       current = index(i + 1);
     if (current.empty()) current = "?";
+  }
+
+  // Frames that the program changes are not those that it states: of one number, or, without one, of all.
+  static void forget(std::map<std::string, Isometry3>& frames, const std::string& number) {
+    std::erase_if(frames, [&](const auto& frame) {
+      return number.empty() ? frame.first.find_first_not_of("0123456789") == std::string::npos && frame.first != "0"
+                            : frame.first == number;
+    });
   }
 
   // [n]
@@ -377,6 +396,7 @@ class KrlReader {
   std::map<std::size_t, std::size_t> literals_{};  // target by its first token
   std::map<std::string, FlangeData> flange_data_{};
   std::vector<std::pair<std::string, Span>> changes_{};
+  std::set<std::pair<bool, std::string>> changed_frames_{};  // whether of a tool; number, empty where it is computed
   std::vector<Use> uses_{};
   std::vector<ProgramStep> steps_{};
 };

@@ -22,10 +22,17 @@ class RapidReader {
     find_module();
     program_.tools["tool0"] = program_.workobjects["wobj0"] = Isometry3::Identity();
     for (std::size_t i = 0; i < text_.tokens.size();) i = statement(i);
-    for (const auto& [line, expression] : changes_)
-      if (names_.count(lower_case(text_.at(expression.first))) != 0)
+    for (const auto& [line, expression] : changes_) {
+      const std::string name = lower_case(text_.at(expression.first));
+      assigned_.insert(name);
+      if (names_.count(name) != 0)
         program_.uncorrected.push_back(
             {line, excerpt(text_, expression.first, expression.second), "the program changes this target"});
+    }
+    for (const std::string& name : assigned_) {  // frames that the program changes are not those that it states
+      program_.tools.erase(name);
+      program_.workobjects.erase(name);
+    }
     for (const Move& move : moves_) use(move);
     use_targets(text_, steps_, std::vector<bool>(program_.targets.size(), true), program_);
   }
@@ -75,7 +82,10 @@ class RapidReader {
     if (text_.is(k, '{')) k = behind_brackets(text_, k, text_.tokens.size());
     while (text_.is(k, '.') && text_.is_word(k + 1)) k += 2;
     if (!text_.is(k, ':') || !text_.is(k + 1, '=')) return i + 1;
-    if (k == i + 1 && text_.is(k + 2, '[')) return literal(k + 2, name);
+    if (k == i + 1 && text_.is(k + 2, '[')) {
+      assigned_.insert(name);
+      return literal(k + 2, name);
+    }
     std::size_t end = k;
     while (end < text_.tokens.size() && !text_.is(end, ';') && !text_.is_line_end(end)) ++end;
     changes_.push_back({text_.tokens[i].line, {i, end}});
@@ -253,7 +263,6 @@ class RapidReader {
       if ((text_.is(k, ')') || text_.is(k, ']') || text_.is(k, '}')) && depth > 0) --depth;
       if (depth == 0 && text_.is(k, '\\')) {
         if (main_end == 0) main_end = k;
-        if (k == begin) main_end = begin;  // an option in front of the first argument
         if (word(k + 1) == "wobj")
           found.workobject = text_.is(k + 2, ':') && text_.is(k + 3, '=') && text_.is_word(k + 4) ? word(k + 4) : "?";
       }
@@ -313,6 +322,7 @@ class RapidReader {
   std::map<std::string, Declared> names_{};
   std::map<std::size_t, std::size_t> inline_{};  // target by its first token
   std::set<std::string> unused_axes_{};
+  std::set<std::string> assigned_{};  // variables
   std::vector<Move> moves_{};
   std::vector<std::pair<std::size_t, Span>> changes_{};
   std::vector<ProgramStep> steps_{};

@@ -76,10 +76,6 @@ CalibrationReport five_poses() {
   return report;
 }
 
-bool says(const std::vector<std::string>& sentences, const std::string& one) {
-  return std::find(sentences.begin(), sentences.end(), one) != sentences.end();
-}
-
 /// All of them, a line each.
 std::string joined(const std::vector<std::string>& sentences) {
   std::string out;
@@ -112,7 +108,7 @@ TEST(CalibrationReport, AccuracyByHand) {
   EXPECT_EQ(said[0],
             "Accurate to 0.188 mm mean, 0.285 mm (95 %), 0.3 mm maximum, inside the measured joint ranges: 4 of 5 "
             "held-out poses. None of them is worse than with geometry alone by more than 0.05 mm.");
-  EXPECT_EQ(said[1], "1 held-out poses lie outside those ranges; there the learned functions of the joints fade out.");
+  EXPECT_EQ(said[1], "1 held-out pose lies outside those ranges; there the learned functions of the joints fade out.");
   EXPECT_TRUE(says(said, "Chosen by left-out poses: joint-wise.")) << joined(said);
   report.max_degradation = 0;
   EXPECT_TRUE(report.verdict()[0].ends_with("None of them is worse than with geometry alone."));

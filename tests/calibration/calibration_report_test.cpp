@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 
 namespace vernier::calibration_report_test {
@@ -24,6 +26,13 @@ CalibrationReport report_of_four() {
   out.stages.push_back({"geometry", "geometry", VectorX::Constant(4, 1e-4), {}});
   out.gates = VectorX::Ones(4);
   return out;
+}
+
+TEST(WordingWhiteBox, NumbersAreBrief) {
+  const std::pair<double, const char*> cases[] = {{0.012345, "0.0123"}, {-2, "-2"},         {999.4, "999"},
+                                                  {999.6, "1000"},      {-1234.4, "-1234"}, {999999, "999999"},
+                                                  {1e6, "1e+06"},       {1e200, "1e+200"}};
+  for (const auto& [value, text] : cases) EXPECT_EQ(detail::brief(value), text);
 }
 
 TEST(CalibrationReport, DriftByHand) {

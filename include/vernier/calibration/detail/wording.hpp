@@ -9,10 +9,11 @@
 
 namespace vernier::detail {
 
-/// A number in three significant digits, from 1000 on all before the point.
+/// A number in three significant digits; from a thousand to a million all before the point.
 inline std::string brief(double value) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, std::abs(value) < 999.5 ? "%.3g" : "%.0f", value);
+  const double size = std::abs(value);
+  std::snprintf(buffer, sizeof buffer, size >= 999.5 && size < 999999.5 ? "%.0f" : "%.3g", value);
   return buffer;
 }
 

@@ -208,6 +208,7 @@ void expect_consistent_covariance(const ContactReport& found) {
   const RealMatrix covariance = found.covariance;
   ASSERT_EQ(covariance.rows(), p);
   EXPECT_LT(difference(covariance, covariance.transpose()), 1e-12 * covariance.largest());
+  EXPECT_NEAR(found.condition * found.observability.o2, 1, 1e-9);
   for (Index i = 0; i < p; ++i) {
     const auto k = static_cast<std::size_t>(found.free[static_cast<std::size_t>(i)]);
     EXPECT_NEAR(found.parameters[k].std, std::sqrt(covariance(i, i)), 1e-12 * found.parameters[k].std);

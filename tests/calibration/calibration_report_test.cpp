@@ -227,7 +227,8 @@ TEST(CalibrationReport, RemarksByHand) {
   EXPECT_NE(report.summary().find(not_used), std::string::npos);
 }
 
-// Of joints' lines those beyond the orders of an assembly, three at most, with half of their 95 % intervals.
+// The verdict lists the lines of a joint above the orders of assembly errors, at most three, each with the half-width
+// of its 95 % interval.
 TEST(CalibrationReport, LinesOfTheDrivesByHand) {
   CalibrationReport report = five_poses();
   report.joints.resize(2);

@@ -138,8 +138,8 @@ TEST(DataAudit, NamesTheConventionOfOrientations) {
   }
 }
 
-// So large that the arm of the stated joints is another one; whole turns are none. With it put right, the base does not
-// seem to move, and the row that is off by 50 mm is seen.
+// Zero errors up to half a turn; whole turns have no effect. Once the zero is corrected, no drift of the base is
+// reported, and the row that is off by 50 mm is found.
 TEST(DataAudit, StatesTheSizeOfALargeZero) {
   for (const std::uint64_t seed : {14, 20}) {
     const Dataset<6> data = clean_file(60, seed);

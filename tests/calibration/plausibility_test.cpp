@@ -53,7 +53,7 @@ std::string failure(const F& check) {
   return {};
 }
 
-// Of points that spread over a tenth of a metre a hundredth is too much; of others 50 mm, and 1 mm never.
+// The limit is a tenth of the spread of the points, at least 1 mm and at most 50 mm.
 TEST(PlausibilityWhiteBox, PosesMayBeOffByATenthOfTheirSpread) {
   const ArmGeometry arm(in_frames(robots::abb_irb120().chain));
   JointRows<6> joints(2, 6);

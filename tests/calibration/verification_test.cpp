@@ -215,7 +215,7 @@ TEST(VerificationWhiteBox, ATurnedProbeIsTakenOff) {
   EXPECT_EQ(found.dof, 48 - 6 - 3);
 }
 
-// Half of the level is for everything together.
+// Half of the significance level is spent on the test of everything together.
 TEST(VerificationWhiteBox, EverythingTogetherHasHalfOfTheLevel) {
   const Check check(noise(8, 4, 1.25));
   const double p = check.verified({.level = 1e-9, .sensors = check.sensors}).p_value;
@@ -225,7 +225,7 @@ TEST(VerificationWhiteBox, EverythingTogetherHasHalfOfTheLevel) {
   EXPECT_FALSE(check.verified({.level = 2.02 * p, .sensors = check.sensors}).consistent);
 }
 
-// Of two zeros that moved each is named beside the other, and nothing else.
+// Where the zeros of two joints moved, both are named, and nothing else.
 TEST(VerificationWhiteBox, NamesTwoZerosThatMoved) {
   JointVector<6> zeros = JointVector<6>::Zero();
   zeros(1) = 2e-3;
@@ -240,8 +240,8 @@ TEST(VerificationWhiteBox, NamesTwoZerosThatMoved) {
   }
 }
 
-// A tenth of the rows may be set aside, those beyond 4.5 deviations and six times the median; then neither tests nor
-// mean count them.
+// At most a tenth of the rows are set aside: those beyond 4.5 standard deviations and six times the median. Neither the
+// tests nor the mean count them.
 TEST(VerificationWhiteBox, ATenthOfTheRowsMayBeSetAside) {
   for (const Index bumped : {2, 3}) {
     RealMatrix errors = noise(20, 6);

@@ -648,8 +648,7 @@ TEST(PathSolverWhiteBox, FinerPiecesThatAreWorseAreNotTaken) {
   EXPECT_EQ(path.points.back().ends_only, 0);
 }
 
-// Where nobody knows how far the arm leaves its line, as the nominal arm leaps on the way, eight pieces are tried
-// first.
+// Where the deviation from the line is unknown, because the nominal arm jumps on the way, eight pieces are tried first.
 TEST(PathSolverWhiteBox, EightPiecesAreTriedWhereTheNominalArmLeaps) {
   const detail::SolvedPath path = BowedSlides{.leap = 0.25}.path(line_through({1}), slides_settings(joints_of({1, 1})));
   ASSERT_EQ(path.points.size(), 9u);
@@ -677,7 +676,7 @@ TEST(PathSolverWhiteBox, ALineThatNeedsNoPointsDeviatesAsItDid) {
     EXPECT_NEAR(deviation, 0.75e-3, 1e-15);
 }
 
-// Two pieces are too few for the first line, but the second begins where it ends.
+// Two pieces are too few for the first line; the second line begins where it ends.
 TEST(PathSolverWhiteBox, ALineGoesOnFromOneThatWasLeft) {
   detail::PathSettings settings = slides_settings(joints_of({1, 1}));
   settings.max_inserted = 1;

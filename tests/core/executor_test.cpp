@@ -130,7 +130,7 @@ struct Elsewhere {
   }
 };
 
-// A clock or a user's word is asked for once, by the caller, whoever else computes; values are computed by those.
+// A condition (a clock, a request to stop) is evaluated once, by the caller; values are computed by all threads.
 TEST(ExecutorRef, AConditionIsEvaluatedOnceByTheCaller) {
   const Elsewhere elsewhere;
   const vn::ExecutorRef executor(elsewhere);

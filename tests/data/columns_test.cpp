@@ -48,7 +48,8 @@ TEST_F(Columns, SegmentsCountDownToo) {
     EXPECT_EQ(data.times()(i), static_cast<double>(i));  // without a column the row's number
 }
 
-// The first row's approach is known, or one in the middle is not, or a later one is another, or it is all in order.
+// Four cases: the approach of the first row is known; one in the middle is unknown; a later one differs; all follow
+// from the order of the rows.
 TEST_F(Columns, WrittenWhereTheOrderDoesNotSayIt) {
   JointRows<2> joints(4, 2);
   joints << 1, 2, 3, 4, 5, 6, 7, 8;

@@ -244,7 +244,7 @@ TEST(ArmPrior, IsHandedOnWithTheExpectedSizes) {
   EXPECT_EQ(found.temperature_std, 0);
 }
 
-// Of an earlier calibration the chain is known, from its first parameter to its last; frames are not.
+// All chain parameters of an earlier calibration are transferred, frames are not.
 TEST(TransferredUnknownsWhiteBox, FramesAreNotTransferred) {
   const ArmPrior prior{"before",
                        detail::ChainTable(robot.chain.view()),

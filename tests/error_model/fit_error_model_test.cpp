@@ -433,7 +433,7 @@ TEST(ErrorModelEstimate, UnknownApproachesAreUncertainByHalfTheLoop) {
   EXPECT_EQ(estimate.visit_covariance(q, 1, 0, previous).norm(), 0);
 }
 
-// Of two stations the first keeps what is shared and what is its own, with their covariances.
+// The estimate of the first of two stations has the shared unknowns and its own ones, with their covariances.
 TEST(ErrorModelEstimate, TheFirstStationByHand) {
   const ArmGeometry arm(nominal);
   ErrorModelEstimate both{

@@ -274,7 +274,7 @@ TEST(PeriodogramWhiteBox, LinesAreTakenOneAfterTheOther) {
   EXPECT_EQ(found(many, {}, 60, 1), (std::vector<int>{1, 6, 11, 16, 21, 26, 31, 36}));  // eight
 }
 
-// Over a part of a turn a line has echoes, which are none.
+// Measured over a part of a turn, a line has side lobes, which must not be taken for lines.
 TEST(PeriodogramWhiteBox, AnEchoIsNoLine) {
   Rng rng(4);
   VectorX angles(150), weight(150);
@@ -336,8 +336,8 @@ TEST(PeriodogramWhiteBox, OrdersUpToTwiceTheHighestAreToldApart) {
   EXPECT_TRUE(apart(0.52, 74));
 }
 
-// Over a part of a turn that is s wide, orders k are alike as sin(k s / 2) / (k s / 2): a half at k s = 3.79.
-// Neighbours of less than forty need not be told apart.
+// Over a part of a turn of width s, orders that differ by k are correlated by sin(k s / 2) / (k s / 2): a half at
+// k s = 3.79. Orders closer than forty need not be distinguishable.
 TEST(PeriodogramWhiteBox, CloseOrdersNeedNotBeToldApart) {
   const VectorX ones = VectorX::Ones(2000);
   for (const auto& [width, apart] : {std::pair{3.6 / 40, false}, {4.0 / 40, true}})

@@ -125,7 +125,8 @@ TEST(VisitNoiseWhiteBox, NineteenOfTwentyVisitsLieWithinTheirEllipsoids) {
   EXPECT_LT(radius_with_outliers(6), 4e-3 * 1.02);
 }
 
-// Of fewer than a hundred, and to more than twice their deviation, they are not; and joints are widened along.
+// The noise of fewer than a hundred visits is not widened, nor is any to more than twice; that of the joints is widened
+// by the same factor.
 TEST(VisitNoiseWhiteBox, NoiseIsWidenedToTwiceItsDeviationAtMost) {
   std::vector<detail::LeftOutVisit> all(100, {Vector3(0, 1e-3, 0), Matrix3::Zero(), Matrix3::Zero()});
   for (std::size_t k = 0; k < 6; ++k) all[k].error *= 40;

@@ -100,7 +100,7 @@ TEST(Iso9283Path, TheLargestErrorMayBeThatOfAnyPoint) {
   ASSERT_EQ(result.departures.size(), 2u);
 }
 
-// A run that lingers beyond a corner passes it where it came to it first.
+// A run that stays near a corner for a while passes it at the first of the nearest points.
 TEST(Iso9283Path, ACornerIsPassedWhereItIsReachedFirst) {
   const Poses path = path_of({{0, 0, 0}, {0.25, 0, 0}, {0.25, 0.25, 0}});
   const Poses run = path_of({{0, 0, 0}, {0.25, 0, 1e-3}, {0.251, -1e-3, 5e-3}, {0.25, 0.25, 0}});
@@ -109,7 +109,7 @@ TEST(Iso9283Path, ACornerIsPassedWhereItIsReachedFirst) {
   EXPECT_NEAR(result.points[0].at, 1e-3, 1e-12);
 }
 
-// A gap between poses is one as soon as a point to compare may lie in it alone.
+// Poses farther apart than the compared points are reported as a gap.
 TEST(Iso9283Path, PosesFartherApartThanThePointsAreToldOf) {
   const Poses path = path_of({{0, 0, 0}, {1, 0, 0}});
   const auto told = [&](double step) {

@@ -515,7 +515,7 @@ TEST(Iso9283, CommandedPosesWithinTheTolerancesOfACube) {
   }
 }
 
-// A direction has an order of its own, and a disorder of a pose is told once.
+// Cycles are in order per pose and direction; a pose out of order is reported once.
 TEST(Iso9283, OrderOfCyclesByPoseAndDirection) {
   const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
   std::vector<Iso9283Visit> visits = visits_of(poses, 30, 1e-5, 1e-5, 11);
@@ -549,7 +549,7 @@ TEST(Iso9283, FourDirectionsAreNotTheThreeOfTheNorm) {
   EXPECT_EQ(result.variations[1].directions, 2);
 }
 
-// Of one time that is not known nobody knows which visits were first: cycles decide.
+// Where one time is unknown, the order of the visits is that of the cycles.
 TEST(Iso9283, DriftIsByCyclesWhereATimeIsMissing) {
   const std::vector<Isometry3> commanded{pose_of({0, 0, 0})};
   std::vector<Iso9283Visit> visits;  // 1 mm, then 2 mm, by cycles; mixed by times

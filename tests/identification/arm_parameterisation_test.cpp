@@ -127,7 +127,7 @@ TEST(ArmParameterisation, PrecisionsAreSetByUnknown) {
   EXPECT_THROW(arm.set_precisions(VectorX::Ones(7)), std::invalid_argument);
 }
 
-// Only hysteresis is that of the other arm, all of it; what else there is stays, joint by joint.
+// The hysteresis of all joints is that of the other arm; all other terms stay.
 TEST(FittedArm, TakesTheHysteresisOfAnother) {
   JointTerms terms(6), others(6);
   terms.gear_ratio = others.gear_ratio = true;

@@ -498,7 +498,8 @@ TEST(CalibrationProblemWhiteBox, MeasuredPositionsValidateWhereThereAreAny) {
   EXPECT_EQ(both.problem(Loss::squared, false).num_validation_blocks(), 21);
 }
 
-// Of each kind the median: 2.8 deviations of three components, 1.345 of a single number.
+// Thresholds follow from the median of each kind of residual: 2.8 standard deviations for three components, 1.345 for a
+// single number.
 TEST(CalibrationProblemWhiteBox, ThresholdsAndWeightsByKind) {
   const WithWire both(17);
   Problem problem = both.problem(Loss::cauchy);

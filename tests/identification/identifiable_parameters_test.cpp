@@ -29,8 +29,8 @@ TEST(IdentifiableParameters, KeepsTheFirstOfDependentOnesAndNamesWhatAbsorbsTheR
   EXPECT_TRUE(columns.dependent[1].absorbed_by.empty());
 }
 
-// Small is no effect from a thousand-millionth of the largest column on; who absorbs less than a twentieth is not
-// named.
+// A column of a thousand-millionth of the largest still counts as an effect; parameters that absorb less than a
+// twentieth of another are not named.
 TEST(IdentifiableParameters, LimitsOfEffectAndOfShares) {
   MatrixX j = random_matrix(30, 6, 3);
   j.col(1) *= 1e-7;

@@ -199,7 +199,7 @@ TEST(IdentificationWhiteBox, ErrorsAreThoseOfTheIdentifiedArm) {
   const auto registered = identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
                                                    {.frames = Frames::base_and_tool, .geometry = false}, squared);
   EXPECT_NEAR(found.rms_before, registered.rms_after, 1e-9);
-  EXPECT_GE(found.iterations, 400);  // of each solve all 200 are counted
+  EXPECT_GE(found.iterations, 400);  // each solve counts its 200 iterations
   EXPECT_EQ(found.iterations % 200, 0);
   EXPECT_GT(found.rms_before, 5 * found.rms_after);
   // whitened rows in steps of expected sizes
@@ -231,7 +231,8 @@ TEST(IdentificationWhiteBox, AsManyValuesAsParametersAreTooFew) {
   EXPECT_EQ(identify_by_gauss_newton(arm, measured(2, 6, true), base_alone, squared).status, IdentifyStatus::converged);
 }
 
-// Of distances a residual is one number: its median is another share of a deviation, and errors are those of distances.
+// The residual of a distance is a single number, so its median is another multiple of the standard deviation; the
+// reported errors are those of distances.
 TEST(IdentificationWhiteBox, ErrorsAndScaleOfDistances) {
   const Framed<Chain> actual(robot.chain, base, tool);
   const Distances<6> data = measure_distances(actual, Vector3(0.3, -1, 0.5),
@@ -315,7 +316,7 @@ TEST(IdentificationWhiteBox, SaysWhatAbsorbsAParameter) {
   EXPECT_EQ(still.free.size(), 3u);
 }
 
-// Of more than four parameters that absorb one, four are named.
+// At most four of the parameters that absorb another are named.
 TEST(IdentificationWhiteBox, NamesFourOfWhatAbsorbsAParameter) {
   const FrameParameters far(Vector6{0.8, -0.7, 0.3, 0.2, -0.1, 0.5});
   const Framed<Chain> arm(robot.chain, base, far);

@@ -383,7 +383,7 @@ TEST(ReportSections, LinesOfAJoint) {
             3u);  // three named
 }
 
-// Of orders that hardly matter a stick is left, a thousandth of the highest.
+// Amplitudes below a thousandth of the largest are drawn as a thousandth of it.
 TEST(ReportSections, SpectraReachThreeDecadesDown) {
   ReportInput input = input_of();
   JointReport joint = joint_of({0, 1, 0}, {1, 0, 0}, 0.5e-3);

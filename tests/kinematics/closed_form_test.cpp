@@ -770,7 +770,7 @@ TEST(SingularPoses, SamplesOnRequest) {
   EXPECT_EQ(form.roots(irb.pose(regular)).count, form.roots(irb.pose(regular), q, 0.01).count);
 }
 
-// Samples say that they are: without them there are as many roots as where none were asked for.
+// Sampled roots are marked as such; without them the roots are those of a call that asks for no samples.
 TEST(SingularPoses, SamplesAreMarked) {
   Rng rng(22);
   int samples = 0;

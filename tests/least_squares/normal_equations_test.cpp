@@ -210,7 +210,7 @@ TEST(LeaveOneOut, DensitiesCountTheMeasuredValues) {
   EXPECT_NEAR(found(2), -0.5 * std::log(variance), 1e-8);
 }
 
-// However tight a prior with correlations, of what it does not hold the data decide.
+// A prior with correlations, however tight, leaves the unknowns that it does not contain to the data.
 TEST(FactorisedEquations, ATightJointPriorHoldsItsOwnUnknownsAlone) {
   const RandomBlocks blocks(15, 19);
   RealMatrix precision(15, 15);

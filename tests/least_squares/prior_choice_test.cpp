@@ -159,8 +159,8 @@ TEST(ChoosePrior, ReportsTheErrorsOfItsChoice) {
               1e-6 * choice.suppressed_error);  // the suppressing precision is finite
 }
 
-// Of unknowns from ten expected sizes to a hundredth, each prior from 0.3 to suppression by solving without each other
-// block.
+// Unknowns from ten expected sizes down to a hundredth: the error under each prior that is tried, by solving without
+// each block in turn.
 TEST(ChoosePrior, TriesPriorsOfAllSizes) {
   for (const double size : {10.0, 1.0, 0.1, 0.01})
     for (const std::uint64_t seed : {1u, 2u, 3u}) {

@@ -267,7 +267,7 @@ TEST(PlanMeasurements, RelativeErrorsAreThoseOfTheRegion) {
     EXPECT_NEAR(plan.relative_error(count) / std::sqrt(variance(count) / variance(30)), 1, 1e-6) << count;
 }
 
-// Of a large region every k-th row counts, about 150 of them.
+// Every k-th row of a large region is used, about 150 in all.
 TEST(PlanMeasurements, OfALargeRegionSomeCount) {
   const auto chain = robots::abb_irb120().chain;
   const MeasurementCandidates<6> candidates = some_candidates(40, 4);
@@ -381,7 +381,7 @@ TEST(PlanMeasurements, BinsByHand) {
   EXPECT_TRUE(plan_measurements(chain, in_a_row({0, 0.25, 0.5}), options).uncovered.empty());
 }
 
-// Of the ends of a range two measurements each are wanted.
+// Two measurements are required at each end of a range.
 TEST(PlanMeasurements, BinsMayWantSeveralMeasurements) {
   const auto chain = robots::abb_irb120().chain;
   PlanOptions options;

@@ -104,7 +104,7 @@ TEST(PoseDesign, ReachesNearlyTheBestOfAllChoices) {
   }
 }
 
-// Of one unknown the best choice are the rows of the largest squares, 9 and 4, and the bound reaches it.
+// For one unknown the optimal design has the rows of the largest squares, 9 and 4, and the bound equals it.
 TEST(PoseDesign, TheBoundOfOneUnknownIsItsBestChoice) {
   const RealMatrix rows = vernier_test::vector({1, 3, -1, 2});
   EXPECT_NEAR(information_bound(rows, 1, 2, 40), std::log(1 + 9 + 4), 1e-9);
@@ -115,8 +115,8 @@ TEST(PoseDesign, TheBoundOfOneUnknownIsItsBestChoice) {
   EXPECT_NEAR(information_bound(rows, 1, 2, 1), std::log(8.5) + 5.5 / 8.5, 1e-12);
 }
 
-// Of two unknowns with weights of a fifth each: log det of ((10.4, -4.8), (-4.8, 7.4)), and the gradients, of which the
-// fifth is largest. The next iteration gives a larger bound, a later one a smaller.
+// Two unknowns and weights of a fifth each: log det of ((10.4, -4.8), (-4.8, 7.4)), and the gradients, the fifth of
+// which is largest. The next iteration gives a larger bound, a later one a smaller.
 TEST(PoseDesign, TheBoundIsTheSmallestOfAllIterations) {
   const RealMatrix rows(5, 2, {3, -4, 3, 0, -3, 4, 2, 0, 4, 0});
   const double determinant = 10.4 * 7.4 - 4.8 * 4.8, first = 7.4 * 9 - 2 * 4.8 * 12 + 10.4 * 16;
@@ -166,7 +166,7 @@ TEST(PoseDesign, CoversMissingBinsFirst) {
   EXPECT_EQ(still_missing, (std::vector<int>{0, 0, 0, 1}));  // nothing lies in the last bin
 }
 
-// Bins count, not what they lack; each choice is one of what they lack.
+// A bin that lacks several measurements counts once, and each chosen row reduces what it lacks by one.
 TEST(PoseDesign, BinsThatLackSeveralCountOnceEach) {
   const RealMatrix equal = vernier_test::vector({1, 1, 1});
   const Eigen::MatrixXi two_each{{2, 3}, {0, 1}, {3, 3}};

@@ -405,7 +405,8 @@ TEST(BackPropagation, TenStepsThatHardlyHelpEndIt) {
   }
 }
 
-// So many epochs after the best one: stopped there by hand the network is the same, one earlier it is another.
+// Patience counts epochs after the best one: training that ends there gives the same network, one epoch earlier
+// another.
 TEST(BackPropagation, PatienceCountsFromTheBestEpoch) {
   const Inputs x = inputs(60, 39);
   const Targets y = targets(x, 4e-4);
@@ -474,7 +475,7 @@ TEST(BackPropagation, StopsEarly) {
   }
 }
 
-// Decay that only shrinks the weights lowers what is trained, but not the error of other samples: that decides.
+// Decay that only shrinks the weights lowers the training objective, but not the validation error, which decides.
 TEST(BackPropagation, ValidationCountsErrorsAlone) {
   const Inputs x = inputs(40, 41);
   const Targets y = targets(x);

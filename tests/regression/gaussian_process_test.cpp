@@ -241,7 +241,8 @@ TEST(BoundedBfgs, FindsRosenbrocksMinimumAndThatAtABound) {
   EXPECT_EQ(high.x(0), 1.5);
 }
 
-// Of a parabola two slopes tell everything: after a step against the slope, of length 1, the next leads to the minimum.
+// Two gradients determine a parabola: after a first step of length 1 along the negative gradient the second reaches the
+// minimum.
 TEST(BoundedBfgs, TakesWholeStepsOfAtMostTwo) {
   std::vector<double> visited;
   const auto search_from = [&](double from, double minimum, double bend) {

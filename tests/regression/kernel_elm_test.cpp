@@ -209,7 +209,7 @@ TEST(KernelElm, LooksAtTheWholeGrid) {
   EXPECT_NEAR(*lengths.rbegin() / typical, 8 * std::sqrt(2.0), 1e-9);
 }
 
-// Neighbours that say the opposite: nothing is better than the mean, in which heavy samples count for more.
+// Neighbouring samples of opposite sign: the mean, weighted by the samples, is best.
 TEST(KernelElm, TheMeanIsWeighted) {
   VectorX x(20), y(20);
   for (Index i = 0; i < 20; ++i) {

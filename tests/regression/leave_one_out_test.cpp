@@ -245,7 +245,7 @@ TEST(LeaveOneOutError, FromProductsIsThatOfSingularValues) {
         }
 }
 
-// Of noise the mean alone is often best, also by products.
+// For pure noise the mean alone is often best, also when errors are computed from products.
 TEST(LeaveOneOutError, OfTheMeanAlone) {
   int mean_wins = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

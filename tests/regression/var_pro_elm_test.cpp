@@ -97,7 +97,7 @@ TEST(VarProObjective, IsTheLeastOverTheOutputWeights) {
       }
 }
 
-// In units of the spread the mean alone has 1, also where the spread is a ten-millionth of the mean.
+// The mean alone has an error of 1 in units of the spread, even where the spread is a ten-millionth of the mean.
 TEST(VarProObjective, ASmallSignalOnALargeOffset) {
   const Inputs x = inputs(50, 40);
   Targets y = targets(x);
@@ -214,7 +214,7 @@ TEST(VarProObjective, WeightsAreRepeatedSamples) {
 }
 
 // Equal nodes and hardly any ridge: the products cannot be factorised, the samples take over.
-// By products or from the samples, weights of any sum count alike.
+// From products as from samples, only the ratios of weights matter.
 TEST(VarProObjective, ProductsCountWeightsAsSamplesDo) {
   const Inputs x = inputs(60, 42);
   const Targets y = targets(x);

@@ -520,7 +520,7 @@ TEST(FanucRules, PositionsThatAreRefused) {
     EXPECT_EQ(told(fanuc_position(1, usual, wrong)), "5 P[1]: a component is missing or no number\n");
 }
 
-// Of a position that one move takes as a difference nobody knows what the other means; zinc is no option.
+// A position that one move uses as an increment is not corrected for another; `zinc` is no option.
 TEST(FanucRules, IncrementalMoves) {
   const std::string position = fanuc_position(1, "N U T, 0, 0, 0", fanuc_values);
   const RobotProgram program =

@@ -230,7 +230,7 @@ TEST(SwarmDraws, APlaceAsGoodIsNoBetter) {
   EXPECT_NE(s.positions, first);
 }
 
-// A value that is exactly what suffices suffices.
+// A value equal to the threshold suffices.
 TEST(Targets, AreReachedByEquality) {
   const auto two = [](const VectorX&) { return 2.0; };
   const SearchResult found = minimize(Pso{.particles = 4}, two, Box::cube(2, -1, 1), {.target = 2}, 1);
@@ -238,7 +238,8 @@ TEST(Targets, AreReachedByEquality) {
   EXPECT_EQ(found.generations, 0);
 }
 
-// In proportion to how much better they are than the worst finite one; who is not finite is no parent.
+// Parents are drawn in proportion to their advantage over the worst finite individual; one that is not finite is never
+// drawn.
 TEST(Roulette, TurnsAlsoWithValuesThatAreNotFinite) {
   const double infinity = std::numeric_limits<double>::infinity();
   const auto counts = [](const VectorX& fitness, int tournament) {

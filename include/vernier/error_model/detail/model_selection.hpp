@@ -21,14 +21,15 @@ class ModelSelection {
   VERNIER_API ModelSelection(CalibrationProblem start, const ErrorModelOptions& options,
                              std::vector<HarmonicSpectrum> spectra_of_joints);
 
-  CalibrationProblem problem;             ///< `changed` has to be called once its unknowns or their values have changed
-  std::vector<HarmonicSpectrum> spectra;  ///< of each joint, with the lines of its drive and those that were found
-  std::vector<BlockChoice> blocks{};      ///< decisions so far, in order
-  const Index stride;                     ///< every how manieth pose is left out
-  bool converged = true;                  ///< whether every `solve` converged
+  CalibrationProblem problem;                ///< call `changed` after a change of its unknowns or their values
+  std::vector<HarmonicSpectrum> spectra;     ///< of each joint, with the lines of its drive and those that were found
+  std::vector<BlockChoice> blocks{};         ///< decisions so far, in order
+  const Index stride;                        ///< every stride-th pose is left out
+  bool converged = true;                     ///< whether every `solve` converged
   mutable double leave_one_out_seconds = 0;  ///< time that leave-one-pose-out errors took
 
-  /// From so many poses on bands of orders are sized apart, and errors suffice to decide.
+  /// Number of poses from which every band of orders has a prior size of its own, and leave-one-pose-out errors alone
+  /// decide on blocks.
   static constexpr Index many_poses = 500;
 
   /// The problem, linearised at its present values.

@@ -103,7 +103,8 @@ class CalibrationProblem {
   /// (distances, heights); 0 where there are none.
   VERNIER_API std::array<double, 3> thresholds() const;
 
-  /// Levenberg-Marquardt, undamped until a step fails; a robust loss is reweighted before every step.
+  /// Levenberg-Marquardt, undamped until a step fails; a robust loss is reweighted before every step. The last of
+  /// `max_iterations` steps is taken without a check that it lowered the cost.
   /// @return whether the iteration converged
   VERNIER_API bool solve(int max_iterations = 20);
 

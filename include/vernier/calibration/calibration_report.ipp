@@ -242,7 +242,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
     if (std::string lines = detail::describe_lines(joints[j], j + 1); !lines.empty()) out.push_back(std::move(lines));
   for (std::string& sentence : next()) out.push_back(std::move(sentence));
   if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size()) {
-    const auto left = static_cast<long long>(weak - advice.size());
+    const std::size_t left = weak - advice.size();
     out.push_back((advice.empty() ? counted(left, "parameter is", "parameters are")
                                   : counted(left, "more parameter is", "more parameters are")) +
                   " weakly determined and regularised around nominal.");

@@ -66,7 +66,10 @@ std::string message(const Parts&... parts) {
 }
 
 /// A number and what it counts: `counted(n, "pose", "poses")` is "1 pose", "2 poses".
-VERNIER_API std::string counted(long long number, std::string_view one, std::string_view many);
+template <class Integer>
+std::string counted(Integer number, std::string_view one, std::string_view many) {
+  return message(number, ' ', number == 1 ? one : many);
+}
 
 /// Throws `std::invalid_argument` with the joined parts unless `condition` holds.
 template <class... Parts>

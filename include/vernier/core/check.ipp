@@ -4,9 +4,7 @@
 
 #include <charconv>
 
-namespace vernier {
-
-namespace detail {
+namespace vernier::detail {
 
 VERNIER_IMPL std::string join(std::initializer_list<MessagePart> parts) {
   using Kind = MessagePart::Kind;
@@ -32,10 +30,4 @@ VERNIER_IMPL [[noreturn]] void throw_invalid_argument(std::initializer_list<Mess
   throw std::invalid_argument(join(parts));
 }
 
-}  // namespace detail
-
-VERNIER_IMPL std::string counted(long long number, std::string_view one, std::string_view many) {
-  return message(number, ' ', number == 1 ? one : many);
-}
-
-}  // namespace vernier
+}  // namespace vernier::detail

@@ -178,8 +178,7 @@ VERNIER_IMPL std::vector<std::string> departures_of(std::span<const Iso9283Visit
     }
     const int states = static_cast<int>(directions.size()) - (directions.contains(0) ? 1 : 0);
     if (directed && (states > 0 || pose == 1 || pose == 2 || pose == 4) && states != 3)
-      departures.add(pose, counted(static_cast<long long>(states), "direction", "directions") +
-                               " of approach, vAP of the norm needs 3");
+      departures.add(pose, counted(states, "direction", "directions") + " of approach, vAP of the norm needs 3");
     if (!directions.contains(0) && states > 0)
       departures.add(pose, message("AP and RP are those of direction ", directions.begin()->first));
   }

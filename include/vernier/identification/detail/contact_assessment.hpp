@@ -4,6 +4,7 @@
 /// What an identification from contacts found: parameters with standard deviations, objects, what touches do not
 /// determine.
 
+#include "vernier/identification/contact_report.hpp"
 #include "vernier/identification/detail/contact_problem.hpp"
 
 namespace vernier::detail {

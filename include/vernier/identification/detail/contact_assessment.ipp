@@ -146,9 +146,8 @@ VERNIER_API void add_contact_status(const ContactProblem& solved, const ArmGeome
              of_arm = static_cast<Index>(report.free.size());
   report.missing = rank_by_positions(solved, identified.with_frames({}, identified.tool())) - of_arm;
   const Index touches = problem.num_blocks();
-  report.message =
-      message(touches, " touches of ", counted(static_cast<long long>(solved.contacts.size()), "object", "objects"),
-              " determine ", counted(of_arm, "parameter of the arm", "parameters of the arm"));
+  report.message = message(touches, " touches of ", counted(solved.contacts.size(), "object", "objects"), " determine ",
+                           counted(of_arm, "parameter of the arm", "parameters of the arm"));
   if (!converged) {
     report.status = IdentifyStatus::not_converged;
     report.message = message("the steps did not vanish within ", solved.options.max_iterations, " iterations");

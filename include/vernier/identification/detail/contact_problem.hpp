@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/identification/contact_report.hpp"
+#include "vernier/data/contacts.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
 #include "vernier/identification/sensor_model.hpp"

@@ -12,6 +12,7 @@
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/report_functions.hpp"
+#include "vernier/io/detail/report_sections.hpp"
 #include "vernier/io/detail/svg_chart.hpp"
 
 namespace vernier::detail {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "vernier/io/detail/report_sections.hpp"
+#include "vernier/io/report_input.hpp"
 
 namespace vernier::detail {
 

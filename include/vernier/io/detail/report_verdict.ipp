@@ -10,6 +10,7 @@
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/detail/html.hpp"
+#include "vernier/io/detail/report_sections.hpp"
 #include "vernier/io/detail/report_verdict.hpp"
 
 namespace vernier::detail {
@@ -51,9 +52,8 @@ VERNIER_API std::vector<std::vector<std::string>> suspect_rows(const ReportInput
 VERNIER_API std::string look_at(const ReportInput& input) {
   std::vector<std::pair<const char*, std::string>> all;
   if (input.audit && !input.audit->empty())
-    all.emplace_back("audit", "The audit of the data has " +
-                                  counted(static_cast<long long>(input.audit->size()), "finding.", "findings."));
-  if (const auto n = static_cast<long long>(suspect_rows(input).size()); n > 0)
+    all.emplace_back("audit", "The audit of the data has " + counted(input.audit->size(), "finding.", "findings."));
+  if (const std::size_t n = suspect_rows(input).size(); n > 0)
     all.emplace_back("suspects", counted(n, "row is suspect.", "rows are suspect."));
   const auto n = static_cast<double>(stage_of(input, input.after).position.size());
   if (input.ellipsoid_coverage && std::abs(*input.ellipsoid_coverage - 0.95) > 1.96 * std::sqrt(0.95 * 0.05 / n))

@@ -41,10 +41,6 @@ class RapidReader {
   struct Span {
     std::size_t first, second;
   };
-  struct Declared {
-    std::vector<std::size_t> targets{};
-    bool array = false, changed = false;
-  };
   struct Move {
     std::size_t token = 0;  // none: routines begin
     std::vector<Span> arguments{};
@@ -112,15 +108,13 @@ class RapidReader {
     if (!text_.is_word(i + 2)) return i + 1;
     const std::string name = word(i + 2);
     std::size_t k = i + 3;
-    const bool array = text_.is(k, '{');
-    if (array) k = behind_brackets(text_, k, text_.tokens.size());
+    if (text_.is(k, '{')) k = behind_brackets(text_, k, text_.tokens.size());
     const bool value = text_.is(k, ':') && text_.is(k + 1, '=');
     if (value) k += 2;
     const bool brackets = value && text_.is(k, '[');
     const std::size_t line = text_.tokens[i].line;
     if (type == "robtarget" || type == "jointtarget") {
-      Declared& declared = names_[name];
-      declared.array = declared.array || array;
+      names_.try_emplace(name);
       if (brackets) {
         const std::size_t before = program_.targets.size();
         const std::size_t end = literal(k, name);
@@ -232,7 +226,7 @@ class RapidReader {
         }
     }
     if (!name.empty())
-      names_[name].targets.push_back(program_.targets.size());
+      names_[name].push_back(program_.targets.size());
     else
       inline_[value.token] = program_.targets.size();
     program_.targets.push_back(std::move(target));
@@ -244,7 +238,6 @@ class RapidReader {
     found.token = i;
     std::size_t k = i + 1, begin = k, depth = 0;
     std::size_t main_end = 0;
-    std::string tool;
     const auto close = [&] {
       const std::size_t end = main_end == 0 ? k : main_end;
       if (end > begin) {
@@ -299,9 +292,9 @@ class RapidReader {
       const auto declared = names_.find(word(first));
       const bool element = text_.is(first + 1, '{');
       const std::size_t end = element ? behind_brackets(text_, first + 1, last) : first + 1;
-      if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.targets.empty()) {
-        step.element = declared->second.targets.size() > 1;
-        for (const std::size_t k : declared->second.targets) {
+      if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.empty()) {
+        step.element = declared->second.size() > 1;
+        for (const std::size_t k : declared->second) {
           step.target = k;
           add_step(steps_, step);
         }
@@ -319,8 +312,8 @@ class RapidReader {
 
   const ProgramText& text_;
   RobotProgram& program_;
-  std::map<std::string, Declared> names_{};
-  std::map<std::size_t, std::size_t> inline_{};  // target by its first token
+  std::map<std::string, std::vector<std::size_t>> names_{};  // targets of each variable
+  std::map<std::size_t, std::size_t> inline_{};              // target by its first token
   std::set<std::string> unused_axes_{};
   std::set<std::string> assigned_{};  // variables
   std::vector<Move> moves_{};

@@ -299,6 +299,36 @@ TEST(ErrorModel, KnowsTheNominalArmInItsFrames) {
   EXPECT_LE((model.nominal().pose(q) - by_hand).norm(), 1e-14);
 }
 
+/// The pose of a model's arm by hand: joint values and their errors go into its chain, between base and tool.
+template <class Arm, int N>
+RealMatrix pose_by_hand(const Arm& arm, const vn::JointVector<N>& q, const vn::JointVector<N>& zeros) {
+  const vn::JointVector<N> at = vn::JointVector<N>(arm.model().joint_errors().template effective<N>(q).joints) + zeros;
+  const RealMatrix chain = arm.model().chain().pose(at), placed = RealMatrix(arm.base()) * chain;
+  return placed * RealMatrix(arm.tool());
+}
+
+// Joint errors are those of the joint values that are commanded, wherever the joints have their zeros.
+TEST(ErrorModel, MovedHasOtherFramesAndZeros) {
+  vn::Rng rng(9);
+  const vn::DhChain<3> chain{{{
+      {.a = 0.3, .alpha = 1.2, .d = 0.4},
+      {.a = 0.1, .alpha = -0.7, .d = 0.2, .joint = vn::JointType::prismatic},
+      {.a = 0.25, .alpha = 0.4, .d = 0.1},
+  }}};
+  const auto model = random_model(chain, 0.02, rng);
+  const vn::JointVector<3> zeros(0.1, -0.07, 0.3);
+  const vn::Isometry3 base = random_frame(rng).isometry(), tool = random_frame(rng).isometry();
+  const auto moved = model.moved(base, zeros, tool);
+  for (const Zone zone : {Zone::inside, Zone::outside}) {
+    const auto q = joints_in<3>(zone, rng);
+    const bool inside = zone == Zone::inside;
+    const RealMatrix before = pose_by_hand(inside ? model.identified() : *model.fallback(), q, zeros);
+    const RealMatrix expected = RealMatrix(base) * before * RealMatrix(tool);
+    EXPECT_LT((RealMatrix(moved.pose(q)) - expected).norm(), 1e-13);
+    EXPECT_GT((RealMatrix(model.moved(base, vn::JointVector<3>::Zero(), tool).pose(q)) - expected).norm(), 0.05);
+  }
+}
+
 TEST(ErrorModel, CorrectsToItsReference) {
   vn::Rng rng(7);
   const auto model = random_model(nominal, 1e-3, rng);

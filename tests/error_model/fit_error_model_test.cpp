@@ -594,5 +594,36 @@ TEST(ErrorModelEstimate, TransmissionByHand) {
   EXPECT_EQ(RealMatrix(estimate.transmission(0, {0, 1}).value), vector({0, 0}));
 }
 
+// Behind a joint with more coefficients, and where sines count: of a cos q + b sin q at 0 and pi / 2.
+TEST(ErrorModelEstimate, TransmissionOfAJointBehindOneOfMoreOrders) {
+  ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
+  JointTerms terms(6);
+  terms.transmission[1] = Fourier::up_to(2);
+  terms.transmission[2] = Fourier::up_to(1);
+  estimate.arm.set_terms(terms, VectorX::Constant(6, 1e-3), VectorX::Ones(6));
+  estimate.arm.move(vector({0, 9, 9, 9, 9, 4, 7}));
+  estimate.covariance = RealMatrix::diagonal(vector({1, 9, 9, 9, 9, 16, 9}));
+  const JointFunction f = estimate.transmission(2, {0, std::numbers::pi / 2});
+  EXPECT_LT((f.value - vector({-1.5e-3, 1.5e-3})).norm(), 1e-15);  // 4 and 7 mrad about their mean
+  EXPECT_LT((f.std - vector({2.5e-3, 2.5e-3})).norm(), 1e-15);     // half of sqrt(4^2 + 3^2)
+}
+
+// The prior of gravity that leave-one-pose-out errors choose is the one that the fit then has.
+TEST(FitErrorModel, HasThePriorThatWasChosen) {
+  const Dataset<6> data =
+      measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 1e-3, .harmonic = 0}), 40, 1);
+  const auto found = fitted(
+      data,
+      {.gear_ratio = false, .coupling = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false});
+  const BlockChoice* elastic = choice_of(found, "elastic");
+  ASSERT_NE(elastic, nullptr);
+  ASSERT_TRUE(elastic->used);
+  EXPECT_NE(elastic->precision, 1);
+  const Index gravity = found.arm.terms().gravity->size();
+  EXPECT_EQ(found.arm.terms().size(), gravity);
+  const VectorX precisions = found.arm.precisions().tail(gravity);
+  for (const double precision : precisions) EXPECT_EQ(precision, elastic->precision);
+}
+
 }  // namespace
 }  // namespace vernier::fit_error_model_test

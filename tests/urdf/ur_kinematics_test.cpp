@@ -129,19 +129,35 @@ TEST_F(UrKinematicsFile, OfAnyRowsIsTheArmUpToItsLastAxis) {
   for (Index i = 0; i < 20; ++i)
     for (Index j = 0; j < 6; ++j) q(i, j) = rng.uniform(-3, 3);
   const auto poses = arm.poses(q);
+  const RobotDescription again = kinematics.robot("again");
   for (Index i = 0; i < 20; ++i) {
     JointVector<6> joints;
     for (Index j = 0; j < 6; ++j) joints(j) = q(i, j);
     EXPECT_LE(difference(described_pose(values, joints) * behind, poses[static_cast<std::size_t>(i)]), 1e-14) << i;
+    EXPECT_LE(difference(again.arm<6>().arm.pose(joints), described_pose(values, joints)), 1e-13) << i;
   }
-  const RobotDescription again = kinematics.robot("again");
   EXPECT_EQ(again.name, "again");
+  EXPECT_EQ(again.drives.size(), 6u);
   EXPECT_EQ(again.joint_names,
             (std::vector<std::string>{"shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"}));
   for (const auto& [lower, upper] : again.limits) {
     EXPECT_TRUE(std::isinf(lower) && lower < 0);
     EXPECT_TRUE(std::isinf(upper) && upper > 0);
   }
+}
+
+// Comments say what the file holds before the first value.
+TEST_F(UrKinematicsFile, BeginsWithItsNote) {
+  ExportNote note;
+  note.robot = "cell 4";
+  note.date = "2026-03-01";
+  const std::string text = UrKinematics::of(RobotDescription::of(robots::ur10()).geometry(), "calib_5").text(note);
+  std::string expected;
+  for (const std::string& line : note.lines()) expected += "# " + line + "\n";
+  expected +=
+      "# The controller keeps its own calibration; joint values that it computes are by that one, not by this.\n"
+      "kinematics:\n  shoulder:\n    x: 0\n";
+  EXPECT_EQ(text.substr(0, expected.size()), expected);
 }
 
 TEST_F(UrKinematicsFile, OtherArmsAreRefused) {

@@ -64,6 +64,7 @@ TEST(Iso9283Path, LineByHand) {
     const double x = 0.125 + 0.25 * static_cast<double>(i);
     EXPECT_NEAR(point.arc_length, x, 1e-15);
     EXPECT_LT((point.commanded.matrix() - pose_at({x, 0, 0}, {0.2 * x, 0, 0}).matrix()).norm(), 1e-14);
+    EXPECT_LT((point.mean.matrix() - pose_at({x, 2e-3 + 2e-3 * x, 0}, {0.2 * x + 5e-3, 0, 0}).matrix()).norm(), 1e-13);
     // y: 1 and 3 + 4 x: barycentre 2 + 2 x, both 1 + 2 x from it
     EXPECT_NEAR(point.at, 2e-3 + 2e-3 * x, 1e-14);
     EXPECT_NEAR(point.rt, 1e-3 + 2e-3 * x, 1e-14);
@@ -118,6 +119,71 @@ TEST(Iso9283Path, PosesFartherApartThanThePointsAreToldOf) {
   };
   EXPECT_EQ(told(0.099), 0u);
   EXPECT_EQ(told(0.101), 10u);
+  // steps of a quarter are those of four points; the first step may be the largest
+  const auto of_four = [&](const Poses& run) {
+    return iso9283_path(path, std::vector<Poses>(10, run), {.points = 4}).departures;
+  };
+  EXPECT_EQ(of_four(path_of({{0, 0, 0}, {0.25, 0, 0}, {0.5, 0, 0}, {0.75, 0, 0}, {1, 0, 0}})).size(), 1u);
+  const auto first = of_four(path_of({{0, 0, 0}, {0.5, 0, 0}, {0.75, 0, 0}, {1, 0, 0}}));
+  ASSERT_EQ(first.size(), 11u);
+  EXPECT_EQ(first[0], "run 1: poses are up to 0.5 m apart, the points to compare 0.25 m: interpolated between them");
+}
+
+// A run may begin and end at the outermost points to compare, and stand still there.
+TEST(Iso9283Path, ARunFromTheFirstPointToTheLast) {
+  const Poses path = path_of({{0, 0, 0}, {1, 0, 0}});
+  const Poses run = path_of({{0.125, 1e-3, 0}, {0.125, 1e-3, 0}, {0.5, 1e-3, 0}, {0.875, 2e-3, 0}});
+  const Iso9283Path result = iso9283_path(path, std::vector<Poses>{run}, {.points = 4});
+  EXPECT_NEAR(result.points[0].at, 1e-3, 1e-15);
+  EXPECT_NEAR(result.points[3].at, 2e-3, 1e-15);
+}
+
+// A run that begins shortly before the middle, where the only point to compare is.
+TEST(Iso9283Path, ARunBeginsAnywhereInTheFirstHalf) {
+  const Poses path = path_of({{0, 0, 0}, {1, 0, 0}}), run = path_of({{0.45, 0, 0}, {0.75, 0, 3e-3}, {1, 0, 0}});
+  const Iso9283Path result = iso9283_path(path, std::vector<Poses>{run}, {.points = 1});
+  EXPECT_NEAR(result.at, 3e-3 / 6, 1e-12);
+}
+
+// At its beginning a run nearer to the leg back is on the leg out.
+TEST(Iso9283Path, AHairpinBeginsOnItsFirstLeg) {
+  const std::vector<Vector3> corners{{0, 0, 0}, {1, 0, 0}, {0, 0.01, 0}};
+  const auto aside = [](double arc) { return Vector3(0, arc < 1 ? 0.006 : 0.0, 0); };
+  const Poses run = run_along(corners, 5e-3, aside);
+  const Iso9283Path result = iso9283_path(path_of(corners), std::vector<Poses>{run}, {.points = 20});
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(result.points[i].at, 0.006, 1e-12) << i;  // then it turns
+}
+
+// Legs 20 mm apart, and a run 12 mm beside each: nearer to the next leg but one. That is sought within three times the
+// way since the last pose and its distance from the path, 3 x (10 + 12) mm. At d before the corner it is 2 d + 20 mm
+// ahead, so beyond that for d = 30 mm. Where the path lies does not matter.
+TEST(Iso9283Path, ALegBesideIsNotTakenForTheNext) {
+  const Vector3 away(3, -2, 1);
+  std::vector<Vector3> corners;
+  for (const Vector3& corner : {Vector3(0, 0, 0), Vector3(0.5, 0, 0), Vector3(0.5, 0.02, 0), Vector3(0, 0.02, 0)})
+    corners.push_back(away + corner);
+  const Vector3 aside(0, 0.012, 0);
+  const Poses run = run_along(corners, 0.01, [&](double) { return aside; });
+  const Iso9283Path result = iso9283_path(path_of(corners), std::vector<Poses>{run}, {.points = 51});
+  for (std::size_t i = 0; i < 24; ++i) {  // up to 0.47 m
+    const Iso9283PathPoint& point = result.points[i];
+    EXPECT_LT((point.mean.translation() - point.commanded.translation() - aside).norm(), 1e-12) << i;
+  }
+}
+
+// A path that comes back to its second corner 5 mm beside it: a run through that corner has passed it already.
+TEST(Iso9283Path, ACornerThatWasPassedIsNotPassedAgain) {
+  const std::vector<Vector3> corners{{0, 0, 0}, {0.5, 0, 0}, {0.8, 0.3, 0}, {0.505, 0.3, 0}, {0.505, -0.3, 0}};
+  const double last = 0.5 + 0.3 * std::numbers::sqrt2 + 0.295;  // beginning of the last leg
+  const auto aside = [&](double arc) { return Vector3(arc < last ? 0.0 : -0.005, 0, 0); };
+  const Poses run = run_along(corners, 0.01, aside);
+  const Iso9283Path result = iso9283_path(path_of(corners), std::vector<Poses>(10, run), {.points = 60});
+  EXPECT_TRUE(result.departures.empty());
+  EXPECT_NEAR(result.points.back().at, 0.005, 1e-12);
+  for (const Iso9283PathPoint& point : result.points)
+    if (point.arc_length > last + 0.02) {
+      EXPECT_NEAR(point.at, 0.005, 1e-12) << point.arc_length;
+    }
 }
 
 TEST(Iso9283Path, RepeatabilityIsTheMeanPlusThreeDeviations) {
@@ -221,6 +287,8 @@ TEST(Iso9283Path, RefusesWhatCannotBe) {
       "iso9283_path: run 1 passes the path from 0 m to 0.75 m, the points to compare lie from 0.125 m to 0.875 m");
   EXPECT_EQ(told(path, {path_of({{0, 0, 0}, {std::nan(""), 0, 0}})}),
             "iso9283_path: run 1, pose 2: the position is not finite");
+  EXPECT_EQ(told(path, {path_of({{std::nan(""), 0, 0}, {1, 0, 0}})}),
+            "iso9283_path: run 1, pose 1: the position is not finite");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -78,6 +79,7 @@ TEST(Iso9283, FiveVisitsByHand) {
   // angles: mean 2, variance 2 / 4
   EXPECT_LT((pose.ap_abc - Vector3(0, 0, 2e-3)).norm(), 1e-15);
   EXPECT_LT((pose.rp_abc - Vector3(0, 0, 3e-3 * std::sqrt(0.5))).norm(), 1e-15);
+  EXPECT_LT((RealMatrix(pose.mean) - moved_by(commanded[0], {2e-3, 0, 0}, {0, 0, 2e-3})).norm(), 1e-14);
   EXPECT_LE(pose.rp_low, pose.rp * (1 + 1e-12));  // equal for these distances
   EXPECT_GT(pose.rp_high, pose.rp);
   EXPECT_TRUE(std::isnan(pose.ap_registered));  // one pose determines no registration
@@ -185,6 +187,63 @@ TEST(Iso9283, IntervalOfFourVisitsByAllDraws) {
   }
 }
 
+// Of five visits there are 3125 draws. Of these the 2.5 % of the smallest t end within several equal ones, and so do
+// the 97.5 %; the 3.75 % end farther on.
+TEST(Iso9283, IntervalOfFiveVisitsByAllDraws) {
+  const std::vector<Vector3> points{{3, 2, 2}, {1, 2, 3}, {0, 0, 1}, {3, 3, 2}, {2, 3, 2}};
+  const auto all = drawn_repeatability(points, {1, 1, 1, 1, 1});
+  std::vector<double> t;
+  for (int draw = 0; draw < 3125; ++draw) {
+    std::vector<int> times(5, 0);
+    for (int k = 0, rest = draw; k < 5; ++k, rest /= 5) ++times[static_cast<std::size_t>(rest % 5)];
+    if (std::count(times.begin(), times.end(), 0) == 4) continue;  // one visit alone
+    const auto one = drawn_repeatability(points, times);
+    t.push_back((one.first - all.first) / one.second);
+  }
+  std::sort(t.begin(), t.end());
+  ASSERT_EQ(t.size(), 3120u);
+  const double low = t[77], high = t[3040];
+  for (const std::size_t same_low : {61u, 98u}) ASSERT_NEAR(t[same_low], low, 1e-9);
+  for (const std::size_t same_high : {3011u, 3068u}) ASSERT_NEAR(t[same_high], high, 1e-9);
+  ASSERT_GT(t[116], low + 1);
+
+  std::vector<Iso9283Visit> visits;
+  for (int k = 0; k < 5; ++k) visits.push_back({1, k + 1, 0, pose_of(1e-3 * points[static_cast<std::size_t>(k)])});
+  const std::vector<Isometry3> commanded{pose_of({0, 0, 0})};
+  const Iso9283Pose pose = iso9283(visits, commanded, {.draws = 20'000}).poses[0];
+  EXPECT_NEAR(pose.rp_low, 1e-3 * std::max(0.0, all.first - high * all.second), 1e-12);
+  EXPECT_NEAR(pose.rp_high, 1e-3 * (all.first - low * all.second), 1e-12);
+}
+
+// Three visits have an interval whatever is drawn; of draws of one visit alone it is RP itself.
+TEST(Iso9283, IntervalsOfNoDrawsAndOfOne) {
+  const std::vector<Isometry3> commanded{pose_of({0, 0, 0})};
+  const std::vector<Iso9283Visit> visits{
+      {1, 1, 0, pose_of({0, 0, 0})}, {1, 2, 0, pose_of({3e-3, 0, 0})}, {1, 3, 0, pose_of({0, 1e-3, 0})}};
+  const Iso9283Pose none = iso9283(visits, commanded, {.draws = 0}).poses[0];
+  EXPECT_TRUE(std::isnan(none.rp_low) && std::isnan(none.rp_high));
+  int itself = 0, other = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Iso9283Pose one = iso9283(visits, commanded, {.draws = 1, .seed = seed}).poses[0];
+    ASSERT_TRUE(std::isfinite(one.rp_low) && one.rp_low == one.rp_high) << seed;
+    ++(std::abs(one.rp_low - one.rp) < 1e-15 ? itself : other);
+  }
+  EXPECT_GT(itself, 10);  // a third of the draws: one visit alone, or each once
+  EXPECT_LT(itself, 60);
+  EXPECT_GT(other, 0);
+}
+
+// Four visits on a circle: their distances are equal, RP has no standard error, and its interval is RP alone.
+TEST(Iso9283, TheIntervalOfVisitsAtOneDistanceIsOneValue) {
+  std::vector<Iso9283Visit> visits;
+  for (const Vector3& at : {Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0)})
+    visits.push_back({1, static_cast<int>(visits.size()) + 1, 0, pose_of(at)});
+  const Iso9283Pose pose = iso9283(visits, std::vector<Isometry3>{pose_of({0, 0, 0})}).poses[0];
+  EXPECT_EQ(pose.rp, 1);
+  EXPECT_EQ(pose.rp_low, 1);
+  EXPECT_EQ(pose.rp_high, 1);
+}
+
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 TEST(Iso9283, SameSeedSameBitsWhateverTheOrder) {
@@ -277,6 +336,20 @@ TEST(Iso9283, RegistrationTakesOutTheFrame) {
   EXPECT_LT((RealMatrix(*result.registration) - register_points(from, to)).norm(), 1e-12);
   const std::vector<Isometry3> line{pose_of({0, 0, 0}), pose_of({1, 1, 0}), pose_of({2, 2, 0})};
   EXPECT_FALSE(iso9283(visits_of(line, 3, 1e-4, 0, 9), line).registration);
+}
+
+// Three poses beside one line have a registration; rounding does not take them off it.
+TEST(Iso9283, ThreePosesHaveARegistrationUnlessOnALine) {
+  const auto three = [](double aside) {
+    std::vector<Isometry3> out;
+    for (const double k : {1.0, 2.0, 5.0}) out.push_back(pose_of({0.1 * k, 0.7 / 3 * k, 0.3 * k + aside * k * k}));
+    return out;
+  };
+  const auto triangle = three(0.1), line = three(0);
+  const Iso9283 found = iso9283(visits_of(triangle, 3, 1e-4, 0, 9), triangle, {.draws = 0});
+  EXPECT_TRUE(found.registration);
+  for (const Iso9283Pose& pose : found.poses) EXPECT_LT(pose.ap_registered, 1e-3);
+  EXPECT_FALSE(iso9283(visits_of(line, 3, 1e-4, 0, 9), line, {.draws = 0}).registration);
 }
 
 // Nothing depends on the frame but the components; of them the root of the squares does not.
@@ -388,6 +461,30 @@ TEST(Iso9283, DriftByHand) {
   EXPECT_TRUE(std::isnan(untimed.drift[0].groups[0].time_s));
 }
 
+// Accuracy of a group is that of its barycentre with respect to the command, wherever that is.
+TEST(Iso9283, DriftIsWithRespectToTheCommand) {
+  const std::vector<Isometry3> commanded{pose_of({0.5, -0.25, 1})};
+  std::vector<Iso9283Visit> visits;
+  for (int k = 0; k < 4; ++k)
+    visits.push_back({1, k + 1, 0, moved_by(commanded[0], Vector3(0, k < 2 ? 1e-3 : 3e-3, 0), Vector3::Zero())});
+  const Iso9283Drift drift = iso9283(visits, commanded, {.drift_visits = 2}).drift.at(0);
+  EXPECT_NEAR(drift.groups.at(0).ap, 1e-3, 1e-15);
+  EXPECT_NEAR(drift.groups.at(1).ap, 3e-3, 1e-15);
+}
+
+// Without options: 2000 draws, groups of ten visits, of which a drift needs two.
+TEST(Iso9283, OptionsThatAreNotGiven) {
+  const std::vector<Isometry3> one{pose_of({0.4, 0, 0.5})};
+  const auto drifts = [&](int cycles) { return iso9283(visits_of(one, cycles, 1e-5, 0, 3), one).drift.size(); };
+  EXPECT_EQ(drifts(19), 0u);
+  EXPECT_EQ(drifts(20), 1u);
+  const auto visits = visits_of(one, 12, 1e-5, 0, 3);
+  const Iso9283Pose pose = iso9283(visits, one).poses[0];
+  const Iso9283Pose same_pose = iso9283(visits, one, {.draws = 2000, .seed = 1}).poses[0];
+  EXPECT_EQ(pose.rp_low, same_pose.rp_low);
+  EXPECT_EQ(pose.rp_high, same_pose.rp_high);
+}
+
 // Accuracy that gets better drifts, too, and counts from the first group.
 TEST(Iso9283, DriftIsTheLargestChangeSinceTheFirstGroup) {
   const std::vector<double> at{5, 3, 6, 4}, off{0.5, 0.1, 0.7, 0.2};
@@ -418,6 +515,21 @@ TEST(Iso9283, WithoutOrientations) {
   EXPECT_TRUE(with.departures.empty());
   ASSERT_EQ(without.departures.size(), 1u);
   EXPECT_EQ(without.departures[0], "no orientations were measured: AP, RP, AD, RD and vAP of positions only");
+}
+
+// Orientations that were said not to be measured are not evaluated, even where they look like some.
+TEST(Iso9283, OrientationsThatWereNotMeasuredAreNotEvaluated) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  auto visits = visits_of(poses, 3, 1e-5, 1e-3, 10);
+  for (const int direction : {1, 2})
+    for (int cycle = 1; cycle <= 3; ++cycle) visits.push_back({1, cycle, direction, poses[0]});
+  const Iso9283 found = iso9283(visits, poses, {.orientations = false, .draws = 0});
+  ASSERT_TRUE(found.distance);
+  EXPECT_TRUE(all_nan(found.distance->ad_abc) && all_nan(found.distance->rd_abc));
+  EXPECT_TRUE(std::isfinite(found.distance->ad_xyz.sum() + found.distance->rd_xyz.sum()));
+  ASSERT_EQ(found.variations.size(), 1u);
+  EXPECT_TRUE(all_nan(found.variations[0].vap_abc));
+  EXPECT_EQ(found.variations[0].vap, 0);
 }
 
 /// All departures, a line each.
@@ -474,6 +586,76 @@ TEST(Iso9283, Departures) {
   EXPECT_NE(departures_of(visits_of(many, 2, 1e-5, 0, 1), many)
                 .find("poses 1, 2, 3, 4, 5, ... (8 in all): 2 cycles, the norm asks for 30"),
             std::string::npos);
+}
+
+/// Visits of a pose from one direction, after all others.
+void visit_from(std::vector<Iso9283Visit>& visits, const std::array<Isometry3, 5>& poses, int pose, int direction,
+                int cycles) {
+  for (int cycle = 1; cycle <= cycles; ++cycle)
+    visits.push_back({pose, cycle, direction, poses[static_cast<std::size_t>(pose - 1)], 1e6 + 100 * cycle});
+}
+
+// P1, P2 and P4 need three directions where any pose has some, and each pose that has some needs three.
+TEST(Iso9283, DirectionsThatTheNormNeeds) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  const std::vector<Iso9283Visit> norm = visits_of(poses, 30, 1e-5, 1e-5, 11);
+  auto visits = norm;
+  visit_from(visits, poses, 3, 1, 20);
+  EXPECT_EQ(departures_of(visits, poses),
+            "poses 1, 2, 4: 0 directions of approach, vAP of the norm needs 3\n"
+            "pose 3: direction 1: 20 cycles, the norm asks for 30\n"
+            "pose 3: 1 direction of approach, vAP of the norm needs 3\n");
+  EXPECT_TRUE(iso9283(visits, poses, {.draws = 0}).variations.empty());  // nothing to compare it with
+  std::erase_if(visits, [](const Iso9283Visit& v) { return v.pose == 3 && v.direction == 0; });
+  EXPECT_NE(departures_of(visits, poses).find("pose 3: AP and RP are those of direction 1\n"), std::string::npos);
+  // three directions without direction 0
+  visits = norm;
+  for (const int pose : {1, 2, 4})
+    for (const int direction : {1, 2, 3}) visit_from(visits, poses, pose, direction, 30);
+  EXPECT_EQ(departures_of(visits, poses), "");
+  std::erase_if(visits, [](const Iso9283Visit& v) { return v.direction == 0 && v.pose != 3 && v.pose != 5; });
+  EXPECT_EQ(departures_of(visits, poses), "poses 1, 2, 4: AP and RP are those of direction 1\n");
+}
+
+TEST(Iso9283, DeparturesNameTheFirstOfThePoses) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  auto visits = visits_of(poses, 30, 1e-5, 1e-5, 11);
+  std::erase_if(visits, [](const Iso9283Visit& v) { return (v.pose == 3 || v.pose == 4) && v.cycle > 20; });
+  EXPECT_NE(departures_of(visits, poses).find("unequal numbers of cycles: 20 (pose 3) to 30 (pose 1)\n"),
+            std::string::npos);
+  const auto named = [](std::size_t count) {
+    const std::vector<Isometry3> many(count, pose_of({0, 0, 0}));
+    return departures_of(visits_of(many, 2, 1e-5, 0, 1), many);
+  };
+  EXPECT_NE(named(6).find("poses 1, 2, 3, 4, 5, ... (6 in all): 2 cycles"), std::string::npos);
+  EXPECT_NE(named(5).find("poses 1, 2, 3, 4, 5: 2 cycles"), std::string::npos);
+  EXPECT_EQ(named(1), "1 commanded poses, the norm has 5\npose 1: 2 cycles, the norm asks for 30\n");
+}
+
+// The first visit counts where cycles are compared, and for the pose that is reached from it.
+TEST(Iso9283, TheSequenceBeginsWithTheFirstVisit) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  auto visits = visits_of(poses, 30, 1e-5, 1e-5, 11);
+  std::swap(visits[0].time_s, visits[5].time_s);  // P5 of cycles 1 and 2
+  EXPECT_EQ(departures_of(visits, poses), "pose 5: cycle 1 was measured after cycle 2\n");
+  std::vector<Iso9283Visit> few;
+  for (const int pose : {1, 2, 3, 2}) {
+    const int cycle = few.size() < 3 ? 1 : 2;
+    few.push_back({pose, cycle, 0, poses[static_cast<std::size_t>(pose - 1)], static_cast<double>(few.size())});
+  }
+  EXPECT_NE(departures_of(few, poses)
+                .find("pose 2: reached 1 times from pose 1 and 1 times from pose 3, the norm asks for one direction"),
+            std::string::npos);
+}
+
+// Visits of one time are in the order in which they are given.
+TEST(Iso9283, VisitsOfOneTimeAreInTheirOrder) {
+  const auto poses = iso9283_poses({{0.4, 0, 0.5}, 0.4});
+  auto visits = visits_of(poses, 30, 1e-5, 1e-5, 11);
+  for (Iso9283Visit& visit : visits) visit.time_s = 5;
+  EXPECT_EQ(departures_of(visits, poses), "");
+  std::reverse(visits.begin(), visits.end());
+  EXPECT_EQ(departures_of(visits, poses), "poses 1, 2, 3, 4, 5: cycle 29 was measured after cycle 30\n");
 }
 
 /// Whether five commanded poses are those of the norm.
@@ -627,6 +809,40 @@ TEST(Iso9283Poses, TheLargestCubeWithinReach) {
   EXPECT_FALSE(largest_iso9283_cube(middle - half, middle + half, [](const Isometry3&) { return false; }));
   EXPECT_NE(complaint([&] { (void)largest_iso9283_cube(middle, middle - half, ball); }).find("must be below"),
             std::string::npos);
+  const Vector3 flat(middle.x() + 1, middle.y(), middle.z() + 1);
+  EXPECT_NE(complaint([&] { (void)largest_iso9283_cube(middle, flat, ball); }).find("must be below"),
+            std::string::npos);
+}
+
+// The edges that are tried are fiftieths of the shortest side, from that side itself to one of them.
+TEST(Iso9283Poses, EdgesFromTheShortestSideToAFiftieth) {
+  const Vector3 lower(1, 2, 3), upper(3, 2.5, 4);
+  const auto largest = largest_iso9283_cube(lower, upper, [](const Isometry3&) { return true; });
+  ASSERT_TRUE(largest);
+  EXPECT_DOUBLE_EQ(largest->edge, 0.5);
+  EXPECT_EQ(largest->centre, Vector3(2, 2.25, 3.5));
+  // four poses 0.4 x edge x sqrt(3) from the middle
+  const auto within = [&](double edge) {
+    return largest_iso9283_cube(lower, upper, [&](const Isometry3& pose) {
+      return (translation(pose) - Vector3(2, 2.25, 3.5)).norm() <= 0.4 * edge * std::numbers::sqrt3;
+    });
+  };
+  ASSERT_TRUE(within(0.0101));
+  EXPECT_DOUBLE_EQ(within(0.0101)->edge, 0.01);
+  EXPECT_FALSE(within(0.0099));
+}
+
+// Where only the outermost part of the box is within reach, on any side, the cube is at its face.
+TEST(Iso9283Poses, TheCubeReachesTheFacesOfTheBox) {
+  const Vector3 lower(-1, -1, -1), upper(1, 1, 1);
+  for (Index axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const auto beyond = [&](const Isometry3& pose) { return side * translation(pose)(axis) > 0.6; };
+      const auto cube = largest_iso9283_cube(lower, upper, beyond);
+      ASSERT_TRUE(cube);
+      EXPECT_NEAR(side * cube->centre(axis) + cube->edge / 2, 1, 1e-12) << axis << ' ' << side;
+      EXPECT_NEAR(cube->edge, 0.4 / 0.9, 0.04) << axis << ' ' << side;  // nine tenths of it are beyond
+    }
 }
 
 }  // namespace

@@ -173,6 +173,13 @@ TEST(RankTests, TheApproximationApproximates) {
   }
 }
 
+// One value below two: U = 0, mean 1, variance 2 / 12 x 4; with the correction z = 0.5 / sqrt(2 / 3) = 0.6124, of which
+// a table of the normal distribution has 0.5403 beyond. The exact p is 2 / 3.
+TEST(RankSum, TheApproximationOfThreeValues) {
+  EXPECT_NEAR(rank_sum_test(of({1}), of({2, 3}), 0).p_value, 0.5403, 5e-5);
+  EXPECT_NEAR(rank_sum_test(of({1}), of({2, 3})).p_value, 2.0 / 3, 1e-15);
+}
+
 // Swapped samples mirror the statistic and keep p; what is all equal differs in nothing; infinities have their rank.
 TEST(RankTests, SymmetryAndEnds) {
   const VectorX a = of({1, 4, 4, 9, infinity}), b = of({4, 2, 7, 8, infinity});
@@ -193,6 +200,7 @@ TEST(Holm, ByHand) {
   EXPECT_LT(vernier_test::difference(holm(of({0.01, 0.04, 0.03, 0.005})), of({0.03, 0.06, 0.06, 0.02})), 1e-15);
   EXPECT_EQ(holm(of({0.7, 0.9})), of({1, 1}));
   EXPECT_EQ(holm(of({0.2})), of({0.2}));
+  EXPECT_EQ(holm(of({1, 0})), of({1, 0}));  // both ends are probabilities
   EXPECT_EQ(holm(VectorX()).size(), 0);
 }
 
@@ -202,6 +210,7 @@ TEST(AverageRanks, ByHand) {
       5, 5, 9,              //
       2, 3, 1;
   EXPECT_LT(vernier_test::difference(average_ranks(values), of({4.5 / 3, 6.5 / 3, 7.0 / 3})), 1e-15);
+  EXPECT_EQ(average_ranks(MatrixX::Constant(1, 1, 7)), of({1}));  // one method over one case
 }
 
 TEST(RankTests, Misuse) {
@@ -229,6 +238,7 @@ TEST(CriticalDifference, DemsarsTable) {
   EXPECT_THROW(static_cast<void>(critical_difference(1, 5)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(critical_difference(3, 0)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(critical_difference(3, 5, 1)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(critical_difference(3, 5, 0)), std::invalid_argument);
 }
 
 // Ten pairs whose squared differences of ranks sum to 194: 1 - 6 * 194 / (10 * 99); z = -0.5273, of which a table of
@@ -242,6 +252,13 @@ TEST(RankCorrelation, ByHand) {
   EXPECT_NEAR(rank_correlation(a, -b).p_value, found.p_value, 1e-12);
   // ranks 1, 2.5, 2.5, 4 and 2, 1, 3.5, 3.5: deviations -1.5, 0, 0, 1.5 and -0.5, -1.5, 1, 1
   EXPECT_NEAR(rank_correlation(of({1, 2, 2, 4}), of({3, 1, 4, 4})).rho, 2.25 / std::sqrt(4.5 * 4.5), 1e-12);
+}
+
+// Three pairs are enough: 1 - 6 x 2 / (3 x 8), and z = 0.5 sqrt(2) = 0.7071 with 0.4795 beyond.
+TEST(RankCorrelation, OfThreePairs) {
+  const RankCorrelation found = rank_correlation(of({1, 2, 3}), of({1, 3, 2}));
+  EXPECT_NEAR(found.rho, 0.5, 1e-15);
+  EXPECT_NEAR(found.p_value, 0.4795, 5e-5);
 }
 
 TEST(RankCorrelation, IsNoneOfFewOrEqualValues) {

@@ -56,8 +56,12 @@ TEST(Quantile, OfValuesInAnyOrderBothEndsIncluded) {
   EXPECT_THROW((void)quantile(values, 1.01), std::invalid_argument);
   EXPECT_THROW((void)quantile(values, -0.01), std::invalid_argument);
   EXPECT_THROW((void)quantile(VectorX(), 0.5), std::invalid_argument);
-  values(3) = std::nan("");
-  EXPECT_THROW((void)quantile(values, 0.5), std::invalid_argument);
+  for (const Index k : {0, 3}) {
+    VectorX broken = values;
+    broken(k) = std::nan("");
+    EXPECT_THROW((void)quantile(broken, 0.5), std::invalid_argument);
+  }
+  for (const double probability : {0.0, 0.3, 1.0}) EXPECT_EQ(quantile(VectorX::Constant(1, 7), probability), 7);
 }
 
 // Between two infinite values lies an infinite one.
@@ -68,6 +72,9 @@ TEST(Quantile, OfInfiniteValues) {
   EXPECT_EQ(quantile(values, 0.9), infinity);
   EXPECT_EQ(quantile(values, 0.5), infinity);  // half of the way to one
   EXPECT_DOUBLE_EQ(quantile(values, 0.2), 1.6);
+  VectorX odd(3);
+  odd << infinity, 1, 2;
+  EXPECT_EQ(quantile(odd, 0.5), 2);  // at a value, whatever comes next
 }
 
 Matrix3 diagonal(const Vector3& values) {
@@ -83,6 +90,8 @@ TEST(Radius95, ContainsNinetyFivePerCent) {
   EXPECT_NEAR(radius_95(diagonal({4, 4, 0})), 2 * std::sqrt(5.991465), 6e-3 * 4.9);
   EXPECT_NEAR(radius_95(diagonal({0, 9, 0})), 3 * std::sqrt(3.841459), 2e-2 * 5.9);
   EXPECT_EQ(radius_95(Matrix3::Zero()), 0);
+  const Matrix3 metres = diagonal({1, 4, 9});
+  EXPECT_NEAR(radius_95(1e-6 * metres), 1e-3 * radius_95(metres), 1e-15);  // in millimetres it is a thousandth
   EXPECT_TRUE(std::isnan(radius_95(diagonal({-1, -1, -1}))));
   Rng rng(5);
   for (const Vector3& sigma : {Vector3(1, 2, 3), Vector3(1, 1, 4), Vector3(0.1, 2, 2)}) {
@@ -149,6 +158,28 @@ TEST(PredictionError, OfACompensator) {
   const VectorX errors = position_errors(Shifted{}, two_poses());
   EXPECT_NEAR(errors(0), 0.003, 1e-15);
   EXPECT_NEAR(errors(1), 0.005, 1e-15);
+}
+
+/// Reaches farther by a hundredth of the joint values it came from.
+struct Approached {
+  static constexpr int dof = 2;
+  JointVector<2> from = JointVector<2>::Zero();
+  Isometry3 pose(const JointVector<2>& q) const {
+    Isometry3 out = planar.pose(q);
+    out(2, 3) += from(0) / 100 + from(1) / 1000;
+    return out;
+  }
+  Isometry3 predict(const JointVector<2>& q) const { return pose(q); }
+  Approached approached_from(const JointVector<2>& previous) const { return {previous}; }
+};
+
+TEST(PredictionError, OfAModelWithApproachOfEverySample) {
+  const auto data = two_poses();
+  JointRows<2> previous(2, 2);
+  previous << 0.4, 0, 0, 2;  // 4 mm and 2 mm up
+  const VectorX errors = position_errors(Approached{}, data.approached_from(previous));
+  EXPECT_NEAR(errors(0), 0.003, 1e-15);
+  EXPECT_NEAR(errors(1), 0.003, 1e-15);
 }
 
 TEST(RotationErrors, AreAngles) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "complaint.hpp"
 #include "random_blocks.hpp"
@@ -34,6 +35,14 @@ TEST(RowBlock, ExpandIsColumnTimesFunctions) {
     for (Index k = 0; k < 10; ++k)  // joint 1 has four functions, joint 2 none, joint 3 six
       EXPECT_EQ(all.col(5 + k), factor.col(k < 4 ? 0 : 2) * p.functions(k));
   }
+  RandomBlocks single(1, 1);
+  single.group_sizes = {1, 3, 6};
+  const RealMatrix factor = single.row(0).factor;
+  for (Index k = 0; k < 10; ++k)
+    EXPECT_EQ(RealMatrix(single.expanded(0)).col(5 + k), factor.col(k < 1   ? 0
+                                                                    : k < 4 ? 1
+                                                                            : 2) *
+                                                             single.row(0).functions(k));
 }
 
 TEST(NormalEquations, AreThoseOfTheExpandedRows) {
@@ -256,18 +265,18 @@ TEST(LeaveOneOutErrors, OfValidationBlocksAlone) {
 /// Blocks that depend on local states, and their priors, as one dense problem: dense and factored unknowns, then the
 /// states.
 struct RandomStates {
-  static constexpr Index states = 4, size = 2;
   RandomBlocks blocks;
-  Index unknowns;
+  Index unknowns, states, size;
   std::vector<LocalPrior> priors;
   VectorX precisions, steps, local_steps;
 
-  explicit RandomStates(Index n, Index dense = 5) : blocks(n, 31, false, dense), unknowns(dense + 10) {
+  explicit RandomStates(Index n, Index dense = 5, Index of_states = 4, Index of_size = 2)
+      : blocks(n, 31, false, dense), unknowns(dense + 10), states(of_states), size(of_size) {
     Rng rng(32);
     for (Index b = 0; b < n; ++b) {
       RowBlock& rows = blocks.rows[static_cast<std::size_t>(b)];
       for (const Index k : {0, 1}) {  // of none, one or two states, in either order
-        if ((b + k) % 3 == 0) continue;
+        if ((b + k) % 3 == 0 || k >= states) continue;
         RowBlock::Local& local = rows.local[static_cast<std::size_t>(k)];
         local.state = (b + 3 * k) % states;
         local.columns.resize(6, size);
@@ -346,6 +355,56 @@ TEST(LocalStates, AreEliminatedExactly) {
   }
 }
 
+/// Expects the steps and the inverse that the dense problem has.
+void expect_dense_solution(const RandomStates& problem, const NormalEquations& normal) {
+  const Index unknowns = problem.unknowns, local = problem.states * problem.size;
+  const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+  ASSERT_TRUE(solved.usable());
+  const auto [matrix, gradient] = problem.dense(-1);
+  const RealMatrix inverse = matrix.inverse(), step = -(inverse * gradient);
+  EXPECT_LT((solved.step() - step.block(0, 0, unknowns, 1)).norm(), 1e-9 * step.norm());
+  EXPECT_LT((solved.local_step() - step.block(unknowns, 0, local, 1)).norm(), 1e-9 * step.norm());
+  EXPECT_NEAR(solved.log_determinant(), matrix.log_determinant(), 1e-9 * std::abs(matrix.log_determinant()));
+}
+
+/// Error of a block in the dense problem without it.
+RealMatrix left_out_by_force(const RandomStates& problem, Index b) {
+  const auto [matrix, gradient] = problem.dense(b);
+  const RowBlock& rows = problem.blocks.row(b);
+  const RealMatrix residual = rows.residual - problem.row(b) * matrix.solve(gradient);
+  return (rows.unwhiten * residual).block(0, 0, 3, 1) * rows.position_sigma;
+}
+
+// A state like any other: the smallest problem with local unknowns.
+TEST(LocalStates, OneStateOfOneUnknown) {
+  const RandomStates problem(12, 5, 1, 1);
+  problem.with_system([&](const BlockSystem& system) {
+    const NormalEquations normal(system, problem.priors);
+    expect_dense_solution(problem, normal);
+    const double at = problem.local_steps(0);  // the prior's precision is 20
+    EXPECT_NEAR(local_prior_cost(normal, problem.local_steps), 20 * at * at, 1e-12 * (1 + 20 * at * at));
+    const double slope = normal.local_gradient(0) + 20 * at;
+    EXPECT_NEAR(local_gain(normal, VectorX::Constant(1, 3), problem.local_steps), 3 * slope,
+                1e-12 * (1 + std::abs(slope)));
+    const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+    const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
+    for (Index b = 0; b < 12; ++b) {
+      const RealMatrix wanted = left_out_by_force(problem, b);
+      EXPECT_LT((Vector3(errors.col(b)) - wanted).norm(), 1e-9 * wanted.norm()) << b;
+    }
+  });
+}
+
+// Neither does a state need a prior of its own, nor two states a block in common for a prior that couples them.
+TEST(LocalStates, PriorsOfStatesThatNoBlockCouples) {
+  RandomStates problem(40);
+  for (RowBlock& rows : problem.blocks.rows) rows.local[1] = {};
+  std::erase_if(problem.priors, [](const LocalPrior& prior) { return prior.first == prior.second; });
+  problem.priors.push_back({0, 2, MatrixX::Constant(2, 2, 0.5)});
+  problem.with_system(
+      [&](const BlockSystem& system) { expect_dense_solution(problem, NormalEquations(system, problem.priors)); });
+}
+
 TEST(LocalStates, OtherPriorsOfTheOtherUnknowns) {
   const RandomStates problem(30);
   problem.with_system([&](const BlockSystem& system) {
@@ -376,13 +435,15 @@ TEST(LocalStates, WithoutASolutionThereIsNone) {
 }
 
 TEST(LocalStates, ABlockDependsOnAStateOnce) {
-  RandomStates problem(30);
-  RowBlock& rows = problem.blocks.rows[4];
-  rows.local[0] = rows.local[1] = {3, Rows6::Ones(6, 2)};
-  problem.with_system([&](const BlockSystem& system) {
-    EXPECT_EQ(vernier_test::complaint([&] { (void)NormalEquations(system, problem.priors); }),
-              "NormalEquations: a block depends twice on local state 3");
-  });
+  for (const Index state : {0, 3}) {
+    RandomStates problem(30);
+    RowBlock& rows = problem.blocks.rows[4];
+    rows.local[0] = rows.local[1] = {state, Rows6::Ones(6, 2)};
+    problem.with_system([&](const BlockSystem& system) {
+      EXPECT_EQ(vernier_test::complaint([&] { (void)NormalEquations(system, problem.priors); }),
+                "NormalEquations: a block depends twice on local state " + std::to_string(state));
+    });
+  }
 }
 
 TEST(LocalStates, ThreadsChangeNoBit) {
@@ -408,10 +469,7 @@ TEST(LocalStates, LeaveOneOutErrorsAreThoseOfSolvingWithoutTheBlock) {
     const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
     const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
     for (Index b = 0; b < 40; ++b) {
-      const auto [matrix, gradient] = problem.dense(b);
-      const RowBlock& rows = problem.blocks.row(b);
-      const RealMatrix residual = rows.residual - problem.row(b) * matrix.solve(gradient);
-      const RealMatrix wanted = (rows.unwhiten * residual).block(0, 0, 3, 1) * rows.position_sigma;
+      const RealMatrix wanted = left_out_by_force(problem, b);
       EXPECT_LT((Vector3(errors.col(b)) - wanted).norm(), 1e-9 * wanted.norm()) << b;
     }
   });

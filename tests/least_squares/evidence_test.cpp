@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -175,6 +176,35 @@ TEST(Evidence, OneScaleIsTheBestOfAGrid) {
   }
 }
 
+// Of unknowns that depend on each other, with values beside the priors' means: no factor beside the best is better.
+TEST(Evidence, NoNeighbourOfTheBestScaleIsBetter) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const LocalStates problem = magnified(LocalStates(seed), seed % 3 == 0 ? 0.1 : 1);
+    const NormalEquations normal = problem.normal_equations();
+    const VectorX start = vector({0.1, 2, 30, 0.5});
+    const UnknownGroup group{0, 2, 3};
+    const VectorX found =
+        scale_priors(normal, start, problem.steps, 6 * LocalStates::blocks, group, problem.local_steps);
+    const double reached = evidence(problem, normal, found);
+    for (const double towards : {std::sqrt(2.0), std::sqrt(0.5)}) {
+      VectorX beside = found;
+      for (const Index k : group) beside(k) *= towards;
+      if (beside(0) / start(0) > 1e9) continue;  // no factor is larger
+      EXPECT_LE(evidence(problem, normal, beside), reached + 1e-9) << seed << ' ' << found(0) / start(0);
+    }
+  }
+}
+
+TEST(Evidence, PriorsStayWhereNothingCouldBeSolved) {
+  const LocalStates problem(6);
+  NormalEquations normal = problem.normal_equations();
+  normal.matrix(1, 1) = -1e9;
+  const VectorX precisions = vector({1, 2, 700, 600});
+  const Index values = 6 * LocalStates::blocks;
+  EXPECT_EQ(scale_priors(normal, precisions, problem.steps, values, {0, 2}, problem.local_steps), precisions);
+  EXPECT_EQ(learn_priors(normal, precisions, problem.steps, values, {{0, 2}}, 5, problem.local_steps), precisions);
+}
+
 // A few unknowns are scaled by their marginal distribution, many by one factorisation a factor: here with 300 more
 // unknowns that nothing depends on, which change neither the evidence of a factor nor its best.
 TEST(Evidence, AFewAreScaledAsManyAre) {
@@ -317,6 +347,20 @@ TEST(FactorisedEquations, DiagonalOfTheInverse) {
   const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
   const RealMatrix inverse = solved.inverse();
   EXPECT_LT((solved.inverse_diagonal() - inverse.diagonal()).norm(), 1e-12 * inverse.norm());
+}
+
+// The inverse of min(i, j), i and j from one, has 2 on the diagonal and 1 at its end, -1 beside it.
+TEST(FactorisedEquations, DiagonalOfTheInverseOfManyUnknowns) {
+  constexpr Index n = 330;  // six panels of columns
+  NormalEquations normal = SingleRows{{1}, {0}}.normal();
+  normal.matrix.resize(n, n);
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i) normal.matrix(i, j) = static_cast<double>(std::min(i, j) + 1);
+  normal.gradient.setZero(n);
+  const VectorX none = VectorX::Zero(n);
+  const VectorX found = FactorisedEquations(normal, none, none).inverse_diagonal();
+  ASSERT_EQ(found.size(), n);
+  for (Index k = 0; k < n; ++k) EXPECT_NEAR(found(k), k < n - 1 ? 2 : 1, 1e-7) << k;
 }
 
 }  // namespace

@@ -38,6 +38,17 @@ TEST(MarquardtDamping, FollowsTheRatioOfDecreases) {
   EXPECT_NEAR(damping.value(), 0.3 * 9 / 8 * 2 * 2, 1e-15);
 }
 
+// Only the ratio counts, not the unit of the cost.
+TEST(MarquardtDamping, DecreasesInAnyUnit) {
+  for (const double unit : {1e-6, 4.0, 1e6}) {
+    MarquardtDamping damping(0.8);
+    damping.accept(0.5 * unit, unit);
+    EXPECT_NEAR(damping.value(), 0.8, 1e-15);
+    damping.accept(0.25 * unit, unit);
+    EXPECT_NEAR(damping.value(), 0.9, 1e-15);
+  }
+}
+
 TEST(MarquardtDamping, ADampedStepSolvesTheRaisedSystem) {
   const vernier_test::RandomBlocks blocks(15, 4);
   Rng rng(5);

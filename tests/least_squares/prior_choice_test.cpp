@@ -98,6 +98,7 @@ TEST(DensitiesSupport, WhatMakesThemGreaterByMoreThanAStandardErrorAndErrorsSmal
   EXPECT_TRUE(densities_support(left_out(with, {0.5, 0.0625}), left_out(without, zero)));
   EXPECT_FALSE(densities_support(left_out(with, zero), left_out(without, {0.5, 0.0625})));
   EXPECT_FALSE(densities_support(left_out(without, {9, 9}), left_out(with, zero)));  // errors greater by 0.125
+  EXPECT_FALSE(densities_support(left_out(with, {9, 9}), left_out(with, zero)));     // the same errors
 }
 
 TEST(ErrorsSupport, NothingThatIsNotFinite) {

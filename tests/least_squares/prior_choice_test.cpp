@@ -164,7 +164,7 @@ TEST(ChoosePrior, ReportsTheErrorsOfItsChoice) {
 // each block in turn.
 TEST(ChoosePrior, TriesPriorsOfAllSizes) {
   for (const double size : {10.0, 1.0, 0.1, 0.01})
-    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u, 7u}) {  // the last is best under 1e4 where unknowns are the smallest
       RandomBlocks poses(24, seed);
       Rng rng(seed + 10);
       const VectorX truth = random_vector(rng, 15, size);

@@ -277,7 +277,7 @@ TEST(Iso9283Path, RefusesWhatCannotBe) {
   const auto told = [&](const Poses& commanded, const std::vector<Poses>& measured, int points = 10) {
     return complaint([&] { (void)iso9283_path(commanded, measured, {.points = points}); });
   };
-  EXPECT_EQ(told({path[0]}, runs), "iso9283_path: 1 commanded poses, a path has at least 2");
+  EXPECT_EQ(told({path[0]}, runs), "iso9283_path: 1 commanded pose, a path has at least 2");
   EXPECT_EQ(told({path[0], path[0]}, runs), "iso9283_path: commanded poses 1 and 2 have the same position");
   EXPECT_EQ(told(path, {}), "iso9283_path: no runs");
   EXPECT_EQ(told(path, runs, 0), "iso9283_path: 0 points, must be at least 1");

@@ -629,7 +629,7 @@ TEST(Iso9283, DeparturesNameTheFirstOfThePoses) {
   };
   EXPECT_NE(named(6).find("poses 1, 2, 3, 4, 5, ... (6 in all): 2 cycles"), std::string::npos);
   EXPECT_NE(named(5).find("poses 1, 2, 3, 4, 5: 2 cycles"), std::string::npos);
-  EXPECT_EQ(named(1), "1 commanded poses, the norm has 5\npose 1: 2 cycles, the norm asks for 30\n");
+  EXPECT_EQ(named(1), "1 commanded pose, the norm has 5\npose 1: 2 cycles, the norm asks for 30\n");
 }
 
 // The first visit counts where cycles are compared, and for the pose that is reached from it.
@@ -644,7 +644,7 @@ TEST(Iso9283, TheSequenceBeginsWithTheFirstVisit) {
     few.push_back({pose, cycle, 0, poses[static_cast<std::size_t>(pose - 1)], static_cast<double>(few.size())});
   }
   EXPECT_NE(departures_of(few, poses)
-                .find("pose 2: reached 1 times from pose 1 and 1 times from pose 3, the norm asks for one direction"),
+                .find("pose 2: reached 1 time from pose 1 and 1 time from pose 3, the norm asks for one direction"),
             std::string::npos);
 }
 

@@ -94,7 +94,8 @@ VERNIER_IMPL Iso9283Path iso9283_path(std::span<const Isometry3> commanded,
   constexpr int points_of_norm = 10;
   constexpr std::size_t runs_of_norm = 10;
   const bool oriented = options.orientations;
-  require(commanded.size() >= 2, "iso9283_path: ", commanded.size(), " commanded poses, a path has at least 2");
+  require(commanded.size() >= 2, "iso9283_path: ", counted(commanded.size(), "commanded pose", "commanded poses"),
+          ", a path has at least 2");
   require(!runs.empty(), "iso9283_path: no runs");
   require(options.points >= 1, "iso9283_path: ", options.points, " points, must be at least 1");
   detail::PoseLine path;

@@ -135,7 +135,7 @@ VERNIER_API void check_sequence(std::span<const Iso9283Visit> visits, Departures
     if (from.size() > 1) {
       std::string words;
       for (const auto& [other, times] : from)
-        words += message(words.empty() ? "" : " and ", times, " times from pose ", other);
+        words += message(words.empty() ? "" : " and ", counted(times, "time", "times"), " from pose ", other);
       departures.add(pose, "reached " + words + ", the norm asks for one direction");
     }
 }
@@ -145,7 +145,8 @@ VERNIER_IMPL std::vector<std::string> departures_of(std::span<const Iso9283Visit
   constexpr std::size_t cycles_of_norm = 30;
   Departures departures;
   std::vector<std::string> out;
-  if (commanded.size() != 5) out.push_back(message(commanded.size(), " commanded poses, the norm has 5"));
+  if (commanded.size() != 5)
+    out.push_back(counted(commanded.size(), "commanded pose", "commanded poses") + ", the norm has 5");
   if (commanded.size() == 5 && !on_cube(commanded))
     out.push_back(
         "the commanded poses are not the centre of a cube and four points on the diagonals of a diagonal plane, 10 % "
@@ -179,7 +180,7 @@ VERNIER_IMPL std::vector<std::string> departures_of(std::span<const Iso9283Visit
     const int states = static_cast<int>(directions.size()) - (directions.contains(0) ? 1 : 0);
     if (directed && (states > 0 || pose == 1 || pose == 2 || pose == 4) && states != 3)
       departures.add(pose, counted(states, "direction", "directions") + " of approach, vAP of the norm needs 3");
-    if (!directions.contains(0) && states > 0)
+    if (!directions.contains(0))
       departures.add(pose, message("AP and RP are those of direction ", directions.begin()->first));
   }
   check_sequence(visits, departures);

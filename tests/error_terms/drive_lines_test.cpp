@@ -61,6 +61,14 @@ TEST(DriveLines, TwoOrdersBesideALineHaveAnotherCause) {
   for (const int order : {100, 102, 2423, 2425}) EXPECT_NE(cause_of(order, drive), "") << order;
 }
 
+// A resolver of one pole pair, a motor without gear; the constant is the joint's zero, which no drive causes.
+TEST(DriveLines, TheCoarsestDrivesHaveCauses) {
+  EXPECT_EQ(cause_of(3, {.encoder_periods = 1}), "half the period of an encoder of 1 periods a turn");
+  EXPECT_EQ(cause_of(5, {.gear_ratio = 1}), "4 a turn of a 1:1 gear");
+  EXPECT_EQ(cause_of(6, {.gear_ratio = 0.5}), "10 a turn of a 0.5:1 gear");
+  EXPECT_EQ(cause_of(0), "");
+}
+
 TEST(DriveLines, AreAtTheNearestOrder) {
   EXPECT_EQ(lines_of({.gear_ratio = 50.2}),  // 200.8, 251, 401.6, 502, 602.4, 1004, 1204.8
             (HarmonicSpectrum{{197, 205, 12e-6},
@@ -76,6 +84,8 @@ TEST(DriveLines, AreFromAbove140To2500) {
   EXPECT_EQ(lines_of({.gear_ratio = 14}),  // 8 a turn are 112, 10 are 140
             (HarmonicSpectrum{{167, 169, 7e-6}, {279, 281, 7e-6}, {335, 337, 7e-6}}));
   EXPECT_EQ(lines_of({.gear_ratio = 625}), (HarmonicSpectrum{{1249, 1251, 7e-6}, {2496, 2504, 12e-6}}));
+  EXPECT_EQ(lines_of({.gear_ratio = 70.5}).front(), (HarmonicBand{140, 142, 7e-6}));   // 2 a turn are 141
+  EXPECT_EQ(lines_of({.gear_ratio = 625.2}), (HarmonicSpectrum{{1249, 1251, 7e-6}}));  // 4 a turn are 2501
   EXPECT_EQ(lines_of({.encoder_periods = 1}), (HarmonicSpectrum{{1, 3, 10e-6}, {1, 4, 6e-6}}));
 }
 

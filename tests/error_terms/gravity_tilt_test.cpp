@@ -217,8 +217,9 @@ TEST(GravityTilt, NamesAreInOrderAndUnique) {
 TEST(GravityTilt, MisuseIsNamed) {
   const DhChain<1> one({{.a = 1}});
   for (const Vector3& bad : {Vector3(0, 0, -9.81), Vector3(0, 0, 0), Vector3(0, 1.00001, 0), Vector3(0, 0, -0.99999),
-                             Vector3(std::nan(""), 0, 1)})
+                             Vector3(std::nan(""), 0, 1), Vector3(1 + 1.2e-6, 0, 0)})
     EXPECT_THROW((void)GravityTilt(one, bad), std::invalid_argument);
+  EXPECT_NO_THROW((void)GravityTilt(one, Vector3(1 - 0.8e-6, 0, 0)));  // written with six digits
   JointTerms terms(2);
   terms.tilt.emplace(one);
   EXPECT_EQ(vernier_test::complaint([&] { (void)JointErrors(terms, VectorX::Ones(6)); }),

@@ -163,6 +163,49 @@ TEST(JointErrors, JointsSideBySideAreSingleOnes) {
   expect_transmissions_of_single_joints<9>();
 }
 
+// Orders without gaps are summed four at a time: runs of every length, before and behind gaps, and an order alone.
+TEST(JointErrors, RunsOfOrdersOfAnyLengthAreSumsOfSines) {
+  vn::Rng rng(79);
+  for (const int first : {1, 2, 7})
+    for (int run = 1; run <= 13; ++run)
+      for (const bool more : {false, true}) {
+        vn::JointTerms terms(1);
+        std::vector<int>& orders = terms.transmission[0].orders;
+        for (int k = 0; k < run; ++k) orders.push_back(first + k);
+        if (more)
+          for (const int k : {2, 3, 4, 5, 6, 8, 20}) orders.push_back(first + run + k);
+        const vn::JointErrors errors(terms, normals(rng, terms.size()));
+        const vn::JointVector<1> q(rng.uniform(-pi, pi));
+        double value = 0, slope = 0;
+        for (std::size_t k = 0; k < orders.size(); ++k) {
+          const double order = orders[k], c = std::cos(order * q(0)), s = std::sin(order * q(0));
+          const double a = errors.coefficients()(static_cast<Index>(2 * k)),
+                       b = errors.coefficients()(static_cast<Index>(2 * k + 1));
+          value += a * c + b * s;
+          slope += order * (b * c - a * s);
+        }
+        const auto at = errors.effective<1>(q);
+        EXPECT_NEAR(at.joints(0) - q(0), value, 1e-12) << first << ", " << run;
+        EXPECT_NEAR(at.derivative(0, 0) - 1, slope, 1e-11) << first << ", " << run;
+      }
+}
+
+// Nine joints fill one vector of eight and one lane of a second: what lies behind the ninth is neither read nor
+// changed.
+TEST(JointErrors, OnlyTheJointsThereAreAreTouched) {
+  vn::Rng rng(80);
+  constexpr int n = 9, room = 16;
+  vn::JointTerms terms(n);
+  terms.transmission.assign(n, vn::Fourier::up_to(3));
+  const vn::JointErrors errors(terms, normals(rng, terms.size(), 1e-3));
+  std::vector<double> q(room, std::nan("")), effective(room, 7), derivative(n * n + room * n, 7);
+  for (std::size_t j = 0; j < n; ++j) q[j] = rng.uniform(-pi, pi);
+  errors.evaluate(q.data(), n, effective.data(), derivative.data());
+  for (std::size_t j = 0; j < n; ++j) EXPECT_NE(effective[j], 7);
+  for (std::size_t j = n; j < effective.size(); ++j) EXPECT_EQ(effective[j], 7) << j;
+  for (std::size_t j = n * n; j < derivative.size(); ++j) EXPECT_EQ(derivative[j], 7) << j;
+}
+
 TEST(JointErrors, HysteresisFollowsTheDirectionOfApproach) {
   vn::JointTerms terms(2);
   terms.hysteresis = {0.01, 0.3};
@@ -373,9 +416,11 @@ TEST(GravityCompliance, CountsItsProductsRowByRow) {
 
 TEST(GravityCompliance, DownIsADirection) {
   const vn::DhChain<1> arm({{.a = 1}});
-  for (const vn::Vector3& bad : {vn::Vector3(0, 0, -9.81), vn::Vector3(0, 0, 0), vn::Vector3(0, 0, -1.00001),
-                                 vn::Vector3(0, 0.99999, 0), vn::Vector3(std::nan(""), 0, 1)})
+  for (const vn::Vector3& bad :
+       {vn::Vector3(0, 0, -9.81), vn::Vector3(0, 0, 0), vn::Vector3(0, 0, -1.00001), vn::Vector3(0, 0.99999, 0),
+        vn::Vector3(std::nan(""), 0, 1), vn::Vector3(1 + 1.2e-6, 0, 0)})
     EXPECT_THROW((void)vn::GravityCompliance(arm, bad), std::invalid_argument);
+  EXPECT_NO_THROW((void)vn::GravityCompliance(arm, vn::Vector3(1 - 0.8e-6, 0, 0)));  // written with six digits
 }
 
 /// All terms at once: harmonics, and joints without functions.
@@ -442,6 +487,43 @@ TEST(JointErrors, EffectiveJointsArePhiBeta) {
   expect_effective_is_phi_beta<6>();
 }
 
+// Every block at once, the configurations approached from known ones: columns lie where their coefficients do.
+TEST(JointErrors, BlocksFollowEachOtherInColumnsAndCoefficients) {
+  vn::Rng rng(81);
+  constexpr int n = 4;
+  const auto arm = vernier_test::random_chain<n>(rng);
+  vn::JointTerms terms = all_terms(arm);
+  terms.hysteresis = {0.02, 0.3};
+  terms.tilt.emplace(arm);
+  const auto errors = random_errors(rng, terms);
+  const VectorX& beta = errors.coefficients();
+  for (int trial = 0; trial < 5; ++trial) {
+    const vn::JointVector<n> q = vernier_test::random_joints<n>(rng);
+    vn::JointVector<n> previous = q;
+    for (double& x : previous) x -= 0.1 * rng.normal();
+    vn::MatrixX dense = vn::MatrixX::Constant(n, terms.num_dense_terms(), std::nan(""));
+    terms.dense_basis(q.data(), previous.data(), dense);
+    const auto effective = [&](const vn::JointVector<n>& at) { return errors.effective(at, previous.data()); };
+    const auto found = effective(q);
+    for (Index i = 0; i < n; ++i) {
+      double sum = errors.transmission(static_cast<int>(i), q(i));
+      for (Index k = 0; k < terms.num_dense_terms(); ++k) sum += dense(i, k) * beta(k);
+      EXPECT_NEAR(found.joints(i) - q(i), sum, 1e-15) << i;
+      for (Index k = 0; k < 2 * n; ++k) {  // width by width, the joints of each
+        const double width = terms.hysteresis[static_cast<std::size_t>(k / n)];
+        EXPECT_DOUBLE_EQ(dense(i, terms.tilt_begin() - 2 * n + k),
+                         k % n == i ? std::tanh((q(i) - previous(i)) / width) : 0);
+      }
+    }
+    for (int k = 0; k < n; ++k) {
+      constexpr double h = 1e-5;
+      const RealMatrix ahead = RealMatrix::of(effective(stepped(q, k, h)).joints),
+                       behind = RealMatrix::of(effective(stepped(q, k, -h)).joints);
+      EXPECT_LE(difference(RealMatrix::of(found.derivative).col(k), (ahead - behind) / (2 * h)), 1e-8) << k;
+    }
+  }
+}
+
 TEST(JointErrors, LinearTermsStayAtTheEndOfWhereTheyAreKnown) {
   vn::JointTerms terms(3);
   terms.gear_ratio = terms.coupling = true;
@@ -471,6 +553,8 @@ TEST(JointErrors, LinearTermsStayAtTheEndOfWhereTheyAreKnown) {
 TEST(JointErrors, NoneChangeNothing) {
   const vn::JointErrors none;
   EXPECT_TRUE(none.empty());
+  EXPECT_EQ(none.terms().joints, 0);
+  EXPECT_EQ(none.terms().size(), 0);
   vn::Rng rng(5);
   const vn::JointVector<6> q = vernier_test::random_joints<6>(rng);
   EXPECT_EQ(RealMatrix(none.effective(q).joints), RealMatrix(q));
@@ -524,8 +608,10 @@ void expect_blocks_in_sequence(const vn::JointTerms& terms) {
   for (const vn::JointTermBlock& block : terms.blocks()) {
     EXPECT_EQ(block.begin, at);
     EXPECT_GT(block.count, 0);
-    if (block.joint >= 0) {
+    if (block.kind == vn::JointTermBlock::Kind::transmission) {
       EXPECT_EQ(block.begin, terms.transmission_begin(block.joint));
+    } else {
+      EXPECT_EQ(block.joint, -1) << "of all joints";
     }
     at += block.count;
   }

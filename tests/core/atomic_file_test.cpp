@@ -129,6 +129,25 @@ TEST_F(AtomicFile, ReadingSaysWhatIsWrong) {
             folder.string() + ": is a folder, not a file");
 }
 
+// A service reads and writes for months: no file stays open, whether it could be read or not.
+TEST_F(AtomicFile, NoFileStaysOpen) {
+  const auto open_files = [] {
+    std::ptrdiff_t count = 0;
+    for (const auto& entry : fs::directory_iterator("/proc/self/fd")) count += entry.path().empty() ? 0 : 1;
+    return count;
+  };
+  if (!fs::exists("/proc/self/fd")) GTEST_SKIP() << "this system does not list open files";
+  const fs::path path = folder / "model.json", taken = folder / "taken";
+  fs::create_directory(taken);
+  const auto before = open_files();
+  vn::write_file(path, "content");
+  EXPECT_EQ(vn::read_file(path), "content");
+  EXPECT_NE(thrown<std::invalid_argument>([&] { (void)vn::read_file(path, 3); }), "nothing thrown");
+  EXPECT_NE(thrown<std::invalid_argument>([&] { (void)vn::read_file(taken); }), "nothing thrown");
+  EXPECT_NE(thrown<std::runtime_error>([&] { vn::write_file(taken, "x"); }), "nothing thrown");
+  EXPECT_EQ(open_files(), before);
+}
+
 TEST_F(AtomicFile, ReadingEndsWhereAFileIsTooLarge) {
   constexpr std::size_t most = std::size_t{1} << 20;
   const fs::path path = folder / "large.csv";

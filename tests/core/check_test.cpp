@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "complaint.hpp"
 #include "vernier/core/box.hpp"
@@ -55,6 +56,13 @@ TEST(Box, ChecksItsBoundsAndNamesThem) {
   EXPECT_FALSE(box.contains(Eigen::Vector3d(-1, 2.0000001, 0)));
   EXPECT_FALSE(box.contains(Eigen::Vector3d(0, 0, std::nan(""))));
   EXPECT_FALSE(box.contains(Eigen::Vector2d(0, 0)));
+  for (int i = 0; i < 3; ++i) {  // each bound of each dimension
+    Eigen::Vector3d below(0, 0, 0), above(0, 0, 0);
+    below(i) = -1.0000001;
+    above(i) = 2.0000001;
+    EXPECT_FALSE(box.contains(below)) << i;
+    EXPECT_FALSE(box.contains(above)) << i;
+  }
 
   EXPECT_EQ(complaint([] { (void)vn::Box::cube(0, -1, 1); }), "Box::cube: dimension is 0, must be at least 1");
   EXPECT_EQ(complaint([] { (void)vn::Box::cube(2, 1, 1); }), "Box::cube: lower bound 1 is not below upper bound 1");
@@ -70,6 +78,25 @@ TEST(Box, ChecksItsBoundsAndNamesThem) {
   bad.upper.resize(2);
   EXPECT_EQ(complaint([&] { bad.validate(); }), "Box: 3 lower and 2 upper bounds");
   EXPECT_EQ(complaint([] { vn::Box{}.validate(); }), "Box: 0 lower and 0 upper bounds");
+}
+
+TEST(Box, MayHaveOneDimensionButNotAnEmptyOrAnEndlessOne) {
+  const vn::Box line = vn::Box::cube(1, -0.25, 0.25);
+  EXPECT_EQ(line.dimension(), 1);
+  EXPECT_NO_THROW(line.validate());
+  // the width counts, not the bounds: a search computes with it
+  for (const auto& [lower, upper] : {std::pair{1.0, 1.0}, std::pair{2.0, 1.0}, std::pair{-6e299, 6e299},
+                                     std::pair{0.0, 1.2e300}, std::pair{std::nan(""), 1.0}}) {
+    vn::Box bad = line;
+    bad.lower(0) = lower;
+    bad.upper(0) = upper;
+    EXPECT_EQ(complaint([&] { bad.validate(); }), vn::message("Box: dimension 0 has bounds [", lower, ", ", upper,
+                                                              "], must be finite and lower below upper"));
+  }
+  vn::Box far = line;  // far away, but of finite width
+  far.lower(0) = 8e299;
+  far.upper(0) = 9e299;
+  EXPECT_NO_THROW(far.validate());
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ TEST(Executors, CoverTheRangeExactlyOnce) {
 }
 
 TEST(ThreadExecutor, UsesOneThreadAPartAndTheCallersForTheFirst) {
-  for (const auto& [n, threads, parts] : {std::array{100, 4, 4}, std::array{3, 8, 3}, std::array{5, 1, 1}}) {
+  for (const auto& [n, threads, parts] :
+       {std::array{100, 4, 4}, std::array{3, 8, 3}, std::array{2, 2, 2}, std::array{9, 2, 2}, std::array{5, 1, 1}}) {
     std::mutex guard;
     std::set<std::thread::id> ids;
     std::thread::id first;

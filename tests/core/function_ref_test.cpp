@@ -89,6 +89,10 @@ static_assert(!std::is_constructible_v<vn::ObserverRef, void (*&)(int)>);
 
 TEST(ObserverRef, ReportsAndMayAskToStop) {
   EXPECT_TRUE(vn::ObserverRef()(vn::Progress{})) << "nobody watches: go on";
+  const vn::Progress begin{};
+  EXPECT_EQ(begin.generation, 0);
+  EXPECT_EQ(begin.evaluations, 0);
+  EXPECT_EQ(begin.best, 0);
   vn::Index seen = 0;
   const auto watch = [&](const vn::Progress& progress) { seen = progress.generation; };
   EXPECT_TRUE(vn::ObserverRef(watch)({.generation = 4}));

@@ -86,6 +86,27 @@ TEST(RegisterPoints, MeetsOnePoint) {
   EXPECT_LT((transformed(register_points(from, to), Vector3(1, 2, 3)) - Vector3(-4, 0, 1)).norm(), 1e-14);
 }
 
+// A mirrored matrix in general position: the rotation M with the largest trace of M' A is the nearest; no small or
+// large turn of it comes nearer.
+TEST(NearestRotation, OfAMirroredMatrixIsARotationAndTheNearest) {
+  Rng rng(6);
+  for (int trial = 0; trial < 5; ++trial) {
+    const RealMatrix turns[] = {exp_so3(2 * vernier_test::random_direction(rng)),
+                                exp_so3(2 * vernier_test::random_direction(rng))};
+    const RealMatrix mirrored = turns[0] * RealMatrix::diagonal(vernier_test::vector({3, 2, -0.5})) * turns[1];
+    const RealMatrix found(nearest_rotation(mirrored));
+    EXPECT_LT((found * found.transpose() - RealMatrix::identity(3)).norm(), 1e-14);
+    EXPECT_NEAR(found.determinant(), 1, 1e-14);
+    const double distance = (found - mirrored).norm();
+    EXPECT_NEAR(distance, std::sqrt(2.0 * 2 + 1 * 1 + 1.5 * 1.5), 1e-13);
+    for (const double angle : {1e-3, 0.1, 1.0, 3.0})
+      for (int k = 0; k < 50; ++k) {
+        const RealMatrix turn(exp_so3(angle * vernier_test::random_direction(rng)));
+        EXPECT_GT((turn * found - mirrored).norm(), distance);
+      }
+  }
+}
+
 TEST(NearestRotation, UndoesASmallStretch) {
   // R S with S symmetric positive definite: R is the nearest, whatever S
   const RealMatrix turn(exp_so3(Vector3(0.4, 2, -1)));

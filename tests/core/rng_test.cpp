@@ -123,6 +123,31 @@ TEST(Rng, NormalHasItsMomentsAndItsShape) {
   EXPECT_LE(gap, 1.95 / root);
 }
 
+// The polar method keeps the direction of a uniform point in the unit disk, s its squared distance from the centre, and
+// puts it at a squared distance of -2 log(s). From the same words on every machine.
+TEST(Rng, NormalPairsLieInTheDirectionsOfUniformPoints) {
+  vn::Rng rng(8), uniforms(8);
+  int outside = 0;
+  for (int i = 0; i < 200; ++i) {
+    double u = 0, v = 0, s = 0;
+    for (;; ++outside) {
+      u = 2 * uniforms.uniform() - 1;
+      v = 2 * uniforms.uniform() - 1;
+      s = u * u + v * v;
+      if (s < 1) break;
+    }
+    vn::Rng alike = rng;
+    const auto [x, y] = rng.normal_pair();
+    EXPECT_EQ(rng, uniforms) << "two words a point, those outside the disk included";
+    EXPECT_NEAR(x * x + y * y, -2 * std::log(s), 1e-12);
+    EXPECT_NEAR(x * v, y * u, 1e-14);
+    EXPECT_GT(x * u + y * v, 0);
+    EXPECT_EQ(alike.normal(), x) << "the first of a pair";
+    EXPECT_EQ(alike, rng);
+  }
+  EXPECT_GT(outside, 20);
+}
+
 TEST(Rng, SignsAreEven) {
   constexpr int n = 100'000;
   vn::Rng rng(3);
@@ -133,6 +158,12 @@ TEST(Rng, SignsAreEven) {
     sum += s;
   }
   EXPECT_NEAR(sum / n, 0, five_sigma / std::sqrt(1.0 * n));
+  // the first bit of a word, set for +1: as in every release, so that seeded results stay
+  vn::Rng words(4), signs(4);
+  for (int i = 0; i < 100; ++i) {
+    const bool upper_half = words() >= std::uint64_t{1} << 63;
+    EXPECT_EQ(signs.sign(), upper_half ? 1 : -1);
+  }
 }
 
 TEST(Rng, BelowHasNoModuloBias) {
@@ -167,6 +198,13 @@ TEST(Rng, PermutationsAreWholeAndEven) {
   for (vn::Index i = 0; i < 1000; ++i) ASSERT_EQ(order[static_cast<std::size_t>(i)], i);
   EXPECT_TRUE(rng.permutation(0).empty());
   EXPECT_EQ(rng.permutation(1), std::vector<vn::Index>{0});
+  // n numbers have n - 1 free places: that many words are drawn (of 2^57 less than one is rejected)
+  for (const vn::Index n : {0, 1, 2, 5, 100}) {
+    vn::Rng drawn = rng;
+    for (vn::Index i = 1; i < n; ++i) drawn();
+    EXPECT_EQ(rng.permutation(n).size(), static_cast<std::size_t>(n));
+    EXPECT_EQ(rng, drawn) << n;
+  }
 
   constexpr int draws = 48'000;
   std::map<std::vector<vn::Index>, int> counts;
@@ -184,6 +222,15 @@ TEST(Rng, ChildSeedsDiffer) {
   }
   EXPECT_EQ(seeds.size(), 100u + 100u * 100u);
   static_assert(vn::child_seed(1, 2) == vn::child_seed(1, 2));
+}
+
+// What a stream adds to the seed: the multiples of one odd number, counted from 1. Seeds that undo it leave the stream
+// of seed 0. Another rule would change every seeded result.
+TEST(Rng, ChildSeedsAreThoseOfEveryRelease) {
+  constexpr std::uint64_t odd = 0xd1342543de82ef95u, first_of_seed_0 = 0x53175d61490b23df;
+  EXPECT_EQ(vn::child_seed(0, ~std::uint64_t{0}), first_of_seed_0);  // 0 times
+  EXPECT_EQ(vn::child_seed(odd, 0), first_of_seed_0);
+  EXPECT_EQ(vn::child_seed(odd + odd, 1), first_of_seed_0);
 }
 
 // Streams of one seed share no number, not even shifted, and do not correlate.

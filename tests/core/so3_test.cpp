@@ -75,6 +75,29 @@ TEST(ExpSo3, IsRodriguesFormulaAtEveryAngle) {
   EXPECT_EQ(RealMatrix(vn::exp_so3(vn::Vector3::Zero())), identity);
 }
 
+/// (1 - cos t)/t^2 and (t - sin t)/t^3 by their series in extended precision; t well below 1.
+long double versine_over_square(long double t) {
+  const long double t2 = t * t;
+  return (1 - t2 / 12 * (1 - t2 / 30 * (1 - t2 / 56))) / 2;
+}
+long double excess_over_cube(long double t) {
+  const long double t2 = t * t;
+  return (1 - t2 / 20 * (1 - t2 / 42 * (1 - t2 / 72))) / 6;
+}
+
+// Not only to the digits of the whole matrix: about an axis in a coordinate plane, one element is of second order
+// alone.
+TEST(ExpSo3, SmallElementsOfSmallRotationsHaveTheirDigits) {
+  for (const double angle : {1e-7, 1e-6, 1e-5, 0.5e-4, 0.99e-4, 1.01e-4, 1e-3}) {
+    const double x = 0.8 * angle, y = 0.6 * angle;
+    const vn::Matrix3 rotation = vn::exp_so3(vn::Vector3(x, y, 0));
+    const long double even = versine_over_square(static_cast<long double>(std::hypot(x, y)));
+    const auto expected = static_cast<double>(even * static_cast<long double>(x) * static_cast<long double>(y));
+    EXPECT_NEAR(rotation(0, 1) / expected, 1, 2e-14) << angle;
+    EXPECT_EQ(rotation(0, 1), rotation(1, 0));
+  }
+}
+
 TEST(ExpSo3, QuarterTurnsByHand) {
   const RealMatrix about_z(3, 3, {0, -1, 0, 1, 0, 0, 0, 0, 1});
   EXPECT_LE((RealMatrix(vn::exp_so3(vn::Vector3(0, 0, pi / 2))) - about_z).norm(), 1e-15);
@@ -142,6 +165,23 @@ TEST(LeftJacobianSo3, IsTheDerivativeOfExpAndItsInverseTheInverse) {
   }
   EXPECT_EQ(RealMatrix(vn::left_jacobian_so3(vn::Vector3::Zero())), identity);
   EXPECT_EQ(RealMatrix(vn::left_jacobian_inverse_so3(vn::Vector3::Zero())), identity);
+}
+
+// About an axis in a coordinate plane: J(0, 1) = (t - sin t)/t^3 x y, J(0, 2) = (1 - cos t)/t^2 y; of the inverse
+// c x y, and c = (1 - t/2 cot(t/2))/t^2 = 1/12 + t^2/720 + t^4/30240 + t^6/1209600.
+TEST(LeftJacobianSo3, SmallElementsHaveTheirDigits) {
+  for (const double angle : {1e-6, 1e-4, 1e-3, 5e-3, 0.9e-2, 0.99e-2}) {
+    const double x = 0.8 * angle, y = 0.6 * angle;
+    const long double product = static_cast<long double>(x) * static_cast<long double>(y),
+                      t = static_cast<long double>(std::hypot(x, y)), t2 = t * t;
+    const vn::Matrix3 jacobian = vn::left_jacobian_so3(vn::Vector3(x, y, 0)),
+                      inverse = vn::left_jacobian_inverse_so3(vn::Vector3(x, y, 0));
+    EXPECT_NEAR(jacobian(0, 1) / static_cast<double>(excess_over_cube(t) * product), 1, 1.5e-15) << angle;
+    EXPECT_NEAR(jacobian(0, 2) / static_cast<double>(versine_over_square(t) * static_cast<long double>(y)), 1, 1.5e-15)
+        << angle;
+    const long double c = (1 + t2 / 60 * (1 + t2 / 42 * (1 + t2 / 40))) / 12;
+    EXPECT_NEAR(inverse(0, 1) / static_cast<double>(c * product), 1, 1.5e-15) << angle;
+  }
 }
 
 TEST(LeftJacobianSo3, SeriesAndFormulaMeet) {

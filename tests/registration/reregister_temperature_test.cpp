@@ -54,5 +54,19 @@ TEST(Reregister, AtTheTemperaturesOfThePoses) {
   }
 }
 
+TEST(Reregister, AtTheTemperatureOfOnePose) {
+  const Model before = model();
+  const Isometry3 motion = FrameParameters(Vector6{0.3, -0.2, 0.1, 0.02, -0.03, 0.5}).isometry();
+  const Model after = before.moved(motion, JointVector<6>::Zero(), Isometry3::Identity());
+  const JointRows<6> joints = abb_irb120_operating_region().sample(robot.chain, 1, 3);
+  const Isometry3 pose = after.at_temperature(37).pose(configuration(joints, 0));
+  PointRows position(1, 3), orientation(1, 3);
+  set_point(position, 0, translation(pose));
+  set_point(orientation, 0, log_so3(rotation(pose)));
+  const Dataset<6> cold = Dataset<6>(joints, position, orientation).without_approach();
+  EXPECT_LT(difference(reregister(before, cold.at_temperatures(VectorX{{37}})).motion.base, motion), 1e-8);
+  EXPECT_GT(difference(reregister(before, cold).motion.base, motion), 0.03e-3);
+}
+
 }  // namespace
 }  // namespace vernier::reregister_temperature_test

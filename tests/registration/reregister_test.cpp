@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "complaint.hpp"
 #include "larger.hpp"
@@ -141,8 +142,10 @@ TEST(Reregister, FindsABaseFromThreePoses) {
   expect_found(found, truth);
   EXPECT_GT(found.rms_before, 1);
   EXPECT_EQ(found.change_std.size(), 6);
-  // one pose says it all, too
-  expect_found(reregister(model, measure(truth, samples(1, 3))), truth);
+  // one pose says it all, too; it leaves nothing over that could contradict
+  const auto one = reregister(model, measure(truth, samples(1, 3)));
+  expect_found(one, truth);
+  EXPECT_EQ(one.contradiction, 0);
 }
 
 TEST(Reregister, FindsABaseFromSixPositions) {
@@ -227,6 +230,7 @@ TEST(Reregister, FindsZerosInNoise) {
   }
   EXPECT_NEAR(found.rms_after, std::sqrt(3) * 0.03e-3, 0.01e-3);
   EXPECT_TRUE(found.estimated.offsets && !found.estimated.base);
+  EXPECT_EQ(found.joint_types, std::vector<JointType>(6, JointType::revolute));
   const auto data = measure(truth, samples(40, 9), noise, 10);
   double before = 0, after = 0;
   for (Index i = 0; i < 40; ++i) {
@@ -316,6 +320,13 @@ TEST(Reregister, SaysWhatPosesDoNotDetermine) {
   // positions do not see how a tool is turned; one pose cannot tell base from tool
   EXPECT_FALSE(reregister(model, positions_at(samples(20, 14)), another_tool({.base = false})).determined);
   EXPECT_FALSE(reregister(model, measure(model, samples(1, 15)), another_tool()).determined);
+  // nor the base from zeros of which nothing is known, or from how a probe is turned
+  const auto open = reregister(model, measure(model, samples(1, 15)),
+                               {.offsets = true, .offset_prior_std = std::numeric_limits<double>::infinity()});
+  EXPECT_FALSE(open.determined);
+  EXPECT_FALSE(open.probe_turned);
+  EXPECT_EQ(open.contradiction, 0);
+  EXPECT_TRUE(open.remarks().empty()) << open.summary();
 }
 
 TEST(Reregister, KeepsTheBitsOfWhatMayNotMove) {
@@ -542,8 +553,44 @@ TEST(RecursiveCalibration, MisuseThrows) {
   EXPECT_TRUE(mentions(with({}, std::numeric_limits<double>::quiet_NaN(), {1, 1}), "forgetting is nan"));
   EXPECT_TRUE(mentions(with({}, 1, {0, 1}), "initial standard deviations"));
   EXPECT_TRUE(mentions(with({}, 1, {1, -1}), "initial standard deviations"));
+  EXPECT_TRUE(mentions(with({}, 1, {1, 0}), "initial standard deviations"));
   EXPECT_TRUE(mentions(with({.base = false}, 1, {1, 1}), "nothing is to be estimated"));
   EXPECT_EQ(with({}, 1, {1, 1}), "");
+}
+
+TEST(ReregistrationReport, OfNothingClaimsNothing) {
+  const ReregistrationReport report;
+  EXPECT_FALSE(report.determined || report.converged || report.probe_turned);
+  for (const double value :
+       {report.rms_before, report.rms_after, report.position_sigma, report.orientation_sigma, report.contradiction})
+    EXPECT_EQ(value, 0);
+  EXPECT_TRUE(report.remarks().empty());
+}
+
+// As much as a limit is not beyond it; powers of two, so that products are exact.
+TEST(ReregistrationReport, RemarksBeginBeyondTheirLimits) {
+  constexpr double small = 1.0 / 512;
+  ReregistrationReport report;
+  report.estimated = {.base = false, .offsets = true, .offset_prior_std = 2 * small};
+  report.motion.offsets = VectorX::Zero(2);
+  report.change_std = VectorX{{small, small * 1.000001}};
+  EXPECT_EQ(report.remarks(), std::vector<std::string>{"The poses tell little about the zeros of joints 2: held near "
+                                                       "where they were."});
+  report.change_std.resize(0);  // not determined: of no joint more is known than of another
+  EXPECT_TRUE(report.remarks().empty());
+
+  report.estimated = {.base = false, .tool = true, .tool_position_prior_std = small};
+  report.motion.tool = rigid_motion(rotation(still), Vector3(0, 3 * small, 0));
+  EXPECT_TRUE(report.remarks().empty());
+  report.motion.tool = rigid_motion(rotation(still), Vector3(0, 3.000001 * small, 0));
+  EXPECT_EQ(report.remarks().size(), 1U);
+
+  report.motion.tool = still;
+  report.estimated = another_tool({.base = false});
+  report.change_std = VectorX::Constant(6, 1e-3);
+  EXPECT_TRUE(report.remarks().empty());
+  report.change_std.setConstant(1.000001e-3);
+  EXPECT_EQ(report.remarks().size(), 2U);
 }
 
 TEST(ReregistrationReport, TheLeastCertainDirectionOfAToolIsSaid) {

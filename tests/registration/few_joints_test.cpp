@@ -1,0 +1,106 @@
+// Arms of one joint and of four, whose re-registration is worked by hand.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "real_matrix.hpp"
+#include "vernier/core/points.hpp"
+#include "vernier/registration/recursive_calibration.hpp"
+#include "vernier/registration/reregister.hpp"
+
+namespace vernier::few_joints_test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <int N>
+ErrorModel<DhChain<N>> rigid(const DhChain<N>& chain) {
+  return {chain, typename ErrorModel<DhChain<N>>::Arm(WithJointErrors<DhChain<N>>(chain))};
+}
+
+/// One joint about z at some angles, and positions measured at a radius of its own for each, at a height of 0.3 m.
+Dataset<1> around(const std::vector<double>& radii) {
+  const auto n = static_cast<Index>(radii.size());
+  JointRows<1> joints(n, 1);
+  PointRows positions(n, 3);
+  for (Index i = 0; i < n; ++i) {
+    const double q = 0.7 * static_cast<double>(i), r = radii[static_cast<std::size_t>(i)];
+    joints(i, 0) = q;
+    set_point(positions, i, Vector3(r * std::cos(q), r * std::sin(q), 0.3));
+  }
+  return {joints, positions};
+}
+
+// A point on the joint's axis does not see the joint turn: its zero is as uncertain as before, and that is said.
+TEST(ReregisterOneJoint, IsLeftToItsPriorWhereNothingTells) {
+  const auto model = rigid<1>(DhChain<1>({{.d = 0.3}}));
+  const auto found = reregister(model, around({0, 0, 0}), {.base = false, .offsets = true, .offset_prior_std = 2e-3},
+                                {.position_sigma = 0.03e-3});
+  EXPECT_TRUE(found.determined);
+  EXPECT_TRUE(found.converged);
+  ASSERT_EQ(found.change_std.size(), 1);
+  EXPECT_NEAR(found.change_std(0), 2e-3, 1e-15);
+  EXPECT_EQ(found.motion.offsets(0), 0);
+  EXPECT_EQ(found.joint_types, std::vector<JointType>{JointType::revolute});
+  const std::string remark = "The poses tell little about the zeros of joints 1: held near where they were.";
+  EXPECT_EQ(found.remarks(), std::vector<std::string>{remark});
+  EXPECT_EQ(found.summary(),
+            "Zero of joint 1 moved by +0.0000 +- 2.0000 mrad\nWeighted for residuals of 0.030 mm a component\n" +
+                remark + "\n");
+}
+
+TEST(ReregisterOneJoint, IsNotDeterminedByNothing) {
+  const auto model = rigid<1>(DhChain<1>({{.d = 0.3}}));
+  const auto found = reregister(model, around({0, 0}), {.base = false, .offsets = true, .offset_prior_std = infinity});
+  EXPECT_FALSE(found.determined);
+  EXPECT_FALSE(found.converged);
+  EXPECT_EQ(found.change_std.size(), 0);
+  EXPECT_TRUE(found.remarks().empty());
+}
+
+// Radii that scatter by e about the arm's: the angle does not follow, so n e^2 are left of 3 n values less one.
+TEST(ReregisterOneJoint, WeightsAreThoseOfWhatItLeaves) {
+  const auto model = rigid<1>(DhChain<1>({{.a = 0.5, .d = 0.3}}));
+  const double e = 1e-3;
+  const auto found = reregister(model, around({0.5 + e, 0.5 - e, 0.5 + e, 0.5 - e}),
+                                {.base = false, .offsets = true, .offset_prior_std = infinity});
+  ASSERT_TRUE(found.determined);
+  EXPECT_NEAR(found.motion.offsets(0), 0, 1e-12);
+  const double sigma = std::sqrt(4 * e * e / (3 * 4 - 1));
+  EXPECT_NEAR(found.position_sigma, sigma, 2e-3 * sigma);
+  EXPECT_NEAR(found.change_std(0), found.position_sigma / (0.5 * std::sqrt(4.0)), 2e-3 * found.change_std(0));
+}
+
+// Base, zeros and tool stand behind each other, whatever the number of joints: lengths and angles of each.
+TEST(RecursiveCalibrationFourJoints, BeginsWithTheGivenDeviations) {
+  const auto model = rigid<4>(DhChain<4>({{.a = 0.3}, {.a = 0.2}, {.d = 0.1}, {.d = 0.1}}));
+  const double length = 2e-3, angle = 5e-3, zero = 7e-3;
+  const std::vector<double> frame{length, length, length, angle, angle, angle};
+  for (const bool base : {false, true})
+    for (const bool offsets : {false, true})
+      for (const bool tool : {false, true}) {
+        if (!base && !offsets && !tool) continue;
+        std::vector<double> wanted;
+        if (base) wanted.insert(wanted.end(), frame.begin(), frame.end());
+        if (offsets) wanted.insert(wanted.end(), {zero, zero, zero, zero});
+        if (tool) wanted.insert(wanted.end(), frame.begin(), frame.end());
+        const RecursiveCalibration<DhChain<4>> online(
+            model, {.base = base, .tool = tool, .offsets = offsets, .offset_prior_std = zero}, {}, 0.98,
+            {length, angle});
+        const MatrixX& covariance = online.covariance();
+        const auto n = static_cast<Index>(wanted.size());
+        ASSERT_EQ(covariance.rows(), n);
+        for (Index r = 0; r < n; ++r)
+          for (Index c = 0; c < n; ++c) {
+            const double deviation = wanted[static_cast<std::size_t>(r)];
+            EXPECT_DOUBLE_EQ(covariance(r, c), r == c ? deviation * deviation : 0) << r << ", " << c;
+          }
+      }
+}
+
+}  // namespace
+}  // namespace vernier::few_joints_test

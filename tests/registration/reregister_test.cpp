@@ -271,6 +271,40 @@ TEST(Reregister, PriorsPullZerosAsMuchAsPosesDo) {
   EXPECT_LT((push - pull).norm(), 1e-6 * pull.norm());
 }
 
+// Zeros beside a base, from orientations that err more than their sensor: a mean rotation of theirs is free to be as
+// large as that error, and each zero is pulled from where it was. A step of least squares from the result is none.
+TEST(Reregister, PriorsPullZerosBesideABaseAndOrientationsThatErr) {
+  const Model model = rigid();
+  const ReregisterOptions options{.offsets = true, .offset_prior_std = 0.3e-3};
+  const Model truth = model.moved(elsewhere, Joints(0.3e-3, -0.4e-3, 0.5e-3, 0.4e-3, -0.6e-3, 0.8e-3), still);
+  const auto data = measure(truth, samples(12, 28), {.position = 0.1e-3, .orientation = 0.8e-3}, 29);
+  const auto found = reregister(model, data, options);
+  ASSERT_TRUE(found.converged && !found.probe_turned);
+  ASSERT_GT(found.orientation_sigma, 3 * sensors.orientation_sigma);
+  const double own = std::sqrt(std::pow(found.orientation_sigma, 2) - std::pow(sensors.orientation_sigma, 2));
+  const double p = 1 / found.position_sigma, o = 1 / found.orientation_sigma;
+  const RealMatrix weights = RealMatrix::diagonal(vector({p, p, p, o, o, o}));
+  RealMatrix information(15, 15), gradient(15, 1);
+  for (Index i = 0; i < data.size(); ++i) {
+    const RealMatrix all = effect_of_changes(found.model, data.joints(i));
+    RealMatrix effect(6, 15);
+    effect.set_block(0, 0, all.block(0, 0, 6, 12));
+    effect.set_block(3, 12, all.block(3, 15, 3, 3));
+    effect = weights * effect;
+    const RealMatrix error = weights * RealMatrix(pose_difference(data.pose(i), found.model.pose(data.joints(i))));
+    information += effect.transpose() * effect;
+    gradient += effect.transpose() * error;
+  }
+  for (Index k = 6; k < 15; ++k) {
+    const double prior = k < 12 ? options.offset_prior_std : own;
+    information(k, k) += 1 / (prior * prior);
+    if (k < 12) gradient(k) -= found.motion.offsets(k - 6) / (prior * prior);
+  }
+  const RealMatrix step = information.solve_by_cholesky(gradient);
+  EXPECT_GT(RealMatrix(found.motion.offsets).largest(), 0.1e-3);
+  for (Index k = 0; k < 12; ++k) EXPECT_LT(std::abs(step(k)), 1e-3 * found.change_std(k)) << k;
+}
+
 // Three values for six zeros that have priors: what is left over of them is more than nothing, and less than three.
 TEST(Reregister, WeightsCountWhatTheUnknownsLeave) {
   const Model model = rigid();

@@ -252,6 +252,10 @@ TEST(Contradiction, IsWaldsStatistic) {
   const double square = probe.dot(by_chance.inverse() * probe);
   constexpr double redundancy = 6 * 17 - 9;  // values that the unknowns leave free
   EXPECT_NEAR(found.contradiction, redundancy * std::log1p(square / redundancy), 1e-5 * found.contradiction);
+  // as much as the threshold is no more than it
+  const auto equal = reregister(c.model, data, {.contradiction_threshold = found.contradiction}, sensors);
+  EXPECT_EQ(equal.contradiction, found.contradiction);
+  EXPECT_FALSE(equal.probe_turned);
 }
 
 // Two poses hardly tell base from probe: what they leave open is as uncertain as the prior of the probe, 1 rad, which

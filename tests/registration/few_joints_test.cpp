@@ -4,16 +4,20 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "real_matrix.hpp"
 #include "vernier/core/points.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/registration/reregister.hpp"
 
 namespace vernier::few_joints_test {
 namespace {
+
+using vernier_test::RealMatrix;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -73,6 +77,43 @@ TEST(ReregisterOneJoint, WeightsAreThoseOfWhatItLeaves) {
   const double sigma = std::sqrt(4 * e * e / (3 * 4 - 1));
   EXPECT_NEAR(found.position_sigma, sigma, 2e-3 * sigma);
   EXPECT_NEAR(found.change_std(0), found.position_sigma / (0.5 * std::sqrt(4.0)), 2e-3 * found.change_std(0));
+}
+
+// A level arm whose second link stands across the first, one pose: 6 values for two zeros with a prior and a probe.
+// What is left over lies between one value and two, enough to speak of a contradiction.
+TEST(ReregisterTwoJoints, BetweenOneAndTwoValuesLeftMayContradict) {
+  const auto model = rigid<2>(DhChain<2>({{.a = 0.3}, {.a = 0.2}}));
+  const double position = 0.03e-3, orientation = 0.1e-3, prior = 0.17e-3;
+  JointRows<2> joints(1, 2);
+  set_configuration(joints, 0, JointVector<2>(0, std::numbers::pi / 2));
+  const Vector3 probe(0.012, -0.015, 0.009);
+  const Matrix3 across = exp_so3(Vector3(0, 0, std::numbers::pi / 2));
+  PointRows positions(1, 3), orientations(1, 3);
+  set_point(positions, 0, Vector3(0.3, 0.2, 0));
+  set_point(orientations, 0, log_so3(across * exp_so3(probe)));
+  const auto found =
+      reregister(model, Dataset<2>(joints, positions, orientations),
+                 {.base = false, .offsets = true, .offset_prior_std = prior, .contradiction_threshold = 1e-3},
+                 {.position_sigma = position, .orientation_sigma = orientation});
+  ASSERT_TRUE(found.probe_turned);
+  RealMatrix effect(6, 5, {-0.2, -0.2, 0, 0,  0,  // z x (p - axis)
+                           0.3,  0,    0, 0,  0,  //
+                           0,    0,    0, 0,  0,  //
+                           0,    0,    0, -1, 0,  // the probe's axes, a quarter turn about z
+                           0,    0,    1, 0,  0,  //
+                           1,    1,    0, 0,  1});
+  for (Index r = 0; r < 6; ++r)
+    for (Index c = 0; c < 5; ++c) effect(r, c) /= r < 3 ? position : orientation;
+  RealMatrix information = effect.transpose() * effect;
+  for (Index k = 0; k < 5; ++k) information(k, k) += k < 2 ? 1 / (prior * prior) : 1;
+  const RealMatrix covariance = information.inverse();
+  const double redundancy = 6 - (effect * covariance * effect.transpose()).trace();
+  EXPECT_GT(redundancy, 1.1);
+  EXPECT_LT(redundancy, 1.9);
+  const RealMatrix turned(found.motion.probe);
+  EXPECT_LT((turned - probe).norm(), 1e-7);
+  const double square = turned.dot(covariance.block(2, 2, 3, 3).inverse() * turned);
+  EXPECT_NEAR(found.contradiction, redundancy * std::log1p(square / redundancy), 0.01 * found.contradiction);
 }
 
 // Base, zeros and tool stand behind each other, whatever the number of joints: lengths and angles of each.

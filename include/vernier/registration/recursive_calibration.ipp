@@ -43,7 +43,7 @@ VERNIER_IMPL VectorX initial_std(const FrameUpdate& update, const ReregisterOpti
   options.validate();
   require(sizes[0] > 0 && sizes[1] > 0, "RecursiveCalibration: initial standard deviations must be positive");
   VectorX out(update.size());
-  for (Index k = 0; k < out.size(); ++k) out(k) = k % 6 < 3 ? sizes[0] : sizes[1];
+  for (Index k = 0; k < out.size(); ++k) out(k) = k < 3 ? sizes[0] : sizes[1];
   if (update.tool)
     for (Index k = 0; k < 6; ++k) out(out.size() - 6 + k) = k < 3 ? sizes[0] : sizes[1];
   if (update.offsets) out.segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);

@@ -114,7 +114,6 @@ VERNIER_IMPL void HarmonicTable::add(const double* q, int n, double* effective, 
             if (run < 2 * chains) break;
           }
           --order;  // where `now` is
-          run = 0;
         } else {
           add_order<W>(now, order, table + k * 2 * harmonic_lanes, sums);
           ++k;

@@ -396,7 +396,7 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
       if (robust) reweight();
       continue;
     }
-    if (iteration > 0 && damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
+    if (damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
     accepted = arm;
     accepted_drift = drift;
     reached = sums[1] + of_priors;

@@ -67,7 +67,7 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
       evaluate(fit.motion, fit.poses, jacobians);
       continue;
     }
-    if (iteration > 0 && damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
+    if (damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
     accepted = fit.motion;
     accepted_total = total;
     reached = sum;

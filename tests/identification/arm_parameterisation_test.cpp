@@ -40,6 +40,44 @@ double value(const ArmParameterisation& arm, const std::string& name) {
   return arm.steps()(k) * arm.scales()(k);
 }
 
+// Rates by temperature are those of all stations, or of one; an unknown that is not thermal has none.
+TEST(ArmParameterisation, ThermalRatesByStation) {
+  const FrameParameters here(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), there(Vector6{1, 0.3, 0, 0.3, 0.4, 0.6});
+  ArmParameterisation arm(
+      {ArmGeometry(Framed<Chain>(robot.chain, here)), ArmGeometry(Framed<Chain>(robot.chain, there))},
+      {{9, -1, 1e-3, 0, true}, {0, 0, 1e-3, 0, true}, {0, 1, 1e-3, 0, true}, {2, 0, 1e-3, 0, true}, {11, -1, 1e-3, 0}});
+  EXPECT_EQ(RealMatrix(arm.steps()).norm(), 0);
+  arm.move(vector({1, 2, 3, 4, 5}));
+  RealMatrix first(arm.geometry(0).num_parameters(), 1), second = first;
+  first(9) = second(9) = 1e-3;
+  first(0) = 2e-3;
+  second(0) = 3e-3;
+  first(2) = 4e-3;
+  EXPECT_LT(difference(arm.thermal_rates(0), first), 1e-18);
+  EXPECT_LT(difference(arm.thermal_rates(1), second), 1e-18);
+  EXPECT_LT(difference(arm.steps(), vector({1, 2, 3, 4, 5})), 1e-12);
+  EXPECT_EQ(example().thermal_rates(0).size(), 0);
+}
+
+// Without joint errors there is nothing to multiply by, so nothing is written; without temperatures rates do nothing.
+TEST(ArmParameterisation, RowsHaveNoMoreThanIsAsked) {
+  ArmParameterisation arm({ArmGeometry(Framed<Chain>(robot.chain))}, {{9, -1, 1e-3, 0}, {9, -1, 1e-3, 0, true}});
+  arm.move(vector({1, 2}));
+  const RealMatrix joints(1, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1});
+  RowBlock rows;
+  const Isometry3 cold = arm.linearise(0, joints, MatrixX(0, 6), &rows, false, VectorX()).front();
+  EXPECT_EQ(rows.factor.cols(), 0);
+  EXPECT_EQ(rows.functions.size(), 0);
+  EXPECT_EQ(RealMatrix(rows.dense).col(1).norm(), 0);
+  EXPECT_EQ(RealMatrix(cold), RealMatrix(arm.poses(0, joints).front()));
+  const Isometry3 warm = arm.linearise(0, joints, MatrixX(0, 6), &rows, true, vector({3})).front();
+  EXPECT_EQ(rows.factor.cols(), 6);
+  const RealMatrix dense = rows.dense;
+  EXPECT_LT((dense.col(1) - 3 * dense.col(0)).norm(), 1e-15);
+  const Vector3 shift = translation(warm) - translation(cold);  // two units a kelvin, three kelvins
+  for (Index r = 0; r < 3; ++r) EXPECT_NEAR(shift(r), 6 * dense(r, 0), 1e-12);
+}
+
 // Gears stand in front of gravity, which stands in front of the transmissions: all indices change.
 TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
   Rng rng(1);

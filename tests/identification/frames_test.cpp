@@ -52,6 +52,14 @@ TEST(Trilaterate, FindsThePoint) {
             std::string::npos);
 }
 
+// A single distance leaves all directions open; the point itself is the middle of what it allows.
+TEST(Trilaterate, OfOnePointIsThePoint) {
+  PointRows point(1, 3), none(0, 3);
+  point << 1, 2, 3;
+  EXPECT_EQ(trilaterate(point, VectorX::Ones(1)), Vector3(1, 2, 3));
+  EXPECT_NE(complaint([&] { (void)trilaterate(none, VectorX()); }).find("0 points, 0 distances"), std::string::npos);
+}
+
 TEST(StartingFrames, FindsFramesOfANominalArm) {
   const auto robot = robots::ur10();
   const Framed<DhChain<6>> actual(robot.chain, FrameParameters(Vector6{0.4, -3.2, 0.2, -0.9, -1.3, -0.9}),
@@ -75,6 +83,34 @@ TEST(StartingFrames, KnownFramesStay) {
   const auto found = starting_frames(Framed<DhChain<6>>(robot.chain, base), data, false, true);
   EXPECT_EQ(difference(found.base(), base.isometry()), 0);
   EXPECT_LT(translation(found.tool()).norm(), 1e-12);
+}
+
+// The mean over all samples: with the base known, and exact positions, the tool is exact.
+TEST(StartingFrames, AreExactWithTheOtherFrameKnown) {
+  const auto robot = robots::ur5();
+  const FrameParameters base(Vector6{1, 2, 3, 0.1, 0.2, 0.3}), tool(Vector6{0.01, -0.02, 0.109, 0.1, -0.3, 2});
+  const auto data = measure(Framed<DhChain<6>>(robot.chain, base, tool), sample_joints(robot.limits, 5, 1));
+  const auto of_tool = starting_frames(Framed<DhChain<6>>(robot.chain, base), data, false, true);
+  EXPECT_LT(difference(of_tool.tool(), tool.isometry()), 1e-12);
+  const auto of_base = starting_frames(Framed<DhChain<6>>(robot.chain, {}, tool), data, true, false);
+  EXPECT_LT(difference(of_base.base(), base.isometry()), 1e-12);
+  EXPECT_EQ(difference(of_base.tool(), tool.isometry()), 0);
+}
+
+// Of two orientations that differ by a turn, the tool's is in the middle.
+TEST(StartingFrames, TheToolsOrientationIsTheMean) {
+  const auto robot = robots::ur5();
+  const JointRows<6> joints = sample_joints(robot.limits, 2, 1);
+  PointRows positions(2, 3), orientations(2, 3);
+  const Matrix3 middle = exp_so3(Vector3(0.1, -0.3, 2));
+  for (Index i = 0; i < 2; ++i) {
+    const Isometry3 flange = robot.chain.pose(configuration(joints, i));
+    set_point(positions, i, translation(flange));
+    const Matrix3 off = exp_so3(Vector3(0, 0.2, 0) * (i == 0 ? 1 : -1));
+    set_point(orientations, i, log_so3(rotation(flange) * middle * off));
+  }
+  const auto found = starting_frames(robot.chain, Dataset<6>(joints, positions, orientations), false, true);
+  EXPECT_LT(difference(rotation(found.tool()), middle), 1e-12);
 }
 
 // Distances say where the base is: its origin becomes the fixed point, its orientation and the tool stay.

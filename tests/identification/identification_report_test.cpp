@@ -81,6 +81,37 @@ TEST(IdentificationReport, PairsByTheirStrength) {
       << text;
 }
 
+// Where four are all there are, none is left to be counted.
+TEST(IdentificationReport, FourPairsAreNamed) {
+  IdentificationReport report = example<IdentificationReport>();
+  report.parameters[0] = parameter("d1", ParameterState::identified);
+  report.free = {3, 1, 2, 0};
+  const double a = 0.96, b = 0.97, c = -0.98, d = 0.99;
+  report.covariance = RealMatrix(4, 4, {1, a, b, c, a, 1, d, 0, b, d, 1, 0, c, 0, 0, 1});
+  const std::string text = report.summary();
+  EXPECT_NE(text.find("Strongly correlated: beta2 and a1 (+0.99), tool_x and d1 (-0.98), tool_x and a1 (+0.97), tool_x "
+                      "and beta2 (+0.96).\n"),
+            std::string::npos)
+      << text;
+}
+
+// Figures that were not filled in are zero, as for an arm of which nothing was estimated.
+TEST(IdentificationReport, IsEmptyAtFirst) {
+  const ContactReport report;
+  EXPECT_TRUE(report.converged());
+  for (const double figure : {report.rms_before, report.rms_after, report.rotation_rms_after, report.condition,
+                              report.observability.o1, report.observability.o5})
+    EXPECT_EQ(figure, 0);
+  for (const Index number : {report.rank, report.unobservable, report.missing}) EXPECT_EQ(number, 0);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_TRUE(report.scale_observable);
+  const TouchedObject object{};
+  EXPECT_EQ(object.touches, 0);
+  EXPECT_EQ(object.rms, 0);
+  EXPECT_EQ(ParameterEstimate{}.scale, 0);
+  EXPECT_EQ(ParameterEstimate{}.prior_std, std::numeric_limits<double>::infinity());
+}
+
 TEST(ContactReport, SummaryByHand) {
   ContactReport report = example<ContactReport>();
   report.parameters.insert(report.parameters.begin(),

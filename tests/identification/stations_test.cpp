@@ -48,6 +48,19 @@ TEST(InOneFrame, IsWhatTheFirstStationWouldHaveSeen) {
   }
 }
 
+// When samples were measured, and from where they were approached, stays with them.
+TEST(InOneFrame, KeepsTimesAndApproaches) {
+  const std::vector<Isometry3> two(bases.begin(), bases.begin() + 2);
+  const JointRows<6> before_first = sample_joints(robot.limits, 3, 5),
+                     before_second = sample_joints(robot.limits, 2, 6);
+  const std::vector<Data> stations{seen_from(0, 3, 1).approached_from(before_first).measured_at(VectorX{{1, 4, 9}}),
+                                   seen_from(1, 2, 2).approached_from(before_second).measured_at(VectorX{{16, 25}})};
+  const Data all = in_one_frame<6>(stations, two);
+  EXPECT_EQ(RealMatrix(all.times()), vernier_test::vector({1, 4, 9, 16, 25}));
+  EXPECT_EQ(RealMatrix(all.previous()).block(0, 0, 3, 6), RealMatrix(before_first));
+  EXPECT_EQ(RealMatrix(all.previous()).block(3, 0, 2, 6), RealMatrix(before_second));
+}
+
 TEST(InOneFrame, ASingleStationIsGivenBack) {
   const std::vector<Data> one{seen_from(1, 15, 4)};
   const Data all = in_one_frame<6>(one, {});

@@ -450,6 +450,109 @@ TEST(CalibrationProblemWhiteBox, FarStartsConverge) {
   EXPECT_EQ(converged, 20);
 }
 
+/// Starts far from the solution, so that some first steps fail; positions that may drift.
+struct FarStart {
+  Robot<6> robot = robots::abb_irb120();
+  Dataset<6> data;
+  FarStart()
+      : data(measure(
+                 Framed<Chain>(robot.chain, Measured::start_base(0), FrameParameters(Vector6{0.1, -0.2, 0.3, 0, 0, 0})),
+                 sample_joints(robot.limits, 24, 21), {.position = 0.05e-3, .with_orientations = false}, 22)
+                 .measured_at(VectorX::LinSpaced(24, 0, 230))) {}
+
+  /// @param precision of the priors of all unknowns, about values they have left
+  Problem problem(std::uint64_t seed, Loss loss, double precision) const {
+    std::vector<GeometricUnknown> unknowns;
+    for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, k < 3 ? 1e-3 : 1e-2, precision});
+    for (Index k = 36; k < 39; ++k) unknowns.push_back({k, -1, 1e-3, precision});
+    Rng rng(seed);
+    Vector6 off = Vector6(Measured::start_base(0).values());
+    for (double& x : off) x += rng.uniform(-3, 3);
+    ArmParameterisation arm({ArmGeometry(Framed<Chain>(robot.chain, FrameParameters(off), {}))}, unknowns);
+    arm.move(random_vector(rng, 9, 30));
+    return {std::move(arm), {detail::station_of(data, {.position_sigma = 0.05e-3})}, loss};
+  }
+};
+
+/// Weighted squares of residuals, and what priors add.
+double cost_of(const Problem& problem) {
+  const RealMatrix steps = problem.arm.steps(), drift = problem.drift_steps();
+  double out = RealMatrix(problem.stacked(false).residuals).squared_norm() +
+               RealMatrix(problem.arm.precisions()).dot(steps.times(steps));
+  if (problem.prior) out += steps.dot(RealMatrix(problem.prior->precision) * steps);  // its mean is zero here
+  for (const LocalPrior& of_two : problem.drift_priors()) {
+    const RealMatrix one = drift.block(6 * of_two.first, 0, 6, 1), other = drift.block(6 * of_two.second, 0, 6, 1);
+    out += (of_two.first == of_two.second ? 1 : 2) * one.dot(RealMatrix(of_two.precision) * other);
+  }
+  return out;
+}
+
+// A step that fails is taken back: of the arm, of the drift, and the weights of the loss. It fails where residuals and
+// priors together grow. The last of some steps is not checked, so one more iteration shows what becomes of it.
+TEST(CalibrationProblemWhiteBox, AStepThatFailsIsTakenBack) {
+  const FarStart far;
+  int failed = 0;
+  for (const std::uint64_t seed : {0, 5, 11})
+    for (const Loss loss : {Loss::squared, Loss::huber})
+      for (const int priors : {0, 1, 2}) {  // none, of each unknown, of all
+        constexpr double precision = 1e6;
+        Problem start = far.problem(seed, loss, priors == 1 ? precision : 0);
+        if (priors == 2) start.prior = JointPrior{precision * RealMatrix::identity(9), VectorX::Zero(9), 1};
+        start.start_drift(6);
+        Problem before = start;
+        for (int n = 1; n < 8; ++n) {
+          if (loss != Loss::squared) before.reweight();
+          Problem after = start, next = start;
+          if (after.solve(n)) break;
+          if (cost_of(after) > 1.0001 * cost_of(before)) {
+            ++failed;
+            EXPECT_FALSE(next.solve(n + 1));
+            EXPECT_EQ(RealMatrix(next.arm.steps()), RealMatrix(before.arm.steps())) << seed << ", " << n;
+            EXPECT_EQ(RealMatrix(next.drift_steps()), RealMatrix(before.drift_steps())) << seed << ", " << n;
+            EXPECT_EQ(RealMatrix(next.stacked(false).residuals), RealMatrix(before.stacked(false).residuals)) << seed;
+            break;
+          }
+          before = after;
+        }
+      }
+  EXPECT_EQ(failed, 12);
+}
+
+// Joint values of all stations, one after the other.
+TEST(CalibrationProblemWhiteBox, JointsAreThoseOfAllStations) {
+  const Measured measured(8);
+  const RealMatrix joints = measured.problem(0, 1e-3).joints();
+  ASSERT_EQ(joints.rows(), 12);
+  EXPECT_EQ(joints.block(0, 0, 8, 6), RealMatrix(measured.first.joints()));
+  EXPECT_EQ(joints.block(8, 0, 4, 6), RealMatrix(measured.second.joints()));
+}
+
+// Nothing says when positions of a station were measured, so they do not drift.
+TEST(CalibrationProblemWhiteBox, PositionsWithoutTimesDoNotDrift) {
+  Measured measured(8);
+  measured.first = measured.first.measured_at(VectorX::LinSpaced(8, 0, 150));
+  detail::Station timeless = detail::station_of(measured.second, {});
+  timeless.times = nullptr;
+  const ArmGeometry arm(Framed<Chain>(measured.robot.chain));
+  Problem problem(ArmParameterisation({arm, arm}, {{11, -1, 1e-3, 0}}),
+                  {detail::station_of(measured.first, {}), timeless}, Loss::squared);
+  problem.start_drift(4);
+  EXPECT_FALSE(problem.drift[0].empty());
+  EXPECT_TRUE(problem.drift[1].empty());
+  problem.stop_drift();
+  EXPECT_EQ(problem.system().local_states, 0);
+  EXPECT_TRUE(problem.drift.empty());
+}
+
+// Orientations count where they are measured and asked for.
+TEST(StationWhiteBox, OrientationsAreUsedOnRequest) {
+  const Measured measured(8);
+  EXPECT_TRUE(detail::station_of(measured.first, {}).oriented());
+  EXPECT_FALSE(detail::station_of(measured.first, {.use_orientations = false}).oriented());
+  EXPECT_EQ(detail::station_of(measured.first, {.use_orientations = false}).values(), 3);
+  EXPECT_FALSE(detail::station_of(measured.second, {}).oriented());
+}
+
 // Moves every knot by its own step.
 TEST(CalibrationProblemWhiteBox, OneIterationMovesTheDriftByItsSteps) {
   Measured measured(8);

@@ -287,6 +287,11 @@ TEST(IdentificationWhiteBox, SaysWhatAbsorbsAParameter) {
   EXPECT_EQ(named(positions, "theta6").remark, "absorbed by tool_x, tool_y");
   const auto poses = identify_by_gauss_newton(nominal, data, everything, squared);
   EXPECT_TRUE(poses.converged()) << poses.message;
+  for (std::size_t k = 6; k < 36; ++k) {  // links that were not estimated are as they were
+    const ParameterEstimate& p = poses.parameters[k];
+    EXPECT_EQ(p.identified == p.nominal, p.state != ParameterState::identified) << p.name;
+    EXPECT_EQ(p.remark.empty(), p.state != ParameterState::not_identifiable) << p.name;
+  }
   EXPECT_EQ(named(poses, "tool_rz").state, ParameterState::identified);
   EXPECT_EQ(named(poses, "theta6").state, ParameterState::not_identifiable);
   EXPECT_EQ(named(poses, "theta6").remark, "absorbed by tool_rz");
@@ -339,6 +344,22 @@ TEST(IdentificationWhiteBox, WhatIsDependentAtNominalMayBeFreeAtTheSolution) {
                                {.frames = Frames::base_and_tool, .priors = false}, squared);
   EXPECT_TRUE(found.converged()) << found.message;
   EXPECT_EQ(found.free.size(), 27u);  // 4 R + 6 - 3 of six revolute joints
+  EXPECT_LT(found.rms_after, 1e-7);
+}
+
+// The same by classical parameters: offsets of parallel axes are one unknown until the axes are found not to be
+// parallel.
+TEST(IdentificationWhiteBox, OffsetsOfParallelAxesAreFreeWhereAxesAreNot) {
+  const Robot<6> parallel = robots::ur10();
+  const Framed<Chain> actual(with_geometric_errors(parallel.chain, {}, 9), base, tool);
+  JointLimits<6> limits;
+  limits.lower.setConstant(-2.5);
+  limits.upper.setConstant(2.5);
+  const auto found =
+      identify_by_gauss_newton(Framed<Chain>(parallel.chain, base, tool),
+                               measure(actual, sample_joints(limits, 60, 3), {.with_orientations = false}),
+                               {.frames = Frames::base_and_tool, .hayati = false, .priors = false}, squared);
+  EXPECT_EQ(found.free.size(), 27u);  // 4 R + 6 - 3 again
   EXPECT_LT(found.rms_after, 1e-7);
 }
 

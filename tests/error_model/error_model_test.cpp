@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <type_traits>
@@ -15,6 +16,7 @@
 #include <vernier/testing/kinematic_laws.hpp>
 
 #include "allocation_counter.hpp"
+#include "complaint.hpp"
 #include "laws.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
@@ -347,6 +349,55 @@ TEST(ErrorModel, CorrectsToItsReference) {
       EXPECT_LE(turn(reached, wanted).norm(), 1e-8);
       EXPECT_GT((model.position(q) - vn::translation(wanted)).norm(), 1e-4);  // there was something to correct
     }
+}
+
+// A motion in front, a motion behind, and joint values that differ by an offset each, of angles and of lengths.
+TEST(ErrorModel, MovedIsTheSameArmElsewhere) {
+  vn::Rng rng(9);
+  std::array<vn::DhRow, 6> dh;
+  for (int i = 0; i < 6; ++i) dh[static_cast<std::size_t>(i)] = nominal.row(i);
+  dh[2] = {.a = 0.1, .alpha = 1.5, .d = 0.2, .theta = 0.3, .joint = vn::JointType::prismatic};
+  const auto sliding = vn::DhChain<6>::from_rows(dh);
+  using Model = vn::ErrorModel<vn::DhChain<6>>;
+  const Model::Arm arm(nearby(sliding, 0.01, rng), random_frame(rng), random_frame(rng)),
+      fallback(nearby(sliding, 0.01, rng), random_frame(rng), random_frame(rng));
+  const vn::Isometry3 base = random_frame(rng).isometry(), tool = random_frame(rng).isometry();
+  vn::JointVector<6> offsets;
+  for (double& x : offsets) x = rng.uniform(-0.05, 0.05);
+  const Model model(sliding, arm, fallback, coverage<6>());
+  const Model moved = model.moved(base, offsets, tool);
+  for (int i = 0; i < 20; ++i) {
+    const auto q = joints_in<6>(Zone::outside, rng);
+    vn::JointVector<6> other = q;
+    for (int j = 0; j < 6; ++j) other(j) += offsets(j);
+    const auto expected = [&](const Model::Arm& of) { return vn::composed(vn::composed(base, of.pose(other)), tool); };
+    EXPECT_LT(difference(moved.identified().pose(q), expected(arm)), 1e-12);
+    EXPECT_LT(difference(moved.fallback()->pose(q), expected(fallback)), 1e-12);
+    EXPECT_EQ(moved.gate(q), 0);
+  }
+}
+
+// Temperature changes arm and fallback alike.
+TEST(ErrorModel, IsAsWarmOutsideAsWhereMeasured) {
+  vn::Rng rng(10);
+  using Model = vn::ErrorModel<vn::DhChain<6>>;
+  const Model::Arm arm(nearby(nominal, 0.01, rng), random_frame(rng), random_frame(rng));
+  VectorX rates(42);
+  for (double& x : rates) x = 1e-4 * rng.normal();
+  const vn::ThermalRates thermal{22, 10, 40, rates};
+  const Model everywhere = Model(nominal, arm).with_thermal(thermal),
+              gated = Model(nominal, arm, arm, coverage<6>()).with_thermal(thermal);
+  for (const Zone zone : {Zone::inside, Zone::falling, Zone::outside}) {
+    const auto q = joints_in<6>(zone, rng);
+    const vn::Vector3 cold = everywhere.position(q), warm = everywhere.at_temperature(35).position(q);
+    EXPECT_GT((warm - cold).norm(), 1e-4);
+    EXPECT_LT((gated.at_temperature(35).position(q) - warm).norm(), 1e-12);
+    EXPECT_EQ(difference(gated.at_temperature(50).position(q), gated.at_temperature(40).position(q)), 0);
+  }
+  EXPECT_EQ(vernier_test::complaint([&] {
+              (void)everywhere.with_thermal({22, 10, 40, VectorX::Zero(5)});
+            }),
+            "ErrorModel: 5 thermal rates of 42 parameters, all must be finite");
 }
 
 TEST(NoAllocation, ErrorModel) {

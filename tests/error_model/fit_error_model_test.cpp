@@ -203,6 +203,26 @@ TEST(FitErrorModel, StatesTheDensityGainWhereThatDecided) {
   }
 }
 
+// A block that is used has the precision that is reported of it.
+TEST(FitErrorModel, ABlockThatIsUsedHasItsPrecision) {
+  const Dataset<6> data =
+      measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 4e-4, .harmonic = 0}), 40, 3);
+  const auto found = fitted(data, {.harmonics = 0, .hysteresis = false, .tilt = false, .drift = false});
+  const BlockChoice* elastic = choice_of(found, "elastic");
+  ASSERT_NE(elastic, nullptr);
+  ASSERT_TRUE(elastic->used);
+  EXPECT_NE(elastic->precision, 1);  // that of the expected sizes, from which it starts
+  const auto names = found.arm.names();
+  const VectorX precisions = found.arm.precisions();
+  int count = 0;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (kind_of(names[k]) == "sag") {
+      EXPECT_EQ(precisions(static_cast<Index>(k)), elastic->precision) << names[k];
+      ++count;
+    }
+  EXPECT_GE(count, 2);
+}
+
 // A block that is not used is reported with the error under the best prior that was tried for it.
 TEST(FitErrorModel, ABlockThatIsNotUsedIsReportedAtItsBest) {
   int better = 0, unused = 0;
@@ -589,6 +609,10 @@ TEST(ErrorModelEstimate, TransmissionByHand) {
   const JointFunction f = estimate.transmission(2, {0, std::numbers::pi});
   EXPECT_LT((f.value - vector({15e-3, -15e-3})).norm(), 1e-15);
   EXPECT_LT((f.std - vector({12e-3, 12e-3})).norm(), 1e-15);  // 4 units of 3 mrad
+  constexpr double quarter = std::numbers::pi / 2;            // sines alone: b and -b
+  const JointFunction sines = estimate.transmission(2, {quarter, -quarter});
+  EXPECT_LT((sines.value - vector({28e-3, -28e-3})).norm(), 1e-15);
+  EXPECT_LT((sines.std - vector({20e-3, 20e-3})).norm(), 1e-15);
   const JointFunction mean = estimate.transmission(2, {0, 0});
   EXPECT_LT(mean.value.norm() + mean.std.norm(), 1e-15);
   EXPECT_EQ(RealMatrix(estimate.transmission(0, {0, 1}).value), vector({0, 0}));

@@ -45,6 +45,7 @@ TEST(PriorObjective, IsTheErrorOfPosesLeftOutWithThePriorsItNames) {
     VectorX fitness(2);
     objective(population, fitness);
     EXPECT_DOUBLE_EQ(fitness(1), expected);
+    EXPECT_DOUBLE_EQ(fitness(0), objective.error(objective.precisions(VectorX::Zero(4))));
     EXPECT_NE(fitness(0), expected);
   });
 }

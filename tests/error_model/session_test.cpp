@@ -242,6 +242,30 @@ TEST(Drift, NothingIsFoundInABaseThatRests) {
 }
 
 /// Joint 2 loses and regains 150 urad.
+// Poses that were measured at once cannot drift, so it is as if that were not allowed.
+TEST(Drift, WithoutDurationThereIsNone) {
+  JointTerms terms(6);
+  terms.transmission.assign(6, Fourier::up_to(2));
+  Rng rng(8);
+  VectorX coefficients(24);
+  for (double& x : coefficients) x = 0.3e-3 * rng.normal();
+  const ErrorModel<Chain> actual{
+      robot.chain, Arm({with_geometric_errors(robot.chain, {}, 4), JointErrors(terms, coefficients)}, base, tool)};
+  const JointRows<6> joints = samples(100, 8);
+  const Dataset<6> data = visited(actual, joints, joints, 8, still).measured_at(VectorX::Constant(100, 7));
+  const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
+                                                            {.frames = Frames::base_and_tool}, squared);
+  const auto fit = [&](bool drift) {
+    return fit_error_model(start, std::vector<Dataset<6>>{data},
+                           {.harmonics = 2, .hysteresis = false, .tilt = false, .drift = drift}, squared);
+  };
+  const auto allowed = fit(true), forbidden = fit(false);
+  ASSERT_TRUE(used(allowed, "jointwise"));
+  EXPECT_TRUE(allowed.drift.empty());
+  EXPECT_EQ(RealMatrix(allowed.arm.steps()), RealMatrix(forbidden.arm.steps()));
+  EXPECT_EQ(RealMatrix(allowed.arm.precisions()), RealMatrix(forbidden.arm.precisions()));
+}
+
 TEST(Drift, OfAJointsZeroIsFollowed) {
   const Index n = 600;
   const JointRows<6> joints = samples(n, 1);

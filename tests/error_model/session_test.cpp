@@ -17,6 +17,8 @@
 #include "real_matrix.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/error_model/detail/drift_selection.hpp"
+#include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -242,28 +244,38 @@ TEST(Drift, NothingIsFoundInABaseThatRests) {
 }
 
 /// Joint 2 loses and regains 150 urad.
-// Poses that were measured at once cannot drift, so it is as if that were not allowed.
-TEST(Drift, WithoutDurationThereIsNone) {
-  JointTerms terms(6);
-  terms.transmission.assign(6, Fourier::up_to(2));
-  Rng rng(8);
-  VectorX coefficients(24);
-  for (double& x : coefficients) x = 0.3e-3 * rng.normal();
-  const ErrorModel<Chain> actual{
-      robot.chain, Arm({with_geometric_errors(robot.chain, {}, 4), JointErrors(terms, coefficients)}, base, tool)};
-  const JointRows<6> joints = samples(100, 8);
-  const Dataset<6> data = visited(actual, joints, joints, 8, still).measured_at(VectorX::Constant(100, 7));
-  const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
-                                                            {.frames = Frames::base_and_tool}, squared);
-  const auto fit = [&](bool drift) {
-    return fit_error_model(start, std::vector<Dataset<6>>{data},
-                           {.harmonics = 2, .hysteresis = false, .tilt = false, .drift = drift}, squared);
-  };
-  const auto allowed = fit(true), forbidden = fit(false);
-  ASSERT_TRUE(used(allowed, "jointwise"));
-  EXPECT_TRUE(allowed.drift.empty());
-  EXPECT_EQ(RealMatrix(allowed.arm.steps()), RealMatrix(forbidden.arm.steps()));
-  EXPECT_EQ(RealMatrix(allowed.arm.precisions()), RealMatrix(forbidden.arm.precisions()));
+// Poses that were measured at once cannot drift.
+TEST(DriftWhiteBox, WithoutDurationThereIsNone) {
+  const JointRows<6> joints = samples(20, 8);
+  const Dataset<6> data =
+      visited(arm_with_hysteresis(0), joints, joints, 8, still).measured_at(VectorX::Constant(20, 7));
+  const ErrorModelOptions options;
+  detail::CalibrationProblem problem(
+      ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))}, {{11, -1, 1e-3, 1}}),
+      {detail::station_of(data, squared)}, Loss::squared);
+  detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
+  EXPECT_FALSE(detail::add_drift(model));
+  EXPECT_TRUE(model.problem.drift.empty());
+  EXPECT_TRUE(model.blocks.empty());
+}
+
+// One solution that failed is remembered, though later ones succeed.
+TEST(ModelSelectionWhiteBox, ConvergedWhereEverySolutionDid) {
+  const JointRows<6> joints = samples(20, 8);
+  const Dataset<6> data = visited(arm_with_hysteresis(0), joints, joints, 8, still);
+  const ErrorModelOptions options;
+  detail::CalibrationProblem problem(
+      ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))}, {{11, -1, 1e-3, 1}}),
+      {detail::station_of(data, squared)}, Loss::squared);
+  detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
+  model.solve();
+  EXPECT_TRUE(model.converged);
+  model.problem.arm.set_precisions(VectorX::Constant(1, std::numeric_limits<double>::quiet_NaN()));
+  model.solve();
+  EXPECT_FALSE(model.converged);
+  model.problem.arm.set_precisions(VectorX::Ones(1));
+  model.solve();
+  EXPECT_FALSE(model.converged);
 }
 
 TEST(Drift, OfAJointsZeroIsFollowed) {

@@ -518,6 +518,38 @@ TEST(CalibrationProblemWhiteBox, AStepThatFailsIsTakenBack) {
   EXPECT_EQ(failed, 12);
 }
 
+// After a step that fails the next one is damped, and more so after each further failure: by 0.001, 0.004, 0.032 of the
+// diagonal. Taking a step back and trying the next one are two iterations.
+TEST(CalibrationProblemWhiteBox, FailuresDampEverMore) {
+  const FarStart far;
+  int failed_again = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const Problem start = far.problem(seed, Loss::squared, 0);
+    Problem before = start;
+    int n = 1;  // iterations, the last of which fails
+    for (; n < 8; ++n) {
+      Problem after = start;
+      if (after.solve(n) || cost_of(after) > 1.0001 * cost_of(before)) break;
+      before = after;
+    }
+    bool failed = true;
+    for (const double damping : {1e-3, 4e-3, 32e-3}) {
+      n += 2;
+      Problem damped = start, by_hand = before;
+      if (damped.solve(n) || !failed) break;
+      const NormalEquations normal = by_hand.normal_equations();
+      const FactorisedEquations solved(normal, by_hand.arm.precisions(), by_hand.arm.steps(), VectorX(),
+                                       eigen_sparse_solver, damping);
+      by_hand.arm.move(solved.step());
+      const RealMatrix expected = by_hand.arm.steps(), found = damped.arm.steps();
+      EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm()) << seed << ", " << damping;
+      failed = cost_of(by_hand) > 1.0001 * cost_of(before);
+      if (failed) ++failed_again;
+    }
+  }
+  EXPECT_GE(failed_again, 3);
+}
+
 // Joint values of all stations, one after the other.
 TEST(CalibrationProblemWhiteBox, JointsAreThoseOfAllStations) {
   const Measured measured(8);

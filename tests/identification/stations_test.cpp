@@ -61,6 +61,15 @@ TEST(InOneFrame, KeepsTimesAndApproaches) {
   EXPECT_EQ(RealMatrix(all.previous()).block(3, 0, 2, 6), RealMatrix(before_second));
 }
 
+TEST(InOneFrame, KeepsTemperaturesThatAllStationsHave) {
+  const std::vector<Isometry3> two(bases.begin(), bases.begin() + 2);
+  std::vector<Data> stations{seen_from(0, 3, 1).at_temperatures(VectorX{{18, 20, 22}}),
+                             seen_from(1, 2, 2).at_temperatures(VectorX{{31, 30}})};
+  EXPECT_EQ(RealMatrix(in_one_frame<6>(stations, two).temperatures()), vernier_test::vector({18, 20, 22, 31, 30}));
+  stations[1] = seen_from(1, 2, 2);
+  EXPECT_EQ(in_one_frame<6>(stations, two).temperatures().size(), 0);
+}
+
 TEST(InOneFrame, ASingleStationIsGivenBack) {
   const std::vector<Data> one{seen_from(1, 15, 4)};
   const Data all = in_one_frame<6>(one, {});

@@ -22,7 +22,7 @@ VERNIER_API void move_poses(const Isometry3& motion, const PointRows& positions,
 /// All stations as one set of poses in the frame of the first, given the bases.
 /// @param stations         one set of poses a place; a single one is returned as it is
 /// @param bases            base frame of the arm as seen from each station; unused for a single one
-/// @param use_orientations whether orientations are kept, where every station has them
+/// @param use_orientations whether orientations are kept, where every station has them, as temperatures are
 /// @throws std::invalid_argument for no stations, or another number of bases
 template <int N, RangeOf<Dataset<N>> Stations>
 Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& bases, bool use_orientations = true) {
@@ -31,14 +31,15 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
   require(bases.size() == std::size(stations), "in_one_frame: ", bases.size(), " bases for ", std::size(stations),
           " stations");
   Index rows = 0;
-  bool oriented = use_orientations;
+  bool oriented = use_orientations, thermal = true;
   for (const Dataset<N>& data : stations) {
     rows += data.size();
     oriented = oriented && data.has_orientations();
+    thermal = thermal && data.temperatures().size() > 0;
   }
   JointRows<N> joints(rows, N);
   JointRows<N> previous(rows, N);
-  VectorX times(rows);
+  VectorX times(rows), temperatures(thermal ? rows : 0);
   PointRows positions(rows, 3), orientations(oriented ? rows : 0, 3);
   Index at = 0;
   for (std::size_t s = 0; s < bases.size(); ++s) {
@@ -46,11 +47,15 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     joints.middleRows(at, data.size()) = data.joints();
     previous.middleRows(at, data.size()) = data.previous();
     times.segment(at, data.size()) = data.times();
+    if (thermal) temperatures.segment(at, data.size()) = data.temperatures();
     detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at,
                        positions, orientations);
     at += data.size();
   }
-  return Dataset<N>(joints, positions, orientations).approached_from(previous).measured_at(times);
+  return Dataset<N>(joints, positions, orientations)
+      .approached_from(previous)
+      .measured_at(times)
+      .at_temperatures(temperatures);
 }
 
 }  // namespace vernier

@@ -379,6 +379,7 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
   ArmParameterisation accepted = arm;
   std::vector<SessionDrift> accepted_drift = drift;
   double reached = std::numeric_limits<double>::infinity(), predicted = 0;
+  bool returned = false;  // to where the step before began, since it failed
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const VectorX steps = arm.steps(), precisions = arm.precisions();
     const VectorX local_steps = drift_steps();
@@ -394,9 +395,11 @@ VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
       arm = accepted;
       drift = accepted_drift;
       if (robust) reweight();
+      returned = true;
       continue;
     }
-    if (damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
+    if (damping.value() > 0 && !returned) damping.accept(std::max(reached - sum, 0.0), predicted);
+    returned = false;
     accepted = arm;
     accepted_drift = drift;
     reached = sums[1] + of_priors;

@@ -17,7 +17,6 @@ namespace vernier::detail {
 /// @return whether the iteration converged
 VERNIER_API bool solve_contacts(ContactProblem& contacts) {
   if (contacts.problem.arm.size() == 0) return true;
-  contacts.problem.reset_weights();
   return contacts.problem.solve(contacts.options.max_iterations);
 }
 

@@ -56,6 +56,7 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
   VectorX total = fit.total, accepted_total = total;
   FrameMotion accepted = fit.motion;
   double reached = std::numeric_limits<double>::infinity(), predicted = 0;
+  bool returned = false;  // to where the step before began, since it failed
   for (int iteration = 0; iteration < 50 && !fit.converged; ++iteration) {
     NormalEquations normal(system);
     hold(fit, total, normal);
@@ -65,9 +66,11 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
       fit.motion = accepted;
       total = accepted_total;
       evaluate(fit.motion, fit.poses, jacobians);
+      returned = true;
       continue;
     }
-    if (damping.value() > 0) damping.accept(std::max(reached - sum, 0.0), predicted);
+    if (damping.value() > 0 && !returned) damping.accept(std::max(reached - sum, 0.0), predicted);
+    returned = false;
     accepted = fit.motion;
     accepted_total = total;
     reached = sum;

@@ -34,6 +34,50 @@ TEST(MeasurementConstraints, JointLimitsWithAMargin) {
   EXPECT_EQ(checked(c, {0, 0, -0.96}), Rejection::joint_limits);
 }
 
+// What lies on a boundary is still possible: limits without a margin, sides of a box, a range.
+TEST(MeasurementConstraints, BoundariesBelongToWhatIsPossible) {
+  const MeasurementConstraints limits{
+      .lower = VectorX::Constant(3, -1), .upper = VectorX::Constant(3, 1), .joint_margin = 0};
+  EXPECT_EQ(checked(limits, {-1, 1, -1}), Rejection::none);
+  const MeasurementConstraints box{.tool_box = ToolBox{{3, 0, 0}, {4, 1, 1}}},
+      other_box{.tool_box = ToolBox{{2, -1, -1}, {3, 0, 0}}};  // the tool is at a corner of each
+  EXPECT_EQ(checked(box, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked(other_box, {0, 0, 0}), Rejection::none);
+  for (const double range : {3.0, 7.0}) {  // the shortest or the longest possible
+    const Tracker tracker{.position = {3 + range, 0, 0}, .min_range = 3, .max_range = 7};
+    EXPECT_EQ(checked({.tracker = tracker}, {0, 0, 0}), Rejection::none) << range;
+  }
+}
+
+TEST(MeasurementConstraints, LimitsOfOneJointCount) {
+  const ArmGeometry arm(in_frames(DhChain<1>{{{{.a = 1}}}}));
+  const auto checked_at = [&](const MeasurementConstraints& c, double q) {
+    return MeasurementScene(arm, c).check(VectorX::Constant(1, q));
+  };
+  EXPECT_EQ(checked_at({.lower = VectorX::Constant(1, -1)}, -2), Rejection::joint_limits);
+  EXPECT_EQ(checked_at({.upper = VectorX::Constant(1, 1)}, 2), Rejection::joint_limits);
+  EXPECT_EQ(checked_at({.lower = VectorX::Constant(1, -1)}, 2), Rejection::none);
+  EXPECT_EQ(checked_at({.upper = VectorX::Constant(1, 1)}, -2), Rejection::none);
+}
+
+// Unless something else is said, a tracker stands at the origin of the base, sees along the tool's z and from all
+// sides, and links keep 20 mm from its beam.
+TEST(MeasurementConstraints, OfATrackerOfWhichNothingIsSaid) {
+  EXPECT_EQ(checked({.tracker = Tracker{.min_range = 2.999, .max_range = 3.001}}, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked({.tracker = Tracker{}}, {0, half_turn - 0.5, half_turn / 2}), Rejection::none);  // 0.7 m away
+  EXPECT_EQ(checked({.tracker = Tracker{}}, {0, half_turn, 0}), Rejection::none);                    // and 1 m
+  const Vector3 above(3, 0, 5), towards(3 + 5 * std::tan(0.4), 0, 5);
+  EXPECT_EQ(checked({.tracker = Tracker{.position = above, .acceptance = 1e-6}}, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked({.tracker = Tracker{.position = towards, .acceptance = 0.401}}, {0, 0, 0}), Rejection::none);
+  EXPECT_EQ(checked({.tracker = Tracker{.position = towards, .acceptance = 0.399}}, {0, 0, 0}), Rejection::acceptance);
+  // folded around a square, the tool at (0, 1): the beam passes the end of the first link, at (1, 0), at 1 m
+  for (const double radius : {0.97, 0.99}) {
+    const MeasurementConstraints c{.tracker = Tracker{.position = {0, 6, 0}}, .link_radii = {radius, 0, 0}};
+    EXPECT_EQ(checked(c, {0, half_turn / 2, half_turn / 2}),
+              radius < 0.98 ? Rejection::none : Rejection::line_of_sight);
+  }
+}
+
 TEST(MeasurementConstraints, TheToolStaysInItsBox) {
   const MeasurementConstraints c{.tool_box = ToolBox{{2.5, -1, -0.1}, {3.5, 1, 0.1}}};
   EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);

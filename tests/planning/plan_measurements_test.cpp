@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -33,6 +36,15 @@ MeasurementCandidates<6> some_candidates(Index n, std::uint64_t seed) {
 PlanOptions few_harmonics(Index count) {
   PlanOptions out{.count = count};
   out.errors.harmonics = 6;
+  return out;
+}
+
+/// Candidates that differ in their first two joints alone, by the same.
+MeasurementCandidates<6> in_a_row(const std::vector<double>& values) {
+  MeasurementCandidates<6> out;
+  out.joints.resize(static_cast<Index>(values.size()), 6);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    set_configuration(out.joints, static_cast<Index>(i), JointVector<6>(values[i], values[i], 0.3, 0.7, -0.4, 1));
   return out;
 }
 
@@ -278,6 +290,30 @@ TEST(PlanMeasurements, OfALargeRegionSomeCount) {
   EXPECT_EQ(difference(all, plan_measurements(chain, candidates, few_harmonics(10), {}, thirds).relative_error), 0);
 }
 
+TEST(PlanMeasurements, ARegionMayBeOnePose) {
+  const auto chain = robots::abb_irb120().chain;
+  MeasurementCandidates<6> candidates = some_candidates(15, 4);
+  candidates.previous.resize(0, 6);
+  const JointRows<6> region = some_candidates(1, 5).joints;
+  PlanOptions options = few_harmonics(5);
+  for (const auto criterion : {DesignCriterion::information, DesignCriterion::region_variance}) {
+    options.criterion = criterion;
+    const auto plan = plan_measurements(chain, candidates, options, {}, region);
+    const detail::PlannedCalibration planned{
+        ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, false, 5};
+    const RealMatrix rows = detail::expected_rows(planned, plan.joints, MatrixX());
+    const RealMatrix of_region = detail::expected_rows(planned, region, MatrixX());
+    const double none = variance_of(of_region, RealMatrix(0, rows.cols())), all = variance_of(of_region, rows);
+    EXPECT_NEAR(plan.relative_error(0) / std::sqrt(none / all), 1, 1e-6);
+  }
+}
+
+TEST(PlanMeasurements, OneIterationGivesABound) {
+  PlanOptions options = few_harmonics(3);
+  options.bound_iterations = 1;
+  EXPECT_TRUE(std::isfinite(plan_measurements(robots::abb_irb120().chain, some_candidates(5, 3), options).bound));
+}
+
 TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   MeasurementCandidates<6> candidates = some_candidates(60, 6);
   const auto chain = robots::abb_irb120().chain;
@@ -319,6 +355,37 @@ TEST(PlanMeasurements, VisitsRegisterFirstAndCheckRepeatedly) {
   EXPECT_DOUBLE_EQ(a.cross(b).norm() / a.norm(), off);
 }
 
+// Of few poses it matters that each may be one of the three that register: the two farthest apart, whichever they are.
+TEST(PlanMeasurements, AnyThreePosesMayRegister) {
+  const auto chain = robots::abb_irb120().chain;
+  const PlanOptions options{.count = 5, .errors = {.compliance = false, .harmonics = 0}};
+  for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+    const auto plan = plan_measurements(chain, some_candidates(5, seed), options);
+    ASSERT_EQ(plan.visits.size(), 6u);
+    EXPECT_EQ(std::set<Index>(plan.visits.begin(), plan.visits.end()).size(), 5u);
+    const PointRows points = chain.positions(plan.joints);
+    double widest = 0, largest = 0;
+    for (Index i = 0; i < 5; ++i)
+      for (Index j = 0; j < i; ++j) widest = std::max(widest, (point(points, i) - point(points, j)).norm());
+    const Vector3 first = point(points, plan.visits[0]), a = point(points, plan.visits[1]) - first;
+    const auto area = [&](Index i) { return a.cross(point(points, i) - first).norm(); };
+    for (Index i = 0; i < 5; ++i) largest = std::max(largest, area(i));
+    EXPECT_DOUBLE_EQ(a.norm(), widest) << seed;
+    EXPECT_DOUBLE_EQ(area(plan.visits[2]), largest) << seed;
+  }
+}
+
+// The last joint turns the tool on the spot, so no pose is far from another; each is visited once all the same.
+TEST(PlanMeasurements, PosesAtOnePlaceAreVisitedOnceEach) {
+  MeasurementCandidates<6> candidates = in_a_row({0.2, 0.2, 0.2, 0.2});
+  for (Index i = 0; i < 4; ++i) candidates.joints(i, 5) = 0.5 * static_cast<double>(i);
+  PlanOptions options = few_harmonics(4);
+  options.oriented = true;
+  const auto plan = plan_measurements(robots::abb_irb120().chain, candidates, options);
+  ASSERT_EQ(plan.visits.size(), 5u);
+  EXPECT_EQ(std::set<Index>(plan.visits.begin(), plan.visits.end()), (std::set<Index>{0, 1, 2, 3}));
+}
+
 TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
   const auto chain = robots::abb_irb120().chain;
   PlanOptions options = few_harmonics(40);
@@ -329,7 +396,7 @@ TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
   const auto few = plan_measurements(chain, some_candidates(300, 8), options);
   ASSERT_FALSE(few.uncovered.empty());
   for (const UncoveredBin& bin : few.uncovered) {
-    EXPECT_NEAR(bin.range.upper - bin.range.lower, options.bin, 1e-12);
+    EXPECT_NEAR(bin.range.upper - bin.range.lower, std::numbers::pi / 18, 1e-12);  // 10 degrees
     for (Index i = 0; i < 3; ++i)
       EXPECT_FALSE(few.joints(i, bin.joint) >= bin.range.lower && few.joints(i, bin.joint) < bin.range.upper);
   }
@@ -337,15 +404,6 @@ TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
   MeasurementCandidates<6> measured;
   measured.joints = covering.joints;
   EXPECT_TRUE(plan_measurements(chain, some_candidates(300, 8), options, measured).uncovered.empty());
-}
-
-/// Candidates that differ in their first two joints alone, by the same.
-MeasurementCandidates<6> in_a_row(const std::vector<double>& values) {
-  MeasurementCandidates<6> out;
-  out.joints.resize(static_cast<Index>(values.size()), 6);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    set_configuration(out.joints, static_cast<Index>(i), JointVector<6>(values[i], values[i], 0.3, 0.7, -0.4, 1));
-  return out;
 }
 
 // Bins of a quarter from the smallest value to the largest, which lies in the last of them.
@@ -358,8 +416,10 @@ TEST(PlanMeasurements, BinsByHand) {
     // what was measured above the bins of the first joint and below those of the second covers none of them
     MeasurementCandidates<6> outside = in_a_row({0.6});
     outside.joints(0, 1) = -0.3;
+    MeasurementCandidates<6> other_side = in_a_row({-0.3});  // and the other way round
+    other_side.joints(0, 1) = 0.6;
     for (const bool turned : {false, true})
-      for (const auto& measured : {MeasurementCandidates<6>(), outside}) {
+      for (const auto& measured : {MeasurementCandidates<6>(), outside, other_side}) {
         const std::vector<double> values = turned ? std::vector<double>{0.5, 0} : std::vector<double>{0, 0.5};
         const auto plan = plan_measurements(chain, in_a_row(values), options, measured);
         ASSERT_EQ(plan.uncovered.size(), 2u) << wanted;
@@ -459,6 +519,43 @@ TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
   EXPECT_NE(narrow.find("of the others 1000 are out of the joint limits"), std::string::npos) << narrow;
 }
 
+// Where nothing is rejected, each joint is uniform between its limits.
+TEST(PlanMeasurements, CandidatesFillTheLimitsOfAllJoints) {
+  const auto robot = robots::abb_irb120();
+  const auto found = sample_candidates(robot.chain, robot.limits, {.joint_margin = 0}, 400, 3);
+  for (const Index rejected : found.rejected) EXPECT_EQ(rejected, 0);
+  for (Index j = 0; j < 6; ++j) {
+    double sum = 0, squares = 0;
+    for (Index i = 0; i < 400; ++i) {
+      const double share =
+          (found.joints(i, j) - robot.limits.lower(j)) / (robot.limits.upper(j) - robot.limits.lower(j));
+      EXPECT_TRUE(share >= 0 && share <= 1) << share;
+      sum += share / 400;
+      squares += share * share / 400;
+    }
+    EXPECT_NEAR(sum, 0.5, 0.05) << j;  // three deviations of a mean of 400
+    EXPECT_NEAR(squares - sum * sum, 1.0 / 12, 0.01) << j;
+  }
+}
+
+TEST(PlanMeasurements, CandidatesNeedLimits) {
+  const auto robot = robots::abb_irb120();
+  const auto complaint = [&](const JointLimits<6>& limits, Index n) {
+    return vernier_test::complaint([&] { (void)sample_candidates(robot.chain, limits, {}, n, 1); });
+  };
+  EXPECT_EQ(complaint(robot.limits, 1), "");
+  EXPECT_EQ(complaint(robot.limits, 0), "sample_candidates: 0 candidates requested");
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const int fault : {0, 1, 2, 3}) {
+    JointLimits<6> limits = robot.limits;
+    if (fault == 0) limits.lower(2) = -infinity;
+    if (fault == 1) limits.upper(2) = infinity;
+    if (fault == 2) limits.upper(0) = limits.lower(0);
+    if (fault == 3) limits.upper(5) = limits.lower(5) - 1;
+    EXPECT_EQ(complaint(limits, 1), "sample_candidates: the joint limits are not finite, or empty") << fault;
+  }
+}
+
 TEST(PlanMeasurements, EnoughIsWhereTenMoreGainLittle) {
   PlannedMeasurements plan;
   plan.chosen.resize(30);
@@ -469,6 +566,10 @@ TEST(PlanMeasurements, EnoughIsWhereTenMoreGainLittle) {
   EXPECT_EQ(plan.enough(0.26), 0);
   for (Index k = 16; k < 31; ++k) plan.relative_error(k) = plan.relative_error(15);
   EXPECT_EQ(plan.enough(), 15);
+  // the last ten alone gain nothing
+  plan.relative_error = VectorX::LinSpaced(31, 4, 1);
+  for (Index k = 21; k < 31; ++k) plan.relative_error(k) = plan.relative_error(20);
+  EXPECT_EQ(plan.enough(), 20);
 }
 
 TEST(PlanMeasurements, RefusesWhatIsNotUsable) {
@@ -480,6 +581,18 @@ TEST(PlanMeasurements, RefusesWhatIsNotUsable) {
   EXPECT_EQ(complaint({.count = 0}, 10), "plan_measurements: count is 0, must be at least 1");
   EXPECT_EQ(complaint({.count = 2, .criterion = DesignCriterion::region_variance}, 10),
             "plan_measurements: no region whose variance could be reduced");
+  EXPECT_EQ(complaint({.count = 2, .bin = 0}, 10), "plan_measurements: bin is 0, must be positive");
+  EXPECT_NE(complaint({.count = 2, .errors = {.harmonics = -1}}, 10), "");
+  EXPECT_NE(complaint({.count = 2, .sensors = {.position_sigma = 0}}, 10), "");
+  for (const int bad : {0, 1, 2}) {
+    std::array<MeasurementCandidates<6>, 3> rows{some_candidates(3, 1), some_candidates(3, 2), some_candidates(3, 3)};
+    rows[static_cast<std::size_t>(bad)].joints(1, 2) = std::nan("");
+    EXPECT_EQ(vernier_test::complaint([&] {
+                (void)plan_measurements(robots::abb_irb120().chain, rows[0], few_harmonics(2), rows[1], rows[2].joints);
+              }),
+              "plan_measurements: a joint value is not finite")
+        << bad;
+  }
 }
 
 }  // namespace

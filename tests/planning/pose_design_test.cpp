@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "complaint.hpp"
@@ -179,6 +180,38 @@ TEST(PoseDesign, BinsThatLackSeveralCountOnceEach) {
   const Eigen::MatrixXi one_each{{1}, {0}, {0}, {0}};
   const PoseDesign twice = design_poses(rows, 1, {.count = 4, .coverage = {one_each, Eigen::VectorXi{{2, 0}}}});
   EXPECT_EQ(twice.chosen, (std::vector<Index>{3, 2, 0, 1}));  // two for the bin, then by what they say
+}
+
+TEST(PoseDesign, OfNoChoices) {
+  const RealMatrix rows = random_rows(12, 4, 1), region = random_rows(6, 4, 2);
+  const PoseDesign none = design_poses(rows, 3, {}, MatrixX(), region);
+  EXPECT_TRUE(none.chosen.empty());
+  ASSERT_EQ(none.log_det.size(), 1);
+  EXPECT_EQ(none.log_det(0), 0);
+  ASSERT_EQ(none.region_variance.size(), 1);
+  EXPECT_NEAR(none.region_variance(0), (region * region.transpose()).trace() / 2, 1e-12);
+  EXPECT_EQ(information_bound(rows, 3, 0), 0);
+  EXPECT_EQ(information_bound(MatrixX(0, 4), 3, 0), 0);
+}
+
+TEST(PoseDesign, HasAValueBeforeAndAfterEachChoice) {
+  const RealMatrix rows = random_rows(12, 4, 1), region = random_rows(6, 4, 2);
+  const PoseDesign design = design_poses(rows, 3, {.count = 2, .coverage = {}}, MatrixX(), region);
+  EXPECT_EQ(design.log_det.size(), 3);
+  EXPECT_EQ(design.region_variance.size(), 3);
+  EXPECT_EQ(design_poses(rows, 3, {.count = 2, .coverage = {}}).region_variance.size(), 0);
+}
+
+TEST(PoseDesign, RefusesWhatIsNotFinite) {
+  const RealMatrix good = random_rows(12, 4, 1);
+  for (const int bad : {0, 1, 2}) {
+    std::array<RealMatrix, 3> parts{good, random_rows(3, 4, 2), random_rows(3, 4, 3)};
+    parts[static_cast<std::size_t>(bad)](2, 1) = std::nan("");
+    EXPECT_EQ(vernier_test::complaint(
+                  [&] { (void)design_poses(parts[0], 3, {.count = 1, .coverage = {}}, parts[1], parts[2]); }),
+              "design_poses: a row is not finite")
+        << bad;
+  }
 }
 
 TEST(PoseDesign, RefusesWhatDoesNotMatch) {

@@ -130,6 +130,53 @@ TEST(VisitingOrder, NoFewVisitsAreBetterElsewhere) {
   }
 }
 
+// The same for many small sets: whatever a sweep changes, reversed or moved, the next one looks at.
+TEST(VisitingOrder, ManySmallPathsCannotBeShortened) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const MatrixX joints = random_configurations(12 + static_cast<Index>(seed % 9), seed).leftCols(2);
+    const std::vector<Index> order = visiting_order(joints);
+    const auto time = [&](std::size_t a, std::size_t b) {
+      double slowest = 0;
+      for (Index k = 0; b < order.size() && k < 2; ++k)
+        slowest = std::max(slowest, std::abs(joints(order[a], k) - joints(order[b], k)));
+      return slowest;
+    };
+    for (std::size_t i = 1; i < order.size(); ++i)
+      for (std::size_t j = i + 1; j < order.size(); ++j)
+        EXPECT_GE(time(i - 1, j) + time(i, j + 1), time(i - 1, i) + time(j, j + 1) - 1e-9) << seed << ' ' << i;
+  }
+}
+
+// The search begins with the path to the nearest configuration again and again, so it ends with none that is longer.
+TEST(VisitingOrder, NoLongerThanByNearestNeighbours) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const MatrixX joints = random_configurations(8, seed).leftCols(2);
+    std::vector<Index> greedy{0}, left{1, 2, 3, 4, 5, 6, 7};
+    while (!left.empty()) {
+      auto nearest = left.begin();
+      for (auto at = left.begin(); at != left.end(); ++at)
+        if (path_time(joints, {greedy.back(), *at}) < path_time(joints, {greedy.back(), *nearest})) nearest = at;
+      greedy.push_back(*nearest);
+      left.erase(nearest);
+    }
+    EXPECT_LE(path_time(joints, visiting_order(joints)), path_time(joints, greedy) + 1e-9) << seed;
+  }
+}
+
+TEST(VisitingOrder, OneConfigurationOrNone) {
+  using vernier_test::complaint;
+  const MatrixX one = random_configurations(1, 1);
+  EXPECT_EQ(visiting_order(one), std::vector<Index>{0});
+  EXPECT_EQ(visiting_order(one, VectorX(), 0), std::vector<Index>{0});
+  EXPECT_EQ(complaint([&] { (void)visiting_order(one, VectorX(), 2); }),
+            "visiting_order: 2 of 1 rows are to stay first");
+  EXPECT_EQ(complaint([] { (void)visiting_order(MatrixX(0, 6), VectorX(), 2); }),
+            "visiting_order: 2 of 0 rows are to stay first");
+  EXPECT_EQ(path_time(one, {0}), 0);
+  EXPECT_TRUE(with_check_visits({}, 1).empty());
+  EXPECT_EQ(with_check_visits({5, 6}, 1), (std::vector<Index>{5, 5, 6, 5}));
+}
+
 TEST(VisitingOrder, ChecksAreRepeated) {
   EXPECT_EQ(with_check_visits({4, 1, 2, 3, 0}, 2), (std::vector<Index>{4, 1, 4, 2, 3, 4, 0, 4}));
   EXPECT_EQ(with_check_visits({7}, 2), (std::vector<Index>{7}));

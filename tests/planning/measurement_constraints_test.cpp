@@ -71,7 +71,7 @@ TEST(MeasurementConstraints, OfATrackerOfWhichNothingIsSaid) {
   EXPECT_EQ(checked({.tracker = Tracker{.position = towards, .acceptance = 0.401}}, {0, 0, 0}), Rejection::none);
   EXPECT_EQ(checked({.tracker = Tracker{.position = towards, .acceptance = 0.399}}, {0, 0, 0}), Rejection::acceptance);
   // folded around a square, the tool at (0, 1): the beam passes the end of the first link, at (1, 0), at 1 m
-  for (const double radius : {0.97, 0.99}) {
+  for (const double radius : {0.975, 0.985}) {
     const MeasurementConstraints c{.tracker = Tracker{.position = {0, 6, 0}}, .link_radii = {radius, 0, 0}};
     EXPECT_EQ(checked(c, {0, half_turn / 2, half_turn / 2}),
               radius < 0.98 ? Rejection::none : Rejection::line_of_sight);
@@ -194,6 +194,45 @@ TEST(MeasurementConstraints, AllLinksBetweenTwoKeepThemApart) {
     const MeasurementScene scene(ArmGeometry(in_frames(chain)), {.link_radii = {radius, 0, 0, radius}});
     EXPECT_EQ(scene.check(square), radius < 1 ? Rejection::self_collision : Rejection::none) << radius;
   }
+}
+
+/// Three links of lengths of their own, the second and the third each at a right angle to the one before, and a tool
+/// that goes on along the third.
+Rejection checked_square(double second, double third, double tool, const MeasurementConstraints& constraints) {
+  const DhChain<3> chain{{{{.a = 1}, {.a = second}, {.a = third}}}};
+  const ArmGeometry arm(
+      Framed<DhChain<3>>(chain, Isometry3::Identity(), rigid_motion(Matrix3::Identity(), {tool, 0, 0})));
+  return MeasurementScene(arm, constraints).check(Vector3(0, half_turn / 2, half_turn / 2));
+}
+
+// A beam straight down from the end of the third link passes the first, which hides it unless the links between
+// reflector and first link are shorter together than the first is wide.
+TEST(MeasurementConstraints, TheWayToTheReflectorIsThatOfAllLinksBetween) {
+  const auto seen = [](double second, double third, double radius) {
+    const Tracker tracker{.position = {1 - third, -5, 0}, .beam_radius = 0};
+    return checked_square(second, third, 0, {.tracker = tracker, .link_radii = {radius, 0, 0}});
+  };
+  EXPECT_EQ(seen(0.5, 0.25, 0.7), Rejection::line_of_sight);
+  EXPECT_EQ(seen(0.5, 0.25, 0.8), Rejection::none);
+  EXPECT_EQ(seen(0.25, 0.5, 0.7), Rejection::line_of_sight);
+  EXPECT_EQ(seen(0.25, 0.5, 0.8), Rejection::none);
+}
+
+// What counts between two links is the second one alone, however long the third is; nor is the tool a link.
+TEST(MeasurementConstraints, ALinkEndsBeforeTheTool) {
+  const DhChain<3> chain{{{{.a = 1}, {.a = 0.5}, {.a = 0.6}}}};
+  const Vector3 q(0, half_turn / 2, 2.5);  // down to the left, crossing the first link only with its tool
+  const double down = std::cos(2.5), height = 0.5 + 0.6 * down, tip = 0.5 + 0.9 * down;
+  ASSERT_GT(height, 0.01);
+  ASSERT_LT(tip, 0);
+  const ArmGeometry arm(
+      Framed<DhChain<3>>(chain, Isometry3::Identity(), rigid_motion(Matrix3::Identity(), {0.3, 0, 0})));
+  for (const double radius : {0.9, 1.1})
+    EXPECT_EQ(MeasurementScene(arm, {.link_radii = {radius * height, 0, 0}}).check(q),
+              radius < 1 ? Rejection::none : Rejection::self_collision);
+  // folded over: the third link 0.2 m away at both of its ends, wide links that the second alone keeps apart
+  EXPECT_EQ(checked_square(0.2, 0.9, 0, {.link_radii = {0.15, 0, 0.15}}), Rejection::none);
+  EXPECT_EQ(checked_square(0.4, 0.1, 0, {.link_radii = {0.15, 0, 0.2}}), Rejection::none);
 }
 
 TEST(MeasurementConstraints, EachRejectionHasItsWords) {

@@ -308,6 +308,21 @@ TEST(PlanMeasurements, ARegionMayBeOnePose) {
   }
 }
 
+// What one pose of before says is not said again: the information adds up.
+TEST(PlanMeasurements, OnePoseMeasuredBeforeCounts) {
+  const auto chain = robots::abb_irb120().chain;
+  const MeasurementCandidates<6> candidates = some_candidates(15, 6);
+  const auto at_once = plan_measurements(chain, candidates, few_harmonics(4));
+  MeasurementCandidates<6> measured;
+  measured.joints.resize(1, 6);
+  measured.previous.resize(1, 6);
+  set_configuration(measured.joints, 0, configuration(candidates.joints, at_once.chosen[0]));
+  set_configuration(measured.previous, 0, configuration(candidates.previous, at_once.chosen[0]));
+  const auto more = plan_measurements(chain, candidates, few_harmonics(3), measured);
+  EXPECT_EQ(more.chosen, (std::vector<Index>(at_once.chosen.begin() + 1, at_once.chosen.end())));
+  EXPECT_NEAR(more.log_det(3), at_once.log_det(4) - at_once.log_det(1), 1e-6);
+}
+
 TEST(PlanMeasurements, OneIterationGivesABound) {
   PlanOptions options = few_harmonics(3);
   options.bound_iterations = 1;
@@ -358,18 +373,20 @@ TEST(PlanMeasurements, VisitsRegisterFirstAndCheckRepeatedly) {
 // Of few poses it matters that each may be one of the three that register: the two farthest apart, whichever they are.
 TEST(PlanMeasurements, AnyThreePosesMayRegister) {
   const auto chain = robots::abb_irb120().chain;
-  const PlanOptions options{.count = 5, .errors = {.compliance = false, .harmonics = 0}};
+  PlanOptions options{.errors = {.compliance = false, .harmonics = 0}};
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
-    const auto plan = plan_measurements(chain, some_candidates(5, seed), options);
-    ASSERT_EQ(plan.visits.size(), 6u);
-    EXPECT_EQ(std::set<Index>(plan.visits.begin(), plan.visits.end()).size(), 5u);
+    const Index n = seed <= 15 ? 5 : 3;
+    options.count = n;
+    const auto plan = plan_measurements(chain, some_candidates(n, seed), options);
+    ASSERT_EQ(plan.visits.size(), static_cast<std::size_t>(n + 1));
+    EXPECT_EQ(std::set<Index>(plan.visits.begin(), plan.visits.end()).size(), static_cast<std::size_t>(n));
     const PointRows points = chain.positions(plan.joints);
     double widest = 0, largest = 0;
-    for (Index i = 0; i < 5; ++i)
+    for (Index i = 0; i < n; ++i)
       for (Index j = 0; j < i; ++j) widest = std::max(widest, (point(points, i) - point(points, j)).norm());
     const Vector3 first = point(points, plan.visits[0]), a = point(points, plan.visits[1]) - first;
     const auto area = [&](Index i) { return a.cross(point(points, i) - first).norm(); };
-    for (Index i = 0; i < 5; ++i) largest = std::max(largest, area(i));
+    for (Index i = 0; i < n; ++i) largest = std::max(largest, area(i));
     EXPECT_DOUBLE_EQ(a.norm(), widest) << seed;
     EXPECT_DOUBLE_EQ(area(plan.visits[2]), largest) << seed;
   }
@@ -492,7 +509,10 @@ TEST(PlanMeasurements, CandidatesObeyTheirConstraints) {
     const JointVector<6> q = configuration(found.joints, i);
     const Isometry3 pose = robot.chain.pose(q);
     const Vector3 position = translation(pose), axis(pose(0, 2), pose(1, 2), pose(2, 2));
-    for (Index j = 0; j < 6; ++j) EXPECT_GE(q(j), robot.limits.lower(j) + 0.05 - 1e-12);
+    for (Index j = 0; j < 6; ++j) {
+      EXPECT_GE(q(j), robot.limits.lower(j) + 0.05 - 1e-12);
+      EXPECT_LE(q(j), robot.limits.upper(j) - 0.05 + 1e-12);
+    }
     for (Index c = 0; c < 3; ++c) {
       EXPECT_GE(position(c), constraints.tool_box->lower(c));
       EXPECT_LE(position(c), constraints.tool_box->upper(c));
@@ -581,6 +601,7 @@ TEST(PlanMeasurements, RefusesWhatIsNotUsable) {
   EXPECT_EQ(complaint({.count = 0}, 10), "plan_measurements: count is 0, must be at least 1");
   EXPECT_EQ(complaint({.count = 2, .criterion = DesignCriterion::region_variance}, 10),
             "plan_measurements: no region whose variance could be reduced");
+  EXPECT_EQ(complaint({}, 10), "plan_measurements: 10 candidates for 100 measurements");
   EXPECT_EQ(complaint({.count = 2, .bin = 0}, 10), "plan_measurements: bin is 0, must be positive");
   EXPECT_NE(complaint({.count = 2, .errors = {.harmonics = -1}}, 10), "");
   EXPECT_NE(complaint({.count = 2, .sensors = {.position_sigma = 0}}, 10), "");

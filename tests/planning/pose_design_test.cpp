@@ -182,6 +182,25 @@ TEST(PoseDesign, BinsThatLackSeveralCountOnceEach) {
   EXPECT_EQ(twice.chosen, (std::vector<Index>{3, 2, 0, 1}));  // two for the bin, then by what they say
 }
 
+// The region's x is predicted from x + y, and by y alone only when that is known: y gains nothing at first, but as
+// soon as x + y was measured it gains more than a bad measurement of x, which gained more before.
+TEST(PoseDesign, WhatHelpsARegionMayGrowByAChoice) {
+  const RealMatrix rows(3, 2, {0, 10, 0.3, 0, 10, 10}), region(3, 2, {1, 0, 0, 0, 0, 0});
+  const PoseDesign design = design_poses(rows, 1, {3, DesignCriterion::region_variance, {}}, MatrixX(), region);
+  EXPECT_EQ(design.chosen, (std::vector<Index>{2, 0, 1}));
+  // the covariance after x + y is I - 100/201 of ones; y then explains 4.975^2 / 51.25 of the variance of x
+  const double ratio = 100.0 / 201, left = 1 - ratio - 100 * ratio * ratio / (1 + 100 * (1 - ratio));
+  EXPECT_NEAR(design.region_variance(1), 1 - ratio, 1e-12);
+  EXPECT_NEAR(design.region_variance(2), left, 1e-12);
+  EXPECT_NEAR(design.region_variance(3), 1 / (1 / left + 0.09), 1e-12);
+}
+
+TEST(PoseDesign, OneCandidateCoversItsBins) {
+  const PoseDesign one = design_poses(vernier_test::vector({1}), 1,
+                                      {.count = 1, .coverage = {Eigen::MatrixXi{{1, 2}}, Eigen::VectorXi{{1, 1, 2}}}});
+  EXPECT_EQ(std::vector<int>(one.missing.begin(), one.missing.end()), (std::vector<int>{1, 0, 1}));
+}
+
 TEST(PoseDesign, OfNoChoices) {
   const RealMatrix rows = random_rows(12, 4, 1), region = random_rows(6, 4, 2);
   const PoseDesign none = design_poses(rows, 3, {}, MatrixX(), region);
@@ -230,6 +249,8 @@ TEST(PoseDesign, RefusesWhatDoesNotMatch) {
   EXPECT_EQ(design(2, 1, {}, random_rows(4, 4, 1)), "design_poses: 4 rows of the region are no multiple of 3");
   EXPECT_EQ(design(0, 1), "design_poses: 0 rows a candidate, must be 1 to 6");
   EXPECT_EQ(design(12, 1), "design_poses: 12 rows a candidate, must be 1 to 6");
+  EXPECT_EQ(complaint([] { (void)design_poses(random_rows(14, 4, 1), 7, {.count = 1, .coverage = {}}); }),
+            "design_poses: 7 rows a candidate, must be 1 to 6");
   EXPECT_EQ(design(3, -1), "design_poses: -1 of 4 candidates");
   const auto in_bins = [&](const Eigen::MatrixXi& bins) {
     const PoseDesignOptions options{.count = 1, .coverage = {bins, Eigen::VectorXi{{1, 1}}}};

@@ -223,6 +223,11 @@ TEST(CartesianCompensation, DataInAnotherFrameAreRefused) {
   EXPECT_EQ(complaint([&] { (void)recipe.fit(nominal, shifted(0.04)); }), "");
 }
 
+TEST(CartesianCompensation, OneSampleIsEnough) {
+  EXPECT_EQ(complaint([] { (void)CartesianCompensation{Elm{.hidden_nodes = 5}}.fit(nominal, training(nominal, 1)); }),
+            "");
+}
+
 TEST(CartesianCompensation, MisuseIsNamed) {
   EXPECT_NE(complaint([] { (void)CartesianCompensation{Elm{}}.fit(nominal, Dataset<6>{}); }).find("no samples"),
             std::string::npos);

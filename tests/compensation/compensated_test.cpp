@@ -303,6 +303,7 @@ TEST(CorrectionOptions, UnusableValuesAreNamed) {
   EXPECT_NE(complaint({.moving_joints = -1}).find("-1"), std::string::npos);
   EXPECT_NE(complaint({.position_tolerance = 0}).find("tolerances 0 m"), std::string::npos);
   EXPECT_NE(complaint({.rotation_tolerance = -1}).find("-1 rad"), std::string::npos);
+  EXPECT_NE(complaint({.rotation_tolerance = 0}).find("0 rad must be positive"), std::string::npos);
   EXPECT_NE(complaint({.position_tolerance = std::nan("")}).find("nan"), std::string::npos);
   EXPECT_NE(complaint({.max_iterations = 0}).find("max_iterations is 0"), std::string::npos);
   EXPECT_EQ(complaint({.moving_joints = 6}), "");

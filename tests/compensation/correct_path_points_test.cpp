@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
+#include "complaint.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
@@ -96,6 +98,27 @@ TEST(CorrectPath, OrientationsAreKeptToATolerance) {
   EXPECT_EQ(corrected(two_lines(), options).inserted(), 0);
   options.rotation_tolerance = 1e-5;
   EXPECT_GT(corrected(two_lines(), options).inserted(), 2);
+}
+
+TEST(CorrectPath, WhatIsNotLearnedIsUsedInFull) {
+  const CorrectedPath<6> path =
+      correct_path(robot.chain, ClosedForm<6>(robot.chain), {{.pose = robot.chain.pose(home)}}, from_home());
+  EXPECT_EQ(path.points.front().gate, 1);
+}
+
+TEST(CorrectPath, RefusesOptionsThatAreNotPositive) {
+  const auto complaint = [](const auto& spoil) {
+    PathOptions<6> options = from_home();
+    spoil(options);
+    return vernier_test::complaint([&] { (void)corrected(two_lines(), options); });
+  };
+  const std::string refused = "correct_path: tolerances, steps and speeds must be positive";
+  EXPECT_EQ(complaint([](PathOptions<6>& options) { options.tolerance = 0; }), refused);
+  EXPECT_EQ(complaint([](PathOptions<6>& options) { options.rotation_tolerance = 0; }), refused);
+  EXPECT_EQ(complaint([](PathOptions<6>& options) { options.max_joint_step = 0; }), refused);
+  EXPECT_EQ(complaint([](PathOptions<6>& options) { options.max_inserted = -1; }), refused);
+  EXPECT_EQ(complaint([](PathOptions<6>& options) { options.speed(5) = 0; }), refused);
+  EXPECT_EQ(complaint([](PathOptions<6>& options) { options.max_inserted = 0; }), "");
 }
 
 // A limit in the way of the first joint: the command keeps to it, and says by how much the target is missed.

@@ -212,6 +212,13 @@ TEST(JointCompensation, DataInAnotherFrameAreRefused) {
   EXPECT_NE(said.find("register"), std::string::npos) << said;
 }
 
+TEST(JointCompensation, OneLabelIsEnough) {
+  const JointCompensation recipe{Elm{.hidden_nodes = 5}};
+  EXPECT_EQ(complaint([&] { (void)recipe.fit(nominal, training(nominal, 1)); }), "");
+  const auto label = joint_error_labels(nominal, actual_arm(), operating_targets(1, 3));
+  EXPECT_EQ(complaint([&] { (void)recipe.fit(nominal, label); }), "");
+}
+
 TEST(JointCompensation, NothingToLearnFromIsNamed) {
   const JointCompensation recipe{Elm{.hidden_nodes = 5}};
   EXPECT_NE(complaint([&] { (void)recipe.fit(nominal, Dataset<6>{}); }).find("no samples"), std::string::npos);

@@ -85,9 +85,7 @@ class OpenPath {
   Index size() const { return static_cast<Index>(order_.size()); }
   /// From visit i to visit j; nothing leads on from the last.
   double time(Index i, Index j) const {
-    return j >= size() || i >= size()
-               ? 0
-               : times_(order_[static_cast<std::size_t>(i)], order_[static_cast<std::size_t>(j)]);
+    return j >= size() ? 0 : times_(order_[static_cast<std::size_t>(i)], order_[static_cast<std::size_t>(j)]);
   }
 
   const MatrixX& times_;

@@ -344,6 +344,11 @@ TEST(NearestTurn, StaysWithinLimits) {
   EXPECT_NEAR(nearest_turn(3, 0, 3, 3), 3, 1e-15);           // bounds included
   EXPECT_NEAR(nearest_turn(3, 0, 9, 9.2), 3 + turn, 1e-15);  // none: the nearest to the bounds
   EXPECT_NEAR(nearest_turn(3, -100, 2, 2.5), 3, 1e-15);
+  // a nanoradian beyond a bound counts as within, no more than that
+  EXPECT_NEAR(nearest_turn(1 + 0.8e-9, 1, -7, 1), 1, 1e-8);
+  EXPECT_NEAR(nearest_turn(1 + 1.2e-9, 1, -7, 1), 1 - turn, 1e-8);
+  EXPECT_NEAR(nearest_turn(-1 - 0.8e-9, -1, -1, 7), -1, 1e-8);
+  EXPECT_NEAR(nearest_turn(-1 - 1.2e-9, -1, -1, 7), turn - 1, 1e-8);
   const JointVector<6> joints = JointVector<6>::Constant(0.5), near = JointVector<6>::Constant(7);
   const JointVector<6> turned = JointVector<6>::Constant(0.5 + turn);
   EXPECT_LT((RealMatrix(nearest_turns<6>(joints, near, {})) - turned).norm(), 1e-14);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "complaint.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
 #include "vernier/kinematics/framed.hpp"
@@ -61,6 +62,20 @@ TEST(ArmGeometry, ParametersHaveNamesAndKinds) {
   std::string lengths;
   for (const ParameterKind kind : arm.parameter_kinds()) lengths += kind == ParameterKind::length ? 'm' : 'r';
   EXPECT_EQ(lengths, "mmmrrrmrmrrmmmrrr");
+}
+
+// Either difference alone is one too many.
+TEST(ArmGeometry, RefusesToBeAnArmOfOtherJointsOrOfTheOtherConvention) {
+  Rng rng(2);
+  const ArmGeometry arm(in_frames(vernier_test::random_chain<3>(rng)));
+  EXPECT_EQ(vernier_test::complaint([&] { (void)arm.framed(vernier_test::random_chain<2>(rng)); }),
+            "ArmGeometry: an arm of 3 joints in the standard convention, expected 2 in the standard one");
+  EXPECT_EQ(vernier_test::complaint([&] { (void)arm.framed(vernier_test::random_chain<3, ModifiedDh>(rng)); }),
+            "ArmGeometry: an arm of 3 joints in the standard convention, expected 3 in the modified one");
+  const ArmGeometry modified(in_frames(vernier_test::random_chain<3, ModifiedDh>(rng)));
+  EXPECT_EQ(vernier_test::complaint([&] { (void)modified.framed(vernier_test::random_chain<3>(rng)); }),
+            "ArmGeometry: an arm of 3 joints in the modified convention, expected 3 in the standard one");
+  EXPECT_EQ(vernier_test::complaint([&] { (void)arm.framed(vernier_test::random_chain<3>(rng)); }), "");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "larger.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
@@ -46,6 +48,22 @@ TEST(ToStandard, TheLastRowIsFree) {
   EXPECT_EQ(standard.model().row(0), (DhRow{.a = 0.3, .alpha = 0.4, .beta = 0.5}));
   EXPECT_EQ(standard.model().row(1), DhRow{});
   EXPECT_EQ(standard.base().translation(), Vector3(0.1, 0, 0));
+}
+
+// The base takes over what the first row does before its joint: Rx(alpha), then a along x and Ry(beta).
+TEST(ToStandard, TheFirstRowMovesTheBase) {
+  for (const double beta : {0.0, 0.3, 1.0, -1.0}) {
+    const DhChain<1, ModifiedDh> chain({{.a = 0.1, .alpha = 0.2, .beta = beta}});
+    const auto standard = to_standard(chain);
+    const double ca = std::cos(0.2), sa = std::sin(0.2), cb = std::cos(beta), sb = std::sin(beta);
+    EXPECT_LE(vernier_test::difference(standard.base(), vernier_test::RealMatrix(4, 4,
+                                                                                 {cb, 0, sb, 0.1,            //
+                                                                                  sa * sb, ca, -sa * cb, 0,  //
+                                                                                  -ca * sb, sa, ca * cb, 0,  //
+                                                                                  0, 0, 0, 1})),
+              1e-15)
+        << beta;
+  }
 }
 
 }  // namespace

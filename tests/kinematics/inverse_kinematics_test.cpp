@@ -375,6 +375,22 @@ TEST(InverseKinematics, RestartsLieAboutTheSeedOrWithinTheLimits) {
   EXPECT_GT(most, seed(0) + 0.9 * pi);
 }
 
+// No joint values move by more than 1.5 (rad, m) at once, as a vector: on a slide the way is known, and is 4 m.
+TEST(InverseKinematics, NoStepIsLongerThanOneAndAHalf) {
+  const vn::DhRow slide{.joint = vn::JointType::prismatic};
+  const vn::DhChain<1> one({slide});
+  const auto first = inverse_kinematics(one, vn::Vector3(0, 0, 4), vn::JointVector<1>::Zero(), {.max_iterations = 2});
+  EXPECT_EQ(first.status, vn::IkStatus::stalled);
+  EXPECT_NEAR(first.joints(0), 1.5, 1e-15);
+  EXPECT_NEAR(first.position_error, 2.5, 1e-15);
+  // along z and along -y, 2.4 m and 3.2 m: 0.6 and 0.8 of the step
+  const vn::DhChain<2> two({{.alpha = pi / 2, .joint = vn::JointType::prismatic}, slide});
+  const auto both =
+      inverse_kinematics(two, vn::Vector3(0, -3.2, 2.4), vn::JointVector<2>::Zero(), {.max_iterations = 2});
+  EXPECT_NEAR(both.joints(0), 0.6 * 1.5, 1e-12);
+  EXPECT_NEAR(both.joints(1), 0.8 * 1.5, 1e-12);
+}
+
 TEST(InverseKinematics, IterationsAreEvaluationsOfAllStarts) {
   std::vector<vn::JointVector<2>> visited;
   const Noting arm{planar, &visited};

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <numbers>
+
 #include "laws.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
@@ -86,6 +89,32 @@ TEST(Robots, NamesLimitsAndLaws) {
   check(vn::robots::barrett_wam(), "barrett_wam");
   check(vn::robots::puma560(), "puma560");
   check(vn::robots::puma560_modified(), "puma560_modified");
+}
+
+/// Limits are those of the makers, in degrees.
+template <int N>
+void expect_limits(const vn::JointLimits<N>& limits, const std::array<double, N>& lower,
+                   const std::array<double, N>& upper) {
+  for (int j = 0; j < N; ++j) {
+    EXPECT_NEAR(limits.lower(j) * 180 / std::numbers::pi, lower[static_cast<std::size_t>(j)], 1e-12) << j;
+    EXPECT_NEAR(limits.upper(j) * 180 / std::numbers::pi, upper[static_cast<std::size_t>(j)], 1e-12) << j;
+  }
+}
+
+TEST(Robots, JointsTurnAsFarAsTheMakersSay) {
+  const std::array<double, 6> turn{360, 360, 360, 360, 360, 360}, back{-360, -360, -360, -360, -360, -360};
+  expect_limits<6>(vn::robots::ur5().limits, back, turn);
+  expect_limits<6>(vn::robots::ur10().limits, back, turn);
+  expect_limits<6>(vn::robots::abb_irb120().limits, {-165, -110, -110, -160, -120, -400},
+                   {165, 110, 70, 160, 120, 400});
+  expect_limits<6>(vn::robots::puma560().limits, {-160, -45, -225, -110, -100, -266}, {160, 225, 45, 170, 100, 266});
+  // the maker of the WAM gives radians
+  const auto wam = vn::robots::barrett_wam().limits;
+  const std::array<double, 7> lower{-2.6, -2.0, -2.8, -0.9, -4.76, -1.6, -3.0}, upper{2.6, 2.0, 2.8, 3.1, 1.24, 1.6, 3};
+  for (int j = 0; j < 7; ++j) {
+    EXPECT_EQ(wam.lower(j), lower[static_cast<std::size_t>(j)]) << j;
+    EXPECT_EQ(wam.upper(j), upper[static_cast<std::size_t>(j)]) << j;
+  }
 }
 
 TEST(JointLimits, ContainAndClamp) {

@@ -111,6 +111,30 @@ TEST(RowsOfAxes, NearlyParallelAxesHaveBeta) {
   }
 }
 
+// One frame a joint: z along its axis, its origin on it, x at the common normal, so that (a, 0, d) of the row is a
+// point of the next axis.
+TEST(RowsOfAxes, FramesStandOnTheirAxes) {
+  Rng rng(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto chain = vernier_test::random_chain<6>(rng, {.prismatic = 0});
+    const auto axes = axes_of(chain);
+    const auto found = detail::rows_of_axes(axes);
+    ASSERT_EQ(found.frames.size(), axes.size());
+    ASSERT_EQ(found.rows.size(), axes.size());
+    const auto off_axis = [&](std::size_t i, const Vector3& point) {
+      return axes[i].direction.cross(Vector3(point - axes[i].point)).norm();
+    };
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const Isometry3& frame = found.frames[i];
+      EXPECT_LT((Vector3(frame(0, 2), frame(1, 2), frame(2, 2)) - axes[i].direction).norm(), 1e-13) << i;
+      EXPECT_LT(off_axis(i, translation(frame)), 1e-13) << i;
+      if (i + 1 == axes.size()) break;
+      const DhRow& row = found.rows[i];
+      EXPECT_LT(off_axis(i + 1, transformed(frame, Vector3(row.a, 0, row.d))), 1e-12) << i;
+    }
+  }
+}
+
 TEST(RowsOfAxes, MisuseIsNamed) {
   EXPECT_NE(vernier_test::complaint([] { (void)detail::rows_of_axes({}); }).find("no joints"), std::string::npos);
   EXPECT_NE(vernier_test::complaint([] {

@@ -94,7 +94,7 @@ TEST(ExpSo3, SmallElementsOfSmallRotationsHaveTheirDigits) {
     const long double even = versine_over_square(static_cast<long double>(std::hypot(x, y)));
     const auto expected = static_cast<double>(even * static_cast<long double>(x) * static_cast<long double>(y));
     EXPECT_NEAR(rotation(0, 1) / expected, 1, 2e-14) << angle;
-    EXPECT_EQ(rotation(0, 1), rotation(1, 0));
+    EXPECT_NEAR(rotation(1, 0) / expected, 1, 2e-14) << angle;
   }
 }
 

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include "vernier/kinematics/all_branches.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/robot_programs/configuration.hpp"
 
@@ -39,6 +44,41 @@ TEST(UpdatedConfiguration, LastTurnNumberOfFanuc) {
             (std::vector<int>{0, 1, 1, 0, 0, 1}));
   EXPECT_EQ(updated_configuration(fanuc_tp, stated, degrees(0, 0, 0, 0, -90, -181)),
             (std::vector<int>{0, 1, 1, 0, 0, -1}));
+  EXPECT_EQ(updated_configuration(fanuc_tp, stated, degrees(0, 0, 0, 0, -90, 539)).back(), 1);
+  EXPECT_EQ(updated_configuration(fanuc_tp, stated, degrees(0, 0, 0, 0, -90, 541)).back(), 2);
+}
+
+TEST(UpdatedConfiguration, OfTwoDegreesAndNotMore) {
+  const std::vector<int> stated{2, 2};
+  EXPECT_EQ(updated_configuration(krl, stated, degrees(-1.995, 1.995, 90, 0, 30, 0)), stated);
+  EXPECT_EQ(updated_configuration(krl, stated, degrees(-2.005, 2.005, 90, 0, 30, 0)), (std::vector<int>{2, 1}));
+}
+
+TEST(UpdatedConfiguration, NoneStaysNone) {
+  for (const ProgramLanguage language : {rapid, krl, urscript, fanuc_tp})
+    EXPECT_TRUE(updated_configuration(language, {}, degrees(100, -200, 10, 200, -30, 300)).empty());
+}
+
+/// In degrees, within limits of 400.
+double chosen_turn(ProgramLanguage language, const std::vector<int>& configuration, int joint, double angle,
+                   double limit = 400) {
+  return detail::stated_turn(language, configuration, joint, angle * degree, std::nan(""), -limit * degree,
+                             limit * degree) /
+         degree;
+}
+
+TEST(ChosenTurnWhiteBox, IsTheNearestToZeroOrTheOneThatIsStated) {
+  EXPECT_NEAR(chosen_turn(urscript, {}, 0, 200), -160, 1e-9);
+  EXPECT_NEAR(chosen_turn(urscript, {}, 0, -200), 160, 1e-9);
+  EXPECT_NEAR(chosen_turn(fanuc_tp, {0, 1, 1, 0, 0, 1}, 5, -10), 350, 1e-9);
+  EXPECT_NEAR(chosen_turn(fanuc_tp, {0, 1, 1, 0, 0, -1}, 5, 10), -350, 1e-9);
+}
+
+TEST(ChosenTurnWhiteBox, TolerancesOfWhatIsStated) {
+  EXPECT_NEAR(chosen_turn(krl, {2, 0}, 0, -1.995, 180), -1.995, 1e-9);
+  EXPECT_TRUE(std::isnan(chosen_turn(krl, {2, 0}, 0, -2.005, 180)));
+  EXPECT_NEAR(chosen_turn(rapid, {1, 0, 0, 0}, 0, 89.951), 89.951, 1e-9);
+  EXPECT_TRUE(std::isnan(chosen_turn(rapid, {1, 0, 0, 0}, 0, 89.949)));
 }
 
 class ControllerJointsOfIrb120 : public testing::Test {
@@ -115,6 +155,74 @@ TEST_F(ControllerJointsOfIrb120, FlagsOfKukaAndFanuc) {
   EXPECT_LT(apart(fanuc_tp, {0, 1, 1, 0, 0, 0}, degrees(5, 3, 2, 5, 20, 10)), 1e-9);
   EXPECT_LT(apart(fanuc_tp, {1, 1, 1, 0, 0, 0}, degrees(5, 3, 2, -175, -20, -170)), 1e-9);
   EXPECT_GT(apart(fanuc_tp, {1, 1, 1, 0, 0, 0}, degrees(5, 3, 2, 5, 20, 10)), 0.1);
+}
+
+// The quadrants leave one branch, so a wrong flag of it does not matter; where they leave two, it decides or nothing
+// does.
+TEST_F(ControllerJointsOfIrb120, FlagsThatContradictTheQuadrants) {
+  const JointVector<6> q = degrees(10, 20, -30, 40, 50, 300);
+  for (const int cfx : {0, 4, 5, 7}) {
+    const ControllerJoints one = found(q, {0, 0, 3, cfx});
+    ASSERT_TRUE(one.joints) << one.reason;
+    EXPECT_LT((*one.joints - q).norm(), 1e-9) << cfx;
+  }
+  const ControllerJoints two = found(degrees(5, 40, -80, 10, 40, 10), {0, 0, 0, 7});
+  EXPECT_FALSE(two.joints);
+  EXPECT_EQ(two.reason, "several joint values have its configuration");
+}
+
+TEST_F(ControllerJointsOfIrb120, OutOfReachIsToldAsTheBranchesTellIt) {
+  const Isometry3 far(Eigen::Translation3d(3, 0, 0));
+  const JointVector<6> near = degrees(10, 20, -30, 40, 50, 200);
+  const std::string told =
+      all_branches(roots_, robot_.chain, far, BranchOptions<6>{.limits = robot_.limits}).describe();
+  for (const std::vector<int>& configuration : {std::vector<int>{}, std::vector<int>{0, 0, 0, 0}})
+    EXPECT_EQ(controller_joints(roots_, robot_.chain, robot_.limits, rapid, {}, far, configuration, near).reason, told);
+}
+
+// Joint values before with a wrist that the limits forbid: of all others the nearest, found by comparing them.
+TEST_F(ControllerJointsOfIrb120, WithoutTheBranchBeforeTheNearestOfTheOthers) {
+  const JointVector<6> q = degrees(10, 20, -30, 40, 50, 100), near = degrees(15, 25, -20, 30, 60, 90);
+  JointLimits<6> limits;
+  limits.lower.setConstant(-350 * degree);
+  limits.upper.setConstant(350 * degree);
+  limits.upper(4) = 0;
+  const Isometry3 pose = robot_.chain.pose(q);
+  double least = 1e9, second = 1e9;
+  JointVector<6> expected = near;
+  for (const Branch<6>& branch :
+       all_branches(roots_, robot_.chain, pose, BranchOptions<6>{.limits = limits, .near = near})) {
+    if (!branch.within_limits) continue;
+    const double apart = (branch.joints - near).cwiseAbs().maxCoeff();
+    if (apart < least) {
+      second = least;
+      least = apart;
+      expected = branch.joints;
+    } else {
+      second = std::min(second, apart);
+    }
+  }
+  ASSERT_LT(second, 1e8);  // there is a choice
+  ASSERT_GT(second - least, 1e-3);
+  const ControllerJoints one = controller_joints(roots_, robot_.chain, limits, urscript, {}, pose, {}, near);
+  ASSERT_TRUE(one.joints) << one.reason;
+  EXPECT_LT((*one.joints - expected).norm(), 1e-9);
+  limits.lower(4) = -1e-3;
+  EXPECT_EQ(controller_joints(roots_, robot_.chain, limits, urscript, {}, pose, {}, near).reason,
+            "beyond the limits of the joints");
+}
+
+// A branch that is farther away, but the one of the joint values before, is kept.
+TEST_F(ControllerJointsOfIrb120, WithoutConfigurationTheBranchIsKept) {
+  const JointVector<6> q = degrees(10, 20, -30, 80, 50, 100), near = degrees(10, 20, -30, -70, 5, 250);
+  const ControllerJoints one =
+      controller_joints(roots_, robot_.chain, robot_.limits, urscript, {}, robot_.chain.pose(q), {}, near);
+  ASSERT_TRUE(one.joints) << one.reason;
+  EXPECT_GT((*one.joints)(4), 0);
+}
+
+TEST(ControllerArms, OfFanucHaveANegativeFifthJointWhereTheConfigurationIsN) {
+  EXPECT_TRUE(ControllerArm{}.negative_noflip);
 }
 
 // What makers say of their arms: ABB's cfx 0 is in front of axis 1 and of the lower arm with axis 5 positive; KUKA's

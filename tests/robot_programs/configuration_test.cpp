@@ -182,10 +182,11 @@ TEST_F(ControllerJointsOfIrb120, OutOfReachIsToldAsTheBranchesTellIt) {
 
 // Joint values before with a wrist that the limits forbid: of all others the nearest, found by comparing them.
 TEST_F(ControllerJointsOfIrb120, WithoutTheBranchBeforeTheNearestOfTheOthers) {
-  const JointVector<6> q = degrees(10, 20, -30, 40, 50, 100), near = degrees(15, 25, -20, 30, 60, 90);
+  const JointVector<6> q = degrees(10, 20, -30, 40, 50, 100), near = degrees(-165, -65, -25, 40, 5, -40);
   JointLimits<6> limits;
   limits.lower.setConstant(-350 * degree);
   limits.upper.setConstant(350 * degree);
+  limits.lower(4) = -120 * degree;
   limits.upper(4) = 0;
   const Isometry3 pose = robot_.chain.pose(q);
   double least = 1e9, second = 1e9;

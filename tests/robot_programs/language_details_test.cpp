@@ -92,6 +92,13 @@ TEST(TextsOfPrograms, AQuoteThatIsNotClosedEndsWithItsLine) {
   EXPECT_EQ(parse_program(urscript, text + "\"abc", "f").targets.size(), 2u);
 }
 
+TEST(TextsOfPrograms, NamesHoldEveryLetterAndDigit) {
+  const std::string name = "_aAzZ0189";
+  const RobotProgram program = parse_program(urscript, name + "=p[1,2,3,0,0,0]\nmovel(" + name + ")\n", "f");
+  EXPECT_EQ(remarks(program), "");
+  EXPECT_EQ(named(program, name).move, TargetMove::linear);
+}
+
 TEST(ReplacedTexts, HoldAllNumbers) {
   const std::string text = "movej([1,2,3,4,5,6])";
   const RobotProgram program = parse_program(urscript, text, "f");

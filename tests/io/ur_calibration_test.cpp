@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "complaint.hpp"
 #include "larger.hpp"
 #include "random_chains.hpp"
@@ -139,6 +143,8 @@ TEST_F(UrCalibration, DamageIsNamedInOneLine) {
   expect(changed("delta_a ", "delta_a = [0, 0, 0, nan, 0, 0]"), "'nan' is not a number");
   expect(changed("delta_a ", "delta_a = [0, 0, 0, 1e9, 0, 0]"), "is beyond any length or angle");
   expect(changed("delta_a ", "delta_a = 0, 0, 0, 0, 0, 0"), "must be a list");
+  expect(changed("delta_a ", "delta_a = [0, 0, 0, 0, 0, 0"), "must be a list");
+  expect(changed("delta_a ", "delta_a = 0, 0, 0, 0, 0, 0]"), "must be a list");
   expect(changed("delta_a ", "delta_a : 3"), "is neither a [section] nor key = value");
   expect(changed("delta_a ", "delta_d = [0, 0, 0, 0, 0, 0]"), "line 4: delta_d is given twice, also in line 3");
   expect(changed("delta_a ", "delta_a = [0, 2, 0, 0, 0, 0]"), "far from -0.612 m of 'ur10'; is it of another arm?");
@@ -152,6 +158,67 @@ TEST_F(UrCalibration, DamageIsNamedInOneLine) {
               read(conf, RobotDescription::of(robots::barrett_wam()));
             }).find("is not an arm of six revolute joints"),
             std::string::npos);
+}
+
+TEST_F(UrCalibration, ListsNeedNoSpaces) {
+  const std::string text = vernier_test::ur_delta_sets()[0].conf();
+  std::string dense = text;
+  dense.erase(std::remove(dense.begin(), dense.end(), ' '), dense.end());
+  const RobotDescription nominal = RobotDescription::of(robots::ur10());
+  EXPECT_EQ(read(dense, nominal).rows, read(text, nominal).rows);
+}
+
+TEST_F(UrCalibration, EachOfTheFourListsIsNeeded) {
+  for (const char* key : {"delta_theta", "delta_a ", "delta_d ", "delta_alpha"}) {
+    const std::string name = std::string(key).substr(0, std::string(key).find(' '));
+    const std::string told = complaint(changed(key, "other = [0, 0, 0, 0, 0, 0]"));
+    EXPECT_NE(told.find("key '" + name + "' is missing"), std::string::npos) << told;
+  }
+}
+
+// Half a turn is where atan2 jumps: a design just below it with a joint that was made just above.
+TEST_F(UrCalibration, AnglesBeyondHalfATurnStayNextToTheDesign) {
+  for (const double side : {1.0, -1.0}) {
+    RobotDescription nominal = RobotDescription::of(robots::ur10());
+    nominal.rows[5].theta = side * (std::numbers::pi - 0.05);
+    const vernier_test::UrDeltaSet set{"beyond", {0, 0, 0, 0, 0, side * 0.1}, {}, {}, {}};
+    EXPECT_NEAR(read(set.conf(), nominal).rows[5].theta, side * (std::numbers::pi + 0.05), 1e-12);
+  }
+}
+
+/// Deltas that tilt the axis of joint 3 by an angle about y at its place in the design: rows without beta reach it over
+/// a quarter turn and far along both axes, as those of real arms do.
+vernier_test::UrDeltaSet axis_3_tilted(double angle, double a2) {
+  const double quarter = std::numbers::pi / 2, along_2 = -a2 / std::tan(angle), along_3 = a2 / std::sin(angle);
+  return {"tilted",
+          {0, quarter, -quarter, 0, 0, 0},
+          {0, -a2, 0, 0, 0, 0},
+          {0, along_2, along_3, 0, 0, 0},
+          {0, angle, 0, 0, 0, 0}};
+}
+
+TEST_F(UrCalibration, AxesThatAreNotParallelHaveABeta) {
+  const RobotDescription nominal = RobotDescription::of(robots::ur10());
+  const double a2 = nominal.rows[1].a;
+  for (const double angle : {-0.15, 0.15}) {
+    const RobotDescription robot = read(axis_3_tilted(angle, a2).conf(), nominal);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const DhRow &row = robot.rows[i], &design = nominal.rows[i];
+      EXPECT_NEAR(row.beta, i == 1 ? angle : 0, 1e-12) << i;
+      for (const double difference :
+           {row.a - design.a, row.d - design.d, row.alpha - design.alpha, row.theta - design.theta})
+        EXPECT_NEAR(difference, 0, 1e-12) << i;
+    }
+  }
+}
+
+TEST_F(UrCalibration, ATwistOfAnotherArmIsRefused) {
+  vernier_test::UrDeltaSet set{};
+  set.alpha[0] = 0.29;
+  EXPECT_EQ(complaint(set.conf()), "");
+  set.alpha[0] = 0.31;
+  const std::string told = complaint(set.conf());
+  EXPECT_NE(told.find("alpha1 becomes 1.8"), std::string::npos) << told;  // pi / 2 + 0.31
 }
 
 }  // namespace

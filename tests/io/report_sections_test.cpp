@@ -526,7 +526,7 @@ TEST(ReportInputs, OfACheckHaveATableOfJoints) {
                    {true, 2e-3, 1e-3, 0.125, 0.5, false, false},
                    {false, 2e-3, 1e-3, 0.125, 0.5, false, false}};
   report.errors = report.as_fitted = VectorX::Ones(4);
-  report.normalised = list({2.79, 2.8, 1, 9});  // of three components 95 % lie below 2.7955
+  report.normalised = list({2.79, 2.8, 1, 0.5});  // of three components 95 % lie below 2.7955
   report.options.level = 0.02;
   const ReportInput input = report_input(report, "arm");
   EXPECT_FALSE(input.held_out);
@@ -534,7 +534,7 @@ TEST(ReportInputs, OfACheckHaveATableOfJoints) {
   EXPECT_EQ(input.after, "as_fitted");
   EXPECT_EQ(input.rule, "");
   EXPECT_EQ(input.passed, std::optional<bool>(true));
-  EXPECT_EQ(input.ellipsoid_coverage, std::optional<double>(0.5));
+  EXPECT_EQ(input.ellipsoid_coverage, std::optional<double>(0.75));
   ASSERT_EQ(input.tables.size(), 1u);
   const auto& rows = input.tables[0].rows;
   ASSERT_EQ(rows.size(), 4u);

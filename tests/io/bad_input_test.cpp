@@ -315,6 +315,68 @@ TEST(BadInput, ModelFiles) {
   EXPECT_GE(reader.cases, 400);
 }
 
+// What exactly is said: a list that is one too long, and values next to their limits.
+TEST(BadInput, ModelFilesSayWhatIsTooMuch) {
+  Reader reader("model.json", [](const auto& path) { (void)load<6>(path); });
+  const Json valid = to_json(model());
+  const auto told = [&](const std::string& pointer, const Json& value) {
+    Json changed = valid;
+    changed[Json::json_pointer(pointer)] = value;
+    const std::string line = reader.complaint(changed.dump());
+    const std::size_t at = line.find("model.json: ");
+    return at == std::string::npos ? line : line.substr(at + 12);
+  };
+  const auto one_more = [&](const std::string& pointer) {
+    const Json& list = valid.at(Json::json_pointer(pointer));
+    return told(pointer + "/" + std::to_string(list.size()), list.front());
+  };
+  for (const char* list : {"/joints", "/arm/rows", "/outside_arm/rows", "/coverage", "/learned/coverage",
+                           "/arm/joint_errors/linear_ranges", "/arm/joint_errors/transmission"}) {
+    const std::string line = one_more(list);
+    EXPECT_NE(line.find(": has 7 entries, must have 6"), std::string::npos) << list << ": " << line;
+  }
+  const std::size_t terms = valid["estimate"]["coefficient_scales"].size();
+  for (const char* key : {"coefficient_scales", "coefficient_prior_stds"})
+    EXPECT_EQ(one_more(std::string("/estimate/") + key),
+              message("estimate.", key, ": has ", terms + 1, " entries, must have ", terms));
+  EXPECT_EQ(one_more("/thermal/rates_per_k"), "thermal.rates_per_k: has 43 entries, must have 42");
+
+  EXPECT_EQ(told("/estimate/correlated", 3), "estimate.correlation_factor: is not the base64 of 6 finite numbers");
+  for (const char* key :
+       {"position_sigma_m", "joint_sigma_rad", "orientation_sigma_rad", "fallback_error_m", "temperature_std_k"}) {
+    EXPECT_EQ(told(std::string("/estimate/") + key, -1e-9), message("estimate.", key, ": must not be negative"));
+    EXPECT_EQ(told(std::string("/estimate/") + key, 0), "") << key;
+  }
+  for (const char* key : {"variance_factor", "residual_variance"})
+    EXPECT_EQ(told(std::string("/estimate/") + key, 0), message("estimate.", key, ": must be positive"));
+
+  EXPECT_EQ(told("/learned/weight_limit", 0), "learned.weight_limit: must be positive");
+  EXPECT_EQ(told("/learned/hidden_nodes", 100001), "learned.hidden_nodes: must lie in 1..100000");
+  EXPECT_EQ(told("/learned/coverage/1/ranges", Json::array()), "learned.coverage[1].ranges: is empty");
+  EXPECT_EQ(told("/learned/coverage/1/ranges", {{0.5, 0.5}}), "");  // a joint held still
+  EXPECT_EQ(told("/arm/joint_errors/linear_ranges/1", {0.5, 0.5}), "");
+  EXPECT_EQ(told("/thermal/measured_c", {22, 22}), "");
+  EXPECT_EQ(told("/provenance/rows", 2147483648u), "provenance.rows: must lie in 0..2147483647");
+
+  // directions of gravity as they are written: 17 digits, never a millionth off
+  for (const char* term : {"gravity", "tilt"}) {
+    const std::string place = std::string("/arm/joint_errors/") + term + "/down";
+    for (const double off : {-0.9e-6, 0.9e-6}) EXPECT_EQ(told(place, {0, 0, -1 + off}), "") << term << off;
+    for (const double off : {-1.1e-6, 1.1e-6})
+      EXPECT_EQ(told(place, {0, 0, -1 + off}), message("arm.joint_errors.", term, ".down: must have length 1"));
+  }
+
+  const std::string transmission = "/arm/joint_errors/transmission/2", named = "arm.joint_errors.transmission[2]";
+  EXPECT_EQ(told(transmission + "/orders", {1, 5000}), "");
+  EXPECT_EQ(told(transmission + "/orders", {1, 5001}), named + ".orders[1]: must lie in 2..5000");
+  EXPECT_EQ(told(transmission + "/orders", {3, 3}), named + ".orders[1]: must lie in 4..5000");
+  EXPECT_EQ(told(transmission + "/harmonics", 2), "");  // as older files have them
+  EXPECT_EQ(told(transmission + "/harmonics", 500), named + ".coefficients_rad: has 4 entries, must have 1000");
+  EXPECT_EQ(told(transmission + "/harmonics", 501), named + ".harmonics: must lie in 0..500");
+  EXPECT_EQ(told(transmission + "/centre_rad", 0.1),
+            named + ": hidden nodes of a joint are no longer supported; calibrate again, with harmonics");
+}
+
 TEST(BadInput, LearnedKernels) {
   Reader reader("model.json", [](const auto& path) { (void)load<6>(path); });
   const JointRows<6> joints = sample_joints(robots::abb_irb120().limits, 5, 5);

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "complaint.hpp"
@@ -185,6 +187,43 @@ TEST(SearchState, FilesThatAreWrongAreRefused) {
   EXPECT_NE(complaint([] { load_state<Pso>(folder / "nowhere.json"); }).find("nowhere.json"), std::string::npos);
   EXPECT_THROW(save_state(folder / "no" / "such.json", start_search(Pso{.particles = 4}, objective, box, 9)),
                std::runtime_error);
+}
+
+/// What is said of a saved search whose member at a JSON pointer became `value`.
+std::string said_of_member(const char* pointer, const nlohmann::ordered_json& value) {
+  save_state(folder / "right.json", start_search(CmaEs{.generations = 5}, objective, box, 9));
+  auto document = nlohmann::ordered_json::parse(content("right.json"));
+  const nlohmann::ordered_json::json_pointer at(pointer);
+  EXPECT_TRUE(document.contains(at)) << pointer;
+  document[at] = value;
+  std::ofstream(folder / "wrong.json") << document.dump();
+  const std::string said = complaint([] { load_state<CmaEs>(folder / "wrong.json"); });
+  const std::size_t place = said.find("wrong.json: ");
+  return place == std::string::npos ? said : said.substr(place + 12);
+}
+
+TEST(SearchState, MembersOfTheWrongKindAreNamed) {
+  using Json = nlohmann::ordered_json;
+  EXPECT_EQ(said_of_member("/state/converged", true), "");
+  EXPECT_EQ(said_of_member("/state/converged", 1), "state.converged: must be true or false");
+  EXPECT_EQ(said_of_member("/state/rng", {0, 0, 0, 0}), "state.rng: must not be all zero");
+  EXPECT_EQ(said_of_member("/state/rng", {0, 0, 1, 0}), "");
+  EXPECT_EQ(said_of_member("/state/rng", 1), "state.rng: must be a list of 4 whole numbers");
+  EXPECT_EQ(said_of_member("/state/sigma", "large"), "state.sigma: must be a number");
+  EXPECT_EQ(said_of_member("/state/mean/values/0", nullptr), "state.mean: must be a number");
+  const std::string lists = "state.mean: must have 'rows' and a list of 'values'";
+  EXPECT_EQ(said_of_member("/state/mean", 3), lists);
+  EXPECT_EQ(said_of_member("/state/mean", Json{{"rows", 4}}), lists);
+  EXPECT_EQ(said_of_member("/state/mean", Json{{"values", {1, 2, 3, 4}}}), lists);
+  EXPECT_EQ(said_of_member("/state/mean", Json{{"rows", 4}, {"values", 4}}), lists);
+  EXPECT_EQ(said_of_member("/state/mean", Json{{"rows", 0}, {"values", {1}}}),
+            "state.mean: has a number of values that its rows do not divide");
+  EXPECT_EQ(said_of_member("/state/mean/rows", 4.5), "state.mean.rows: must be a whole number");
+  EXPECT_EQ(said_of_member("/state", 3), "state: must be an object");
+  EXPECT_EQ(said_of_member("/evaluations", -1), "state: has negative counts");
+  EXPECT_EQ(said_of_member("/schema_version", std::int64_t{1} << 40), "schema_version: is too large or too small");
+  EXPECT_EQ(said_of_member("", Json::array()), "schema_version: is missing");
+  EXPECT_EQ(said_of_member("", Json{{"schema_version", 1}}), "evaluations: is missing");
 }
 
 }  // namespace

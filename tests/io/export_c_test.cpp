@@ -446,6 +446,8 @@ TEST_F(ExportC, RefusesWhatHasNoSource) {
     EXPECT_NE(vernier_test::complaint([&] { c_source(robot, {.name = name}); }).find("is no C identifier"),
               std::string::npos)
         << name;
+  for (const char* name : {"a", "z", "A", "Z", "a0", "z9", "Arm_09_"})  // the first and last of each kind
+    EXPECT_EQ(vernier_test::complaint([&] { c_source(robot, {.name = name}); }), "") << name;
   const CalibratedRobot<6> broken("an arm", robot.model(),
                                   {JointVector<6>::Constant(std::nan("")), robot.limits().upper}, {});
   EXPECT_EQ(vernier_test::complaint([&] { c_source(broken); }), "c_source: a value of the model is nan");
@@ -460,6 +462,20 @@ TEST(CNumbers, AreTheSameDoublesAgain) {
   }
   EXPECT_EQ(detail::c_number(0.1), "0.10000000000000001");
   EXPECT_EQ(detail::c_number(-2), "-2");
+}
+
+// C has no arrays of no elements: where no joint has a measured range, the table of ranges is not empty.
+TEST(CTables, AreNeverEmpty) {
+  using Model = CalibratedRobot<6>::Model;
+  const auto robot = robots::abb_irb120();
+  const Model::Arm arm(with_geometric_errors(robot.chain, {}, 3));
+  JointCoverage<6> coverage;  // of joints that have no effect
+  coverage.margin.setConstant(0.1);
+  const CalibratedRobot<6> blended("an arm", Model(robot.chain, arm, Model::Arm(robot.chain), coverage), robot.limits,
+                                   {});
+  const std::string source = c_source(blended);
+  EXPECT_NE(source.find("count_[6] = {"), std::string::npos);
+  EXPECT_EQ(source.find("[0] = {"), std::string::npos);
 }
 
 // A feature that is absent takes its lines along, whatever is around.

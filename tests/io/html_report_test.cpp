@@ -221,6 +221,18 @@ TEST(HtmlEscape, ReplacesWhatIsNoUtf8) {
   EXPECT_EQ(detail::html_escape("\xe2\x82"), mark + mark);             // cut off
   EXPECT_EQ(detail::html_escape("\xed\xa0\x80"), mark + mark + mark);  // half of a pair
   EXPECT_EQ(detail::html_escape("\xf4\x90\x80\x80"), mark + mark + mark + mark);
+  // the first and last characters of each length, and of the gap between them, stay
+  for (const char* text : {"\xc2\xa0", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80", "\xef\xbf\xbf",
+                           "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+    EXPECT_EQ(detail::html_escape(text), text);
+  EXPECT_EQ(detail::html_escape("\xc1\xbf"), mark + mark);
+  EXPECT_EQ(detail::html_escape("\xc2\x9f"), mark + mark);  // a control character
+  EXPECT_EQ(detail::html_escape("\xe0\x9f\xbf"), mark + mark + mark);
+  EXPECT_EQ(detail::html_escape("\xf0\x8f\xbf\xbf"), mark + mark + mark + mark);
+  EXPECT_EQ(detail::html_escape("\xf5\x80\x80\x80"), mark + mark + mark + mark);
+  EXPECT_EQ(detail::html_escape("\xc3("), mark + "(");  // what follows is read again
+  EXPECT_EQ(detail::html_escape("\xe2\x82("), mark + mark + "(");
+  EXPECT_EQ(detail::html_escape("a\tb\nc\x1f\x7f~"), "a\tb\nc  ~");
 }
 
 TEST(HtmlReport, NumbersEqualThoseOfTheJson) {

@@ -463,6 +463,15 @@ TEST(ReportSections, PosesInSpace) {
   EXPECT_EQ(json.at("units"), (std::vector<std::string>{"deg", "mm"}));
   EXPECT_EQ(json.at("joints").at(0), 2865);  // hundredths of degrees and of millimetres
   EXPECT_EQ(json.at("joints").at(1), 12500);
+  EXPECT_EQ(json.at("file"), nlohmann::json::array());  // all of the first
+  EXPECT_EQ(json.at("files"), (std::vector<std::string>{""}));
+  ReportInput of_two = input;
+  of_two.poses.files = {"a.csv", "b \"2\".csv"};
+  of_two.poses.file = std::vector<int>(21, 0);
+  of_two.poses.file[4] = 1;
+  const auto two = nlohmann::json::parse(detail::poses_json(of_two, view));
+  EXPECT_EQ(two.at("files"), of_two.poses.files);
+  EXPECT_EQ(two.at("file"), of_two.poses.file);
   // half of the picture is 430 for 0.2 m; the bar is as long as a power of ten that fits
   const std::string flat = detail::pose_projections(input, view);
   const std::string above = between(flat, "aria-label=\"poses from above\"", "</svg>"),
@@ -589,6 +598,15 @@ TEST(SvgCharts, AxesHoldEverything) {
   EXPECT_NEAR(found[1], 115, 0.051);
   for (const char* tick : {">5<", ">10<", ">20<"}) EXPECT_TRUE(has(detail::chart_svg(chart), tick));
   EXPECT_FALSE(has(detail::chart_svg(chart), ">1<"));  // x from 1.5 to 6
+  // a single value stands in the middle of an axis: one to either side, or as far as zero
+  chart = {.title = "t", .height = 250};
+  chart.series = {{.x = {0, 1}, .y = {0.5, 0.5}}};
+  EXPECT_TRUE(has(detail::chart_svg(chart), ">-0.5<") && has(detail::chart_svg(chart), ">1.5<"));
+  EXPECT_FALSE(has(detail::chart_svg(chart), ">2<"));
+  chart.series = {{.x = {0, 1}, .y = {-20, -20}}};
+  EXPECT_TRUE(has(detail::chart_svg(chart), ">-40<") && has(detail::chart_svg(chart), ">-10<"));
+  EXPECT_FALSE(has(detail::chart_svg(chart), ">-50<"));
+  EXPECT_NEAR(numbers_of(path_of(chart, "line"))[1], 115, 0.051);
   // labels right of the middle end at their point
   chart = {.title = "t", .height = 250};
   chart.series = {{.x = {0, 564}, .y = {0, 1}}};

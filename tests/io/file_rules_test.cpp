@@ -142,6 +142,12 @@ TEST_F(FileRules, JsonValues) {
     EXPECT_EQ(told(control, text), "f: a: has a character that cannot be printed");
   EXPECT_EQ(told("{\"a\": \"x\"}", [](const JsonNode& node) { return node.at("b"); }),
             "f: a: must be an object, is a text");
+  const auto entry = [](std::size_t index) {
+    return [index](const JsonNode& node) { return node.at(index).number(); };
+  };
+  EXPECT_EQ(told("{\"a\": [1, 2]}", entry(1)), "");
+  EXPECT_EQ(told("{\"a\": [1, 2]}", entry(2)), "f: a: has 2 entries, entry 2 is missing");
+  EXPECT_EQ(told("{\"a\": [1, \"x\"]}", entry(1)), "f: a[1]: must be a number, is a text");
   // lengths and angles in either unit, in digits that a compiled table has
   const nlohmann::json units =
       nlohmann::json::parse(R"({"a_mm": 612.7, "b_m": 0.6127, "c_deg": 90, "d_rad": 1.5, "e_mm": 1, "e_m": 1})");

@@ -227,10 +227,10 @@ TEST(KrlDetails, EveryMoveIsKnown) {
 }
 
 TEST(KrlDetails, AnyComponentMakesAPositionAndOthersDoNot) {
-  for (const char* one : {"{X 1}", "{Y 1}", "{Z 1}", "{A1 1}", "{A6 1}"})
+  for (const char* one : {"{X 1}", "{Y 1}", "{Z 1}", "{A1 1}", "{A6 1}", "{A 90}", "{B 5,C 6}"})
     EXPECT_EQ(remarks(krl_lines("PTP " + std::string(one) + "\n")),
               message("2 ", one, ": components are missing, those of the position before are kept\n"));
-  for (const char* other : {"{V1 1,B2 3}", "{A7 1}", "{A0 1}", "{VEL 1}"})
+  for (const char* other : {"{V1 1,B2 3}", "{A7 1}", "{A0 1}", "{VEL 1}", "{A 1}"})
     EXPECT_EQ(remarks(krl_lines("o=" + std::string(other) + "\n")), "") << other;
 }
 
@@ -402,6 +402,16 @@ TEST(FanucDetails, Instructions) {
               std::string::npos)
         << speed;
   }
+  for (const char* comment : {"weld inc", "Offset pos", "seam 2 inc", "'9 offset'"})
+    for (const char* move : {"J P[1:", "L P[1:"}) {
+      const std::string text =
+          "   1:" + std::string(move) + comment + (move[0] == 'J' ? "] 90% FINE" : "] 90mm/sec FINE");
+      EXPECT_EQ(remarks(tp_program(text + " ;\n", position)), "") << text;
+      EXPECT_NE(remarks(tp_program(text + " Offset,PR[1] ;\n", position)).find("an offset that a register adds"),
+                std::string::npos)
+          << text;
+      EXPECT_NE(remarks(tp_program(text + " INC ;\n", position)).find("a relative move"), std::string::npos) << text;
+    }
   // lines of remarks
   EXPECT_EQ(
       remarks(tp_program("1:  ;\n2:C P[1]\n:  P[9] 100mm/sec FINE ;\n\n3:L PR[2] 100mm/sec FINE ;\n", position)),

@@ -193,6 +193,8 @@ class FanucReader {
       }
       any = true;
       const std::size_t first = i + (position ? 2 : 3), last = text.find_first_of(":]", first);
+      const std::size_t close = std::min(text.find(']', first), text.size());
+      i = close;  // words of its comment are no options
       if (registers || last == std::string_view::npos) {
         steps_.push_back({{}, {}, {}, kind});
         remark("a position register");
@@ -207,7 +209,7 @@ class FanucReader {
       } else {
         steps_.push_back({found->second, {}, {}, kind});
       }
-      options = last;
+      options = close;
     }
     const std::string rest = lower_case(text.substr(std::min(options, text.size())));
     if (rest.find("offset") != std::string::npos) remark("an offset that a register adds");

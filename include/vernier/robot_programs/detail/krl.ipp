@@ -275,10 +275,14 @@ class KrlReader {
     const bool axes = std::any_of(parts.begin(), parts.end(), [](const Component& part) {
       return part.name.size() == 2 && part.name[0] == 'a' && part.name[1] >= '1' && part.name[1] <= '6';
     });
-    if (!pose && !axes) return;
     const auto refuse = [&](const char* reason) {
       program_.uncorrected.push_back({text_.tokens[first].line, excerpt(text_, first, i), reason});
     };
+    if (!pose && !axes) {
+      const bool turns = find(parts, "a") != nullptr || find(parts, "b") != nullptr || find(parts, "c") != nullptr;
+      if (name.empty() && turns) refuse("components are missing, those of the position before are kept");  // of a move
+      return;
+    }
     for (int e = 1; e <= 6; ++e) {
       const Component* part = find(parts, message('e', e));
       if (part != nullptr && (!part->number || *part->number != 0)) return refuse("external axes are in use");

@@ -523,20 +523,21 @@ TEST(CalibrationProblemWhiteBox, AStepThatFailsIsTakenBack) {
 TEST(CalibrationProblemWhiteBox, FailuresDampEverMore) {
   const FarStart far;
   int failed_again = 0;
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const Problem start = far.problem(seed, Loss::squared, 0);
     Problem before = start;
-    int n = 1;  // iterations, the last of which fails
-    for (; n < 8; ++n) {
+    int n = 0;  // iterations, the last of which fails
+    bool failed = false;
+    while (!failed && n < 7) {
       Problem after = start;
-      if (after.solve(n) || cost_of(after) > 1.0001 * cost_of(before)) break;
-      before = after;
+      if (after.solve(++n)) break;
+      failed = cost_of(after) > 1.0001 * cost_of(before);
+      if (!failed) before = after;
     }
-    bool failed = true;
     for (const double damping : {1e-3, 4e-3, 32e-3}) {
       n += 2;
       Problem damped = start, by_hand = before;
-      if (damped.solve(n) || !failed) break;
+      if (!failed || damped.solve(n)) break;
       const NormalEquations normal = by_hand.normal_equations();
       const FactorisedEquations solved(normal, by_hand.arm.precisions(), by_hand.arm.steps(), VectorX(),
                                        eigen_sparse_solver, damping);

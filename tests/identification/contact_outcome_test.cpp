@@ -15,13 +15,7 @@
 namespace vernier::contact_outcome_test {
 namespace {
 
-using vernier_test::difference;
-using vernier_test::IrbArm;
-using vernier_test::lengths;
-using vernier_test::nominal_arm;
-using vernier_test::RealMatrix;
-using vernier_test::three_planes;
-using vernier_test::touched;
+using namespace vernier_test;
 
 const IdentifyOptions without_priors{.frames = Frames::tool, .priors = false};
 const IdentifyOptions tool_alone{.frames = Frames::tool, .geometry = false, .priors = false};

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -65,13 +66,19 @@ TEST(IdentificationReport, SummaryByHand) {
   EXPECT_EQ(report.summary().rfind("NOT CONVERGED: steps", 0), 0u) << report.summary();
 }
 
-// Four of six pairs are named, the strongest first.
-TEST(IdentificationReport, PairsByTheirStrength) {
+/// Four estimates with the upper triangle of their correlations, row by row.
+IdentificationReport correlated_report(const std::array<double, 6>& upper) {
   IdentificationReport report = example<IdentificationReport>();
   report.parameters[0] = parameter("d1", ParameterState::identified);
   report.free = {3, 1, 2, 0};
-  const double a = 0.96, b = 0.97, c = -0.98, d = 0.99, e = 0.955, f = 0.965;
+  const auto [a, b, c, d, e, f] = upper;
   report.covariance = RealMatrix(4, 4, {1, a, b, c, a, 1, d, e, b, d, 1, f, c, e, f, 1});
+  return report;
+}
+
+// Four of six pairs are named, the strongest first.
+TEST(IdentificationReport, PairsByTheirStrength) {
+  const IdentificationReport report = correlated_report({0.96, 0.97, -0.98, 0.99, 0.955, 0.965});
   EXPECT_EQ(report.strongly_correlated(0.975),
             (std::vector<std::string>{"beta2 and a1 (+0.99)", "tool_x and d1 (-0.98)"}));
   const std::string text = report.summary();
@@ -83,12 +90,7 @@ TEST(IdentificationReport, PairsByTheirStrength) {
 
 // Where four are all there are, none is left to be counted.
 TEST(IdentificationReport, FourPairsAreNamed) {
-  IdentificationReport report = example<IdentificationReport>();
-  report.parameters[0] = parameter("d1", ParameterState::identified);
-  report.free = {3, 1, 2, 0};
-  const double a = 0.96, b = 0.97, c = -0.98, d = 0.99;
-  report.covariance = RealMatrix(4, 4, {1, a, b, c, a, 1, d, 0, b, d, 1, 0, c, 0, 0, 1});
-  const std::string text = report.summary();
+  const std::string text = correlated_report({0.96, 0.97, -0.98, 0.99, 0, 0}).summary();
   EXPECT_NE(text.find("Strongly correlated: beta2 and a1 (+0.99), tool_x and d1 (-0.98), tool_x and a1 (+0.97), tool_x "
                       "and beta2 (+0.96).\n"),
             std::string::npos)

@@ -331,17 +331,21 @@ TEST(IdentificationWhiteBox, NamesFourOfWhatAbsorbsAParameter) {
   EXPECT_EQ(named(found, "theta6").remark, "absorbed by tool_x, tool_y, tool_rx, tool_ry, ...");
 }
 
-// Parameters that are dependent where axes are parallel exactly are not so in an arm as it is made.
-TEST(IdentificationWhiteBox, WhatIsDependentAtNominalMayBeFreeAtTheSolution) {
+/// A UR10 as made, whose parallel axes are no longer so, identified from the nominal arm.
+auto identified_parallel_arm(bool hayati) {
   const Robot<6> parallel = robots::ur10();
   const Framed<Chain> actual(with_geometric_errors(parallel.chain, {}, 9), base, tool);
   JointLimits<6> limits;
   limits.lower.setConstant(-2.5);
   limits.upper.setConstant(2.5);
-  const auto found =
-      identify_by_gauss_newton(Framed<Chain>(parallel.chain, base, tool),
-                               measure(actual, sample_joints(limits, 60, 3), {.with_orientations = false}),
-                               {.frames = Frames::base_and_tool, .priors = false}, squared);
+  return identify_by_gauss_newton(Framed<Chain>(parallel.chain, base, tool),
+                                  measure(actual, sample_joints(limits, 60, 3), {.with_orientations = false}),
+                                  {.frames = Frames::base_and_tool, .hayati = hayati, .priors = false}, squared);
+}
+
+// Parameters that are dependent where axes are parallel exactly are not so in an arm as it is made.
+TEST(IdentificationWhiteBox, WhatIsDependentAtNominalMayBeFreeAtTheSolution) {
+  const auto found = identified_parallel_arm(true);
   EXPECT_TRUE(found.converged()) << found.message;
   EXPECT_EQ(found.free.size(), 27u);  // 4 R + 6 - 3 of six revolute joints
   EXPECT_LT(found.rms_after, 1e-7);
@@ -350,15 +354,7 @@ TEST(IdentificationWhiteBox, WhatIsDependentAtNominalMayBeFreeAtTheSolution) {
 // The same by classical parameters: offsets of parallel axes are one unknown until the axes are found not to be
 // parallel.
 TEST(IdentificationWhiteBox, OffsetsOfParallelAxesAreFreeWhereAxesAreNot) {
-  const Robot<6> parallel = robots::ur10();
-  const Framed<Chain> actual(with_geometric_errors(parallel.chain, {}, 9), base, tool);
-  JointLimits<6> limits;
-  limits.lower.setConstant(-2.5);
-  limits.upper.setConstant(2.5);
-  const auto found =
-      identify_by_gauss_newton(Framed<Chain>(parallel.chain, base, tool),
-                               measure(actual, sample_joints(limits, 60, 3), {.with_orientations = false}),
-                               {.frames = Frames::base_and_tool, .hayati = false, .priors = false}, squared);
+  const auto found = identified_parallel_arm(false);
   EXPECT_EQ(found.free.size(), 27u);  // 4 R + 6 - 3 again
   EXPECT_LT(found.rms_after, 1e-7);
 }

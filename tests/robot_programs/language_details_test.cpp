@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "complaint.hpp"
+#include "read_program.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
@@ -14,26 +15,8 @@
 namespace vernier::robot_language_details_test {
 namespace {
 
-using vernier_test::complaint;
+using namespace vernier_test;
 using enum ProgramLanguage;
-
-std::string remarks(const RobotProgram& program) {
-  std::string out;
-  for (const Uncorrected& one : program.uncorrected) out += message(one.line, ' ', one.text, ": ", one.reason, "\n");
-  return out;
-}
-
-const ProgramTarget& named(const RobotProgram& program, const std::string& name) {
-  for (const ProgramTarget& target : program.targets)
-    if (target.name == name) return target;
-  throw std::runtime_error("no target " + name + "; remarks: " + remarks(program));
-}
-
-/// The name of the target from which the arm comes; empty where nobody knows.
-std::string before(const RobotProgram& program, const std::string& name) {
-  const auto& previous = named(program, name).previous;
-  return previous ? program.targets[*previous].name : "";
-}
 
 // ---- the stamp ----
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "complaint.hpp"
+#include "read_program.hpp"
 #include "robot_program_samples.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
@@ -22,13 +23,6 @@ const ProgramTarget& at_line(const RobotProgram& program, std::size_t line) {
   for (const ProgramTarget& target : program.targets)
     if (target.line == line) return target;
   throw std::runtime_error("no target in line " + std::to_string(line));
-}
-
-std::string remarks(const RobotProgram& program) {
-  std::string out;
-  for (const Uncorrected& one : program.uncorrected)
-    out += std::to_string(one.line) + " " + one.text + ": " + one.reason + "\n";
-  return out;
 }
 
 Matrix3 by_rows(std::initializer_list<double> values) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "complaint.hpp"
+#include "read_program.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/robot_programs/configuration.hpp"
@@ -17,29 +18,11 @@
 namespace vernier::robot_rules_test {
 namespace {
 
-using vernier_test::complaint;
+using namespace vernier_test;
 using enum ProgramLanguage;
 
 constexpr double degree = std::numbers::pi / 180;
 const double unknown = std::nan("");
-
-std::string remarks(const RobotProgram& program) {
-  std::string out;
-  for (const Uncorrected& one : program.uncorrected) out += message(one.line, ' ', one.text, ": ", one.reason, "\n");
-  return out;
-}
-
-const ProgramTarget& named(const RobotProgram& program, const std::string& name) {
-  for (const ProgramTarget& target : program.targets)
-    if (target.name == name) return target;
-  throw std::runtime_error("no target " + name + "; remarks: " + remarks(program));
-}
-
-/// The name of the target from which the arm comes; empty where nobody knows.
-std::string before(const RobotProgram& program, const std::string& name) {
-  const auto& previous = named(program, name).previous;
-  return previous ? program.targets[*previous].name : "";
-}
 
 // ---- configurations ----
 

@@ -249,5 +249,20 @@ TEST_F(FileRules, EstimatesOfAllParametersAndTheirRates) {
   EXPECT_EQ(loaded.estimate()->covariance, estimate.covariance);
 }
 
+TEST_F(FileRules, EstimatesWithoutUnknowns) {
+  const auto robot = robots::abb_irb120();
+  const Model model(robot.chain, Model::Arm(robot.chain));
+  const ErrorModelEstimate estimate{
+      .arm = detail::parameterised(FittedArm::of(model.identified()), {}, VectorX(0), VectorX(0), VectorX()),
+      .covariance = MatrixX(0, 0),
+      .position_sigma = 2e-5};
+  save(path_, CalibratedRobot<6>("arm", model, robot.limits, {}).with_estimate(estimate));
+  const auto loaded = load<6>(path_);
+  ASSERT_TRUE(loaded.estimate());
+  EXPECT_EQ(loaded.estimate()->arm.size(), 0);
+  EXPECT_EQ(loaded.estimate()->covariance.size(), 0);
+  EXPECT_EQ(loaded.estimate()->position_sigma, 2e-5);
+}
+
 }  // namespace
 }  // namespace vernier::file_rules_test

@@ -146,7 +146,6 @@ VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const
     check("d", row.d, design.d, farthest_length, "m");
     check("alpha", row.alpha, design.alpha, farthest_angle, "rad");
     check("theta", row.theta, design.theta, farthest_angle, "rad");
-    check("beta", row.beta, design.beta, farthest_angle, "rad");
   }
   return out;
 }

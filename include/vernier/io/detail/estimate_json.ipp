@@ -169,7 +169,9 @@ VERNIER_IMPL ErrorModelEstimate estimate_from_json(const JsonNode& node, const F
   if (terms > 0 && scales.minCoeff() <= 0) node.at("coefficient_scales").fail("must be positive");
   if (size > 0 && stds.minCoeff() < 0) node.at("stds_in_scales").fail("must not be negative");
   const Index kept = static_cast<Index>(node.at("correlated").integer(0, size));
-  const std::vector<float> factor = floats_of(node.at("correlation_factor").text(16'000'000));
+  const JsonNode base64 = node.at("correlation_factor");
+  const bool none = kept == 0 && base64.is_empty_text();
+  const std::vector<float> factor = none ? std::vector<float>() : floats_of(base64.text(16'000'000));
   if (static_cast<Index>(factor.size()) != kept * (kept + 1) / 2 ||
       !std::all_of(factor.begin(), factor.end(), [](float value) { return std::isfinite(value); }))
     node.at("correlation_factor").fail(message("is not the base64 of ", kept * (kept + 1) / 2, " finite numbers"));

@@ -1,0 +1,201 @@
+// Options of all searches: their defaults, the limits of what is taken, and the schedule that they state.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <numbers>
+
+#include "complaint.hpp"
+#include "vernier/search/cma_es.hpp"
+#include "vernier/search/differential_evolution.hpp"
+#include "vernier/search/genetic_algorithm.hpp"
+#include "vernier/search/l_shade.hpp"
+#include "vernier/search/minimize.hpp"
+#include "vernier/search/pso.hpp"
+#include "vernier/search/random_search.hpp"
+#include "vernier/search/real_genetic_algorithm.hpp"
+#include "vernier/search/restarted.hpp"
+#include "vernier/search/spso2011.hpp"
+
+namespace vernier::search_options_test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+double above(double x) { return std::nextafter(x, infinity); }
+double below(double x) { return std::nextafter(x, -infinity); }
+
+const auto evaluate_squares = [](const MatrixX& population, VectorX& fitness) {
+  fitness = population.colwise().squaredNorm().transpose();
+};
+
+template <class Algorithm>
+std::string complaint_of(const Algorithm& algorithm) {
+  return vernier_test::complaint([&] { algorithm.start(Box::cube(2, -1, 1), 1, evaluate_squares); });
+}
+
+/// Values of an option that are just inside its limits are taken, those just outside are refused.
+template <class Algorithm, class Value>
+void expect_limits(const Algorithm& valid, Value Algorithm::*option, std::initializer_list<Value> inside,
+                   std::initializer_list<Value> outside) {
+  for (const Value value : inside) {
+    Algorithm algorithm = valid;
+    algorithm.*option = value;
+    EXPECT_EQ(complaint_of(algorithm), "") << value;
+  }
+  for (const Value value : outside) {
+    Algorithm algorithm = valid;
+    algorithm.*option = value;
+    EXPECT_NE(complaint_of(algorithm), "") << value;
+  }
+}
+
+TEST(SearchOptions, LimitsOfPso) {
+  expect_limits(Pso{}, &Pso::particles, {1}, {0});
+  expect_limits(Pso{}, &Pso::iterations, {Index{0}}, {Index{-1}});
+  expect_limits(Pso{}, &Pso::velocity_limit, {1e-9, below(1e6)}, {0.0, 1e6});
+  for (const auto option : {&Pso::inertia_start, &Pso::inertia_end, &Pso::cognitive, &Pso::social})
+    expect_limits(Pso{}, option, {0.0}, {below(0)});
+}
+
+TEST(SearchOptions, LimitsOfSpso2011) {
+  expect_limits(Spso2011{}, &Spso2011::particles, {1}, {0});
+  expect_limits(Spso2011{}, &Spso2011::iterations, {Index{0}}, {Index{-1}});
+  expect_limits(Spso2011{}, &Spso2011::informed, {1}, {0});
+  expect_limits(Spso2011{}, &Spso2011::inertia, {0.0, 1.0}, {below(0), above(1)});
+  expect_limits(Spso2011{}, &Spso2011::acceleration, {0.0, 10.0}, {below(0), above(10)});
+}
+
+TEST(SearchOptions, LimitsOfGeneticAlgorithms) {
+  using Binary = GeneticAlgorithm;
+  expect_limits(Binary{}, &Binary::individuals, {2}, {1});
+  expect_limits(Binary{}, &Binary::generations, {Index{0}}, {Index{-1}});
+  expect_limits(Binary{}, &Binary::bits, {1, 16}, {0, 17});
+  expect_limits(Binary{}, &Binary::tournament, {1}, {0});
+  expect_limits(Binary{.individuals = 4}, &Binary::elites, {0, 3}, {-1, 4});
+  for (const auto option : {&Binary::crossover_probability, &Binary::mutation_probability})
+    expect_limits(Binary{}, option, {0.0, 1.0}, {below(0), above(1)});
+
+  using Real = RealGeneticAlgorithm;
+  expect_limits(Real{}, &Real::individuals, {2}, {1});
+  expect_limits(Real{}, &Real::generations, {Index{0}}, {Index{-1}});
+  expect_limits(Real{}, &Real::tournament, {1}, {0});
+  expect_limits(Real{.individuals = 4}, &Real::elites, {0, 3}, {-1, 4});
+  expect_limits(Real{}, &Real::crossover_probability, {0.0, 1.0}, {below(0), above(1)});
+  expect_limits(Real{}, &Real::mutations, {0.0}, {below(0)});
+  for (const auto option : {&Real::crossover_index, &Real::mutation_index})
+    expect_limits(Real{}, option, {0.0, 1000.0}, {below(0), above(1000)});
+  expect_limits(Real{}, &Real::blend, {0.0, 10.0}, {below(0), above(10)});
+  expect_limits(Real{}, &Real::mutation_sigma, {1e-9, 10.0}, {0.0, above(10)});
+}
+
+TEST(SearchOptions, LimitsOfDifferentialEvolution) {
+  using De = DifferentialEvolution;
+  expect_limits(De{}, &De::individuals, {4}, {3});
+  expect_limits(De{}, &De::generations, {Index{0}}, {Index{-1}});
+  expect_limits(De{}, &De::weight, {1e-9, 10.0}, {0.0, above(10)});
+  expect_limits(De{}, &De::crossover_probability, {0.0, 1.0}, {below(0), above(1)});
+
+  expect_limits(LShade{}, &LShade::individuals_per_dimension, {1e-9}, {0.0, above(1e6)});
+  // as many as that have a schedule that takes them
+  expect_limits(LShade{.max_evaluations = 2'000'000}, &LShade::individuals_per_dimension, {1e6}, {});
+  expect_limits(LShade{}, &LShade::final_individuals, {4}, {3});
+  expect_limits(LShade{}, &LShade::memory, {1}, {0});
+  expect_limits(LShade{}, &LShade::archive_rate, {0.0, 1000.0}, {below(0), above(1000)});
+  expect_limits(LShade{}, &LShade::best_share, {0.0, 1.0}, {below(0), above(1)});
+  expect_limits(LShade{}, &LShade::max_evaluations, {Index{36}}, {Index{35}});  // 18 individuals per dimension
+}
+
+TEST(SearchOptions, LimitsOfCmaEs) {
+  expect_limits(CmaEs{}, &CmaEs::individuals, {0, 2}, {-1, 1});
+  expect_limits(CmaEs{}, &CmaEs::generations, {Index{0}}, {Index{-1}});
+  expect_limits(CmaEs{}, &CmaEs::sigma, {1e-9, 100.0}, {0.0, above(100)});
+  expect_limits(CmaEs{}, &CmaEs::restarts, {0, 30}, {-1, 31});
+  expect_limits(CmaEs{}, &CmaEs::growth, {1.0, 10.0}, {below(1), above(10)});
+  for (const auto option : {&CmaEs::tolerance_x, &CmaEs::tolerance_f})
+    expect_limits(CmaEs{}, option, {0.0}, {below(0)});
+}
+
+TEST(SearchOptions, LimitsOfRandomSearchAndRestarts) {
+  expect_limits(RandomSearch{}, &RandomSearch::individuals, {1}, {0});
+  expect_limits(RandomSearch{}, &RandomSearch::generations, {Index{0}}, {Index{-1}});
+  using Again = Restarted<Pso>;
+  expect_limits(Again{}, &Again::restarts, {Index{0}}, {Index{-1}});
+}
+
+// The numbers that papers and the paper's comparison are repeated with.
+TEST(SearchOptions, Defaults) {
+  const Pso pso;
+  EXPECT_EQ(pso.particles, 50);
+  EXPECT_EQ(pso.iterations, 300);
+  const Spso2011 standard;
+  EXPECT_EQ(standard.particles, 40);
+  EXPECT_EQ(standard.iterations, 375);
+  EXPECT_EQ(standard.informed, 3);
+  EXPECT_DOUBLE_EQ(standard.inertia, 1 / (2 * std::numbers::ln2));
+  EXPECT_DOUBLE_EQ(standard.acceleration, 0.5 + std::numbers::ln2);
+  const GeneticAlgorithm binary;
+  EXPECT_EQ(binary.individuals, 80);
+  EXPECT_EQ(binary.generations, 400);
+  EXPECT_EQ(binary.bits, 10);
+  EXPECT_EQ(binary.tournament, 2);
+  EXPECT_EQ(binary.elites, 1);
+  const RealGeneticAlgorithm real;
+  EXPECT_EQ(real.individuals, 80);
+  EXPECT_EQ(real.generations, 400);
+  EXPECT_EQ(real.mutations, 1);
+  EXPECT_EQ(real.tournament, 2);
+  EXPECT_EQ(real.elites, 1);
+  EXPECT_EQ(real.crossover_index, 15);
+  EXPECT_EQ(real.mutation_index, 20);
+  EXPECT_EQ(real.blend, 0.5);
+  EXPECT_EQ(real.mutation_sigma, 0.05);
+  const DifferentialEvolution evolution;
+  EXPECT_EQ(evolution.individuals, 50);
+  EXPECT_EQ(evolution.generations, 300);
+  EXPECT_EQ(evolution.weight, 0.5);
+  EXPECT_EQ(evolution.crossover_probability, 0.9);
+  const LShade shade;
+  EXPECT_EQ(shade.max_evaluations, 15'000);
+  EXPECT_EQ(shade.individuals_per_dimension, 18);
+  EXPECT_EQ(shade.final_individuals, 4);
+  EXPECT_EQ(shade.memory, 6);
+  EXPECT_EQ(shade.archive_rate, 2.6);
+  EXPECT_EQ(shade.best_share, 0.11);
+  const CmaEs cma;
+  EXPECT_EQ(cma.generations, 1000);
+  EXPECT_EQ(cma.sigma, 0.3);
+  EXPECT_EQ(cma.restarts, 0);
+  EXPECT_EQ(cma.growth, 2);
+  EXPECT_EQ(cma.tolerance_x, 1e-12);
+  EXPECT_EQ(cma.tolerance_f, 1e-12);
+  EXPECT_EQ(Restarted<Pso>{}.restarts, 9);
+}
+
+double squares(const VectorX& x) { return x.squaredNorm(); }
+
+/// A search makes as many generations as its schedule states, each of as many evaluations.
+template <class Algorithm>
+void expect_schedule(const Algorithm& algorithm, Index generations, Index first, Index each) {
+  const SearchResult found = minimize(algorithm, squares, Box::cube(3, -1, 1));
+  EXPECT_EQ(found.status, SearchStatus::schedule_ended);
+  EXPECT_EQ(found.generations, generations);
+  EXPECT_EQ(found.evaluations, first + generations * each);
+}
+
+TEST(SearchOptions, SchedulesAreKept) {
+  expect_schedule(Pso{.particles = 6, .iterations = 7}, 7, 6, 6);
+  expect_schedule(Spso2011{.particles = 6, .iterations = 7}, 7, 6, 6);
+  expect_schedule(GeneticAlgorithm{.individuals = 6, .generations = 7}, 7, 6, 5);
+  expect_schedule(RealGeneticAlgorithm{.individuals = 6, .generations = 7}, 7, 6, 6);
+  expect_schedule(RealGeneticAlgorithm{.individuals = 6, .generations = 7, .elites = 2, .survival = Survival::elites},
+                  7, 6, 4);
+  expect_schedule(DifferentialEvolution{.individuals = 6, .generations = 7}, 7, 6, 6);
+  expect_schedule(RandomSearch{.individuals = 6, .generations = 7}, 7, 6, 6);
+  expect_schedule(CmaEs{.individuals = 6, .generations = 7}, 7, 6, 6);
+  expect_schedule(Restarted<Pso>{.algorithm = {.particles = 6, .iterations = 2}, .restarts = 1}, 5, 6, 6);
+}
+
+}  // namespace
+}  // namespace vernier::search_options_test

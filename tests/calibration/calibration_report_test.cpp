@@ -28,6 +28,17 @@ CalibrationReport report_of_four() {
   return out;
 }
 
+TEST(RemainderOptions, Defaults) {
+  const RemainderOptions options;
+  EXPECT_FALSE(options.on_geometry);
+  EXPECT_TRUE(options.on_error_model);
+  EXPECT_EQ(options.learners, (std::vector<Learner>{Learner::pso_elm, Learner::ridge_elm, Learner::kernel_elm}));
+  EXPECT_EQ(options.max_kernel_poses, 5000);
+  EXPECT_EQ(options.hidden_nodes, 30);
+  EXPECT_EQ(options.particles, 20);
+  EXPECT_EQ(options.iterations, 20);
+}
+
 TEST(WordingWhiteBox, NumbersAreBrief) {
   const std::pair<double, const char*> cases[] = {{0.012345, "0.0123"}, {-2, "-2"},         {999.4, "999"},
                                                   {999.6, "1000"},      {-1234.4, "-1234"}, {999999, "999999"},

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "limits.hpp"
 #include "real_matrix.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/core/points.hpp"
@@ -306,7 +307,10 @@ TEST(VerificationReport, VerdictByHand) {
 }
 
 TEST(VerifyOptions, NamesWhatIsUnusable) {
-  EXPECT_THROW(VerifyOptions{.level = 1}.validate(), std::invalid_argument);
+  const auto validate = [](const VerifyOptions& options) { options.validate(); };
+  EXPECT_EQ(VerifyOptions{}.level, 0.05);
+  vernier_test::expect_limits(validate, VerifyOptions{}, &VerifyOptions::level,
+                              {vernier_test::above(0), vernier_test::below(1)}, {0.0, 1.0});
   EXPECT_THROW(VerifyOptions{.accept = 0.0}.validate(), std::invalid_argument);
   VerifyOptions sensors;
   sensors.sensors.position_sigma = -1;

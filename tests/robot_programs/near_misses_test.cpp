@@ -71,6 +71,12 @@ TEST(FanucNearMisses, MovesToSeveralPositions) {
   EXPECT_EQ(remarks(tp("1:L PR[2] 100mm/sec FINE;\n", "")), "3 L PR[2] 100mm/sec FINE: a position register\n");
 }
 
+TEST(FanucNearMisses, StampsHoldPrintableCharacters) {
+  const std::string text = "/PROG A\n/MN\n/POS\n/END\n";
+  EXPECT_EQ(stamped(text, parse_program(fanuc_tp, text, "f"), {"a~ !\x7F\x1F;"}),
+            "/PROG A\n/MN\n   :  !VERNIER-CORRECTED: ;\n   :  !a~ !??? ;\n/POS\n/END\n");
+}
+
 // ---- KRL ----
 
 RobotProgram krl_lines(const std::string& lines) { return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src"); }
@@ -207,6 +213,13 @@ TEST(RapidNearMisses, ArgumentsThatGoOnBehindALiteral) {
   EXPECT_EQ(program.targets[0].tool, "gun");
   EXPECT_EQ(named(program, "q").tool, "gun");
   EXPECT_EQ(remarks(program), "6 MoveL Offs(p,1,2,3): computed, not a literal\n");
+}
+
+// However many moves use it so.
+TEST(RapidNearMisses, ATargetInSeveralToolsIsListedOnce) {
+  const RobotProgram program =
+      rapid_module("", "MoveL p,v1,fine,gun;\nMoveL p,v1,fine,tool0;\nMoveL p,v1,fine,other;\n");
+  EXPECT_EQ(remarks(program), "2 p: moves use it with different tools or work objects\n");
 }
 
 // ---- URScript ----

@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <initializer_list>
-#include <limits>
 #include <numbers>
 
-#include "complaint.hpp"
+#include "limits.hpp"
 #include "vernier/search/cma_es.hpp"
 #include "vernier/search/differential_evolution.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
@@ -22,33 +20,18 @@
 namespace vernier::search_options_test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-double above(double x) { return std::nextafter(x, infinity); }
-double below(double x) { return std::nextafter(x, -infinity); }
+using vernier_test::above;
+using vernier_test::below;
 
 const auto evaluate_squares = [](const MatrixX& population, VectorX& fitness) {
   fitness = population.colwise().squaredNorm().transpose();
 };
 
-template <class Algorithm>
-std::string complaint_of(const Algorithm& algorithm) {
-  return vernier_test::complaint([&] { algorithm.start(Box::cube(2, -1, 1), 1, evaluate_squares); });
-}
-
-/// Values of an option that are just inside its limits are taken, those just outside are refused.
 template <class Algorithm, class Value>
 void expect_limits(const Algorithm& valid, Value Algorithm::*option, std::initializer_list<Value> inside,
                    std::initializer_list<Value> outside) {
-  for (const Value value : inside) {
-    Algorithm algorithm = valid;
-    algorithm.*option = value;
-    EXPECT_EQ(complaint_of(algorithm), "") << value;
-  }
-  for (const Value value : outside) {
-    Algorithm algorithm = valid;
-    algorithm.*option = value;
-    EXPECT_NE(complaint_of(algorithm), "") << value;
-  }
+  vernier_test::expect_limits([](const Algorithm& a) { a.start(Box::cube(2, -1, 1), 1, evaluate_squares); }, valid,
+                              option, inside, outside);
 }
 
 TEST(SearchOptions, LimitsOfPso) {
@@ -171,6 +154,9 @@ TEST(SearchOptions, Defaults) {
   EXPECT_EQ(cma.tolerance_x, 1e-12);
   EXPECT_EQ(cma.tolerance_f, 1e-12);
   EXPECT_EQ(Restarted<Pso>{}.restarts, 9);
+  const RandomSearch random;
+  EXPECT_EQ(random.individuals, 50);
+  EXPECT_EQ(random.generations, 300);
 }
 
 double squares(const VectorX& x) { return x.squaredNorm(); }

@@ -57,6 +57,8 @@ TEST(DrawJointErrors, HasEverySourceByDefault) {
   const auto errors = draw_joint_errors(nominal);
   EXPECT_EQ(errors.coefficients().size(), 6 + 5 + 21 + 6 * 2 * 3);
   for (const double coefficient : errors.coefficients()) EXPECT_NE(coefficient, 0);
+  EXPECT_EQ(JointErrorSizes{}.decay, 1);
+  EXPECT_EQ(JointErrorSizes{}.ripple_harmonic, 100);
 }
 
 TEST(DrawJointErrors, HasTheSizesItClaims) {

@@ -199,6 +199,7 @@ TEST_F(UrKinematicsFile, JointsOfAUrdfFollowOneAnotherAboutTheirZ) {
 TEST_F(UrKinematicsFile, OfAUrdfAreItsJointOrigins) {
   const UrdfChain chain = parse_urdf(vernier_test::ur_like_urdf(), "in", "base_link", "tool0");
   const UrKinematics kinematics = UrKinematics::of(chain, chain.robot.geometry(), "calib_3");
+  EXPECT_EQ(kinematics.hash, "calib_3");
   for (std::size_t i = 0; i < 6; ++i) EXPECT_LE(difference(kinematics.origins[i], chain.origins[i + 1]), 1e-14) << i;
   EXPECT_NE(vernier_test::complaint([] {
               const UrdfChain abb = parse_urdf(vernier_test::abb_like_urdf(), "in", "base_link", "tool0");

@@ -252,10 +252,9 @@ TEST_F(FileRules, EstimatesOfAllParametersAndTheirRates) {
 TEST_F(FileRules, EstimatesWithoutUnknowns) {
   const auto robot = robots::abb_irb120();
   const Model model(robot.chain, Model::Arm(robot.chain));
-  const ErrorModelEstimate estimate{
-      .arm = detail::parameterised(FittedArm::of(model.identified()), {}, VectorX(0), VectorX(0), VectorX()),
-      .covariance = MatrixX(0, 0),
-      .position_sigma = 2e-5};
+  ErrorModelEstimate estimate{
+      .arm = detail::parameterised(FittedArm::of(model.identified()), {}, VectorX(0), VectorX(0), VectorX())};
+  estimate.position_sigma = 2e-5;
   save(path_, CalibratedRobot<6>("arm", model, robot.limits, {}).with_estimate(estimate));
   const auto loaded = load<6>(path_);
   ASSERT_TRUE(loaded.estimate());

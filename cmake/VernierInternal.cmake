@@ -9,6 +9,31 @@ target_compile_options(vernier_internal INTERFACE
   "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-use-after-free;-Wno-free-nonheap-object;-Wno-dangling-pointer>"
   $<$<BOOL:${VERNIER_WERROR}>:-Werror>)
 
+# The headers of Eigen for `vernier_precompile`.
+set(vernier_eigen_headers <Eigen/Core> <Eigen/LU> <Eigen/QR> <Eigen/SVD> <Eigen/Geometry> <Eigen/Eigenvalues>
+    <Eigen/Cholesky>)
+
+# What ccache needs to see through a precompiled header.
+set(vernier_precompiled_options)
+if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+  set(vernier_precompiled_options
+    $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
+    "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
+endif()
+
+# vernier_precompile(<target> <header>...): headers of other libraries, parsed once for all files of a target. Never
+# Vernier's own: in a precompiled header they would give no warnings.
+function(vernier_precompile target)
+  target_precompile_headers(${target} PRIVATE ${ARGN})
+  target_compile_options(${target} PRIVATE ${vernier_precompiled_options})
+endfunction()
+
+# vernier_reuse_precompiled(<target> <other>): takes what another target, with the same options, precompiles.
+function(vernier_reuse_precompiled target other)
+  target_precompile_headers(${target} REUSE_FROM ${other})
+  target_compile_options(${target} PRIVATE ${vernier_precompiled_options})
+endfunction()
+
 # vernier_includes(<out> <file> <regex>): whether the file has an #include line whose target starts so. Editing the file
 # configures again, so what a program links to follows from what it includes.
 function(vernier_includes out file regex)

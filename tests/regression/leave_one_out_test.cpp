@@ -230,7 +230,7 @@ struct Layer {
 
 TEST(LeaveOneOutError, FromProductsIsThatOfSingularValues) {
   for (const auto activation : {Activation::sigmoid, Activation::tanh})
-    for (const auto& [samples, nodes] : {std::pair<Index, int>{331, 17}, {500, 24}, {96, 40}, {64, 1}})
+    for (const auto& [samples, nodes] : {std::pair<Index, int>{331, 17}, {500, 24}, {96, 40}, {64, 1}, {45, 40}, {42, 40}})
       for (const double size : {0.3, 1.0, 5.0})
         for (const int outputs : {1, 3}) {
           const Layer at(samples, nodes, size, activation, 0.05, outputs);
@@ -272,7 +272,8 @@ TEST(LeaveOneOutError, SaysWhereProductsDoNotTell) {
   unusable.theta(3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(says(unusable), -1);
   EXPECT_FALSE(detail::LeaveOneOutError::supports({.nodes = 10, .activation = Activation::sine}, 1000));
-  EXPECT_FALSE(detail::LeaveOneOutError::supports({.nodes = 10}, 19));
+  EXPECT_FALSE(detail::LeaveOneOutError::supports({.nodes = 10}, 11));
+  EXPECT_TRUE(detail::LeaveOneOutError::supports({.nodes = 10}, 12));
 }
 
 // A node that is one at a single sample and zero at all others fits that sample alone: its leverage is one, and what is

@@ -20,7 +20,7 @@ class LeaveOneOutError {
  public:
   /// Whether there is a kernel for these nodes and this number of samples.
   static bool supports(const HiddenLayer& layer, Index samples) {
-    return LayerEquations::supports(layer.activation) && samples >= 2 * layer.nodes && samples >= 8;
+    return LayerEquations::supports(layer.activation) && samples >= layer.nodes + 2 && samples >= 8;
   }
 
   /// @param features samples x inputs, scaled; must outlive this

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 #include <string>
 
+#include "complaint.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/data/csv.hpp"
 
@@ -12,6 +14,7 @@ namespace contacts_test {
 namespace {
 
 using namespace vernier;
+using vernier_test::complaint;
 
 class ReadContacts : public ::testing::Test {
  protected:
@@ -103,6 +106,36 @@ TEST_F(ReadContacts, EachKindOfDamageInOneLine) {
             "the arm");
   EXPECT_EQ(refused("contact_id,kind,q1_rad,q2_rad\np,plane,1,2\n"),
             "c.csv: no column q3_rad or q3_deg in the header (contact_id, kind, q1_rad, q2_rad)");
+}
+
+MatrixX touches(Index n) { return MatrixX::Constant(n, 3, 0.25); }
+
+TEST(Contact, ABarOfSocketsNeedsThree) {
+  const auto bar = [](Index n) {
+    return complaint([&] { Contact("bar", ContactKind::socket, touches(n), VectorX::LinSpaced(n, 0, 0.4)); });
+  };
+  EXPECT_EQ(bar(3), "");
+  EXPECT_NE(bar(2).find("2 touches of a socket, at least 3 are needed"), std::string::npos) << bar(2);
+}
+
+TEST(Contact, LengthsAndJointsAreChecked) {
+  EXPECT_EQ(complaint([] { Contact("b", ContactKind::ball, touches(4)); }), "contact b: a ball without its radius");
+  EXPECT_EQ(complaint([] { Contact("b", ContactKind::ball, touches(4), VectorX::Ones(3)); }),
+            "contact b: 4 touches, but 3 known lengths");
+  for (Index i = 0; i < 4; ++i) {
+    VectorX radii = VectorX::Constant(4, 0.01);
+    radii(i) = 0;
+    EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, touches(4), radii); }),
+              message("contact b: touch ", i, " has a radius of 0 m, must be positive"));
+    EXPECT_EQ(complaint([&] { Contact("p", ContactKind::plane, touches(4), radii); }), "");  // a height of 0
+    radii(i) = std::numeric_limits<double>::infinity();
+    MatrixX joints = touches(4);
+    joints(i, 2) = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& refused : {complaint([&] { Contact("p", ContactKind::plane, touches(4), radii); }),
+                                complaint([&] { Contact("p", ContactKind::plane, joints); })})
+      EXPECT_EQ(refused, message("contact p: touch ", i, " has a value that is not finite"));
+  }
+  EXPECT_EQ(Contact("p", ContactKind::plane, touches(4)).known(), VectorX::Zero(4));
 }
 
 }  // namespace

@@ -126,6 +126,10 @@ TEST_F(Csv, TemperaturesAreReadAndWritten) {
   EXPECT_EQ(data.temperatures(), Eigen::Vector2d(21.5, 22.25));
   write_dataset(in_folder("again.csv"), data);
   EXPECT_EQ(read_dataset<1>(in_folder("again.csv")).temperatures(), data.temperatures());
+  const auto one = read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm,temperature_c\n1,0,0,0,21.5\n"));
+  write_dataset(in_folder("one.csv"), one);
+  EXPECT_EQ(read_dataset<1>(in_folder("one.csv")).temperatures(), one.temperatures());
+  EXPECT_EQ(one.temperatures(), Eigen::VectorXd::Constant(1, 21.5));
   EXPECT_EQ(read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm\n1,0,0,0\n")).temperatures().size(), 0);
   EXPECT_NE(
       complaint("q1_rad,q2_rad,x_mm,y_mm,z_mm,temperature_c\n1,2,0,0,0,warm\n").find("line 2, column temperature_c"),
@@ -420,6 +424,7 @@ std::vector<Malformed> malformed_files() {
       {"beyond a double", head + "1e400,0.2,1,2,3\n", {"line 2", "column q1_rad", "out of range"}},
       {"huge", head + "0.1,0.2,1e300,2,3\n", {"line 2", "column x_mm", "1e9"}},
       {"just too large", head + "0.1,-1000000001,1,2,3\n", {"line 2", "column q2_rad", "1e9"}},
+      {"a delete character", head + "0.1,5\x7f,1,2,3\n", {"line 2", "column q2_rad", "'5?' is not a number"}},
       {"four hundred digits", head + std::string(400, '9') + ",0.2,1,2,3\n", {"line 2", "column q1_rad", "..."}},
       {"bad after good", head + good + good + "0.1,0.2,1,2,?\n" + good, {"line 4", "column z_mm", "'?'"}},
       {"a full stop of another script", head + "0\xC2\xB7"s + "1,0.2,1,2,3\n", {"line 2", "column q1_rad", "'0??1'"}},

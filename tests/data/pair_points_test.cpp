@@ -213,7 +213,7 @@ PointRows times(double factor, PointRows points) {
 
 TEST(PairPoints, UnitsAndHandedness) {
   const Session session = Session::simulate(40, 7);
-  for (const double factor : {1000.0, 25.4, 39.37007874, 0.001}) {
+  for (const double factor : {1000.0, 25.4, 39.37007874, 0.001, 100.0, 0.1, 304.8, 1e6}) {
     const Pairing found = pair_by_order(session.flanges, times(factor, session.points));
     EXPECT_EQ(found.proof->status, PairingStatus::wrong_unit) << factor;
     EXPECT_NEAR(found.proof->scale / factor, 1, 0.01) << factor;

@@ -253,6 +253,16 @@ DataFinding only(const DataAudit& audit) {
   return audit.findings.empty() ? DataFinding{FaultKind::outlier} : audit.findings[0];
 }
 
+// Metres, decimetres, centimetres, millimetres and inches, one taken for another.
+TEST(DataAudit, UnitsOfLength) {
+  const Dataset<6> data = clean_file(40, 21);
+  for (const double factor : {1000.0, 100.0, 1000 / 25.4, 25.4, 10.0, 0.1, 1 / 25.4, 25.4 / 1000, 0.01, 0.001}) {
+    const DataFinding finding = only(audit_data(ur5, Dataset<6>(data.joints(), data.positions() * factor)));
+    EXPECT_EQ(finding.kind, FaultKind::length_unit) << factor;
+    EXPECT_NEAR(finding.size / factor, 1, 1e-12) << factor;
+  }
+}
+
 /// The number behind some words.
 double number_behind(const std::string& text, const std::string& words) {
   const auto at = text.find(words);

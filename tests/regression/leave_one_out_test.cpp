@@ -230,7 +230,8 @@ struct Layer {
 
 TEST(LeaveOneOutError, FromProductsIsThatOfSingularValues) {
   for (const auto activation : {Activation::sigmoid, Activation::tanh})
-    for (const auto& [samples, nodes] : {std::pair<Index, int>{331, 17}, {500, 24}, {96, 40}, {64, 1}, {45, 40}, {42, 40}})
+    for (const auto& [samples, nodes] :
+         {std::pair<Index, int>{331, 17}, {500, 24}, {96, 40}, {64, 1}, {45, 40}, {42, 40}})
       for (const double size : {0.3, 1.0, 5.0})
         for (const int outputs : {1, 3}) {
           const Layer at(samples, nodes, size, activation, 0.05, outputs);

@@ -61,7 +61,9 @@ TEST(Distances, RowsInTheGivenOrder) {
     EXPECT_EQ(some.length(k), all.length(i));
     EXPECT_EQ(some.joints(k), all.joints(i));
   }
-  EXPECT_NE(complaint([&] { (void)all.rows(std::array<Index, 1>{3}); }), "");
+  for (const Index outside : {-1, 3})
+    EXPECT_EQ(complaint([&] { (void)all.rows(std::array<Index, 1>{outside}); }),
+              message("rows: row ", outside, " of 3"));
   EXPECT_EQ(Distances<2>().size(), 0);
 }
 

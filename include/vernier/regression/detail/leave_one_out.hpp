@@ -18,7 +18,8 @@ namespace vernier::detail {
 /// the nodes' Gram matrix.
 class LeaveOneOutError {
  public:
-  /// Whether there is a kernel for these nodes and this number of samples.
+  /// Whether there is a kernel for these nodes and this number of samples: n centred samples span n - 1 dimensions, so
+  /// with n - 1 nodes or more every leverage is one.
   static bool supports(const HiddenLayer& layer, Index samples) {
     return LayerEquations::supports(layer.activation) && samples >= layer.nodes + 2 && samples >= 8;
   }

@@ -402,32 +402,27 @@ Request read_command_line(Program& program) {
   Plan& plan = out.plan;
   std::string plan_file;
   std::vector<std::string> methods;
-  CLI::App& app = program.app();
-  app.add_option("plan", plan_file, "the whole grid as a JSON file, in place of the options up to --nodes")
-      ->type_name("PLAN.json")
-      ->always_capture_default(false);
-  app.add_flag("--list", out.listed, "all methods, and how they are written");
-  app.add_option("--methods", methods, "what to compare, see --list")->type_name("M,...")->delimiter(',');
-  app.add_option("--robot", problem.robot, "an arm of the catalogue, or a JSON file")->type_name("R");
-  app.add_option("--errors", problem.errors, "of a simulated arm; full: joint errors too")->type_name("geometric|full");
-  app.add_option("--region", problem.region, "joints of simulated poses")->type_name("operating|full");
-  app.add_option("--noise-mm", problem.noise_mm, "of simulated positions, per component")->type_name("S");
-  app.add_option("--data", problem.data, "measured poses instead")->type_name("FILE")->always_capture_default(false);
-  app.add_option("--split", problem.split, "which fifth of the measured poses is held out")
-      ->type_name("random|region|time");
-  app.add_option("--poses", plan.poses, "to learn from; 0: all measured ones")->type_name("N,...")->delimiter(',');
-  app.add_option("--seeds", plan.seeds, "of data and fits")->type_name("S,...")->delimiter(',');
-  app.add_option("--evaluations", plan.evaluations, "of every search")->type_name("E");
-  app.add_option("--seconds", plan.seconds, "of every search and iterative fit instead; 0: by evaluations")
-      ->type_name("T");
-  app.add_option("--nodes", plan.nodes, "of hidden layers")->type_name("H");
-  app.add_option("--results", out.results, "file that keeps every cell; a run goes on where another one stopped")
-      ->type_name("FILE")
-      ->default_str("OUT/results.jsonl")
-      ->always_capture_default(false);
-  app.add_option("--merge", out.merged, "add the cells of these results files first; without a plan that is all")
-      ->type_name("FILE...")
-      ->always_capture_default(false);
+  program.add_option("plan", plan_file, "the whole grid as a JSON file, in place of the options up to --nodes",
+                     "PLAN.json");
+  program.add_flag("--list", out.listed, "all methods, and how they are written");
+  program.add_option("--methods", methods, "what to compare, see --list", "M,...").delimiter(',');
+  program.add_setting("--robot", problem.robot, "an arm of the catalogue, or a JSON file", "R");
+  program.add_setting("--errors", problem.errors, "of a simulated arm; full: joint errors too", "geometric|full");
+  program.add_setting("--region", problem.region, "joints of simulated poses", "operating|full");
+  program.add_setting("--noise-mm", problem.noise_mm, "of simulated positions, per component", "S");
+  program.add_option("--data", problem.data, "measured poses instead", "FILE");
+  program.add_setting("--split", problem.split, "which fifth of the measured poses is held out", "random|region|time");
+  program.add_setting("--poses", plan.poses, "to learn from; 0: all measured ones", "N,...").delimiter(',');
+  program.add_setting("--seeds", plan.seeds, "of data and fits", "S,...").delimiter(',');
+  program.add_setting("--evaluations", plan.evaluations, "of every search", "E");
+  program.add_setting("--seconds", plan.seconds, "of every search and iterative fit instead; 0: by evaluations", "T");
+  program.add_setting("--nodes", plan.nodes, "of hidden layers", "H");
+  program
+      .add_option("--results", out.results, "file that keeps every cell; a run goes on where another one stopped",
+                  "FILE")
+      .default_text("OUT/results.jsonl");
+  program.add_option("--merge", out.merged, "add the cells of these results files first; without a plan that is all",
+                     "FILE");
   program.parse("compare_out");
   if (!plan_file.empty() && !methods.empty()) throw UsageError("a plan and --methods exclude each other");
   out.planned = !plan_file.empty() || !methods.empty();
@@ -474,7 +469,7 @@ int compare(Program& program, const Ranks& ranks) {
              ranks.many() ? fmt::format(" by {} ranks", ranks.count()) : "");
   std::fflush(stdout);
   // a rank is a processor, unless it is said otherwise
-  const bool alone = !ranks.many() || program.app().count("--threads") > 0;
+  const bool alone = !ranks.many() || program.given("--threads");
   grid.compute_missing(results, alone ? program.common().threads : 1);
   if (!ranks.first()) return 0;
 

@@ -206,38 +206,38 @@ int run(support::Program& program) {
   Settings settings;
   support::ProgramCorrection in_place;
   bool no_approach = false, no_radius = false;
-  CLI::App& app = program.app();
-  app.add_option("--model", settings.model, "calibrated model that calibrate saved")->required()->type_name("FILE");
-  app.add_option("--targets", settings.targets,
-                 "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
-                 "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
-                 "there: j (joint move) or l (linear move)")
-      ->type_name("FILE");
-  support::add_program_options(app, in_place);
-  app.add_flag("--poses", settings.poses,
-               "of a file with joints and poses, the poses are the targets; the joints choose the branch");
-  app.add_flag("--linear", settings.linear, "all moves are linear, where the file has no column move");
-  app.add_option("--tolerance-mm", settings.tolerance_mm,
-                 "points are inserted in a linear move until the tool stays so near to the line")
-      ->check(CLI::PositiveNumber)
-      ->type_name("MM")
-      ->capture_default_str();
-  app.add_option("--max-step-deg", settings.max_step_deg, "largest change of a joint between points of a linear move")
-      ->check(CLI::PositiveNumber)
-      ->type_name("DEG")
-      ->capture_default_str();
-  app.add_option("--start", settings.start, "joint values before the first target [rad, m], separated by commas")
-      ->delimiter(',')
-      ->type_name("Q1,..");
-  app.add_flag("--all-branches", settings.branches, "all joint values of each target, not a path");
-  app.add_flag("--no-approach", no_approach,
-               "the commands are not executed in the order of the file: correct for the middle of both directions of "
-               "approach, not for the approach from the command before");
-  app.add_flag("--no-radius", no_radius, "leave out the radius of 95 %, which takes longest");
-  app.add_option("--temperature-c", settings.temperature,
-                 "temperature of the arm [deg C], for a model that changes with it; by default the mean of its "
-                 "measurements")
-      ->type_name("T");
+  program.add_option("--model", settings.model, "calibrated model that calibrate saved", "FILE").required();
+  program.add_option(
+      "--targets", settings.targets,
+      "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
+      "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
+      "there: j (joint move) or l (linear move)",
+      "FILE");
+  support::add_program_options(program, in_place);
+  program.add_flag("--poses", settings.poses,
+                   "of a file with joints and poses, the poses are the targets; the joints choose the branch");
+  program.add_flag("--linear", settings.linear, "all moves are linear, where the file has no column move");
+  program
+      .add_setting("--tolerance-mm", settings.tolerance_mm,
+                   "points are inserted in a linear move until the tool stays so near to the line", "MM")
+      .positive();
+  program
+      .add_setting("--max-step-deg", settings.max_step_deg, "largest change of a joint between points of a linear move",
+                   "DEG")
+      .positive();
+  program
+      .add_option("--start", settings.start, "joint values before the first target [rad, m], separated by commas",
+                  "Q1,..")
+      .delimiter(',');
+  program.add_flag("--all-branches", settings.branches, "all joint values of each target, not a path");
+  program.add_flag("--no-approach", no_approach,
+                   "the commands are not executed in the order of the file: correct for the middle of both directions "
+                   "of approach, not for the approach from the command before");
+  program.add_flag("--no-radius", no_radius, "leave out the radius of 95 %, which takes longest");
+  program.add_option("--temperature-c", settings.temperature,
+                     "temperature of the arm [deg C], for a model that changes with it; by default the mean of its "
+                     "measurements",
+                     "T");
   program.parse("", "write the commands to this file", "FILE");
   settings.out = program.common().out;
   settings.approach = !no_approach;

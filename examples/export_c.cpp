@@ -42,12 +42,10 @@ std::optional<double> held_out_error(const std::string& model) {
 
 int run(support::Program& program) {
   std::string model, results, name = "arm";
-  CLI::App& app = program.app();
-  app.add_option("--model", model, "calibrated model that calibrate saved")->required()->type_name("FILE");
-  app.add_option("--results", results,
-                 "what calibrate wrote by --json, in place of the held-out error that the model keeps")
-      ->type_name("FILE");
-  app.add_option("--name", name, "what all names in the file begin with")->type_name("NAME")->capture_default_str();
+  program.add_option("--model", model, "calibrated model that calibrate saved", "FILE").required();
+  program.add_option("--results", results,
+                     "what calibrate wrote by --json, in place of the held-out error that the model keeps", "FILE");
+  program.add_setting("--name", name, "what all names in the file begin with", "NAME");
   program.parse("", "write the C header to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");

@@ -112,29 +112,24 @@ support::Json to_json(const vn::ErrorStatistics& e) {
 int run(support::Program& program) {
   Settings o;
   o.date = support::today();
-  CLI::App& app = program.app();
-  const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
-  };
-  o.robot.add_to(app)->required();
-  option("--data", o.data, "measured poses, columns as for calibrate", "FILE")->required();
-  app.add_option("--test-every", o.test_every, "hold out every K-th row of the data")
-      ->type_name("K")
-      ->check(CLI::Range(2, 1000000).description(""));
-  option("--urdf", o.urdf, "write the file of --robot (URDF) with the calibrated origins of its joints to this file",
-         "FILE");
-  auto* kinematics = option("--ur-kinematics", o.ur_kinematics,
-                            "write the kinematics file of Universal Robots' driver to this file", "FILE");
-  app.add_option(
-         "--ur-hash", o.ur_hash,
-         "of the controller's kinematics, as in the file that ur_calibration wrote; the driver warns of another")
-      ->type_name("HASH")
-      ->needs(kinematics);
-  app.add_flag("--with-base", o.with_base, "write the base frame, too: that of the sensor");
-  app.add_flag("--with-tool", o.with_tool,
-               "write the tool frame, too: the point that was measured becomes the tip link");
-  app.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
-  option("--date", o.date, "date written into the files", "DATE");
+  o.robot.add_to(program).required();
+  program.add_option("--data", o.data, "measured poses, columns as for calibrate", "FILE").required();
+  program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
+  program.add_option("--urdf", o.urdf,
+                     "write the file of --robot (URDF) with the calibrated origins of its joints to this file", "FILE");
+  const support::Option kinematics = program.add_option(
+      "--ur-kinematics", o.ur_kinematics, "write the kinematics file of Universal Robots' driver to this file", "FILE");
+  program
+      .add_setting("--ur-hash", o.ur_hash,
+                   "of the controller's kinematics, as in the file that ur_calibration wrote; the driver warns of "
+                   "another",
+                   "HASH")
+      .needs(kinematics);
+  program.add_flag("--with-base", o.with_base, "write the base frame, too: that of the sensor");
+  program.add_flag("--with-tool", o.with_tool,
+                   "write the tool frame, too: the point that was measured becomes the tip link");
+  program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
+  program.add_setting("--date", o.date, "date written into the files", "DATE");
   program.parse("", nullptr);
 
   if (o.urdf.empty() && o.ur_kinematics.empty())

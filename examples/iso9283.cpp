@@ -114,31 +114,24 @@ int plan(const Settings& settings, const std::string& out) {
 
 int run(support::Program& program) {
   Settings settings;
-  CLI::App& app = program.app();
-  app.add_option("--data", settings.data,
-                 "measured visits: columns pose, cycle, x_mm, y_mm, z_mm, optionally direction (1, 2, 3), time_s and "
-                 "rx_rad, ry_rad, rz_rad")
-      ->type_name("FILE");
-  app.add_option("--commanded", settings.commanded, "commanded poses: columns pose, x_mm .., optionally rx_rad ..")
-      ->type_name("FILE");
-  app.add_option("--path", settings.path, "commanded path: columns x_mm .., optionally rx_rad .., in its order")
-      ->type_name("FILE");
-  app.add_option(
-         "--runs", settings.runs,
-         "measured runs along the path: columns cycle, x_mm .., optionally rx_rad .., in the order of measuring")
-      ->type_name("FILE");
-  app.add_option("--points", settings.points, "points of the path that are compared")
-      ->check(CLI::Range(1, 100000))
-      ->type_name("M");
-  app.add_flag("--plan", settings.plan, "write the five poses of a test to --out instead");
-  app.add_option("--centre-mm", settings.centre, "centre of the cube")->delimiter(',')->type_name("X,Y,Z");
-  app.add_option("--edge-mm", settings.edge, "edge of the cube")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("E");
-  app.add_option("--plane", settings.plane, "diagonal plane of the cube")->check(CLI::Range(1, 4))->type_name("1..4");
-  app.add_option("--rotation-rad", settings.rotation, "rotation vector of the tool at all poses")
-      ->delimiter(',')
-      ->type_name("X,Y,Z");
+  program.add_option("--data", settings.data,
+                     "measured visits: columns pose, cycle, x_mm, y_mm, z_mm, optionally direction (1, 2, 3), time_s "
+                     "and rx_rad, ry_rad, rz_rad",
+                     "FILE");
+  program.add_option("--commanded", settings.commanded, "commanded poses: columns pose, x_mm .., optionally rx_rad ..",
+                     "FILE");
+  program.add_option("--path", settings.path, "commanded path: columns x_mm .., optionally rx_rad .., in its order",
+                     "FILE");
+  program.add_option(
+      "--runs", settings.runs,
+      "measured runs along the path: columns cycle, x_mm .., optionally rx_rad .., in the order of measuring", "FILE");
+  program.add_setting("--points", settings.points, "points of the path that are compared", "M").within(1, 100000);
+  program.add_flag("--plan", settings.plan, "write the five poses of a test to --out instead");
+  program.add_option("--centre-mm", settings.centre, "centre of the cube", "X,Y,Z").delimiter(',');
+  program.add_option("--edge-mm", settings.edge, "edge of the cube", "E").positive();
+  program.add_setting("--plane", settings.plane, "diagonal plane of the cube", "1..4").within(1, 4);
+  program.add_setting("--rotation-rad", settings.rotation, "rotation vector of the tool at all poses", "X,Y,Z")
+      .delimiter(',');
   program.parse("", "beginning of the names of the figures; none without it. With --plan: file for the poses",
                 "PREFIX");
   const std::string& out = program.common().out;

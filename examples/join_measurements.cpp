@@ -153,31 +153,31 @@ support::Json to_json(const vn::Pairing& pairing, const vn::CsvText& commanded, 
 
 int run(support::Program& program) {
   Settings o;
-  CLI::App& app = program.app();
-  const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
-  };
-  option("--joints", o.joints, "commanded joints, columns q1_rad .. in the order of measuring", "FILE")->required();
-  option("--points", o.points, "measured points, as the tracker's program exported them", "FILE")->required();
-  option("--unit", o.unit, "of the points: um, mm, cm, m, in, ft", "UNIT")
-      ->required()
-      ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}).description(""));
-  option("--preset", o.preset, "layout of --points: sa, ASCII points of SpatialAnalyzer", "NAME")
-      ->check(CLI::IsMember({"sa"}).description(""));
-  option("--columns", o.columns, "columns of --points: name, x, y, z; other words are skipped", "NAME,...")
-      ->delimiter(',');
-  option("--separator", o.separator, "between the columns: a character, tab, or space for any number of blanks", "C");
-  option("--decimal", o.decimal, "decimal point of --points; . without it", "C");
-  option("--comment", o.comment, "lines that begin with this text are skipped", "TEXT");
-  app.add_option("--header-lines", o.header_lines, "number of lines to skip at the beginning")
-      ->check(CLI::Range(0, 1000));
-  option("--key", o.key, "column of --joints with the names of the points; without it they pair by order", "COLUMN");
-  o.robot.add_to(app)->description(
+  program.add_option("--joints", o.joints, "commanded joints, columns q1_rad .. in the order of measuring", "FILE")
+      .required();
+  program.add_option("--points", o.points, "measured points, as the tracker's program exported them", "FILE")
+      .required();
+  program.add_option("--unit", o.unit, "of the points: um, mm, cm, m, in, ft", "UNIT")
+      .required()
+      .one_of({"um", "mm", "cm", "m", "in", "ft"});
+  program.add_option("--preset", o.preset, "layout of --points: sa, ASCII points of SpatialAnalyzer", "NAME")
+      .one_of({"sa"});
+  program.add_option("--columns", o.columns, "columns of --points: name, x, y, z; other words are skipped", "NAME,...")
+      .delimiter(',');
+  program.add_option("--separator", o.separator,
+                     "between the columns: a character, tab, or space for any number of blanks", "C");
+  program.add_option("--decimal", o.decimal, "decimal point of --points; . without it", "C");
+  program.add_option("--comment", o.comment, "lines that begin with this text are skipped", "TEXT");
+  program.add_setting("--header-lines", o.header_lines, "number of lines to skip at the beginning", "N")
+      .within(0, 1000);
+  program.add_option("--key", o.key, "column of --joints with the names of the points; without it they pair by order",
+                     "COLUMN");
+  o.robot.add_to(program).description(
       "name in the catalogue, or a file: its nominal kinematics prove the order, or check the names, the unit and the "
       "frame");
-  app.add_flag("--leave-out", o.leave_out,
-               "write the pairs that are proven although something is wrong: rows and points without a partner are "
-               "left out, swapped ones exchanged");
+  program.add_flag("--leave-out", o.leave_out,
+                   "write the pairs that are proven although something is wrong: rows and points without a partner are "
+                   "left out, swapped ones exchanged");
   program.parse("", "write the measured poses to this file", "FILE");
   o.out = program.common().out;
   if (o.out.empty()) throw support::UsageError("--out is required");

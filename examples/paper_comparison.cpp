@@ -475,52 +475,39 @@ int body(support::Program& program) {
   std::optional<vn::Index> train, test, fresh;
   std::optional<double> budget;
   double noise_mm = 0;
-  CLI::App& app = program.app();
-  const auto positive = CLI::Range(vn::Index{1}, vn::Index{1000000}).description("");
-  app.add_flag("--quick", settings.quick,
-               "1000 poses to learn from, 200 test, a quarter of the generations: under a minute");
-  app.add_flag("--varpro", settings.var_pro,
-               "also train the hidden layer by gradients (VarProElm); --scale-budget does not shorten it");
-  app.add_option("--runs", settings.runs, "repeat over K error tables and seeds; medians, ranges, paired tests")
-      ->type_name("K")
-      ->check(CLI::Range(1, 1000).description(""));
-  app.add_option("--region", settings.region, "joint ranges of all poses")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, Region>{{"operating", Region::operating}, {"full", Region::full}})
-                      .description(""))
-      ->type_name("operating|full")
-      ->default_str("operating");
-  app.add_option("--positions", settings.positions, "whether PSO's particles may leave [-1, 1]; the paper lets them")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, vn::PositionRule>{{"unbounded", vn::PositionRule::unbounded},
-                                                                          {"clamped", vn::PositionRule::clamped}})
-              .description(""))
-      ->type_name("unbounded|clamped")
-      ->default_str("unbounded");
-  app.add_option("--train", train, "poses to learn from; the paper has 5000")->type_name("N")->check(positive);
-  app.add_option("--test", test, "poses of the test set; the paper has 400")->type_name("N")->check(positive);
-  app.add_option("--fresh", fresh, "poses of the random set; the paper has 200")->type_name("N")->check(positive);
-  app.add_option("--scale-budget", budget, "factor of the paper's generations and iterations")
-      ->type_name("F")
-      ->check(CLI::Range(1e-4, 100.0).description(""));
-  app.add_option("--search-samples", settings.search_samples,
-                 "poses on which the searches evaluate, the fit has all; 0: all")
-      ->type_name("N")
-      ->check(CLI::Range(vn::Index{0}, vn::Index{1000000}).description(""));
-  app.add_option("--noise-mm", noise_mm, "standard deviation of the measured positions, per component")
-      ->type_name("S")
-      ->check(CLI::Range(0.0, 100.0).description(""));
-  app.add_option("--write-poses", settings.poses_file, "write simulated measured poses, for `calibrate`")
-      ->type_name("FILE")
-      ->always_capture_default(false);
+  std::string region = "operating", positions = "unbounded";
+  program.add_flag("--quick", settings.quick,
+                   "1000 poses to learn from, 200 test, a quarter of the generations: under a minute");
+  program.add_flag("--varpro", settings.var_pro,
+                   "also train the hidden layer by gradients (VarProElm); --scale-budget does not shorten it");
+  program
+      .add_setting("--runs", settings.runs, "repeat over K error tables and seeds; medians, ranges, paired tests", "K")
+      .within(1, 1000);
+  program.add_setting("--region", region, "joint ranges of all poses", "operating|full").one_of({"operating", "full"});
+  program
+      .add_setting("--positions", positions, "whether PSO's particles may leave [-1, 1]; the paper lets them",
+                   "unbounded|clamped")
+      .one_of({"unbounded", "clamped"});
+  program.add_option("--train", train, "poses to learn from; the paper has 5000", "N").within(1, 1000000);
+  program.add_option("--test", test, "poses of the test set; the paper has 400", "N").within(1, 1000000);
+  program.add_option("--fresh", fresh, "poses of the random set; the paper has 200", "N").within(1, 1000000);
+  program.add_option("--scale-budget", budget, "factor of the paper's generations and iterations", "F")
+      .within(1e-4, 100.0);
+  program
+      .add_setting("--search-samples", settings.search_samples,
+                   "poses on which the searches evaluate, the fit has all; 0: all", "N")
+      .within(0, 1000000);
+  program.add_setting("--noise-mm", noise_mm, "standard deviation of the measured positions, per component", "S")
+      .within(0.0, 100.0);
+  program.add_option("--write-poses", settings.poses_file, "write simulated measured poses, for `calibrate`", "FILE");
   program.parse("paper_comparison_out");
   settings.train = train.value_or(settings.quick ? 1000 : 5000);
   settings.test = test.value_or(settings.quick ? 200 : 400);
   settings.fresh = fresh.value_or(200);
   settings.budget = budget.value_or(settings.quick ? 0.25 : 1);
   settings.noise = noise_mm / 1e3;
-  if (!std::isfinite(settings.budget) || !std::isfinite(settings.noise))  // a NaN is in no range and passes them all
-    throw support::UsageError("--scale-budget and --noise-mm must be numbers");
+  settings.region = region == "full" ? Region::full : Region::operating;
+  settings.positions = positions == "clamped" ? vn::PositionRule::clamped : vn::PositionRule::unbounded;
   const std::filesystem::path folder = program.output_folder();
   const vn::Robot<6> robot = vn::robots::abb_irb120();
   const std::uint64_t seed = program.common().seed;

@@ -157,53 +157,60 @@ support::Json to_json(const Settings& o, const std::string& robot, const support
 
 int run(support::Program& program) {
   Settings o;
-  CLI::App& app = program.app();
-  const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
-  };
-  o.robot.add_to(app)->required();
-  auto* count = option("--count", o.count, "number of poses to plan", "N")->check(CLI::Range(3, 100000));
-  auto* data = option("--data", o.data, "poses measured so far: what they say is not measured again", "FILE");
-  option("--model", o.model, "what calibrate saved of --data: plans at that arm, with its error of left-out poses",
-         "FILE")
-      ->needs(data);
-  auto* add =
-      option("--add", o.add, "number of poses to add to --data", "N")->check(CLI::Range(3, 100000))->needs(data);
-  auto* choose =
-      option("--choose", o.choose, "choose N rows of --from, by their joints alone", "N")->check(CLI::Range(3, 100000));
-  auto* from = option("--from", o.from, "measured poses, as calibrate reads them", "FILE");
-  choose->needs(from)->excludes(count)->excludes(add);
-  count->excludes(add);
-  from->needs(choose);
-  auto* every = option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
-                    ->check(CLI::Range(2, 1000000))
-                    ->needs(from);
-  option("--held-out", o.held_out, "write those rows to this file", "FILE")->needs(every);
-  option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
-      ->delimiter(',')
-      ->expected(3)
-      ->excludes(choose);
-  app.add_option("--acceptance-deg", o.acceptance_deg, "largest angle between the beam and the tool's z axis")
-      ->check(CLI::Range(1.0, 180.0));
-  app.add_option("--link-radius-mm", o.link_radius_mm, "links so thick block the beam and must not collide; 0: neither")
-      ->check(CLI::Range(0.0, 1e4));
-  option("--box", o.box, "where the tool may be, in the base frame [mm]", "X0,X1,Y0,Y1,Z0,Z1")
-      ->delimiter(',')
-      ->expected(6)
-      ->excludes(choose);
-  auto* region = option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
-                     ->excludes(choose);
-  option("--region-box", o.region_box, "likewise, as a box of tool positions in the base frame [mm]",
-         "X0,X1,Y0,Y1,Z0,Z1")
-      ->delimiter(',')
-      ->expected(6)
-      ->excludes(choose)
-      ->excludes(region);
-  app.add_flag("--orientations", o.orientations, "orientations are measured, too");
-  app.add_option("--cover", o.cover, "poses in every 10 deg of every joint that can be reached, before anything else")
-      ->check(CLI::Range(0, 1000));
-  app.add_option("--candidates", o.candidates, "number of random poses to choose from")->check(CLI::Range(3, 1000000));
-  app.add_flag("--bound", o.bound, "compute how much information no choice exceeds");
+  o.robot.add_to(program).required();
+  support::Option count = program.add_option("--count", o.count, "number of poses to plan", "N").within(3, 100000);
+  const support::Option data =
+      program.add_option("--data", o.data, "poses measured so far: what they say is not measured again", "FILE");
+  program
+      .add_option("--model", o.model,
+                  "what calibrate saved of --data: plans at that arm, with its error of left-out poses", "FILE")
+      .needs(data);
+  const support::Option add =
+      program.add_option("--add", o.add, "number of poses to add to --data", "N").within(3, 100000).needs(data);
+  support::Option choose =
+      program.add_option("--choose", o.choose, "choose N rows of --from, by their joints alone", "N").within(3, 100000);
+  support::Option from = program.add_option("--from", o.from, "measured poses, as calibrate reads them", "FILE");
+  choose.needs(from).excludes(count).excludes(add);
+  count.excludes(add);
+  from.needs(choose);
+  const support::Option every =
+      program.add_option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
+          .within(2, 1000000)
+          .needs(from);
+  program.add_option("--held-out", o.held_out, "write those rows to this file", "FILE").needs(every);
+  program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
+      .delimiter(',')
+      .expected(3)
+      .excludes(choose);
+  program
+      .add_setting("--acceptance-deg", o.acceptance_deg, "largest angle between the beam and the tool's z axis", "DEG")
+      .within(1.0, 180.0);
+  program
+      .add_setting("--link-radius-mm", o.link_radius_mm,
+                   "links so thick block the beam and must not collide; 0: neither", "MM")
+      .within(0.0, 1e4);
+  program.add_option("--box", o.box, "where the tool may be, in the base frame [mm]", "X0,X1,Y0,Y1,Z0,Z1")
+      .delimiter(',')
+      .expected(6)
+      .excludes(choose);
+  const support::Option region =
+      program
+          .add_option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
+          .excludes(choose);
+  program
+      .add_option("--region-box", o.region_box, "likewise, as a box of tool positions in the base frame [mm]",
+                  "X0,X1,Y0,Y1,Z0,Z1")
+      .delimiter(',')
+      .expected(6)
+      .excludes(choose)
+      .excludes(region);
+  program.add_flag("--orientations", o.orientations, "orientations are measured, too");
+  program
+      .add_setting("--cover", o.cover, "poses in every 10 deg of every joint that can be reached, before anything else",
+                   "N")
+      .within(0, 1000);
+  program.add_setting("--candidates", o.candidates, "number of random poses to choose from", "N").within(3, 1000000);
+  program.add_flag("--bound", o.bound, "compute how much information no choice exceeds");
   program.parse("", "write the poses to this file", "FILE");
   o.out = program.common().out;
   if (o.out.empty()) throw support::UsageError("--out is required");

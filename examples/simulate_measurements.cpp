@@ -62,17 +62,12 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
 
 int run(support::Program& program) {
   Settings o;
-  CLI::App& app = program.app();
-  o.robot.add_to(app)->required();
-  app.add_option("--poses", o.poses, "joints q1_rad.., visited in their order")
-      ->required()
-      ->type_name("FILE")
-      ->always_capture_default(false);
-  app.add_option("--noise-mm", o.noise_mm, "standard deviation of a position, per component")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--noise-mrad", o.noise_mrad, "of an orientation")->check(CLI::NonNegativeNumber);
-  app.add_option("--backlash-mrad", o.backlash_mrad, "half the play of every gear")->check(CLI::NonNegativeNumber);
-  app.add_flag("--positions-only", o.positions_only, "orientations are not measured");
+  o.robot.add_to(program).required();
+  program.add_option("--poses", o.poses, "joints q1_rad.., visited in their order", "FILE").required();
+  program.add_setting("--noise-mm", o.noise_mm, "standard deviation of a position, per component", "MM").not_negative();
+  program.add_setting("--noise-mrad", o.noise_mrad, "of an orientation", "MRAD").not_negative();
+  program.add_setting("--backlash-mrad", o.backlash_mrad, "half the play of every gear", "MRAD").not_negative();
+  program.add_flag("--positions-only", o.positions_only, "orientations are not measured");
   program.parse("", "write the measured poses to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");

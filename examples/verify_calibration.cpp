@@ -59,32 +59,28 @@ int verify_arm(const support::Program& program, const Options& o) {
 int run(support::Program& program) {
   Options o;
   o.date = support::today();
-  CLI::App& app = program.app();
-  const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
-  };
-  option("--model", o.model, "the calibrated model, as saved by calibrate", "FILE")->required();
-  option("--data", o.data, "fresh measured poses, columns as for calibrate; 10 to 30 of them, joints moved widely",
-         "FILE")
-      ->required();
-  auto* registered =
-      app.add_flag("--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
-  app.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")
-      ->excludes(registered);
-  app.add_option("--accept-mm", o.accept_mm,
-                 "the calibration is valid as long as its mean position error does not exceed this [mm]; else as long "
-                 "as no change is significant")
-      ->type_name("MM")
-      ->check(CLI::Range(1e-6, 1e3).description(""))
-      ->always_capture_default(false);
-  app.add_option("--level", o.level, "probability of a false alarm about an arm that has not changed")
-      ->type_name("P")
-      ->check(CLI::Range(1e-6, 0.5).description(""));
-  app.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
-  app.add_flag("--no-approach", o.no_approach,
-               "rows are not in the order of measuring: no hysteresis by the direction of approach");
-  option("--report", o.report, "write the results as one HTML page that needs nothing else", "FILE");
-  option("--date", o.date, "date written into the report", "DATE");
+  program.add_option("--model", o.model, "the calibrated model, as saved by calibrate", "FILE").required();
+  program
+      .add_option("--data", o.data,
+                  "fresh measured poses, columns as for calibrate; 10 to 30 of them, joints moved widely", "FILE")
+      .required();
+  const support::Option registered = program.add_flag(
+      "--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
+  program.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")
+      .excludes(registered);
+  program
+      .add_option("--accept-mm", o.accept_mm,
+                  "the calibration is valid as long as its mean position error does not exceed this [mm]; else as long "
+                  "as no change is significant",
+                  "MM")
+      .within(1e-6, 1e3);
+  program.add_setting("--level", o.level, "probability of a false alarm about an arm that has not changed", "P")
+      .within(1e-6, 0.5);
+  program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
+  program.add_flag("--no-approach", o.no_approach,
+                   "rows are not in the order of measuring: no hysteresis by the direction of approach");
+  program.add_option("--report", o.report, "write the results as one HTML page that needs nothing else", "FILE");
+  program.add_setting("--date", o.date, "date written into the report", "DATE");
   program.parse("", nullptr);
   if (!o.report.empty()) support::require_writable(o.report);
   return support::dispatch_dof(vn::saved_arm(o.model).dof, [&](auto n) { return verify_arm<n()>(program, o); });

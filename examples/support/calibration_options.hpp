@@ -37,7 +37,7 @@ struct CalibrationOptions {
 };
 
 /// Reads the command line of `calibrate` and refuses options that do not belong together.
-/// @throws UsageError for those, CLI::ParseError for what the parser sees
+/// @throws UsageError for those
 /// @throws std::runtime_error where a file that will be written cannot be
 CalibrationOptions read_calibration_options(Program& program);
 

@@ -1,14 +1,21 @@
 #pragma once
 
 /// @file
-/// What the programs' command lines have in common: options, errors and exit codes.
+/// What the programs' command lines have in common: options, errors and exit codes. CLI11 parses them; its headers,
+/// which every file would compile anew for seconds, are included by cli.cpp alone.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace support {
 
@@ -26,12 +33,37 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An option, while the command line is described.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option required();
+  Option needs(Option other);     ///< refused without the other one
+  Option excludes(Option other);  ///< refused beside the other one
+  Option delimiter(char c);       ///< between the values of one argument
+  Option expected(int values);    ///< their number
+  Option one_value_each();        ///< of an option that may be repeated
+  Option description(const std::string& text);
+  Option default_text(const std::string& text);  ///< shown in the help in place of the value
+
+  /// Refuses other values, NaN too.
+  template <class T>
+  Option within(T low, T high);
+  Option positive();
+  Option not_negative();
+  Option one_of(const std::vector<std::string>& words);
+
+ private:
+  CLI::Option* option_;
+};
+
 /// A program's command line.
 ///
 ///     int main(int argc, char** argv) {
 ///       return support::run_program("calibrate", "Measured poses in, ...", argc, argv, [](support::Program& program) {
 ///         std::string data;
-///         program.app().add_option("--data", data, "measured poses")->required();
+///         program.add_option("--data", data, "measured poses", "FILE").required();
 ///         program.parse("calibrate_out");
 ///         ...
 ///         return 0;
@@ -40,8 +72,31 @@ class UsageError : public std::runtime_error {
 class Program {
  public:
   Program(const char* name, const char* description, int argc, const char* const* argv);
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  ~Program();
 
-  CLI::App& app() { return app_; }
+  /// An option that has no default, or whose default the help describes. A name without dashes is a positional
+  /// argument.
+  /// @tparam T text, path, number, an optional number, or a vector of texts, paths or numbers
+  /// @param type what the help calls the value
+  template <class T>
+  Option add_option(const char* name, T& value, const std::string& help, const char* type) {
+    return add(name, value, help, type, false);
+  }
+  /// An option whose default, the present value, is shown in the help.
+  template <class T>
+  Option add_setting(const char* name, T& value, const std::string& help, const char* type) {
+    return add(name, value, help, type, true);
+  }
+  Option add_flag(const char* name, bool& value, const char* help);
+  /// The option of this name, added before.
+  Option option(const char* name);
+  /// Whether the user gave it.
+  bool given(const char* name) const;
+  /// What `--help` prints.
+  std::string help() const;
+
   const CommonOptions& common() const { return common_; }
   const std::string& name() const { return name_; }
   /// As it was typed, words with spaces and the like in quotes.
@@ -52,7 +107,7 @@ class Program {
   /// @param default_out folder for figures where the user names none
   /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there; null:
   ///        there is no such option
-  /// @throws CLI::ParseError, which `run_program` turns into help or exit code 2
+  /// @throws what `run_program` turns into help or exit code 2
   /// @throws std::runtime_error where the JSON file cannot be written
   void parse(const std::string& default_out, const char* out_description = "folder for the figures",
              const char* out_type = "FOLDER");
@@ -62,7 +117,10 @@ class Program {
   std::filesystem::path output_folder() const;
 
  private:
-  CLI::App app_;
+  template <class T>
+  Option add(const char* name, T& value, const std::string& help, const char* type, bool default_shown);
+
+  std::unique_ptr<CLI::App> app_;
   std::string name_;
   CommonOptions common_;
   int argc_;

@@ -265,37 +265,41 @@ Outcome correct_for_controller(const ProgramCorrection& options, const Correctio
 
 }  // namespace
 
-void add_program_options(CLI::App& app, ProgramCorrection& to) {
-  const auto option = [&](const char* name, auto& value, const char* help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type);
-  };
-  option("--program", to.program,
-         "robot program whose literal targets are corrected in place: RAPID (.mod, .prg), KRL (.src, .dat), URScript "
-         "(.script), Fanuc (.ls)",
-         "FILE");
-  option(
+void add_program_options(Program& program, ProgramCorrection& to) {
+  program.add_option(
+      "--program", to.program,
+      "robot program whose literal targets are corrected in place: RAPID (.mod, .prg), KRL (.src, .dat), URScript "
+      "(.script), Fanuc (.ls)",
+      "FILE");
+  program.add_option(
       "--controller", to.controller,
       "kinematics by which the controller reaches the poses of a program: nominal, a model, or calibration.conf of a "
       "Universal Robots arm; by default nominal, and URScript poses stay as they are",
       "nominal|FILE");
-  option(
-      "--tool", to.tools,
-      "tool frame of a program's poses, in the flange's: position [mm] and rotation vector [deg], or the name of one "
-      "in the file; NAME=... gives that of one name or number",
-      "[NAME=]X,Y,Z,RX,RY,RZ")
-      ->allow_extra_args(false);
-  option("--workobject", to.workobjects, "likewise the frame in which the poses are, in the robot's base frame",
-         "[NAME=]X,Y,Z,RX,RY,RZ")
-      ->allow_extra_args(false);
-  option("--robot-base", to.robot_base,
-         "the controller's base frame in that of the model's chain, where they differ (KUKA, Fanuc)", "X,Y,Z,RX,RY,RZ");
-  option("--flange", to.flange, "the controller's flange frame in the last one of the model's chain, where they differ",
-         "X,Y,Z,RX,RY,RZ");
-  option("--noflip", to.noflip, "Fanuc: sign of J5 at a position whose configuration has N", "negative|positive")
-      ->check(CLI::IsMember({"negative", "positive"}));
-  option("--date", to.date, "date written into the corrected program; by default today's", "DATE");
-  app.add_flag("--allow-uncorrected", to.allow_uncorrected,
-               "write the program although some of its targets cannot be corrected and stay as they are");
+  program
+      .add_option("--tool", to.tools,
+                  "tool frame of a program's poses, in the flange's: position [mm] and rotation vector [deg], or the "
+                  "name of one "
+                  "in the file; NAME=... gives that of one name or number",
+                  "[NAME=]X,Y,Z,RX,RY,RZ")
+      .one_value_each();
+  program
+      .add_option("--workobject", to.workobjects,
+                  "likewise the frame in which the poses are, in the robot's base frame", "[NAME=]X,Y,Z,RX,RY,RZ")
+      .one_value_each();
+  program.add_option("--robot-base", to.robot_base,
+                     "the controller's base frame in that of the model's chain, where they differ (KUKA, Fanuc)",
+                     "X,Y,Z,RX,RY,RZ");
+  program.add_option("--flange", to.flange,
+                     "the controller's flange frame in the last one of the model's chain, where they differ",
+                     "X,Y,Z,RX,RY,RZ");
+  program
+      .add_option("--noflip", to.noflip, "Fanuc: sign of J5 at a position whose configuration has N",
+                  "negative|positive")
+      .one_of({"negative", "positive"});
+  program.add_option("--date", to.date, "date written into the corrected program; by default today's", "DATE");
+  program.add_flag("--allow-uncorrected", to.allow_uncorrected,
+                   "write the program although some of its targets cannot be corrected and stay as they are");
 }
 
 int correct_program(const ProgramCorrection& options, const CorrectionInput& input) {

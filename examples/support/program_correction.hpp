@@ -35,7 +35,7 @@ struct CorrectionInput {
 };
 
 /// Adds the options of a program's correction.
-void add_program_options(CLI::App& app, ProgramCorrection& to);
+void add_program_options(Program& program, ProgramCorrection& to);
 
 /// Corrects a program and writes it, unless it has something that cannot be corrected and that is not allowed.
 /// @return exit code

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "cli.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/ur_calibration.hpp"
 #ifdef VERNIER_HAS_URDF
@@ -25,25 +24,26 @@ std::vector<vernier::RobotDescription> catalogue() {
 
 }  // namespace
 
-CLI::Option* RobotOptions::add_to(CLI::App& app) {
-  const auto option = [&](const char* name, std::string& value, const std::string& help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type)->always_capture_default(false);
-  };
+Option RobotOptions::add_to(Program& program) {
   std::string names;
   for (const auto& name : catalogue_names()) names += (names.empty() ? "" : ", ") + name;
-  CLI::Option* out = option("--robot", robot,
-                            "name in the catalogue (" + names +
-                                "), or a file: JSON, URDF (.urdf), kinematics of Universal Robots' driver (.yaml)",
-                            "NAME|FILE");
-  option("--base-link", base_link, "of a URDF file: where the arm begins; by default the root", "LINK")->needs(out);
-  option("--tip-link", tip_link, "of a URDF file: where the arm ends; by default the only link without a child", "LINK")
-      ->needs(out);
-  option(
-      "--ur-calibration", ur_calibration,
-      "factory calibration of an arm of Universal Robots, the controller's calibration.conf: the arm as it was made, "
-      "not as designed",
-      "FILE")
-      ->needs(out);
+  const Option out =
+      program.add_option("--robot", robot,
+                         "name in the catalogue (" + names +
+                             "), or a file: JSON, URDF (.urdf), kinematics of Universal Robots' driver (.yaml)",
+                         "NAME|FILE");
+  program.add_option("--base-link", base_link, "of a URDF file: where the arm begins; by default the root", "LINK")
+      .needs(out);
+  program
+      .add_option("--tip-link", tip_link,
+                  "of a URDF file: where the arm ends; by default the only link without a child", "LINK")
+      .needs(out);
+  program
+      .add_option("--ur-calibration", ur_calibration,
+                  "factory calibration of an arm of Universal Robots, the controller's calibration.conf: the arm as it "
+                  "was made, not as designed",
+                  "FILE")
+      .needs(out);
   return out;
 }
 

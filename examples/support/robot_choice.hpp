@@ -3,10 +3,10 @@
 /// @file
 /// The arm a program works on: one of the catalogue, or one described in a file.
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "cli.hpp"
 #include "vernier/io/robot_file.hpp"
 
 namespace support {
@@ -23,7 +23,7 @@ struct RobotOptions {
 
   /// Adds them to a command line.
   /// @return `--robot`
-  CLI::Option* add_to(CLI::App& app);
+  Option add_to(Program& program);
   /// Whether the arm is in a URDF file.
   bool is_urdf() const;
   /// The files that it is read from.

@@ -161,7 +161,7 @@ TEST(Calibrate, FallsBackOutsideTheMeasuredRanges) {
 
 TEST(Calibrate, CorrectedCommandsReachTheNominalPose) {
   const Actual actual = actual_arm();
-  const auto found = calibrate(robot.chain, measure(actual, joints(400, 1), noise, 2), models_alone);
+  const auto found = calibrate(robot.chain, measure(actual, joints(300, 1), noise, 2), models_alone);
   const auto corrected = compensate(found.model());
   const JointRows<6> targets = joints(100, 8);
   const PositioningErrors before = positioning_errors(actual, found.model().nominal(), targets, targets);

@@ -153,6 +153,19 @@ TEST_F(BadInputToPrograms, WrongUsage) {
                  "model.json: is of an arm of 6 joints, expected 7");
 }
 
+TEST_F(BadInputToPrograms, NumbersOutOfRange) {
+  const std::string plan = "plan_poses --robot ur10 --out p.csv --count ",
+                    path = "correct --model model.json --out c.csv ";
+  expect_refused(plan + "2", 2, "--count: Value 2 not in range 3 to 100000 (see --help)");
+  expect_refused(plan + "3.5", 2, "--count: Value 3.5 not in range 3 to 100000");
+  expect_refused(plan + "5 --acceptance-deg nan", 2, "--acceptance-deg: Value nan not in range 1 to 180");
+  for (const std::string value : {"0", "-1", "nan", "inf"})
+    expect_refused(path + "--tolerance-mm " + value, 2, "Value " + value + " is not a positive number");
+  for (const std::string value : {"-0.1", "nan", "inf"})
+    expect_refused("simulate_measurements --robot ur10 --poses p.csv --out m.csv --noise-mm " + value, 2,
+                   "Value " + value + " is not a number of at least 0");
+}
+
 TEST_F(BadInputToPrograms, Reregistration) {
   const std::string again = "calibrate --model model.json --save m.json --json r.json --free ";
   expect_refused(again + "base --data missing.csv", 1, "missing.csv: No such file or directory");

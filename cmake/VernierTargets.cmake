@@ -110,7 +110,7 @@ function(vernier_add_component component)
   endif()
   # Parsing Eigen is most of a small file's cost.
   set_target_properties(vernier_${compiled} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD ON
-                        UNITY_BUILD_BATCH_SIZE 8)
+                        UNITY_BUILD_BATCH_SIZE 16)
   if(NOT VERNIER_INSTALL)
     set_target_properties(vernier_${compiled} PROPERTIES EXCLUDE_FROM_ALL ON)
   endif()

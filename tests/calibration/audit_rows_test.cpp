@@ -364,5 +364,33 @@ TEST(AuditHypothesesWhiteBox, SpreadRowsAndScatter) {
   EXPECT_NEAR(detail::point_scatter(cross), 1 / 1.538172254, 1e-12);
 }
 
+// With orientations it is known which axis was reversed, and whether they were mirrored, too; without them any axis
+// does.
+TEST(AuditHypothesesWhiteBox, MirroredFramesAreUndone) {
+  const detail::AuditRows rows = noisy_rows(60, 3);
+  for (int axis = 0; axis < 4; ++axis) {
+    detail::AuditRows mirrored = rows;
+    for (Index i = 0; i < 60; ++i) mirrored.positions(i, axis % 3) *= -1;
+    const Matrix3 reversed = Vector3(-1, 1, 1).asDiagonal();
+    for (Matrix3& r : mirrored.orientations)
+      if (axis == 3) r = reversed * r * reversed;
+    const detail::HypothesisFit found = detail::best_hypothesis(arm, mirrored, 0.01);
+    EXPECT_EQ(found.hypothesis.kind, FaultKind::mirrored_frame) << axis;
+    EXPECT_EQ(found.hypothesis.convention, axis);
+    EXPECT_NEAR(found.fit.residuals.position_scale, 1e-3, 0.2e-3) << axis;
+    const detail::AuditRows corrected = found.hypothesis.corrected(mirrored, arm);
+    for (Index i = 0; i < 60; ++i) {
+      EXPECT_EQ(point(corrected.positions, i), point(rows.positions, i)) << axis << ' ' << i;
+      const auto row = static_cast<std::size_t>(i);
+      EXPECT_EQ(corrected.orientations[row], rows.orientations[row]) << axis << ' ' << i;
+    }
+  }
+  detail::AuditRows points = noisy_rows(60, 3, false);
+  for (Index i = 0; i < 60; ++i) points.positions(i, 2) *= -1;
+  const detail::HypothesisFit found = detail::best_hypothesis(arm, points, 0.01);
+  EXPECT_EQ(found.hypothesis.kind, FaultKind::mirrored_frame);
+  EXPECT_NEAR(found.fit.residuals.position_scale, 1e-3, 0.2e-3);
+}
+
 }  // namespace
 }  // namespace vernier::audit_rows_test

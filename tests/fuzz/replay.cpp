@@ -1,9 +1,11 @@
-// Every seed of a fuzz target once, without libFuzzer: `<reader>_replay FOLDER`. What is called valid* must be
-// accepted, so that fuzzing starts from files that readers do take.
+// Every seed of every fuzz target once, without libFuzzer. What is called valid* must be accepted, so that fuzzing
+// starts from files that readers do take.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,15 +13,23 @@
 #include "reader_fuzz.hpp"
 #include "vernier/core/atomic_file.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+/// The entry point of a fuzz target.
+struct FuzzTarget {
+  const char* name;
+  int (*run)(const std::uint8_t* data, std::size_t size);
+};
+
+#include "fuzz_targets.hpp"
 
 namespace {
 
-std::filesystem::path folder;
+class Seeds : public ::testing::TestWithParam<FuzzTarget> {};
 
-TEST(Seeds, AreTakenOrRefusedInOneLine) {
+TEST_P(Seeds, AreTakenOrRefusedInOneLine) {
   std::vector<std::filesystem::path> seeds;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) seeds.push_back(entry.path());
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(VERNIER_FUZZ_CORPUS) / GetParam().name))
+    seeds.push_back(entry.path());
   std::sort(seeds.begin(), seeds.end());
   bool valid_ones = false;
   for (const auto& seed : seeds) {
@@ -27,7 +37,7 @@ TEST(Seeds, AreTakenOrRefusedInOneLine) {
     const std::string content = vernier::read_file(seed.string());
     const std::vector<std::uint8_t> bytes(content.begin(), content.end());
     vernier::fuzz::complaint.clear();
-    EXPECT_EQ(LLVMFuzzerTestOneInput(bytes.data(), bytes.size()), 0);
+    EXPECT_EQ(GetParam().run(bytes.data(), bytes.size()), 0);
     const bool valid = seed.filename().string().starts_with("valid");
     valid_ones = valid_ones || valid;
     if (valid) {
@@ -37,11 +47,7 @@ TEST(Seeds, AreTakenOrRefusedInOneLine) {
   EXPECT_TRUE(valid_ones) << "a folder of seeds needs one called valid...";
 }
 
-}  // namespace
+INSTANTIATE_TEST_SUITE_P(Readers, Seeds, ::testing::ValuesIn(fuzz_targets),
+                         [](const auto& target) { return std::string(target.param.name); });
 
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  if (argc != 2) return 2;
-  folder = argv[1];
-  return RUN_ALL_TESTS();
-}
+}  // namespace

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <ostream>
@@ -85,7 +84,10 @@ void RealMatrix::add_block(Index row, Index col, const RealMatrix& values) {
 RealMatrix RealMatrix::diagonal() const { return MatrixX(values_.diagonal()); }
 RealMatrix RealMatrix::transpose() const { return MatrixX(values_.transpose()); }
 
-RealMatrix RealMatrix::inverse() const { return MatrixX(values_.fullPivLu().inverse()); }
+RealMatrix RealMatrix::inverse() const {
+  require_shape(*this, rows(), rows());
+  return solve(identity(rows()));
+}
 double RealMatrix::determinant() const { return values_.determinant(); }
 double RealMatrix::log_determinant() const {
   const Eigen::LLT<MatrixX> factor(values_);
@@ -98,7 +100,17 @@ RealMatrix RealMatrix::solve_by_cholesky(const RealMatrix& right) const {
 RealMatrix RealMatrix::solve(const RealMatrix& right) const {
   return MatrixX(values_.colPivHouseholderQr().solve(right.values_));
 }
-RealMatrix RealMatrix::singular_values() const { return VectorX(values_.jacobiSvd().singularValues()); }
+// The eigenvalues of [0 A; A' 0] are the singular values, their negatives and zeros: no SVD need be compiled.
+RealMatrix RealMatrix::singular_values() const {
+  const Index n = rows() + cols(), k = std::min(rows(), cols());
+  RealMatrix both(n, n);
+  both.set_block(0, rows(), *this);
+  both.set_block(rows(), 0, transpose());
+  const RealMatrix eigenvalues = both.symmetric_eigenvalues();
+  RealMatrix out(k, 1);
+  for (Index i = 0; i < k; ++i) out(i, 0) = std::max(0.0, eigenvalues(n - 1 - i, 0));
+  return out;
+}
 RealMatrix RealMatrix::symmetric_eigenvalues() const {
   return VectorX(Eigen::SelfAdjointEigenSolver<MatrixX>(values_, Eigen::EigenvaluesOnly).eigenvalues());
 }

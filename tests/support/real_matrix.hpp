@@ -62,7 +62,7 @@ class RealMatrix {
   RealMatrix diagonal() const;
   RealMatrix transpose() const;
 
-  /// By LU decomposition with full pivoting.
+  /// By QR decomposition with column pivoting.
   RealMatrix inverse() const;
   double determinant() const;
   // Of a symmetric positive definite matrix, by its Cholesky factor.

@@ -47,12 +47,13 @@ class Option {
   Option description(const std::string& text);
   Option default_text(const std::string& text);  ///< shown in the help in place of the value
 
-  /// Refuses other values, NaN too.
+  /// Refuses values outside of [low, high], and NaN.
+  /// @tparam T int or double
   template <class T>
   Option within(T low, T high);
-  Option positive();
-  Option not_negative();
-  Option one_of(const std::vector<std::string>& words);
+  Option positive();                                     ///< refuses NaN and infinity, too
+  Option not_negative();                                 ///< likewise
+  Option one_of(const std::vector<std::string>& words);  ///< refuses all others
 
  private:
   CLI::Option* option_;
@@ -107,7 +108,7 @@ class Program {
   /// @param default_out folder for figures where the user names none
   /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there; null:
   ///        there is no such option
-  /// @throws what `run_program` turns into help or exit code 2
+  /// @throws an exception of the parser, which `run_program` turns into help or exit code 2
   /// @throws std::runtime_error where the JSON file cannot be written
   void parse(const std::string& default_out, const char* out_description = "folder for the figures",
              const char* out_type = "FOLDER");

@@ -1,4 +1,4 @@
-// Linear systems and eigenvalues of few rows, against matrices of any size and by hand.
+// Linear systems and eigenvalues of few rows, against matrices of run-time size and by hand.
 
 #include "vernier/kinematics/detail/small_systems.hpp"
 

@@ -100,7 +100,8 @@ RealMatrix RealMatrix::solve_by_cholesky(const RealMatrix& right) const {
 RealMatrix RealMatrix::solve(const RealMatrix& right) const {
   return MatrixX(values_.colPivHouseholderQr().solve(right.values_));
 }
-// The eigenvalues of [0 A; A' 0] are the singular values, their negatives and zeros: no SVD need be compiled.
+// The eigenvalues of [0 A; A' 0] are the singular values, their negatives and zeros. An SVD would take seconds to
+// compile.
 RealMatrix RealMatrix::singular_values() const {
   const Index n = rows() + cols(), k = std::min(rows(), cols());
   RealMatrix both(n, n);

@@ -12,6 +12,6 @@ if(NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   if(VERNIER_CCACHE)
     # ccache looks into precompiled headers only when told that their macros and time stamps do not matter.
     set(CMAKE_CXX_COMPILER_LAUNCHER
-        "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${VERNIER_CCACHE}")
+        "${CMAKE_COMMAND};-E;env;CCACHE_DEPEND=1;CCACHE_SLOPPINESS=pch_defines,time_macros;${VERNIER_CCACHE}")
   endif()
 endif()

@@ -70,6 +70,7 @@ TEST(AuditRowsWhiteBox, DuplicatesAreNamedByWhatIsTheSame) {
     set_point(turns, i, Vector3(0, 0, 0.1));
   }
   for (const Index row : {3, 7}) set_point(positions, row, point(positions, 1));  // 1, 3 and 7: at joints of their own
+  positions(4, 0) = -1;                                                           // the smallest coordinate of all
   set_point(positions, 5, point(positions, 4));                                   // 4 and 5: at the same joints
   for (Index j = 0; j < 2; ++j) joints(5, j) = joints(4, j);
   const auto found = [&](const PointRows& rotation_vectors) {
@@ -390,6 +391,47 @@ TEST(AuditHypothesesWhiteBox, MirroredFramesAreUndone) {
   const detail::HypothesisFit found = detail::best_hypothesis(arm, points, 0.01);
   EXPECT_EQ(found.hypothesis.kind, FaultKind::mirrored_frame);
   EXPECT_NEAR(found.fit.residuals.position_scale, 1e-3, 0.2e-3);
+}
+
+// Where more than a tenth of the rows are outliers, the tails of the distribution are theirs: the limit grows to twice
+// its value, 18 standard deviations, and no farther.
+TEST(AuditRowsWhiteBox, ManyOutliersDoNotHideEachOther) {
+  std::vector<std::pair<Index, Vector3>> shifts;
+  for (Index k = 0; k < 12; ++k) shifts.push_back({5 * k, Vector3(0, 0, k % 2 == 0 ? 25e-3 : -25e-3)});
+  const auto found = single_rows(noisy_rows(60, 8, false), shifts, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].rows.size(), 12u) << found[0].message;
+}
+
+// Rows from the first to the 25th whose poses lie up to three rows off; what lies before the first row has no pose.
+TEST(AuditHypothesesWhiteBox, ShiftsAtTheHead) {
+  const detail::AuditRows truth = noisy_rows(60, 9);
+  for (const Index shift : {-3, -1, 2, 3}) {
+    const Index change = 25;
+    detail::AuditRows rows = truth;
+    if (shift < 0)
+      for (Index i = change + shift; i < change; ++i)  // poses of no row
+        set_point(rows.positions, i, point(truth.positions, i) + Vector3(0.3, 0, 0));
+    std::vector<Index> pose_of(60);  // of each row, -1: lost
+    for (Index i = 0; i < 60; ++i) {
+      const Index to = i < change ? i + shift : i;
+      const bool lost = to < 0 || (i < change && to >= change);  // a later row keeps its own
+      pose_of[static_cast<std::size_t>(i)] = lost ? -1 : to;
+      if (lost) continue;
+      set_point(rows.positions, to, point(truth.positions, i));
+      rows.orientations[static_cast<std::size_t>(to)] = truth.orientations[static_cast<std::size_t>(i)];
+    }
+    const auto found = detail::find_shift(arm, rows, 1);
+    ASSERT_TRUE(found) << shift;
+    EXPECT_EQ(found->shift, shift);
+    EXPECT_EQ(found->first, 0);
+    EXPECT_NEAR(static_cast<double>(found->end), change, 3);
+    EXPECT_NEAR(found->score, std::hypot(1e-3, 0.25 * 2e-3), 0.3e-3);
+    EXPECT_GE(found->fitting.size(), 50u) << shift;
+    ASSERT_EQ(found->fitting.size(), found->shifts.size());
+    for (std::size_t k = 0; k < found->fitting.size(); ++k)
+      EXPECT_EQ(found->fitting[k] + found->shifts[k], pose_of[static_cast<std::size_t>(found->fitting[k])]) << shift;
+  }
 }
 
 }  // namespace

@@ -66,6 +66,16 @@ TEST(CalibrationReport, DriftByHand) {
                      "and 120 of 100 .. 120 [row, or time_s]. The zero of joint 2 moved most, by 20 " +
                          std::string(revolute ? "urad" : "um") + ". The model that is saved is without drift."));
   }
+  // an arm of one joint
+  drift.knots = MatrixX::Zero(7, 3);
+  drift.knots(6, 1) = -25e-6;
+  report.drift = {drift};
+  report.joints.resize(1);
+  report.joints[0].revolute = true;
+  EXPECT_TRUE(says(report.verdict(),
+                   "During the session the base moved by up to 0 mm and 0 urad, fastest (0 mm) between 100 and 110 of "
+                   "100 .. 120 [row, or time_s]. The zero of joint 1 moved most, by 25 urad. The model that is saved "
+                   "is without drift."));
 }
 
 TEST(CalibrationReport, CountsPosesAndParameters) {

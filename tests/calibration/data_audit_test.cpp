@@ -184,7 +184,7 @@ TEST(DataAudit, AnswersInTheRowsOfTheFileBehindALostRow) {
       EXPECT_EQ(finding.rows.back(), 118);
       EXPECT_EQ(finding.size, -1);
       EXPECT_EQ(finding.message,
-                "rows 30 to 118: the pose of a row lies 1 rows above its joints: pair them again, a row was lost or "
+                "rows 30 to 118: the pose of a row lies 1 row above its joints: pair them again, a row was lost or "
                 "added");
     }
     // the pose of row 80 belongs to the joints of row 81
@@ -315,7 +315,7 @@ TEST(DataAudit, PosesBelowTheirJoints) {
   EXPECT_EQ(found.kind, FaultKind::shifted_rows);
   EXPECT_EQ(found.size, 1);
   EXPECT_EQ(found.message,
-            "rows 40 to 98: the pose of a row lies 1 rows below its joints: pair them again, a row was lost or added");
+            "rows 40 to 98: the pose of a row lies 1 row below its joints: pair them again, a row was lost or added");
 }
 
 // Drift from the first row to the last, and how far the arm is off beside it.
@@ -349,6 +349,29 @@ TEST(DataAudit, FindsSmallZerosOfShoulderAndElbow) {
     EXPECT_EQ(audit.findings[0].kind, FaultKind::joint_zero) << words(audit);
     EXPECT_EQ(audit.findings[0].joint, joint) << words(audit);
     EXPECT_NEAR(audit.findings[0].size, -0.007, 3e-3) << words(audit);  // parallel joints share their own zeros
+  }
+}
+
+// Where the geometry is known almost exactly, it is the residuals of the poses that tell a zero from none.
+TEST(DataAudit, FindsASmallZeroOfAnArmWhoseGeometryIsKnown) {
+  JointLimits<6> limits;
+  limits.lower.setConstant(-2);
+  limits.upper.setConstant(2);
+  for (const bool oriented : {true, false}) {
+    const Dataset<6> data = measure(ur5, sample_joints(limits, 100, 5),
+                                    {.position = 0.1e-3, .orientation = 0.3e-3, .with_orientations = oriented}, 6);
+    JointRows<6> joints = data.joints();
+    for (Index i = 0; i < data.size(); ++i) joints(i, 2) += 0.5e-3;
+    const DataAuditOptions exact{.smallest_zero = 0.2e-3, .length_std = 1e-6, .angle_std = 1e-6};
+    const DataAudit audit = audit_data(
+        ur5,
+        oriented ? Dataset<6>(joints, data.positions(), data.orientations()) : Dataset<6>(joints, data.positions()),
+        exact);
+    ASSERT_EQ(audit.findings.size(), 1u) << words(audit);
+    EXPECT_EQ(audit.findings[0].kind, FaultKind::joint_zero) << words(audit);
+    EXPECT_EQ(audit.findings[0].joint, 2) << words(audit);
+    EXPECT_NEAR(audit.findings[0].size, -0.5e-3, 0.1e-3);
+    EXPECT_TRUE(audit_data(ur5, data, exact).findings.empty());
   }
 }
 
@@ -458,8 +481,7 @@ TEST(BaseTrendWhiteBox, IsTakenOffTheRows) {
 /// The trend of poses whose joints have errors and whose base moves evenly; `displacement` is how far that moved the
 /// positions, root mean square.
 template <class Error>
-detail::BaseTrend trend_of(const Error& error, const Vector6& motion, double& displacement) {
-  const Index n = 120;
+detail::BaseTrend trend_of(const Error& error, const Vector6& motion, double& displacement, Index n = 120) {
   const Dataset<6> file = clean_file(n, 21);
   const ArmGeometry arm(
       Framed<Chain>(ur5, rigid_motion(Matrix3::Identity(), Vector3(2, -1, 0.5)), Isometry3::Identity()));
@@ -508,6 +530,19 @@ TEST(BaseTrendWhiteBox, IsFoundBesideJointErrors) {
         EXPECT_NEAR(trend.displacement, displacement, 0.06e-3) << order << ' ' << phase;
         EXPECT_EQ(trend.chi_square > 28, moved(0) > 0) << trend.chi_square;  // 99.99 % of six degrees of freedom
       }
+}
+
+// The unknowns are the motion, the geometry and, per joint and order, two harmonics; two values are needed for each.
+TEST(BaseTrendWhiteBox, OfFewPosesIsEstimatedWithoutHarmonics) {
+  const auto none = [](double, Index) { return 0.0; };
+  const Vector6 motion{2e-3, -1e-3, 3e-3, 2e-3, 3e-3, -4e-3};
+  double displacement = 0;
+  EXPECT_EQ(trend_of(none, motion, displacement, 15).chi_square, 0);  // 90 values, 48 unknowns
+  for (const Index n : {16, 19, 20}) {
+    const detail::BaseTrend trend = trend_of(none, motion, displacement, n);
+    EXPECT_GT(trend.chi_square, 28) << n;
+    EXPECT_NEAR(trend.displacement, displacement, 0.15 * displacement) << n;
+  }
 }
 
 // Four commands, each read three times over 12 mrad: not told from other values where commands are 50 mrad apart.

@@ -92,7 +92,22 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
 
   ASSERT_EQ(report.joints.size(), 6u);
   EXPECT_EQ(report.joints[2].held_out.size(), 100u);
-  EXPECT_EQ(report.joints[2].transmission.size(), static_cast<Index>(report.joints[2].angle.size()));
+  for (int j = 0; j < 6; ++j) {  // at equal distances over each range: 200 a radian, 361 or more
+    const JointReport& joint = report.joints[static_cast<std::size_t>(j)];
+    ASSERT_FALSE(joint.measured_ranges.empty());
+    std::size_t at = 0;
+    for (const auto& [lower, upper] : joint.measured_ranges) {
+      const int steps = std::max(360, static_cast<int>(200 * (upper - lower)));
+      ASSERT_LE(at + static_cast<std::size_t>(steps) + 1, joint.angle.size());
+      for (int k = 0; k <= steps; ++k, ++at) {
+        ASSERT_NEAR(joint.angle[at], lower + (upper - lower) * k / steps, 1e-12) << j << ' ' << k;
+      }
+    }
+    EXPECT_EQ(at, joint.angle.size());
+    const JointFunction transmission = found.errors.transmission(j, joint.angle);
+    EXPECT_EQ(joint.transmission, transmission.value);
+    EXPECT_EQ(joint.transmission_std, transmission.std);
+  }
 }
 
 // A base that drifts goes on to do so: the ellipsoid of a pose long before the session, or after it, is wider.

@@ -49,11 +49,13 @@ TEST(PoseAdviceWhiteBox, OrientationsCountByTheirOwnDeviation) {
       4, {estimate.arm.names()[0], ParameterKind::angle, 0, 0, 1e-3, ParameterState::fixed, ""});
   identification.parameters[3].state = ParameterState::weak;
   const VectorX limit = VectorX::Ones(6);
-  const auto advice = detail::pose_advice(estimate, identification, -limit, limit,
-                                          {.position_sigma = 1e3, .orientation_sigma = 1e-3}, true, 3, 3);
-  ASSERT_EQ(advice.size(), 1u);
-  EXPECT_NEAR(advice[0].std_now, 1e-3, 1e-15);
-  EXPECT_NEAR(advice[0].std_then, 0.5e-3, 1e-9);
+  for (const bool oriented : {true, false}) {
+    const auto advice = detail::pose_advice(estimate, identification, -limit, limit,
+                                            {.position_sigma = 1e3, .orientation_sigma = 1e-3}, oriented, 3, 3);
+    ASSERT_EQ(advice.size(), 1u);
+    EXPECT_NEAR(advice[0].std_now, 1e-3, 1e-15);
+    EXPECT_NEAR(advice[0].std_then, oriented ? 0.5e-3 : 1e-3, 1e-9);  // positions alone tell nothing
+  }
 }
 
 // Each weak parameter by its own unknown, up to a number; joints that slide within half a metre where nothing bounds

@@ -216,6 +216,22 @@ TEST(VerificationWhiteBox, ATurnedProbeIsTakenOff) {
   EXPECT_EQ(found.dof, 48 - 6 - 3);
 }
 
+// Three positions cannot contradict a base and a tool that were registered to them.
+TEST(VerificationWhiteBox, NoDegreesOfFreedomAreNoContradiction) {
+  const Check check(noise(3, 3));
+  const auto positions = check.data.without_orientations().at_temperatures(check.data.temperatures());
+  const detail::Station station = detail::station_of(positions, check.sensors);
+  const VerifyOptions options{.tool = true, .sensors = check.sensors};
+  const auto found = detail::verify({station, check.estimate, check.poses, check.jacobians, check.as_fitted,
+                                     check.gates, check.types, ReregistrationReport()},
+                                    options);
+  EXPECT_EQ(found.dof, 0);
+  EXPECT_LT(found.chi_square, 1e-6);
+  EXPECT_EQ(found.p_value, 1);
+  EXPECT_TRUE(found.consistent);
+  for (const JointCheck& joint : found.joints) EXPECT_FALSE(joint.determined);
+}
+
 // Half of the significance level is spent on the test of everything together.
 TEST(VerificationWhiteBox, EverythingTogetherHasHalfOfTheLevel) {
   const Check check(noise(8, 4, 1.25));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <ostream>
 #include <string>
 
 #include "complaint.hpp"
@@ -130,6 +131,10 @@ void expect_right_pairs(const Pairing& found, const Session& session) {
 struct Trial {
   Index poses;
   int faults, kind, sets;
+
+  friend void PrintTo(const Trial& trial, std::ostream* out) {
+    *out << trial.sets << " sets of " << trial.poses << " poses, " << trial.faults << " faults of kind " << trial.kind;
+  }
 };
 
 class PlantedFaults : public ::testing::TestWithParam<Trial> {};

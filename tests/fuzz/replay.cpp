@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@
 struct FuzzTarget {
   const char* name;
   int (*run)(const std::uint8_t* data, std::size_t size);
+
+  friend void PrintTo(const FuzzTarget& target, std::ostream* out) { *out << target.name; }
 };
 
 #include "fuzz_targets.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ostream>
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
@@ -37,6 +38,11 @@ RealMatrix information(const RealMatrix& rows, Index block, const std::vector<In
 struct DesignCase {
   Index block, measured;
   DesignCriterion criterion;
+
+  friend void PrintTo(const DesignCase& one, std::ostream* out) {
+    *out << one.block << " values a pose, " << one.measured << " measured, by "
+         << (one.criterion == DesignCriterion::information ? "information" : "variance in a region");
+  }
 };
 
 class PoseDesignUpdates : public testing::TestWithParam<DesignCase> {};

@@ -179,7 +179,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
     DataFinding finding{FaultKind::shifted_rows, -1, {}, static_cast<double>(shift->shift)};
     for (Index i = shift->first; i < shift->end; ++i) finding.rows.push_back(i);
     finding.message = message("rows ", shift->first, " to ", shift->end - 1, ": the pose of a row lies ",
-                              std::abs(shift->shift), shift->shift > 0 ? " rows below" : " rows above",
+                              counted(std::abs(shift->shift), "row", "rows"), shift->shift > 0 ? " below" : " above",
                               " its joints: pair them again, a row was lost or added");
     out.findings.push_back(std::move(finding));
     rows = std::move(paired);

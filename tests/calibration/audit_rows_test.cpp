@@ -365,6 +365,31 @@ TEST(AuditHypothesesWhiteBox, SpreadRowsAndScatter) {
   EXPECT_NEAR(detail::point_scatter(cross), 1 / 1.538172254, 1e-12);
 }
 
+// Rotation vectors and angles by other conventions, written out by hand, become the orientations that they are of.
+TEST(AuditHypothesesWhiteBox, ConventionsAreUndone) {
+  const detail::AuditRows rows = exact_rows(20, 4);
+  for (int convention = 1; convention <= 6; ++convention) {
+    detail::AuditRows other = rows;
+    for (Index i = 0; i < 20; ++i) {
+      const Matrix3 r = rows.orientations[static_cast<std::size_t>(i)];
+      Vector3 v = log_so3(r);
+      if (convention == 1) v *= -1;
+      if (convention == 3 || convention == 4)  // r = z(c) y(b) x(a)
+        v = Vector3(std::atan2(r(2, 1), r(2, 2)), -std::asin(r(2, 0)), std::atan2(r(1, 0), r(0, 0)));
+      if (convention >= 5)  // r = x(a) y(b) z(c)
+        v = Vector3(std::atan2(-r(1, 2), r(2, 2)), std::asin(r(0, 2)), std::atan2(-r(0, 1), r(0, 0)));
+      if (convention % 2 == 0) v *= 180 / std::numbers::pi;
+      set_point(other.rotation_vectors, i, v);
+      other.orientations[static_cast<std::size_t>(i)] = exp_so3(v);
+    }
+    const detail::AuditHypothesis hypothesis{.kind = FaultKind::orientation_convention, .convention = convention};
+    const detail::AuditRows corrected = hypothesis.corrected(other, arm);
+    for (std::size_t i = 0; i < 20; ++i)
+      EXPECT_LT(RealMatrix(Matrix3(corrected.orientations[i] - rows.orientations[i])).largest(), 1e-9)
+          << convention << ' ' << i;
+  }
+}
+
 // With orientations it is known which axis was reversed, and whether they were mirrored, too; without them any axis
 // does.
 TEST(AuditHypothesesWhiteBox, MirroredFramesAreUndone) {

@@ -392,7 +392,12 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
     detail::CalibrationProblem problem(ArmParameterisation({there}, unknowns), {detail::station_of(data, sensors)},
                                        Loss::squared);
     problem.arm.set_terms(terms, sizes, VectorX::Zero(6));
+    VectorX now(15);  // where the fit stands, from where it started
+    for (Index k = 0; k < 15; ++k) now(k) = 0.5 * std::cos(static_cast<double>(k));
+    problem.arm.move(now);
     const auto known = detail::transferred_unknowns(prior, problem.arm, prior.nominal);
+    RealMatrix missing(9, 1);  // from there to the mean of the prior
+    for (Index k = 0; k < 9; ++k) missing(k) = known.mean(k) - now(k < 3 ? k : k + 6);
     const PriorTransfer found = detail::likely_transfer(problem, known);
     const detail::StackedRows rows = problem.stacked(true);
     const RealMatrix jacobian = rows.jacobian, all = RealMatrix::identity(rows.residuals.size());
@@ -407,7 +412,7 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
       for (Index k = 0; k < 9; ++k) variances(k) = 0.5e-4 + (k < 3 ? g * g / 2 : j * j / 4);
       const RealMatrix covariance = all + shared * RealMatrix::diagonal(variances) * shared.transpose();
       const RealMatrix inverse = covariance.inverse(), middle = own.transpose() * inverse * own;
-      const RealMatrix error = RealMatrix(rows.residuals) + shared * known.mean;  // mean less present values, zero
+      const RealMatrix error = RealMatrix(rows.residuals) + shared * missing;
       const RealMatrix seen = own.transpose() * inverse * error;
       const double square = error.dot(inverse * error) - seen.dot(middle.inverse() * seen);
       const double freedom = static_cast<double>(all.rows() - 6);

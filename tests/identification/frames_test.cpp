@@ -97,6 +97,20 @@ TEST(StartingFrames, AreExactWithTheOtherFrameKnown) {
   EXPECT_EQ(difference(of_base.tool(), tool.isometry()), 0);
 }
 
+// A tool that is kept is the base's to live with: points of that tool are registered, and nothing else.
+TEST(StartingFrames, ABaseIsRegisteredToPointsOfTheToolThatIsKept) {
+  const auto robot = robots::ur5();
+  const FrameParameters tool(Vector6{0.01, -0.02, 0.109, 0.1, -0.3, 2}), wrong(Vector6{0.03, 0.01, 0.1, 0, 0, 0});
+  const auto data = measure(Framed<DhChain<6>>(robot.chain, {}, tool), sample_joints(robot.limits, 8, 1));
+  const Framed<DhChain<6>> start(robot.chain, {}, wrong);
+  const auto found = starting_frames(start, data, true, false);
+  PointRows points(8, 3);
+  for (Index i = 0; i < 8; ++i) set_point(points, i, translation(start.pose(data.joints(i))));
+  EXPECT_LT(difference(found.base(), register_points(points, data.positions())), 1e-12);
+  EXPECT_GT(difference(found.base(), Isometry3::Identity()), 1e-3);
+  EXPECT_EQ(difference(found.tool(), wrong.isometry()), 0);
+}
+
 // Of two orientations that differ by a turn, the tool's is in the middle.
 TEST(StartingFrames, TheToolsOrientationIsTheMean) {
   const auto robot = robots::ur5();

@@ -589,6 +589,7 @@ TEST(SvgCharts, AxesHoldEverything) {
   EXPECT_NEAR(found[1], 206 - 182 * 0.5 / 11, 0.051);
   EXPECT_NEAR(found[5], 206 - 182 * 5.5 / 11, 0.051);
   EXPECT_NEAR(found[7], 206 - 182 * 10.5 / 11, 0.051);
+  EXPECT_EQ(path_of(chart, "band").back(), 'Z');
   // a single value on logarithmic axes: between half and twice of it
   chart = {.title = "t", .log_x = true, .log_y = true, .height = 250};
   chart.series = {{.x = {3}, .y = {10}}};

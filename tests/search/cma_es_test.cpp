@@ -40,6 +40,7 @@ TEST(CmaEs, ConstantsOfTenDimensions) {
   EXPECT_NEAR(c.c_1, 2 / (11.3 * 11.3 + 3.1673), 1e-7);
   EXPECT_NEAR(c.c_mu, 2 * (0.25 + 3.1673 + 1 / 3.1673 - 2) / (144 + 3.1673), 1e-5);
   EXPECT_NEAR(c.expected_norm, 3.0847, 1e-4);
+  EXPECT_NEAR(CmaEsConstants(2, 6).expected_norm, std::sqrt(2) * (1 - 1.0 / 8 + 1.0 / 84), 1e-15);
 }
 
 // Ten dimensions, four individuals: by the tutorial's equations the negative weights sum to

@@ -196,6 +196,17 @@ TEST(Minimize, RefusesBadBoxesWithTheNumbers) {
   EXPECT_NE(refusal([] { Box::cube(2, 1, -1); }).find("lower bound 1 is not below upper bound -1"), std::string::npos);
 }
 
+TEST(Minimize, ResumesNoSearchInABoxThatIsNone) {
+  auto search = start_search(pso, sphere, box, 1);
+  EXPECT_EQ(refusal([&] { static_cast<void>(minimize(pso, sphere, Box::cube(2, -2, 2), search)); }),
+            "minimize: a search in 3 dimensions cannot be resumed in a box of 2");
+  Box reversed = box;
+  reversed.lower(1) = 3;
+  EXPECT_EQ(refusal([&] { static_cast<void>(minimize(pso, sphere, reversed, search)); }).rfind("Box: dimension 1", 0),
+            0u);
+  EXPECT_EQ(search.state.generation, 0);
+}
+
 TEST(Minimize, RefusesUnusableStops) {
   EXPECT_NE(refusal([] { static_cast<void>(minimize(pso, sphere, box, {.max_evaluations = 0})); }).find("is 0"),
             std::string::npos);

@@ -36,12 +36,11 @@ VERNIER_IMPL HarmonicSpectrum lines_of(const JointDrive& drive) {
     out.push_back({std::max(1, n - 2), n + 2, 10e-6});
     out.push_back({std::max(1, 2 * n - 2), 2 * n + 2, 6e-6});
   }
-  if (drive.gear_ratio > 0)
-    for (const int periods : {2, 4, 5, 8, 10, 12, 20, 24}) {
-      const int order = static_cast<int>(std::lround(periods * drive.gear_ratio));
-      const int width = periods == 4 ? 4 : 1;  // the largest; over a part of a turn it spreads
-      if (order > 140 && order <= 2500) out.push_back({order - width, order + width, periods == 4 ? 12e-6 : 7e-6});
-    }
+  for (const int periods : {2, 4, 5, 8, 10, 12, 20, 24}) {
+    const int order = static_cast<int>(std::lround(periods * drive.gear_ratio));
+    const int width = periods == 4 ? 4 : 1;  // the largest; over a part of a turn it spreads
+    if (order > 140 && order <= 2500) out.push_back({order - width, order + width, periods == 4 ? 12e-6 : 7e-6});
+  }
   return out;
 }
 

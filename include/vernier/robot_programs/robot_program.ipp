@@ -110,7 +110,6 @@ VERNIER_IMPL std::string replace_targets(std::string_view text, const RobotProgr
             "replace_targets: target ", one.target, " is not finite");
     const std::vector<std::string> numbers = detail::written_numbers(program.language, target, one);
     for (std::size_t k = 0; k < target.numbers.size(); ++k) pieces.push_back({target.numbers[k], numbers[k]});
-    if (target.kind == TargetKind::joints || target.configuration.empty()) continue;
     const std::vector<int> configuration = updated_configuration(program.language, target.configuration, one.joints);
     const std::size_t offset = target.configuration.size() - target.configuration_numbers.size();
     for (std::size_t k = 0; k < target.configuration_numbers.size(); ++k)

@@ -82,7 +82,7 @@ class FanucReader {
       std::size_t next = k + 2;
       ByteRange range{0, 0};
       if ((key == "uf" || key == "ut") && text_.is(k + 1, ':')) {
-        const bool number = k + 2 < close && text_.tokens[k + 2].kind == ProgramToken::Kind::number;
+        const bool number = text_.tokens[k + 2].kind == ProgramToken::Kind::number;
         (key == "uf" ? out.workobject : out.tool) = number ? std::string(text_.at(k + 2)) : "?";
       }
       if (key == "config" && text_.is(k + 1, ':') && text_.tokens[k + 2].kind == ProgramToken::Kind::text)

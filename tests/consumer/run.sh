@@ -2,12 +2,13 @@
 # Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, with what runs in parallel,
 # and with everything; header-only, with the compiled libraries, and both in one program; from the Debian package, and
 # with pkg-config.
-# usage: tests/consumer/run.sh [BUILD FOLDER [FINISHED BUILD]]
-# The package with the compiled libraries comes from a finished build of this tree where one is named; else one is made.
+# usage: tests/consumer/run.sh [BUILD FOLDER [CONFIGURED BUILD]]
+# The package with the compiled libraries comes from a configured build of this tree where one is named, whose libraries
+# are brought up to date; else one is made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
-finished=${2:+$(cd "$2" && pwd)}
+configured=${2:+$(cd "$2" && pwd)}
 mkdir -p "${1:-$root/build/consumer}"
 build=$(cd "${1:-$root/build/consumer}" && pwd)
 rm -rf "${build:?}"/*
@@ -28,7 +29,7 @@ quietly() {
 }
 
 # Nothing is optimised here, and nothing debugged.
-fast=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+fast=(-DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O0 --param=ggc-min-heapsize=1000000")
 
 # consume PROJECT MODE COMPONENTS [CMAKE ARG...]
 consume() {
@@ -125,18 +126,24 @@ compile_with_pc() {
   printf '%-14s %-17s %s\n' pkg-config bare "$said"
 }
 
+# The longest, which needs no package, beside all others.
+consume in_tree compiled "" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}" &
+longest=$!
+
 # The headers are installed by a build that knows none of the libraries: the package is the same, but for what is
 # compiled.
 make "$build/package" -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
 install "$build/package" bare
 rm -rf "$build/package"
-if [[ -z $finished ]]; then
-  finished=$build/package
-  make "$finished"
+if [[ -n $configured ]]; then
+  quietly "$build/make.log" cmake --build "$configured" --target vernier_compiled{,_io,_urdf,_ceres,_cholmod}
+else
+  configured=$build/package
+  make "$configured"
 fi
-install "$finished" prefix
+install "$configured" prefix
 if command -v dpkg-deb >/dev/null; then
-  quietly "$build/deb.log" cpack -G DEB -B "$build/deb" --config "$finished/CPackConfig.cmake"
+  quietly "$build/deb.log" cpack -G DEB -B "$build/deb" --config "$configured/CPackConfig.cmake"
 fi
 rm -rf "$build/package"
 
@@ -159,7 +166,6 @@ in_background consume installed header_only urdf "-DCMAKE_PREFIX_PATH=$build/bar
 in_background consume installed header_only "tbb;mpi" "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}"
 in_background consume installed header_only "io;urdf;ceres;cholmod;tbb;mpi"
 in_background consume installed compiled "io;urdf;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
-in_background consume in_tree compiled "" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}"
 in_background consume installed mixed ""
 in_background not_aligned
 in_background refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
@@ -168,6 +174,6 @@ in_background refuse "find_package for module yaml-cpp called with REQUIRED" -DC
   -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
 in_background refuse "find_package for module TBB called with REQUIRED" -DCONSUMER_COMPONENTS=tbb "${no_parallel[@]}"
 in_background refuse "find_package for module MPI called with REQUIRED" -DCONSUMER_COMPONENTS=mpi "${no_parallel[@]}"
-for process in "${running[@]}"; do
+for process in "${running[@]}" "$longest"; do
   wait "$process"
 done

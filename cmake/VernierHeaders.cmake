@@ -1,0 +1,47 @@
+# With VERNIER_CHECK_HEADERS the target `headers` compiles every header alone, where the libraries it needs are at hand.
+#
+# Most of that time would go into parsing Eigen again and again. It is parsed once for the headers that include
+# vernier/core/types.hpp: that one begins with the same headers of Eigen, so whatever such a header, or one after
+# types.hpp, forgets to include is missed alike with and without. What comes before types.hpp is compiled without.
+
+add_custom_target(headers)
+
+# vernier_reaches_types(<out> <header>): whether the header includes vernier/core/types.hpp before its own lines, which
+# is in other headers, not in the .ipp file at its end.
+function(vernier_reaches_types out header)
+  get_property(reaches GLOBAL PROPERTY "vernier_reaches_types_${header}")
+  if("${reaches}" STREQUAL "")
+    set(reaches FALSE)
+    file(STRINGS "${PROJECT_SOURCE_DIR}/include/${header}" lines REGEX "^#include \"vernier/.*\\.hpp\"")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^#include \"(.*)\"$" "\\1" included "${line}")
+      if(NOT reaches)
+        vernier_reaches_types(reaches "${included}")
+      endif()
+      if(included STREQUAL "vernier/core/types.hpp")
+        set(reaches TRUE)
+      endif()
+    endforeach()
+    set_property(GLOBAL PROPERTY "vernier_reaches_types_${header}" ${reaches})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/${header}")
+  endif()
+  set(${out} ${reaches} PARENT_SCOPE)
+endfunction()
+
+# vernier_check_headers(<target> <header>...): the target's headers, a translation unit each
+function(vernier_check_headers target)
+  add_library(${target}_headers OBJECT EXCLUDE_FROM_ALL)
+  target_link_libraries(${target}_headers PRIVATE ${target})
+  vernier_precompile(${target}_headers <Eigen/Core> <Eigen/Geometry>)
+  add_dependencies(headers ${target}_headers)
+  foreach(file IN LISTS ARGN)
+    cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${PROJECT_SOURCE_DIR}/include" OUTPUT_VARIABLE header)
+    set(source "${PROJECT_BINARY_DIR}/headers/${header}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "#include \"@header@\"\n" @ONLY)
+    target_sources(${target}_headers PRIVATE "${source}")
+    vernier_reaches_types(reaches "${header}")
+    if(NOT reaches)
+      set_source_files_properties("${source}" PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+endfunction()

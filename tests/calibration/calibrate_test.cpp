@@ -253,11 +253,6 @@ TEST(CalibrateMeasured, Ur10FromAHundredPoses) {
   EXPECT_LE(fifty[2], 0.185);
 }
 
-TEST(CalibrateMeasured, Ur5) {
-  if (!has_data()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
-  EXPECT_LE(measured(robots::ur5().chain, "ur5_grid.csv").jointwise, 0.047);
-}
-
 TEST(CalibrateMeasured, WamIsNotHelpedNorHarmed) {
   if (!has_data()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
   const Measured wam = measured(robots::barrett_wam().chain, "wam_grid.csv");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -359,25 +360,25 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferIsWhatHasChanged) {
   }
 }
 
-// The likelihood of residuals, at the mean of the prior, in the directions that unknowns of the later calibration alone
-// do not reach (restricted likelihood), over all variances of the noise: at what is chosen it is as large as anywhere
-// on the grid. Of positions and of poses.
-TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) {
-  const FrameParameters tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
-  JointTerms terms(6);
-  terms.transmission[1] = terms.transmission[2] = terms.transmission[4] = Fourier::up_to(1);
-  const VectorX sizes = VectorX::Constant(6, 1e-3);
-  const std::vector<GeometricUnknown> of_chain{{7, -1, 1e-3, 0}, {11, -1, 1e-3, 0}, {21, -1, 1e-3, 0}};
-  std::vector<GeometricUnknown> unknowns = of_chain;
-  for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, 1e-3, 0});
-  const ArmGeometry there(Framed<Chain>(robot.chain, {}, tool));
+/// Three lengths and six coefficients of an arm that was known before and has changed.
+struct ChangedArm {
+  JointTerms terms{6};
+  VectorX sizes = VectorX::Constant(6, 1e-3);
+  std::vector<GeometricUnknown> of_chain{{7, -1, 1e-3, 0}, {11, -1, 1e-3, 0}, {21, -1, 1e-3, 0}}, unknowns = of_chain;
+  ArmGeometry there{Framed<Chain>(robot.chain, {}, FrameParameters(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5}))};
   ArmPrior prior{"before",
                  detail::ChainTable(robot.chain.view()),
                  {.arm = ArmParameterisation({ArmGeometry(in_frames(robot.chain))}, of_chain)}};
-  prior.estimate.arm.set_terms(terms, sizes, VectorX::Constant(6, 4));
-  prior.estimate.covariance = 1e-4 * MatrixX::Identity(9, 9);
-  prior.estimate.variance_factor = 2;  // of its noise; expected variances are then 1 / 2 and 1 / 4
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+
+  ChangedArm() {
+    terms.transmission[1] = terms.transmission[2] = terms.transmission[4] = Fourier::up_to(1);
+    for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, 1e-3, 0});
+    prior.estimate.arm.set_terms(terms, sizes, VectorX::Constant(6, 4));
+    prior.estimate.covariance = 1e-4 * MatrixX::Identity(9, 9);
+    prior.estimate.variance_factor = 2;  // of its noise; expected variances are then 1 / 2 and 1 / 4
+  }
+
+  Dataset<6> measured(Index poses, std::uint64_t seed) const {
     Rng rng(seed);
     VectorX values = there.parameters(), coefficients(6);
     const double geometry = std::pow(10, rng.uniform(-1.5, 0.5)), joints = std::pow(10, rng.uniform(-1.5, 0.2));
@@ -385,17 +386,34 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
     for (const GeometricUnknown& u : of_chain) values(u.parameter) += rng.normal() * geometry * 1e-3;
     for (double& c : coefficients) c = rng.normal() * joints * 1e-3;
     const FittedArm actual{there.with_parameters(values), JointErrors(terms, coefficients)};
-    Dataset<6> data = measure(actual.typed(robot.chain), sample_joints(robot.limits, 9, seed),
-                              {.position = 0.06e-3, .orientation = 0.2e-3}, seed);
-    if (seed % 2 == 0) data = data.without_orientations();
+    return measure(actual.typed(robot.chain), sample_joints(robot.limits, poses, seed),
+                   {.position = 0.06e-3, .orientation = 0.2e-3}, seed);
+  }
+
+  detail::CalibrationProblem problem(std::span<const Dataset<6>> stations) const {
     const SensorModel sensors{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3, .loss = Loss::squared};
-    detail::CalibrationProblem problem(ArmParameterisation({there}, unknowns), {detail::station_of(data, sensors)},
-                                       Loss::squared);
-    problem.arm.set_terms(terms, sizes, VectorX::Zero(6));
+    std::vector<detail::Station> measured;
+    for (const Dataset<6>& data : stations) measured.push_back(detail::station_of(data, sensors));
+    detail::CalibrationProblem out(ArmParameterisation(std::vector(stations.size(), there), unknowns), measured,
+                                   Loss::squared);
+    out.arm.set_terms(terms, sizes, VectorX::Zero(6));
+    return out;
+  }
+};
+
+// The likelihood of residuals, at the mean of the prior, in the directions that unknowns of the later calibration alone
+// do not reach (restricted likelihood), over all variances of the noise: at what is chosen it is as large as anywhere
+// on the grid. Of positions and of poses.
+TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) {
+  const ChangedArm arm;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Dataset<6> data = arm.measured(9, seed);
+    if (seed % 2 == 0) data = data.without_orientations();
+    detail::CalibrationProblem problem = arm.problem({&data, 1});
     VectorX now(15);  // where the fit stands, from where it started
     for (Index k = 0; k < 15; ++k) now(k) = 0.5 * std::cos(static_cast<double>(k));
     problem.arm.move(now);
-    const auto known = detail::transferred_unknowns(prior, problem.arm, prior.nominal);
+    const auto known = detail::transferred_unknowns(arm.prior, problem.arm, arm.prior.nominal);
     RealMatrix missing(9, 1);  // from there to the mean of the prior
     for (Index k = 0; k < 9; ++k) missing(k) = known.mean(k) - now(k < 3 ? k : k + 6);
     const PriorTransfer found = detail::likely_transfer(problem, known);
@@ -424,6 +442,29 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferHasMostRestrictedLikelihood) 
       for (const double j : {0.02, 0.05, 0.1, 0.15, 0.2, 0.4, 0.8, 1.6}) most = std::max(most, likelihood(g, j));
     EXPECT_GT(likelihood(found.geometry, found.joints), most - 1e-3) << seed;
   }
+}
+
+// Of more than a hundred poses every second, third ... is asked, whichever station it is of.
+TEST(TransferredUnknownsWhiteBox, TheLikelyTransferOfManyPosesIsThatOfEverySecond) {
+  const ChangedArm arm;
+  const Dataset<6> data = arm.measured(200, 6);
+  std::vector<Dataset<6>> all, half;
+  for (const auto& [begin, end] : {std::pair<Index, Index>{0, 60}, {60, 200}}) {
+    std::vector<Index> rows, every_second;
+    for (Index i = begin; i < end; ++i) rows.push_back(i);
+    for (Index i = begin; i < end; i += 2) every_second.push_back(i);
+    all.push_back(data.rows(rows));
+    half.push_back(data.rows(every_second));
+  }
+  all[0] = all[0].without_orientations();
+  half[0] = half[0].without_orientations();
+  const auto transfer = [&](std::span<const Dataset<6>> stations) {
+    const detail::CalibrationProblem problem = arm.problem(stations);
+    return detail::likely_transfer(problem, detail::transferred_unknowns(arm.prior, problem.arm, arm.prior.nominal));
+  };
+  const PriorTransfer found = transfer(all), expected = transfer(half);
+  EXPECT_EQ(found.geometry, expected.geometry);
+  EXPECT_EQ(found.joints, expected.joints);
 }
 
 }  // namespace

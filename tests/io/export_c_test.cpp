@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -121,6 +122,12 @@ JointRows<N> test_joints(const JointLimits<N>& limits, Index n) {
   return out;
 }
 
+/// Makes a function of the header visible in a shared library.
+constexpr const char* with_rotation_vector = R"(
+void arm_rotation_vector(const double *rotation, double *out);
+void arm_rotation_vector(const double *rotation, double *out) { arm_log_(rotation, out); }
+)";
+
 /// The functions of an exported arm, compiled.
 template <int N>
 class Compiled {
@@ -168,6 +175,12 @@ class Compiled {
     const int status = function<int(const double*, const double*, const double*, double*, double*)>("arm_correct")(
         rows[0], seed.data(), previous, out.command.data(), &out.predicted_error);
     out.status = status == 0 ? IkStatus::converged : status == 1 ? IkStatus::stalled : IkStatus::unreachable;
+    return out;
+  }
+  /// Of a source with `with_rotation_vector` behind it.
+  Vector3 rotation_vector(const Matrix3& rotation) const {
+    Vector3 out;
+    function<void(const double*, double*)>("arm_rotation_vector")(rotation.data(), out.data());
     return out;
   }
 
@@ -271,6 +284,21 @@ TEST_F(ExportC, OfAGeometryEqualsTheLibrary) {
 TEST_F(ExportC, OfAllTermsWithGatesAndApproachEqualsTheLibrary) {
   const auto robot = robots::abb_irb120();
   expect_equal(with_everything(robot.chain, robot.limits));
+}
+
+// Half a turn at most, whichever diagonal element of the matrix is largest.
+TEST_F(ExportC, RotationVectorsAreTheShortest) {
+  const auto robot = robots::abb_irb120();
+  const Compiled<6> c(folder_, c_source(geometric(robot.chain, robot.limits)) + with_rotation_vector);
+  Rng rng(4);
+  double worst = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3 axis = Vector3(rng.normal(), rng.normal(), rng.normal()).normalized();
+    const double angle = rng.uniform(0, std::numbers::pi - 1e-3);
+    const Vector3 found = c.rotation_vector(Eigen::AngleAxisd(angle, axis).toRotationMatrix());
+    worst = vernier_test::larger(worst, (found - angle * axis).norm());
+  }
+  EXPECT_LT(worst, 1e-12);
 }
 
 TEST_F(ExportC, OfSevenAxesEqualsTheLibrary) {

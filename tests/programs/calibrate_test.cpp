@@ -460,6 +460,7 @@ TEST(CalibrateMeasured, Ur5) {
   if (stages.is_null()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
   const double geometry = stages.at("geometry").at("mean_mm");
   EXPECT_LE(geometry, 0.105);
+  EXPECT_LE(stages.at("approach").at("mean_mm"), 0.047);
   EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
 }
 

@@ -1,8 +1,8 @@
 # With VERNIER_CHECK_HEADERS the target `headers` compiles every header alone, where the libraries it needs are at hand.
 #
 # Most of that time would go into parsing Eigen again and again. It is parsed once for the headers that include
-# vernier/core/types.hpp: that one begins with the same headers of Eigen, so whatever such a header, or one after
-# types.hpp, forgets to include is missed alike with and without. What comes before types.hpp is compiled without.
+# vernier/core/types.hpp, which begins with the same headers of Eigen: an include that such a header forgets is found
+# with the precompiled ones exactly when it is found without them. All other headers are compiled without.
 
 add_custom_target(headers)
 

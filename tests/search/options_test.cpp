@@ -107,6 +107,19 @@ TEST(SearchOptions, LimitsOfRandomSearchAndRestarts) {
   expect_limits(Again{}, &Again::restarts, {Index{0}}, {Index{-1}});
 }
 
+// A state of restarts is sound where the run is and its best point has as many coordinates as that run's.
+TEST(SearchOptions, InconsistentStatesOfRestartsAreSeen) {
+  const auto evaluate = [](const MatrixX& points, VectorX& values) { values = points.colwise().squaredNorm(); };
+  const auto made = Restarted<Pso>{.algorithm = {.particles = 3}}.start(Box::cube(2, 0, 1), 1, evaluate);
+  EXPECT_TRUE(made.consistent());
+  auto other = made;
+  other.best = VectorX::Zero(3);
+  EXPECT_FALSE(other.consistent());
+  other = made;
+  other.current.fitness = VectorX::Zero(4);
+  EXPECT_FALSE(other.consistent());
+}
+
 // The numbers that papers and the paper's comparison are repeated with.
 TEST(SearchOptions, Defaults) {
   const Pso pso;

@@ -95,6 +95,7 @@ TEST(Pso, InertiaFallsLinearly) {
   EXPECT_DOUBLE_EQ(pso.inertia(1), 0.9 - 0.5 / 300);
   EXPECT_DOUBLE_EQ(pso.inertia(150), 0.65);
   EXPECT_DOUBLE_EQ(pso.inertia(300), 0.4);
+  EXPECT_DOUBLE_EQ(Pso{.iterations = 0}.inertia(1), 0.4);
 
   const Pso one{.particles = 1, .iterations = 10};
   const auto falling = [](const MatrixX& population, VectorX& fitness) { fitness = -population.row(0).transpose(); };

@@ -178,6 +178,40 @@ TEST(Calibrate, LearnersAreJudgedByErrorsOfPosesThatTheirModelHasNotSeen) {
   }
 }
 
+/// Poses with an error of position that depends on two joints together, as no joint error does.
+Dataset<6> poses_with_interaction(Index n, std::uint64_t seed) {
+  const auto poses = measure(actual_arm(), joints(n, seed), noise, seed + 1);
+  PointRows positions = poses.positions();
+  for (Index i = 0; i < n; ++i)
+    positions(i, 2) += 1e-3 * std::sin(2 * poses.joints(i)(3)) * std::sin(2 * poses.joints(i)(4));
+  return Dataset<6>(poses.joints(), positions, poses.orientations());
+}
+
+// A learner is learned from all poses once: the first in any case, another where cross-validation supports it.
+TEST(Calibrate, TheLearnerThatHelpsIsDeployed) {
+  const auto poses = poses_with_interaction(300, 1), fresh = poses_with_interaction(100, 3);
+  CalibrateOptions options{.errors = {.harmonics = 5}, .remainder = {.hidden_nodes = 100}};
+  for (const std::size_t others : {0u, 1u}) {
+    options.remainder.learners = {Learner::kernel_elm};
+    options.remainder.learners.insert(options.remainder.learners.begin(), others, Learner::ridge_elm);
+    const auto found = calibrate(robot.chain, poses, options);
+    ASSERT_EQ(found.trials.size(), others + 1);
+    for (const RemainderTrial& trial : found.trials)
+      EXPECT_EQ(trial.supported, trial.learner == Learner::kernel_elm) << learner_key(trial.learner);
+    EXPECT_LT(found.trials.back().with, found.trials.back().without);
+    ASSERT_EQ(found.remainders.size(), others + 1);
+    EXPECT_EQ(found.deployed_remainder, others);
+    EXPECT_EQ(found.remainders.back().learner, Learner::kernel_elm);
+    EXPECT_FALSE(found.remainders.back().on_geometry);
+    EXPECT_EQ(found.chosen(), "jointwise_kernel_elm");
+
+    const CalibrationReport report = evaluate(found, fresh, robot.limits);
+    EXPECT_EQ(report.stages.back().key, "jointwise_kernel_elm");
+    EXPECT_EQ(report.stages.size(), others + 5);  // frames, geometry, elastic, joint-wise before
+    EXPECT_LT(report.stages.back().position.mean(), 0.95 * report.stage("jointwise").position.mean());
+  }
+}
+
 TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   const auto actual = actual_arm();
   CalibrateOptions options = quick;

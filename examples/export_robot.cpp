@@ -56,12 +56,12 @@ Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const s
 
   Outcome out;
   out.report = report;
-  out.designed = vn::ErrorStatistics::of(report.stage("frames").position);
+  out.designed = vn::ErrorStatistics::of(report.stage(vn::Stage::frames).position);
   out.full = vn::ErrorStatistics::of(report.stage(report.chosen).position);
   const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
   const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
                                                           o.with_tool ? identified.tool() : nominal.tool());
-  vn::ExportNote note{robot.name, file_name(o.data), o.date, report.train_poses, report.chosen, out.full, {}};
+  vn::ExportNote note{robot.name, file_name(o.data), o.date, report.train_poses, report.chosen.key(), out.full, {}};
   if (!o.urdf.empty()) {
     const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
     note.error_exported =
@@ -86,7 +86,7 @@ void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& 
   };
   row("as designed", out.designed);
   for (const ExportedFile& file : out.files) row(file.path, file.error);
-  row(fmt::format("full model ({})", out.report.chosen), out.full);
+  row(fmt::format("full model ({})", out.report.chosen.key()), out.full);
   const double exported = out.files.front().error.mean;
   if (out.full.mean < 0.9 * exported)
     fmt::print(
@@ -161,7 +161,7 @@ int run(support::Program& program) {
     support::Json json{{"robot", robot.name},
                        {"train_rows", out.report.train_poses},
                        {"test_rows", out.report.test_poses()},
-                       {"chosen", out.report.chosen},
+                       {"chosen", out.report.chosen.key()},
                        {"as_designed", to_json(out.designed)},
                        {"full", to_json(out.full)},
                        {"files", support::Json::array()}};

@@ -32,11 +32,11 @@ std::vector<double> counted(std::size_t n) {
 std::vector<std::pair<const StageErrors*, int>> shown_stages(const vernier::CalibrationReport& report) {
   std::vector<std::pair<const StageErrors*, int>> out;
   for (const StageErrors& stage : report.stages) {
-    const int colour = stage.key == "frames"        ? 0
-                       : stage.key == "geometry"    ? 1
-                       : stage.key == "jointwise"   ? 2
-                       : stage.key == report.chosen ? 3
-                                                    : -1;
+    const int colour = stage.name == vernier::Stage::frames      ? 0
+                       : stage.name == vernier::Stage::geometry  ? 1
+                       : stage.name == vernier::Stage::jointwise ? 2
+                       : stage.name == report.chosen             ? 3
+                                                                 : -1;
     if (colour >= 0) out.emplace_back(&stage, colour);
   }
   return out;
@@ -60,7 +60,7 @@ void draw_stages(const std::filesystem::path& folder, const std::string& robot,
     const std::vector<double> mm = scaled(stage->position, 1e3);
     const std::string name = colour == 0 ? "before: nominal links" : "after: " + stage->title;
     samples.push_back({name, mm, colour});
-    if (colour != 2 || stage->key == report.chosen)
+    if (colour != 2 || stage->name == report.chosen)
       poses.push_back({name, counted(mm.size()), mm, Style::points, colour});
   }
   plot_svg(folder / "distribution.svg", robot + ": cumulative distribution of held-out errors", "position error [mm]",
@@ -110,7 +110,7 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
     const std::vector<double> held_out = scaled(joint.held_out, unit), angle = scaled(joint.angle, unit);
     std::vector<Series> errors;
     for (const auto& [stage, colour] : shown_stages(report))
-      if (colour == 1 || stage->key == report.chosen)
+      if (colour == 1 || stage->name == report.chosen)
         errors.push_back({stage->title, held_out, scaled(stage->position, 1e3), Style::points, colour});
     plot_svg(folder / fmt::format("errors_along_joint_{}.svg", j + 1),
              fmt::format("{}: held-out errors along {}", robot, name), x_label, "position error [mm]", errors,

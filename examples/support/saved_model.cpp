@@ -67,14 +67,14 @@ template <int N>
 std::vector<vn::StageErrors> errors_at(const vn::Dataset<N>& test, bool oriented, const vn::CalibratedRobot<N>& fitted,
                                        const vn::CalibratedRobot<N>& moved,
                                        const vn::Reregistered<vn::DhChain<N>>& found) {
-  const auto stage = [&](const char* key, const char* title, const auto& model, const auto& as_seen) {
-    return vn::StageErrors{key, title, vn::position_errors(model, test),
-                           oriented ? vn::rotation_errors(as_seen, test) : vn::VectorX()};
+  const auto stage = [&](vn::Stage of, const auto& model, const auto& as_seen) {
+    return vn::StageErrors(of, vn::position_errors(model, test),
+                           oriented ? vn::rotation_errors(as_seen, test) : vn::VectorX());
   };
   vn::Isometry3 probe = vn::Isometry3::Identity();  // a remounted probe turns measured orientations alone
   probe.linear() = vn::exp_so3(found.motion.probe);
-  return {stage("as_fitted", "as fitted", fitted, fitted),
-          stage("reregistered", "re-registered", moved,
+  return {stage(vn::Stage::as_fitted, fitted, fitted),
+          stage(vn::Stage::reregistered, moved,
                 found.model.moved(vn::Isometry3::Identity(), vn::JointVector<N>::Zero(), probe))};
 }
 

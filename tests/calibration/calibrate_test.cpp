@@ -61,7 +61,8 @@ TEST(Calibrate, FindsEverySourceItContains) {
     const auto found = calibrate(robot.chain, measure(actual, joints(poses, 1), noise, 2), models_alone);
     EXPECT_TRUE(found.geometry.converged());
     EXPECT_TRUE(found.errors.converged);
-    const double geometry = mean_error(found.errors.geometry[0], actual), all = mean_error(found.model(), actual);
+    const double geometry = mean_error(found.errors.models(Stage::geometry)[0], actual),
+                 all = mean_error(found.model(), actual);
     EXPECT_LT(all, limit) << poses;
     EXPECT_LT(all, 0.4 * geometry) << poses;
     // the error is what the covariance of the unknowns predicts: within 1.5 times
@@ -103,12 +104,12 @@ TEST(Calibrate, WhatIsNotThereIsLeftOut) {
     const auto found = calibrate(robot.chain, measure(rigid, joints(100, seed), noise, seed), models_alone);
     bool jointwise = false;
     for (const BlockChoice& block : found.errors.blocks) {
-      jointwise = jointwise || (block.used && block.name == "jointwise");
+      jointwise = jointwise || (block.used && block.block == Block::jointwise);
       // gears' linear terms are unbounded, so they come only behind the gate of the joint-wise terms
-      EXPECT_TRUE(jointwise || block.name != "gears");
+      EXPECT_TRUE(jointwise || block.block != Block::gears);
     }
     used += jointwise;
-    EXPECT_LT(mean_error(found.model(), rigid), 1.15 * mean_error(found.errors.geometry[0], rigid));
+    EXPECT_LT(mean_error(found.model(), rigid), 1.15 * mean_error(found.errors.models(Stage::geometry)[0], rigid));
   }
   EXPECT_LE(used, 1);
 }
@@ -120,11 +121,11 @@ TEST(Calibrate, SeveralStationsShareTheArm) {
   for (std::size_t s = 0; s < 3; ++s)
     stations.push_back(measure(actual_arm(bases[s]), joints(60, 10 + s), noise, 20 + s));
   const auto found = calibrate(robot.chain, stations, models_alone);
-  ASSERT_EQ(found.errors.models.size(), 3u);
+  ASSERT_EQ(found.errors.models().size(), 3u);
   const auto alone = calibrate(robot.chain, stations[1], models_alone);
   double together = 0, single = 0;
   for (std::size_t s = 0; s < 3; ++s) {
-    const double error = mean_error(found.errors.models[s], actual_arm(bases[s]));
+    const double error = mean_error(found.errors.models()[s], actual_arm(bases[s]));
     EXPECT_LT(error, 0.1e-3) << s;
     together += error / 3;
   }
@@ -134,8 +135,8 @@ TEST(Calibrate, SeveralStationsShareTheArm) {
   EXPECT_LT(found.median_error, 0.1e-3);  // each station from its own base
   // one arm: chain and joint errors agree to the bit
   for (std::size_t s = 1; s < 3; ++s)
-    EXPECT_TRUE(found.errors.models[s].identified().model().chain() ==
-                found.errors.models[0].identified().model().chain());
+    EXPECT_TRUE(found.errors.models()[s].identified().model().chain() ==
+                found.errors.models()[0].identified().model().chain());
 }
 
 TEST(Calibrate, OnePoseInTwentyOffByFiveMillimetres) {
@@ -154,7 +155,7 @@ TEST(Calibrate, FallsBackOutsideTheMeasuredRanges) {
   JointVector<6> q = joints(1, 5).row(0).transpose();
   q(2) = -1.5;
   EXPECT_EQ(found.model().gate(q), 0);
-  EXPECT_TRUE(found.model().pose(q).matrix() == found.errors.elastic[0].pose(q).matrix());
+  EXPECT_TRUE(found.model().pose(q).matrix() == found.errors.models(Stage::elastic)[0].pose(q).matrix());
   EXPECT_EQ(found.errors.predicted(q).gate, 0);
   EXPECT_EQ(compensate(found.model()).correct(q).gate, 0);  // the answer says so
 }
@@ -218,7 +219,7 @@ Measured measured(const DhChain<N>& chain, const char* file, Index train_rows = 
     train = train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(train_rows)));
   }
   const auto found = calibrate(chain, train, models_alone);
-  Measured out{prediction_error(found.errors.elastic[0], rows.test).mean * 1e3,
+  Measured out{prediction_error(found.errors.models(Stage::elastic)[0], rows.test).mean * 1e3,
                prediction_error(found.model(), rows.test).mean * 1e3, 0, 0};
   const VectorX errors = position_errors(found.model(), rows.test) * 1e3;
   for (Index i = 0; i < errors.size(); ++i)

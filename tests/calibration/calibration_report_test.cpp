@@ -23,7 +23,7 @@ bool says(const std::vector<std::string>& verdict, const std::string& sentence) 
 /// A report of four held-out poses.
 CalibrationReport report_of_four() {
   CalibrationReport out;
-  out.stages.push_back({"geometry", "geometry", VectorX::Constant(4, 1e-4), {}});
+  out.stages.push_back({Stage::geometry, "geometry", VectorX::Constant(4, 1e-4), {}});
   out.gates = VectorX::Ones(4);
   return out;
 }
@@ -99,10 +99,10 @@ TEST(CalibrationReport, CountsPosesAndParameters) {
 /// Position errors [mm] of five held-out poses by geometry and by joint-wise terms; the fourth pose is out of range.
 CalibrationReport five_poses() {
   CalibrationReport report;
-  report.stages.push_back({"geometry", "geometry", 1e-3 * VectorX{{0.5, 0.4, 0.3, 0.2, 0.1}}, {}});
-  report.stages.push_back({"jointwise", "joint-wise", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});
+  report.stages.push_back({Stage::geometry, "geometry", 1e-3 * VectorX{{0.5, 0.4, 0.3, 0.2, 0.1}}, {}});
+  report.stages.push_back({Stage::jointwise, "joint-wise", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});
   report.gates = VectorX{{1, 1, 1, 0.5, 1}};
-  report.chosen = "jointwise";
+  report.chosen = Stage::jointwise;
   return report;
 }
 
@@ -116,12 +116,13 @@ std::string joined(const std::vector<std::string>& sentences) {
 // Mean, rms, maximum, minimum and 95 % of 1, 2 and 4: 7/3, sqrt(7), 4, 1 and 3.8.
 TEST(CalibrationReport, TableByHand) {
   const VectorX errors = 1e-3 * VectorX{{2, 4, 1}};
-  std::vector<StageErrors> stages{{"frames", "frames", errors, {}}};
+  std::vector<StageErrors> stages{{Stage::frames, "frames", errors, {}}};
   EXPECT_EQ(stage_table(stages),
             "stage                      mean      rms      max      min      p95\n"
             "frames                   2.3333   2.6458   4.0000   1.0000   3.8000\n");
   stages[0].rotation = 1e-3 * VectorX{{1, 2, 6}};
-  stages.push_back({"geometry_pso_elm", "geometry + PSO-ELM", 0.5 * errors, 0.5 * stages[0].rotation});
+  stages.push_back(
+      {learned_stage(true, Learner::pso_elm), "geometry + PSO-ELM", 0.5 * errors, 0.5 * stages[0].rotation});
   EXPECT_EQ(stage_table(stages),
             "stage                      mean      rms      max      min      p95  mean [mrad]\n"
             "frames                   2.3333   2.6458   4.0000   1.0000   3.8000       3.0000\n"
@@ -142,7 +143,7 @@ TEST(CalibrationReport, AccuracyByHand) {
   EXPECT_TRUE(says(said, "Chosen by left-out poses: joint-wise.")) << joined(said);
   report.max_degradation = 0;
   EXPECT_TRUE(report.verdict()[0].ends_with("None of them is worse than with geometry alone."));
-  report.chosen = "geometry";
+  report.chosen = Stage::geometry;
   EXPECT_EQ(report.verdict()[0].rfind("Accurate to 0.325 mm mean", 0), 0u) << report.verdict()[0];
   EXPECT_TRUE(says(report.verdict(), "Chosen by left-out poses: geometry."));
   report.gates.setConstant(0.5);  // nothing is said of no poses
@@ -168,33 +169,37 @@ TEST(CalibrationReport, RangesInDegreesAndMillimetres) {
 
 // Each block has a sentence of its own for either decision.
 TEST(CalibrationReport, DecisionsByHand) {
-  const char* sentences[][3] = {
-      {"elastic", "Gravity compliance helps ", "Gravity compliance alone does not help "},
-      {"jointwise", "Joint-wise terms help ",
+  const struct {
+    Block block;
+    const char *helps, *does_not;
+  } sentences[] = {
+      {Block::elastic, "Gravity compliance helps ", "Gravity compliance alone does not help "},
+      {Block::jointwise, "Joint-wise terms help ",
        "Joint-wise terms are left out: this robot's errors are not functions of single joints "},
-      {"elastic_with_jointwise", "Beside joint-wise terms gravity compliance is kept ",
+      {Block::elastic_again, "Beside joint-wise terms gravity compliance is kept ",
        "Beside joint-wise terms gravity compliance is left out "},
-      {"gears", "Gear ratios and coupling help ", "Gear ratios and coupling do not help "},
-      {"approach", "Hysteresis by the direction of approach helps ",
+      {Block::gears, "Gear ratios and coupling help ", "Gear ratios and coupling do not help "},
+      {Block::approach, "Hysteresis by the direction of approach helps ",
        "Hysteresis is left out: errors do not depend on the direction of approach "},
-      {"tilt", "Tilts of joint frames under gravity help ", "Tilts of joint frames under gravity do not help "},
-      {"temperature", "The geometry changes with temperature: that helps ",
+      {Block::tilt, "Tilts of joint frames under gravity help ", "Tilts of joint frames under gravity do not help "},
+      {Block::temperature, "The geometry changes with temperature: that helps ",
        "No change of the geometry with temperature is noticeable "},
-      {"prior", "An earlier calibration as the prior helps ", "The earlier calibration is useless here: left out "},
-      {"lines", "Orders that stand out of what the model left help ",
+      {Block::prior, "An earlier calibration as the prior helps ",
+       "The earlier calibration is useless here: left out "},
+      {Block::lines, "Orders that stand out of what the model left help ",
        "Orders that stand out of what the model left are left out "},
-      {"drift", "The base drifted during the session ", "No drift of the base is noticeable "},
-      {"joint_drift", "The zeros of the joints drifted, too ", "No drift of the joints' zeros is noticeable "},
-      {"tuned_priors", "Optimised priors help ", "Optimised priors are left out: they do not help "}};
-  for (const auto& [name, helps, does_not] : sentences)
+      {Block::drift, "The base drifted during the session ", "No drift of the base is noticeable "},
+      {Block::joint_drift, "The zeros of the joints drifted, too ", "No drift of the joints' zeros is noticeable "},
+      {Block::tuned_priors, "Optimised priors help ", "Optimised priors are left out: they do not help "}};
+  for (const auto& [block, helps, does_not] : sentences)
     for (const bool used : {true, false}) {
       CalibrationReport report = five_poses();
-      report.blocks = {{name, 0.25e-3, 0.125e-3, used, 1, used ? 0.5 : 0}};
+      report.blocks = {{block, 0.25e-3, 0.125e-3, used, 1, used ? 0.5 : 0}};
       EXPECT_TRUE(says(report.verdict(),
                        std::string(used ? helps : does_not) +
                            "(leave-one-pose-out error: 0.25 mm without, 0.125 mm with" +
                            (used ? "; log predictive density of a left-out pose greater by 0.5 nat)." : ").")))
-          << name << '\n'
+          << helps << '\n'
           << joined(report.verdict());
     }
 }
@@ -231,7 +236,7 @@ TEST(CalibrationReport, RemarksByHand) {
   report.trials.push_back({false, Learner::pso_elm, 0.1e-3, 0.125e-3});
   const char* not_used = "What learners find in what the error model leaves does not help left-out poses: not used.\n";
   EXPECT_EQ(joined(report.remarks()), not_used);
-  report.chosen = "jointwise_kernel_elm";
+  report.chosen = {Stage::learned, Learner::kernel_elm};
   EXPECT_TRUE(report.remarks().empty());
   report.outliers = 3;
   report.median_error = 0.5e-6;  // of exact data nothing is an outlier
@@ -244,7 +249,7 @@ TEST(CalibrationReport, RemarksByHand) {
   EXPECT_EQ(joined(report.remarks()),
             "3 of the training rows have errors above eight times the median of 0.04 mm: outliers? A robust loss "
             "(huber) reduces their weight.\n");
-  report.chosen = "jointwise";
+  report.chosen = Stage::jointwise;
   EXPECT_NE(report.summary().find(not_used), std::string::npos);
 }
 

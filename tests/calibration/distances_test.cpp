@@ -76,7 +76,7 @@ TEST(Distances, AloneFindJointErrors) {
   const std::vector<Distances<6>> wire{measure_distances(actual, anchor, joints(600, 1), 0.02e-3, 2)};
   const auto found = calibrate(with_rough_tool(), no_poses, wire, {.errors = {.harmonics = 30}});
   const auto fresh = measure_distances(actual, anchor, joints(300, 3));
-  const double geometry = rms_of_distances(found.errors.geometry[0], fresh);
+  const double geometry = rms_of_distances(found.errors.models(Stage::geometry)[0], fresh);
   const double all = rms_of_distances(found.model(), fresh);
   EXPECT_LT(all, 0.4 * geometry);
   EXPECT_LT(all, 0.05e-3);
@@ -96,7 +96,7 @@ struct Mixed {
     const auto found =
         calibrate(robot.chain, poses, distances,
                   {.errors = {.harmonics = 15}, .sensors = {.distance_sigma = sigma}, .remainder = nothing});
-    EXPECT_EQ(found.errors.models.size(), 1 + distances.size());
+    EXPECT_EQ(found.errors.models().size(), 1 + distances.size());
     return prediction_error(found.model(), measure(actual, joints(300, 7))).mean;
   }
 };
@@ -126,8 +126,8 @@ TEST(Distances, EveryWireFindsItsFixedPoint) {
   const auto found = calibrate(robot.chain, mixed.poses, wires, {.errors = {.harmonics = 15}, .remainder = nothing});
   // in the frame of the positions, which is the arm's own here
   const auto fixed_point = [&](std::size_t s) {
-    return Vector3(found.errors.models[0].identified().base() * found.errors.models[s].identified().base().inverse() *
-                   Vector3::Zero());
+    return Vector3(found.errors.models()[0].identified().base() *
+                   found.errors.models()[s].identified().base().inverse() * Vector3::Zero());
   };
   EXPECT_LT((fixed_point(1) - anchor).norm(), 0.2e-3);
   EXPECT_LT((fixed_point(2) - Vector3(-1, 0.4, 1.2)).norm(), 0.2e-3);

@@ -57,16 +57,16 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
   const CalibrationReport report = evaluate(found, fresh, robot.limits);
 
   std::vector<std::string> keys;
-  for (const StageErrors& stage : report.stages) keys.push_back(stage.key);
+  for (const StageErrors& stage : report.stages) keys.push_back(stage.key());
   EXPECT_EQ(keys, (std::vector<std::string>{"frames", "geometry", "geometry_pso_elm", "elastic", "jointwise",
                                             "jointwise_pso_elm"}));
-  EXPECT_EQ(report.stage("frames").position, position_errors(found.frames[0], fresh));
-  EXPECT_EQ(report.stage("geometry").position, position_errors(found.errors.geometry[0], fresh));
-  EXPECT_EQ(report.stage("jointwise").position, position_errors(found.model(), fresh));
-  EXPECT_EQ(report.stage("jointwise").rotation, rotation_errors(found.model(), fresh));
-  EXPECT_LT(report.stage("geometry").position.mean(), 0.5 * report.stage("frames").position.mean());
-  EXPECT_LT(report.stage("jointwise").position.mean(), 0.5 * report.stage("geometry").position.mean());
-  EXPECT_NE(complaint([&] { (void)report.stage("paint"); }).find("no stage is called 'paint'"), std::string::npos);
+  EXPECT_EQ(report.stage(Stage::frames).position, position_errors(found.errors.models(Stage::frames)[0], fresh));
+  EXPECT_EQ(report.stage(Stage::geometry).position, position_errors(found.errors.models(Stage::geometry)[0], fresh));
+  EXPECT_EQ(report.stage(Stage::jointwise).position, position_errors(found.model(), fresh));
+  EXPECT_EQ(report.stage(Stage::jointwise).rotation, rotation_errors(found.model(), fresh));
+  EXPECT_LT(report.stage(Stage::geometry).position.mean(), 0.5 * report.stage(Stage::frames).position.mean());
+  EXPECT_LT(report.stage(Stage::jointwise).position.mean(), 0.5 * report.stage(Stage::geometry).position.mean());
+  EXPECT_NE(complaint([&] { (void)report.stage(Stage::tilt); }).find("there is no stage 'tilt'"), std::string::npos);
 
   EXPECT_EQ(report.train_poses, 200);
   EXPECT_EQ(report.test_poses(), 100);
@@ -78,7 +78,8 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
     EXPECT_EQ(report.gates(i), gate);
     outside += gate < 1;
     if (gate == 1)
-      degradation = std::max(degradation, report.stage("jointwise").position(i) - report.stage("geometry").position(i));
+      degradation =
+          std::max(degradation, report.stage(Stage::jointwise).position(i) - report.stage(Stage::geometry).position(i));
     const PredictedPose predicted = found.errors.predicted(fresh.joints(i));
     const Vector3 error = predicted.pose.translation() - fresh.position(i);
     within += error.dot(Matrix3(predicted.covariance.topLeftCorner<3, 3>()).inverse() * error) <= 7.8147;
@@ -168,7 +169,8 @@ TEST(Calibrate, LearnersAreJudgedByErrorsOfPosesThatTheirModelHasNotSeen) {
   const auto found = calibrate(robot.chain, poses, quick);
   ASSERT_EQ(found.trials.size(), 6u);
   for (const RemainderTrial& trial : found.trials) {
-    const auto& model = trial.on_geometry ? found.errors.geometry.front() : found.errors.models.front();
+    const auto& model =
+        trial.on_geometry ? found.errors.models(Stage::geometry).front() : found.errors.models().front();
     const VectorX& unseen = trial.on_geometry ? found.errors.geometry_left_out_errors : found.errors.left_out_errors;
     const double fitted = position_errors(model, poses).mean();
     EXPECT_DOUBLE_EQ(trial.without, unseen.mean());
@@ -203,12 +205,12 @@ TEST(Calibrate, TheLearnerThatHelpsIsDeployed) {
     EXPECT_EQ(found.deployed_remainder, others);
     EXPECT_EQ(found.remainders.back().learner, Learner::kernel_elm);
     EXPECT_FALSE(found.remainders.back().on_geometry);
-    EXPECT_EQ(found.chosen(), "jointwise_kernel_elm");
+    EXPECT_EQ(found.chosen(), learned_stage(false, Learner::kernel_elm));
 
     const CalibrationReport report = evaluate(found, fresh, robot.limits);
-    EXPECT_EQ(report.stages.back().key, "jointwise_kernel_elm");
+    EXPECT_EQ(report.stages.back().key(), "jointwise_kernel_elm");
     EXPECT_EQ(report.stages.size(), others + 5);  // frames, geometry, elastic, joint-wise before
-    EXPECT_LT(report.stages.back().position.mean(), 0.95 * report.stage("jointwise").position.mean());
+    EXPECT_LT(report.stages.back().position.mean(), 0.95 * report.stage(Stage::jointwise).position.mean());
   }
 }
 
@@ -221,7 +223,7 @@ TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   const CalibrationReport report = evaluate(found, fresh);
   std::vector<double> inside;
   for (Index i = 0; i < 60; ++i)
-    if (report.gates(i) == 1) inside.push_back(report.stage("jointwise").position(i) * 1e3);
+    if (report.gates(i) == 1) inside.push_back(report.stage(Stage::jointwise).position(i) * 1e3);
   const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
   char figures[160];
   std::snprintf(figures, sizeof figures, "Accurate to %.3g mm mean, %.3g mm (95 %%), %.3g mm maximum", e.mean, e.p95,
@@ -234,7 +236,8 @@ TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
   EXPECT_EQ(verdict[2].find("Measured joint ranges [deg, mm]: q1 -14"), 0u) << verdict[2];
 
   CalibrationReport other = report;
-  other.blocks = {{"jointwise", 47.52e-6, 47.49e-6, true, 1, 0.1234}, {"gears", 47.5e-6, 47.6e-6, false, 1e12, 0}};
+  other.blocks = {{Block::jointwise, 47.52e-6, 47.49e-6, true, 1, 0.1234},
+                  {Block::gears, 47.5e-6, 47.6e-6, false, 1e12, 0}};
   const std::vector<std::string> decisions = other.verdict();
   ASSERT_GE(decisions.size(), 5u);
   EXPECT_EQ(
@@ -259,9 +262,9 @@ TEST(Evaluate, TiltsAreAStageWhereTheyAreFound) {
   const auto found = calibrate(robot.chain, measure(actual, joints(150, 1), noise, 2), options);
   const auto fresh = measure(actual, joints(60, 3), noise, 4);
   const CalibrationReport report = evaluate(found, fresh);
-  EXPECT_EQ(report.chosen, "tilt");
-  EXPECT_EQ(report.stage("tilt").position, position_errors(found.model(), fresh));
-  EXPECT_LT(report.stage("tilt").position.mean(), 0.5 * report.stage("jointwise").position.mean());
+  EXPECT_EQ(report.chosen, Stage::tilt);
+  EXPECT_EQ(report.stage(Stage::tilt).position, position_errors(found.model(), fresh));
+  EXPECT_LT(report.stage(Stage::tilt).position.mean(), 0.5 * report.stage(Stage::jointwise).position.mean());
   bool stated = false;
   for (const std::string& sentence : report.verdict())
     stated = stated || sentence.find("Tilts of joint frames under gravity help") == 0;

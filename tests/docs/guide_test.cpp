@@ -90,8 +90,8 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
   EXPECT_GT(::testing::internal::GetCapturedStdout().size(), 100u);
   EXPECT_EQ(report.test_poses(), 40);
   EXPECT_EQ(report.train_poses, 160);
-  const double geometry = report.stage("geometry").position.mean(),
-               jointwise = report.stage("jointwise").position.mean();
+  const double geometry = report.stage(Stage::geometry).position.mean(),
+               jointwise = report.stage(Stage::jointwise).position.mean();
   EXPECT_LT(jointwise, 0.1e-3);
   EXPECT_LT(jointwise, 0.6 * geometry);
 

@@ -90,7 +90,7 @@ Outcome from_twenty_poses(const ArmPrior& prior, const TrueArm& true_arm, int ar
     EXPECT_TRUE(with.prior.has_value());
     out.transfers.push_back(*with.prior);
     for (const BlockChoice& block : with.blocks)
-      if (block.name == "prior") {
+      if (block.block == Block::prior) {
         EXPECT_NEAR(block.precision, std::pow(with.prior->joints, -2), 1e-9);
         EXPECT_TRUE(!block.used || block.with < block.without);
       }
@@ -222,7 +222,7 @@ TEST(ArmPrior, CoversWhatWasMeasuredBefore) {
   ASSERT_TRUE(found.prior && found.prior->used);
   const JointVector<6> far = 0.8 * robot.limits.upper;
   EXPECT_EQ(found.model().gate(far), 1);
-  EXPECT_LT(found.jointwise.front().gate(far), 1);
+  EXPECT_LT(found.models(Stage::jointwise).front().gate(far), 1);
   EXPECT_LT(position_errors(found.model(), measured(actual, 200, 9)).mean(), 0.1e-3);
 }
 

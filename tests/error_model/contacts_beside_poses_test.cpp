@@ -35,8 +35,8 @@ double fitted_error(double sigma, const SensorModel& sensors, std::span<const Co
   const auto fitted = fit_error_model(start, std::span<const Dataset<6>>(&data, 1), std::span<const Distances<6>>(),
                                       geometry_alone, sensors, {}, contacts);
   EXPECT_TRUE(fitted.converged);
-  EXPECT_EQ(fitted.models.size(), 1 + contacts.size());
-  return registered_mean(fitted.models.front());
+  EXPECT_EQ(fitted.models().size(), 1 + contacts.size());
+  return registered_mean(fitted.models().front());
 }
 
 TEST(ContactsBesidePoses, PreciseContactsImproveNoisyPoses) {

@@ -53,13 +53,13 @@ FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ErrorModelOptions& 
 
 std::vector<std::string> block_names(const FittedErrorModel<Chain>& found) {
   std::vector<std::string> out;
-  for (const BlockChoice& block : found.blocks) out.push_back(block.name);
+  for (const BlockChoice& block : found.blocks) out.push_back(traits_of(block.block).key);
   return out;
 }
 
 const BlockChoice& block_of(const FittedErrorModel<Chain>& found, const std::string& name) {
   for (const BlockChoice& block : found.blocks)
-    if (block.name == name) return block;
+    if (traits_of(block.block).key == name) return block;
   static const BlockChoice none;
   ADD_FAILURE() << "no block " << name;
   return none;
@@ -100,11 +100,11 @@ TEST(FitStations, SeeOneArmFromTheirPlaces) {
   };
   const auto shared = fit(second, false), apart = fit(regripped, true), wrong = fit(regripped, false);
   ASSERT_TRUE(shared.converged && apart.converged);
-  EXPECT_LT(mean_error(shared.models[0], first), 0.03e-3);
-  EXPECT_LT(mean_error(shared.models[1], second), 0.03e-3);
-  EXPECT_LT(mean_error(apart.models[0], first), 0.03e-3);
-  EXPECT_LT(mean_error(apart.models[1], regripped), 0.03e-3);
-  EXPECT_GT(mean_error(wrong.models[1], regripped), 1e-3);
+  EXPECT_LT(mean_error(shared.models()[0], first), 0.03e-3);
+  EXPECT_LT(mean_error(shared.models()[1], second), 0.03e-3);
+  EXPECT_LT(mean_error(apart.models()[0], first), 0.03e-3);
+  EXPECT_LT(mean_error(apart.models()[1], regripped), 0.03e-3);
+  EXPECT_GT(mean_error(wrong.models()[1], regripped), 1e-3);
   const std::vector<Index> frame{0, 1, 2, 3, 4, 5}, both{0, 1, 2, 3, 4, 5, 36, 37, 38, 39, 40, 41};
   EXPECT_EQ(parameters(shared, 0), frame);
   EXPECT_EQ(parameters(shared, 1), frame);
@@ -115,7 +115,7 @@ TEST(FitStations, SeeOneArmFromTheirPlaces) {
   const JointRows<6> elsewhere = sample_joints(robot.limits, 20, 9);
   for (Index i = 0; i < 20; ++i) {
     const JointVector<6> q = configuration(elsewhere, i);
-    EXPECT_NEAR(shared.models[2].position(q).norm(), (in_its_base.position(q) - Vector3(0.9, -1.2, 0.3)).norm(),
+    EXPECT_NEAR(shared.models()[2].position(q).norm(), (in_its_base.position(q) - Vector3(0.9, -1.2, 0.3)).norm(),
                 0.06e-3);
   }
 }

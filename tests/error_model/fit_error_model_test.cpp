@@ -65,7 +65,7 @@ TEST(FitErrorModel, PriorsStayWithTheirCoefficientsWhenGearsAreAdded) {
       actual_arm({.gear_ratio = 1e-3, .coupling = 1e-3, .compliance = 0, .harmonic = 3e-3, .harmonics = 2}), 120, 1);
   const auto found = fitted(data);
   std::map<std::string, BlockChoice> blocks;
-  for (const BlockChoice& block : found.blocks) blocks[block.name] = block;
+  for (const BlockChoice& block : found.blocks) blocks[traits_of(block.block).key] = block;
   ASSERT_TRUE(blocks.contains("jointwise") && blocks["jointwise"].used);
   ASSERT_TRUE(blocks.contains("gears") && blocks["gears"].used);
   ASSERT_EQ(found.arm.terms().linear_ranges.size(), 6u);  // from the smallest measured value to the largest
@@ -146,7 +146,7 @@ Actual tilting_arm(double size) {
 
 const BlockChoice* choice_of(const FittedErrorModel<Chain>& found, const std::string& name) {
   for (const BlockChoice& block : found.blocks)
-    if (block.name == name) return &block;
+    if (traits_of(block.block).key == name) return &block;
   return nullptr;
 }
 
@@ -160,7 +160,9 @@ TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
     ASSERT_NE(choice, nullptr);
     EXPECT_EQ(choice->used, size > 0);
     EXPECT_EQ(found.model().identified().model().joint_errors().tilts(), size > 0);
-    EXPECT_EQ(found.approach.size(), size > 0 ? 1u : 0u);
+    EXPECT_EQ(
+        std::any_of(found.stages.begin(), found.stages.end(), [](const auto& s) { return s.stage == Stage::tilt; }),
+        size > 0);
     EXPECT_EQ(found.model().coverage() != nullptr, size > 0);  // known where the joints were measured
     if (size > 0) {
       EXPECT_FALSE(found.model().fallback()->model().joint_errors().tilts());
@@ -171,7 +173,7 @@ TEST(FitErrorModel, FindsFramesThatTiltAndNoneWhereTheyDoNot) {
     for (Index i = 0; i < elsewhere.rows(); ++i) {
       const JointVector<6> q = configuration(elsewhere, i);
       error += (found.model().position(q) - actual.position(q)).norm() / 100;
-      before += (found.jointwise.front().position(q) - actual.position(q)).norm() / 100;
+      before += (found.models(Stage::jointwise).front().position(q) - actual.position(q)).norm() / 100;
     }
     EXPECT_LT(error, 0.03e-3);
     if (size > 0) {
@@ -197,8 +199,8 @@ TEST(FitErrorModel, StatesTheDensityGainWhereThatDecided) {
     }
     for (const BlockChoice& block : found.blocks)
       if (!block.used) {
-        EXPECT_EQ(block.log_density_gain, 0) << block.name;
-        EXPECT_EQ(block.precision, suppressing_precision) << block.name;
+        EXPECT_EQ(block.log_density_gain, 0) << traits_of(block.block).key;
+        EXPECT_EQ(block.precision, suppressing_precision) << traits_of(block.block).key;
       }
   }
 }

@@ -105,7 +105,7 @@ TEST(JointSpectrum, OrdersThatNobodyStatedAreFound) {
     Rng rng(seed);
     const Line line{static_cast<int>(seed % 3), seed % 2 == 0 ? 1010 : 1873, 40e-6, 0.7};
     const auto model = fitted(arm_with({line}, rng), few, rng);
-    ASSERT_EQ(model.blocks.back().name, "lines");
+    ASSERT_EQ(model.blocks.back().block, Block::lines);
     EXPECT_TRUE(model.blocks.back().used);
     for (int joint = 0; joint < 3; ++joint) {
       std::vector<int> wanted{1, 2, 3, 4};
@@ -128,7 +128,7 @@ TEST(JointSpectrum, LinesAreSoughtWhereThatIsAllowed) {
   few.find_lines = false;
   Rng rng(1);
   const auto model = fitted(arm_with({{1, 1873, 40e-6, 0.7}}, rng), few, rng);
-  for (const BlockChoice& block : model.blocks) EXPECT_NE(block.name, "lines");
+  for (const BlockChoice& block : model.blocks) EXPECT_NE(block.block, Block::lines);
 }
 
 TEST(JointSpectrum, LinesOfAStatedDriveAreInTheModel) {
@@ -138,7 +138,7 @@ TEST(JointSpectrum, LinesOfAStatedDriveAreInTheModel) {
   Rng rng(5);
   const Line line{1, 1010, 40e-6, 0.7};
   const auto model = fitted(arm_with({line}, rng), few, rng);
-  EXPECT_NE(model.blocks.back().name, "lines");
+  EXPECT_NE(model.blocks.back().block, Block::lines);
   EXPECT_EQ(model.arm.terms().transmission[0].orders, (std::vector<int>{1, 2, 3, 4}));
   const auto lines = lines_in(joint_spectrum(model, 1), line_threshold(50));
   const auto found = std::find_if(lines.begin(), lines.end(), [](const auto& one) { return one.order == 1010; });
@@ -153,7 +153,7 @@ TEST(JointSpectrum, ArmsWithoutLinesHaveNone) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Rng rng(100 + seed);
     const auto model = fitted(arm_with({}, rng), options(), rng);
-    blocks += model.blocks.back().name == "lines";
+    blocks += model.blocks.back().block == Block::lines;
     for (int joint = 0; joint < 3; ++joint)
       for (const HarmonicEstimate& one : lines_in(joint_spectrum(model, joint), line_threshold(108)))
         lines += one.order > 4;

@@ -99,7 +99,7 @@ void expect_left_out_as_deployed(const FittedErrorModel<Chain>& found, const std
     std::size_t station = 0;
     while (row >= stations[station].size()) row -= stations[station++].size();
     const Dataset<6>& data = stations[station];
-    const Vector3 deployed = found.models[station].position(configuration(data.joints(), row));
+    const Vector3 deployed = found.models()[station].position(configuration(data.joints(), row));
     const double error = (deployed - point(data.positions(), row)).norm();
     worst = vernier_test::larger(worst, std::abs(error - found.left_out_errors(static_cast<Index>(k))));
     largest = vernier_test::larger(largest, error);
@@ -110,7 +110,7 @@ void expect_left_out_as_deployed(const FittedErrorModel<Chain>& found, const std
 
 const BlockChoice* block_of(const FittedErrorModel<Chain>& found, const char* name) {
   for (const BlockChoice& block : found.blocks)
-    if (std::string(block.name) == name) return &block;
+    if (std::string(traits_of(block.block).key) == name) return &block;
   return nullptr;
 }
 
@@ -182,8 +182,8 @@ TEST(Drift, OfTheBaseIsFollowed) {
   for (Index i = 0; i < 5; ++i) {
     const JointVector<6> q = configuration(joints, i);
     const RealMatrix position = found.model().position(q);
-    EXPECT_EQ(RealMatrix(found.geometry.front().position(q)), position);
-    EXPECT_EQ(RealMatrix(found.jointwise.front().position(q)), position);
+    EXPECT_EQ(RealMatrix(found.models(Stage::geometry).front().position(q)), position);
+    EXPECT_EQ(RealMatrix(found.models(Stage::jointwise).front().position(q)), position);
   }
   EXPECT_EQ(RealMatrix(found.geometry_left_out_errors), RealMatrix(found.left_out_errors));
 }

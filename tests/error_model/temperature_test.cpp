@@ -74,7 +74,7 @@ FittedErrorModel<Chain> fitted(const Dataset<6>& data,
 
 const BlockChoice* block_of(const FittedErrorModel<Chain>& found) {
   for (const BlockChoice& block : found.blocks)
-    if (block.name == "temperature") return &block;
+    if (block.block == Block::temperature) return &block;
   return nullptr;
 }
 
@@ -151,8 +151,8 @@ TEST(Temperature, FramesOfTwoStationsChangeEachInItsOwnWay) {
   ASSERT_TRUE(block_of(found)->used);
   expect_thermal_unknowns(found, 3e-5);
   for (const double celsius : {18.5, 25.5}) {
-    EXPECT_LT(mean_error(found.models[0].at_temperature(celsius), actual.at_temperature(celsius), 7), 0.03e-3);
-    EXPECT_LT(mean_error(found.models[1].at_temperature(celsius), other.at_temperature(celsius), 7), 0.03e-3);
+    EXPECT_LT(mean_error(found.models()[0].at_temperature(celsius), actual.at_temperature(celsius), 7), 0.03e-3);
+    EXPECT_LT(mean_error(found.models()[1].at_temperature(celsius), other.at_temperature(celsius), 7), 0.03e-3);
   }
 }
 
@@ -196,8 +196,8 @@ TEST(Temperature, IsInherited) {
     }
     for (const double celsius : {19.0, measured_too ? 31.0 : 25.0})
       EXPECT_LT(mean_error(found.model().at_temperature(celsius), actual.at_temperature(celsius), 7), 0.1e-3);
-    const auto block =
-        std::find_if(found.blocks.begin(), found.blocks.end(), [](const BlockChoice& b) { return b.name == "prior"; });
+    const auto block = std::find_if(found.blocks.begin(), found.blocks.end(),
+                                    [](const BlockChoice& b) { return b.block == Block::prior; });
     ASSERT_NE(block, found.blocks.end());
     EXPECT_LT(block->with, block->without);
     EXPECT_NEAR(block->precision, std::pow(found.prior->joints, -2), 1e-9);

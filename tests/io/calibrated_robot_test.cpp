@@ -124,10 +124,10 @@ Calibration<Chain> found_by_hand() {
   estimate.position_sigma = 2e-5;
   estimate.left_out_errors = Eigen::Vector4d(1e-4, 3e-4, 5e-4, 1e-4);  // squares: 1, 9, 25, 1 of 1e-8
   FittedErrorModel<Chain> errors(std::move(estimate));
-  errors.models = {Model(irb120.chain, jointwise)};
-  errors.geometry = {Model(irb120.chain, geometry)};
+  errors.stages = {{Stage::geometry, true, {Model(irb120.chain, geometry)}},
+                   {Stage::jointwise, true, {Model(irb120.chain, jointwise)}}};
   const Calibrated<Chain> frames(Framed<Chain>(irb120.chain), irb120.chain);
-  Calibration<Chain> out{.frames = {frames}, .geometry = {IdentificationReport{}, frames}, .errors = std::move(errors)};
+  Calibration<Chain> out{.geometry = {IdentificationReport{}, frames}, .errors = std::move(errors)};
   out.remainders.push_back({true, Learner::kernel_elm, kernels_of(1e-4), gate_of_all()});
   out.remainders.push_back({false, Learner::kernel_elm, kernels_of(3e-4), gate_of_all()});
   out.poses = 120;
@@ -164,19 +164,21 @@ TEST(CalibratedRobots, OfACalibrationAreWhatIsDeployed) {
   EXPECT_EQ(plain.learned(), nullptr);
   ASSERT_NE(plain.estimate(), nullptr);
   EXPECT_EQ(plain.estimate()->position_sigma, 2e-5);
-  EXPECT_LT((plain.position(q) - calibration.errors.models[0].position(q)).norm(), 1e-14);
+  EXPECT_LT((plain.position(q) - calibration.errors.models()[0].position(q)).norm(), 1e-14);
 
   calibration.deployed_remainder = 1;
   const Arm on_errors = calibrated_robot(calibration, info);
   ASSERT_NE(on_errors.learned(), nullptr);
   EXPECT_NE(on_errors.estimate(), nullptr);
-  EXPECT_LT((on_errors.position(q) - (calibration.errors.models[0].position(q) - error(3e-4))).norm(), 1e-14);
+  EXPECT_LT((on_errors.position(q) - (calibration.errors.models()[0].position(q) - error(3e-4))).norm(), 1e-14);
 
   calibration.deployed_remainder = 0;
   const Arm on_geometry = calibrated_robot(calibration, info);
   ASSERT_NE(on_geometry.learned(), nullptr);
   EXPECT_EQ(on_geometry.estimate(), nullptr);
-  EXPECT_LT((on_geometry.position(q) - (calibration.errors.geometry[0].position(q) - error(1e-4))).norm(), 1e-14);
+  EXPECT_LT(
+      (on_geometry.position(q) - (calibration.errors.models(Stage::geometry)[0].position(q) - error(1e-4))).norm(),
+      1e-14);
 }
 
 TEST(CalibratedRobots, OfACalibrationAreSavedAtOnce) {

@@ -44,9 +44,10 @@ VectorX drawn(Rng& rng, Index n, double size) {
 CalibrationReport assessed(Index n) {
   Rng rng(5);
   CalibrationReport out;
-  for (const auto& [key, size] : {std::pair{"frames", 0.6e-3}, {"geometry", 0.3e-3}, {"jointwise", 0.06e-3}})
-    out.stages.push_back({key, key, drawn(rng, n, size), drawn(rng, n, size)});
-  out.chosen = "jointwise";
+  for (const auto& [stage, size] :
+       {std::pair{Stage::frames, 0.6e-3}, {Stage::geometry, 0.3e-3}, {Stage::jointwise, 0.06e-3}})
+    out.stages.push_back({stage, traits_of(stage).key, drawn(rng, n, size), drawn(rng, n, size)});
+  out.chosen = Stage::jointwise;
   out.train_poses = 4 * n;
   out.oriented = true;
   out.ellipsoid_coverage = 0.94;
@@ -281,8 +282,8 @@ TEST(HtmlReport, RefusesWhatDoesNotFit) {
     EXPECT_TRUE(has(complaint([&] { (void)report_html(wrong); }), words)) << words;
   };
   ReportInput wrong = input;
-  wrong.after = "paint";
-  complains(wrong, "no stage is called 'paint'");
+  wrong.after = Stage::tilt;
+  complains(wrong, "there is no stage 'tilt'");
   wrong = input;
   wrong.stages[1].position.resize(29);
   complains(wrong, "stage 'geometry' has 29 errors, expected 30");
@@ -305,8 +306,8 @@ TEST(HtmlReport, ThinsManyPosesInTheViewAlone) {
 
 TEST(HtmlReport, LeavesOutWhatIsEmpty) {
   ReportInput input;
-  input.stages = {{"frames", "frames", VectorX::Ones(6), {}}, {"geometry", "geometry", VectorX::Ones(6), {}}};
-  input.after = "geometry";
+  input.stages = {{Stage::frames, "frames", VectorX::Ones(6), {}}, {Stage::geometry, "geometry", VectorX::Ones(6), {}}};
+  input.after = Stage::geometry;
   const std::string page = report_html(input);
   for (const char* id : {"audit", "poses", "parameters", "joints", "suspects", "drift", "next"})
     EXPECT_FALSE(has(page, message("<section id=\"", id, "\">"))) << id;

@@ -28,8 +28,8 @@ VectorX list(std::initializer_list<double> values) {
 /// A report without poses outside the measured ranges, and the least that its sentences need.
 CalibrationReport least() {
   CalibrationReport out;
-  out.stages = {{"frames", "frames alone", list({1e-3, 2e-3, 3e-3, 6e-3}), {}},
-                {"geometry", "geometry", list({0.1e-3, 0.2e-3, 0.3e-3, 0.6e-3}), list({1e-3, 2e-3, 3e-3, 2e-3})}};
+  out.stages = {{Stage::frames, "frames alone", list({1e-3, 2e-3, 3e-3, 6e-3}), {}},
+                {Stage::geometry, "geometry", list({0.1e-3, 0.2e-3, 0.3e-3, 0.6e-3}), list({1e-3, 2e-3, 3e-3, 2e-3})}};
   out.gates = VectorX::Ones(4);
   return out;
 }
@@ -49,8 +49,8 @@ TEST(ReportJson, StagesInMillimetresAndMilliradians) {
 TEST(ReportJson, DecisionsParametersAndIdentifiability) {
   CalibrationReport report = least();
   report.train_poses = 17;
-  report.chosen = "geometry";
-  report.blocks = {{"elastic", 1e-3, 2e-3, true, 3, 0.25}, {"jointwise", 4e-3, 5e-3, false, 6, 0}};
+  report.chosen = Stage::geometry;
+  report.blocks = {{Block::elastic, 1e-3, 2e-3, true, 3, 0.25}, {Block::jointwise, 4e-3, 5e-3, false, 6, 0}};
   report.trials = {{true, Learner::pso_elm, 7e-3, 8e-3, true}};
   report.mean_temperature = 31;
   report.prior = PriorTransfer{"last year", 0.1, 0.2, true};

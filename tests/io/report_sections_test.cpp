@@ -72,11 +72,11 @@ ReportInput input_of(Index n = 21) {
     errors(i) = 1e-3 * static_cast<double>(i);
     before(i) = errors(i) + 20e-3;
   }
-  out.stages = {{"frames", "frames alone", before, {}},
-                {"geometry", "geometry", before / 2, {}},
-                {"elastic", "elastic", before / 3, {}},
-                {"jointwise", "joint-wise", errors, {}}};
-  out.after = "jointwise";
+  out.stages = {{Stage::frames, "frames alone", before, {}},
+                {Stage::geometry, "geometry", before / 2, {}},
+                {Stage::elastic, "elastic", before / 3, {}},
+                {Stage::jointwise, "joint-wise", errors, {}}};
+  out.after = Stage::jointwise;
   return out;
 }
 
@@ -501,13 +501,13 @@ TEST(ErrorClasses, AreEighthsOfTheLargestButOnePercent) {
 
 TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   CalibrationReport report;
-  report.stages = {{"geometry", "geometry", VectorX::Ones(4), {}}};
+  report.stages = {{Stage::geometry, "geometry", VectorX::Ones(4), {}}};
   report.gates = VectorX::Ones(4);
   report.left_out_errors = list({1e-3, 1.5382e-3, 1.6e-3, 3.9e-3, 4.1e-3, 1.2e-3, 0});  // a median of 1.5382 sigma
   report.left_out_rows = {0, 1, 2, 3, 4, 5, 6};
   report.train_poses = 7;
   report.converged = false;
-  report.stages.push_back({"session", "session", VectorX::Ones(4), {}});
+  report.stages.push_back({Stage::session, "session", VectorX::Ones(4), {}});
   report.normalised_errors = list({0.5, 1, 1.5, 2});
   const ReportInput named = report_input(report, "arm", {"r0", "r1", "r2", "r3", "r4"}),
                     numbered = report_input(report, "arm");
@@ -517,7 +517,7 @@ TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   EXPECT_EQ(named.suspects[0].error, 4.1e-3);
   EXPECT_NEAR(named.suspects[0].normalised, 4.1, 1e-9);
   EXPECT_EQ(numbered.suspects[0].row, "4 of those learned from");
-  EXPECT_EQ(named.after, "geometry");
+  EXPECT_EQ(named.after, Stage::geometry);
   EXPECT_EQ(named.poses.normalised, report.normalised_errors);
   EXPECT_EQ(named.sentences.size(), report.verdict().size() + report.remarks().size());
   ASSERT_EQ(report.remarks().size(), 1u);
@@ -539,8 +539,8 @@ TEST(ReportInputs, OfACheckHaveATableOfJoints) {
   report.options.level = 0.02;
   const ReportInput input = report_input(report, "arm");
   EXPECT_FALSE(input.held_out);
-  EXPECT_EQ(input.before, "as_fitted");
-  EXPECT_EQ(input.after, "as_fitted");
+  EXPECT_EQ(input.before, Stage::as_fitted);
+  EXPECT_EQ(input.after, Stage::as_fitted);
   EXPECT_EQ(input.rule, "");
   EXPECT_EQ(input.passed, std::optional<bool>(true));
   EXPECT_EQ(input.ellipsoid_coverage, std::optional<double>(0.75));
@@ -559,8 +559,8 @@ TEST(ReportInputs, OfACheckHaveATableOfJoints) {
   report.registration->motion.offsets = VectorX::Zero(4);
   report.registration->change_std = VectorX::Zero(16);
   const ReportInput registered = report_input(report, "arm");
-  EXPECT_EQ(registered.before, "as_fitted");
-  EXPECT_EQ(registered.after, "registered");
+  EXPECT_EQ(registered.before, Stage::as_fitted);
+  EXPECT_EQ(registered.after, Stage::registered);
   EXPECT_EQ(registered.rule, "the frames registered from the same poses");
   EXPECT_EQ(registered.tables.size(), 2u);
 }

@@ -5,6 +5,7 @@
 /// needs the component `ceres`: include vernier/ceres.hpp.
 
 #include <chrono>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,7 +68,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
 
   IdentifyOptions frames_alone = options.geometry;
   frames_alone.geometry = false;
-  std::vector<Calibrated<Chain>> frames;
+  StagedModels<Chain> frames{Stage::frames, true, {}};
+  std::optional<ArmGeometry> first;  // as registered from the first station
   std::vector<Isometry3> bases;
   for (std::size_t s = 0; s < poses.size(); ++s) {
     const auto registered = identify(nominal, poses[s], frames_alone, options.sensors);
@@ -77,17 +79,17 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
                                 detail::name_of(options.station_names, s, "station"));
       detail::require_usable(registered, "registering the frames");
     }
-    frames.push_back(registered.model);
-    bases.push_back(registered.model.identified().base());
+    const Framed<Chain>& arm_there = registered.model.identified();
+    frames.models.emplace_back(nominal.model(), arm_there.around(WithJointErrors<Chain>(arm_there.model())));
+    bases.push_back(arm_there.base());
+    if (s == 0) first.emplace(arm_there);
   }
-  for (std::size_t d = 0; d < wires.size() && !frames.empty() && options.refuse_implausible; ++d)
-    detail::require_plausible_distances(ArmGeometry(frames.front().identified()),
-                                        detail::station_of(wires[d], options.sensors),
+  for (std::size_t d = 0; d < wires.size() && first && options.refuse_implausible; ++d)
+    detail::require_plausible_distances(*first, detail::station_of(wires[d], options.sensors),
                                         detail::name_of(options.distance_names, d, "distances"));
 
-  if (!frames.empty() && options.refuse_implausible && !options.errors.tool_per_station)
-    for (const Contact& contact : contacts)
-      detail::require_plausible_contact(ArmGeometry(frames.front().identified()), contact);
+  if (first && options.refuse_implausible && !options.errors.tool_per_station)
+    for (const Contact& contact : contacts) detail::require_plausible_contact(*first, contact);
 
   const auto began = std::chrono::steady_clock::now();
   const auto identified = [&](const IdentifyOptions& of_geometry) {
@@ -105,7 +107,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
       fit_error_model(geometry, poses, wires, of_errors, options.sensors, search, contacts);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
 
-  Calibration<Chain> out{std::move(frames), std::move(geometry), std::move(errors)};
+  if (!poses.empty()) errors.stages.insert(errors.stages.begin(), std::move(frames));
+  Calibration<Chain> out{std::move(geometry), std::move(errors)};
   out.fit_seconds = seconds.count();
   out.sensors = options.sensors;
   if (!poses.empty()) detail::learn_remainders<Chain>(out, poses, options.remainder, fit);
@@ -115,7 +118,7 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Stations& stations, co
   for (std::size_t s = 0; s < poses.size(); ++s) {
     out.poses += poses[s].size();
     out.oriented = out.oriented && poses[s].has_orientations();
-    const VectorX e = detail::visited_errors(out.errors.models[s], poses[s]);
+    const VectorX e = detail::visited_errors(out.errors.models()[s], poses[s]);
     residuals.insert(residuals.end(), e.begin(), e.end());
   }
   for (const auto& data : wires) out.distances += data.size();

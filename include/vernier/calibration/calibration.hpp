@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "vernier/calibration/remainder_options.hpp"
+#include "vernier/calibration/stage_errors.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/core/points.hpp"
@@ -38,10 +38,10 @@ struct Calibration {
   /// Number of joints.
   static constexpr int dof = Chain::dof;
 
-  std::vector<Calibrated<Chain>> frames;  ///< the nominal chain in registered frames, one a station of poses
-  Identified<Chain> geometry;             ///< frames and geometry alone, stations joined in the frame of the first
-  FittedErrorModel<Chain> errors;         ///< geometry and joint errors together
-  std::vector<RemainderTrial> trials{};   ///< learners that were tried on what the models leave
+  Identified<Chain> geometry;  ///< frames and geometry alone, stations joined in the frame of the first
+  FittedErrorModel<Chain>
+      errors;  ///< every stage; that of `frames`, where there are poses, has stations of poses alone
+  std::vector<RemainderTrial> trials{};             ///< learners that were tried on what the models leave
   std::vector<LearnedRemainder<dof>> remainders{};  ///< those of them that were learned from all poses
   std::optional<std::size_t> deployed_remainder{};  ///< which of them is deployed; none where cross-validation
                                                     ///< supports none
@@ -58,18 +58,17 @@ struct Calibration {
   const LearnedRemainder<dof>* deployed() const {
     return deployed_remainder ? &remainders[*deployed_remainder] : nullptr;
   }
-  /// The key of the stage that is deployed: the last that left-out poses support. See `StageErrors`.
-  std::string chosen() const {
-    if (deployed() != nullptr) return remainder_key(deployed()->on_geometry, deployed()->learner);
-    std::string out = "geometry";
-    for (const BlockChoice& block : errors.blocks)
-      for (const char* stage : {"elastic", "jointwise", "approach", "tilt", "temperature", "prior"})
-        if (block.used && block.name == stage) out = stage;
+  /// The stage that is deployed: the last that left-out poses support.
+  StageName chosen() const {
+    if (deployed() != nullptr) return learned_stage(deployed()->on_geometry, deployed()->learner);
+    StageName out;
+    for (const StagedModels<Chain>& staged : errors.stages)
+      if (staged.included && staged.stage > Stage::geometry && staged.stage < Stage::session) out = staged.stage;
     return out;
   }
   /// The model of the first station that is deployed, without what was learned on it.
   const ErrorModel<Chain>& model() const {
-    return deployed() != nullptr && deployed()->on_geometry ? errors.geometry.front() : errors.model();
+    return deployed() != nullptr && deployed()->on_geometry ? errors.models(Stage::geometry).front() : errors.model();
   }
 };
 

@@ -5,33 +5,15 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "vernier/calibration/remainder_options.hpp"
+#include "vernier/calibration/stage_errors.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/least_squares/loss.hpp"
 
 namespace vernier {
-
-/// Errors of held-out poses after a stage of the pipeline.
-struct StageErrors {
-  /// `frames`, `geometry`, `geometry_pso_elm`, `elastic`, `jointwise`, `approach` (predicted with the configuration of
-  /// approach), `tilt` (the same with tilts of joint frames), `temperature` (the same at the temperature of each pose),
-  /// `prior` (fitted with an earlier calibration as the prior),
-  /// `jointwise_pso_elm` (on the last of them, of positions at the mean temperature, without their hysteresis), where
-  /// another learner is better `_ridge_elm` or `_kernel_elm` of either,
-  /// `session` (the last error model with the session's drift, which no other session has)
-  std::string key;
-  std::string title;  ///< for tables
-  VectorX position;   ///< [m]
-  VectorX rotation;   ///< [rad]; empty where orientations are not used
-};
-
-/// A table of the position errors [mm] of stages, and of their mean orientation errors [mrad] where used.
-VERNIER_API std::string stage_table(const std::vector<StageErrors>& stages);
 
 /// One joint.
 struct JointReport {
@@ -66,7 +48,7 @@ struct CalibrationReport {
   std::vector<JointReport> joints{};         ///< one a joint
   std::vector<PoseAdvice> advice{};          ///< for the first weakly determined parameters
   VectorX gates;                             ///< share of the joint-wise terms at each held-out pose
-  std::string chosen = "geometry";           ///< key of the stage that is deployed
+  StageName chosen{};                        ///< the stage that is deployed
   std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
   std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
@@ -90,8 +72,8 @@ struct CalibrationReport {
   /// Number of held-out poses outside the measured joint ranges.
   VERNIER_API Index extrapolated() const;
   /// The errors of a stage.
-  /// @throws std::invalid_argument for a key that is not there
-  VERNIER_API const StageErrors& stage(std::string_view key) const;
+  /// @throws std::invalid_argument where it is not there
+  VERNIER_API const StageErrors& stage(const StageName& name) const;
   /// What else a user should know, a sentence each.
   VERNIER_API std::vector<std::string> remarks() const;
   /// What the calibration is good for, where, and what would improve it, a sentence each.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <numbers>
 
 #include "vernier/calibration/calibration_report.hpp"
@@ -15,33 +14,14 @@
 
 namespace vernier {
 
-VERNIER_IMPL std::string stage_table(const std::vector<StageErrors>& stages) {
-  const bool oriented = !stages.empty() && stages.front().rotation.size() > 0;
-  std::string out = "stage                      mean      rms      max      min      p95";
-  out += oriented ? "  mean [mrad]\n" : "\n";
-  char line[160];
-  for (const StageErrors& stage : stages) {
-    const auto e = ErrorStatistics::of(stage.position * 1e3);
-    std::snprintf(line, sizeof line, "%-22s%9.4f%9.4f%9.4f%9.4f%9.4f", stage.title.c_str(), e.mean, e.rms, e.max, e.min,
-                  e.p95);
-    out += line;
-    if (stage.rotation.size() > 0) {
-      std::snprintf(line, sizeof line, "%13.4f", stage.rotation.mean() * 1e3);
-      out += line;
-    }
-    out += "\n";
-  }
-  return out;
-}
-
 VERNIER_IMPL Index CalibrationReport::extrapolated() const {
   return std::count_if(gates.begin(), gates.end(), [](double gate) { return gate < 1; });
 }
 
-VERNIER_IMPL const StageErrors& CalibrationReport::stage(std::string_view key) const {
-  for (const StageErrors& s : stages)
-    if (s.key == key) return s;
-  throw std::invalid_argument(message("CalibrationReport: no stage is called '", key, "'"));
+VERNIER_IMPL const StageErrors& CalibrationReport::stage(const StageName& name) const {
+  for (const StageErrors& one : stages)
+    if (one.name == name) return one;
+  throw std::invalid_argument(message("CalibrationReport: there is no stage '", name.key(), "'"));
 }
 
 VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
@@ -49,7 +29,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
   for (const RemainderTrial& trial : trials)
-    if (!trial.on_geometry && trial.learner == Learner::pso_elm && chosen.rfind("jointwise_", 0) != 0)
+    if (!trial.on_geometry && trial.learner == Learner::pso_elm && chosen.stage != Stage::learned)
       out.push_back("What learners find in what the error model leaves does not help left-out poses: not used.");
   if (outliers > 0 && median_error > 1e-6)
     out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
@@ -97,36 +77,14 @@ VERNIER_API std::string describe_ranges(const std::vector<JointReport>& joints) 
 
 /// A decision on a block of joint errors.
 VERNIER_API std::string describe_block(const BlockChoice& block) {
-  static const std::map<std::string_view, std::pair<const char*, const char*>> texts{
-      {"elastic", {"Gravity compliance helps ", "Gravity compliance alone does not help "}},
-      {"jointwise",
-       {"Joint-wise terms help ",
-        "Joint-wise terms are left out: this robot's errors are not functions of single joints "}},
-      {"elastic_with_jointwise",
-       {"Beside joint-wise terms gravity compliance is kept ",
-        "Beside joint-wise terms gravity compliance is left out "}},
-      {"gears", {"Gear ratios and coupling help ", "Gear ratios and coupling do not help "}},
-      {"approach",
-       {"Hysteresis by the direction of approach helps ",
-        "Hysteresis is left out: errors do not depend on the direction of approach "}},
-      {"tilt", {"Tilts of joint frames under gravity help ", "Tilts of joint frames under gravity do not help "}},
-      {"temperature",
-       {"The geometry changes with temperature: that helps ",
-        "No change of the geometry with temperature is noticeable "}},
-      {"prior", {"An earlier calibration as the prior helps ", "The earlier calibration is useless here: left out "}},
-      {"lines",
-       {"Orders that stand out of what the model left help ",
-        "Orders that stand out of what the model left are left out "}},
-      {"drift", {"The base drifted during the session ", "No drift of the base is noticeable "}},
-      {"joint_drift", {"The zeros of the joints drifted, too ", "No drift of the joints' zeros is noticeable "}},
-      {"tuned_priors", {"Optimised priors help ", "Optimised priors are left out: they do not help "}}};
-  const auto& [helps, does_not] = texts.at(block.name);
-  return message(block.used ? helps : does_not, "(leave-one-pose-out error: ", brief(block.without * 1e3),
-                 " mm without, ", brief(block.with * 1e3), " mm with",
-                 block.log_density_gain > 0 ? "; log predictive density of a left-out pose greater by " +
-                                                  brief(block.log_density_gain) + " nat"
-                                            : std::string(),
-                 ").");
+  const BlockTraits& traits = traits_of(block.block);
+  return message(
+      block.used ? traits.included : traits.left_out, "(leave-one-pose-out error: ", brief(block.without * 1e3),
+      " mm without, ", brief(block.with * 1e3), " mm with",
+      block.log_density_gain > 0
+          ? "; log predictive density of a left-out pose greater by " + brief(block.log_density_gain) + " nat"
+          : std::string(),
+      ").");
 }
 
 /// Poses that would determine a parameter.

@@ -54,9 +54,11 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
                            const JointLimits<Chain::dof>& limits = {}) {
   constexpr int N = Chain::dof;
   const std::span<const Dataset<N>> test(std::data(held_out), std::size(held_out));
-  require(test.size() == calibration.frames.size() && !test.empty(), "evaluate: ", test.size(),
-          " sets of held-out poses for ", calibration.frames.size(), " stations");
   const FittedErrorModel<Chain>& errors = calibration.errors;
+  const std::vector<ErrorModel<Chain>>& models = errors.models();
+  const std::size_t stations = errors.stages.front().stage == Stage::frames ? errors.stages.front().models.size() : 0;
+  require(test.size() == stations && !test.empty(), "evaluate: ", test.size(), " sets of held-out poses for ", stations,
+          " stations");
   CalibrationReport out;
   out.identification = calibration.geometry;
   out.blocks = errors.blocks;
@@ -71,72 +73,58 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   out.fit_seconds = calibration.fit_seconds;
   out.leave_one_out_seconds = errors.leave_one_out_seconds;
 
-  const auto assess = [&](const char* key, const char* title, const auto& models) {
-    StageErrors stage{key, title, {}, {}};
-    stage.position = detail::over_stations<N>(
-        test, [&](std::size_t s, const auto& data) { return position_errors(models[s], data); });
-    if (out.oriented)
-      stage.rotation = detail::over_stations<N>(
-          test, [&](std::size_t s, const auto& data) { return rotation_errors(models[s], data); });
-    out.stages.push_back(std::move(stage));
+  const bool with_temperatures =
+      std::all_of(test.begin(), test.end(), [](const auto& data) { return data.temperatures().size() > 0; });
+  const char* last_title = "";  // of the last error model
+  const auto assess = [&](const StagedModels<Chain>& staged) {
+    const StageTraits& traits = traits_of(staged.stage);
+    const auto poses = [&](std::size_t s, const Dataset<N>& data) {
+      return detail::visited_poses(staged.models[s], data, traits.thermal,
+                                   traits.drift && s < errors.drift.size() ? errors.drift[s] : SessionDrift{});
+    };
+    const auto position = [&](std::size_t s, const Dataset<N>& data) {
+      return traits.visits ? detail::position_errors_of(poses(s, data), data.positions())
+                           : position_errors(staged.models[s], data);
+    };
+    const auto rotation = [&](std::size_t s, const Dataset<N>& data) {
+      return traits.visits ? detail::rotation_errors_of(poses(s, data), data.orientations())
+                           : rotation_errors(staged.models[s], data);
+    };
+    out.stages.emplace_back(staged.stage, detail::over_stations<N>(test, position),
+                            out.oriented ? detail::over_stations<N>(test, rotation) : VectorX());
+    last_title = traits.title;
   };
-  const auto assess_learned = [&](bool on_geometry, const char* base, const auto& models,
+  const auto assess_learned = [&](bool on_geometry, const std::vector<ErrorModel<Chain>>& below,
                                   std::span<const Dataset<N>> data) {
     std::vector<Isometry3> bases;
-    for (const auto& model : models) bases.push_back(model.identified().base());
+    for (const auto& model : below) bases.push_back(model.identified().base());
     bases.resize(test.size());
     const VectorX rotation = out.stages.back().rotation;
     for (const LearnedRemainder<N>& remainder : calibration.remainders) {
       if (remainder.on_geometry != on_geometry) continue;
-      const CartesianCorrected hybrid(models.front(), remainder.predictor, remainder.coverage);
-      out.stages.push_back({remainder_key(on_geometry, remainder.learner),
-                            message(base, " + ", learner_title(remainder.learner)),
-                            position_errors(hybrid, in_one_frame<N>(data, bases, false)), rotation});
+      const CartesianCorrected hybrid(below.front(), remainder.predictor, remainder.coverage);
+      out.stages.emplace_back(learned_stage(on_geometry, remainder.learner),
+                              message(last_title, " + ", learner_title(remainder.learner)),
+                              position_errors(hybrid, in_one_frame<N>(data, bases, false)), rotation);
     }
   };
-  assess("frames", "frames", calibration.frames);
-  assess("geometry", "geometry", errors.geometry);
-  assess_learned(true, "geometry", errors.geometry, test);
-  assess("elastic", "elastic", errors.elastic);
-  assess("jointwise", "joint-wise", errors.jointwise);
-  const auto assess_visits = [&](const char* key, const auto& models, bool temperature,
-                                 const std::vector<SessionDrift>& drift) {
-    StageErrors stage{key, key, {}, {}};
-    const auto poses = [&](std::size_t s, const Dataset<N>& data) {
-      return detail::visited_poses(models[s], data, temperature, s < drift.size() ? drift[s] : SessionDrift{});
-    };
-    stage.position = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
-      return detail::position_errors_of(poses(s, data), data.positions());
-    });
-    if (out.oriented)
-      stage.rotation = detail::over_stations<N>(test, [&](std::size_t s, const auto& data) {
-        return detail::rotation_errors_of(poses(s, data), data.orientations());
-      });
-    out.stages.push_back(std::move(stage));
+  const auto assess_learned_on_models = [&] {
+    assess_learned(false, models, detail::static_poses<Chain>(models, test, {}));
   };
-  const bool prior = errors.prior && errors.prior->used;
-  const bool approach = !prior && !errors.arm.terms().hysteresis.empty();
-  const bool tilt = !errors.approach.empty();
-  const bool thermal = !prior && errors.model().thermal() != nullptr &&
-                       std::all_of(test.begin(), test.end(), [](const auto& d) { return d.temperatures().size() > 0; });
-  if (approach || (!prior && errors.model().thermal() != nullptr && !tilt))
-    assess_visits("approach", tilt ? errors.approach : errors.models, false, {});
-  if (tilt) assess_visits("tilt", errors.models, false, {});
-  if (thermal) assess_visits("temperature", errors.models, true, {});
-  if (prior) assess_visits("prior", errors.models, true, {});
-  assess_learned(false,
-                 prior      ? "prior"
-                 : thermal  ? "temperature"
-                 : tilt     ? "tilt"
-                 : approach ? "approach"
-                            : "joint-wise",
-                 errors.models, detail::static_poses<Chain>(errors.models, test, {}));
-  if (!errors.drift.empty()) assess_visits("session", errors.models, true, errors.drift);
+  for (const StagedModels<Chain>& staged : errors.stages) {
+    if (staged.stage == Stage::temperature && !with_temperatures) continue;
+    if (staged.stage == Stage::session) assess_learned_on_models();
+    assess(staged);
+    if (staged.stage == Stage::geometry) assess_learned(true, staged.models, test);
+  }
+  if (errors.stages.back().stage != Stage::session) assess_learned_on_models();
   out.drift = errors.drift;
   out.prior = errors.prior;
   out.trials = calibration.trials;
   out.chosen = calibration.chosen();
-  if (out.chosen == "temperature" && !thermal) out.chosen = tilt ? "tilt" : "approach";
+  if (out.chosen == Stage::temperature && !with_temperatures)  // the stage before is what can be assessed
+    for (const StagedModels<Chain>& staged : errors.stages)
+      if (staged.stage < Stage::temperature) out.chosen = staged.stage;
   if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
 
   const auto evaluation = [&](const auto& model) {
@@ -151,9 +139,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
     return std::isfinite(sum) ? seconds.count() / static_cast<double>(count) : 0;
   };
   const LearnedRemainder<N>* deployed = calibration.deployed();
-  const auto& chosen_model = out.chosen == "elastic"     ? errors.elastic.front()
-                             : out.chosen == "jointwise" ? errors.jointwise.front()
-                                                         : calibration.model();
+  const auto& chosen_model = deployed != nullptr ? calibration.model() : errors.models(out.chosen.stage).front();
   out.evaluation_seconds = deployed != nullptr
                                ? evaluation(CartesianCorrected(chosen_model, deployed->predictor, deployed->coverage))
                                : evaluation(chosen_model);
@@ -165,12 +151,12 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   });
   out.normalised_errors = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
     VectorX gates(data.size()), normalised(data.size());
-    for (Index i = 0; i < data.size(); ++i) gates(i) = errors.models[s].gate(data.joints(i));
+    for (Index i = 0; i < data.size(); ++i) gates(i) = models[s].gate(data.joints(i));
     const std::vector<Matrix6> covariances =
         errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
-    const std::vector<Isometry3> poses = detail::visited_poses(errors.models[s], data, true, {});
+    const std::vector<Isometry3> poses = detail::visited_poses(models[s], data, true, {});
     const Matrix3 back = rotation(errors.model().identified().base()).transpose();
-    const Matrix3 turn = rotation(errors.models[s].identified().base()) * back;
+    const Matrix3 turn = rotation(models[s].identified().base()) * back;
     for (Index i = 0; i < data.size(); ++i) {
       const auto row = static_cast<std::size_t>(i);
       Vector3 error = translation(poses[row]) - data.position(i);
@@ -180,7 +166,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
       if (s < errors.drift.size() && !errors.drift[s].empty())
         covariance += errors.drift[s]
                           .covariance_beyond(data.times()(i), poses[row].translation(),
-                                             errors.models[s].pose_and_jacobian(data.joints(i)).jacobian)
+                                             models[s].pose_and_jacobian(data.joints(i)).jacobian)
                           .template topLeftCorner<3, 3>();
       normalised(i) = detail::normalised_error(error, covariance);
     }
@@ -192,7 +178,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   out.ellipsoid_coverage = static_cast<double>(within) / static_cast<double>(out.normalised_errors.size());
   out.left_out_errors = errors.left_out_errors;
   out.left_out_rows = errors.left_out_rows;
-  const VectorX &geometry = out.stage("geometry").position, &of_chosen = out.stage(out.chosen).position;
+  const VectorX &geometry = out.stage(Stage::geometry).position, &of_chosen = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, of_chosen(i) - geometry(i));
   for (int j = 0; j < N; ++j) {

@@ -122,11 +122,11 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
   if (options.learners.empty()) return;
   std::optional<BestLearner> on_geometry, on_model;
   if (options.on_geometry)
-    on_geometry = try_learners<Chain>(out, true, errors.geometry, stations, errors.geometry_left_out_errors,
-                                      errors.left_out_rows, options, fit);
+    on_geometry = try_learners<Chain>(out, true, errors.models(Stage::geometry), stations,
+                                      errors.geometry_left_out_errors, errors.left_out_rows, options, fit);
   if (options.on_error_model)
     on_model =
-        try_learners<Chain>(out, false, errors.models, static_poses<Chain>(errors.models, stations, errors.drift),
+        try_learners<Chain>(out, false, errors.models(), static_poses<Chain>(errors.models(), stations, errors.drift),
                             errors.left_out_errors, errors.left_out_rows, options, fit);
   std::optional<std::size_t> chosen;
   if (on_model && on_model->helps) chosen = on_model->trial;
@@ -139,10 +139,10 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
     if (out.remainders[k].on_geometry == trial.on_geometry && out.remainders[k].learner == trial.learner)
       out.deployed_remainder = k;
   if (!out.deployed_remainder) {
-    const auto& models = trial.on_geometry ? errors.geometry : errors.models;
+    const auto& models = trial.on_geometry ? errors.models(Stage::geometry) : errors.models();
     std::vector<Isometry3> bases;
     for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
-    const std::vector<Dataset<Chain::dof>> still = static_poses<Chain>(errors.models, stations, errors.drift);
+    const std::vector<Dataset<Chain::dof>> still = static_poses<Chain>(errors.models(), stations, errors.drift);
     out.deployed_remainder = out.remainders.size();
     out.remainders.push_back(
         learn_remainder(trial.on_geometry, trial.learner, models.front(),

@@ -26,11 +26,6 @@ inline const char* learner_key(Learner learner) {
 inline const char* learner_title(Learner learner) {
   return learner == Learner::pso_elm ? "PSO-ELM" : learner == Learner::ridge_elm ? "ridge ELM" : "kernel ELM";
 }
-/// The key of the stage of a learner on geometry alone or on the error model, see `StageErrors`.
-inline std::string remainder_key(bool on_geometry, Learner learner) {
-  return message(on_geometry ? "geometry_" : "jointwise_", learner_key(learner));
-}
-
 /// How the position error that a model leaves is learned.
 struct RemainderOptions {
   bool on_geometry = false;    ///< also on geometry alone: the classical alternative to an error model

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/error_model/stage.hpp"
 #include "vernier/identification/arm_parameterisation.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/identification/session_drift.hpp"
@@ -18,11 +19,7 @@ namespace vernier {
 
 /// Decision on a block of unknowns by leave-one-pose-out errors, of few poses also by log predictive densities.
 struct BlockChoice {
-  /// `elastic` (gravity), `jointwise` (transmission); where that is in, `gears` (gear ratios, coupling),
-  /// `elastic_with_jointwise` (gravity, decided again) and after a search `tuned_priors`; `approach` (hysteresis),
-  /// `tilt` (of joint frames under gravity), `temperature` (changes of the geometry), `prior` (an earlier calibration),
-  /// `drift` (of the bases), `joint_drift` (of the joints' zeros), `lines` (orders found in the residuals)
-  std::string name;
+  Block block{};         ///< which unknowns
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
   double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried
   bool used = false;     ///< whether it is in the model

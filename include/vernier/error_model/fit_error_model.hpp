@@ -3,6 +3,7 @@
 /// @file
 /// Fits geometry, frames and joint errors together, to poses and distances measured from one place or several.
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -20,11 +21,18 @@ namespace vernier {
 
 namespace detail {
 
-/// A fitted error model without its type; a vector has one arm a station.
+/// The arms of a stage without their type, one a station.
+struct StagedArms {
+  Stage stage;
+  bool included;                ///< whether the data support the effect that the stage adds
+  std::vector<FittedArm> arms;  ///< one a station
+  bool last = false;            ///< whether these are the arms with everything
+};
+
+/// A fitted error model without its type.
 struct ErrorModelOutput {
   ErrorModelEstimate estimate;
-  std::vector<FittedArm> geometry{}, elastic{}, without_approach{}, without_tilt{}, all{};
-  bool jointwise = false;                ///< whether the data support transmission terms
+  std::vector<StagedArms> stages{};
   MatrixX joints{};                      ///< of all samples
   std::vector<VectorX> thermal_rates{};  ///< one a station; empty where the geometry does not change with temperature
   std::array<double, 2> temperatures{};  ///< lowest and highest [deg C]
@@ -69,23 +77,25 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
   // what an earlier calibration measured is known, too
   const bool inherited = out.prior && out.prior->used;
   const JointCoverage<N> known = inherited ? coverage.joined(options.prior->ranges, options.prior->margins) : coverage;
-  if (inherited) found.without_tilt.clear();
-  for (std::size_t s = 0; s < found.all.size(); ++s) {
-    out.geometry.push_back({nominal, found.geometry[s].typed(nominal)});
-    out.elastic.push_back({nominal, found.elastic[s].typed(nominal)});
-    const auto gated = [&](const FittedArm& arm, const JointCoverage<N>& where) {
+  const auto elastic = std::find_if(found.stages.begin(), found.stages.end(),
+                                    [](const detail::StagedArms& staged) { return staged.stage == Stage::elastic; });
+  for (const detail::StagedArms& staged : found.stages) {
+    const bool last = staged.last;
+    StagedModels<Chain> models{staged.stage, staged.included, {}};
+    for (std::size_t s = 0; s < staged.arms.size(); ++s) {
+      const FittedArm& arm = staged.arms[s];
       const JointTerms& terms = arm.errors.terms();
-      return terms.size() > terms.num_dense_terms() || arm.errors.tilts()
-                 ? ErrorModel<Chain>(nominal, arm.typed(nominal),
-                                     found.elastic[s].with_hysteresis_of(arm).typed(nominal), where)
-                 : ErrorModel<Chain>(nominal, arm.typed(nominal));
-    };
-    out.jointwise.push_back(gated(found.without_approach[s], coverage));
-    if (!found.without_tilt.empty()) out.approach.push_back(gated(found.without_tilt[s], coverage));
-    out.models.push_back(gated(found.all[s], known));
-    if (!found.thermal_rates.empty())
-      out.models.back() = out.models.back().with_thermal(
-          {out.mean_temperature, found.temperatures[0], found.temperatures[1], found.thermal_rates[s]});
+      const bool gated = terms.size() > terms.num_dense_terms() || arm.errors.tilts();
+      ErrorModel<Chain> model =
+          gated ? ErrorModel<Chain>(nominal, arm.typed(nominal),
+                                    elastic->arms[s].with_hysteresis_of(arm).typed(nominal), last ? known : coverage)
+                : ErrorModel<Chain>(nominal, arm.typed(nominal));
+      if (last && !found.thermal_rates.empty())
+        model = model.with_thermal(
+            {out.mean_temperature, found.temperatures[0], found.temperatures[1], found.thermal_rates[s]});
+      models.models.push_back(std::move(model));
+    }
+    out.stages.push_back(std::move(models));
   }
   return out;
 }

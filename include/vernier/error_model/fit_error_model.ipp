@@ -30,21 +30,22 @@ class ErrorModelFit {
     ErrorModelOutput out{.estimate = {.arm = problem_.arm}};
     ErrorModelEstimate& estimate = out.estimate;
     model_.solve();
-    out.geometry = arms();
+    out.stages.push_back({Stage::geometry, true, arms()});
     if (!input_.poses.empty()) estimate.geometry_left_out_errors = model_.left_out_errors();
 
     JointTerms elastic(input_.nominal.joints());
     if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
-    if (elastic.size() > 0 && model_.add("elastic", elastic, false)) model_.solve();
-    out.elastic = arms();
+    const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic, false);
+    if (deflects) model_.solve();
+    out.stages.push_back({Stage::elastic, deflects, arms()});
 
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
       if (input_.nominal.revolute(j))
         all.transmission[static_cast<std::size_t>(j)] =
             orders_of_joint(options_, model_.spectra, static_cast<std::size_t>(j), problem_.num_blocks());
-    out.jointwise = all.size() > elastic.size() && model_.add("jointwise", all, true);
-    if (out.jointwise) {
+    const bool jointwise = all.size() > elastic.size() && model_.add(Block::jointwise, all, true);
+    if (jointwise) {
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
       model_.learn_spectrum(6);
@@ -55,28 +56,27 @@ class ErrorModelFit {
       const MatrixX joints = problem_.joints();
       for (Index j = 0; j < joints.cols(); ++j)
         all.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
-      if ((all.gear_ratio || all.coupling) && model_.add("gears", all, true)) model_.learn_spectrum(4);
+      if ((all.gear_ratio || all.coupling) && model_.add(Block::gears, all, true)) model_.learn_spectrum(4);
       if (elastic.size() > 0)  // deflection is clearer once all else is modelled
-        model_.choose_by_evidence("elastic_with_jointwise", model_.gravity());
+        model_.choose_by_evidence(Block::elastic_again, model_.gravity());
       model_.solve();
       if (search) {
         tune(search);
         model_.solve();
       }
     }
-    out.without_approach = arms();
+    out.stages.push_back({Stage::jointwise, jointwise, arms()});
 
     JointTerms approached = problem_.arm.terms();
     approached.hysteresis = hysteresis_widths();
-    const bool hysteresis = options_.hysteresis && model_.add("approach", approached, true);
+    const bool hysteresis = options_.hysteresis && model_.add(Block::approach, approached, true);
     if (hysteresis) model_.steps(2);
     std::vector<FittedArm> without_tilt = arms();
     JointTerms tilted = problem_.arm.terms();
     if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
-    const bool tilt = options_.tilt && model_.add("tilt", tilted, true);
+    const bool tilt = options_.tilt && model_.add(Block::tilt, tilted, true);
     if (tilt) {
-      out.without_tilt = std::move(without_tilt);
-      if (!out.jointwise) estimate.fallback_error = model_.blocks.back().without;
+      if (!jointwise) estimate.fallback_error = model_.blocks.back().without;
       model_.steps(2);
       model_.size_by_evidence(model_.gravity());  // the third axis, that of the joint
       model_.solve();
@@ -86,19 +86,33 @@ class ErrorModelFit {
     const bool inherited = options_.prior != nullptr && inherit(out);
     if (inherited) thermal = problem_.arm.thermal_rates(0).size() > 0;
     const bool drift = options_.drift && add_drift(model_);
-    if ((hysteresis || tilt || thermal || drift) && out.jointwise && !search && !inherited) {
+    if ((hysteresis || tilt || thermal || drift) && jointwise && !search && !inherited) {
       model_.learn_spectrum(4);
       model_.steps(1);
     }
-    if (out.jointwise && options_.find_lines && !inherited) find_lines(model_);
+    if (jointwise && options_.find_lines && !inherited) find_lines(model_);
     model_.solve();
     out.estimate.drift = problem_.drift;
-    out.all = arms();
-    // a stage without hysteresis is what is deployed: drift and lines are taken off it, too
+    const std::vector<FittedArm> fitted = arms();
+    const auto add = [&](Stage stage, bool included, const std::vector<FittedArm>& with, bool last = true) {
+      out.stages.push_back({stage, included, with, last});
+    };
     const bool later = hysteresis || tilt || thermal || inherited;
-    const bool geometry_alone = !later && !out.jointwise && problem_.arm.terms().size() == 0;
-    if (!later) out.without_approach = out.all;
-    if (!later && !out.jointwise) (geometry_alone ? out.geometry : out.elastic) = out.all;
+    const bool geometry_alone = !later && !jointwise && problem_.arm.terms().size() == 0;
+    if (inherited) {
+      add(Stage::prior, true, fitted);
+    } else if (later) {
+      if (hysteresis || !tilt) add(Stage::approach, hysteresis, tilt ? without_tilt : fitted, !tilt);
+      if (tilt) add(Stage::tilt, true, fitted);
+      if (thermal) add(Stage::temperature, true, fitted);
+    } else {  // what is deployed is a stage of before: drift and lines are taken off it, too
+      for (StagedArms& staged : out.stages) {
+        const Stage replaced = jointwise ? Stage::jointwise : geometry_alone ? Stage::geometry : Stage::elastic;
+        if (staged.stage == replaced || staged.stage == Stage::jointwise) staged.arms = fitted;
+      }
+      out.stages.back().last = true;
+    }
+    if (!problem_.drift.empty()) add(Stage::session, true, fitted);
     out.joints = problem_.joints();
     for (int s = 0; thermal && s < problem_.arm.stations(); ++s)
       out.thermal_rates.push_back(problem_.arm.thermal_rates(s));
@@ -141,7 +155,7 @@ class ErrorModelFit {
     problem_.reference_temperature = mean;
     problem_.arm.set_geometric(std::move(unknowns));
     model_.changed();
-    if (!model_.choose_by_evidence("temperature", added)) {
+    if (!model_.choose_by_evidence(Block::temperature, added)) {
       problem_.arm = before;
       model_.changed();
       return false;
@@ -191,7 +205,7 @@ class ErrorModelFit {
     transfer.used = converged && holds && error_with < error_without;
     estimate.prior = transfer;
     model_.blocks.push_back(
-        {"prior", error_without, error_with, transfer.used, 1 / (transfer.joints * transfer.joints)});
+        {Block::prior, error_without, error_with, transfer.used, 1 / (transfer.joints * transfer.joints)});
     if (!transfer.used) {
       problem_ = without;
       model_.changed();
@@ -226,7 +240,7 @@ class ErrorModelFit {
     const PriorObjective objective(at.system, at.normal, before, at.steps, dense_terms, amplitudes, model_.stride);
     const VectorX after = objective.precisions(search(objective, objective.box()));
     const double without = objective.error(before), with = objective.error(after);
-    model_.blocks.push_back({"tuned_priors", without, with, with < without, 1});
+    model_.blocks.push_back({Block::tuned_priors, without, with, with < without, 1});
     problem_.arm.set_precisions(with < without ? after : before);
   }
 

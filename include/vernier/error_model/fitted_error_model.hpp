@@ -19,28 +19,42 @@ struct PredictedPose {
   double gate = 1;     ///< share of the joint-wise terms in it
 };
 
+/// The arms of a stage.
+template <class Chain>
+struct StagedModels {
+  Stage stage;                            ///< up to which effects are in them
+  bool included = true;                   ///< whether the data support the effect that the stage adds
+  std::vector<ErrorModel<Chain>> models;  ///< one a station, those of poses first; they differ in their frames
+};
+
 /// An error model with everything that was estimated.
 template <class Chain>
 struct FittedErrorModel : ErrorModelEstimate {
   /// Number of joints.
   static constexpr int N = Chain::dof;
 
-  std::vector<ErrorModel<Chain>> models{};     ///< one a station, those of distances last; they differ in their frames
-  std::vector<ErrorModel<Chain>> approach{};   ///< the same before tilts of joint frames; empty where there are none
-  std::vector<ErrorModel<Chain>> jointwise{};  ///< the same before hysteresis, tilts and changes with temperature
-  std::vector<ErrorModel<Chain>> elastic{};    ///< the same before transmission terms
-  std::vector<ErrorModel<Chain>> geometry{};   ///< the same before all joint errors
+  /// In order, `geometry`, `elastic` and `jointwise` always; the last one has everything that the data support.
+  std::vector<StagedModels<Chain>> stages{};
 
   /// Without arms.
   explicit FittedErrorModel(ErrorModelEstimate estimate) : ErrorModelEstimate(std::move(estimate)) {}
 
+  /// The models with everything that the data support, one a station; they differ in their frames.
+  const std::vector<ErrorModel<Chain>>& models() const { return stages.back().models; }
   /// The model of the first, or only, station.
-  const ErrorModel<Chain>& model() const { return models.front(); }
+  const ErrorModel<Chain>& model() const { return models().front(); }
+  /// The models of a stage, one a station; those of the last one before it where there is no such stage.
+  const std::vector<ErrorModel<Chain>>& models(Stage stage) const {
+    std::size_t last = 0;
+    for (std::size_t k = 0; k < stages.size(); ++k)
+      if (stages[k].stage <= stage) last = k;
+    return stages[last].models;
+  }
 
   /// The predicted pose of the arm at q, with its covariance.
   /// @complexity O(unknowns^2); allocates
   PredictedPose predicted(const JointVector<N>& q, int station = 0) const {
-    const auto& model = models[static_cast<std::size_t>(station)];
+    const auto& model = models()[static_cast<std::size_t>(station)];
     const double gate = model.gate(q);
     return {model.pose(q), visit_covariance(q, gate, station), gate};
   }
@@ -51,7 +65,7 @@ struct FittedErrorModel : ErrorModelEstimate {
   /// @param temperature of the arm [deg C]; not finite where unknown
   PredictedPose predicted_from(const JointVector<N>& previous, const JointVector<N>& q, int station = 0,
                                double temperature = std::numeric_limits<double>::quiet_NaN()) const {
-    const auto& model = models[static_cast<std::size_t>(station)];
+    const auto& model = models()[static_cast<std::size_t>(station)];
     const double gate = model.gate(q);
     const auto predict = [&](const auto& now) {
       return PredictedPose{now.approached_from(previous).pose(q),

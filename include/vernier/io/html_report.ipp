@@ -58,8 +58,8 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
   out.title = "Check of a calibration";
   out.headline = report.verdict();
   out.stages = stages_of(report);
-  out.before = out.stages.front().key;
-  out.after = out.stages.back().key;
+  out.before = out.stages.front().name;
+  out.after = out.stages.back().name;
   out.held_out = false;
   if (report.registration) out.rule = "the frames registered from the same poses";
   out.passed = report.valid;
@@ -105,7 +105,7 @@ VERNIER_IMPL std::string report_html(const ReportInput& input) {
   const Index n = stage_of(input, input.after).position.size(), m = input.poses.positions.rows();
   for (const StageErrors& stage : input.stages)
     require(stage.position.size() == n && (stage.rotation.size() == 0 || stage.rotation.size() == n),
-            "report_html: stage '", stage.key, "' has ", stage.position.size(), " errors, expected ", n);
+            "report_html: stage '", stage.key(), "' has ", stage.position.size(), " errors, expected ", n);
   require(m == 0 || m == n, "report_html: ", m, " poses for ", n, " errors");
   const auto fits = [&](const char* what, auto size) {
     require(size == 0 || static_cast<Index>(size) == n, "report_html: ", size, ' ', what, " of ", n, " poses");

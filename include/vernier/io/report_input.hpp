@@ -72,8 +72,8 @@ struct ReportInput {
   std::string title = "Calibration";     ///< what this is the report of
   std::string headline{};                ///< first sentence of the verdict; the errors follow
   std::vector<StageErrors> stages{};     ///< position errors of the poses [m], orientation errors [rad]
-  std::string before = "frames";         ///< key of the stage before
-  std::string after{};                   ///< key of the stage that is deployed
+  StageName before = Stage::frames;      ///< the stage before
+  StageName after{};                     ///< the stage that is deployed
   bool held_out = true;                  ///< whether the poses are none that the model was fitted to
   std::string rule{};                    ///< how they were held out, in words
   Index train_poses = 0;                 ///< number of poses it was fitted to

@@ -13,8 +13,9 @@ VERNIER_IMPL nlohmann::ordered_json stages_to_json(const std::vector<StageErrors
   nlohmann::ordered_json out;
   for (const StageErrors& stage : stages) {
     const auto e = ErrorStatistics::of(stage.position * 1e3);
-    out[stage.key] = {{"mean_mm", e.mean}, {"rms_mm", e.rms}, {"max_mm", e.max}, {"min_mm", e.min}, {"p95_mm", e.p95}};
-    if (stage.rotation.size() > 0) out[stage.key]["mean_mrad"] = stage.rotation.mean() * 1e3;
+    nlohmann::ordered_json& of_stage = out[stage.key()];
+    of_stage = {{"mean_mm", e.mean}, {"rms_mm", e.rms}, {"max_mm", e.max}, {"min_mm", e.min}, {"p95_mm", e.p95}};
+    if (stage.rotation.size() > 0) of_stage["mean_mrad"] = stage.rotation.mean() * 1e3;
   }
   return out;
 }
@@ -24,7 +25,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
   const IdentificationReport& identification = report.identification;
   Json parameters = Json::array(), blocks = Json::array();
   for (const BlockChoice& block : report.blocks)
-    blocks.push_back({{"name", block.name},
+    blocks.push_back({{"name", traits_of(block.block).key},
                       {"used", block.used},
                       {"left_out_without_mm", block.without * 1e3},
                       {"left_out_with_mm", block.with * 1e3},
@@ -38,7 +39,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                           {"std", p.std * 1e3}});
   Json trials = Json::array();
   for (const RemainderTrial& trial : report.trials)
-    trials.push_back({{"stage", remainder_key(trial.on_geometry, trial.learner)},
+    trials.push_back({{"stage", learned_stage(trial.on_geometry, trial.learner).key()},
                       {"used", trial.supported},
                       {"left_out_without_mm", trial.without * 1e3},
                       {"left_out_with_mm", trial.with * 1e3}});
@@ -81,7 +82,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"train_rows", report.train_poses},
           {"test_rows", report.test_poses()},
           {"stages", stages_to_json(report.stages)},
-          {"chosen", report.chosen},
+          {"chosen", report.chosen.key()},
           {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
           {"blocks", blocks},
           {"learners", trials},
@@ -122,9 +123,9 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) 
 }
 
 VERNIER_IMPL std::vector<StageErrors> stages_of(const VerificationReport& report) {
-  if (!report.registration) return {{"as_fitted", "as fitted", report.errors, report.rotations}};
-  return {{"as_fitted", "as fitted", report.as_fitted, report.rotations_as_fitted},
-          {"registered", "registered", report.errors, report.rotations}};
+  if (!report.registration) return {{Stage::as_fitted, report.errors, report.rotations}};
+  return {{Stage::as_fitted, report.as_fitted, report.rotations_as_fitted},
+          {Stage::registered, report.errors, report.rotations}};
 }
 
 VERNIER_IMPL nlohmann::ordered_json to_json(const VerificationReport& report, const std::string& robot) {

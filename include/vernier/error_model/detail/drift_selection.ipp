@@ -7,8 +7,7 @@ namespace vernier::detail {
 
 /// Chooses the precisions of random walks, of unknowns first .. end - 1 of each state: their factor by evidence, in
 /// steps of four from 1 down to `lowest` or up to 64, and whether there is such a drift by leave-one-pose-out errors.
-VERNIER_API BlockChoice choose_drift(const ModelSelection& model, const char* name, Index first, Index end,
-                                     double lowest) {
+VERNIER_API BlockChoice choose_drift(const ModelSelection& model, Block block, Index first, Index end, double lowest) {
   ModelSelection::Linearised at = model.linearised();  // the precisions of the random walks are all that changes
   SparseSymmetric& prior = at.normal.local_prior;
   const std::vector<double> expected = prior.values;
@@ -35,7 +34,7 @@ VERNIER_API BlockChoice choose_drift(const ModelSelection& model, const char* na
   scale(suppressing_precision);
   const LeftOutBlocks without = model.left_out(at, precisions);
   scale(best);
-  return model.choice_between(name, model.left_out(at, precisions), without, best);
+  return model.choice_between(block, model.left_out(at, precisions), without, best);
 }
 
 /// Lets the joints' zeros drift beside the bases, if leave-one-pose-out errors support that.
@@ -44,7 +43,7 @@ VERNIER_API void add_joint_drift(ModelSelection& model) {
   problem.start_joint_drift();
   problem.joint_drift_precision = 1;
   model.changed();
-  const BlockChoice choice = choose_drift(model, "joint_drift", 6, 6 + problem.arm.geometry(0).joints(), 0.25);
+  const BlockChoice choice = choose_drift(model, Block::joint_drift, 6, 6 + problem.arm.geometry(0).joints(), 0.25);
   model.blocks.push_back(choice);
   problem.joint_drift_precision = choice.precision;
   if (choice.used)
@@ -63,7 +62,7 @@ VERNIER_IMPL bool add_drift(ModelSelection& model) {
     return false;
   }
   model.changed();
-  const BlockChoice choice = choose_drift(model, "drift", 0, 6, 0.0625);
+  const BlockChoice choice = choose_drift(model, Block::drift, 0, 6, 0.0625);
   model.blocks.push_back(choice);
   problem.drift_precision = choice.precision;
   if (choice.used)

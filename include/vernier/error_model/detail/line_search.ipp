@@ -66,7 +66,7 @@ VERNIER_IMPL bool find_lines(ModelSelection& model) {
       if (std::find(found[j].begin(), found[j].end(), order) != found[j].end())
         added.push_back(geometric + terms.transmission_begin(static_cast<int>(j)) + k);
     }
-  if (model.choose_by_evidence("lines", added)) return true;
+  if (model.choose_by_evidence(Block::lines, added)) return true;
   model.problem.arm = without;
   model.changed();
   return false;

@@ -57,15 +57,15 @@ class ModelSelection {
   /// Replaces the terms by more, if leave-one-pose-out errors support the additional ones.
   /// @param by_evidence whether the sizes of their priors follow from evidence, or from these errors
   /// @return            whether they do
-  VERNIER_API bool add(const char* name, const JointTerms& terms, bool by_evidence);
+  VERNIER_API bool add(Block block, const JointTerms& terms, bool by_evidence);
   /// The terms of the problem and more orders of transmissions, whose expected sizes are in `spectra`; other priors
   /// stay.
   VERNIER_API void extend_terms(const JointTerms& terms);
   /// Includes some unknowns with sizes by evidence, if leave-one-pose-out errors support them; else suppresses them.
   /// @return whether they do
-  VERNIER_API bool choose_by_evidence(const char* name, const UnknownGroup& group);
+  VERNIER_API bool choose_by_evidence(Block block, const UnknownGroup& group);
   /// A block of unknowns, by the errors with it and without; of few poses also by log predictive densities.
-  VERNIER_API BlockChoice choice_between(const char* name, const LeftOutBlocks& with, const LeftOutBlocks& without,
+  VERNIER_API BlockChoice choice_between(Block block, const LeftOutBlocks& with, const LeftOutBlocks& without,
                                          double precision) const;
 
   /// Sizes of some coefficients by evidence, unless they are suppressed.
@@ -80,7 +80,7 @@ class ModelSelection {
   VERNIER_API UnknownGroup harmonics(int first, int last) const;
 
  private:
-  VERNIER_API BlockChoice choose_by_errors(const char* name, Index first, Index count);
+  VERNIER_API BlockChoice choose_by_errors(Block block, Index first, Index count);
   VERNIER_API UnknownGroup unknowns(Index first, Index count) const;
 
   const ErrorModelOptions& options_;

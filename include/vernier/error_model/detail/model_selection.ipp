@@ -73,7 +73,7 @@ VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
   changed();
 }
 
-VERNIER_IMPL bool ModelSelection::add(const char* name, const JointTerms& terms, bool by_evidence) {
+VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms, bool by_evidence) {
   const ArmParameterisation before = problem.arm;
   Index first = terms.size(), count = 0;  // of the additional coefficients, which are contiguous
   for (const JointTermBlock& now : terms.blocks()) {
@@ -86,9 +86,9 @@ VERNIER_IMPL bool ModelSelection::add(const char* name, const JointTerms& terms,
   }
   extend_terms(terms);
   if (by_evidence)
-    choose_by_evidence(name, unknowns(first, count));
+    choose_by_evidence(block, unknowns(first, count));
   else
-    blocks.push_back(choose_by_errors(name, first, count));
+    blocks.push_back(choose_by_errors(block, first, count));
   if (blocks.back().used) return true;
   problem.arm = before;
   changed();
@@ -96,7 +96,7 @@ VERNIER_IMPL bool ModelSelection::add(const char* name, const JointTerms& terms,
 }
 
 /// Chooses the prior of coefficients first .. first + count - 1 by leave-one-pose-out errors.
-VERNIER_IMPL BlockChoice ModelSelection::choose_by_errors(const char* name, Index first, Index count) {
+VERNIER_IMPL BlockChoice ModelSelection::choose_by_errors(Block block, Index first, Index count) {
   VectorX precisions = problem.arm.precisions();
   const Index at = static_cast<Index>(problem.arm.geometric().size()) + first;
   const Linearised& now = linearised();
@@ -105,7 +105,7 @@ VERNIER_IMPL BlockChoice ModelSelection::choose_by_errors(const char* name, Inde
   for (Index k = at; k < at + count; ++k) precisions(k) = choice.precision;
   problem.arm.set_precisions(precisions);
   const bool used = choice.precision < suppressing_precision;
-  return {name, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
+  return {block, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
 }
 
 /// Unknowns of coefficients first .. first + count - 1.
@@ -133,13 +133,13 @@ VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
   return {};
 }
 
-VERNIER_IMPL BlockChoice ModelSelection::choice_between(const char* name, const LeftOutBlocks& with,
+VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, const LeftOutBlocks& with,
                                                         const LeftOutBlocks& without, double precision) const {
   const bool few = problem.num_validation_blocks() < many_poses;
   const bool by_errors = errors_support(with, without);
   const bool by_densities = !by_errors && few && densities_support(with, without);
   const bool used = by_errors || by_densities;
-  return {name,
+  return {block,
           error_norms(without.errors).mean(),
           error_norms(with.errors).mean(),
           used,
@@ -147,13 +147,13 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(const char* name, const 
           by_densities ? with.log_densities.mean() - without.log_densities.mean() : 0};
 }
 
-VERNIER_IMPL bool ModelSelection::choose_by_evidence(const char* name, const UnknownGroup& group) {
+VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownGroup& group) {
   const Linearised& at = linearised();
   const VectorX before = problem.arm.precisions();
   const VectorX sized = scale_priors(at.normal, before, at.steps, problem.measured_values(), group, at.local_steps);
   VectorX suppressed = sized;
   for (const Index k : group) suppressed(k) = suppressing_precision;
-  blocks.push_back(choice_between(name, left_out(at, sized), left_out(at, suppressed), sized(group.front())));
+  blocks.push_back(choice_between(block, left_out(at, sized), left_out(at, suppressed), sized(group.front())));
   const bool used = blocks.back().used;
   problem.arm.set_precisions(used ? sized : suppressed);
   return used;
@@ -190,8 +190,8 @@ VERNIER_IMPL void ModelSelection::learn_spectrum(int iterations) {
   if (at.system.validation_blocks >= many_poses || evidence(learned) > evidence(precisions) + clearly)
     precisions = learned;
   problem.arm.set_precisions(precisions);
-  for (BlockChoice& block : blocks)
-    if (block.name == "jointwise") block.precision = precisions(bands.front().front());
+  for (BlockChoice& choice : blocks)
+    if (choice.block == Block::jointwise) choice.precision = precisions(bands.front().front());
 }
 
 }  // namespace vernier::detail

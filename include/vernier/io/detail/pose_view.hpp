@@ -17,7 +17,7 @@ inline constexpr std::array<const char*, 8> error_colours{"#3a66c8", "#4f7fc4", 
 
 /// The errors of a stage.
 /// @throws std::invalid_argument where it is not there
-VERNIER_API const StageErrors& stage_of(const ReportInput& input, const std::string& key);
+VERNIER_API const StageErrors& stage_of(const ReportInput& input, const StageName& name);
 
 /// What the view shows: at most 5,000 of the poses.
 struct PoseView {

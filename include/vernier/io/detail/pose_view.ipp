@@ -15,10 +15,10 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL const StageErrors& stage_of(const ReportInput& input, const std::string& key) {
+VERNIER_IMPL const StageErrors& stage_of(const ReportInput& input, const StageName& name) {
   for (const StageErrors& stage : input.stages)
-    if (stage.key == key) return stage;
-  throw std::invalid_argument(message("report_html: no stage is called '", key, "'"));
+    if (stage.name == name) return stage;
+  throw std::invalid_argument(message("report_html: there is no stage '", name.key(), "'"));
 }
 
 VERNIER_IMPL PoseView pose_view(const ReportInput& input) {

@@ -53,10 +53,10 @@ VERNIER_IMPL std::string errors_section(const ReportInput& input) {
   int colour = 0;
   for (const StageErrors& stage : input.stages) {
     const ErrorStatistics e = ErrorStatistics::of(stage.position * 1e3);
-    table.rows.push_back({stage.title + (input.held_out && stage.key == input.after ? " (deployed)" : ""),
+    table.rows.push_back({stage.title + (input.held_out && stage.name == input.after ? " (deployed)" : ""),
                           fixed(e.mean, 4), fixed(e.rms, 4), fixed(e.max, 4), fixed(e.min, 4), fixed(e.p95, 4)});
     if (oriented) table.rows.back().push_back(stage.rotation.size() > 0 ? fixed(stage.rotation.mean() * 1e3, 4) : "");
-    if (stage.key != input.before && stage.key != "geometry" && stage.key != input.after) continue;
+    if (stage.name != input.before && stage.name != Stage::geometry && stage.name != input.after) continue;
     ChartSeries series{.title = stage.title, .colour = colour++};
     VectorX sorted = stage.position * 1e3;
     std::sort(sorted.begin(), sorted.end());

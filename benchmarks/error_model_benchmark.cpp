@@ -56,7 +56,7 @@ int work(bench::Program& program, int argc, char** argv) {
   const vn::Dataset<6> data = measured(2218, here, 1);
   const Chain nominal = vn::robots::ur10().chain;
   const vn::ArmParameterisation arm = vn::calibrate(nominal, data, model_alone).errors.arm;
-  const vn::detail::CalibrationProblem problem(arm, {vn::detail::station_of(data, {})}, vn::Loss::squared);
+  const vn::detail::CalibrationProblem problem(arm, {vn::Measurements<6>(data).sets().front()}, vn::Loss::squared);
   const vn::BlockSystem system = problem.system();
   const auto ours = [&](std::size_t) { return vn::NormalEquations(system).matrix; };
   const auto dense = [&](std::size_t) {

@@ -42,7 +42,7 @@ double held_out_mean(const Robot& robot, const Data& chosen, const Data& held_ou
   vn::CalibrateOptions options;
   options.errors.drives.assign(robot.drives.begin(), robot.drives.end());
   const std::vector<Data> train{chosen}, test{held_out};
-  const auto calibration = vn::calibrate(robot.chain, train, std::vector<vn::Distances<6>>{}, options);
+  const auto calibration = vn::calibrate(robot.chain, train, options);
   const vn::CalibrationReport report = vn::evaluate(calibration, test, robot.limits);
   return 1e3 * report.stage(report.chosen).position.mean();
 } catch (const vn::CalibrationFailure&) {

@@ -22,8 +22,6 @@ namespace vn = vernier;
 support::PoseCalibration calibrate_with_progress(const support::Program& program, const vn::RobotDescription& robot,
                                                  support::CalibrationOptions& o) {
   o.calibrate.arm_name = robot.name;
-  o.calibrate.station_names = o.data;
-  o.calibrate.distance_names = o.distances;
   o.calibrate.remainder.on_geometry = true;
   const int swarms = 2 * (o.calibrate.remainder.iterations + 1);
   support::ProgressBar progress("searching", swarms + (o.priors == "default" ? 0 : support::prior_generations + 1));
@@ -43,9 +41,8 @@ void print_measurements(const vn::RobotDescription& robot, const support::Calibr
              robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
   if (o.data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", o.data.size(), o.data.size());
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), found.held_out);
-  if (report.distances > 0) fmt::print("{} distances to learn from\n", report.distances);
-  if (!o.contacts.empty())
-    fmt::print("contacts to learn from, touched by the tool point of the poses: {}\n", o.contacts);
+  for (const vn::FittedSet& set : report.others)
+    fmt::print("{} measurements ({}) to learn from: {}\n", set.measurements, set.kind, set.name);
 }
 
 int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o) {

@@ -42,7 +42,6 @@ support::CalibrationOptions calibration_options(const Settings& o, const std::st
   out.data = {o.data};
   out.test_every = o.test_every;
   out.calibrate.arm_name = arm_name;
-  out.calibrate.station_names = out.data;
   out.calibrate.sensors.use_orientations = !o.positions_only;
   out.calibrate.remainder.on_geometry = true;
   return out;

@@ -46,9 +46,7 @@ int verify_arm(const support::Program& program, const Options& o) {
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
   if (!o.report.empty()) {
     vn::ReportInput page = vn::report_input(report, robot.name());
-    std::vector<vn::Index> rows(static_cast<std::size_t>(data.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<vn::Index>(i);
-    support::add_poses(page, robot.nominal().chain(), data, std::filesystem::path(o.data).filename().string(), rows);
+    support::add_poses(page, robot.nominal().chain(), data);
     page.provenance.inputs = {support::file_read(o.data, data.size())};
     support::write_report(program, o.report, page, o.date, o.model);
     fmt::print("Report: {}\n", o.report);

@@ -79,17 +79,18 @@ vn::Dataset<N> read_poses(const std::string& file, const CalibrationOptions& o, 
 }
 
 template <int N>
-Measurements<N> read_measurements(const CalibrationOptions& o, std::span<const vn::JointType> types,
-                                  std::uint64_t seed) {
-  Measurements<N> out;
+MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const vn::JointType> types,
+                                   std::uint64_t seed) {
+  MeasuredFiles<N> out;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     out.files.push_back(vn::read_dataset<N>(o.data[s], types));
     vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
-    out.train.push_back(std::move(station.train));
-    out.test.push_back(std::move(station.test));
+    out.train.add(std::move(station.train), o.data[s]);
+    out.test.add(std::move(station.test));
   }
-  for (const std::string& file : o.distances) out.distances.push_back(vn::read_distances<N>(file, types));
-  if (!o.contacts.empty()) out.contacts = vn::read_contacts(o.contacts, N, types);
+  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types), file);
+  if (!o.contacts.empty())
+    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types)) out.train.add(contact);
   return out;
 }
 
@@ -108,8 +109,8 @@ std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::De
 #define VERNIER_INSTANTIATE(N)                                                                                \
   template vn::Dataset<N> read_poses<N>(const std::string&, const CalibrationOptions&,                        \
                                         std::span<const vn::JointType>);                                      \
-  template Measurements<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>,    \
-                                                std::uint64_t);                                               \
+  template MeasuredFiles<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>,   \
+                                                 std::uint64_t);                                              \
   template std::vector<vn::DataAudit> audit_files<N>(const CalibrationOptions&, const vn::DescribedRobot<N>&, \
                                                      const std::vector<vn::Dataset<N>>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)

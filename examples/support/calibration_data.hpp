@@ -12,18 +12,17 @@
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/io/robot_file.hpp"
+#include "vernier/measurements/measurements.hpp"
 
 namespace support {
 
-/// All measurements of an arm.
+/// All measurements of an arm, as far as files have them.
 template <int N>
-struct Measurements {
-  std::vector<vernier::Dataset<N>> files;        ///< poses as the files have them, one set a station
-  std::vector<vernier::Dataset<N>> train;        ///< poses to learn from, one set a station
-  std::vector<vernier::Dataset<N>> test;         ///< held-out poses, likewise
-  std::string held_out;                          ///< which poses those are, in words
-  std::vector<vernier::Distances<N>> distances;  ///< one set a fixed point
-  std::vector<vernier::Contact> contacts;        ///< what the tool point touched
+struct MeasuredFiles {
+  std::vector<vernier::Dataset<N>> files;  ///< poses as the files have them, one set a station
+  vernier::Measurements<N> train;          ///< to learn from: poses, distances and contacts
+  vernier::Measurements<N> test;           ///< held-out poses, stations as in `train`
+  std::string held_out;                    ///< which poses those are, in words
 };
 
 // Defined and compiled in calibration_data.cpp, for all numbers of joints.
@@ -39,8 +38,8 @@ vernier::Dataset<N> read_poses(const std::string& file, const CalibrationOptions
 /// @throws vernier::DataError on a malformed file
 /// @throws vernier::CalibrationFailure for fewer rows than are asked for
 template <int N>
-Measurements<N> read_measurements(const CalibrationOptions& options, std::span<const vernier::JointType> types,
-                                  std::uint64_t seed);
+MeasuredFiles<N> read_measurements(const CalibrationOptions& options, std::span<const vernier::JointType> types,
+                                   std::uint64_t seed);
 
 /// Looks for faults in the files of poses and prints them, before a calibration may refuse them.
 /// @param files poses of the files `options.data`

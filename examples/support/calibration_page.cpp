@@ -23,18 +23,16 @@ struct PagePoses {
 };
 
 template <int N>
-PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot, const Measurements<N>& measured) {
+PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
   PagePoses out;
   std::vector<vn::ReportFile>& inputs = out.held_out.provenance.inputs;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
-    const vn::Dataset<N>& test = measured.test[s];
-    const vn::Dataset<N>& all = measured.files[s];
-    for (const vn::Index row : rows_of(all, measured.train[s]))
-      out.learned_from.push_back(fmt::format("{} of {}", row, file_name(o.data[s])));
-    inputs.push_back(file_read(o.data[s], all.size()));
+    const vn::Dataset<N>&train = measured.train.poses()[s], &test = measured.test.poses()[s];
+    for (const vn::Index line : train.origin().line)
+      out.learned_from.push_back(fmt::format("line {} of {}", line, file_name(o.data[s])));
+    inputs.push_back(file_read(o.data[s], measured.files[s].size()));
     if (!o.test.empty()) inputs.push_back(file_read(o.test[s], test.size()));
-    add_poses(out.held_out, robot.arm, test, file_name(o.test.empty() ? o.data[s] : o.test[s]),
-              rows_of(o.test.empty() ? all : test, test));
+    add_poses(out.held_out, robot.arm, test);
   }
   return out;
 }
@@ -43,7 +41,7 @@ PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& rob
 
 template <int N>
 vn::ReportInput calibration_page(const vn::CalibrationReport& report, const CalibrationOptions& o,
-                                 const vn::DescribedRobot<N>& robot, const Measurements<N>& measured) {
+                                 const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
   PagePoses poses = poses_of(o, robot, measured);
   vn::ReportInput page = vn::report_input(report, robot.name, poses.learned_from);
   poses.held_out.poses.normalised = page.poses.normalised;
@@ -53,7 +51,7 @@ vn::ReportInput calibration_page(const vn::CalibrationReport& report, const Cali
   page.provenance = std::move(poses.held_out.provenance);
   std::vector<vn::ReportFile>& inputs = page.provenance.inputs;
   for (std::size_t d = 0; d < o.distances.size(); ++d)
-    inputs.push_back(file_read(o.distances[d], measured.distances[d].size()));
+    inputs.push_back(file_read(o.distances[d], measured.train.sets()[o.data.size() + d].size()));
   for (const std::string& file : {o.contacts, o.prior})
     if (!file.empty()) inputs.push_back(file_read(file, 0));
   for (const std::string& file : o.robot.files()) inputs.push_back(file_read(file, 0));
@@ -63,7 +61,7 @@ vn::ReportInput calibration_page(const vn::CalibrationReport& report, const Cali
 
 #define VERNIER_INSTANTIATE(N)                                                                          \
   template vn::ReportInput calibration_page<N>(const vn::CalibrationReport&, const CalibrationOptions&, \
-                                               const vn::DescribedRobot<N>&, const Measurements<N>&);
+                                               const vn::DescribedRobot<N>&, const MeasuredFiles<N>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 

@@ -15,6 +15,6 @@ namespace support {
 /// calibration_page.cpp, for all numbers of joints.
 template <int N>
 vernier::ReportInput calibration_page(const vernier::CalibrationReport& report, const CalibrationOptions& options,
-                                      const vernier::DescribedRobot<N>& robot, const Measurements<N>& measurements);
+                                      const vernier::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured);
 
 }  // namespace support

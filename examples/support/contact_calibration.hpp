@@ -7,8 +7,8 @@
 
 #include "cli.hpp"
 #include "vernier/identification/options.hpp"
-#include "vernier/identification/sensor_model.hpp"
 #include "vernier/io/robot_file.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace support {
 

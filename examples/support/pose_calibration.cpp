@@ -37,12 +37,13 @@ std::string file_names(const std::vector<std::string>& paths) {
 }
 
 template <int N>
-vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, const Measurements<N>& measured,
+vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, const MeasuredFiles<N>& measured,
                                    const CalibrationOptions& o) {
   vn::IdentifyOptions frames = o.calibrate.geometry;
   frames.geometry = false;
-  const auto registered = vn::identify(description.arm<N>().arm, measured.train[0], frames, o.calibrate.sensors);
-  return vn::prediction_error(registered.model, measured.test[0]);
+  const auto registered =
+      vn::identify(description.arm<N>().arm, measured.train.poses()[0], frames, o.calibrate.sensors);
+  return vn::prediction_error(registered.model, measured.test.poses()[0]);
 }
 
 template <int N>
@@ -52,7 +53,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   std::optional<vn::ArmPrior> prior;
   if (!o.prior.empty()) prior = read_prior(o.prior, N);
   const auto measured =
-      std::make_shared<const Measurements<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
+      std::make_shared<const MeasuredFiles<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
   std::vector<vn::DataAudit> audits = audit_files(o, robot, measured->files);
 
   vn::CalibrateOptions options = o.calibrate;
@@ -61,9 +62,9 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
   };
-  const auto calibration =
-      vn::calibrate(robot.arm, measured->train, measured->distances, options, fit,
-                    o.priors == "default" ? vn::PriorSearch() : vn::PriorSearch(search), measured->contacts);
+  options.fit = fit;
+  if (o.priors != "default") options.search = search;
+  const auto calibration = vn::calibrate(robot.arm, measured->train, options);
   PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
                       .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
                       .report = vn::evaluate(calibration, measured->test, robot.limits),

@@ -19,6 +19,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/measurements/position_sensor.hpp"
 #include "vernier/simulation/sampling.hpp"
 
 namespace vernier::audit_rows_test {
@@ -74,7 +75,7 @@ TEST(AuditRowsWhiteBox, DuplicatesAreNamedByWhatIsTheSame) {
   set_point(positions, 5, point(positions, 4));                                   // 4 and 5: at the same joints
   for (Index j = 0; j < 2; ++j) joints(5, j) = joints(4, j);
   const auto found = [&](const PointRows& rotation_vectors) {
-    const detail::Station station{.joint_values = joints.data(), .samples = 8, .dof = 2, .positions = &positions};
+    const MeasuredSet station("poses", joints, PositionSensor(positions));
     std::vector<DataFinding> out;
     detail::audit_duplicates(station, rotation_vectors, out);
     return out;
@@ -109,9 +110,9 @@ TEST(AuditRowsWhiteBox, AJointThatAlwaysComesFromOneSide) {
       previous(i, 0) = i % 2 == 0 ? 1 : -1;
     }
     std::vector<DataFinding> out;
-    detail::audit_approaches(
-        {.joint_values = joints.data(), .samples = n, .dof = 2, .previous_values = known ? previous.data() : nullptr},
-        out);
+    MeasuredSet set("poses", joints, PositionSensor(PointRows::Zero(n, 3)));
+    if (known) set.previous = previous;
+    detail::audit_approaches(set, out);
     return out;
   };
   EXPECT_TRUE(found(24, 0).empty());

@@ -194,7 +194,7 @@ TEST(Calibrate, UnmodelledSourcesOneByOne) {
 
 TEST(Calibrate, MisuseThrows) {
   const auto data = measure(actual_arm(), joints(20, 1));
-  EXPECT_THROW((void)calibrate(robot.chain, std::vector<Dataset<6>>{}, models_alone), std::invalid_argument);
+  EXPECT_THROW((void)calibrate(robot.chain, Measurements<6>(), models_alone), std::invalid_argument);
   const auto refuses = [&](const CalibrateOptions& options) {
     EXPECT_THROW((void)calibrate(robot.chain, data, options), std::invalid_argument);
   };

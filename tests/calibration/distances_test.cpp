@@ -74,7 +74,7 @@ TEST(Distances, AloneIdentifyGeometryExactly) {
 TEST(Distances, AloneFindJointErrors) {
   const Actual actual = actual_arm(0.3e-3, 1e-3);
   const std::vector<Distances<6>> wire{measure_distances(actual, anchor, joints(600, 1), 0.02e-3, 2)};
-  const auto found = calibrate(with_rough_tool(), no_poses, wire, {.errors = {.harmonics = 30}});
+  const auto found = calibrate(with_rough_tool(), wire, {.errors = {.harmonics = 30}});
   const auto fresh = measure_distances(actual, anchor, joints(300, 3));
   const double geometry = rms_of_distances(found.errors.models(Stage::geometry)[0], fresh);
   const double all = rms_of_distances(found.model(), fresh);
@@ -92,9 +92,14 @@ struct Mixed {
     return {measure_distances(actual, anchor, joints(200, 3), sigma, 4),
             measure_distances(actual, Vector3(-1, 0.4, 1.2), joints(200, 5), sigma, 6)};
   }
+  Measurements<6> with(const std::vector<Distances<6>>& distances) const {
+    Measurements<6> out(poses);
+    for (const auto& wire : distances) out.add(wire);
+    return out;
+  }
   double error(const std::vector<Distances<6>>& distances, double sigma) const {
     const auto found =
-        calibrate(robot.chain, poses, distances,
+        calibrate(robot.chain, with(distances),
                   {.errors = {.harmonics = 15}, .sensors = {.distance_sigma = sigma}, .remainder = nothing});
     EXPECT_EQ(found.errors.models().size(), 1 + distances.size());
     return prediction_error(found.model(), measure(actual, joints(300, 7))).mean;
@@ -123,7 +128,7 @@ TEST(Distances, OneInTwentyOffByFiveMillimetres) {
 TEST(Distances, EveryWireFindsItsFixedPoint) {
   const Mixed mixed;
   const auto wires = mixed.wires(0.03e-3);
-  const auto found = calibrate(robot.chain, mixed.poses, wires, {.errors = {.harmonics = 15}, .remainder = nothing});
+  const auto found = calibrate(robot.chain, mixed.with(wires), {.errors = {.harmonics = 15}, .remainder = nothing});
   // in the frame of the positions, which is the arm's own here
   const auto fixed_point = [&](std::size_t s) {
     return Vector3(found.errors.models()[0].identified().base() *
@@ -148,7 +153,7 @@ TEST(Distances, MisuseThrows) {
   EXPECT_NE(complaint([&] { (void)one.rows(std::array<Index, 1>{1}); }).find("row 1 of 1"), std::string::npos);
   EXPECT_NE(complaint([] { (void)identify(robot.chain, Distances<6>()); }).find("no samples"), std::string::npos);
   const std::vector<Distances<6>> empty(1);
-  EXPECT_THROW((void)calibrate(robot.chain, no_poses, empty), std::invalid_argument);
+  EXPECT_THROW((void)calibrate(robot.chain, empty), std::invalid_argument);
 }
 
 }  // namespace

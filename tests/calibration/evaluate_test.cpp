@@ -286,10 +286,9 @@ TEST(Evaluate, EveryStationNeedsItsHeldOutPoses) {
 }
 
 /// What a calibration is refused with; empty where it is not.
-template <class Data>
-std::string refusal(const Data& data, const CalibrateOptions& options) {
+std::string refusal(const Dataset<6>& data, const CalibrateOptions& options) {
   try {
-    (void)calibrate(robot.chain, data, options);
+    (void)calibrate(robot.chain, Measurements<6>().add(data, "poses.csv"), options);
   } catch (const CalibrationFailure& e) {
     return e.what();
   }
@@ -297,10 +296,7 @@ std::string refusal(const Data& data, const CalibrateOptions& options) {
 }
 
 TEST(CalibrationFailure, SaysWhatIsWrongWithTheData) {
-  CalibrateOptions options{.errors = {.harmonics = 0},
-                           .remainder = {.on_error_model = false},
-                           .arm_name = "UR10",
-                           .station_names = {"poses.csv"}};
+  CalibrateOptions options{.errors = {.harmonics = 0}, .remainder = {.on_error_model = false}, .arm_name = "UR10"};
   const auto data = measure(actual_arm(), joints(60, 1), noise, 2);
   EXPECT_EQ(refusal(data, options), "");
   const auto expect = [&](const Dataset<6>& wrong, const std::string& reason) {

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "set_of.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -29,7 +30,7 @@ TEST(PlausibilityWhiteBox, ContactsAreOffByTheirRootMeanSquare) {
   };
   const auto complaint = [&](double apart) -> std::string {
     try {
-      detail::require_plausible_contact(arm, together(apart));
+      detail::require_plausible_set(arm, vernier_test::set_of(together(apart)));
     } catch (const CalibrationFailure& failure) {
       return failure.what();
     }
@@ -62,8 +63,8 @@ TEST(PlausibilityWhiteBox, PosesMayBeOffByATenthOfTheirSpread) {
   PointRows positions(2, 3);
   const auto said = [&](double spread, double off) {
     positions << -spread, 0, 0, spread, 0, 0;
-    const detail::Station poses{.joint_values = joints.data(), .samples = 2, .dof = 6, .positions = &positions};
-    return failure([&] { detail::require_plausible(arm, poses, off, "the IRB", "poses.csv"); });
+    const MeasuredSet poses("poses.csv", joints, PositionSensor(positions));
+    return failure([&] { detail::require_plausible(arm, poses, off, "the IRB"); });
   };
   EXPECT_EQ(said(0.2, 19e-3), "");  // the measured positions spread wider than the arm's
   EXPECT_EQ(said(0.2, 21e-3),
@@ -91,8 +92,8 @@ TEST(PlausibilityWhiteBox, HintsByTheSizesOfJointsAndPositions) {
     const Vector3 half = 0.5 * ratio * (point(modelled, 1) - point(modelled, 0));
     set_point(positions, 0, half);
     set_point(positions, 1, -half);
-    const detail::Station poses{.joint_values = joints.data(), .samples = 2, .dof = 6, .positions = &positions};
-    const std::string said = failure([&] { detail::require_plausible(arm, poses, 1, "arm", "data"); });
+    const MeasuredSet poses("data", joints, PositionSensor(positions));
+    const std::string said = failure([&] { detail::require_plausible(arm, poses, 1, "arm"); });
     return said.substr(said.find("(rms): ") + 7);
   };
   EXPECT_EQ(hint(15.5, 1), "a joint of 15.5 rad looks like degrees in a _rad column");
@@ -114,8 +115,8 @@ TEST(PlausibilityWhiteBox, DistancesAreOffByTheirRootMeanSquare) {
     const JointRows<6> joints = abb_irb120_operating_region().sample(robots::abb_irb120().chain, 400, 3);
     VectorX lengths = distances_from(arm.positions(joints), anchor);
     for (Index i = 0; i < 400; ++i) lengths(i) += i % 2 == 0 ? off : -off;
-    const detail::Station wire{.joint_values = joints.data(), .samples = 400, .dof = 6, .lengths = &lengths};
-    return failure([&] { detail::require_plausible_distances(arm, wire, "wire.csv"); });
+    const MeasuredSet wire("wire.csv", joints, DistanceSensor(lengths));
+    return failure([&] { detail::require_plausible_set(arm, wire); });
   };
   EXPECT_EQ(said(0.045), "");
   const std::string begin = "wire.csv: no fixed point is consistent with these distances, the best one is off by ";

@@ -10,6 +10,7 @@
 
 #include "limits.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
@@ -73,7 +74,7 @@ struct Check {
   }
 
   VerificationReport verified(const VerifyOptions& options) const {
-    const detail::Station station = detail::station_of(data, options.sensors);
+    const MeasuredSet station = vernier_test::set_of(data, options.sensors);
     return detail::verify({station, estimate, poses, jacobians, as_fitted, gates, types, {}}, options);
   }
 
@@ -203,7 +204,7 @@ TEST(VerificationWhiteBox, ATurnedProbeIsTakenOff) {
   }
   check.data =
       Dataset<6>(check.data.joints(), check.data.positions(), turned).at_temperatures(check.data.temperatures());
-  const detail::Station station = detail::station_of(check.data, check.sensors);
+  const MeasuredSet station = vernier_test::set_of(check.data, check.sensors);
   ReregistrationReport registration;
   registration.motion.probe = probe;
   registration.probe_turned = true;
@@ -220,7 +221,7 @@ TEST(VerificationWhiteBox, ATurnedProbeIsTakenOff) {
 TEST(VerificationWhiteBox, NoDegreesOfFreedomAreNoContradiction) {
   const Check check(noise(3, 3));
   const auto positions = check.data.without_orientations().at_temperatures(check.data.temperatures());
-  const detail::Station station = detail::station_of(positions, check.sensors);
+  const MeasuredSet station = vernier_test::set_of(positions, check.sensors);
   const VerifyOptions options{.tool = true, .sensors = check.sensors};
   const auto found = detail::verify({station, check.estimate, check.poses, check.jacobians, check.as_fitted,
                                      check.gates, check.types, ReregistrationReport()},

@@ -14,6 +14,7 @@
 #include "complaint.hpp"
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/statistics.hpp"
@@ -61,7 +62,7 @@ FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ArmPrior* prior) {
                                                             {.frames = Frames::base_and_tool}, squared);
   ErrorModelOptions options = twenty_orders;
   options.prior = prior;
-  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+  return fit_error_model(start, data, options, squared);
 }
 
 ArmPrior prior_from(const Actual& actual, Index poses) {
@@ -152,7 +153,7 @@ FittedErrorModel<Chain> fitted_plainly(const Dataset<6>& data, const ArmPrior* p
   options.prior = prior;
   const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain), data,
                                                             {.frames = Frames::base_and_tool}, squared);
-  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+  return fit_error_model(start, data, options, squared);
 }
 
 TEST(ArmPrior, OfAnotherNumberOfJointsIsRefused) {
@@ -191,7 +192,7 @@ TEST(ArmPrior, TheFitBalancesResidualsAndThePrior) {
   VectorX coefficient_steps = VectorX::Zero(size);
   for (Index k = 0; k < n; ++k) coefficient_steps(size - n + k) = found.arm.steps()(size - n + k);
   at.move(coefficient_steps);
-  const detail::CalibrationProblem problem(at, {detail::station_of(data, squared)}, Loss::squared);
+  const detail::CalibrationProblem problem(at, {vernier_test::set_of(data, squared)}, Loss::squared);
   const detail::StackedRows rows = problem.stacked(true);
   const RealMatrix jacobian = rows.jacobian, residuals = rows.residuals;
   const JointPrior balance = known.prior(size, found.prior->geometry, found.prior->joints);
@@ -350,7 +351,7 @@ TEST(TransferredUnknownsWhiteBox, TheLikelyTransferIsWhatHasChanged) {
     const FittedArm actual{moved, JointErrors(terms, coefficients)};
     const Dataset<6> data = measure(actual.typed(robot.chain), sample_joints(robot.limits, 60, 2),
                                     {.position = 0.03e-3, .orientation = 0.1e-3}, 7);
-    detail::CalibrationProblem problem(ArmParameterisation({there}, unknowns), {detail::station_of(data, sensors)},
+    detail::CalibrationProblem problem(ArmParameterisation({there}, unknowns), {vernier_test::set_of(data, sensors)},
                                        Loss::squared);
     problem.arm.set_terms(terms, sizes, VectorX::Zero(terms.size()));
     const auto known = detail::transferred_unknowns(prior, problem.arm, prior.nominal);
@@ -392,8 +393,8 @@ struct ChangedArm {
 
   detail::CalibrationProblem problem(std::span<const Dataset<6>> stations) const {
     const SensorModel sensors{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3, .loss = Loss::squared};
-    std::vector<detail::Station> measured;
-    for (const Dataset<6>& data : stations) measured.push_back(detail::station_of(data, sensors));
+    std::vector<MeasuredSet> measured;
+    for (const Dataset<6>& data : stations) measured.push_back(vernier_test::set_of(data, sensors));
     detail::CalibrationProblem out(ArmParameterisation(std::vector(stations.size(), there), unknowns), measured,
                                    Loss::squared);
     out.arm.set_terms(terms, sizes, VectorX::Zero(6));

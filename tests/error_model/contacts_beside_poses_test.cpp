@@ -32,8 +32,7 @@ double fitted_error(double sigma, const SensorModel& sensors, std::span<const Co
   const Dataset<6> data = poses(sigma);
   const auto start =
       identify_by_gauss_newton(nominal_arm(), data, {.frames = Frames::base_and_tool}, {.loss = Loss::squared});
-  const auto fitted = fit_error_model(start, std::span<const Dataset<6>>(&data, 1), std::span<const Distances<6>>(),
-                                      geometry_alone, sensors, {}, contacts);
+  const auto fitted = fit_error_model(start, Measurements<6>(data).add(contacts), geometry_alone, sensors);
   EXPECT_TRUE(fitted.converged);
   EXPECT_EQ(fitted.models().size(), 1 + contacts.size());
   return registered_mean(fitted.models().front());
@@ -61,13 +60,13 @@ TEST(ContactsBesidePoses, NeedPosesOfTheSameArm) {
       identify_by_gauss_newton(nominal_arm(), data, {.frames = Frames::base_and_tool}, {.loss = Loss::squared});
   const vernier_test::RealMatrix joints = three_planes(true)[0].joints();
   const std::vector five{Contact("p", ContactKind::plane, joints.block(0, 0, joints.rows(), 5))};
-  const auto fit = [&](std::span<const Dataset<6>> stations, std::span<const Distances<6>> wires) {
-    return vernier_test::complaint(
-        [&] { (void)fit_error_model(start, stations, wires, geometry_alone, {}, {}, five); });
-  };
-  EXPECT_EQ(fit({&data, 1}, {}), "contact p: 5 joints, the arm has 6");
+  EXPECT_EQ(vernier_test::complaint([&] { (void)Measurements<6>(data).add(five); }),
+            "contact p: 5 joints, the arm has 6");
   const Distances<6> wire(data.joints(), VectorX::Ones(data.size()));
-  EXPECT_EQ(fit({}, {&wire, 1}), "fit_error_model: contacts without poses");
+  EXPECT_EQ(vernier_test::complaint([&] {
+              (void)fit_error_model(start, Measurements<6>(wire).add(three_planes(true)[0]), geometry_alone);
+            }).rfind("fit_error_model: contact ", 0),
+            0u);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Identified<Chain> identified(const Dataset<6>& data) {
 }
 
 FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ErrorModelOptions& options, PriorSearch search = {}) {
-  return fit_error_model(identified(data), std::vector<Dataset<6>>{data}, options, sensors, search);
+  return fit_error_model(identified(data), data, options, sensors, search);
 }
 
 std::vector<std::string> block_names(const FittedErrorModel<Chain>& found) {
@@ -90,7 +90,7 @@ TEST(FitStations, SeeOneArmFromTheirPlaces) {
   const auto fit = [&](const Actual& other, bool tools) {
     ErrorModelOptions options = geometry_alone;
     options.tool_per_station = tools;
-    return fit_error_model(start, std::vector{data, measured(other, 40, 2)}, std::vector{wire}, options, sensors);
+    return fit_error_model(start, Measurements<6>(data).add(measured(other, 40, 2)).add(wire), options, sensors);
   };
   const auto parameters = [](const FittedErrorModel<Chain>& found, int station) {
     std::vector<Index> out;
@@ -134,7 +134,7 @@ TEST(FitStations, ChainsHavePriorsOfTheIdentification) {
   start.parameters[static_cast<std::size_t>(held)].prior_std =
       2.5 * start.parameters[static_cast<std::size_t>(held)].scale;
   start.parameters[static_cast<std::size_t>(free)].prior_std = std::numeric_limits<double>::infinity();
-  const auto found = fit_error_model(start, std::vector{data}, geometry_alone, sensors);
+  const auto found = fit_error_model(start, data, geometry_alone, sensors);
   const VectorX precisions = found.arm.precisions();
   for (std::size_t k = 0; k < found.arm.geometric().size(); ++k) {
     const GeometricUnknown& u = found.arm.geometric()[k];
@@ -326,8 +326,8 @@ TEST(FitOptions, WhatCannotBeUsedIsNamed) {
     return vernier_test::complaint([&] { (void)fit_error_model(start, stations, options, accuracy); });
   };
   ErrorModelOptions options = geometry_alone;
-  EXPECT_EQ(complaint({}, options, sensors), "fit_error_model: no stations");
-  EXPECT_EQ(complaint({data, Dataset<6>()}, options, sensors), "fit_error_model: a station without poses");
+  EXPECT_EQ(complaint(std::vector<Dataset<6>>(), options, sensors), "fit_error_model: no measurements");
+  EXPECT_EQ(complaint({data, Dataset<6>()}, options, sensors), "fit_error_model: station 2 has no measurements");
   SensorModel none = sensors;
   none.position_sigma = 0;
   EXPECT_NE(complaint({data}, options, none), "");

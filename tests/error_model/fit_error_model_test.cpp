@@ -13,6 +13,7 @@
 #include "complaint.hpp"
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/visit_noise.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -49,7 +50,7 @@ Dataset<6> measured(const Actual& actual, Index poses, std::uint64_t seed) {
 FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ErrorModelOptions& options = few_harmonics) {
   const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
   EXPECT_TRUE(start.converged()) << start.message;
-  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+  return fit_error_model(start, data, options, squared);
 }
 
 /// What a coefficient belongs to, by its name.
@@ -288,7 +289,7 @@ TEST(FitErrorModel, BandsOfOrdersAreSizedApartWhereThatIsClear) {
 
 /// The covariance at the solution, before the noise of visits is known: (J'J + priors)^-1 times the weighted squares
 /// over the values that the unknowns leave free.
-RealMatrix expected_covariance(const ErrorModelEstimate& estimate, std::vector<detail::Station> stations) {
+RealMatrix expected_covariance(const ErrorModelEstimate& estimate, std::vector<MeasuredSet> stations) {
   const detail::CalibrationProblem problem(estimate.arm, std::move(stations), Loss::squared);
   const detail::StackedRows rows = problem.stacked(true);
   const RealMatrix jacobian = rows.jacobian, information = jacobian.transpose() * jacobian;
@@ -305,7 +306,7 @@ double difference_in_deviations(const RealMatrix& a, const RealMatrix& b) {
 
 /// The factor on the covariance that leave-one-pose-out errors support.
 double supported_factor(const ErrorModelEstimate& estimate, const RealMatrix& covariance, const Dataset<6>& data) {
-  const detail::CalibrationProblem problem(estimate.arm, {detail::station_of(data, squared)}, Loss::squared);
+  const detail::CalibrationProblem problem(estimate.arm, {vernier_test::set_of(data, squared)}, Loss::squared);
   const BlockSystem system = problem.system();
   const NormalEquations normal(system);
   const FactorisedEquations solved(normal, estimate.arm.precisions(), estimate.arm.steps());
@@ -326,7 +327,7 @@ double supported_factor(const ErrorModelEstimate& estimate, const RealMatrix& co
 
 /// The variance of the residuals, of orientations alone their deviation, and the factor of the covariance.
 void expect_noise_of_residuals(const FittedErrorModel<Chain>& found, const Dataset<6>& data, double factor) {
-  const detail::CalibrationProblem problem(found.arm, {detail::station_of(data, squared)}, Loss::squared);
+  const detail::CalibrationProblem problem(found.arm, {vernier_test::set_of(data, squared)}, Loss::squared);
   const detail::StackedRows rows = problem.stacked(true);
   const RealMatrix jacobian = rows.jacobian, information = jacobian.transpose() * jacobian;
   const RealMatrix inverse = (information + RealMatrix::diagonal(found.arm.precisions())).inverse();
@@ -347,7 +348,7 @@ TEST(FitErrorModel, CovarianceIsThatOfTheNormalEquations) {
     const Dataset<6> data =
         measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0}), 15, seed);
     const auto found = fitted(data, {.compliance = false, .harmonics = 0});
-    const RealMatrix plain = expected_covariance(found, {detail::station_of(data, squared)});
+    const RealMatrix plain = expected_covariance(found, {vernier_test::set_of(data, squared)});
     ASSERT_EQ(found.covariance.rows(), plain.rows());
     const double factor = supported_factor(found, plain, data);
     scaled = scaled || factor < 1;
@@ -384,11 +385,11 @@ TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
                                       abb_irb120_operating_region().sample(robot.chain, 60, 4), 0.03e-3, 4);
   const auto start =
       identify_by_gauss_newton(Framed<Chain>(robot.chain, {}, tool), data, {.frames = Frames::base_and_tool}, squared);
-  const auto found = fit_error_model(start, std::vector<Dataset<6>>{}, std::vector<Distances<6>>{data},
-                                     {.compliance = false, .harmonics = 0}, squared);
+  const auto found = fit_error_model(start, data, {.compliance = false, .harmonics = 0}, squared);
   ASSERT_TRUE(found.converged);
-  EXPECT_LT(difference_in_deviations(found.covariance, expected_covariance(found, {detail::station_of(data, squared)})),
-            1e-6);
+  EXPECT_LT(
+      difference_in_deviations(found.covariance, expected_covariance(found, {vernier_test::set_of(data, squared)})),
+      1e-6);
   EXPECT_GT(found.position_sigma, 0.02e-3);
   EXPECT_LT(found.position_sigma, 0.08e-3);
 }
@@ -400,8 +401,8 @@ TEST(FitErrorModel, AFixedPointBesidePosesHasAPosition) {
   const auto wire = measure_distances(actual, Vector3(0.9, -1.2, 0.3),
                                       abb_irb120_operating_region().sample(robot.chain, 40, 5), 0.03e-3, 5);
   const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
-  const auto found = fit_error_model(start, std::vector<Dataset<6>>{data}, std::vector<Distances<6>>{wire},
-                                     {.compliance = false, .harmonics = 0}, squared);
+  const auto found =
+      fit_error_model(start, Measurements<6>(data).add(wire), {.compliance = false, .harmonics = 0}, squared);
   std::vector<std::vector<Index>> of_station(2);
   for (const GeometricUnknown& unknown : found.arm.geometric())
     if (unknown.station >= 0) of_station[static_cast<std::size_t>(unknown.station)].push_back(unknown.parameter);

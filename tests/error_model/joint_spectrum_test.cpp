@@ -62,7 +62,7 @@ FittedErrorModel<Chain> fitted(const Actual& actual, const ErrorModelOptions& op
   const Dataset<3> data = measure(actual, joints, {.position = 0.02e-3}, rng.below(1000000)).without_orientations();
   const auto start =
       identify_by_gauss_newton(Framed<Chain>(nominal, base, {}), data, {.frames = Frames::base}, squared);
-  return fit_error_model(start, std::vector<Dataset<3>>{data}, options, squared);
+  return fit_error_model(start, data, options, squared);
 }
 
 /// Orders of which a test's lines are drawn, and few others, to be fast.

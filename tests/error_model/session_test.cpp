@@ -15,6 +15,7 @@
 #include "gauss_newton.hpp"
 #include "larger.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
@@ -79,7 +80,7 @@ FittedErrorModel<Chain> fitted(const Dataset<6>& data) {
   const Framed<Chain> nominal(robot.chain, base, tool);
   const auto start = vernier_test::identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
   EXPECT_TRUE(start.converged()) << start.message;
-  return fit_error_model(start, std::vector<Dataset<6>>{data}, {.harmonics = 2, .num_validation_poses = 100}, squared);
+  return fit_error_model(start, data, {.harmonics = 2, .num_validation_poses = 100}, squared);
 }
 
 /// All joint values of a configuration, or of several, changed by the same.
@@ -199,8 +200,8 @@ TEST(Drift, OfTwoStationsIsTakenOffEach) {
                                     [&](Index i) { return composed(wave((i + 70) % n, n), there); });
   const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), first,
                                                             {.frames = Frames::base_and_tool}, squared);
-  const auto found =
-      fit_error_model(start, std::vector{first, second}, {.harmonics = 0, .num_validation_poses = 100}, squared);
+  const auto found = fit_error_model(start, Measurements<6>(first).add(second),
+                                     {.harmonics = 0, .num_validation_poses = 100}, squared);
   ASSERT_TRUE(used(found, "drift"));
   ASSERT_EQ(found.drift.size(), 2u);
   expect_left_out_as_deployed(found, {first, second});
@@ -225,7 +226,7 @@ TEST(Drift, StepsHaveTheirSize) {
         .position_sigma = stated * 0.02e-3, .orientation_sigma = stated * 0.05e-3, .loss = Loss::squared};
     const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
                                                               {.frames = Frames::base_and_tool}, sensor);
-    const auto found = fit_error_model(start, std::vector{data}, {.harmonics = 0, .num_validation_poses = 100}, sensor);
+    const auto found = fit_error_model(start, data, {.harmonics = 0, .num_validation_poses = 100}, sensor);
     ASSERT_TRUE(used(found, "drift"));
     EXPECT_EQ(block_of(found, "drift")->precision, precision);
     const SessionDrift& drift = found.drift.front();
@@ -252,7 +253,7 @@ TEST(DriftWhiteBox, WithoutDurationThereIsNone) {
   const ErrorModelOptions options;
   detail::CalibrationProblem problem(
       ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))}, {{11, -1, 1e-3, 1}}),
-      {detail::station_of(data, squared)}, Loss::squared);
+      {vernier_test::set_of(data, squared)}, Loss::squared);
   detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
   EXPECT_FALSE(detail::add_drift(model));
   EXPECT_TRUE(model.problem.drift.empty());
@@ -266,7 +267,7 @@ TEST(ModelSelectionWhiteBox, ConvergedWhereEverySolutionDid) {
   const ErrorModelOptions options;
   detail::CalibrationProblem problem(
       ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))}, {{11, -1, 1e-3, 1}}),
-      {detail::station_of(data, squared)}, Loss::squared);
+      {vernier_test::set_of(data, squared)}, Loss::squared);
   detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
   model.solve();
   EXPECT_TRUE(model.converged);
@@ -321,7 +322,7 @@ TEST(DriftWhiteBox, ColumnsAreDerivatives) {
   const Dataset<6> data = visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still);
   const ArmGeometry arm{Framed<Chain>(robot.chain, base, tool)};
   for (const bool with_joints : {false, true}) {
-    detail::CalibrationProblem problem(ArmParameterisation({arm}, {}), {detail::station_of(data, squared)},
+    detail::CalibrationProblem problem(ArmParameterisation({arm}, {}), {vernier_test::set_of(data, squared)},
                                        Loss::squared);
     problem.start_drift(40);
     if (with_joints) problem.start_joint_drift();

@@ -69,7 +69,7 @@ FittedErrorModel<Chain> fitted(const Dataset<6>& data,
   const Framed<Chain> nominal(robot.chain, base, tool);
   const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
   EXPECT_TRUE(start.converged()) << start.message;
-  return fit_error_model(start, std::vector<Dataset<6>>{data}, options, squared);
+  return fit_error_model(start, data, options, squared);
 }
 
 const BlockChoice* block_of(const FittedErrorModel<Chain>& found) {
@@ -147,7 +147,7 @@ TEST(Temperature, FramesOfTwoStationsChangeEachInItsOwnWay) {
                                               {.frames = Frames::base_and_tool}, squared);
   ErrorModelOptions options{.harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
   options.thermal_prior_std = 3e-5;
-  const auto found = fit_error_model(start, std::vector{first, second}, options, squared);
+  const auto found = fit_error_model(start, Measurements<6>(first).add(second), options, squared);
   ASSERT_TRUE(block_of(found)->used);
   expect_thermal_unknowns(found, 3e-5);
   for (const double celsius : {18.5, 25.5}) {

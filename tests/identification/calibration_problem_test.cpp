@@ -11,6 +11,7 @@
 
 #include "random_blocks.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -66,10 +67,12 @@ struct Measured {
     for (double& x : sizes) x = size * (1 + std::abs(x));
     arm.set_terms(terms, sizes, VectorX::Constant(terms.size(), 3));
     arm.move(random_vector(rng, arm.size(), 1e-3 / size));
-    const SensorModel of_first{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3, .joint_sigma = joint_sigma};
-    const SensorModel of_second{.position_sigma = 0.05e-3, .joint_sigma = joint_sigma};
-    return {
-        std::move(arm), {detail::station_of(first, of_first), detail::station_of(second, of_second)}, Loss::squared};
+    const SensorModel of_first{.position_sigma = 0.03e-3, .orientation_sigma = 0.1e-3};
+    const SensorModel of_second{.position_sigma = 0.05e-3};
+    return {std::move(arm),
+            {vernier_test::set_of(first, of_first), vernier_test::set_of(second, of_second)},
+            Loss::squared,
+            joint_sigma};
   }
 };
 
@@ -220,7 +223,7 @@ TEST(CalibrationProblemWhiteBox, DistancesAreAlongTheLineOfSight) {
     std::vector<GeometricUnknown> unknowns;
     for (Index k = 0; k < arm.parameters().size(); ++k) unknowns.push_back({k, -1, 1e-3, 0});
     return Problem(ArmParameterisation({ArmGeometry(at)}, unknowns),
-                   {detail::station_of(data, {.distance_sigma = 1e-4})}, Loss::squared);
+                   {vernier_test::set_of(data, {.distance_sigma = 1e-4})}, Loss::squared);
   };
   const detail::StackedRows exact = problem_of(arm).stacked(true);
   ASSERT_EQ(exact.residuals.size(), 53);
@@ -240,7 +243,7 @@ TEST(CalibrationProblemWhiteBox, EachPoseHasATemperatureOfItsOwn) {
   measured.first = measured.first.at_temperatures(celsius);
   ArmParameterisation arm({ArmGeometry(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool))},
                           {{11, -1, 1e-3, 0}, {11, -1, 1e-3, 0, true}});
-  Problem problem(std::move(arm), {detail::station_of(measured.first, {})}, Loss::squared);
+  Problem problem(std::move(arm), {vernier_test::set_of(measured.first, {})}, Loss::squared);
   problem.reference_temperature = 25;
   std::array<RowBlock, 4> rows;
   problem(3, 4, rows.data());
@@ -294,7 +297,7 @@ TEST(CalibrationProblemWhiteBox, WeightsOfTheLossAreThoseOfTheRows) {
   const Measured measured(16);
   ArmParameterisation arm({ArmGeometry(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool))},
                           {{11, -1, 1e-3, 0}});
-  Problem problem(std::move(arm), {detail::station_of(measured.first, {})}, Loss::cauchy);
+  Problem problem(std::move(arm), {vernier_test::set_of(measured.first, {})}, Loss::cauchy);
   const std::array<double, 2> sums = problem.reweight();
   EXPECT_LT(sums[1], 0.9 * sums[0]);
   EXPECT_NEAR(problem.normal_equations().cost, sums[1], 1e-9 * sums[1]);
@@ -442,7 +445,7 @@ TEST(CalibrationProblemWhiteBox, FarStartsConverge) {
     Vector6 off = Vector6(Measured::start_base(0).values());
     for (double& x : off) x += rng.uniform(-3, 3);
     Problem problem(ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, FrameParameters(off), {}))}, unknowns),
-                    {detail::station_of(data, {.position_sigma = 0.05e-3})}, Loss::squared);
+                    {vernier_test::set_of(data, {.position_sigma = 0.05e-3})}, Loss::squared);
     const bool ended = problem.solve(60);
     const double rms = RealMatrix(problem.stacked(false).residuals).norm() / std::sqrt(120.0);
     converged += ended && rms < 1.2;
@@ -470,7 +473,7 @@ struct FarStart {
     for (double& x : off) x += rng.uniform(-3, 3);
     ArmParameterisation arm({ArmGeometry(Framed<Chain>(robot.chain, FrameParameters(off), {}))}, unknowns);
     arm.move(random_vector(rng, 9, 30));
-    return {std::move(arm), {detail::station_of(data, {.position_sigma = 0.05e-3})}, loss};
+    return {std::move(arm), {vernier_test::set_of(data, {.position_sigma = 0.05e-3})}, loss};
   }
 };
 
@@ -564,11 +567,11 @@ TEST(CalibrationProblemWhiteBox, JointsAreThoseOfAllStations) {
 TEST(CalibrationProblemWhiteBox, PositionsWithoutTimesDoNotDrift) {
   Measured measured(8);
   measured.first = measured.first.measured_at(VectorX::LinSpaced(8, 0, 150));
-  detail::Station timeless = detail::station_of(measured.second, {});
-  timeless.times = nullptr;
+  MeasuredSet timeless = vernier_test::set_of(measured.second, {});
+  timeless.times.resize(0);
   const ArmGeometry arm(Framed<Chain>(measured.robot.chain));
   Problem problem(ArmParameterisation({arm, arm}, {{11, -1, 1e-3, 0}}),
-                  {detail::station_of(measured.first, {}), timeless}, Loss::squared);
+                  {vernier_test::set_of(measured.first, {}), timeless}, Loss::squared);
   problem.start_drift(4);
   EXPECT_FALSE(problem.drift[0].empty());
   EXPECT_TRUE(problem.drift[1].empty());
@@ -580,10 +583,10 @@ TEST(CalibrationProblemWhiteBox, PositionsWithoutTimesDoNotDrift) {
 // Orientations count where they are measured and asked for.
 TEST(StationWhiteBox, OrientationsAreUsedOnRequest) {
   const Measured measured(8);
-  EXPECT_TRUE(detail::station_of(measured.first, {}).oriented());
-  EXPECT_FALSE(detail::station_of(measured.first, {.use_orientations = false}).oriented());
-  EXPECT_EQ(detail::station_of(measured.first, {.use_orientations = false}).values(), 3);
-  EXPECT_FALSE(detail::station_of(measured.second, {}).oriented());
+  EXPECT_TRUE(vernier_test::set_of(measured.first, {}).oriented());
+  EXPECT_FALSE(vernier_test::set_of(measured.first, {.use_orientations = false}).oriented());
+  EXPECT_EQ(vernier_test::set_of(measured.first, {.use_orientations = false}).values(), 3);
+  EXPECT_FALSE(vernier_test::set_of(measured.second, {}).oriented());
 }
 
 // Moves every knot by its own step.
@@ -613,10 +616,10 @@ struct WithWire {
   Problem problem(Loss loss, bool poses_too = true) const {
     const ArmGeometry here(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool)),
         there(Framed<Chain>(measured.robot.chain, Measured::start_base(1), measured.tool));
-    const detail::Station lengths = detail::station_of(wire, {.distance_sigma = 0.5e-3});
+    const MeasuredSet lengths = vernier_test::set_of(wire, {.distance_sigma = 0.5e-3});
     if (!poses_too) return {ArmParameterisation({there}, {{0, 0, 1e-3, 0}}), {lengths}, loss};
     return {ArmParameterisation({here, there}, {{0, 0, 1e-3, 0}, {0, 1, 1e-3, 0}}),
-            {detail::station_of(measured.first, {}), lengths},
+            {vernier_test::set_of(measured.first, {}), lengths},
             loss};
   }
 };
@@ -728,7 +731,7 @@ TEST(CalibrationProblemWhiteBox, JointNoiseWhitensTheDriftToo) {
   const auto problem_of = [&](double joint_sigma) {
     ArmParameterisation arm({ArmGeometry(Framed<Chain>(measured.robot.chain, Measured::start_base(0), measured.tool))},
                             {{11, -1, 1e-3, 0}});
-    Problem out(std::move(arm), {detail::station_of(measured.first, {.joint_sigma = joint_sigma})}, Loss::squared);
+    Problem out(std::move(arm), {vernier_test::set_of(measured.first)}, Loss::squared, joint_sigma);
     out.start_drift(4);
     return out;
   };

@@ -6,15 +6,16 @@
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "touched_objects.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
+#include "vernier/identification/frames.hpp"
 
 namespace vernier::contact_rows_test {
 namespace {
 
 using detail::CalibrationProblem;
-using detail::Station;
 using vernier_test::difference;
 using vernier_test::lengths;
 using vernier_test::RealMatrix;
@@ -31,13 +32,14 @@ std::vector<Contact> every_kind() {
 
 /// The arm in the frame of every object.
 CalibrationProblem problem_of(const std::vector<Contact>& contacts, const vernier_test::IrbArm& arm) {
-  std::vector<Station> stations;
+  std::vector<MeasuredSet> stations;
   std::vector<ArmGeometry> arms;
   std::vector<GeometricUnknown> unknowns;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    stations.push_back(detail::station_of(contacts[c], {.contact_sigma = 0.05e-3}));
-    arms.push_back(detail::contact_arm(ArmGeometry(arm), contacts[c], stations.back()));
-    for (const Index k : detail::contact_unknowns(contacts[c])) unknowns.push_back({k, static_cast<int>(c), 10e-3, 0});
+    stations.push_back(vernier_test::set_of(contacts[c], {.contact_sigma = 0.05e-3}));
+    arms.push_back(detail::placed(ArmGeometry(arm), stations.back()));
+    for (const Index k : detail::frame_unknowns(stations.back()))
+      unknowns.push_back({k, static_cast<int>(c), 10e-3, 0});
   }
   for (Index k = 6; k < 6 + 30 + 3; ++k) unknowns.push_back({k, -1, 1e-3, 0});
   return {ArmParameterisation(std::move(arms), std::move(unknowns)), std::move(stations), Loss::squared};
@@ -45,18 +47,19 @@ CalibrationProblem problem_of(const std::vector<Contact>& contacts, const vernie
 
 TEST(ContactRows, StationsOfContacts) {
   const auto contacts = every_kind();
-  const SensorModel sensors{.position_sigma = 1, .distance_sigma = 2, .contact_sigma = 3e-5, .joint_sigma = 4e-5};
+  const SensorModel sensors{.position_sigma = 1, .distance_sigma = 2, .contact_sigma = 3e-5};
   for (const Contact& contact : contacts) {
-    const Station station = detail::station_of(contact, sensors);
-    const bool ball = contact.kind() == ContactKind::ball, socket = contact.kind() == ContactKind::socket;
-    EXPECT_EQ(station.position_sigma, 3e-5);
-    EXPECT_EQ(station.joint_sigma, 4e-5);
-    EXPECT_EQ(station.lengths, ball ? &contact.known() : nullptr);
-    EXPECT_EQ(station.heights, ball ? nullptr : &contact.known());
-    EXPECT_EQ(station.on_axis, socket);
-    EXPECT_EQ(station.values(), socket ? 3 : 1);
-    EXPECT_EQ(station.dof, 6);
-    EXPECT_EQ(difference(RealMatrix::of(station.joints()), contact.joints()), 0);
+    const MeasuredSet set = vernier_test::set_of(contact, sensors);
+    const bool socket = contact.kind() == ContactKind::socket;
+    EXPECT_EQ(set.sigma().length, 3e-5);
+    EXPECT_EQ(set.kind(), contact.kind() == ContactKind::plane  ? "plane"
+                          : contact.kind() == ContactKind::ball ? "ball"
+                          : contact.has_length()                ? "bar"
+                                                                : "socket");
+    EXPECT_EQ(set.name, "contact " + contact.name());
+    EXPECT_EQ(set.values(), socket ? 3 : 1);
+    EXPECT_FALSE(set.locates());
+    EXPECT_EQ(difference(set.joints, contact.joints()), 0);
   }
 }
 
@@ -110,9 +113,9 @@ TEST(ContactRows, PlanesNeedTouchesAcrossAndAlong) {
       for (Index j = 0; j < 6; ++j) joints(i, j) = one.joints()(0, j);
     }
     const Contact strip("strip", ContactKind::plane, joints);
-    Station station = detail::station_of(strip, {});
-    const ArmGeometry arm = detail::contact_arm(ArmGeometry(vernier_test::actual_arm()), strip, station);
-    return vernier_test::complaint([&] { detail::require_spread(arm, strip); });
+    MeasuredSet set = vernier_test::set_of(strip);
+    const ArmGeometry arm = detail::placed(ArmGeometry(vernier_test::actual_arm()), set);
+    return vernier_test::complaint([&] { detail::require_spread(arm, set); });
   };
   // 40 mm apart, ten touches have a deviation of 114.9 mm along their line
   EXPECT_EQ(said(0.04, 1.5e-3),
@@ -126,8 +129,8 @@ TEST(ContactRows, PlanesNeedTouchesAcrossAndAlong) {
 TEST(ContactRows, FramesTurnByARightAngleAtMost) {
   const auto contacts = every_kind();
   for (const Contact& contact : contacts) {
-    Station station = detail::station_of(contact, {});
-    const ArmGeometry arm = detail::contact_arm(ArmGeometry(vernier_test::nominal_arm()), contact, station);
+    MeasuredSet set = vernier_test::set_of(contact);
+    const ArmGeometry arm = detail::placed(ArmGeometry(vernier_test::nominal_arm()), set);
     const Vector6& base = arm.base().values();
     EXPECT_LT(Vector3(base(3), base(4), base(5)).norm(), 1.6) << contact.name();
   }
@@ -136,14 +139,11 @@ TEST(ContactRows, FramesTurnByARightAngleAtMost) {
 TEST(ContactRows, TouchingJointsAreOnTheObjectAndNear) {
   const auto contacts = every_kind();
   const CalibrationProblem problem = problem_of(contacts, vernier_test::nominal_arm());
-  Index block = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    Station station = problem.station_of(block);
-    block += station.size();
-    const MatrixX joints = detail::touching_joints(problem.arm.geometry(static_cast<int>(c)), station);
-    EXPECT_LT(difference(joints, contacts[c].joints()), 0.1) << contacts[c].name();
-    station.joint_values = joints.data();
-    const CalibrationProblem touching(ArmParameterisation({problem.arm.geometry(static_cast<int>(c))}, {}), {station},
+    MeasuredSet set = problem.sets()[c];
+    set.joints = detail::touching_joints(problem.arm.geometry(static_cast<int>(c)), set);
+    EXPECT_LT(difference(set.joints, contacts[c].joints()), 0.1) << contacts[c].name();
+    const CalibrationProblem touching(ArmParameterisation({problem.arm.geometry(static_cast<int>(c))}, {}), {set},
                                       Loss::squared);
     EXPECT_LT(touching.stacked(false).residuals.norm() * 0.05e-3, 1e-12) << contacts[c].name();
   }

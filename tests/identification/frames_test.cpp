@@ -1,9 +1,12 @@
 #include "vernier/identification/frames.hpp"
+#include "vernier/core/register_points.hpp"
+#include "vernier/core/trilaterate.hpp"
 
 #include <gtest/gtest.h>
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
@@ -134,7 +137,7 @@ TEST(StartingFrames, OfDistancesPutTheFixedPointAtTheOrigin) {
                                FrameParameters(Vector6{0.02, 0.03, 0.11, 0.1, 0.2, 0.3}));
   const Vector3 anchor(0.9, -1.2, 0.3);
   const auto data = measure_distances(arm, anchor, sample_joints(robot.limits, 40, 1));
-  const detail::Station station = detail::station_of(data, {});
+  const MeasuredSet station = vernier_test::set_of(data, {});
   const ArmGeometry start(arm);
   for (const bool tool : {false, true}) {
     const ArmGeometry found = detail::starting_frames(start, station, true, tool);

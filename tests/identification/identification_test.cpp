@@ -11,6 +11,7 @@
 
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
+#include "set_of.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/least_squares/loss.hpp"
@@ -41,7 +42,7 @@ detail::StackedRows rows_of(const Identified<Chain>& found, const Dataset<6>& da
   for (const Index k : found.free) unknowns.push_back({k, -1, found.parameters[static_cast<std::size_t>(k)].scale, 0});
   const detail::CalibrationProblem problem(
       ArmParameterisation({ArmGeometry(found.model.identified())}, std::move(unknowns)),
-      {detail::station_of(data, sensors)}, Loss::squared);
+      {vernier_test::set_of(data, sensors)}, Loss::squared);
   return problem.stacked(true);
 }
 
@@ -363,7 +364,7 @@ TEST(IdentificationWhiteBox, ASolverThatGivesUpIsReported) {
   const Framed<Chain> arm(robot.chain, base, tool);
   const Dataset<6> data = measured(30, 7);
   const auto gives_up = [](detail::CalibrationProblem&, int) { return detail::SolverSummary{false, 3, "gave up"}; };
-  const auto found = detail::identify_geometry(ArmGeometry(arm), detail::station_of(data, squared),
+  const auto found = detail::identify_geometry(ArmGeometry(arm), vernier_test::set_of(data, squared),
                                                {.frames = Frames::base_and_tool, .priors = false}, squared, gives_up);
   EXPECT_EQ(found.report.status, IdentifyStatus::not_converged);
   EXPECT_EQ(found.report.message, "gave up");

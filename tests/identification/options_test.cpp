@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "complaint.hpp"
-#include "vernier/identification/sensor_model.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier::options_test {
 namespace {

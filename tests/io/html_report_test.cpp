@@ -95,7 +95,7 @@ ReportInput input_of(Index n, const std::string& robot = "arm") {
   for (Index i = 0; i < n; ++i) {
     for (Index k = 0; k < 3; ++k) out.poses.positions(i, k) = rng.uniform(-1.2, 1.2);
     for (Index k = 0; k < 6; ++k) out.poses.joints(i, k) = rng.uniform(-3, 3);
-    out.poses.row.push_back(5 * i);
+    out.poses.line.push_back(5 * i);
   }
   out.poses.files = {"poses.csv"};
   out.times = VectorX::LinSpaced(n, 0, static_cast<double>(n - 1));
@@ -294,7 +294,7 @@ TEST(HtmlReport, RefusesWhatDoesNotFit) {
   wrong.poses.joints.resize(30, 5);
   complains(wrong, "6 joints, poses have 5");
   wrong = input;
-  wrong.poses.row.pop_back();
+  wrong.poses.line.pop_back();
   complains(wrong, "29 row numbers of 30 poses");
 }
 

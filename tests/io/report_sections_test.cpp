@@ -412,7 +412,7 @@ TEST(ReportSections, Suspects) {
   input.poses.gates(7) = 0.5;
   input.poses.files = {"a.csv", "b.csv"};
   input.poses.file.assign(21, 1);
-  for (Index i = 0; i < 21; ++i) input.poses.row.push_back(10 * i);
+  for (Index i = 0; i < 21; ++i) input.poses.line.push_back(10 * i);
   input.suspects = {{"3 of c.csv", 0.5e-3, 5.25, "why"}};
   std::string text = detail::suspects_section(input);
   EXPECT_EQ(row(text, "20 of b.csv"), "held out|2.000|4.0|");
@@ -443,7 +443,7 @@ TEST(ReportSections, PosesInSpace) {
     set_point(input.poses.positions, i, Vector3(0.02 * static_cast<double>(i), 0.01 * static_cast<double>(i), 0.5));
     input.poses.joints(i, 0) = 0.5;
     input.poses.joints(i, 1) = 0.125;
-    input.poses.row.push_back(100 + i);
+    input.poses.line.push_back(100 + i);
   }
   input.joints.resize(2);
   input.joints[1].revolute = false;

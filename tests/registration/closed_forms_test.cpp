@@ -49,17 +49,14 @@ Outcome registered(const Truth& truth, bool oriented, const ReregisterOptions& o
   const auto n = static_cast<Index>(truth.modelled.size());
   constexpr int joints = 6;
   PointRows positions(n, 3);
-  detail::Station station{.joint_values = nullptr,
-                          .samples = n,
-                          .dof = joints,
-                          .positions = &positions,
-                          .position_sigma = sensors.position_sigma,
-                          .orientation_sigma = sensors.orientation_sigma};
+  std::vector<Matrix3> orientations;
   for (Index i = 0; i < n; ++i) {
     const Isometry3 pose = composed(composed(truth.base, truth.modelled[static_cast<std::size_t>(i)]), truth.tool);
     set_point(positions, i, translation(pose));
-    if (oriented) station.orientations.push_back(rotation(pose) * exp_so3(truth.probe));
+    if (oriented) orientations.push_back(rotation(pose) * exp_so3(truth.probe));
   }
+  const MeasuredSet station("poses", MatrixX::Zero(n, joints),
+                            PoseSensor(positions, orientations, {sensors.position_sigma, sensors.orientation_sigma}));
   Outcome out;
   const auto evaluate = [&](const FrameMotion& motion, std::vector<Isometry3>& poses, MatrixX& jacobians) {
     poses.clear();

@@ -3,18 +3,20 @@
 /// @file
 /// A calibrated arm: every step of the pipeline with its result.
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "vernier/calibration/fitted_set.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/identification/identified.hpp"
-#include "vernier/identification/sensor_model.hpp"
+#include "vernier/measurements/measured_set.hpp"
 
 namespace vernier {
 
@@ -29,6 +31,27 @@ struct LearnedRemainder {
   /// Whether nothing was learned: leave-one-out errors may prefer the mean alone.
   bool empty() const { return predictor.constant(); }
 };
+
+namespace detail {
+
+/// How well a model fits the lengths of a set.
+template <class Model>
+FittedSet fitted_set(const Model& model, const MeasuredSet& set) {
+  FittedSet out{set.name, set.kind(), set.size(), 0};
+  SensedRows sensed;
+  double sum = 0;
+  for (Index i = 0; i < set.size(); ++i) {
+    Isometry3 pose = model.pose(JointVector<Model::dof>(set.joints.row(i).transpose()));
+    if (set.seen_from.rows() > 0)
+      pose = model.pose(JointVector<Model::dof>(set.seen_from.row(i).transpose())).inverse() * pose;
+    set.sense(i, pose, sensed);
+    sum += sensed.residual.template head<3>().squaredNorm();
+  }
+  out.rms = std::sqrt(sum / static_cast<double>(set.size()));
+  return out;
+}
+
+}  // namespace detail
 
 /// Everything that `calibrate` found.
 template <class C>
@@ -47,7 +70,7 @@ struct Calibration {
                                                     ///< supports none
   JointCoverage<dof> coverage{};                    ///< measured joint ranges
   Index poses = 0;                                  ///< number of poses it was fitted to
-  Index distances = 0;                              ///< number of distances it was fitted to
+  std::vector<FittedSet> others{};                  ///< sets of measurements beside the poses
   bool oriented = false;                            ///< whether orientations were used
   SensorModel sensors{};                            ///< as given
   Index outliers = 0;                               ///< poses whose error exceeds eight times the median

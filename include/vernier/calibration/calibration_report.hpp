@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/calibration/fitted_set.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/identification/identification_report.hpp"
@@ -42,7 +43,7 @@ struct CalibrationReport {
   IdentificationReport identification;       ///< of the geometry
   std::vector<BlockChoice> blocks{};         ///< decisions on blocks of unknowns
   Index train_poses = 0;                     ///< poses it was fitted to
-  Index distances = 0;                       ///< distances it was fitted to
+  std::vector<FittedSet> others{};           ///< measurements beside the poses
   std::vector<RemainderTrial> trials{};      ///< learners that were tried on what the models leave
   std::vector<StageErrors> stages{};         ///< of the held-out poses, in order
   std::vector<JointReport> joints{};         ///< one a joint

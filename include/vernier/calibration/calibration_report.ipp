@@ -217,6 +217,9 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::next() const {
 VERNIER_IMPL std::string CalibrationReport::summary() const {
   std::string out = message("Errors of the ", test_poses(), " held-out poses [mm]\n\n", stage_table(stages), "\n",
                             identification.summary());
+  for (const FittedSet& set : others)
+    out += message(set.name, ": ", set.measurements, " measurements (", set.kind, "), fitted to ",
+                   detail::brief(set.rms * 1e3), " mm (rms)\n");
   for (const std::string& line : remarks()) out += line + "\n";
   out += "\nVerdict\n";
   for (const std::string& line : verdict()) out += "- " + line + "\n";

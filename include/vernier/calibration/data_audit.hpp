@@ -10,8 +10,8 @@
 
 #include "vernier/calibration/data_finding.hpp"
 #include "vernier/evaluation/statistics.hpp"
-#include "vernier/identification/detail/station.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
+#include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
 
@@ -41,7 +41,7 @@ struct DataAudit {
 namespace detail {
 
 /// See `vernier::audit_data`.
-VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const Station& data, const PointRows& rotation_vectors,
+VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& data, const PointRows& rotation_vectors,
                                  const DataAuditOptions& options);
 
 }  // namespace detail
@@ -59,8 +59,10 @@ VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const Station& data
 /// @throws std::invalid_argument for fewer poses or an unusable option
 /// @cite Rousseeuw and Leroy 1987
 template <NominalArm Arm>
-DataAudit audit_data(const Arm& nominal, const Dataset<Arm::dof>& data, const DataAuditOptions& options = {}) {
-  return detail::audit_data(ArmGeometry(in_frames(nominal)), detail::station_of(data, {}), data.orientations(),
+DataAudit audit_data(const Arm& nominal, const Measurements<ChainOf<Arm>::dof>& data,
+                     const DataAuditOptions& options = {}) {
+  require(data.poses().size() == 1, "audit_data: ", data.poses().size(), " sets of poses; it looks at one at a time");
+  return detail::audit_data(ArmGeometry(in_frames(nominal)), data.sets().front(), data.poses().front().orientations(),
                             options);
 }
 

@@ -136,8 +136,8 @@ VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const 
   return {joint, zero};
 }
 
-VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& data, const PointRows& rotation_vectors,
-                                  const DataAuditOptions& options) {
+VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& data,
+                                  const PointRows& rotation_vectors, const DataAuditOptions& options) {
   require(data.size() >= 10, "audit_data: ", data.size(), " poses, 10 or more are needed");
   for (const auto& [value, name] : {std::pair<double, const char*>{options.smallest_zero, "smallest_zero"},
                                     {options.outlier_factor, "outlier_factor"},
@@ -145,7 +145,8 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
                                     {options.angle_std, "angle_std"}})
     require(value > 0 && std::isfinite(value), "audit_data: ", name, " is ", value, ", must be positive and finite");
   DataAudit out;
-  AuditRows rows{data.joints(), *data.positions, data.orientations, rotation_vectors};
+  AuditRows rows{data.joints, *data.positions(), data.oriented() ? data.orientations() : std::vector<Matrix3>(),
+                 rotation_vectors};
   std::vector<Index> numbers(static_cast<std::size_t>(rows.size()));  // of the rows, in the data
   std::iota(numbers.begin(), numbers.end(), Index{0});
   ArmGeometry arm = nominal;
@@ -206,9 +207,9 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const Station& dat
   const AuditFit frames = audit_fit(found.fit.arm, arm.parameters(), audit_frames_std(arm, rows.oriented()), rows, 10);
   out.registered = ErrorStatistics::of(distances_from(frames.residuals.position, Vector3::Zero()));
   AuditFit geometry = audit_fit(frames.arm, arm.parameters(), stds, rows, 12);
-  if (data.times != nullptr) {
+  if (data.times.size() > 0) {
     VectorX times(rows.size());
-    for (Index i = 0; i < times.size(); ++i) times(i) = (*data.times)(numbers[static_cast<std::size_t>(i)]);
+    for (Index i = 0; i < times.size(); ++i) times(i) = data.times(numbers[static_cast<std::size_t>(i)]);
     const BaseTrend trend = base_trend(geometry, stds, rows, times);
     if (trend.chi_square > 40 && trend.displacement > 0.3 * trend.scale) {
       out.findings.push_back(

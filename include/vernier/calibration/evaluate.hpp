@@ -14,9 +14,9 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/pose_advice.hpp"
-#include "vernier/data/ranges.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/identification/stations.hpp"
+#include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
 
@@ -49,11 +49,11 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
 /// @param held_out    poses that it was not fitted to, as many sets in the same order
 /// @param limits      of the joints, for advice on poses
 /// @throws std::invalid_argument for another number of stations, or no poses
-template <class Chain, RangeOf<Dataset<Chain::dof>> Stations>
-CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations& held_out,
+template <class Chain>
+CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurements<Chain::dof>& held_out,
                            const JointLimits<Chain::dof>& limits = {}) {
   constexpr int N = Chain::dof;
-  const std::span<const Dataset<N>> test(std::data(held_out), std::size(held_out));
+  const std::span<const Dataset<N>> test(held_out.poses());
   const FittedErrorModel<Chain>& errors = calibration.errors;
   const std::vector<ErrorModel<Chain>>& models = errors.models();
   const std::size_t stations = errors.stages.front().stage == Stage::frames ? errors.stages.front().models.size() : 0;
@@ -63,7 +63,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   out.identification = calibration.geometry;
   out.blocks = errors.blocks;
   out.train_poses = calibration.poses;
-  out.distances = calibration.distances;
+  out.others = calibration.others;
   out.oriented = calibration.oriented;
   for (const auto& data : test) out.oriented = out.oriented && data.has_orientations();
   out.converged = errors.converged;
@@ -193,13 +193,6 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Stations
   }
   out.advice = pose_advice(errors, out.identification, limits, calibration.sensors, out.oriented);
   return out;
-}
-
-/// The same for one station.
-template <class Chain>
-CalibrationReport evaluate(const Calibration<Chain>& calibration, const Dataset<Chain::dof>& held_out,
-                           const JointLimits<Chain::dof>& limits = {}) {
-  return evaluate(calibration, std::span<const Dataset<Chain::dof>>(&held_out, 1), limits);
 }
 
 }  // namespace vernier

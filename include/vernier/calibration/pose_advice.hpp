@@ -7,8 +7,8 @@
 
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
-#include "vernier/identification/sensor_model.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier {
 

@@ -76,7 +76,7 @@ namespace detail {
 /// What a check needs of the arm, in its new frames: modelled poses, what was learned taken off, and what they depend
 /// on.
 struct VerificationInput {
-  const Station& data;                               ///< the measured poses
+  const MeasuredSet& data;                           ///< the measured poses
   const ErrorModelEstimate& estimate;                ///< of the arm where it stands now
   std::vector<Isometry3> poses;                      ///< as modelled, with their approach
   MatrixX jacobians;                                 ///< geometric Jacobians, 6 x joints each, side by side
@@ -98,7 +98,7 @@ VERNIER_API VerificationReport verify(const VerificationInput& input, const Veri
 /// The zero of a first joint that the base follows cannot be told from it and is not determined.
 /// @param model    as calibrated
 /// @param estimate what its calibration estimated, see `CalibratedRobot::estimate`
-/// @param data     3 to 1000 fresh poses, measured positions or poses
+/// @param measured 3 to 1000 fresh poses, from one station
 /// @param options  what was set up anew, the level, the accuracy asked for
 /// @param learned  n x 3, the position error that was learned on top of the model at these poses, in its base frame
 /// [m],
@@ -109,10 +109,11 @@ VERNIER_API VerificationReport verify(const VerificationInput& input, const Veri
 /// @cite Koch 1999
 template <class Chain>
 VerificationReport verify_calibration(const ErrorModel<Chain>& model, const ErrorModelEstimate& estimate,
-                                      const Dataset<Chain::dof>& data, const VerifyOptions& options = {},
+                                      const Measurements<Chain::dof>& measured, const VerifyOptions& options = {},
                                       const PointRows& learned = PointRows(0, 3)) {
   constexpr int N = Chain::dof;
   options.validate();
+  const Dataset<N>& data = detail::only_poses(measured, "verify_calibration");
   require(data.size() >= 3, "verify_calibration: ", data.size(), " poses, at least 3 are needed");
   require(data.size() <= 1000, "verify_calibration: ", data.size(),
           " poses, at most 1000 are taken: their covariance is dense");
@@ -130,9 +131,9 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     now = found.model;
     registration = std::move(static_cast<ReregistrationReport&>(found));
   }
-  const detail::Station station = detail::station_of(data, options.sensors);
+  const MeasuredSet set = measured.sets().front().with(options.sensors);
   const ErrorModelEstimate here = estimate.of_arm(FittedArm::of(now.identified()));
-  detail::VerificationInput input{station, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
+  detail::VerificationInput input{set, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
   input.jacobians.resize(6, N * data.size());
   input.gates.resize(data.size());
   const Matrix3 before_turn = rotation(model.identified().base()), back = before_turn.transpose(),

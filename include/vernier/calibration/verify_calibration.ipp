@@ -72,15 +72,15 @@ VERNIER_API ColumnTest test_columns(const WhitenedResiduals& of, const std::vect
 /// Covariance of the residuals of some poses: that of the calibration's unknowns, which they share, and of each visit.
 VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const VerifyOptions& options, Index values,
                                         std::vector<Matrix6>& visits) {
-  const Station& data = input.data;
+  const MeasuredSet& data = input.data;
   const Index n = data.size(), unknowns = input.estimate.arm.size();
-  const VectorX temperatures = data.temperatures != nullptr ? *data.temperatures : VectorX();
-  visits = input.estimate.visit_covariances(data.joints(), input.gates, 0, data.previous(), temperatures);
+  const VectorX& temperatures = data.temperatures;
+  visits = input.estimate.visit_covariances(data.joints, input.gates, 0, data.previous, temperatures);
   std::vector<RowBlock> blocks(static_cast<std::size_t>(n));
   VectorX warmer = VectorX::Zero(n);
   if (temperatures.size() > 0 && input.estimate.mean_temperature != 0)
     for (Index i = 0; i < n; ++i) warmer(i) = temperatures(i) - input.estimate.mean_temperature;
-  input.estimate.arm.linearise(0, data.joints(), data.previous(), blocks.data(), true, warmer);
+  input.estimate.arm.linearise(0, data.joints, data.previous, blocks.data(), true, warmer);
   MatrixX effects(unknowns, values * n);
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {
@@ -186,8 +186,8 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
 }
 
 VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const VerifyOptions& options) {
-  const Station& data = input.data;
-  const Index n = data.size(), joints = data.dof, values = data.oriented() ? 6 : 3;
+  const MeasuredSet& data = input.data;
+  const Index n = data.size(), joints = data.joints.cols(), values = data.oriented() ? 6 : 3;
   VerificationReport out;
   out.poses = n;
   out.joint_types = input.joint_types;
@@ -205,7 +205,7 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
     const Isometry3& pose = input.poses[row];
     const Vector3 shift = translation(pose) - data.position(i);
     Vector3 turn = Vector3::Zero();
-    if (values == 6) turn = rotation_difference(rotation(pose) * exp_so3(probe), data.orientations[row]);
+    if (values == 6) turn = rotation_difference(rotation(pose) * exp_so3(probe), data.orientations()[row]);
     const double* jacobian = input.jacobians.data() + 6 * joints * i;
     const Rows6 frames = update.columns(pose, jacobian);
     for (Index v = 0; v < values; ++v) {
@@ -213,7 +213,7 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
       residual(k) = v < 3 ? shift(v) : turn(v - 3);
       for (Index c = 0; c < registered.cols(); ++c) registered(k, c) = frames(v, c);
       for (Index j = 0; j < joints; ++j) {
-        const double q = data.joints()(i, j), effect = jacobian[6 * j + v];
+        const double q = data.joints(i, j), effect = jacobian[6 * j + v];
         changes(k, j) = effect;
         changes(k, joints + 2 * j) = std::cos(q) * effect;
         changes(k, joints + 2 * j + 1) = std::sin(q) * effect;
@@ -221,7 +221,8 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
     }
     const Isometry3& fitted = input.poses_as_fitted[row];
     out.as_fitted(i) = (translation(fitted) - data.position(i)).norm();
-    if (values == 6) out.rotations_as_fitted(i) = rotation_difference(rotation(fitted), data.orientations[row]).norm();
+    if (values == 6)
+      out.rotations_as_fitted(i) = rotation_difference(rotation(fitted), data.orientations()[row]).norm();
   }
   std::vector<Matrix6> visits;
   const MatrixX covariance = residual_covariance(input, options, values, visits);

@@ -32,7 +32,7 @@ class CeresProblem {
     } else {
       for (Index row = 0; row < rows_.residuals.size();) {
         const auto i = static_cast<std::size_t>(row);
-        const bool projected = problem_.station_of(rows_.block[i]).projected();
+        const bool projected = problem_.set_of(rows_.block[i]).projected();
         const Index count = projected ? 1 : 3;
         const double threshold = (*thresholds)[projected ? 2 : rows_.of_orientation[i] ? 1 : 0];
         ceres_problem.AddResidualBlock(new Rows(*this, row, count), loss(threshold), steps_.data());

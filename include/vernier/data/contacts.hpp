@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vernier/core/types.hpp"
+#include "vernier/data/row_origin.hpp"
 
 namespace vernier {
 
@@ -43,6 +44,14 @@ class Contact {
   const MatrixX& joints() const { return joints_; }
   /// Known lengths [m], n; see the constructor.
   const VectorX& known() const { return known_; }
+  /// Where the touches stand in a file; empty where they are from none.
+  const RowOrigin& origin() const { return origin_; }
+  /// The same touches, said to be from some rows of a file.
+  Contact from(RowOrigin origin) const {
+    Contact out = *this;
+    out.origin_ = std::move(origin);
+    return out;
+  }
   /// Whether it has a known length: a ball, or faces or sockets at several distances.
   VERNIER_API bool has_length() const;
 
@@ -51,6 +60,7 @@ class Contact {
   ContactKind kind_;
   MatrixX joints_;
   VectorX known_;
+  RowOrigin origin_{};
 };
 
 }  // namespace vernier

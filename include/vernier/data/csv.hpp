@@ -27,6 +27,7 @@ struct PoseColumns {
   MatrixX previous;      ///< joint values from which each pose was approached; NaN where unknown
   VectorX times;         ///< of measuring
   VectorX temperatures;  ///< [deg C]; none where the file has none
+  RowOrigin origin;      ///< lines of the rows
 };
 VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
 /// The columns of a file of targets; what it lacks has no rows.
@@ -36,8 +37,13 @@ struct TargetColumns {
   std::vector<bool> linear;  ///< whether the move to each is a linear one
 };
 VERNIER_API TargetColumns read_target_columns(const std::string& path, int joints, std::span<const JointType> types);
-/// Joints, then the distances [m].
-VERNIER_API MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types);
+/// The columns of a file of distances.
+struct DistanceColumns {
+  MatrixX values;    ///< joints, then the distances [m]
+  RowOrigin origin;  ///< lines of the rows
+};
+VERNIER_API DistanceColumns read_distance_columns(const std::string& path, int joints,
+                                                  std::span<const JointType> types);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
                                   const VectorX& temperatures);
@@ -58,20 +64,21 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 /// @throws DataError naming file, line and column
 template <int N>
 Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {}) {
-  const auto [values, previous, times, temperatures] = detail::read_pose_columns(path, N, joint_types);
+  const auto [values, previous, times, temperatures, origin] = detail::read_pose_columns(path, N, joint_types);
   return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
                     values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3))
       .approached_from(previous)
       .measured_at(times)
-      .at_temperatures(temperatures);
+      .at_temperatures(temperatures)
+      .from(origin);
 }
 
 /// Measured distances from a CSV file: columns q1 .. qN as in `read_dataset`, and distance_mm (or _m, _um).
 /// @throws DataError naming file, line and column
 template <int N>
 Distances<N> read_distances(const std::string& path, std::span<const JointType> joint_types = {}) {
-  const MatrixX values = detail::read_distance_columns(path, N, joint_types);
-  return Distances<N>(values.leftCols<N>(), values.col(N));
+  const auto [values, origin] = detail::read_distance_columns(path, N, joint_types);
+  return Distances<N>(values.leftCols<N>(), values.col(N)).from(origin);
 }
 
 /// Joint rows from a CSV file: the q columns of `read_dataset`.

@@ -50,6 +50,12 @@ class CsvTable {
   [[noreturn]] void fail_in_header(const Parts&... parts) const {
     throw DataError(message(file_, ", line ", header_line_, ": ", parts...));
   }
+  /// Where its rows stand.
+  RowOrigin origin() const {
+    std::vector<Index> lines;
+    for (const TextLine& line : lines_) lines.push_back(static_cast<Index>(line.number));
+    return RowOrigin::of(file_, std::move(lines));
+  }
   /// Throws a DataError about a value.
   template <class... Parts>
   [[noreturn]] void fail_in_row(Index row, const CsvColumn& column, const Parts&... parts) const {
@@ -201,7 +207,7 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, true));
   if (table.find("rx", false) || table.find("ry", false) || table.find("rz", false))
     for (const char* axis : {"rx", "ry", "rz"}) columns.push_back(table.require_column(axis, false));
-  PoseColumns out{table.numbers(columns), {}, {}, {}};
+  PoseColumns out{table.numbers(columns), {}, {}, {}, table.origin()};
   const Index n = out.values.rows();
   const auto column = [&](const char* name) -> std::optional<VectorX> {
     const auto found = table.find_plain(name);
@@ -248,14 +254,15 @@ VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int join
   return out;
 }
 
-VERNIER_IMPL MatrixX read_distance_columns(const std::string& path, int joints, std::span<const JointType> types) {
+VERNIER_IMPL DistanceColumns read_distance_columns(const std::string& path, int joints,
+                                                   std::span<const JointType> types) {
   const CsvTable table(path);
   std::vector<CsvColumn> columns = joint_columns(table, joints, types);
   columns.push_back(table.require_column("distance", true));
   MatrixX values = table.numbers(columns);
   for (Index i = 0; i < values.rows(); ++i)
     if (!(values(i, joints) > 0)) table.fail_in_row(i, columns.back(), "a distance must be positive");
-  return values;
+  return {std::move(values), table.origin()};
 }
 
 VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
@@ -384,7 +391,8 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     detail::copy_rows(q, object.rows, of_joints);
     detail::copy_rows(known, object.rows, of_known);
     try {
-      out.emplace_back(object.name, object.kind, std::move(of_joints), std::move(of_known));
+      out.push_back(Contact(object.name, object.kind, std::move(of_joints), std::move(of_known))
+                        .from(table.origin().rows(object.rows)));
     } catch (const std::invalid_argument& e) {
       throw DataError(message(path, ": ", std::string(e.what())));
     }

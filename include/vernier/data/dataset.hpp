@@ -11,6 +11,7 @@
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/types.hpp"
+#include "vernier/data/row_origin.hpp"
 
 namespace vernier {
 
@@ -96,6 +97,18 @@ class Dataset {
     return out;
   }
 
+  /// Where the samples stand in files; empty where they are from none.
+  const RowOrigin& origin() const { return origin_; }
+  /// The same samples, said to be from some rows of files.
+  /// @throws std::invalid_argument for another number of rows
+  Dataset from(RowOrigin origin) const {
+    require(origin.empty() || static_cast<Index>(origin.line.size()) == size(), "Dataset: ", origin.line.size(),
+            " lines of ", size(), " rows");
+    Dataset out = *this;
+    out.origin_ = std::move(origin);
+    return out;
+  }
+
   /// Joint values of sample i [rad, m].
   JointVector<N> joints(Index i) const { return configuration(joints_, i); }
   /// Measured position of sample i [m].
@@ -124,6 +137,7 @@ class Dataset {
     }
     detail::copy_rows(positions_, indices, out.positions_);
     if (has_orientations()) detail::copy_rows(orientations_, indices, out.orientations_);
+    out.origin_ = origin_.rows(indices);
     return out;
   }
 
@@ -139,6 +153,7 @@ class Dataset {
   PointRows positions_, orientations_;
   JointRows<N> previous_;
   VectorX times_{}, temperatures_{};
+  RowOrigin origin_{};
 };
 
 }  // namespace vernier

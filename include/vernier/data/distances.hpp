@@ -44,6 +44,15 @@ class Distances {
   /// Measured distance of sample i [m].
   double length(Index i) const { return lengths_(i); }
 
+  /// Where the samples stand in files; empty where they are from none.
+  const RowOrigin& origin() const { return origin_; }
+  /// The same samples, said to be from some rows of files.
+  Distances from(RowOrigin origin) const {
+    Distances out = *this;
+    out.origin_ = std::move(origin);
+    return out;
+  }
+
   /// The named rows, in the given order.
   /// @throws std::invalid_argument on a row outside 0 .. size-1
   Distances rows(std::span<const Index> indices) const {
@@ -52,12 +61,14 @@ class Distances {
     out.lengths_.resize(out.joints_.rows());
     detail::copy_rows(joints_, indices, out.joints_);
     detail::copy_rows(lengths_, indices, out.lengths_);
+    out.origin_ = origin_.rows(indices);
     return out;
   }
 
  private:
   JointRows<N> joints_;
   VectorX lengths_;
+  RowOrigin origin_{};
 };
 
 }  // namespace vernier

@@ -34,7 +34,6 @@ struct ErrorModelOptions {
   double thermal_prior_std = 1e-4;      ///< expected change of a length [m/K] or an angle [rad/K]
   bool drift = true;                    ///< motion of the bases during a session
   const ArmPrior* prior = nullptr;      ///< an earlier calibration, which must outlive the fit; null for none
-  ExecutorRef executor{};               ///< computes normal equations; the fit does not depend on it
   Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block
 
   /// @throws std::invalid_argument naming the value

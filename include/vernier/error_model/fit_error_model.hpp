@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <vector>
 
-#include "vernier/data/ranges.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
 #include "vernier/error_model/error_model_options.hpp"
@@ -16,6 +14,7 @@
 #include "vernier/error_model/prior_objective.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/identification/identified.hpp"
+#include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
 
@@ -39,36 +38,33 @@ struct ErrorModelOutput {
 };
 
 /// See `vernier::fit_error_model`.
-VERNIER_API ErrorModelOutput fit_error_model(const ErrorModelInput& input, const ErrorModelOptions& options,
-                                             const SensorModel& sensors, PriorSearch search);
+VERNIER_API ErrorModelOutput fit_error_model(ErrorModelInput input, const ErrorModelOptions& options,
+                                             const SensorModel& sensors, PriorSearch search, ExecutorRef executor);
 
 }  // namespace detail
 
 /// Geometry, frames and joint errors of an arm in one regularised least-squares problem, solved on its normal
 /// equations. Blocks of joint errors that leave-one-pose-out errors do not support are omitted.
 /// @param start     an identified arm; its estimated parameters are estimated again, its weak ones keep their priors
-/// @param stations  measured poses, one set a place of the sensor: the chain is shared, every base its own
-/// @param distances measured distances, one set a fixed point, which need not be known; either of the two may be empty
+/// @param measured  of any kinds, from any number of places: the chain is shared, every place has a frame of its own
 /// @param options   which joint errors there may be, their expected sizes
 /// @param sensors   accuracy of the measurements, and the loss
 /// @param search    optimises the priors of the joint errors, e.g. a metaheuristic; by default their sizes follow from
 ///                  evidence
-/// @param contacts  what the tool point of the poses touched, objects whose places need not be known; beside poses only
-/// @throws std::invalid_argument on an unusable option or no measurements, or contacts without poses
+/// @param executor  computes normal equations; the fit does not depend on it
+/// @throws std::invalid_argument on an unusable option, no measurements, or touches without poses
 /// @complexity O(n u^2 / 6) an iteration for n poses and u unknowns, memory O(u^2)
-template <int N, class Convention, RangeOf<Dataset<N>> Stations, RangeOf<Distances<N>> Wires>
+template <int N, class Convention>
 FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
-                                                         const Stations& stations, const Wires& distances,
+                                                         const Measurements<DhChain<N, Convention>::dof>& measured,
                                                          const ErrorModelOptions& options = {},
                                                          const SensorModel& sensors = {}, PriorSearch search = {},
-                                                         std::span<const Contact> contacts = {}) {
+                                                         ExecutorRef executor = {}) {
   using Chain = DhChain<N, Convention>;
   const Chain& nominal = start.model.nominal().model();
-  detail::ErrorModelInput input{
-      start, ArmGeometry(start.model.identified()), detail::ChainTable(nominal.view()), {}, {}, contacts};
-  for (const Dataset<N>& data : stations) input.poses.push_back(detail::station_of(data, sensors));
-  for (const Distances<N>& data : distances) input.distances.push_back(detail::station_of(data, sensors));
-  detail::ErrorModelOutput found = detail::fit_error_model(input, options, sensors, search);
+  const detail::ErrorModelInput input{start, ArmGeometry(start.model.identified()), detail::ChainTable(nominal.view()),
+                                      measured.sets(sensors)};
+  detail::ErrorModelOutput found = detail::fit_error_model(input, options, sensors, search, executor);
 
   FittedErrorModel<Chain> out(std::move(found.estimate));
   auto coverage = JointCoverage<N>::covering(found.joints);
@@ -98,23 +94,6 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
     out.stages.push_back(std::move(models));
   }
   return out;
-}
-
-/// The same from poses alone.
-template <int N, class Convention, RangeOf<Dataset<N>> Stations>
-FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
-                                                         const Stations& stations,
-                                                         const ErrorModelOptions& options = {},
-                                                         const SensorModel& sensors = {}, PriorSearch search = {}) {
-  return fit_error_model(start, stations, std::span<const Distances<N>>(), options, sensors, search);
-}
-
-/// The same from one station.
-template <int N, class Convention>
-FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChain<N, Convention>>& start,
-                                                         const Dataset<N>& data, const ErrorModelOptions& options = {},
-                                                         const SensorModel& sensors = {}, PriorSearch search = {}) {
-  return fit_error_model(start, std::span<const Dataset<N>>(&data, 1), options, sensors, search);
 }
 
 }  // namespace vernier

@@ -18,20 +18,23 @@ namespace vernier::detail {
 /// The steps of `fit_error_model`.
 class ErrorModelFit {
  public:
-  VERNIER_API ErrorModelFit(const ErrorModelInput& input, const ErrorModelOptions& options, const SensorModel& sensors)
+  VERNIER_API ErrorModelFit(const ErrorModelInput& input, const ErrorModelOptions& options, const SensorModel& sensors,
+                            ExecutorRef executor)
       : input_(input),
         options_(options),
-        model_(CalibrationProblem(ArmParameterisation(starting_arms(input), geometric_unknowns(input, options)),
-                                  joined_stations(input, sensors), sensors.loss),
+        model_(CalibrationProblem(ArmParameterisation(input.arms, geometric_unknowns(input, options)), input.sets,
+                                  sensors.loss, sensors.joint_sigma),
                options, spectra_of(options, input.nominal.joints())),
-        problem_(model_.problem) {}
+        problem_(model_.problem) {
+    problem_.executor = executor;
+  }
 
   VERNIER_API ErrorModelOutput run(PriorSearch search) {
     ErrorModelOutput out{.estimate = {.arm = problem_.arm}};
     ErrorModelEstimate& estimate = out.estimate;
     model_.solve();
     out.stages.push_back({Stage::geometry, true, arms()});
-    if (!input_.poses.empty()) estimate.geometry_left_out_errors = model_.left_out_errors();
+    if (input_.sets.front().locates()) estimate.geometry_left_out_errors = model_.left_out_errors();
 
     JointTerms elastic(input_.nominal.joints());
     if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
@@ -179,8 +182,7 @@ class ErrorModelFit {
 
     const ErrorModelEstimate& before = prior.estimate;
     const JointTerms& terms = before.arm.terms();
-    problem_.arm =
-        ArmParameterisation(starting_arms(input_), with_unknowns_of(prior, geometric_unknowns(input_, options_)));
+    problem_.arm = ArmParameterisation(input_.arms, with_unknowns_of(prior, geometric_unknowns(input_, options_)));
     problem_.arm.set_terms(terms, before.arm.scales().tail(terms.size()), VectorX::Zero(terms.size()));
     problem_.reference_temperature = before.mean_temperature;
     const TransferredUnknowns known = transferred_unknowns(prior, problem_.arm, input_.nominal);
@@ -251,16 +253,17 @@ class ErrorModelFit {
   VectorX expected_{};           // precisions of the joint errors by an earlier calibration that is used
 };
 
-VERNIER_IMPL ErrorModelOutput fit_error_model(const ErrorModelInput& input, const ErrorModelOptions& options,
-                                              const SensorModel& sensors, PriorSearch search) {
+VERNIER_IMPL ErrorModelOutput fit_error_model(ErrorModelInput input, const ErrorModelOptions& options,
+                                              const SensorModel& sensors, PriorSearch search, ExecutorRef executor) {
   options.validate();
   sensors.validate();
-  require(input.poses.size() + input.distances.size() > 0, "fit_error_model: no stations");
-  require(input.contacts.empty() || !input.poses.empty(), "fit_error_model: contacts without poses");
-  for (const Contact& contact : input.contacts)
-    require(contact.joints().cols() == input.identified.joints(), "contact ", contact.name(), ": ",
-            contact.joints().cols(), " joints, the arm has ", input.identified.joints());
-  return ErrorModelFit(input, options, sensors).run(search);
+  require(!input.sets.empty(), "fit_error_model: no measurements");
+  const MeasuredSet& first = input.sets.front();
+  for (const MeasuredSet& set : input.sets)
+    require(first.locates() || set.kind() == first.kind(), "fit_error_model: ", set.name, " beside ", first.name,
+            ", but without poses");
+  input.place();
+  return ErrorModelFit(input, options, sensors, executor).run(search);
 }
 
 }  // namespace vernier::detail

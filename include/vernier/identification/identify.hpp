@@ -4,12 +4,24 @@
 /// Identification of an arm's geometry and frames by nonlinear least squares in Ceres, which the component `ceres`
 /// brings: include vernier/ceres/identify.hpp, or vernier/ceres.hpp for the whole pipeline.
 
-#include <concepts>
-
 #include "vernier/identification/detail/identification.hpp"
 #include "vernier/identification/identified.hpp"
+#include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
+
+namespace detail {
+
+/// An arm identified from one set.
+template <class Chain>
+Identified<Chain> identified_from(const Framed<Chain>& arm, const MeasuredSet& set, const IdentifyOptions& options,
+                                  const SensorModel& sensors) {
+  const CeresSolver solver;
+  const IdentifiedGeometry found = identify_geometry(ArmGeometry(arm), set, options, sensors, solver);
+  return {found.report, {found.arm.framed(arm.model()), arm.model()}};
+}
+
+}  // namespace detail
 
 /// Identifies the geometry of an arm and its base and tool frames from measurements (Levenberg-Marquardt in Ceres).
 ///
@@ -20,23 +32,20 @@ namespace vernier {
 /// From distances to one fixed point the base frame has its origin at that point; its orientation, which distances do
 /// not determine, is that of the start, and errors are those of distances.
 /// @param nominal the arm as designed; its frames are known, or the start where they are to be identified
-/// @param data    n >= 1 samples, a `Dataset` or `Distances`; joints in rad (or m), positions in m. Not kept.
+/// @param data    n >= 1 measurements from one place, e.g. a `Dataset` or `Distances`. Not kept.
 /// @param options which parameters are estimated, with which priors
 /// @param sensors accuracy of the measurements, and the loss; plain least squares by default
 /// @return        model, status, rms before and after [m], rank, condition, covariance (empty where rank deficient)
-/// @throws std::invalid_argument on no data or an unusable option, never for poor data
+/// @throws std::invalid_argument on no data, several sets or an unusable option, never for poor data
 /// @complexity    O(n * free^2) per iteration; allocates
 /// @cite          Hayati and Mirmirani 1985; Everett, Driels and Mooring 1987; Schroer 1997
-template <NominalArm Arm, class Data>
-Identified<ChainOf<Arm>> identify(const Arm& nominal, const Data& data, const IdentifyOptions& options = {},
+template <NominalArm Arm>
+Identified<ChainOf<Arm>> identify(const Arm& nominal, const Measurements<ChainOf<Arm>::dof>& data,
+                                  const IdentifyOptions& options = {},
                                   const SensorModel& sensors = {.loss = Loss::squared}) {
-  static_assert(std::same_as<Data, Dataset<Arm::dof>> || std::same_as<Data, Distances<Arm::dof>>,
-                "identify: data of another number of joints");
-  const Framed<ChainOf<Arm>> arm = in_frames(nominal);
-  const detail::CeresSolver solver;
-  const detail::IdentifiedGeometry found =
-      detail::identify_geometry(ArmGeometry(arm), detail::station_of(data, sensors), options, sensors, solver);
-  return {found.report, {found.arm.framed(arm.model()), arm.model()}};
+  require(data.sets().size() == 1, "identify: ", data.sets().size(),
+          " sets of measurements; it takes one, `calibrate` takes several");
+  return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors);
 }
 
 }  // namespace vernier

@@ -112,7 +112,7 @@ VERNIER_IMPL std::string report_html(const ReportInput& input) {
   };
   fits("rows of joints", input.poses.joints.rows());
   fits("files", input.poses.file.size());
-  fits("row numbers", input.poses.row.size());
+  fits("lines", input.poses.line.size());
   fits("normalised errors", input.poses.normalised.size());
   fits("gates", input.poses.gates.size());
   fits("times", input.times.size());

@@ -10,8 +10,7 @@
 
 #include "vernier/core/points.hpp"
 #include "vernier/error_model/error_model.hpp"
-#include "vernier/identification/detail/station.hpp"
-#include "vernier/identification/sensor_model.hpp"
+#include "vernier/measurements/measurements.hpp"
 #include "vernier/registration/detail/frame_fit.hpp"
 
 namespace vernier {
@@ -73,8 +72,9 @@ struct Reregistered : ReregistrationReport {
 namespace detail {
 
 /// Estimates how an arm was moved.
-VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
-                                   const SensorModel& sensors, ReregistrationReport& report);
+VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSet& data,
+                                   const ReregisterOptions& options, const SensorModel& sensors,
+                                   ReregistrationReport& report);
 
 }  // namespace detail
 
@@ -83,15 +83,17 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const Station& da
 /// Where positions and orientations contradict each other by a constant rotation of the tool frame (a remounted probe),
 /// that rotation is estimated as well and reported, for orientations alone: the model's tool stays as it was.
 /// @param model   as fitted, wherever it stood then
-/// @param data    n >= 1 poses from where it stands now; temperatures count where the model changes with them
+/// @param measured n >= 1 poses from where it stands now, of one station; temperatures count where the model changes
+/// with them
 /// @param options what is estimated
 /// @param sensors their accuracy, the least that residuals are taken for; they are weighted by squares, whatever its
 /// loss, and its `joint_sigma` is not used
 /// @throws std::invalid_argument on no data or an unusable option
 template <class Chain>
-Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
+Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Measurements<Chain::dof>& measured,
                                const ReregisterOptions& options = {}, const SensorModel& sensors = {}) {
   constexpr int N = Chain::dof;
+  const Dataset<N>& data = detail::only_poses(measured, "reregister");
   const auto moved = [&](const FrameMotion& by) { return model.moved(by.base, JointVector<N>(by.offsets), by.tool); };
   const auto evaluate = [&](const FrameMotion& motion, std::vector<Isometry3>& poses, MatrixX& jacobians) {
     const ErrorModel<Chain> now = moved(motion);
@@ -109,7 +111,8 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Dataset<Cha
   };
   const auto types = model.nominal().chain().joint_types();
   ReregistrationReport report;
-  const FrameMotion found = detail::reregister(evaluate, detail::station_of(data, sensors), options, sensors, report);
+  const FrameMotion found =
+      detail::reregister(evaluate, measured.sets().front().with(sensors), options, sensors, report);
   report.joint_types = {types.begin(), types.end()};
   return {std::move(report), moved(found)};
 }

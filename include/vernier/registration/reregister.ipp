@@ -7,6 +7,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/register_points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
@@ -135,15 +136,16 @@ VERNIER_API Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, cons
 
 /// Base motion that brings modelled poses to the measured ones, in closed form; its rotation by the orientations or by
 /// the positions.
-VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const Station& data, bool by_orientations) {
+VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const MeasuredSet& data,
+                                  bool by_orientations) {
   PointRows points(data.size(), 3);
   for (Index i = 0; i < data.size(); ++i) set_point(points, i, translation(modelled[static_cast<std::size_t>(i)]));
-  if (!by_orientations) return register_points(points, *data.positions);
+  if (!by_orientations) return register_points(points, *data.positions());
   Matrix3 sum = Matrix3::Zero();
-  for (std::size_t i = 0; i < modelled.size(); ++i) sum += data.orientations[i] * rotation(inverse_of(modelled[i]));
+  for (std::size_t i = 0; i < modelled.size(); ++i) sum += data.orientations()[i] * rotation(inverse_of(modelled[i]));
   const Matrix3 turn = nearest_rotation(sum);
   const Vector3 turned = turn * centroid(points);
-  return rigid_motion(turn, centroid(*data.positions) - turned);
+  return rigid_motion(turn, centroid(*data.positions()) - turned);
 }
 
 /// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
@@ -199,7 +201,7 @@ VERNIER_API std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
 
 /// Decides whether the orientations are turned against the tool, from a fit in which they are free to, and solves again
 /// where they are not.
-VERNIER_API void judge_probe(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
+VERNIER_API void judge_probe(const MovedPoses& evaluate, const MeasuredSet& data, const ReregisterOptions& options,
                              const SensorModel& sensors, FrameFit& fit, ReregistrationReport& report) {
   const Index begin = fit.update.probe_begin();
   // A mean error of the model's orientations is no remounted probe: it may be as large as their scatter.
@@ -228,12 +230,13 @@ VERNIER_API void judge_probe(const MovedPoses& evaluate, const Station& data, co
   solve_frames(evaluate, data, fit);
 }
 
-VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& data, const ReregisterOptions& options,
-                                    const SensorModel& sensors, ReregistrationReport& report) {
+VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSet& data,
+                                    const ReregisterOptions& options, const SensorModel& sensors,
+                                    ReregistrationReport& report) {
   options.validate();
   sensors.validate();
   require(data.size() >= 1, "reregister: no samples");
-  const int joints = data.dof;
+  const int joints = static_cast<int>(data.joints.cols());
   // a tool that is freed follows the orientations by itself
   const FrameUpdate update{options.base, options.offsets, options.tool, joints, data.oriented() && !options.tool};
   // The probe may be mounted any way round; a prior this wide keeps one pose from asking for both base and probe.
@@ -255,7 +258,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
   report.rms_before = rms();
   if (options.base) {  // the arm may be anywhere: a closed-form start
     if (data.oriented() && options.tool && std::isinf(options.tool_rotation_prior_std))
-      fit.motion.tool = tool_rotation(fit.poses, data.orientations);
+      fit.motion.tool = tool_rotation(fit.poses, data.orientations());
     evaluate(fit.motion, fit.poses, jacobians);
     fit.motion.base = base_motion(fit.poses, data, data.oriented());
     if (update.probe) {  // a probe mounted another way round would put the arm somewhere else
@@ -264,7 +267,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const Station& d
       if (rms() > 0.02) {
         fit.motion.base = base_motion(before, data, false);
         evaluate(fit.motion, fit.poses, jacobians);
-        fit.motion.probe = probe_rotation(fit.poses, data.orientations);
+        fit.motion.probe = probe_rotation(fit.poses, data.orientations());
         fit.total.tail(3) = fit.motion.probe;
       }
     }

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "vernier/identification/detail/station.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
+#include "vernier/measurements/measured_set.hpp"
 
 namespace vernier::detail {
 
@@ -20,8 +20,8 @@ struct AuditRows {
 
   Index size() const { return joints.rows(); }
   bool oriented() const { return !orientations.empty(); }
-  /// As a station that refers to these rows.
-  VERNIER_API Station station() const;
+  /// As a set of measurements.
+  VERNIER_API MeasuredSet measured() const;
   /// Named rows; the poses are those of rows `shift` further on.
   VERNIER_API AuditRows rows(std::span<const Index> indices, Index shift = 0) const;
 };

@@ -7,16 +7,12 @@
 #include "vernier/calibration/detail/audit_fit.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/measurements/pose_sensor.hpp"
 
 namespace vernier::detail {
 
-VERNIER_IMPL Station AuditRows::station() const {
-  Station out{.joint_values = joints.data(),
-              .samples = size(),
-              .dof = static_cast<int>(joints.cols()),
-              .positions = &positions};
-  out.orientations = orientations;
-  return out;
+VERNIER_IMPL MeasuredSet AuditRows::measured() const {
+  return MeasuredSet("poses", joints, PoseSensor(positions, orientations));
 }
 
 VERNIER_IMPL AuditRows AuditRows::rows(std::span<const Index> indices, Index shift) const {

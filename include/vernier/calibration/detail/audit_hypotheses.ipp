@@ -86,7 +86,7 @@ VERNIER_IMPL HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const Audi
     stds(parameter) = std::numeric_limits<double>::infinity();
     values(parameter) += hypothesis.zero;
   }
-  const ArmGeometry start = starting_frames(nominal.with_parameters(values), corrected.station(), true, true);
+  const ArmGeometry start = starting_frames(nominal.with_parameters(values), corrected.measured(), true, true);
   HypothesisFit out{hypothesis, audit_fit(start, centre, stds, corrected, 20)};
   if (zero) out.zero = out.fit.arm.parameters()(parameter) - centre(parameter);
   return out;

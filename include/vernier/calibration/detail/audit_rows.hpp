@@ -19,14 +19,14 @@ VERNIER_API void audit_single_rows(const AuditFit& geometry, const ConstVectorRe
                                    std::vector<DataFinding>& findings);
 
 /// Poses that occur again in all digits.
-VERNIER_API void audit_duplicates(const Station& data, const PointRows& rotation_vectors,
+VERNIER_API void audit_duplicates(const MeasuredSet& data, const PointRows& rotation_vectors,
                                   std::vector<DataFinding>& findings);
 
 /// Joint values that scatter about repeated commands.
 VERNIER_API void audit_joint_values(const MatrixX& joints, std::vector<DataFinding>& findings);
 
 /// Joints that always come from the same side.
-VERNIER_API void audit_approaches(const Station& data, std::vector<DataFinding>& findings);
+VERNIER_API void audit_approaches(const MeasuredSet& data, std::vector<DataFinding>& findings);
 
 }  // namespace vernier::detail
 

@@ -89,12 +89,13 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
   findings.push_back(std::move(outliers));
 }
 
-VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotation_vectors,
+VERNIER_IMPL void audit_duplicates(const MeasuredSet& data, const PointRows& rotation_vectors,
                                    std::vector<DataFinding>& findings) {
   const Index n = data.size();
   const auto before = [&](Index a, Index b) {
     for (Index c = 0; c < 3; ++c)
-      if ((*data.positions)(a, c) != (*data.positions)(b, c)) return (*data.positions)(a, c) < (*data.positions)(b, c);
+      if ((*data.positions())(a, c) != (*data.positions())(b, c))
+        return (*data.positions())(a, c) < (*data.positions())(b, c);
     if (rotation_vectors.rows() == n)
       for (Index c = 0; c < 3; ++c)
         if (rotation_vectors(a, c) != rotation_vectors(b, c)) return rotation_vectors(a, c) < rotation_vectors(b, c);
@@ -114,8 +115,8 @@ VERNIER_IMPL void audit_duplicates(const Station& data, const PointRows& rotatio
           {order.begin() + static_cast<std::ptrdiff_t>(a), order.begin() + static_cast<std::ptrdiff_t>(b)}};
       bool same = true;
       for (const Index row : finding.rows)
-        for (Index j = 0; j < data.dof; ++j)
-          same = same && data.joints()(row, j) == data.joints()(finding.rows.front(), j);
+        for (Index j = 0; j < data.joints.cols(); ++j)
+          same = same && data.joints(row, j) == data.joints(finding.rows.front(), j);
       finding.message = name_rows(finding.rows) +
                         (same ? ": joints and pose are the same in all digits: leave out all but one"
                               : ": the same pose in all digits at different joints: the sensor was not read again, "
@@ -164,12 +165,12 @@ VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFind
                               "them corrects readings, use the commands if commands are to be corrected")});
 }
 
-VERNIER_IMPL void audit_approaches(const Station& data, std::vector<DataFinding>& findings) {
-  if (data.previous_values == nullptr) return;
-  for (int j = 0; j < data.dof; ++j) {
+VERNIER_IMPL void audit_approaches(const MeasuredSet& data, std::vector<DataFinding>& findings) {
+  if (data.previous.rows() == 0) return;
+  for (int j = 0; j < data.joints.cols(); ++j) {
     Index up = 0, down = 0;
     for (Index i = 0; i < data.size(); ++i) {
-      const double move = data.joints()(i, j) - data.previous()(i, j);
+      const double move = data.joints(i, j) - data.previous(i, j);
       if (move > 1e-6) ++up;
       if (move < -1e-6) ++down;
     }

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "vernier/calibration/calibration_failure.hpp"
-#include "vernier/identification/detail/station.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
+#include "vernier/measurements/measured_set.hpp"
 
 namespace vernier::detail {
 
@@ -16,17 +16,14 @@ namespace vernier::detail {
 /// arm, or in other units.
 /// @param nominal    the arm without frames
 /// @param frames_rms position error with registered frames [m]
-/// @param arm,data   how the message names them
+/// @param arm        how the message names it
 /// @throws CalibrationFailure with a guess at the cause
-VERNIER_API void require_plausible(const ArmGeometry& nominal, const Station& poses, double frames_rms,
-                                   const std::string& arm, const std::string& data);
+VERNIER_API void require_plausible(const ArmGeometry& nominal, const MeasuredSet& poses, double frames_rms,
+                                   const std::string& arm);
 
-/// The same for distances, given a registered arm.
-VERNIER_API void require_plausible_distances(const ArmGeometry& registered, const Station& distances,
-                                             const std::string& data);
-
-/// The same for what its tool point touches.
-VERNIER_API void require_plausible_contact(const ArmGeometry& registered, const Contact& contact);
+/// Requires that measurements by any sensor fit an arm that poses have registered.
+/// @throws CalibrationFailure with the sensor's complaint
+VERNIER_API void require_plausible_set(const ArmGeometry& registered, MeasuredSet set);
 
 /// Requires an identification that may be used.
 /// @param step names it: "identifying the geometry"

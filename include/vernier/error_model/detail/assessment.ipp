@@ -81,21 +81,21 @@ VERNIER_IMPL void assess(const ModelSelection& model, ErrorModelEstimate& estima
   Rows6 all(6, p);
   double rotation_sum = 0, rotation_values = 0, distance_sum = 0;
   visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
-    const Station& station = problem.station_of(b);
-    if (station.oriented()) {
+    const MeasuredSet& set = problem.set_of(b);
+    if (set.oriented()) {
       const Vector6 residual = rows.unwhiten * rows.residual;
       const Vector3 rotation(residual(3), residual(4), residual(5));
-      rotation_sum += rotation.squaredNorm() * station.orientation_sigma * station.orientation_sigma;
+      rotation_sum += rotation.squaredNorm() * set.sigma().angle * set.sigma().angle;
       rotation_values += 3;
     }
     if (b % model.stride != 0 || b >= system.validation_blocks) return;
     Vector3 error(errors(0, b / model.stride), errors(1, b / model.stride), errors(2, b / model.stride));
-    if (station.lengths != nullptr) {
+    if (set.positions() == nullptr) {
       distance_sum += error.squaredNorm();
       return;
     }
     // what is deployed does not know the drift
-    const Vector3 measured = station.position(problem.row_of(b));
+    const Vector3 measured = set.position(problem.row_of(b));
     error += measured - transformed(problem.drift_motion(b), measured);
     const VectorX zeros = problem.drift_joint_zeros(b);
     Matrix3 joint_noise = Matrix3::Zero();

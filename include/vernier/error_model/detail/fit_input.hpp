@@ -3,14 +3,12 @@
 /// @file
 /// Where the fit of an error model starts: arms, unknowns and measurements of all stations.
 
-#include <span>
 #include <vector>
 
-#include "vernier/data/contacts.hpp"
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/identification/arm_parameterisation.hpp"
-#include "vernier/identification/detail/station.hpp"
 #include "vernier/identification/identification_report.hpp"
+#include "vernier/measurements/measured_set.hpp"
 
 namespace vernier::detail {
 
@@ -19,21 +17,18 @@ struct ErrorModelInput {
   const IdentificationReport& identification;
   ArmGeometry identified;  ///< seen from the first station
   ChainTable nominal;      ///< for the torques of gravity
-  std::vector<Station> poses;
-  std::vector<Station> distances;
-  std::span<const Contact> contacts{};
+  /// Those that locate the base first. Registered with the identified arm, which may turn a set's frame.
+  std::vector<MeasuredSet> sets;
+  std::vector<ArmGeometry> arms{};  ///< the identified arm in the frame of each set
+
+  /// Registers all sets.
+  /// @throws std::invalid_argument for a set without measurements, or touches of a plane along a line
+  VERNIER_API void place();
 };
 
-/// The identified arm in every station's own base; that of distances has its origin at their fixed point, that of a
-/// contact is the frame of its object.
-VERNIER_API std::vector<ArmGeometry> starting_arms(const ErrorModelInput& input);
-
-/// What is estimated: what the identification estimated, frames once a station.
+/// What is estimated: what the identification estimated, frames per set as far as it determines them.
 VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInput& input,
                                                              const ErrorModelOptions& options);
-
-/// Stations of poses, distances and contacts, in this order.
-VERNIER_API std::vector<Station> joined_stations(const ErrorModelInput& input, const SensorModel& sensors);
 
 }  // namespace vernier::detail
 

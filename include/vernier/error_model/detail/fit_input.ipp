@@ -9,33 +9,20 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL std::vector<ArmGeometry> starting_arms(const ErrorModelInput& input) {
-  for (const Station& data : input.poses) require(data.size() >= 1, "fit_error_model: a station without poses");
-  for (const Station& data : input.distances) require(data.size() >= 1, "fit_error_model: a station without distances");
-  if (input.poses.size() + input.distances.size() + input.contacts.size() == 1) return {input.identified};
-  const ArmGeometry unregistered = input.identified.with_frames({}, input.identified.tool());
-  std::vector<ArmGeometry> out;
-  for (const Station& data : input.poses)
-    out.push_back(input.identified.with_frames(
-        FrameParameters(register_points(unregistered.positions(data.joints()), *data.positions)),
-        input.identified.tool()));
-  for (const Station& data : input.distances) {
-    const Vector3 fixed = trilaterate(unregistered.positions(data.joints()), *data.lengths);
-    const Isometry3 base = rigid_motion(Matrix3::Identity(), -fixed);
-    out.push_back(input.identified.with_frames(FrameParameters(base), input.identified.tool()));
+VERNIER_IMPL void ErrorModelInput::place() {
+  arms.clear();
+  for (MeasuredSet& set : sets) {
+    require(set.size() >= 1, "fit_error_model: ", set.name, " has no measurements");
+    arms.push_back(sets.size() == 1 ? identified : placed(identified, set));
+    require_spread(arms.back(), set);
   }
-  for (const Contact& contact : input.contacts) {
-    Station station = station_of(contact, {});
-    out.push_back(contact_arm(input.identified, contact, station));
-    require_spread(out.back(), contact);
-  }
-  return out;
 }
 
 VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInput& input,
                                                               const ErrorModelOptions& options) {
-  const std::size_t of_poses = input.poses.size(), of_objects = of_poses + input.distances.size(),
-                    stations = of_objects + input.contacts.size();
+  const std::size_t stations = input.sets.size();
+  std::size_t locating = 0;
+  while (locating < stations && input.sets[locating].locates()) ++locating;
   const Index chain_end = 6 + 5 * input.identified.joints();
   std::vector<GeometricUnknown> out;
   for (const Index k : input.identification.free) {
@@ -49,27 +36,12 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
       out.push_back({k, -1, p.scale, precision});
       continue;
     }
-    const auto last = k < 6 ? of_poses : stations;
+    const auto last = k < 6 ? locating : stations;
     for (std::size_t s = 0; s < last; ++s) out.push_back({k, static_cast<int>(s), p.scale, precision});
   }
-  // a fixed point has a position, but no orientation
-  const auto add = [&](std::size_t s, Index k) {
-    out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
-  };
-  for (std::size_t s = of_poses; s < of_objects && stations > 1; ++s)
-    for (Index k = 0; k < 3; ++k) add(s, k);
-  for (std::size_t s = of_objects; s < stations; ++s)
-    for (const Index k : contact_unknowns(input.contacts[s - of_objects])) add(s, k);
-  return out;
-}
-
-VERNIER_IMPL std::vector<Station> joined_stations(const ErrorModelInput& input, const SensorModel& sensors) {
-  std::vector<Station> out = input.poses;
-  out.insert(out.end(), input.distances.begin(), input.distances.end());
-  for (const Contact& contact : input.contacts) {
-    out.push_back(station_of(contact, sensors));
-    static_cast<void>(contact_arm(input.identified, contact, out.back()));  // which way its heights count
-  }
+  for (std::size_t s = locating; s < stations && stations > 1; ++s)  // frames of objects and fixed points
+    for (const Index k : frame_unknowns(input.sets[s]))
+      out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
   return out;
 }
 

@@ -29,9 +29,7 @@ VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const Erro
     : problem(std::move(start)),
       spectra(std::move(spectra_of_joints)),
       stride(std::max<Index>(1, problem.num_validation_blocks() / options.num_validation_poses)),
-      options_(options) {
-  problem.executor = options.executor;
-}
+      options_(options) {}
 
 VERNIER_IMPL const ModelSelection::Linearised& ModelSelection::linearised() const {
   if (!linearised_)

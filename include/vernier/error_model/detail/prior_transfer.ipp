@@ -129,7 +129,7 @@ VERNIER_IMPL PriorTransfer likely_transfer(const CalibrationProblem& problem, co
         if (!transferred[static_cast<std::size_t>(k)]) others(6 * b + r, at++) = all(r, k);
       error(6 * b + r) = block.residual(r);
     }
-    values += problem.station_of(b * stride).values();
+    values += problem.set_of(b * stride).values();
   });
   add_product(error, rows, offset);
   const auto covariance_of = [](const MatrixX& columns, const MatrixX& half) {

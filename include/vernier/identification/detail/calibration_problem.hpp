@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "vernier/identification/arm_parameterisation.hpp"
-#include "vernier/identification/detail/station.hpp"
 #include "vernier/identification/session_drift.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/measurements/measured_set.hpp"
 
 namespace vernier::detail {
 
@@ -23,11 +23,14 @@ struct StackedRows {
   std::vector<bool> of_orientation;  ///< of each row
 };
 
-/// A parameterisation of an arm, and stations of measurements.
+/// A parameterisation of an arm, and sets of measurements, each in a frame of its own.
 class CalibrationProblem {
  public:
-  /// @param stations those of poses first
-  VERNIER_API CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss);
+  /// @param start       with as many stations as there are sets
+  /// @param sets        those that locate the base first
+  /// @param joint_sigma standard deviation of the joint readings [rad, m]; 0: exact
+  VERNIER_API CalibrationProblem(ArmParameterisation start, std::vector<MeasuredSet> sets, Loss loss,
+                                 double joint_sigma = 0);
 
   ArmParameterisation arm;           ///< at its present values
   std::vector<SessionDrift> drift;   ///< of each station, at its present values; may be empty
@@ -40,11 +43,12 @@ class CalibrationProblem {
   Index num_blocks() const { return static_cast<Index>(blocks_.size()); }
   /// The first blocks, on which models are validated: measured positions where there are any, else all.
   Index num_validation_blocks() const { return validation_blocks_; }
-  const Station& station_of(Index block) const { return stations_[static_cast<std::size_t>(at(block).station)]; }
+  const MeasuredSet& set_of(Index block) const { return sets_[static_cast<std::size_t>(at(block).station)]; }
+  const std::vector<MeasuredSet>& sets() const { return sets_; }
   int station_index(Index block) const { return at(block).station; }
   /// Which sample of its station a block is.
   Index row_of(Index block) const { return at(block).row; }
-  /// Measured values: three a position, six a pose, one a distance or a height.
+  /// Measured values: three per position, six per pose, one per distance or height.
   VERNIER_API Index measured_values() const;
   /// Joint values of all samples, blocks x joints.
   VERNIER_API MatrixX joints() const;
@@ -122,7 +126,8 @@ class CalibrationProblem {
   /// Norms of whitened residuals, blocks x 2: of positions or distances, of orientations.
   VERNIER_API MatrixX residual_norms() const;
 
-  std::vector<Station> stations_;
+  std::vector<MeasuredSet> sets_;
+  double joint_sigma_;
   std::vector<Block> blocks_;
   Index validation_blocks_ = 0;
   std::vector<Index> first_state_;          // of each station

@@ -17,12 +17,13 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, std::vector<Station> stations, Loss loss)
-    : arm(std::move(start)), stations_(std::move(stations)), loss_(loss) {
-  for (std::size_t s = 0; s < stations_.size(); ++s)
-    for (Index i = 0; i < stations_[s].size(); ++i) blocks_.push_back({static_cast<int>(s), i, {1, 1}});
-  for (const Station& station : stations_)
-    if (station.positions != nullptr) validation_blocks_ += station.size();
+VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, std::vector<MeasuredSet> sets, Loss loss,
+                                                    double joint_sigma)
+    : arm(std::move(start)), sets_(std::move(sets)), joint_sigma_(joint_sigma), loss_(loss) {
+  for (std::size_t s = 0; s < sets_.size(); ++s)
+    for (Index i = 0; i < sets_[s].size(); ++i) blocks_.push_back({static_cast<int>(s), i, {1, 1}});
+  for (const MeasuredSet& set : sets_)
+    if (set.locates()) validation_blocks_ += set.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
 }
 
@@ -42,26 +43,26 @@ VERNIER_IMPL NormalEquations CalibrationProblem::normal_equations() const {
 
 VERNIER_IMPL Index CalibrationProblem::measured_values() const {
   Index sum = 0;
-  for (const auto& station : stations_) sum += station.values() * station.size();
+  for (const MeasuredSet& set : sets_) sum += set.values() * set.size();
   return sum;
 }
 
 VERNIER_IMPL MatrixX CalibrationProblem::joints() const {
   MatrixX out(num_blocks(), arm.geometry(0).joints());
   Index at = 0;
-  for (const Station& station : stations_) {
-    out.middleRows(at, station.size()) = station.joints();
-    at += station.size();
+  for (const MeasuredSet& set : sets_) {
+    out.middleRows(at, set.size()) = set.joints;
+    at += set.size();
   }
   return out;
 }
 
 VERNIER_IMPL CalibrationProblem::Temperatures CalibrationProblem::temperatures() const {
   std::vector<double> all;
-  for (const Station& station : stations_) {
-    if (station.positions == nullptr) continue;
-    if (station.temperatures == nullptr) return {};
-    all.insert(all.end(), station.temperatures->begin(), station.temperatures->end());
+  for (const MeasuredSet& set : sets_) {
+    if (!set.locates()) continue;
+    if (set.temperatures.size() == 0) return {};
+    all.insert(all.end(), set.temperatures.begin(), set.temperatures.end());
   }
   if (all.empty()) return {};
   const auto n = static_cast<double>(all.size());
@@ -73,17 +74,20 @@ VERNIER_IMPL CalibrationProblem::Temperatures CalibrationProblem::temperatures()
 }
 
 VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
-  drift.assign(stations_.size(), {});
-  first_state_.assign(stations_.size(), 0);
+  drift.assign(sets_.size(), {});
+  first_state_.assign(sets_.size(), 0);
   Index states = 0;
-  for (std::size_t s = 0; s < stations_.size(); ++s) {
-    const Station& station = stations_[s];
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const MeasuredSet& set = sets_[s];
     first_state_[s] = states;
-    if (station.positions == nullptr || station.times == nullptr) continue;
-    const Index intervals = std::max<Index>(1, station.size() / rows_per_knot);
-    const double begin = station.times->minCoeff(), end = station.times->maxCoeff();
+    if (!set.locates() || set.times.size() == 0) continue;
+    const Index intervals = std::max<Index>(1, set.size() / rows_per_knot);
+    const double begin = set.times.minCoeff(), end = set.times.maxCoeff();
     if (!(end > begin)) continue;
-    drift[s] = {begin, (end - begin) / static_cast<double>(intervals), centroid(*station.positions), {}};
+    const Vector3 centre = set.positions() != nullptr
+                               ? centroid(*set.positions())
+                               : centroid(positions_of(arm.poses(static_cast<int>(s), set.joints)));
+    drift[s] = {begin, (end - begin) / static_cast<double>(intervals), centre, {}};
     drift[s].knots.setZero(6, intervals + 1);
     states += intervals + 1;
   }
@@ -156,19 +160,19 @@ VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance(double noise_varian
 VERNIER_IMPL VectorX CalibrationProblem::drift_joint_zeros(Index block) const {
   const auto s = static_cast<std::size_t>(at(block).station);
   if (drift.empty() || drift[s].empty()) return {};
-  return drift[s].joint_zeros((*stations_[s].times)(at(block).row));
+  return drift[s].joint_zeros(sets_[s].times(at(block).row));
 }
 
 VERNIER_IMPL Isometry3 CalibrationProblem::drift_motion(Index block) const {
   const auto s = static_cast<std::size_t>(at(block).station);
   if (drift.empty() || drift[s].empty()) return Isometry3::Identity();
-  return drift[s].motion((*stations_[s].times)(at(block).row));
+  return drift[s].motion(sets_[s].times(at(block).row));
 }
 
 VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& pose, RowBlock& rows) const {
   const auto s = static_cast<std::size_t>(block.station);
   if (drift.empty() || drift[s].empty()) return;
-  const double time = (*stations_[s].times)(block.row);
+  const double time = sets_[s].times(block.row);
   const Isometry3 motion = drift[s].motion(time);
   const Index joints = drift_scale_.size() - 6;
   if (joints > 0) {
@@ -195,86 +199,118 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
   }
 }
 
-/// Residual of a sample, not whitened: model minus measured; and what maps rates of the model to rates of the residual.
-/// @param along of a single number, the direction in which it is measured: from the fixed point to the tool point, or
-///              normal to the plane
-VERNIER_API Vector6 measured_residual(const Station& station, Index row, const Isometry3& modelled, Vector3& along,
-                                      Matrix3& rotation_rate) {
-  Vector6 out = Vector6::Zero();
-  const Vector3 point = translation(modelled);
-  if (station.lengths != nullptr) {
-    along = point.normalized();
-    out(0) = point.norm() - (*station.lengths)(row);
-  } else if (station.projected()) {
-    along = Vector3::UnitZ();
-    out(0) = point.z() - station.height(row);
-  } else {
-    out.head<3>() = point - station.position(row);
-  }
-  if (station.oriented()) {
-    const Vector3 turn = rotation_difference(rotation(modelled), station.orientations[static_cast<std::size_t>(row)]);
-    out.tail<3>() = turn;
-    rotation_rate = left_jacobian_inverse_so3(turn);
-  }
-  return out;
-}
-
-/// Scales rows by the sensor's precision; of a single number the position rows are projected to its direction first.
-VERNIER_API void whiten_rows(const Station& station, const Vector3& along, double position, const Matrix3& orientation,
-                             Rows6& rows) {
-  const bool projected = station.projected(), oriented = station.oriented();
+/// Whitens rows: each column is mapped by the derivative of the residual, already weighted and divided by the sensor's
+/// standard deviations.
+/// @param mixed whether lengths depend on rotations, or angles on shifts
+VERNIER_API void whiten_rows(const Matrix6& motion, Index values, bool mixed, Rows6& rows) {
+  const double* m = motion.data();
   for (Index k = 0; k < rows.cols(); ++k) {
     double* column = rows.data() + 6 * k;
-    if (projected) {
-      column[0] = position * (along(0) * column[0] + along(1) * column[1] + along(2) * column[2]);
-      column[1] = column[2] = 0;
-    } else {
-      for (int r = 0; r < 3; ++r) column[r] *= position;
+    double out[6] = {};
+    const Index lengths = values == 1 ? 1 : 3;
+    for (Index c = 0; c < 3; ++c)
+      for (Index r = 0; r < lengths; ++r) out[r] += m[6 * c + r] * column[c];
+    for (Index c = 3; c < 6 && values == 6; ++c)
+      for (Index r = 3; r < 6; ++r) out[r] += m[6 * c + r] * column[c];
+    if (mixed) {
+      for (Index c = 3; c < 6; ++c)
+        for (Index r = 0; r < lengths; ++r) out[r] += m[6 * c + r] * column[c];
+      for (Index c = 0; c < 3 && values == 6; ++c)
+        for (Index r = 3; r < 6; ++r) out[r] += m[6 * c + r] * column[c];
     }
-    if (oriented) {
-      const Vector3 angular = orientation * Vector3(column[3], column[4], column[5]);
-      std::copy_n(angular.data(), 3, column + 3);
-    } else {
-      column[3] = column[4] = column[5] = 0;
-    }
+    std::copy_n(out, 6, column);
+  }
+}
+
+/// Poses seen from those of other configurations, and their columns, of measurements of one length: transmissions act
+/// through both configurations, so what they do is in `functions`, and `factor` is one along the length.
+/// @param along  the derivative of the length by a small motion of the relative pose
+VERNIER_API void fold_pair(const RowBlock& from, const Isometry3& from_pose, const Isometry3& relative,
+                           const std::vector<Index>& group_sizes, const Vector6& along, RowBlock& rows) {
+  const Matrix3 back = rotation(from_pose).transpose();
+  const auto relative_rate = [&](const double* of, const double* of_from) {
+    const Vector3 lever = rotation(from_pose) * translation(relative);
+    const Vector3 turn(of_from[3], of_from[4], of_from[5]);
+    const Vector3 shift = Vector3(of[0] - of_from[0], of[1] - of_from[1], of[2] - of_from[2]) - turn.cross(lever);
+    const Vector3 linear = back * shift;
+    const Vector3 angular = back * Vector3(of[3] - turn.x(), of[4] - turn.y(), of[5] - turn.z());
+    return along.head<3>().dot(linear) + along.tail<3>().dot(angular);
+  };
+  const double none[6] = {};
+  for (Index k = 0; k < rows.dense.cols(); ++k) {
+    double* column = rows.dense.data() + 6 * k;
+    const double rate = relative_rate(column, from.dense.data() + 6 * k);
+    std::fill_n(column, 6, 0.0);
+    column[0] = rate;
+  }
+  Index at = 0;
+  for (Index j = 0; j < rows.factor.cols(); ++j) {
+    double* column = rows.factor.data() + 6 * j;
+    const double here = relative_rate(column, none), there = relative_rate(none, from.factor.data() + 6 * j);
+    std::fill_n(column, 6, 0.0);
+    column[0] = 1;
+    for (Index k = 0; k < group_sizes[static_cast<std::size_t>(j)] && rows.functions.size() > 0; ++k, ++at)
+      rows.functions(at) = here * rows.functions(at) + there * from.functions(at);
   }
 }
 
 VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBlock* out) const {
-  for (Index done = 0; done < count;) {  // stretches of one station
+  std::vector<RowBlock> others;  // of the configurations from which poses are seen
+  SensedRows sensed;
+  for (Index done = 0; done < count;) {  // stretches of one set
     const Block& begin = at(first + done);
-    const Station& station = stations_[static_cast<std::size_t>(begin.station)];
-    const Index stretch = std::min(count - done, station.size() - begin.row);
+    const MeasuredSet& set = sets_[static_cast<std::size_t>(begin.station)];
+    const Index stretch = std::min(count - done, set.size() - begin.row);
     VectorX warmer;
-    if (station.temperatures != nullptr) warmer.resize(stretch);
-    for (Index i = 0; i < warmer.size(); ++i)
-      warmer(i) = (*station.temperatures)(begin.row + i) - reference_temperature;
-    std::vector<Isometry3> poses =
-        arm.linearise(begin.station, station.joints().middleRows(begin.row, stretch),
-                      station.previous().middleRows(station.previous().rows() > 0 ? begin.row : 0,
-                                                    station.previous().rows() > 0 ? stretch : 0),
-                      out + done, joint_columns || station.joint_sigma > 0, warmer);
+    if (set.temperatures.size() > 0) warmer.resize(stretch);
+    for (Index i = 0; i < warmer.size(); ++i) warmer(i) = set.temperatures(begin.row + i) - reference_temperature;
+    const bool visited = set.previous.rows() > 0, paired = set.seen_from.rows() > 0;
+    const auto linearise = [&](const MatrixX& joints, bool with_previous, RowBlock* rows) {
+      return arm.linearise(begin.station, joints.middleRows(begin.row, stretch),
+                           set.previous.middleRows(with_previous ? begin.row : 0, with_previous ? stretch : 0), rows,
+                           joint_columns || joint_sigma_ > 0, warmer);
+    };
+    std::vector<Isometry3> poses = linearise(set.joints, visited, out + done), from;
+    if (paired) {
+      others.resize(static_cast<std::size_t>(stretch));
+      from = linearise(set.seen_from, false, others.data());
+    }
     for (Index i = 0; i < stretch; ++i) {
       const Block& block = at(first + done + i);
       RowBlock& rows = out[done + i];
-      add_drift(block, poses[static_cast<std::size_t>(i)], rows);
-      Vector3 along = Vector3::Zero();
-      Matrix3 rate = Matrix3::Zero();
-      rows.residual = measured_residual(station, block.row, poses[static_cast<std::size_t>(i)], along, rate);
-      const double position = std::sqrt(block.weight[0]) / station.position_sigma;
-      const double orientation = station.oriented() ? std::sqrt(block.weight[1]) / station.orientation_sigma : 0;
+      Isometry3& pose = poses[static_cast<std::size_t>(i)];
+      if (paired)
+        pose = composed(inverse_of(from[static_cast<std::size_t>(i)]), pose);
+      else
+        add_drift(block, pose, rows);
+      set.sense(block.row, pose, sensed);
+      const double position = std::sqrt(block.weight[0]) / set.sigma().length;
+      const double orientation = set.oriented() ? std::sqrt(block.weight[1]) / set.sigma().angle : 0;
       rows.position_sigma = 1 / position;
+      rows.residual = sensed.residual;
       rows.residual.head<3>() *= position;
       rows.residual.tail<3>() *= orientation;
-      const Matrix3 angular = orientation * rate;
-      whiten_rows(station, along, position, angular, rows.dense);
-      whiten_rows(station, along, position, angular, rows.factor);
-      for (RowBlock::Local& local : rows.local)
-        if (local.state >= 0) whiten_rows(station, along, position, angular, local.columns);
+      bool mixed = false;
+      for (Index c = 0; c < 6; ++c)
+        for (Index r = 0; r < 6; ++r) {
+          mixed = mixed || ((r < 3) != (c < 3) && sensed.motion(r, c) != 0);
+          sensed.motion(r, c) *= r < 3 ? position : orientation;
+        }
       rows.unwhiten.setIdentity();
-      if (station.joint_sigma <= 0) continue;
+      if (paired) {
+        Vector6 along;
+        for (Index c = 0; c < 6; ++c) along(c) = sensed.motion(0, c);
+        fold_pair(others[static_cast<std::size_t>(i)], from[static_cast<std::size_t>(i)], pose, arm.group_sizes(),
+                  along, rows);
+        continue;
+      }
+      whiten_rows(sensed.motion, set.values(), mixed, rows.dense);
+      whiten_rows(sensed.motion, set.values(), mixed, rows.factor);
+      for (RowBlock::Local& local : rows.local)
+        if (local.state >= 0) whiten_rows(sensed.motion, set.values(), mixed, local.columns);
+      if (joint_sigma_ <= 0) continue;
       // the residual's covariance with the joint readings eliminated: I + noise noise'
-      const double variance = station.joint_sigma * station.joint_sigma;
+      const double variance = joint_sigma_ * joint_sigma_;
       Matrix6& factor = rows.unwhiten;
       for (Index j = 0; j < rows.factor.cols(); ++j)
         for (Index c = 0; c < 6; ++c)
@@ -307,7 +343,7 @@ VERNIER_IMPL void CalibrationProblem::stack(bool with_jacobian, StackedRows& out
   Rows6 expanded(6, factored ? unknowns : 0);
   Index row = 0;
   visit_blocks(system(), 0, 1, num_blocks(), [&](Index b, const RowBlock& rows) {
-    const Index count = station_of(b).values();
+    const Index count = set_of(b).values();
     if (with_jacobian && factored) rows.expand(group_sizes, expanded);
     const Rows6& columns = factored ? expanded : rows.dense;
     for (Index k = 0; with_jacobian && k < unknowns; ++k)
@@ -339,9 +375,9 @@ VERNIER_IMPL void CalibrationProblem::reset_weights() {
 VERNIER_API std::array<double, 3> loss_thresholds(const CalibrationProblem& problem, const MatrixX& norms) {
   std::array<std::vector<double>, 3> kinds;
   for (Index b = 0; b < problem.num_blocks(); ++b) {
-    const Station& station = problem.station_of(b);
-    kinds[station.projected() ? 2 : 0].push_back(norms(b, 0));
-    if (station.oriented()) kinds[1].push_back(norms(b, 1));
+    const MeasuredSet& set = problem.set_of(b);
+    kinds[set.projected() ? 2 : 0].push_back(norms(b, 0));
+    if (set.oriented()) kinds[1].push_back(norms(b, 1));
   }
   return {robust_threshold(std::move(kinds[0]), 3), robust_threshold(std::move(kinds[1]), 3),
           robust_threshold(std::move(kinds[2]), 1)};
@@ -358,10 +394,10 @@ VERNIER_IMPL std::array<double, 2> CalibrationProblem::reweight() {
   const std::array<double, 3> thresholds = loss_thresholds(*this, norms);
   for (Index b = 0; b < num_blocks(); ++b) {
     Block& block = blocks_[static_cast<std::size_t>(b)];
-    const Station& station = station_of(b);
-    const double position = thresholds[station.projected() ? 2 : 0];
+    const MeasuredSet& set = set_of(b);
+    const double position = thresholds[set.projected() ? 2 : 0];
     if (position > 0) block.weight[0] = robust_weight(loss_, norms(b, 0), position);
-    if (station.oriented() && thresholds[1] > 0) block.weight[1] = robust_weight(loss_, norms(b, 1), thresholds[1]);
+    if (set.oriented() && thresholds[1] > 0) block.weight[1] = robust_weight(loss_, norms(b, 1), thresholds[1]);
   }
   std::array<double, 2> sums{};
   for (std::size_t b = 0; b < blocks_.size(); ++b)

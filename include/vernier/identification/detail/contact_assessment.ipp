@@ -11,6 +11,7 @@
 #include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/identifiable_parameters.hpp"
 #include "vernier/least_squares/estimate_covariance.hpp"
+#include "vernier/measurements/position_sensor.hpp"
 
 namespace vernier::detail {
 
@@ -25,7 +26,7 @@ VERNIER_API Index rank_by_positions(const ContactProblem& solved, const ArmGeome
     count += contact.size();
   }
   const PointRows points = arm.positions(joints);
-  const Station ideal{.joint_values = joints.data(), .samples = count, .dof = arm.joints(), .positions = &points};
+  const MeasuredSet ideal("positions", std::move(joints), PositionSensor(points, 1));
   std::vector<GeometricUnknown> unknowns;
   for (Index k = 0; k < 6; ++k) unknowns.push_back({k, -1, solved.plan.scales(k), 0});
   for (const GeometricUnknown& unknown : solved.unknowns_of_arm()) unknowns.push_back(unknown);
@@ -176,9 +177,8 @@ VERNIER_API std::vector<TouchedObject> touched_objects(const ContactProblem& sol
     TouchedObject object{contact.name(),  contact.kind(),
                          contact.size(),  transformed(out_of, local),
                          Vector3::Zero(), ContactProblem::residual_rms(solved.problem, c)};
-    if (contact_unknowns(contact) != std::vector<Index>{0, 1, 2})
-      object.direction = solved.problem.station_of(solved.first_block(c)).height_sign *
-                         Vector3(out_of(0, 2), out_of(1, 2), out_of(2, 2));
+    const MeasuredSet& set = solved.problem.sets()[static_cast<std::size_t>(c)];
+    if (frame_unknowns(set) != std::vector<Index>{0, 1, 2}) object.direction = rotation(out_of) * set.axis();
     out.push_back(std::move(object));
   }
   return out;

@@ -7,7 +7,7 @@
 
 #include "vernier/identification/contact_report.hpp"
 #include "vernier/identification/options.hpp"
-#include "vernier/identification/sensor_model.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier::detail {
 

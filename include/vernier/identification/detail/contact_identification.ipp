@@ -74,7 +74,7 @@ VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry&
   const double rms_before = touches.residual_rms();
   require(std::isfinite(rms_before), "identify_by_contacts: no places of the objects fit the touches");
   for (int c = 0; c < static_cast<int>(contacts.size()); ++c)
-    require_spread(touches.problem.arm.geometry(c), touches.contact(c));
+    require_spread(touches.problem.arm.geometry(c), touches.problem.sets()[static_cast<std::size_t>(c)]);
 
   // What is dependent exactly at nominal may not be so at the solution.
   const double chain_precision = options.priors ? 1.0 / 9 : 0;

@@ -10,7 +10,7 @@
 #include "vernier/data/contacts.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
-#include "vernier/identification/sensor_model.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier::detail {
 

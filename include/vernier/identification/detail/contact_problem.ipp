@@ -6,6 +6,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/detail/contact_problem.hpp"
+#include "vernier/identification/frames.hpp"
 #include "vernier/identification/identifiable_parameters.hpp"
 
 namespace vernier::detail {
@@ -25,19 +26,20 @@ VERNIER_IMPL CalibrationProblem ContactProblem::registered(const Vector3& tool_p
   const Isometry3& tool = nominal.tool().isometry();
   const bool given = (tool_point - translation(tool)).norm() == 0;
   const FrameParameters of_tool = given ? nominal.tool() : FrameParameters(rigid_motion(rotation(tool), tool_point));
-  std::vector<Station> stations;
+  std::vector<MeasuredSet> sets;
   std::vector<ArmGeometry> arms;
   for (const Contact& contact : contacts) {
-    stations.push_back(station_of(contact, sensors));
-    arms.push_back(contact_arm(nominal.with_frames({}, of_tool), contact, stations.back()));
+    sets.push_back(contact_set(contact).with(sensors));
+    arms.push_back(placed(nominal.with_frames({}, of_tool), sets.back()));
   }
-  return CalibrationProblem(ArmParameterisation(std::move(arms), {}), std::move(stations), sensors.loss);
+  return CalibrationProblem(ArmParameterisation(std::move(arms), {}), std::move(sets), sensors.loss,
+                            sensors.joint_sigma);
 }
 
 VERNIER_IMPL std::vector<GeometricUnknown> ContactProblem::unknowns_of_objects() const {
   std::vector<GeometricUnknown> out;
   for (int c = 0; c < static_cast<int>(contacts.size()); ++c)
-    for (const Index k : contact_unknowns(contact(c))) out.push_back({k, c, plan.scales(k), 0});
+    for (const Index k : frame_unknowns(contact_set(contact(c)))) out.push_back({k, c, plan.scales(k), 0});
   return out;
 }
 
@@ -83,14 +85,12 @@ VERNIER_IMPL VectorX ContactProblem::scale_direction(bool links_alone) const {
 }
 
 VERNIER_IMPL MatrixX ContactProblem::touching_jacobian(const ArmParameterisation& arm) const {
-  std::vector<MatrixX> joints;
-  std::vector<Station> stations;
+  std::vector<MeasuredSet> sets = problem.sets();
   for (int c = 0; c < arm.stations(); ++c) {
-    stations.push_back(problem.station_of(first_block(c)));
-    joints.push_back(touching_joints(arm.geometry(c), stations.back()));
+    MeasuredSet& set = sets[static_cast<std::size_t>(c)];
+    set.joints = touching_joints(arm.geometry(c), set);
   }
-  for (std::size_t c = 0; c < stations.size(); ++c) stations[c].joint_values = joints[c].data();
-  CalibrationProblem touching(arm, std::move(stations), Loss::squared);
+  CalibrationProblem touching(arm, std::move(sets), Loss::squared);
   touching.joint_columns = false;
   return touching.stacked(true).jacobian;
 }
@@ -133,7 +133,7 @@ VERNIER_IMPL double ContactProblem::residual_rms(const CalibrationProblem& of, i
   for (Index i = 0; i < rows.residuals.size(); ++i) {
     const Index block = rows.block[static_cast<std::size_t>(i)];
     if (station >= 0 && unweighted.station_index(block) != station) continue;
-    const double residual = rows.residuals(i) * unweighted.station_of(block).position_sigma;
+    const double residual = rows.residuals(i) * unweighted.set_of(block).sigma().length;
     sum += residual * residual;
     ++count;
   }

@@ -29,7 +29,7 @@ struct IdentifiedGeometry {
 };
 
 /// See `vernier::identify`.
-VERNIER_API IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const Station& data,
+VERNIER_API IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
                                                  const IdentifyOptions& options, const SensorModel& sensors,
                                                  GeometrySolver solver);
 

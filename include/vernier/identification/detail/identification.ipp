@@ -44,13 +44,13 @@ struct ParameterSelection {
 /// The steps of `identify_geometry`.
 class IdentificationRun {
  public:
-  VERNIER_API IdentificationRun(const ArmGeometry& nominal, const Station& data, const IdentifyOptions& options,
+  VERNIER_API IdentificationRun(const ArmGeometry& nominal, const MeasuredSet& data, const IdentifyOptions& options,
                                 const SensorModel& sensors, GeometrySolver solver)
       : options_(options),
         solver_(solver),
         plan_(nominal, options),
         start_(starting_frames(nominal, data, options.base_free(), options.tool_free())),
-        problem_(ArmParameterisation({start_}, {}), {data}, sensors.loss) {
+        problem_(ArmParameterisation({start_}, {}), {data}, sensors.loss, sensors.joint_sigma) {
     problem_.joint_columns = false;
   }
 
@@ -82,9 +82,9 @@ class IdentificationRun {
     IdentifiedGeometry out{identified, {}};
     IdentificationReport& report = out.report;
     report.message = message(summary_.message, " after ", iterations_, " iterations");
-    report.rms_before = position_rms(registered);
-    report.rms_after = position_rms(identified);
-    report.rotation_rms_after = rotation_rms(identified);
+    report.rms_before = rms(registered).length;
+    report.rms_after = rms(identified).length;
+    report.rotation_rms_after = rms(identified).angle;
     report.free = columns.base;
     report.rank = covariance.rank;
     report.condition = covariance.condition;
@@ -107,7 +107,7 @@ class IdentificationRun {
   }
 
  private:
-  const Station& data() const { return problem_.station_of(0); }
+  const MeasuredSet& data() const { return problem_.sets().front(); }
   std::size_t num_free() const { return problem_.arm.geometric().size(); }
 
   /// Names the parameters to be estimated; present values stay, priors go.
@@ -150,7 +150,7 @@ class IdentificationRun {
       double variance = square_sum / count;
       if (problem_.loss() != Loss::squared) {
         for (double& square : squares) square = std::sqrt(square);
-        const double sigma = robust_sigma(std::move(squares), data().lengths != nullptr ? 1 : 3);
+        const double sigma = robust_sigma(std::move(squares), data().projected() ? 1 : 3);
         variance = sigma * sigma;
       }
       for (Index i = 0; i < n; ++i)
@@ -204,26 +204,21 @@ class IdentificationRun {
     summary_ = chosen.summary;
   }
 
-  /// Of positions, or of distances [m].
-  VERNIER_API double position_rms(const ArmGeometry& arm) const {
-    const PointRows points = arm.positions(data().joints());
-    double sum = 0;
-    for (Index i = 0; i < points.rows(); ++i) {
-      const Vector3 modelled = point(points, i);
-      sum += data().lengths != nullptr ? std::pow(modelled.norm() - (*data().lengths)(i), 2)
-                                       : (modelled - data().position(i)).squaredNorm();
+  /// Of the measured lengths [m] and angles [rad], 0 where there are none.
+  struct Rms {
+    double length = 0, angle = 0;
+  };
+  VERNIER_API Rms rms(const ArmGeometry& arm) const {
+    Rms sum;
+    SensedRows sensed;
+    const std::vector<Isometry3> poses = arm.poses(data().joints);
+    for (Index i = 0; i < data().size(); ++i) {
+      data().sense(i, poses[static_cast<std::size_t>(i)], sensed);
+      sum.length += sensed.residual.head<3>().squaredNorm();
+      sum.angle += sensed.residual.tail<3>().squaredNorm();
     }
-    return std::sqrt(sum / static_cast<double>(points.rows()));
-  }
-
-  /// 0 where orientations are not used [rad].
-  VERNIER_API double rotation_rms(const ArmGeometry& arm) const {
-    if (!data().oriented()) return 0;
-    const std::vector<Isometry3> poses = arm.poses(data().joints());
-    double sum = 0;
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      sum += rotation_difference(rotation(poses[i]), data().orientations[i]).squaredNorm();
-    return std::sqrt(sum / static_cast<double>(poses.size()));
+    const auto n = static_cast<double>(data().size());
+    return {std::sqrt(sum.length / n), std::sqrt(sum.angle / n)};
   }
 
   VERNIER_API void describe_parameters(IdentificationReport& report, const ArmGeometry& identified,
@@ -255,22 +250,10 @@ class IdentificationRun {
     Rng rng(0);
     MatrixX joints(100, arm.joints());
     for (Index k = 0; k < joints.size(); ++k) joints.data()[k] = rng.uniform(-3, 3);
-    Station ideal{.joint_values = joints.data(),
-                  .samples = joints.rows(),
-                  .dof = arm.joints(),
-                  .position_sigma = data().position_sigma,
-                  .orientation_sigma = data().orientation_sigma};
-    const PointRows points = arm.positions(joints);
-    const VectorX lengths = distances_from(points, Vector3::Zero());
-    if (data().lengths != nullptr)
-      ideal.lengths = &lengths;
-    else
-      ideal.positions = &points;
-    if (data().oriented())
-      for (const Isometry3& pose : arm.poses(joints)) ideal.orientations.push_back(rotation(pose));
     std::vector<GeometricUnknown> unknowns;
     for (const Index k : plan_.candidates) unknowns.push_back({k, -1, plan_.scales(k), 0});
-    const CalibrationProblem random_poses(ArmParameterisation({arm}, std::move(unknowns)), {ideal}, Loss::squared);
+    const CalibrationProblem random_poses(ArmParameterisation({arm}, std::move(unknowns)),
+                                          {data().at_joints(std::move(joints))}, Loss::squared);
     const ParameterSelection structure(plan_.candidates, random_poses.stacked(true).jacobian);
 
     for (const auto& d : columns.dependent) {
@@ -303,7 +286,7 @@ class IdentificationRun {
   SolverSummary summary_{true, 0, "nothing to estimate"};
 };
 
-VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const Station& data,
+VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
                                                   const IdentifyOptions& options, const SensorModel& sensors,
                                                   GeometrySolver solver) {
   require(data.size() >= 1, "identify: no samples");

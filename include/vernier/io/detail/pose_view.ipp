@@ -109,7 +109,7 @@ VERNIER_IMPL std::string poses_json(const ReportInput& input, const PoseView& vi
                    whole(out, poses.file[static_cast<std::size_t>(i)]);
                  }),
                  ",\n\"row\":", list([&](std::string& out, Index i) {
-                   whole(out, static_cast<double>(poses.row.empty() ? i : poses.row[static_cast<std::size_t>(i)]));
+                   whole(out, static_cast<double>(poses.line.empty() ? i : poses.line[static_cast<std::size_t>(i)]));
                  }),
                  ",\n\"xyz\":", list([&](std::string& out, Index i) {
                    for (Index k = 0; k < 3; ++k) whole(out, poses.positions(i, k) * 1e3);

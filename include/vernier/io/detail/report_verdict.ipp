@@ -22,7 +22,8 @@ inline constexpr double suspect_sigmas = 4;
 VERNIER_API std::string row_name(const ReportPoses& poses, Index i) {
   const auto at = static_cast<std::size_t>(i);
   const std::size_t file = poses.file.empty() ? 0 : static_cast<std::size_t>(poses.file[at]);
-  return message(poses.row.empty() ? i : poses.row[at], file < poses.files.size() ? " of " + poses.files[file] : "");
+  return message(poses.line.empty() ? message(i) : message("line ", poses.line[at]),
+                 file < poses.files.size() ? " of " + poses.files[file] : "");
 }
 
 /// A suspect row, of those shown or of training.

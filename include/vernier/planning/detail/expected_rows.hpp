@@ -5,7 +5,7 @@
 
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/identification/options.hpp"
-#include "vernier/identification/sensor_model.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier::detail {
 

@@ -6,6 +6,7 @@
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/measurements/pose_sensor.hpp"
 #include "vernier/planning/detail/expected_rows.hpp"
 
 namespace vernier::detail {
@@ -24,23 +25,15 @@ VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const Cons
   arm.set_terms(terms, expected_sizes(terms, planned.errors, spectra_of(planned.errors, nominal.joints())),
                 VectorX::Ones(terms.size()));
 
-  const MatrixX at = joints, from = previous;  // a station refers to contiguous columns
-  const std::vector<Isometry3> poses = arm.poses(0, at);
-  PointRows positions(at.rows(), 3);
-  Station station{.joint_values = at.data(),
-                  .samples = at.rows(),
-                  .dof = nominal.joints(),
-                  .previous_values = from.rows() > 0 ? from.data() : nullptr,
-                  .positions = &positions,
-                  .position_sigma = planned.sensors.position_sigma,
-                  .orientation_sigma = planned.sensors.orientation_sigma,
-                  .joint_sigma = planned.sensors.joint_sigma};
-  for (Index i = 0; i < at.rows(); ++i) {
-    const Isometry3& pose = poses[static_cast<std::size_t>(i)];
-    set_point(positions, i, translation(pose));
-    if (planned.oriented) station.orientations.push_back(rotation(pose));
-  }
-  const CalibrationProblem problem(std::move(arm), {std::move(station)}, Loss::squared);
+  const std::vector<Isometry3> poses = arm.poses(0, joints);
+  std::vector<Matrix3> orientations;
+  for (const Isometry3& pose : poses)
+    if (planned.oriented) orientations.push_back(rotation(pose));
+  MeasuredSet set("planned poses", joints,
+                  PoseSensor(positions_of(poses), std::move(orientations),
+                             {planned.sensors.position_sigma, planned.sensors.orientation_sigma}));
+  set.previous = previous;
+  const CalibrationProblem problem(std::move(arm), {std::move(set)}, Loss::squared, planned.sensors.joint_sigma);
   MatrixX out = problem.stacked(true).jacobian;
   const VectorX precisions = problem.arm.precisions();
   for (Index k = 0; k < out.cols(); ++k) out.col(k) /= std::sqrt(precisions(k));

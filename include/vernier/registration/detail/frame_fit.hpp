@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vernier/core/function_ref.hpp"
-#include "vernier/identification/detail/station.hpp"
+#include "vernier/measurements/measured_set.hpp"
 #include "vernier/registration/frame_update.hpp"
 
 namespace vernier::detail {
@@ -37,12 +37,12 @@ struct FrameFit {
 };
 
 /// Solves for the unknowns, weights as given.
-VERNIER_API void solve_frames(const MovedPoses& evaluate, const Station& data, FrameFit& fit);
+VERNIER_API void solve_frames(const MovedPoses& evaluate, const MeasuredSet& data, FrameFit& fit);
 
 /// Solves, with the standard deviations of positions and of orientations estimated from their residuals: the model has
 /// errors of its own, which a sensor's accuracy does not know. Never below those of the sensor.
 /// @cite Foerstner 1979
-VERNIER_API void solve_frames_and_weights(const MovedPoses& evaluate, const Station& data, FrameFit& fit);
+VERNIER_API void solve_frames_and_weights(const MovedPoses& evaluate, const MeasuredSet& data, FrameFit& fit);
 
 }  // namespace vernier::detail
 

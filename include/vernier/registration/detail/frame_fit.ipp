@@ -13,7 +13,7 @@
 namespace vernier::detail {
 
 /// Residual and derivatives of a sample, divided by the standard deviations.
-VERNIER_API void frame_rows(const Station& data, const FrameFit& fit, const MatrixX& jacobians, Index i,
+VERNIER_API void frame_rows(const MeasuredSet& data, const FrameFit& fit, const MatrixX& jacobians, Index i,
                             RowBlock& out) {
   const Isometry3& pose = fit.poses[static_cast<std::size_t>(i)];
   out.residual.setZero();
@@ -25,7 +25,7 @@ VERNIER_API void frame_rows(const Station& data, const FrameFit& fit, const Matr
   if (!data.oriented()) return;
   const Matrix3 seen = rotation(pose) * exp_so3(fit.motion.probe);
   out.residual.tail<3>() =
-      rotation_difference(seen, data.orientations[static_cast<std::size_t>(i)]) / fit.orientation_sigma;
+      rotation_difference(seen, data.orientations()[static_cast<std::size_t>(i)]) / fit.orientation_sigma;
 }
 
 /// Adds priors so tight that the held directions stay where they are.
@@ -41,7 +41,7 @@ VERNIER_API void hold(const FrameFit& fit, const VectorX& total, NormalEquations
   }
 }
 
-VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, FrameFit& fit) {
+VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const MeasuredSet& data, FrameFit& fit) {
   MatrixX jacobians;
   evaluate(fit.motion, fit.poses, jacobians);
   const auto rows = [&](Index first, Index count, RowBlock* out) {
@@ -108,7 +108,7 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const Station& data, 
   }
 }
 
-VERNIER_IMPL void solve_frames_and_weights(const MovedPoses& evaluate, const Station& data, FrameFit& fit) {
+VERNIER_IMPL void solve_frames_and_weights(const MovedPoses& evaluate, const MeasuredSet& data, FrameFit& fit) {
   const double least_position = fit.position_sigma, least_orientation = fit.orientation_sigma;
   const auto improve = [](double& sigma, double least, double squares, double redundancy) {
     // less than a value over tells nothing about its size

@@ -25,5 +25,5 @@ struct SensorModel {
 }  // namespace vernier
 
 #if VERNIER_HEADER_ONLY
-#include "vernier/identification/sensor_model.ipp"
+#include "vernier/measurements/sensor_model.ipp"
 #endif

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
-#include "vernier/identification/sensor_model.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier {
 

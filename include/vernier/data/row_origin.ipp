@@ -1,0 +1,46 @@
+#pragma once
+
+#include <utility>
+
+#include "vernier/core/check.hpp"
+#include "vernier/data/row_origin.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL RowOrigin RowOrigin::of(std::string name, std::vector<Index> lines) {
+  RowOrigin out;
+  out.files.push_back(std::move(name));
+  out.file.assign(lines.size(), 0);
+  out.line = std::move(lines);
+  return out;
+}
+
+VERNIER_IMPL std::string RowOrigin::where(Index row) const {
+  const auto i = static_cast<std::size_t>(row);
+  if (i >= line.size()) return message("row ", row);
+  return message(files[static_cast<std::size_t>(file[i])], ", line ", line[i]);
+}
+
+VERNIER_IMPL RowOrigin RowOrigin::rows(std::span<const Index> indices) const {
+  if (empty()) return {};
+  RowOrigin out;
+  out.files = files;
+  for (const Index i : indices) {
+    out.file.push_back(file[static_cast<std::size_t>(i)]);
+    out.line.push_back(line[static_cast<std::size_t>(i)]);
+  }
+  return out;
+}
+
+VERNIER_IMPL void RowOrigin::append(const RowOrigin& other, Index size) {
+  if (other.empty() || (empty() && size > 0)) {
+    *this = {};
+    return;
+  }
+  const auto before = static_cast<int>(files.size());
+  files.insert(files.end(), other.files.begin(), other.files.end());
+  for (const int of : other.file) file.push_back(before + of);
+  line.insert(line.end(), other.line.begin(), other.line.end());
+}
+
+}  // namespace vernier

@@ -1,0 +1,68 @@
+#pragma once
+
+/// @file
+/// Measured distances of the tool point from a fixed point, as by a draw-wire encoder or a ball-bar; and touches of a
+/// ball, whose centre is such a point.
+
+#include <utility>
+
+#include "vernier/measurements/sensor.hpp"
+#include "vernier/measurements/sensor_model.hpp"
+
+namespace vernier {
+
+/// Distances from the origin of the sensor's frame, whose place need not be known. Rotations have no effect.
+class DistanceSensor {
+ public:
+  /// @param lengths n distances [m]
+  /// @param sigma   standard deviation of one [m]
+  explicit DistanceSensor(VectorX lengths, double sigma = SensorModel{}.distance_sigma)
+      : lengths_(std::move(lengths)), sigma_(sigma) {}
+
+  const char* kind() const { return "distances"; }
+  Index size() const { return lengths_.size(); }
+  Index values() const { return 1; }
+  SensorSigma sigma() const { return {sigma_, 1}; }
+  std::array<bool, 6> unknown_frame() const { return {true, true, true, false, false, false}; }
+  Plausibility plausibility() const {
+    return {0.05, "no fixed point is consistent with these distances, the best one is off by",
+            "wrong units, columns or rows?"};
+  }
+  DistanceSensor with(const SensorModel& sensors) const { return DistanceSensor(lengths_, sensors.distance_sigma); }
+
+  VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
+  /// By linear least squares on squared distances; without rotation.
+  VERNIER_API Isometry3 base_from(std::span<const Isometry3> poses) const;
+
+ private:
+  VectorX lengths_;
+  double sigma_;
+};
+
+/// Touches of a ball whose place need not be known: distances from its centre.
+class BallSensor {
+ public:
+  /// @param radii n radii of ball and probe together [m]
+  /// @param sigma standard deviation of a touch [m]
+  explicit BallSensor(VectorX radii, double sigma = SensorModel{}.contact_sigma) : radii_(std::move(radii), sigma) {}
+
+  const char* kind() const { return "ball"; }
+  Index size() const { return radii_.size(); }
+  Index values() const { return 1; }
+  SensorSigma sigma() const { return radii_.sigma(); }
+  std::array<bool, 6> unknown_frame() const { return radii_.unknown_frame(); }
+  VERNIER_API Plausibility plausibility() const;
+  VERNIER_API BallSensor with(const SensorModel& sensors) const;
+  VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
+  VERNIER_API Isometry3 base_from(std::span<const Isometry3> poses) const;
+
+ private:
+  explicit BallSensor(DistanceSensor radii) : radii_(std::move(radii)) {}
+  DistanceSensor radii_;
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/measurements/distance_sensor.ipp"
+#endif

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "vernier/core/check.hpp"
+#include "vernier/core/points.hpp"
+#include "vernier/core/so3.hpp"
+#include "vernier/data/dataset.hpp"
+#include "vernier/measurements/measured_set.hpp"
+
+namespace vernier {
+
+VERNIER_IMPL void MeasuredSet::validate() const {
+  require(size_ == joints.rows(), name, ": ", joints.rows(), " rows of joints, but ", size_, " measurements");
+  require(values_ == 1 || values_ == 3 || values_ == 6, name, ": a sensor has 1, 3 or 6 values, not ", values_);
+  require(sigma_.length > 0 && std::isfinite(sigma_.length) && sigma_.angle > 0 && std::isfinite(sigma_.angle), name,
+          ": standard deviations of ", sigma_.length, " m and ", sigma_.angle, " rad must be positive");
+  for (Index i = 0; i < joints.rows(); ++i)
+    require(detail::finite_row(joints, i), name, ", ", origin.where(i), ": a joint value is not finite");
+}
+
+VERNIER_IMPL bool MeasuredSet::locates() const {
+  return seen_from.rows() == 0 && values_ >= 3 &&
+         std::all_of(unknown_frame_.begin(), unknown_frame_.end(), [](bool unknown) { return unknown; });
+}
+
+VERNIER_IMPL void MeasuredSet::sense(Index i, const Isometry3& pose, SensedRows& rows) const {
+  const Index reading = i % size_;
+  if (turned_.isIdentity(0)) return functions_->sense(sensor_.get(), reading, pose, rows);
+  const Matrix3 turn = turned_ * rotation(pose);
+  const Vector3 point = turned_ * translation(pose);
+  functions_->sense(sensor_.get(), reading, rigid_motion(turn, point), rows);
+  for (Index block = 0; block < 6; block += 3)
+    for (Index r = 0; r < 6; ++r) {
+      const Vector3 row(rows.motion(r, block), rows.motion(r, block + 1), rows.motion(r, block + 2));
+      const Vector3 turned = turned_ * row;  // half a turn is its own transpose
+      for (Index c = 0; c < 3; ++c) rows.motion(r, block + c) = turned(c);
+    }
+}
+
+VERNIER_IMPL Isometry3 MeasuredSet::register_base(std::span<const Isometry3> poses) {
+  turned_.setIdentity();
+  const Isometry3 base = functions_->base_from(sensor_.get(), poses);
+  const bool some = unknown_frame_[3] || unknown_frame_[4] || unknown_frame_[5];
+  const bool all = unknown_frame_[3] && unknown_frame_[4] && unknown_frame_[5];
+  const Vector3 turn = log_so3(rotation(base));
+  const double angle = turn.norm();
+  if (!some || all || angle <= std::numbers::pi / 2 || std::abs(turn.z()) > 1e-9 * angle) return base;
+  turned_ = exp_so3(Vector3(turn * (std::numbers::pi / angle)));
+  return composed(rigid_motion(turned_, Vector3::Zero()), base);
+}
+
+VERNIER_IMPL MeasuredSet MeasuredSet::with(const SensorModel& sensors) const {
+  sensors.validate();
+  return functions_->with(*this, sensors);
+}
+
+VERNIER_IMPL MeasuredSet MeasuredSet::at_joints(MatrixX other) const {
+  MeasuredSet out = *this;
+  out.joints = std::move(other);
+  out.previous.resize(0, 0);
+  out.seen_from.resize(0, 0);
+  out.times.resize(0);
+  out.temperatures.resize(0);
+  out.origin = {};
+  return out;
+}
+
+}  // namespace vernier

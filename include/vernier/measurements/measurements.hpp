@@ -1,0 +1,164 @@
+#pragma once
+
+/// @file
+/// All measurements of an arm as one value: poses from one place or several, distances, contacts, and sensors of a
+/// user's own.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vernier/core/check.hpp"
+#include "vernier/data/contacts.hpp"
+#include "vernier/data/dataset.hpp"
+#include "vernier/data/distances.hpp"
+#include "vernier/data/ranges.hpp"
+#include "vernier/measurements/distance_sensor.hpp"
+#include "vernier/measurements/measured_set.hpp"
+#include "vernier/measurements/pose_sensor.hpp"
+#include "vernier/measurements/position_sensor.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// A contact as a set.
+VERNIER_API MeasuredSet contact_set(const Contact& contact);
+/// A name for messages: the one that is given, else the files of the rows, else the kind with a number.
+VERNIER_API std::string set_name(std::string given, const RowOrigin& origin, const char* kind, std::size_t number);
+
+}  // namespace detail
+
+/// Measurements of an N-joint arm, of any kind and from any number of places:
+///
+///     Measurements<6> measured(poses);                       // a data set, or several: one a station
+///     measured.add(wire).add(contact).add(joints, gauge);    // distances, touches, a sensor of your own
+template <int N>
+class Measurements {
+ public:
+  Measurements() = default;
+  /// Poses from one station.
+  Measurements(Dataset<N> poses) { add(std::move(poses)); }  // NOLINT: a data set is measurements
+  /// Distances from one fixed point.
+  Measurements(Distances<N> distances) { add(std::move(distances)); }  // NOLINT
+  /// Poses, one set a station, or distances, one set a fixed point.
+  template <class Sets>
+    requires RangeOf<Sets, Dataset<N>> || RangeOf<Sets, Distances<N>> Measurements(const Sets& sets) {  // NOLINT
+      for (const auto& set : sets) add(set);
+    }
+  /// Data of an arm with another number of joints are refused.
+  template <template <int> class Data, int M>
+    requires(M != N && (std::same_as<Data<M>, Dataset<M>> || std::same_as<Data<M>, Distances<M>>))
+  Measurements(const Data<M>&) {  // NOLINT
+    static_assert(M == N, "the data have another number of joints than the arm");
+  }
+
+  /// Poses from a further station, which has a base frame of its own.
+  /// @param name how messages call it; by default its file
+  Measurements& add(Dataset<N> poses, std::string name = {}) {
+    name = detail::set_name(std::move(name), poses.origin(), "station", poses_.size() + 1);
+    MeasuredSet set = poses.has_orientations()
+                          ? MeasuredSet(std::move(name), poses.joints(), oriented(poses))
+                          : MeasuredSet(std::move(name), poses.joints(), PositionSensor(poses.positions()));
+    set.previous = poses.previous();
+    set.times = poses.times();
+    set.temperatures = poses.temperatures();
+    set.origin = poses.origin();
+    sets_.insert(sets_.begin() + static_cast<std::ptrdiff_t>(poses_.size()), std::move(set));
+    poses_.push_back(std::move(poses));
+    return *this;
+  }
+  /// Distances from a further fixed point.
+  Measurements& add(const Distances<N>& distances, std::string name = {}) {
+    name = detail::set_name(std::move(name), distances.origin(), "distances", sets_.size() - poses_.size() + 1);
+    sets_.push_back(MeasuredSet(std::move(name), distances.joints(), DistanceSensor(distances.lengths())));
+    sets_.back().origin = distances.origin();
+    return *this;
+  }
+  /// Touches of an object.
+  /// @throws std::invalid_argument for another number of joints
+  Measurements& add(const Contact& contact) {
+    require(contact.joints().cols() == N, "contact ", contact.name(), ": ", contact.joints().cols(),
+            " joints, the arm has ", N);
+    sets_.push_back(detail::contact_set(contact));
+    return *this;
+  }
+  /// Touches of several objects.
+  template <RangeOf<Contact> Contacts>
+  Measurements& add(const Contacts& contacts) {
+    for (const Contact& contact : contacts) add(contact);
+    return *this;
+  }
+  /// Measurements by any sensor.
+  /// @param joints n x N [rad, m]
+  /// @throws std::invalid_argument for another number of measurements
+  template <Sensor S>
+  Measurements& add(const JointRows<N>& joints, S sensor, std::string name = {}) {
+    MeasuredSet set(std::move(name), joints, std::move(sensor));
+    const auto end =
+        std::find_if(sets_.begin(), sets_.end(), [](const MeasuredSet& other) { return !other.locates(); });
+    sets_.insert(set.locates() ? end : sets_.end(), std::move(set));
+    return *this;
+  }
+  /// Measurements between two configurations by a sensor of one length: each sees the pose at `to` in the tool frame of
+  /// the pose at `from`, wherever the base stands. With a `DistanceSensor` these are distances between two positions of
+  /// the tool point.
+  /// @param from,to n x N [rad, m]
+  /// @throws std::invalid_argument for other numbers of measurements, or a sensor of several values
+  template <Sensor S>
+  Measurements& add_between(const JointRows<N>& from, const JointRows<N>& to, S sensor, std::string name = {}) {
+    MeasuredSet set(std::move(name), to, std::move(sensor));
+    require(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(), " second");
+    require(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());
+    set.seen_from = from;
+    sets_.push_back(std::move(set));
+    return *this;
+  }
+
+  /// Poses, one set a station.
+  const std::vector<Dataset<N>>& poses() const { return poses_; }
+  /// All sets: those of `poses` first, then others that locate the base, then the rest as they were added.
+  const std::vector<MeasuredSet>& sets() const { return sets_; }
+  /// All sets with the accuracy that is stated for the library's sensors.
+  std::vector<MeasuredSet> sets(const SensorModel& sensors) const {
+    std::vector<MeasuredSet> out;
+    for (const MeasuredSet& set : sets_) out.push_back(set.with(sensors));
+    return out;
+  }
+  /// Number of measurements.
+  Index size() const {
+    Index sum = 0;
+    for (const MeasuredSet& set : sets_) sum += set.size();
+    return sum;
+  }
+
+ private:
+  static PoseSensor oriented(const Dataset<N>& poses) {
+    std::vector<Matrix3> orientations;
+    for (Index i = 0; i < poses.size(); ++i) orientations.push_back(poses.orientation(i));
+    return PoseSensor(poses.positions(), std::move(orientations));
+  }
+
+  std::vector<Dataset<N>> poses_;
+  std::vector<MeasuredSet> sets_;
+};
+
+namespace detail {
+
+/// The poses of measurements that are nothing but poses from one station.
+/// @throws std::invalid_argument otherwise
+template <int N>
+const Dataset<N>& only_poses(const Measurements<N>& measured, const char* caller) {
+  require(measured.sets().size() == 1 && measured.poses().size() == 1, caller, ": ", measured.sets().size(),
+          " sets of measurements, it takes the poses of one station");
+  return measured.poses().front();
+}
+
+}  // namespace detail
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/measurements/measurements.ipp"
+#endif

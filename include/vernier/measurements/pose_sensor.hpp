@@ -1,0 +1,53 @@
+#pragma once
+
+/// @file
+/// Measured poses of the tool: position and orientation, as by a laser tracker with a six-dimensional probe.
+
+#include <utility>
+#include <vector>
+
+#include "vernier/measurements/sensor.hpp"
+#include "vernier/measurements/sensor_model.hpp"
+
+namespace vernier {
+
+/// Poses in the frame of the measuring device.
+class PoseSensor {
+ public:
+  /// @param positions    n x 3 [m]
+  /// @param orientations n rotation matrices; none: positions alone are used
+  /// @param sigma        standard deviations per component [m, rad]
+  PoseSensor(PointRows positions, std::vector<Matrix3> orientations,
+             SensorSigma sigma = {SensorModel{}.position_sigma, SensorModel{}.orientation_sigma})
+      : positions_(std::move(positions)), orientations_(std::move(orientations)), sigma_(sigma) {}
+
+  const char* kind() const { return "poses"; }
+  Index size() const { return positions_.rows(); }
+  Index values() const { return orientations_.empty() ? 3 : 6; }
+  SensorSigma sigma() const { return sigma_; }
+  const PointRows& positions() const { return positions_; }
+  const std::vector<Matrix3>& orientations() const { return orientations_; }
+  std::array<bool, 6> unknown_frame() const { return {true, true, true, true, true, true}; }
+  Plausibility plausibility() const { return {0.05, "the arm is off by", "wrong robot, units or columns?"}; }
+  /// Without orientations where `use_orientations` is off.
+  PoseSensor with(const SensorModel& sensors) const {
+    return {positions_,
+            sensors.use_orientations ? orientations_ : std::vector<Matrix3>(),
+            {sensors.position_sigma, sensors.orientation_sigma}};
+  }
+
+  VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
+  /// By positions alone.
+  VERNIER_API Isometry3 base_from(std::span<const Isometry3> poses) const;
+
+ private:
+  PointRows positions_;
+  std::vector<Matrix3> orientations_;
+  SensorSigma sigma_;
+};
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/measurements/pose_sensor.ipp"
+#endif

@@ -7,13 +7,16 @@
 set(vernier_components io urdf ceres cholmod tbb mpi)
 list(JOIN vernier_components "|" vernier_component_regex)
 
+# Files in C, JavaScript and CSS are string literals, which headers include: they belong to the headers, and nothing
+# compiles them.
 file(GLOB_RECURSE vernier_headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/vernier/*.hpp"
-     "${PROJECT_SOURCE_DIR}/include/vernier/*.ipp")
+     "${PROJECT_SOURCE_DIR}/include/vernier/*.ipp" "${PROJECT_SOURCE_DIR}/include/vernier/*.c"
+     "${PROJECT_SOURCE_DIR}/include/vernier/*.js" "${PROJECT_SOURCE_DIR}/include/vernier/*.css")
 foreach(component IN LISTS vernier_components)
   set(vernier_${component}_headers ${vernier_headers})
-  list(FILTER vernier_${component}_headers INCLUDE REGEX "/include/vernier/${component}(/.*)?\\.[hi]pp$")
+  list(FILTER vernier_${component}_headers INCLUDE REGEX "/include/vernier/${component}[/.]")
 endforeach()
-list(FILTER vernier_headers EXCLUDE REGEX "/include/vernier/(${vernier_component_regex})(/.*)?\\.[hi]pp$")
+list(FILTER vernier_headers EXCLUDE REGEX "/include/vernier/(${vernier_component_regex})[/.]")
 
 # vernier_name_target(<target> <export name>): what users call it, here and behind find_package
 function(vernier_name_target target name)
@@ -34,6 +37,8 @@ function(vernier_add_component component)
   endif()
   set(definitions ${arg_HEADERS})
   list(FILTER definitions INCLUDE REGEX "\\.ipp$")
+  set(included ${arg_HEADERS})
+  list(FILTER included EXCLUDE REGEX "\\.hpp$")
   list(FILTER arg_HEADERS INCLUDE REGEX "\\.hpp$")
 
   add_library(${target} INTERFACE)
@@ -42,9 +47,9 @@ function(vernier_add_component component)
   target_link_libraries(${target} INTERFACE ${arg_LINK})
   target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${arg_HEADERS})
   set_target_properties(${target} PROPERTIES VERIFY_INTERFACE_HEADER_SETS OFF)  # see VernierHeaders.cmake
-  if(definitions)
-    target_sources(${target} INTERFACE FILE_SET definitions TYPE HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include"
-                   FILES ${definitions})
+  if(included)
+    target_sources(${target} INTERFACE FILE_SET included TYPE HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include"
+                   FILES ${included})
   endif()
   set(missing)
   foreach(library IN LISTS arg_LINK)

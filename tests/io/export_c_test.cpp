@@ -18,7 +18,6 @@
 #include "temporary_folder.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/sha256.hpp"
-#include "vernier/io/detail/c_code.hpp"
 #include "vernier/io/detail/c_tables.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/ridge_elm.hpp"
@@ -504,14 +503,6 @@ TEST(CTables, AreNeverEmpty) {
   const std::string source = c_source(blended);
   EXPECT_NE(source.find("count_[6] = {"), std::string::npos);
   EXPECT_EQ(source.find("[0] = {"), std::string::npos);
-}
-
-// A feature that is absent takes its lines along, whatever is around.
-TEST(CText, IsFilledIn) {
-  const char* text = "a $_b $$_C\n@if one\n1\n@if two\n2\n@end\n@if !two\nnot 2\n@end\n@end\nend\n";
-  EXPECT_EQ(detail::fill_in(text, "x", {"one"}), "a x_b X_C\n1\nnot 2\nend\n");
-  EXPECT_EQ(detail::fill_in(text, "x", {"two"}), "a x_b X_C\nend\n");
-  EXPECT_EQ(detail::fill_in(text, "x", {"one", "two"}), "a x_b X_C\n1\n2\nend\n");
 }
 
 }  // namespace

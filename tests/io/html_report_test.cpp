@@ -363,6 +363,13 @@ TEST_F(HtmlReportSeen, IsValidByTidy) {
   EXPECT_FALSE(has(seen.errors, "Warning")) << seen.errors;
 }
 
+TEST_F(HtmlReportSeen, HasAScriptThatNodeParses) {
+  if (missing("node")) GTEST_SKIP() << "node is not installed: the page's script is not parsed";
+  write_file(folder_ / "report.js", detail::report_script);
+  const CommandResult seen = run("node --check report.js");
+  EXPECT_EQ(seen.exit_code, 0) << seen.errors;
+}
+
 TEST_F(HtmlReportSeen, DrawsItsPosesInABrowser) {
   if (missing("chromium")) GTEST_SKIP() << "chromium is not installed: the page's script is not run";
   write_file(folder_ / "page.html", report_html(input_of(300, hostile)));

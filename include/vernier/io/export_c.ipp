@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 #include <variant>
 
 #include "vernier/compensation/concepts.hpp"
@@ -27,7 +28,7 @@ VERNIER_API void require_identifier(const std::string& name) {
           "' is no C identifier: letters, digits and underscores, a letter first");
 }
 
-/// What an arm has, in the words of the C functions.
+/// What an arm has, in the words of the C text.
 VERNIER_API std::set<std::string> c_features(const ModelData& model) {
   std::set<std::string> out;
   const auto add = [&](const char* feature, bool present) {
@@ -36,33 +37,33 @@ VERNIER_API std::set<std::string> c_features(const ModelData& model) {
   using Kind = JointTermBlock::Kind;
   const auto add_terms = [&](const FittedArm& arm) {
     for (const JointTermBlock& block : arm.errors.terms().blocks()) {
-      add("linear", block.kind == Kind::gear_ratio || block.kind == Kind::coupling);
-      add("gravity", block.kind == Kind::gravity);
-      add("hysteresis", block.kind == Kind::hysteresis);
-      add("tilt", block.kind == Kind::tilt);
-      add("harmonics", block.kind == Kind::transmission);
+      add("LINEAR", block.kind == Kind::gear_ratio || block.kind == Kind::coupling);
+      add("GRAVITY", block.kind == Kind::gravity);
+      add("HYSTERESIS", block.kind == Kind::hysteresis);
+      add("TILT", block.kind == Kind::tilt);
+      add("HARMONICS", block.kind == Kind::transmission);
     }
   };
   add_terms(model.identified);
   if (model.fallback) add_terms(*model.fallback);
-  for (const DhRow& row : model.nominal.rows()) add("prismatic", row.joint == JointType::prismatic);
-  add("modified", model.nominal.modified());
+  for (const DhRow& row : model.nominal.rows()) add("PRISMATIC", row.joint == JointType::prismatic);
+  add("MODIFIED", model.nominal.modified());
   const int joints = model.nominal.joints(), equations = joints >= 6 ? 6 : 3;  // as CorrectionTarget::automatic
-  add("oriented", equations == 6);
-  add("redundant", equations < joints);
-  add("fallback", model.fallback.has_value());
-  add("learned", model.learned.has_value());
-  add("gates", model.fallback || model.learned);
-  add("links", out.contains("gravity") || out.contains("tilt"));
-  add("log", out.contains("oriented") || out.contains("fallback"));
-  add("exp", out.contains("tilt") || out.contains("fallback"));
+  add("ORIENTED", equations == 6);
+  add("REDUNDANT", equations < joints);
+  add("FALLBACK", model.fallback.has_value());
+  add("LEARNED", model.learned.has_value());
+  add("GATES", model.fallback || model.learned);
+  add("LINKS", out.contains("GRAVITY") || out.contains("TILT"));
+  add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
+  add("EXP", out.contains("TILT") || out.contains("FALLBACK"));
   if (!model.learned) return out;
   const HiddenLayer& layer = std::get_if<FittedNetwork>(&model.learned->function)->layer;
-  constexpr const char* maps[] = {"map_raw", "map_sines_and_cosines", "map_products"};
-  constexpr const char* activations[] = {"sigmoid", "tanh", "sine", "radial_basis"};
+  constexpr const char* maps[] = {"MAP_RAW", "MAP_SINES_AND_COSINES", "MAP_PRODUCTS"};
+  constexpr const char* activations[] = {"SIGMOID", "TANH", "SINE", "RADIAL_BASIS"};
   out.insert(maps[static_cast<int>(layer.input_map)]);
   out.insert(activations[static_cast<int>(layer.activation)]);
-  add("sines", layer.input_map != InputMap::raw);
+  add("SINES", layer.input_map != InputMap::raw);
   return out;
 }
 
@@ -85,22 +86,23 @@ VERNIER_API std::string c_preamble(const ModelData& model, const CExport& option
   if (model.thermal)
     out +=
         row("temperature:     ", message(model.thermal->reference, " deg C; how the arm changes with it is left out"));
-  out += R"( *
- * C99 and C++11. All functions are static inline; to compile a library of them, define $$_API as empty:
- *   cc -O2 -shared -fPIC -D$$_API= -x c THIS_FILE -o $.so -lm
- * Do not correct commands that a controller corrects already. */
-#ifndef $$_H
-#define $$_H
+  const std::string capitals = c_capitals(options.name);
+  out += message(" *\n * C99 and C++11. All functions are static inline; to compile a library of them, define ",
+                 capitals, "_API as empty:\n *   cc -O2 -shared -fPIC -D", capitals, "_API= -x c THIS_FILE -o ",
+                 options.name, ".so -lm\n * Do not correct commands that a controller corrects already. */\n");
+  out += with_name(R"(#ifndef ARM_H
+#define ARM_H
 
 #include <math.h>
 
-#ifndef $$_API
-#define $$_API static inline
+#ifndef ARM_API
+#define ARM_API static inline
 #endif
 
-)";
+)",
+                   options.name);
   const auto define = [&](const char* what, const std::string& value) {
-    out += message("#define $$_", what, " ", value, "\n");
+    out += message("#define ", capitals, "_", what, " ", value, "\n");
   };
   const auto quoted = [](const std::string& text) { return '"' + c_text(text) + '"'; };
   define("JOINTS", message(model.nominal.joints()));
@@ -112,7 +114,7 @@ VERNIER_API std::string c_preamble(const ModelData& model, const CExport& option
   if (model.thermal) define("TEMPERATURE", c_number(model.thermal->reference) + " /* [deg C] */");
   define("POSITION_TOLERANCE", c_number(correction.position_tolerance) + " /* of a correction [m] */");
   define("ROTATION_TOLERANCE", c_number(correction.rotation_tolerance) + " /* [rad] */");
-  out += "\n/* What $_correct returns. */\n";
+  out += message("\n/* What ", options.name, "_correct returns. */\n");
   define("MET", "0");
   define("STALLED", "1");
   define("LIMITS", "2");
@@ -127,11 +129,13 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
   const int joints = model.nominal.joints(), lanes = (joints + 1) / 2 * 2;  // vectors hold an even number
   const bool oriented = joints >= 6;
 
-  std::string out = c_preamble(model, options);
-  out += c_declarations();
+  const std::set<std::string> features = c_features(model);
+  const auto text = [&](std::string_view of_all) { return fill_in(of_all, options.name, features); };
+  const std::string prefix = options.name + "_", capitals = c_capitals(options.name);
+  std::string out = c_preamble(model, options) + text(c_declarations);
   out += "\n/* ---- private from here on ---- */\n\n";
   const auto define = [&](const char* what, const std::string& value) {
-    out += message("#define $$_", what, "_ ", value, "\n");
+    out += message("#define ", capitals, "_", what, "_ ", value, "\n");
   };
   define("LANES", message(lanes));
   define("SIZE", message(std::min(joints, oriented ? 6 : 3)));
@@ -142,10 +146,10 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
     define("FEATURES", message(network->layer.features(joints)));
     define("NODES", message(network->layer.nodes));
   }
-  out += c_types();
+  out += text(c_types);
   out += "\n/* ---- tables ---- */\n\n";
   std::vector<int> prismatic;
-  std::string limits = "static const double $_limits_[2 * $$_JOINTS] = {\n";
+  std::string limits = message("static const double ", prefix, "limits_[2 * ", capitals, "_JOINTS] = {\n");
   for (int i = 0; i < joints; ++i) {
     prismatic.push_back(model.nominal.revolute(i) ? 0 : 1);
     const auto limit = [](double value, const char* infinite) {
@@ -153,20 +157,20 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
     };
     limits += message("    ", limit(model.lower(i), "-HUGE_VAL"), ", ", limit(model.upper(i), "HUGE_VAL"), ",\n");
   }
-  out += limits + "};\n@if prismatic\n" + c_table("$_prismatic_", prismatic) + "@end\n";
-  out += c_chain_table("$_nominal_rows_", model.nominal);
-  out += c_arm_tables("$_arm_", "$_identified_", model.identified, lanes);
+  out += limits + "};\n";
+  if (features.contains("PRISMATIC")) out += c_table(prefix + "prismatic_", prismatic);
+  out += c_chain_table(prefix + "nominal_rows_", model.nominal);
+  out += c_arm_tables(prefix + "arm_", prefix + "identified_", model.identified, lanes);
   if (model.fallback) {
-    out += c_arm_tables("$_arm_", "$_outside_", *model.fallback, lanes);
-    out += c_coverage_tables("$_coverage_", "$_coverage_of_model_", model.coverage);
+    out += c_arm_tables(prefix + "arm_", prefix + "outside_", *model.fallback, lanes);
+    out += c_coverage_tables(prefix + "coverage_", prefix + "coverage_of_model_", model.coverage);
   }
   if (network != nullptr) {
-    out += c_network_tables("$_", *network);
-    out += c_coverage_tables("$_coverage_", "$_coverage_of_learned_", model.learned->coverage);
+    out += c_network_tables(prefix, *network);
+    out += c_coverage_tables(prefix + "coverage_", prefix + "coverage_of_learned_", model.learned->coverage);
   }
-  out += c_functions();
-  out += "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
-  return fill_in(out, options.name, c_features(model));
+  for (const std::string_view functions : c_functions) out += text(functions);
+  return out + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
 }
 
 }  // namespace detail

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The functions of an exported arm in C. They are the same for every arm; what an arm lacks is left out.
+/// The C text that all exported arms have in common. It stands in the files of the folder `c`, which are C as they are
+/// but for their first and last lines: those make a file a string literal, so that it can be included here.
 
 #include <set>
 #include <string>
@@ -11,16 +12,45 @@
 
 namespace vernier::detail {
 
-/// Fills a text in. Lines between `@if feature` and `@end` are kept where the feature is there, those between
-/// `@if !feature` and `@end` where it is not; both may be nested. `$$` becomes the name in capitals, `$` the name.
-VERNIER_API std::string fill_in(std::string_view text, const std::string& name, const std::set<std::string>& features);
+/// What is called from outside, each function with its comment.
+inline constexpr std::string_view c_declarations =
+#include "vernier/io/detail/c/declarations.c"
+    ;
 
-/// The declarations, each with its comment.
-VERNIER_API std::string_view c_declarations();
 /// The types of the tables.
-VERNIER_API std::string_view c_types();
-/// The functions. They follow the tables.
-VERNIER_API std::string c_functions();
+inline constexpr std::string_view c_types =
+#include "vernier/io/detail/c/types.c"
+    ;
+
+/// The functions, which follow the tables; each file uses those before it.
+inline constexpr std::string_view c_functions[] = {
+#include "vernier/io/detail/c/vectors.c"
+    ,
+#include "vernier/io/detail/c/chain.c"
+    ,
+#include "vernier/io/detail/c/joint_errors.c"
+    ,
+#include "vernier/io/detail/c/gates.c"
+    ,
+#include "vernier/io/detail/c/learned.c"
+    ,
+#include "vernier/io/detail/c/arm.c"
+    ,
+#include "vernier/io/detail/c/correction.c"
+};
+
+/// A name as it begins those of macros.
+VERNIER_API std::string c_capitals(std::string name);
+
+/// A text of which identifiers begin with a name where they began with `arm_`, in capitals where they began with
+/// `ARM_`.
+VERNIER_API std::string with_name(std::string_view text, const std::string& name);
+
+/// One of the texts above for an arm with a name and some features. Lines between `#if HAS_FEATURE`, `#if
+/// !HAS_FEATURE`,
+/// `#else` and `#endif` are kept as a preprocessor would keep them, and what begins a file as a string literal becomes
+/// an empty line before the text. Of a text that is left out altogether nothing remains.
+VERNIER_API std::string fill_in(std::string_view text, const std::string& name, const std::set<std::string>& features);
 
 }  // namespace vernier::detail
 

@@ -21,8 +21,8 @@ VERNIER_IMPL std::string c_text(std::string_view text) {
   std::string out;
   for (const char c : text) {
     const bool printable = c >= ' ' && c <= '~';
-    const bool harmless =
-        printable && c != '"' && c != '\\' && c != '*' && c != '$' && c != '?';  // $ for the name, ? for trigraphs
+    const bool harmless = printable && c != '"' && c != '\\' && c != '*' && c != '$' &&
+                          c != '?';  // ? begins trigraphs, $ is no character of C99
     out += harmless ? c : '_';
   }
   return out;

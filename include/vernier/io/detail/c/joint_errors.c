@@ -1,0 +1,299 @@
+R"c(
+/* ---- errors of the joints. Derivatives `rate` are ARM_JOINTS x ARM_JOINTS, a column a commanded joint; 0 for none ---- */
+#if HAS_LINEAR
+
+static inline double arm_linear_(const arm_arm_ *arm, int joint, double q) {
+  const double *range = arm->linear_ranges;
+  if (!range) return q;
+  range += 2 * joint;
+  return q < range[0] ? range[0] : q > range[1] ? range[1] : q;
+}
+
+/* Gear ratios and coupling. */
+static inline void arm_add_linear_(const arm_arm_ *arm, const double *q, double *joints, double *rate) {
+  int i, from;
+  for (i = 0; i < ARM_JOINTS; ++i)
+    for (from = i; from >= 0 && from >= i - 1; --from) {
+      const double *of = from == i ? arm->gear : arm->coupling;
+      const double linear = arm_linear_(arm, from, q[from]);
+      if (!of) continue;
+      joints[i] += of[i] * linear;
+      if (rate && linear == q[from]) rate[from * ARM_JOINTS + i] += of[i];
+    }
+}
+#endif
+#if HAS_GRAVITY
+
+/* Torques of the links' weights. */
+static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links, double *joints, double *rate) {
+  const double *down = arm->gravity_down, *weight = arm->gravity;
+  int i, j, k;
+  for (i = 0; i < ARM_JOINTS; ++i) {
+    const double *axis = links->axis + 3 * i;
+    double sum[3] = {0, 0, 0}, lever[3], turned[3], total = 0;
+    for (k = ARM_JOINTS - 1; k >= i; --k) { /* the links from k on */
+      total += weight[k - i];
+      for (j = 0; j < 3; ++j) {
+        sum[j] += weight[k - i] * links->end[3 * k + j];
+        lever[j] = sum[j] - total * links->point[3 * k + j];
+      }
+#if HAS_PRISMATIC
+      if (arm_prismatic_[i]) continue;
+      if (arm_prismatic_[k]) {
+        if (rate) rate[k * ARM_JOINTS + i] += total * arm_triple_(axis, links->axis + 3 * k, down);
+        continue;
+      }
+#endif
+      arm_cross_(links->axis + 3 * k, lever, turned);
+      if (rate) rate[k * ARM_JOINTS + i] += arm_triple_(axis, turned, down);
+    }
+    weight += ARM_JOINTS - i;
+#if HAS_PRISMATIC
+    if (arm_prismatic_[i]) {
+      joints[i] += total * arm_dot_(axis, down);
+      for (k = 0; rate && k < i; ++k) {
+        if (arm_prismatic_[k]) continue;
+        arm_cross_(links->axis + 3 * k, axis, turned);
+        rate[k * ARM_JOINTS + i] += total * arm_dot_(turned, down);
+      }
+      continue;
+    }
+#endif
+    joints[i] += arm_triple_(axis, lever, down);
+    for (k = 0; rate && k < i; ++k) {
+      const double *turn = links->axis + 3 * k;
+#if HAS_PRISMATIC
+      if (arm_prismatic_[k]) continue;
+#endif
+      arm_cross_(turn, axis, turned);
+      rate[k * ARM_JOINTS + i] += arm_triple_(turned, lever, down);
+      arm_cross_(turn, lever, turned);
+      rate[k * ARM_JOINTS + i] += arm_triple_(axis, turned, down);
+    }
+  }
+}
+#endif
+#if HAS_HYSTERESIS
+
+static inline void arm_add_hysteresis_(const arm_arm_ *arm, const double *q, const double *previous, double *joints,
+                                     double *rate) {
+  int i, w;
+  if (!previous) return;
+  for (w = 0; w < arm->widths; ++w) {
+    const double *of = arm->hysteresis + w * (ARM_JOINTS + 1), width = of[0];
+    for (i = 0; i < ARM_JOINTS; ++i) {
+      double step;
+      if (!(previous[i] - previous[i] == 0)) continue; /* unknown */
+      step = tanh((q[i] - previous[i]) / width);
+      joints[i] += of[i + 1] * step;
+      if (rate && step != 0) rate[i * ARM_JOINTS + i] += of[i + 1] * (1 - step * step) / width;
+    }
+  }
+}
+#endif
+#if HAS_HARMONICS
+
+/* Turns unit vectors on by others, or by themselves. */
+static inline void arm_turn_all_(double *c, double *s, const double *by_c, const double *by_s) {
+  int i;
+  for (i = 0; i < ARM_LANES_; ++i) {
+    const double next = c[i] * by_c[i] - s[i] * by_s[i];
+    s[i] = s[i] * by_c[i] + c[i] * by_s[i];
+    c[i] = next;
+  }
+}
+
+/* Functions of single joints, all joints side by side: the unit vector of each angle is turned from order to order. */
+static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, double *joints, double *rate) {
+  double c1[ARM_LANES_], s1[ARM_LANES_], c[ARM_LANES_], s[ARM_LANES_], value[ARM_LANES_], slope[ARM_LANES_];
+  const double *of = arm->harmonics;
+  int i, k, order = 0;
+  for (i = 0; i < ARM_LANES_; ++i) {
+    const double angle = i < ARM_JOINTS ? q[i] : 0;
+    c1[i] = cos(angle);
+    s1[i] = sin(angle);
+    c[i] = 1;
+    s[i] = value[i] = slope[i] = 0;
+  }
+  for (k = 0; k < arm->orders; ++k, of += 2 * ARM_LANES_) {
+    const double at = arm->order[k];
+    int gap = arm->order[k] - order; /* c and s are those of `order` */
+    if (gap > 0) {
+      double cp[ARM_LANES_], sp[ARM_LANES_];
+      for (i = 0; i < ARM_LANES_; ++i) {
+        cp[i] = c1[i];
+        sp[i] = s1[i];
+      }
+      for (; gap > 0; gap >>= 1) { /* powers of two */
+        if (gap & 1) arm_turn_all_(c, s, cp, sp);
+        if (gap > 1) arm_turn_all_(cp, sp, cp, sp);
+      }
+    }
+    order = arm->order[k] + 1;
+    for (i = 0; i < ARM_LANES_; ++i) {
+      const double a = of[i], b = of[ARM_LANES_ + i], cosine = c[i], sine = s[i];
+      value[i] += a * cosine + b * sine;
+      slope[i] += at * (b * cosine - a * sine);
+      c[i] = cosine * c1[i] - sine * s1[i];
+      s[i] = sine * c1[i] + cosine * s1[i];
+    }
+  }
+  for (i = 0; i < ARM_JOINTS; ++i) {
+    joints[i] += value[i];
+    if (rate) rate[i * ARM_JOINTS + i] += slope[i];
+  }
+}
+#endif
+#if HAS_TILT
+
+/* Tilts of the joints' frames under gravity: a motion of the arm's end in the base frame of the chain. */
+static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, double *end, double *J) {
+  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_JOINTS], R[9], left[9], rotated[9], v[3], w[3];
+  int i, j, k;
+  for (i = 0; i < ARM_JOINTS; ++i) {
+    const double *c = arm->tilt + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
+    double z[3], tilted[3];
+    arm_cross_(x, y, z);
+    for (k = -1; k <= (J ? i : -1); ++k) { /* -1: the motion itself, else its change by joint k */
+      double gravity[3], g[3], lever[3], about_x, about_y;
+      if (k < 0) {
+        for (j = 0; j < 3; ++j) gravity[j] = arm->tilt_down[j];
+      } else {
+        arm_cross_(arm->tilt_down, links->axis + 3 * k, gravity);
+      }
+      g[0] = arm_dot_(x, gravity);
+      g[1] = arm_dot_(y, gravity);
+      g[2] = arm_dot_(z, gravity);
+      about_x = arm_dot_(c, g);
+      about_y = arm_dot_(c + 3, g);
+      for (j = 0; j < 3; ++j) v[j] = about_x * x[j] + about_y * y[j];
+      if (k < 0) {
+        arm_cross_(origin, v, w);
+        for (j = 0; j < 3; ++j) {
+          tilted[j] = v[j];
+          turn[j] += v[j];
+          shift[j] += w[j];
+        }
+        continue;
+      }
+      arm_cross_(links->axis + 3 * k, tilted, w);
+#if HAS_PRISMATIC
+      if (arm_prismatic_[k]) {
+        for (j = 0; j < 3; ++j) {
+          rates[6 * k + j] = (k == i ? 0 : rates[6 * k + j]) + w[j];
+          rates[6 * k + 3 + j] = k == i ? 0 : rates[6 * k + 3 + j];
+        }
+        continue;
+      }
+#endif
+      for (j = 0; j < 3; ++j) {
+        v[j] += w[j];
+        rates[6 * k + 3 + j] = (k == i ? 0 : rates[6 * k + 3 + j]) + v[j];
+        lever[j] = origin[j] - links->point[3 * k + j];
+      }
+      arm_cross_(origin, v, w);
+      arm_cross_(links->axis + 3 * k, lever, v);
+      arm_cross_(v, tilted, v);
+      for (j = 0; j < 3; ++j) rates[6 * k + j] = (k == i ? 0 : rates[6 * k + j]) + w[j] + v[j];
+    }
+  }
+  arm_exp_(turn, R);
+  arm_product_(R, end, rotated);
+  for (k = 0; k < 9; ++k) end[k] = rotated[k];
+  arm_rotate_(R, end + 9, v); /* the end, turned */
+  for (j = 0; j < 3; ++j) end[9 + j] = v[j] + shift[j];
+  if (!J) return;
+  arm_left_(turn, left);
+  for (k = 0; k < ARM_JOINTS; ++k) {
+    double *linear = J + 6 * k, *angular = linear + 3, omega[3];
+    arm_rotate_(left, rates + 6 * k + 3, omega);
+    arm_rotate_(R, linear, linear);
+    arm_rotate_(R, angular, angular);
+    arm_cross_(omega, v, w);
+    for (j = 0; j < 3; ++j) {
+      linear[j] += w[j] + rates[6 * k + j];
+      angular[j] += omega[j];
+    }
+  }
+}
+#endif
+
+/* ---- the arm ---- */
+
+/* base_T_tool as columns, and its Jacobian as columns of six; 0 for none. */
+static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const double *previous, double *frame, double *J) {
+  double joints[ARM_JOINTS], rate[ARM_JOINTS * ARM_JOINTS], end[12];
+  arm_links_ links;
+#if HAS_LINKS
+  arm_links_ nominal;
+#endif
+  int i, j, k;
+  (void)previous;
+  for (k = 0; k < ARM_JOINTS; ++k) {
+    joints[k] = q[k];
+    for (i = 0; i < ARM_JOINTS; ++i) rate[k * ARM_JOINTS + i] = i == k ? 1 : 0;
+  }
+#if HAS_LINKS
+  if (arm->gravity || arm->tilt) {
+    arm_identity_(end);
+    arm_walk_(arm_nominal_rows_, q, end, &nominal);
+  }
+#endif
+#if HAS_LINEAR
+  arm_add_linear_(arm, q, joints, J ? rate : 0);
+#endif
+#if HAS_GRAVITY
+  if (arm->gravity) arm_add_gravity_(arm, &nominal, joints, J ? rate : 0);
+#endif
+#if HAS_HYSTERESIS
+  arm_add_hysteresis_(arm, q, previous, joints, J ? rate : 0);
+#endif
+#if HAS_HARMONICS
+  if (arm->orders) arm_add_harmonics_(arm, q, joints, J ? rate : 0);
+#endif
+  arm_identity_(end);
+  arm_walk_(arm->rows, joints, end, &links);
+  if (J) {
+    double columns[6 * ARM_JOINTS], lever[3];
+    for (k = 0; k < ARM_JOINTS; ++k) {
+      double *column = columns + 6 * k;
+      const double *axis = links.axis + 3 * k;
+#if HAS_PRISMATIC
+      if (arm_prismatic_[k]) {
+        for (j = 0; j < 3; ++j) {
+          column[j] = axis[j];
+          column[3 + j] = 0;
+        }
+        continue;
+      }
+#endif
+      for (j = 0; j < 3; ++j) {
+        lever[j] = end[9 + j] - links.point[3 * k + j];
+        column[3 + j] = axis[j];
+      }
+      arm_cross_(axis, lever, column);
+    }
+    for (k = 0; k < ARM_JOINTS; ++k)
+      for (j = 0; j < 6; ++j) {
+        double sum = 0;
+        for (i = 0; i < ARM_JOINTS; ++i) sum += columns[6 * i + j] * rate[k * ARM_JOINTS + i];
+        J[6 * k + j] = sum;
+      }
+  }
+#if HAS_TILT
+  if (arm->tilt) arm_add_tilt_(arm, &nominal, end, J);
+#endif
+  if (J) { /* from the flange to the tool point, from the chain's base to the base */
+    double lever[3], moved[3];
+    arm_rotate_(end, arm->tool + 9, lever);
+    for (k = 0; k < ARM_JOINTS; ++k) {
+      double *linear = J + 6 * k, *angular = linear + 3;
+      arm_cross_(angular, lever, moved);
+      for (j = 0; j < 3; ++j) linear[j] += moved[j];
+      arm_rotate_(arm->base, linear, linear);
+      arm_rotate_(arm->base, angular, angular);
+    }
+  }
+  arm_into_frames_(arm->base, arm->tool, end, frame);
+}
+)c"

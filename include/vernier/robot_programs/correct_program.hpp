@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "vernier/compensation/concepts.hpp"
@@ -19,13 +20,11 @@ namespace vernier {
 /// A calibrated arm of six joints whose programs can be corrected: `CalibratedRobot<6>`, or a type of one's own.
 ///
 /// - `nominal()`: the arm as designed, a `DhChain` or one between frames, in the frames of the calibration
-/// - `limits()`: of the commands
+/// - `limits()`: of its commands
 /// - `correct(target, seed, previous)`: the command that brings the arm to a pose in these frames, near the joint
-/// values
-///   `seed`, coming from the command `previous`, which is not finite where unknown
+///   values `seed`; it comes from the command `previous`, which is not finite where unknown
 template <class R>
-concept CalibratedArm = KinematicModel<R> && R::dof == 6 &&
-                        requires(const R& robot, const Isometry3& target, const JointVector<6>& q) {
+concept CalibratedArm = R::dof == 6 && requires(const R& robot, const Isometry3& target, const JointVector<6>& q) {
   requires NominalArm<std::remove_cvref_t<decltype(robot.nominal())>>;
   { robot.limits() } -> std::convertible_to<JointLimits<6>>;
   { robot.correct(target, q, q) } -> std::same_as<Correction<6>>;
@@ -52,9 +51,9 @@ ClosedForm<6> program_roots(const Arm& nominal) {
   }
 }
 
-/// @param controller by which the controller reaches poses
-/// @param its        nominal arm of the controller, in its frames
-/// @param poses      whether the controller is known
+/// @param controller model by which the controller reaches poses
+/// @param its        the controller's nominal arm, in the frames of that model
+/// @param poses      whether this is how the controller reaches poses; else those are refused
 template <class Robot, class Controller, class Nominal>
 CorrectedProgram correct_program(const RobotProgram& program, const Robot& robot, const Controller& controller,
                                  const Nominal& its, bool poses, const ProgramOptions& options) {

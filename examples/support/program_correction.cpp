@@ -12,7 +12,6 @@
 
 #include "json_file.hpp"
 #include "vernier/core/atomic_file.hpp"
-#include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/version.hpp"
 #include "vernier/io/model_file.hpp"
@@ -116,9 +115,9 @@ vn::CorrectedProgram correct_for_controller(const std::string& named, const std:
     }
     return correct(vn::read_ur_calibration(named, nominal).arm<6>().arm.model());
   }
-  if (const int dof = vn::saved_arm(named).dof; dof != 6)
-    throw std::runtime_error(fmt::format("{}: an arm of {} joints", named, dof));
-  return correct(vn::load<6>(named));
+  const vn::SavedModel its = vn::read_model(named);
+  if (its.dof() != 6) throw std::runtime_error(fmt::format("{}: an arm of {} joints", named, its.dof()));
+  return correct(its.as<6>());
 }
 
 /// The option that gives a target what it lacks, as the end of a sentence.
@@ -179,10 +178,11 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
     throw vn::DataError(e.what());
   }
   const vn::RobotProgram program = vn::parse_program(language, text, options.program);
-  if (const int dof = vn::saved_arm(input.model).dof; dof != 6)
+  const vn::SavedModel model = vn::read_model(input.model);
+  if (model.dof() != 6)
     throw std::runtime_error(
-        fmt::format("{}: an arm of {} joints; programs are corrected for arms of 6", input.model, dof));
-  const vn::CalibratedRobot<6> saved = vn::load<6>(input.model);
+        fmt::format("{}: an arm of {} joints; programs are corrected for arms of 6", input.model, model.dof()));
+  const vn::CalibratedRobot<6> saved = model.as<6>();
   const vn::CalibratedRobot<6> robot = input.temperature ? saved.at_temperature(*input.temperature) : saved;
   vn::CorrectedProgram outcome =
       correct_for_controller(options.controller, input.model, program, robot, program_options(options, input, program));
@@ -233,10 +233,9 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
                     options.program, outcome.uncorrected.size(), outcome.uncorrected.size() == 1 ? "is" : "are",
                     outcome.uncorrected.front().line));
 
-  const std::string hash = vn::sha256(vn::read_file(input.model));
   std::vector<std::string> stamp{"do not correct this program twice",
                                  fmt::format("model {}", std::filesystem::path(input.model).filename().string()),
-                                 fmt::format("sha256 {}", hash),
+                                 fmt::format("sha256 {}", model.hash()),
                                  fmt::format("robot {}, {} targets", robot.name(), outcome.targets.size()),
                                  fmt::format("{} by Vernier {}.{}.{}", options.date.empty() ? today() : options.date,
                                              VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH)};

@@ -77,10 +77,11 @@ CorrectedProgram correct_program(const RobotProgram& program, const Robot& robot
 
 }  // namespace detail
 
-/// Corrects a robot program for a controller of the nominal arm: for each literal target the joint values to which the
-/// controller would move, the command that brings the calibrated arm there, and the pose for which the controller sends
-/// that command. A target of joint values means the pose that the controller shows there. Poses of URScript stay,
-/// because Universal Robots' controllers reach them by a factory calibration, which the other overload takes.
+/// Corrects a robot program for a controller that computes with the nominal arm. For each literal target it finds the
+/// joint values to which the controller would move, and the command that brings the calibrated arm there. The new
+/// target is the pose for which the controller sends that command. A target of joint values means the pose that the
+/// controller shows there. Poses of URScript stay, because Universal Robots' controllers reach them by a factory
+/// calibration; the overload with a controller corrects them.
 ///
 /// A target that cannot be corrected is listed with the reason and stays as it is. Linear moves are corrected at their
 /// ends alone.
@@ -103,14 +104,15 @@ template <CalibratedArm Robot>
   return detail::correct_program(program, robot, chain, chain, program.language != ProgramLanguage::urscript, options);
 }
 
-/// Corrects a robot program for a controller that computes with kinematics of its own, in any language: a factory
-/// calibration, as `read_ur_calibration` returns it, or another calibrated arm.
+/// Corrects a robot program, in any language, for a controller that computes with kinematics of its own. That is a
+/// factory calibration, as `read_ur_calibration` returns it, or another calibrated arm.
 /// @param program    as parsed
 /// @param robot      the calibrated arm
-/// @param controller by which the controller reaches poses; a model with `nominal()` is in the frames of that, another
-///                   one is a chain close to the nominal one of the robot, whose branches it has
+/// @param controller model by which the controller reaches poses: one with `nominal()`, in the frames of that, or a
+///                   chain close to the nominal one of the robot
 /// @param options    frames, approach
-/// @throws std::invalid_argument as without a controller
+/// @throws std::invalid_argument for arms with a prismatic joint or without closed form, frames that are no rigid
+/// motions, and a Fanuc program with poses where `ProgramOptions::arm` is missing
 template <CalibratedArm Robot, ControllerModel Controller>
 [[nodiscard]] CorrectedProgram correct_program(const RobotProgram& program, const Robot& robot,
                                                const Controller& controller, const ProgramOptions& options = {}) {

@@ -140,8 +140,8 @@ void list_branches(const vn::CalibratedRobot<N>& robot, const Roots& roots,
 /// Corrects all targets.
 /// @throws vn::DataError on a malformed file
 template <int N>
-support::CorrectionReport correct_arm(const Settings& settings) {
-  const vn::CalibratedRobot<N> saved = vn::load<N>(settings.model);
+support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedModel& model) {
+  const vn::CalibratedRobot<N> saved = model.as<N>();
   const vn::CalibratedRobot<N> robot = settings.temperature ? saved.at_temperature(*settings.temperature) : saved;
   const std::vector<vn::PathTarget<N>> targets = read_targets(settings, robot);
   support::CorrectionReport report{.robot = robot.name(),
@@ -250,8 +250,9 @@ int run(support::Program& program) {
     return support::correct_program(in_place, {settings.model, settings.out, program.common().json,
                                                settings.temperature, settings.start, settings.approach});
 
+  const vn::SavedModel model = vn::read_model(settings.model);
   const support::CorrectionReport report =
-      support::dispatch_dof(vn::saved_arm(settings.model).dof, [&](auto n) { return correct_arm<n()>(settings); });
+      support::dispatch_dof(model.dof(), [&](auto n) { return correct_arm<n()>(settings, model); });
   vn::write_file(settings.out, support::correction_csv(report));
 
   const support::CorrectionTotals totals = support::totals(report);

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "cli.hpp"
@@ -21,23 +20,16 @@ namespace vn = vernier;
 
 /// Mean held-out error of the stage that is deployed [m], from the results that calibrate wrote.
 /// @throws vn::DataError where they are those of another calibration, or of none
-double held_out_error(const std::string& results, const std::string& model) {
-  const nlohmann::json document = vn::read_json(results), saved = vn::read_json(model);
-  const vn::JsonNode root(document, results), arm(saved, model);
+double held_out_error(const std::string& results, const vn::SavedModel& model) {
+  const nlohmann::json document = vn::read_json(results);
+  const vn::JsonNode root(document, results);
   const auto of = [](const std::string& name, std::int64_t rows) {
     return vn::message("'", name, "', ", rows, " rows");
   };
   const std::string here = of(root.at("robot").text(), root.at("train_rows").integer(0, INT32_MAX)),
-                    there = of(arm.at("name").text(), arm.at("provenance").at("rows").integer(0, INT32_MAX));
+                    there = of(model.name(), model.provenance().rows);
   if (here != there) root.fail("are results of another calibration: " + here + "; the model: " + there);
   return 1e-3 * root.at("stages").at(root.at("chosen").text()).at("mean_mm").number();
-}
-
-/// The same from the model itself; none where it does not know.
-std::optional<double> held_out_error(const std::string& model) {
-  const nlohmann::json saved = vn::read_json(model);
-  const vn::JsonNode from = vn::JsonNode(saved, model).at("provenance");
-  return from.has("held_out_error_m") ? std::optional<double>(from.at("held_out_error_m").number()) : std::nullopt;
 }
 
 int run(support::Program& program) {
@@ -51,10 +43,12 @@ int run(support::Program& program) {
   if (out.empty()) throw support::UsageError("--out is required");
   support::require_writable(out);
 
+  const vn::SavedModel saved = vn::read_model(model);
   vn::CExport options{.name = name};
-  if (!results.empty()) options.held_out_error = held_out_error(results, model);
-  const std::string source = vn::c_source(model, options);
-  if (results.empty()) options.held_out_error = held_out_error(model);
+  if (!results.empty()) options.held_out_error = held_out_error(results, saved);
+  const std::string source = vn::c_source(saved, options);
+  if (const double known = saved.provenance().held_out_error; results.empty() && known > 0)
+    options.held_out_error = known;
   vn::write_file(out, source);
   std::string capitals = name;
   for (char& letter : capitals) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));

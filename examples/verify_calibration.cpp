@@ -23,8 +23,8 @@ struct Options {
 };
 
 template <int N>
-int verify_arm(const support::Program& program, const Options& o) {
-  const vn::CalibratedRobot<N> robot = vn::load<N>(o.model);
+int verify_arm(const support::Program& program, const Options& o, const vn::SavedModel& model) {
+  const vn::CalibratedRobot<N> robot = model.as<N>();
   if (robot.estimate() == nullptr)
     throw support::UsageError(o.model + ": has no covariance, an older program saved it; calibrate that arm again");
   const auto types = robot.nominal().chain().joint_types();
@@ -81,7 +81,8 @@ int run(support::Program& program) {
   program.add_setting("--date", o.date, "date written into the report", "DATE");
   program.parse("", nullptr);
   if (!o.report.empty()) support::require_writable(o.report);
-  return support::dispatch_dof(vn::saved_arm(o.model).dof, [&](auto n) { return verify_arm<n()>(program, o); });
+  const vn::SavedModel model = vn::read_model(o.model);
+  return support::dispatch_dof(model.dof(), [&](auto n) { return verify_arm<n()>(program, o, model); });
 }
 
 }  // namespace

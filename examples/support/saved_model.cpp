@@ -97,8 +97,9 @@ void write_results(Program& program, const CalibrationOptions& o, const std::str
 }
 
 template <int N>
-void reregister_arm(Program& program, const CalibrationOptions& o, const vn::ReregisterOptions& free) {
-  const vn::CalibratedRobot<N> robot = vn::load<N>(o.model);
+void reregister_arm(Program& program, const CalibrationOptions& o, const vn::ReregisterOptions& free,
+                    const vn::SavedModel& model) {
+  const vn::CalibratedRobot<N> robot = model.as<N>();
   const auto types = robot.nominal().chain().joint_types();
   const std::string& file = o.data.front();
   const vn::Dataset<N> data = read_poses<N>(file, o, types);
@@ -119,11 +120,11 @@ void reregister_arm(Program& program, const CalibrationOptions& o, const vn::Rer
 }  // namespace
 
 vernier::ArmPrior read_prior(const std::string& file, int joints) {
-  const vn::SavedArm saved = vn::saved_arm(file);
-  if (saved.dof != joints || saved.modified)
-    throw UsageError(fmt::format("{}: is of an arm of {} joints, expected {}", file, saved.dof, joints));
+  const vn::SavedModel saved = vn::read_model(file);
+  if (saved.dof() != joints || saved.modified())
+    throw UsageError(fmt::format("{}: is of an arm of {} joints, expected {}", file, saved.dof(), joints));
   return dispatch_dof(joints, [&](auto n) {
-    const auto robot = vn::load<n()>(file);
+    const auto robot = saved.as<n()>();
     if (robot.estimate() == nullptr)
       throw UsageError(file + ": has no covariance, an older program saved it; calibrate that arm again");
     vn::ArmPrior out = vn::arm_prior(robot);
@@ -134,7 +135,8 @@ vernier::ArmPrior read_prior(const std::string& file, int joints) {
 
 int reregister_model(Program& program, const CalibrationOptions& options) {
   const vn::ReregisterOptions free = parse_free(options.free);
-  dispatch_dof(vn::saved_arm(options.model).dof, [&](auto n) { reregister_arm<n()>(program, options, free); });
+  const vn::SavedModel model = vn::read_model(options.model);
+  dispatch_dof(model.dof(), [&](auto n) { reregister_arm<n()>(program, options, free, model); });
   return 0;
 }
 

@@ -6,8 +6,7 @@
 /// kinematics
 /// (`kinematics/general_six_axis.hpp`), tables of a tracker (`data/pair_points.hpp`), calibration by contacts
 /// (`identification/identify_by_contacts.hpp`, `simulation/touches.hpp`) and robot programs
-/// (`robot_programs/robot_program.hpp`, `robot_programs/configuration.hpp`). The library's own headers never include
-/// this one.
+/// (`robot_programs/correct_program.hpp`). The library's own headers never include this one.
 
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/compensation/cartesian.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/var_pro_elm.hpp"
+#include "vernier/robot_programs/correct_program.hpp"
 #include "vernier/search/tuned.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -33,7 +35,7 @@
 namespace vernier::guide_test {
 namespace {
 
-static_assert(guide_blocks == 21, "a block of docs/guide.md without a test");
+static_assert(guide_blocks == 22, "a block of docs/guide.md without a test");
 
 using namespace vernier::literals;
 using Chain = DhChain<6>;
@@ -145,6 +147,18 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
     EXPECT_LE(corrected.after, 0.05e-3);
     EXPECT_EQ(radii.size(), 7u);
     for (const double radius : radii) EXPECT_LT(radius, 0.5e-3);
+
+    write_file("part.mod",
+               "MODULE part\nPROC main()\nMoveAbsJ [[10,-80,70,20,-40,10],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,gun;\n"
+               "MoveL Offs(p1,0,0,50),v1,fine,gun;\nENDPROC\nENDMODULE\n");
+    ::testing::internal::CaptureStdout();
+#include "guide_16.inc"
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "line 4: computed, not a literal\n");
+    ASSERT_EQ(outcome.targets.size(), 1u);
+    const JointVector<6> meant = JointVector<6>(10, -80, 70, 20, -40, 10) * (std::numbers::pi / 180);
+    EXPECT_LT((saved.position(outcome.targets[0].replaced.joints) - saved.nominal().position(meant)).norm(), 1e-6);
+    EXPECT_NE(read_file("corrected.mod"), text);
+    EXPECT_LT(expected.at(0), 0.5e-3);
   }
   {
     const Isometry3 elsewhere = frame(-1, 2, 0.3, 0, 0.1, -0.4) * base;
@@ -225,7 +239,7 @@ TEST_F(Guide, Distances) {
 }
 
 TEST_F(Guide, DescribesARobot) {
-#include "guide_16.inc"
+#include "guide_17.inc"
   const JointVector<3> zero = JointVector<3>::Zero();
   EXPECT_NEAR((gantry.position(zero) - Vector3(0.025 + 0.455, 0.01, 0.4)).norm(), 0, 1e-12);
   EXPECT_EQ(gantry.row(2).joint, JointType::prismatic);
@@ -236,7 +250,7 @@ TEST_F(Guide, DescribesARobot) {
                     R"(, "d_m": )", arm.row(i).d, R"(, "theta_rad": )", arm.row(i).theta, "}");
   write_file("my_arm.json", text + "]}");
   const Dataset<6> data = measured(real_arm(), 60, 1);
-#include "guide_17.inc"
+#include "guide_18.inc"
   EXPECT_EQ(described.name, "mine");
   EXPECT_LT((described.arm.position(q) - arm.position(q)).norm(), 1e-4);  // numbers of six digits
   EXPECT_LT(error(identified.model), 0.5 * error(identified.model.nominal()));
@@ -245,9 +259,9 @@ TEST_F(Guide, DescribesARobot) {
 TEST_F(Guide, Learns) {
   const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);
   const double nominal = prediction_error(arm, data).mean;
-#include "guide_18.inc"
-  EXPECT_LT(prediction_error(learned, data).mean, 0.2 * nominal);
 #include "guide_19.inc"
+  EXPECT_LT(prediction_error(learned, data).mean, 0.2 * nominal);
+#include "guide_20.inc"
   EXPECT_LT(prediction_error(trained, data).mean, 0.2 * nominal);
 }
 
@@ -256,7 +270,7 @@ const CartesianCompensation compensation{Tuned{Elm{.hidden_nodes = 20}, Pso{.par
 TEST_F(Guide, ThreadsChangeNothing) {
   const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);
   ::testing::internal::CaptureStdout();
-#include "guide_20.inc"
+#include "guide_21.inc"
   const std::string seen = ::testing::internal::GetCapturedStdout();
   EXPECT_EQ(std::count(seen.begin(), seen.end(), '\n'), 6);  // the first population and five iterations
   EXPECT_EQ(in_parallel.position(q), compensation.fit(arm, data, {.seed = 1}).position(q));
@@ -264,7 +278,7 @@ TEST_F(Guide, ThreadsChangeNothing) {
 
 #ifdef VERNIER_DOCS_MPI
 [[maybe_unused]] void over_several_machines(int argc, char** argv, const Dataset<6>& data, const Dataset<6>& test) {
-#include "guide_21.inc"
+#include "guide_22.inc"
 }
 #endif
 

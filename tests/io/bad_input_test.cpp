@@ -248,8 +248,9 @@ CalibratedRobot<6> model() {
 
 TEST(BadInput, ModelFiles) {
   Reader reader("model.json", [](const auto& path) {
-    if (saved_arm(path).dof != 6) throw DataError(path.string() + ": joints: not 6");
-    (void)load<6>(path);
+    const SavedModel saved = read_model(path);
+    if (saved.dof() != 6) throw DataError(path.string() + ": joints: not 6");
+    (void)saved.as<6>();
   });
   const Json valid = to_json(model());
   expect_refused_when_damaged(
@@ -330,7 +331,8 @@ TEST(BadInput, ModelFilesSayWhatIsTooMuch) {
     const Json& list = valid.at(Json::json_pointer(pointer));
     return told(pointer + "/" + std::to_string(list.size()), list.front());
   };
-  for (const char* list : {"/joints", "/arm/rows", "/outside_arm/rows", "/coverage", "/learned/coverage",
+  EXPECT_EQ(one_more("/joints"), "arm.rows: has 6 entries, must have 7");  // the list of joints states their number
+  for (const char* list : {"/arm/rows", "/outside_arm/rows", "/coverage", "/learned/coverage",
                            "/arm/joint_errors/linear_ranges", "/arm/joint_errors/transmission"}) {
     const std::string line = one_more(list);
     EXPECT_NE(line.find(": has 7 entries, must have 6"), std::string::npos) << list << ": " << line;

@@ -2,10 +2,15 @@
 #include "vernier/io/model_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "temporary_folder.hpp"
+#include "vernier/core/sha256.hpp"
+#include "vernier/io/export_c.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"
@@ -80,9 +85,14 @@ TEST_F(ModelFile, LoadsTheBitsThatWereSaved) {
     const bool learned = saved.learned() != nullptr;
     const auto path = folder_ / "m.json";
     save(path, saved);
-    EXPECT_EQ(saved_arm(path).dof, 6);
-    EXPECT_FALSE(saved_arm(path).modified);
-    const auto loaded = load<6>(path);
+    const SavedModel read = read_model(path);
+    EXPECT_EQ(read.dof(), 6);
+    EXPECT_FALSE(read.modified());
+    EXPECT_EQ(read.name(), saved.name());
+    EXPECT_EQ(read.provenance(), saved.provenance());
+    EXPECT_EQ(read.file(), path);
+    EXPECT_EQ(read.hash(), sha256(read_file(path)));
+    const auto loaded = read.as<6>();
     EXPECT_EQ(loaded.name(), saved.name());
     EXPECT_EQ(loaded.provenance(), saved.provenance());
     EXPECT_TRUE(loaded.nominal().parameters() == saved.nominal().parameters());
@@ -152,8 +162,8 @@ TEST_F(ModelFile, TheConventionIsPartOfTheFile) {
   const Saved saved("puma", {robot.chain, Saved::Model::Arm(with_geometric_errors(robot.chain, {}, 3))}, robot.limits,
                     Provenance{});
   save(folder_ / "m.json", saved);
-  EXPECT_EQ(saved_arm(folder_ / "m.json").dof, 6);
-  EXPECT_TRUE(saved_arm(folder_ / "m.json").modified);
+  EXPECT_EQ(read_model(folder_ / "m.json").dof(), 6);
+  EXPECT_TRUE(read_model(folder_ / "m.json").modified());
   const auto loaded = load<6, ModifiedDh>(folder_ / "m.json");
   EXPECT_TRUE(loaded.identified().chain() == saved.identified().chain());
   EXPECT_TRUE(loaded.nominal().model() == robot.chain);
@@ -237,6 +247,27 @@ TEST_F(ModelFile, TheWrongNumberOfJointsIsRefused) {
   } catch (const DataError& e) {
     EXPECT_NE(std::string(e.what()).find("m.json: joints: has 6 entries, must have 7"), std::string::npos) << e.what();
   }
+}
+
+TEST_F(ModelFile, IsReadOnceSoThatAPipeWillDo) {
+  const CalibratedRobot<6> saved = example(true);
+  const std::string file = folder_ / "m.json", pipe = folder_ / "pipe";
+  save(file, saved);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto through_pipe = [&](auto&& use) {
+    std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << read_file(file); });
+    use();
+    writer.join();
+  };
+  through_pipe([&] {
+    const SavedModel read = read_model(pipe);
+    EXPECT_EQ(read.dof(), 6);
+    EXPECT_EQ(read.hash(), sha256(read_file(file)));
+    save(folder_ / "again.json", read.as<6>());
+    EXPECT_EQ(c_source(read), c_source(file));
+  });
+  EXPECT_EQ(read_file(file), read_file(folder_ / "again.json"));
+  through_pipe([&] { EXPECT_EQ(load<6>(pipe).provenance(), saved.provenance()); });
 }
 
 }  // namespace

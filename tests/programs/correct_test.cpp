@@ -10,6 +10,7 @@
 #include "real_matrix.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/evaluation/statistics.hpp"
@@ -65,6 +66,26 @@ TEST_F(Correct, TheActualArmGoesWhereTheNominalOneWould) {
   EXPECT_LT(after.position.maxCoeff(), 1e-6);
   EXPECT_LT(after.rotation.maxCoeff(), 1e-6);
   EXPECT_GT(positioning_errors(actual_, robot_.nominal(), targets_, targets_).position.minCoeff(), 1e-4);
+}
+
+TEST_F(Correct, ReadsTheModelThroughAPipe) {
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  write_file(folder_ / "a.mod",
+             "MODULE a\nPROC main()\nMoveAbsJ [[10,20,-30,40,50,60],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n"
+             "ENDPROC\nENDMODULE\n");
+  const auto through_pipe = [&](const std::string& arguments) {
+    return testing_support::run_command("cd '" + folder_.path().string() + "'; mkfifo p; cat model.json >p & '" +
+                                            VERNIER_EXAMPLES_DIR + "/correct' --model p " + arguments + " && rm p",
+                                        folder_.path());
+  };
+  ASSERT_EQ(correct("--targets targets.csv --out a.csv").exit_code, 0);
+  const CommandResult commands = through_pipe("--targets targets.csv --out b.csv");
+  ASSERT_EQ(commands.exit_code, 0) << commands.errors;
+  EXPECT_EQ(read_file(folder_ / "a.csv"), read_file(folder_ / "b.csv"));
+  const CommandResult program = through_pipe("--program a.mod --out b.mod");
+  ASSERT_EQ(program.exit_code, 0) << program.errors;
+  EXPECT_NE(read_file(folder_ / "b.mod").find("! sha256 " + sha256(read_file(folder_ / "model.json")) + "\n"),
+            std::string::npos);
 }
 
 TEST_F(Correct, PosesAsTargetsGiveTheSameCommands) {

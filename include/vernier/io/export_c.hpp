@@ -44,11 +44,16 @@ std::string c_source(const CalibratedRobot<N, Convention>& robot, const CExport&
   return detail::c_source(detail::model_data(robot), options);
 }
 
-/// The same of a saved arm of any number of joints, in either convention; the hash is that of the file.
-/// @param model_file written by `save`
-/// @param options    name, held-out error
+/// A saved arm of any number of joints, in either convention, as a C header like that of a `CalibratedRobot`; the hash
+/// is that of its file.
+/// @param model   from `read_model`
+/// @param options name, held-out error
+/// @throws std::invalid_argument where the arm, or the name, has no C source
+VERNIER_API std::string c_source(const SavedModel& model, CExport options = {});
+
+/// The arm of a model file as a C header: `c_source(read_model(model_file), options)`.
 /// @throws DataError naming file and key
-/// @throws std::invalid_argument as above
+/// @throws std::invalid_argument where the arm, or the name, has no C source
 VERNIER_API std::string c_source(const std::string& model_file, CExport options = {});
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "vernier/compensation/concepts.hpp"
@@ -175,10 +176,13 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
 
 }  // namespace detail
 
+VERNIER_IMPL std::string c_source(const SavedModel& model, CExport options) {
+  options.hash = model.hash();
+  return detail::c_source(detail::SavedModelParts::data(model), options);
+}
+
 VERNIER_IMPL std::string c_source(const std::string& model_file, CExport options) {
-  const SavedArm arm = saved_arm(model_file);
-  options.hash = sha256(read_file(model_file));
-  return detail::c_source(detail::read_model(model_file, arm.dof, arm.modified), options);
+  return c_source(read_model(model_file), std::move(options));
 }
 
 }  // namespace vernier

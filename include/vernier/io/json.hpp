@@ -22,6 +22,10 @@ namespace detail {
 /// Text from a file, for a message: short, printable, on one line.
 VERNIER_API std::string quotable(std::string_view text, std::size_t limit = 60);
 
+/// The text of a JSON file.
+/// @throws DataError naming the file, also where it has more than 32 MiB
+VERNIER_API std::string read_json_text(const std::string& path);
+
 }  // namespace detail
 
 /// A JSON text; callers include <nlohmann/json.hpp>.

@@ -22,16 +22,18 @@ VERNIER_IMPL std::string quotable(std::string_view text, std::size_t limit) {
   return out + (text.size() > limit ? "..." : "");
 }
 
-}  // namespace detail
-
-VERNIER_IMPL nlohmann::json read_json(const std::string& path) {
-  std::string content;
+VERNIER_IMPL std::string read_json_text(const std::string& path) {
   try {
-    content = read_file(path, detail::largest_json);
+    return read_file(path, largest_json);
   } catch (const std::invalid_argument& e) {
     throw DataError(e.what());
   }
-  return parse_json(content, path);
+}
+
+}  // namespace detail
+
+VERNIER_IMPL nlohmann::json read_json(const std::string& path) {
+  return parse_json(detail::read_json_text(path), path);
 }
 
 VERNIER_IMPL nlohmann::json parse_json(std::string_view content, const std::string& file) {

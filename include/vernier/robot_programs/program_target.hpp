@@ -63,11 +63,20 @@ struct ProgramTarget {
   std::optional<std::size_t> previous{};
 };
 
+/// An input without which a target cannot be corrected.
+enum class MissingInput {
+  none,        ///< no input would help
+  controller,  ///< the kinematics of the robot's controller
+  tool,        ///< the frame of the target's tool
+  workobject,  ///< the frame of the target's work object
+};
+
 /// What is not corrected, and why.
 struct Uncorrected {
-  std::size_t line;    ///< counted from 1
-  std::string text;    ///< what stands there, shortened to printable characters
-  std::string reason;  ///< why
+  std::size_t line;                           ///< counted from 1
+  std::string text;                           ///< what stands there, shortened to printable characters
+  std::string reason;                         ///< why
+  MissingInput missing = MissingInput::none;  ///< the input of `correct_program` that it lacks
 };
 
 /// The targets of a program.

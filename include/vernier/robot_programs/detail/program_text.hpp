@@ -113,6 +113,9 @@ VERNIER_API void place(const ProgramText& text, std::size_t byte, std::size_t li
 VERNIER_API void use_targets(const ProgramText& text, const std::vector<ProgramStep>& steps,
                              const std::vector<bool>& keep, RobotProgram& program);
 
+/// Puts remarks into the order of lines; those of one line keep their order.
+VERNIER_API void sort_by_line(std::vector<Uncorrected>& remarks);
+
 /// R = Rz(a) Ry(b) Rx(c) of angles [rad]: KUKA's A, B, C; Fanuc's R, P, W.
 VERNIER_API Matrix3 rotation_of_zyx(double a, double b, double c);
 /// Those angles, b within a quarter turn; c = 0 where b is one.

@@ -251,7 +251,11 @@ VERNIER_IMPL void use_targets(const ProgramText& text, const std::vector<Program
     if (uses[k] == 1 && before[k] != never && index[before[k]] < index[k]) sorted.back().previous = index[before[k]];
   }
   targets = std::move(sorted);
-  std::vector<Uncorrected>& remarks = program.uncorrected;
+  sort_by_line(program.uncorrected);
+  program.end_of_line = text.text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
+}
+
+VERNIER_IMPL void sort_by_line(std::vector<Uncorrected>& remarks) {
   std::vector<std::size_t> by_line(remarks.size());
   for (std::size_t k = 0; k < by_line.size(); ++k) by_line[k] = k;
   std::sort(by_line.begin(), by_line.end(), [&](std::size_t a, std::size_t b) {
@@ -260,7 +264,6 @@ VERNIER_IMPL void use_targets(const ProgramText& text, const std::vector<Program
   std::vector<Uncorrected> ordered;
   for (const std::size_t k : by_line) ordered.push_back(std::move(remarks[k]));
   remarks = std::move(ordered);
-  program.end_of_line = text.text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
 }
 
 VERNIER_IMPL Matrix3 rotation_of_zyx(double a, double b, double c) {

@@ -8,7 +8,7 @@
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
-#include "vernier/regression/concepts.hpp"
+#include "vernier/regression/detail/explain_regressor.hpp"
 
 namespace vernier {
 
@@ -82,8 +82,11 @@ class CartesianCorrected {
 /// The paper's own correction is `CartesianCompensation{regressor, {.target = CorrectionTarget::position,
 /// .moving_joints = 3}}`.
 /// @cite Feng, Dong, Jin
-template <Regressor R>
+/// @tparam R a `Regressor`
+template <class R>
 struct CartesianCompensation {
+  static_assert(detail::explain_regressor<R>());
+
   /// Learner of the position error.
   R regressor;
   /// How commands are corrected.

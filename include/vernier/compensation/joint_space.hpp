@@ -7,7 +7,7 @@
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
-#include "vernier/regression/concepts.hpp"
+#include "vernier/regression/detail/explain_regressor.hpp"
 
 namespace vernier {
 
@@ -142,8 +142,11 @@ JointErrorLabels<Model::dof> joint_error_labels(const Model& model, const Datase
 
 /// Learns joint errors over the joints, with any regressor, on any model.
 /// @cite Feng, Dong, Jin
-template <Regressor R>
+/// @tparam R a `Regressor`
+template <class R>
 struct JointCompensation {
+  static_assert(detail::explain_regressor<R>());
+
   /// Learner of the joint errors.
   R regressor;
   /// How commands are corrected.

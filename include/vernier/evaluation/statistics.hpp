@@ -11,7 +11,7 @@
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/evaluation/quantile.hpp"
-#include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/detail/explain_model.hpp"
 
 namespace vernier {
 
@@ -72,6 +72,17 @@ std::vector<Isometry3> predicted_poses(const M& model, const Dataset<M::dof>& da
   }
 }
 
+/// Does not compile where a model cannot predict the poses of data of N joints, and says why.
+template <class M, int N>
+constexpr bool explain_prediction() {
+  if constexpr (requires { requires M::dof != N; }) {
+    static_assert(M::dof == N, "the data have another number of joints than the model");
+  } else if constexpr (!PosePredictor<M>) {
+    explain_kinematic_model<M>();
+  }
+  return true;
+}
+
 VERNIER_API VectorX position_errors_of(std::span<const Isometry3> predicted, const PointRows& positions);
 VERNIER_API VectorX rotation_errors_of(std::span<const Isometry3> predicted, const PointRows& orientations);
 VERNIER_API PositioningErrors pose_errors(std::span<const Isometry3> desired, std::span<const Isometry3> reached);
@@ -97,6 +108,14 @@ VectorX rotation_errors(const M& model, const Dataset<M::dof>& data) {
 template <PosePredictor M>
 ErrorStatistics prediction_error(const M& model, const Dataset<M::dof>& data) {
   return ErrorStatistics::of(position_errors(model, data));
+}
+
+/// Does not compile, and says what the model lacks or the data have.
+template <class M, int N>
+  requires(!PosePredictor<M> || M::dof != N)
+ErrorStatistics prediction_error(const M&, const Dataset<N>&) {
+  static_assert(detail::explain_prediction<M, N>());
+  return {};
 }
 
 /// Errors of the poses that an arm reaches when sent to commands, with respect to a reference at the target joints.

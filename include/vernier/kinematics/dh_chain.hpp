@@ -39,14 +39,15 @@ class DhChain {
   /// All parameters [m, rad].
   using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
-  /// A chain of exactly N rows.
+  /// A chain of exactly N rows, whose lengths are below 100 m (see `DhTable`).
   constexpr DhChain(const DhTable<N>& table) : rows_(table.rows) {}  // NOLINT(google-explicit-constructor)
   /// A chain of exactly N rows.
   template <int M>
     requires(M == N)
   constexpr DhChain(const DhRow (&table)[M]) : DhChain(DhTable<N>(table)) {}  // NOLINT(google-explicit-constructor)
 
-  /// A chain whose rows are only known at run time.
+  /// A chain whose rows are only known at run time. Their values may be of any size: in a row converted from nearly
+  /// parallel axes, d may exceed the arm by far.
   static constexpr DhChain from_rows(const std::array<DhRow, N>& rows) {
     DhChain chain;
     chain.rows_ = Rows(rows);

@@ -11,6 +11,7 @@
 #include "vernier/core/points.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
+#include "vernier/kinematics/detail/explain_model.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
 
@@ -44,8 +45,10 @@ VERNIER_API std::vector<ParameterKind> framed_kinds(const std::vector<ParameterK
 }  // namespace detail
 
 /// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
-template <KinematicModel Model>
+/// @tparam Model a `KinematicModel`
+template <class Model>
 class Framed {
+  static_assert(detail::explain_kinematic_model<Model>());
   static constexpr bool of_chain = requires(const Model& m) { m.view(); };
 
   static constexpr int model_parameters() {

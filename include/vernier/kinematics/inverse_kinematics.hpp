@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "vernier/core/function_ref.hpp"
-#include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/detail/explain_model.hpp"
 #include "vernier/kinematics/dh.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
@@ -116,6 +116,15 @@ template <KinematicModel M>
                                                   const IkOptions<M::dof>& options = {}) noexcept {
   const Isometry3 pose = rigid_motion(Matrix3::Identity(), target);
   return detail::inverse_kinematics(model, pose, false, seed, options);
+}
+
+/// Does not compile, and says what the model lacks.
+template <class M, class Target>
+  requires(!KinematicModel<M>)
+IkResult<M::dof> inverse_kinematics(const M&, const Target&, const JointVector<M::dof>&,
+                                    const IkOptions<M::dof>& = {}) {
+  static_assert(detail::explain_kinematic_model<M>());
+  return {};
 }
 
 }  // namespace vernier

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "vernier/compensation/compensated.hpp"
+#include "vernier/core/detail/checked_joints.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/regression/detail/explain_regressor.hpp"
@@ -15,10 +16,16 @@ namespace vernier {
 /// A model less a learned position error: `position(q) = model.position(q) - gate(q) f(q)`. Orientations are
 /// the model's.
 template <KinematicModel Model, Predictor Learned>
-class CartesianCorrected {
+class CartesianCorrected : public detail::ChecksJoints<CartesianCorrected<Model, Learned>> {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == 3);
+  using Checks = detail::ChecksJoints<CartesianCorrected>;
 
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 

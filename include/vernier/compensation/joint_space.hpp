@@ -4,6 +4,7 @@
 /// Joint-space compensation: learn the joint error over the joints, on top of any model.
 
 #include "vernier/compensation/compensated.hpp"
+#include "vernier/core/detail/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
@@ -13,10 +14,16 @@ namespace vernier {
 
 /// A model whose joints are displaced by a learned amount: `pose(q) = model.pose(q + gate(q) f(q))`.
 template <KinematicModel Model, Predictor Learned>
-class JointCorrected {
+class JointCorrected : public detail::ChecksJoints<JointCorrected<Model, Learned>> {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == Model::dof);
+  using Checks = detail::ChecksJoints<JointCorrected>;
 
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 
@@ -58,8 +65,13 @@ class JointCorrected {
 
 /// The paper's joint-space command: `theta - f(theta)`, f learned from labels indexed by the *target* joints.
 template <KinematicModel Model, Predictor Learned>
-class DirectJointCompensator {
+class DirectJointCompensator : public detail::ChecksJoints<DirectJointCompensator<Model, Learned>> {
+  using Checks = detail::ChecksJoints<DirectJointCompensator>;
+
  public:
+  using Checks::correct;
+  using Checks::predict;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 

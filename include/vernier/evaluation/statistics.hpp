@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/evaluation/quantile.hpp"
@@ -141,6 +142,13 @@ JointRows<C::dof> corrected_commands(const C& compensator, const JointRows<C::do
   for (Index i = 0; i < targets.rows(); ++i)
     out.row(i) = compensator.correct(targets.row(i).transpose()).command.transpose();
   return out;
+}
+
+/// The corrected commands of many targets in a matrix whose size is known at run time only.
+/// @throws std::invalid_argument on another number of columns
+template <class C, detail::ColumnsAtRunTime Rows>
+JointRows<C::dof> corrected_commands(const C& compensator, const Rows& targets) {
+  return corrected_commands(compensator, detail::joint_rows<C::dof>(targets));
 }
 
 }  // namespace vernier

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/detail/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
@@ -47,8 +48,9 @@ VERNIER_API std::vector<ParameterKind> framed_kinds(const std::vector<ParameterK
 /// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
 /// @tparam Model a `KinematicModel`
 template <class Model>
-class Framed {
+class Framed : public detail::ChecksJoints<Framed<Model>> {
   static_assert(detail::explain_kinematic_model<Model>());
+  using Checks = detail::ChecksJoints<Framed>;
   static constexpr bool of_chain = requires(const Model& m) { m.view(); };
 
   static constexpr int model_parameters() {
@@ -60,6 +62,16 @@ class Framed {
   }
 
  public:
+  using Checks::jacobian;
+  using Checks::parameter_jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::poses;
+  using Checks::poses_and_jacobians;
+  using Checks::poses_and_parameter_jacobians;
+  using Checks::position;
+  using Checks::positions;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
   /// Number of parameters.

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "complaint.hpp"
+#include "vernier/kinematics/closed_form.hpp"
 #include "vernier/kinematics/framed.hpp"
+#include "vernier/kinematics/general_six_axis.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 #include "vernier/kinematics/robots.hpp"
 
@@ -32,6 +34,8 @@ TEST(RunTimeSizes, ThoseThatFitAreTaken) {
   EXPECT_EQ(poses(arm, rows).size(), 3U);
   EXPECT_EQ(poses_and_jacobians(arm, rows).jacobians.cols(), 36);
   EXPECT_EQ(inverse_kinematics(arm, arm.pose(fixed), six).status, IkStatus::converged);
+  EXPECT_EQ(ClosedForm(arm).roots(arm.pose(fixed), six, 0.01).count,
+            ClosedForm(arm).roots(arm.pose(fixed), fixed).count);
   EXPECT_TRUE(robots::abb_irb120().limits.contains(six));
   EXPECT_EQ(robots::abb_irb120().limits.clamp(six), fixed);
 }
@@ -50,6 +54,9 @@ TEST(RunTimeSizes, OthersAreRefused) {
   EXPECT_EQ(complaint([] { static_cast<void>(inverse_kinematics(arm, arm.pose(fixed), two, {.restarts = 2})); }),
             refusal);
   EXPECT_EQ(complaint([] { static_cast<void>(inverse_kinematics(arm, Vector3(0.3, 0, 0.3), two)); }), refusal);
+  EXPECT_EQ(complaint([] { static_cast<void>(ClosedForm(arm).roots(arm.pose(fixed), two)); }), refusal);
+  EXPECT_EQ(complaint([] { static_cast<void>(ClosedForm(arm).distances(two)); }), refusal);
+  EXPECT_EQ(complaint([] { static_cast<void>(GeneralSixAxis(arm).distances(two)); }), refusal);
   EXPECT_EQ(complaint([] { robots::abb_irb120().limits.contains(two); }), refusal);
   EXPECT_EQ(complaint([] { robots::abb_irb120().limits.clamp(two); }), refusal);
   EXPECT_EQ(complaint([] { arm.positions(narrow); }), columns);

@@ -44,8 +44,8 @@ JointRows<N> joint_rows(const Rows& rows) {
   return JointRows<N>(rows);
 }
 
-/// Overloads of a kinematic model `Self` for such matrices. A model derives from this and names those that it has in
-/// using-declarations.
+/// Overloads of a kinematic model, a compensator or a solver of branches `Self` for such matrices. A class derives from
+/// this and names those that it has in using-declarations.
 template <class Self>
 class ChecksJoints {
  public:
@@ -120,6 +120,19 @@ class ChecksJoints {
   template <SizedAtRunTime Q>
   [[nodiscard]] auto correct(const Isometry3& target, const Q& seed) const {
     return self().correct(target, joint_vector<Self::dof>(seed));
+  }
+
+  /// All joint values with which a nominal arm is at a pose; `more` follows `near` there.
+  /// @throws std::invalid_argument on another number of joint values
+  template <SizedAtRunTime Q, class... More>
+  auto roots(const Isometry3& target, const Q& near, More... more) const {
+    return self().roots(target, joint_vector<Self::dof>(near), more...);
+  }
+  /// How far joint values are from singularities.
+  /// @throws std::invalid_argument on another number of joint values
+  template <SizedAtRunTime Q>
+  auto distances(const Q& q) const {
+    return self().distances(joint_vector<Self::dof>(q));
   }
 
  protected:

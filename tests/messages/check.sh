@@ -15,7 +15,7 @@ flags=(-std=c++20 -Werror "$@")
 
 # What the cases include, parsed once for all of them.
 headers=$work/headers.hpp
-grep -L '^// flags: ' "$cases"/*.cpp | xargs sed -n '/^#include </p' | sort -u > "$headers"
+grep -L '^// flags: ' "$cases"/*.cpp | xargs -r sed -n '/^#include </p' | sort -u > "$headers"
 if [[ $("$compiler" --version) == *clang* ]]; then
   "$compiler" "${flags[@]}" -fpch-instantiate-templates -x c++-header "$headers" -o "$headers.pch" || exit 1
   parsed=(-include-pch "$headers.pch")

@@ -65,7 +65,7 @@ struct DhTable {
     for (int i = 0; i < N; ++i) rows[static_cast<std::size_t>(i)] = table[i];
     detail::check_units(rows);
   }
-  /// Any other number of rows.
+  /// Any other number of rows does not compile.
   template <int M>
     requires(M != N)
   constexpr DhTable(const DhRow (&)[M]) = delete;  // the number of rows is not the number of joints

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "vernier/compensation/compensated.hpp"
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/regression/detail/explain_regressor.hpp"
@@ -16,9 +16,9 @@ namespace vernier {
 /// A model less a learned position error: `position(q) = model.position(q) - gate(q) f(q)`. Orientations are
 /// the model's.
 template <KinematicModel Model, Predictor Learned>
-class CartesianCorrected : public detail::ChecksJoints<CartesianCorrected<Model, Learned>> {
+class CartesianCorrected : public ChecksJoints<CartesianCorrected<Model, Learned>> {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == 3);
-  using Checks = detail::ChecksJoints<CartesianCorrected>;
+  using Checks = ChecksJoints<CartesianCorrected>;
 
  public:
   using Checks::jacobian;

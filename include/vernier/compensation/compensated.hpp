@@ -4,7 +4,7 @@
 /// Command correction on any model: inverse kinematics on the best model of the arm, started from the nominal joints.
 
 #include "vernier/compensation/concepts.hpp"
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/concepts.hpp"
 
 namespace vernier {
@@ -13,9 +13,9 @@ namespace vernier {
 /// @tparam Arm     the best model of the real arm; a learned one has a `gate(q)`
 /// @tparam Nominal the nominal arm, in the same base and tool frames
 template <KinematicModel Arm, KinematicModel Nominal>
-class Compensated : public detail::ChecksJoints<Compensated<Arm, Nominal>> {
+class Compensated : public ChecksJoints<Compensated<Arm, Nominal>> {
   static_assert(Arm::dof == Nominal::dof);
-  using Checks = detail::ChecksJoints<Compensated>;
+  using Checks = ChecksJoints<Compensated>;
 
  public:
   using Checks::correct;

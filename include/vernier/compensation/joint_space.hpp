@@ -4,7 +4,7 @@
 /// Joint-space compensation: learn the joint error over the joints, on top of any model.
 
 #include "vernier/compensation/compensated.hpp"
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
@@ -14,9 +14,9 @@ namespace vernier {
 
 /// A model whose joints are displaced by a learned amount: `pose(q) = model.pose(q + gate(q) f(q))`.
 template <KinematicModel Model, Predictor Learned>
-class JointCorrected : public detail::ChecksJoints<JointCorrected<Model, Learned>> {
+class JointCorrected : public ChecksJoints<JointCorrected<Model, Learned>> {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == Model::dof);
-  using Checks = detail::ChecksJoints<JointCorrected>;
+  using Checks = ChecksJoints<JointCorrected>;
 
  public:
   using Checks::jacobian;
@@ -65,8 +65,8 @@ class JointCorrected : public detail::ChecksJoints<JointCorrected<Model, Learned
 
 /// The paper's joint-space command: `theta - f(theta)`, f learned from labels indexed by the *target* joints.
 template <KinematicModel Model, Predictor Learned>
-class DirectJointCompensator : public detail::ChecksJoints<DirectJointCompensator<Model, Learned>> {
-  using Checks = detail::ChecksJoints<DirectJointCompensator>;
+class DirectJointCompensator : public ChecksJoints<DirectJointCompensator<Model, Learned>> {
+  using Checks = ChecksJoints<DirectJointCompensator>;
 
  public:
   using Checks::correct;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/function_ref.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/error_terms/detail/harmonic_table.hpp"
@@ -169,8 +169,8 @@ class JointErrors {
 /// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, moved by tilts of the joints' frames where there are
 /// any; the approach unknown.
 template <class C>
-class WithJointErrors : public detail::ChecksJoints<WithJointErrors<C>> {
-  using Checks = detail::ChecksJoints<WithJointErrors>;
+class WithJointErrors : public ChecksJoints<WithJointErrors<C>> {
+  using Checks = ChecksJoints<WithJointErrors>;
 
  public:
   using Checks::jacobian;
@@ -252,8 +252,8 @@ class WithJointErrors : public detail::ChecksJoints<WithJointErrors<C>> {
 
 /// An arm with joint errors that came from known joint values: a view of a `WithJointErrors`, which must outlive it.
 template <class C>
-class ApproachedArm : public detail::ChecksJoints<ApproachedArm<C>> {
-  using Checks = detail::ChecksJoints<ApproachedArm>;
+class ApproachedArm : public ChecksJoints<ApproachedArm<C>> {
+  using Checks = ChecksJoints<ApproachedArm>;
 
  public:
   using Checks::jacobian;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/evaluation/quantile.hpp"
@@ -146,7 +146,7 @@ JointRows<C::dof> corrected_commands(const C& compensator, const JointRows<C::do
 
 /// The corrected commands of many targets in a matrix whose size is known at run time only.
 /// @throws std::invalid_argument on another number of columns
-template <class C, detail::ColumnsAtRunTime Rows>
+template <class C, ColumnsAtRunTime Rows>
 JointRows<C::dof> corrected_commands(const C& compensator, const Rows& targets) {
   return corrected_commands(compensator, detail::joint_rows<C::dof>(targets));
 }

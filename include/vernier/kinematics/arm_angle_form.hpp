@@ -3,7 +3,7 @@
 /// @file
 /// Closed-form inverse kinematics of arms of seven joints at a given arm angle.
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/closed_form.hpp"
 #include "vernier/kinematics/detail/spherical_arm.hpp"
 
@@ -20,8 +20,8 @@ namespace vernier {
 /// angles to the first one, in the direction (axis 1) x (wrist - shoulder): where joint 3 is zero and joint 2
 /// positive, in the usual conventions. Where the wrist lies on axis 1 it is measured from axis 2 at joint values zero.
 /// @cite Shimizu et al. 2008
-class ArmAngleForm : public detail::ChecksJoints<ArmAngleForm> {
-  using Checks = detail::ChecksJoints<ArmAngleForm>;
+class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
+  using Checks = ChecksJoints<ArmAngleForm>;
 
  public:
   using Checks::distances;

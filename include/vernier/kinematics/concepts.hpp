@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/types.hpp"
 
@@ -124,7 +124,7 @@ PointRows positions(const M& model, const JointRows<M::dof>& joints) {
 
 /// Tool positions of n configurations in a matrix whose size is known at run time only.
 /// @throws std::invalid_argument on another number of columns
-template <KinematicModel M, detail::ColumnsAtRunTime Rows>
+template <KinematicModel M, ColumnsAtRunTime Rows>
 PointRows positions(const M& model, const Rows& joints) {
   return positions(model, detail::joint_rows<M::dof>(joints));
 }
@@ -141,7 +141,7 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
 
 /// Poses of n configurations in a matrix whose size is known at run time only.
 /// @throws std::invalid_argument on another number of columns
-template <KinematicModel M, detail::ColumnsAtRunTime Rows>
+template <KinematicModel M, ColumnsAtRunTime Rows>
 std::vector<Isometry3> poses(const M& model, const Rows& joints) {
   return poses(model, detail::joint_rows<M::dof>(joints));
 }
@@ -163,7 +163,7 @@ PosesAndJacobians poses_and_jacobians(const M& model, const JointRows<M::dof>& j
 
 /// Poses and Jacobians of n configurations in a matrix whose size is known at run time only.
 /// @throws std::invalid_argument on another number of columns
-template <KinematicModel M, detail::ColumnsAtRunTime Rows>
+template <KinematicModel M, ColumnsAtRunTime Rows>
 PosesAndJacobians poses_and_jacobians(const M& model, const Rows& joints, PosesAndJacobians out = {}) {
   return poses_and_jacobians(model, detail::joint_rows<M::dof>(joints), std::move(out));
 }

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
 #include "vernier/kinematics/dh.hpp"
@@ -28,9 +28,9 @@ VERNIER_API std::vector<ParameterKind> chain_parameter_kinds(int joints);
 /// `constexpr DhChain<2> arm{{{ {.a = 300_mm}, {.a = 200_mm} }}};` A missing or surplus row does not compile.
 /// Its 5 N parameters are counted row by row: a1, alpha1, d1, theta1, beta1, a2, ...
 template <int N, class Convention = StandardDh>
-class DhChain : public detail::ChecksJoints<DhChain<N, Convention>> {
+class DhChain : public ChecksJoints<DhChain<N, Convention>> {
   static_assert(N >= 1 && N <= max_joints);
-  using Checks = detail::ChecksJoints<DhChain>;
+  using Checks = ChecksJoints<DhChain>;
 
  public:
   using Checks::jacobian;

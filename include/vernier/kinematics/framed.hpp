@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
@@ -48,9 +48,9 @@ VERNIER_API std::vector<ParameterKind> framed_kinds(const std::vector<ParameterK
 /// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
 /// @tparam Model a `KinematicModel`
 template <class Model>
-class Framed : public detail::ChecksJoints<Framed<Model>> {
+class Framed : public ChecksJoints<Framed<Model>> {
   static_assert(detail::explain_kinematic_model<Model>());
-  using Checks = detail::ChecksJoints<Framed>;
+  using Checks = ChecksJoints<Framed>;
   static constexpr bool of_chain = requires(const Model& m) { m.view(); };
 
   static constexpr int model_parameters() {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/function_ref.hpp"
 #include "vernier/kinematics/detail/explain_model.hpp"
 #include "vernier/kinematics/dh.hpp"
@@ -121,7 +121,7 @@ template <KinematicModel M>
 
 /// Joints that bring the tool to a pose or a position, from a seed whose size is known at run time only.
 /// @throws std::invalid_argument on another number of joint values
-template <KinematicModel M, class Target, detail::SizedAtRunTime Seed>
+template <KinematicModel M, class Target, SizedAtRunTime Seed>
 [[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Target& target, const Seed& seed,
                                                   const IkOptions<M::dof>& options = {}) {
   return inverse_kinematics(model, target, detail::joint_vector<M::dof>(seed), options);

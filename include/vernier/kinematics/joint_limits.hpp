@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -27,7 +27,7 @@ struct JointLimits {
   }
   /// Whether joint values whose number is known at run time only lie within, bounds included.
   /// @throws std::invalid_argument on another number of joint values
-  template <detail::SizedAtRunTime Q>
+  template <SizedAtRunTime Q>
   bool contains(const Q& q) const {
     return contains(detail::joint_vector<N>(q));
   }
@@ -39,7 +39,7 @@ struct JointLimits {
   }
   /// The nearest joints within to joint values whose number is known at run time only.
   /// @throws std::invalid_argument on another number of joint values
-  template <detail::SizedAtRunTime Q>
+  template <SizedAtRunTime Q>
   JointVector<N> clamp(const Q& q) const {
     return clamp(detail::joint_vector<N>(q));
   }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/distances.hpp"
@@ -68,7 +68,7 @@ Dataset<Actual::dof> measure(const Actual& actual, const JointRows<Actual::dof>&
 
 /// Measured poses of an arm at configurations in a matrix whose size is known at run time only.
 /// @throws std::invalid_argument on another number of columns
-template <KinematicModel Actual, detail::ColumnsAtRunTime Rows>
+template <KinematicModel Actual, ColumnsAtRunTime Rows>
 Dataset<Actual::dof> measure(const Actual& actual, const Rows& joints, const MeasurementNoise& noise = {},
                              std::uint64_t seed = 0) {
   return measure(actual, detail::joint_rows<Actual::dof>(joints), noise, seed);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vernier/core/detail/checked_joints.hpp"
+#include "vernier/core/checked_joints.hpp"
 
 namespace vernier::detail {
 

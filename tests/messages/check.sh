@@ -5,6 +5,7 @@
 # among the first ten lines of the errors. Compiled without, it must pass: the mistake alone is what the compiler refuses.
 # `// flags: <flag>...` are those of the mistake. "In file included from" lines are not counted.
 set -uo pipefail
+export LC_ALL=C  # the texts are those of compilers that speak English
 compiler=$1
 cases=$2
 shift 2

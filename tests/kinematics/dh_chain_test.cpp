@@ -6,6 +6,7 @@
 
 #include <type_traits>
 
+#include "complaint.hpp"
 #include "laws.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
@@ -245,6 +246,20 @@ TEST(DhChain, ParametersAreCountedRowByRow) {
   }
   const auto chain = vn::DhChain<1>::from_rows({vn::DhRow{.a = 1, .alpha = 2, .d = 3, .theta = 4, .beta = 5}});
   EXPECT_EQ(RealMatrix::of(chain.parameters()), vernier_test::vector({1, 2, 3, 4, 5}));
+}
+
+TEST(DhChain, LengthsInMillimetresAndLargeAnglesAreRefused) {
+  const auto refusal = [](const vn::DhRow& row) {
+    return vernier_test::complaint([&] { static_cast<void>(vn::DhChain<2>{{{{.a = 1}, row}}}); });
+  };
+  EXPECT_EQ(refusal({.a = 400}), "DhChain: row 2: a is a length of 400 m; is the unit right?");
+  EXPECT_EQ(refusal({.d = -100.5}), "DhChain: row 2: d is a length of -100.5 m; is the unit right?");
+  EXPECT_EQ(refusal({.alpha = -180}), "DhChain: row 2: alpha is an angle of -180 rad; is the unit right?");
+  EXPECT_EQ(refusal({.theta = 101}), "DhChain: row 2: theta is an angle of 101 rad; is the unit right?");
+  EXPECT_EQ(refusal({.beta = 180}), "DhChain: row 2: beta is an angle of 180 rad; is the unit right?");
+  EXPECT_EQ(refusal({.a = 100, .alpha = 100, .d = -100, .theta = -100}), "");
+  // Conversions of nearly parallel axes may give any length.
+  EXPECT_EQ(vn::DhChain<1>::from_rows({vn::DhRow{.d = 400}}).row(0).d, 400);
 }
 
 TEST(DhChain, WithParametersKeepsTheJointTypes) {

@@ -6,19 +6,26 @@
 #include <tuple>
 
 #include "vernier/compensation/compensated.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
-#include "vernier/regression/concepts.hpp"
+#include "vernier/regression/detail/explain_regressor.hpp"
 
 namespace vernier {
 
 /// A model less a learned position error: `position(q) = model.position(q) - gate(q) f(q)`. Orientations are
 /// the model's.
 template <KinematicModel Model, Predictor Learned>
-class CartesianCorrected {
+class CartesianCorrected : public ChecksJoints<CartesianCorrected<Model, Learned>> {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == 3);
+  using Checks = ChecksJoints<CartesianCorrected>;
 
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 
@@ -82,8 +89,11 @@ class CartesianCorrected {
 /// The paper's own correction is `CartesianCompensation{regressor, {.target = CorrectionTarget::position,
 /// .moving_joints = 3}}`.
 /// @cite Feng, Dong, Jin
-template <Regressor R>
+/// @tparam R a `Regressor`
+template <class R>
 struct CartesianCompensation {
+  static_assert(detail::explain_regressor<R>());
+
   /// Learner of the position error.
   R regressor;
   /// How commands are corrected.

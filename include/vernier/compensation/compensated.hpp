@@ -4,6 +4,7 @@
 /// Command correction on any model: inverse kinematics on the best model of the arm, started from the nominal joints.
 
 #include "vernier/compensation/concepts.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/concepts.hpp"
 
 namespace vernier {
@@ -12,10 +13,18 @@ namespace vernier {
 /// @tparam Arm     the best model of the real arm; a learned one has a `gate(q)`
 /// @tparam Nominal the nominal arm, in the same base and tool frames
 template <KinematicModel Arm, KinematicModel Nominal>
-class Compensated {
+class Compensated : public ChecksJoints<Compensated<Arm, Nominal>> {
   static_assert(Arm::dof == Nominal::dof);
+  using Checks = ChecksJoints<Compensated>;
 
  public:
+  using Checks::correct;
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+  using Checks::predict;
+
   /// Number of joints.
   static constexpr int dof = Arm::dof;
 

@@ -4,19 +4,26 @@
 /// Joint-space compensation: learn the joint error over the joints, on top of any model.
 
 #include "vernier/compensation/compensated.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
-#include "vernier/regression/concepts.hpp"
+#include "vernier/regression/detail/explain_regressor.hpp"
 
 namespace vernier {
 
 /// A model whose joints are displaced by a learned amount: `pose(q) = model.pose(q + gate(q) f(q))`.
 template <KinematicModel Model, Predictor Learned>
-class JointCorrected {
+class JointCorrected : public ChecksJoints<JointCorrected<Model, Learned>> {
   static_assert(Learned::inputs == Model::dof && Learned::outputs == Model::dof);
+  using Checks = ChecksJoints<JointCorrected>;
 
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 
@@ -58,8 +65,13 @@ class JointCorrected {
 
 /// The paper's joint-space command: `theta - f(theta)`, f learned from labels indexed by the *target* joints.
 template <KinematicModel Model, Predictor Learned>
-class DirectJointCompensator {
+class DirectJointCompensator : public ChecksJoints<DirectJointCompensator<Model, Learned>> {
+  using Checks = ChecksJoints<DirectJointCompensator>;
+
  public:
+  using Checks::correct;
+  using Checks::predict;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 
@@ -142,8 +154,11 @@ JointErrorLabels<Model::dof> joint_error_labels(const Model& model, const Datase
 
 /// Learns joint errors over the joints, with any regressor, on any model.
 /// @cite Feng, Dong, Jin
-template <Regressor R>
+/// @tparam R a `Regressor`
+template <class R>
 struct JointCompensation {
+  static_assert(detail::explain_regressor<R>());
+
   /// Learner of the joint errors.
   R regressor;
   /// How commands are corrected.

@@ -16,6 +16,8 @@
 /// with another alignment (`-march=native`) does not link: `undefined reference to ...[abi:eigen_align_32_32]`. The
 /// symbols of the two modes differ, so translation units of both may be linked into one program.
 
+#include "vernier/core/language.hpp"
+
 #include <Eigen/Core>
 
 /// @cond

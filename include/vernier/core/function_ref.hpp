@@ -3,6 +3,8 @@
 /// @file
 /// A non-owning reference to a callable, so that options stay plain concrete types.
 
+#include "vernier/core/language.hpp"
+
 #include <type_traits>
 #include <utility>
 

@@ -3,6 +3,8 @@
 /// @file
 /// Unit literals; each yields metres, radians, kilograms or newtons: `290_mm`, `90_deg`.
 
+#include "vernier/core/language.hpp"
+
 #include <numbers>
 
 /// Unit literals, brought in with `using namespace vernier::literals`.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/function_ref.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/error_terms/detail/harmonic_table.hpp"
@@ -168,8 +169,17 @@ class JointErrors {
 /// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, moved by tilts of the joints' frames where there are
 /// any; the approach unknown.
 template <class C>
-class WithJointErrors {
+class WithJointErrors : public ChecksJoints<WithJointErrors<C>> {
+  using Checks = ChecksJoints<WithJointErrors>;
+
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::poses;
+  using Checks::position;
+  using Checks::positions;
+
   /// Number of joints.
   static constexpr int dof = C::dof;
   /// The chain inside.
@@ -242,8 +252,15 @@ class WithJointErrors {
 
 /// An arm with joint errors that came from known joint values: a view of a `WithJointErrors`, which must outlive it.
 template <class C>
-class ApproachedArm {
+class ApproachedArm : public ChecksJoints<ApproachedArm<C>> {
+  using Checks = ChecksJoints<ApproachedArm>;
+
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// Number of joints.
   static constexpr int dof = C::dof;
   /// The chain inside.

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/evaluation/quantile.hpp"
-#include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/detail/explain_model.hpp"
 
 namespace vernier {
 
@@ -72,6 +73,17 @@ std::vector<Isometry3> predicted_poses(const M& model, const Dataset<M::dof>& da
   }
 }
 
+/// Does not compile where a model cannot predict the poses of data of N joints, and says why.
+template <class M, int N>
+constexpr bool explain_prediction() {
+  if constexpr (requires { requires M::dof != N; }) {
+    static_assert(M::dof == N, "the data have another number of joints than the model");
+  } else if constexpr (!PosePredictor<M>) {
+    explain_kinematic_model<M>();
+  }
+  return true;
+}
+
 VERNIER_API VectorX position_errors_of(std::span<const Isometry3> predicted, const PointRows& positions);
 VERNIER_API VectorX rotation_errors_of(std::span<const Isometry3> predicted, const PointRows& orientations);
 VERNIER_API PositioningErrors pose_errors(std::span<const Isometry3> desired, std::span<const Isometry3> reached);
@@ -99,6 +111,14 @@ ErrorStatistics prediction_error(const M& model, const Dataset<M::dof>& data) {
   return ErrorStatistics::of(position_errors(model, data));
 }
 
+/// Does not compile, and says what the model lacks or the data have.
+template <class M, int N>
+  requires(!PosePredictor<M> || M::dof != N)
+ErrorStatistics prediction_error(const M&, const Dataset<N>&) {
+  static_assert(detail::explain_prediction<M, N>());
+  return {};
+}
+
 /// Errors of the poses that an arm reaches when sent to commands, with respect to a reference at the target joints.
 /// @param actual    the arm that moves
 /// @param reference model of the desired poses
@@ -122,6 +142,13 @@ JointRows<C::dof> corrected_commands(const C& compensator, const JointRows<C::do
   for (Index i = 0; i < targets.rows(); ++i)
     out.row(i) = compensator.correct(targets.row(i).transpose()).command.transpose();
   return out;
+}
+
+/// The corrected commands of many targets in a matrix whose size is known at run time only.
+/// @throws std::invalid_argument on another number of columns
+template <class C, ColumnsAtRunTime Rows>
+JointRows<C::dof> corrected_commands(const C& compensator, const Rows& targets) {
+  return corrected_commands(compensator, detail::joint_rows<C::dof>(targets));
 }
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 /// @file
 /// Closed-form inverse kinematics of arms of seven joints at a given arm angle.
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/closed_form.hpp"
 #include "vernier/kinematics/detail/spherical_arm.hpp"
 
@@ -19,8 +20,13 @@ namespace vernier {
 /// angles to the first one, in the direction (axis 1) x (wrist - shoulder): where joint 3 is zero and joint 2
 /// positive, in the usual conventions. Where the wrist lies on axis 1 it is measured from axis 2 at joint values zero.
 /// @cite Shimizu et al. 2008
-class ArmAngleForm {
+class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
+  using Checks = ChecksJoints<ArmAngleForm>;
+
  public:
+  using Checks::distances;
+  using Checks::roots;
+
   /// Number of joints.
   static constexpr int dof = 7;
 

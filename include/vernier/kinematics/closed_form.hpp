@@ -8,6 +8,7 @@
 #include <concepts>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/detail/closed_form_arm.hpp"
 #include "vernier/kinematics/detail/six_axes.hpp"
@@ -143,8 +144,13 @@ SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
 /// An arm whose parameters are identified has none; `all_branches` starts from that of the nominal one.
 /// @cite Pieper 1968; Elias and Wen 2025
 template <int N>
-class ClosedForm {
+class ClosedForm : public ChecksJoints<ClosedForm<N>> {
+  using Checks = ChecksJoints<ClosedForm>;
+
  public:
+  using Checks::distances;
+  using Checks::roots;
+
   /// Number of joints.
   static constexpr int dof = N;
 

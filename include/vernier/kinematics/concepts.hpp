@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/types.hpp"
 
@@ -121,6 +122,13 @@ PointRows positions(const M& model, const JointRows<M::dof>& joints) {
   return out;
 }
 
+/// Tool positions of n configurations in a matrix whose size is known at run time only.
+/// @throws std::invalid_argument on another number of columns
+template <KinematicModel M, ColumnsAtRunTime Rows>
+PointRows positions(const M& model, const Rows& joints) {
+  return positions(model, detail::joint_rows<M::dof>(joints));
+}
+
 /// Poses of n configurations. Calls the model's own `poses(joints)` where it has one.
 template <KinematicModel M>
 std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
@@ -129,6 +137,13 @@ std::vector<Isometry3> poses(const M& model, const JointRows<M::dof>& joints) {
   out.reserve(static_cast<std::size_t>(joints.rows()));
   for (Index i = 0; i < joints.rows(); ++i) out.push_back(model.pose(configuration(joints, i)));
   return out;
+}
+
+/// Poses of n configurations in a matrix whose size is known at run time only.
+/// @throws std::invalid_argument on another number of columns
+template <KinematicModel M, ColumnsAtRunTime Rows>
+std::vector<Isometry3> poses(const M& model, const Rows& joints) {
+  return poses(model, detail::joint_rows<M::dof>(joints));
 }
 
 /// Poses and Jacobians of n configurations. Calls the model's own `poses_and_jacobians(joints, out)` where it has
@@ -144,6 +159,13 @@ PosesAndJacobians poses_and_jacobians(const M& model, const JointRows<M::dof>& j
     return detail::evaluate_rows(joints, M::dof, std::move(out),
                                  [&](const auto& q) { return model.pose_and_jacobian(q); });
   }
+}
+
+/// Poses and Jacobians of n configurations in a matrix whose size is known at run time only.
+/// @throws std::invalid_argument on another number of columns
+template <KinematicModel M, ColumnsAtRunTime Rows>
+PosesAndJacobians poses_and_jacobians(const M& model, const Rows& joints, PosesAndJacobians out = {}) {
+  return poses_and_jacobians(model, detail::joint_rows<M::dof>(joints), std::move(out));
 }
 
 /// Poses and parameter Jacobians of n configurations, as above.

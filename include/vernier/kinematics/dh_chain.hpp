@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/check.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
 #include "vernier/kinematics/dh.hpp"
@@ -28,10 +28,21 @@ VERNIER_API std::vector<ParameterKind> chain_parameter_kinds(int joints);
 /// `constexpr DhChain<2> arm{{{ {.a = 300_mm}, {.a = 200_mm} }}};` A missing or surplus row does not compile.
 /// Its 5 N parameters are counted row by row: a1, alpha1, d1, theta1, beta1, a2, ...
 template <int N, class Convention = StandardDh>
-class DhChain {
+class DhChain : public ChecksJoints<DhChain<N, Convention>> {
   static_assert(N >= 1 && N <= max_joints);
+  using Checks = ChecksJoints<DhChain>;
 
  public:
+  using Checks::jacobian;
+  using Checks::parameter_jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::poses;
+  using Checks::poses_and_jacobians;
+  using Checks::poses_and_parameter_jacobians;
+  using Checks::position;
+  using Checks::positions;
+
   /// Number of joints.
   static constexpr int dof = N;
   /// Number of parameters.
@@ -39,14 +50,15 @@ class DhChain {
   /// All parameters [m, rad].
   using Parameters = Eigen::Matrix<double, num_parameters, 1>;
 
-  /// A chain of exactly N rows.
+  /// A chain of exactly N rows, whose lengths are below 100 m (see `DhTable`).
   constexpr DhChain(const DhTable<N>& table) : rows_(table.rows) {}  // NOLINT(google-explicit-constructor)
   /// A chain of exactly N rows.
   template <int M>
     requires(M == N)
   constexpr DhChain(const DhRow (&table)[M]) : DhChain(DhTable<N>(table)) {}  // NOLINT(google-explicit-constructor)
 
-  /// A chain whose rows are only known at run time.
+  /// A chain whose rows are only known at run time. Their values may be of any size: in a row converted from nearly
+  /// parallel axes, d may exceed the arm by far.
   static constexpr DhChain from_rows(const std::array<DhRow, N>& rows) {
     DhChain chain;
     chain.rows_ = Rows(rows);

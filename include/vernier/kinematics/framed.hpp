@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
+#include "vernier/kinematics/detail/explain_model.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
 
@@ -44,8 +46,11 @@ VERNIER_API std::vector<ParameterKind> framed_kinds(const std::vector<ParameterK
 }  // namespace detail
 
 /// `pose(q) = base * model.pose(q) * tool`. Parameters: 6 of the base, those of the model, 6 of the tool.
-template <KinematicModel Model>
-class Framed {
+/// @tparam Model a `KinematicModel`
+template <class Model>
+class Framed : public ChecksJoints<Framed<Model>> {
+  static_assert(detail::explain_kinematic_model<Model>());
+  using Checks = ChecksJoints<Framed>;
   static constexpr bool of_chain = requires(const Model& m) { m.view(); };
 
   static constexpr int model_parameters() {
@@ -57,6 +62,16 @@ class Framed {
   }
 
  public:
+  using Checks::jacobian;
+  using Checks::parameter_jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::poses;
+  using Checks::poses_and_jacobians;
+  using Checks::poses_and_parameter_jacobians;
+  using Checks::position;
+  using Checks::positions;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
   /// Number of parameters.

@@ -3,6 +3,7 @@
 /// @file
 /// Inverse kinematics of nominal arms of any geometry: the second line behind closed forms.
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/closed_form.hpp"
 #include "vernier/kinematics/detail/general_six_axis.hpp"
 
@@ -15,8 +16,13 @@ namespace vernier {
 /// joints eliminated. One of two roots may be lost within about 1e-4 rad of each other.
 /// @cite Raghavan and Roth 1993; Manocha and Canny 1994
 template <int N>
-class GeneralSixAxis {
+class GeneralSixAxis : public ChecksJoints<GeneralSixAxis<N>> {
+  using Checks = ChecksJoints<GeneralSixAxis>;
+
  public:
+  using Checks::distances;
+  using Checks::roots;
+
   /// Number of joints.
   static constexpr int dof = N;
 

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/function_ref.hpp"
-#include "vernier/kinematics/concepts.hpp"
+#include "vernier/kinematics/detail/explain_model.hpp"
 #include "vernier/kinematics/dh.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
@@ -116,6 +117,23 @@ template <KinematicModel M>
                                                   const IkOptions<M::dof>& options = {}) noexcept {
   const Isometry3 pose = rigid_motion(Matrix3::Identity(), target);
   return detail::inverse_kinematics(model, pose, false, seed, options);
+}
+
+/// Joints that bring the tool to a pose or a position, from a seed whose size is known at run time only.
+/// @throws std::invalid_argument on another number of joint values
+template <KinematicModel M, class Target, SizedAtRunTime Seed>
+[[nodiscard]] IkResult<M::dof> inverse_kinematics(const M& model, const Target& target, const Seed& seed,
+                                                  const IkOptions<M::dof>& options = {}) {
+  return inverse_kinematics(model, target, detail::joint_vector<M::dof>(seed), options);
+}
+
+/// Does not compile, and says what the model lacks.
+template <class M, class Target>
+  requires(!KinematicModel<M>)
+IkResult<M::dof> inverse_kinematics(const M&, const Target&, const JointVector<M::dof>&,
+                                    const IkOptions<M::dof>& = {}) {
+  static_assert(detail::explain_kinematic_model<M>());
+  return {};
 }
 
 }  // namespace vernier

@@ -3,6 +3,8 @@
 /// @file
 /// Gears and encoders of an arm's joints, as far as they are known.
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// Gear and encoder of a joint. They determine at which orders (periods a turn of the joint) its errors are expected;

@@ -12,6 +12,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/regression/detail/explain_regressor.hpp"
 #include "vernier/regression/detail/predictor_interface.hpp"
 
 namespace vernier {
@@ -73,8 +74,11 @@ VERNIER_API std::vector<Index> draw_rows(Index n, double share, bool replacement
 /// members in parallel, each on one thread.
 /// `Ensemble{RidgeElm{}, 20}`
 /// @cite Breiman 1996
-template <Regressor R>
+/// @tparam R a `Regressor`
+template <class R>
 struct Ensemble {
+  static_assert(detail::explain_regressor<R>());
+
   /// The recipe of the members.
   R regressor;
   int members = 20;  ///< at least 2

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "vernier/search/detail/explain_search.hpp"
 #include "vernier/search/state.hpp"
 
 namespace vernier {
@@ -12,8 +13,11 @@ namespace vernier {
 /// An algorithm that is restarted, each time from a seed of its own (`child_seed`), when its schedule ends; the best of
 /// all runs counts. A start is a generation, and all starts evaluate the same number of points.
 /// `const Restarted search{CmaEs{}, 9};`
-template <Metaheuristic A>
+/// @tparam A a `Metaheuristic`
+template <class A>
 struct Restarted {
+  static_assert(detail::explain_metaheuristic<A>());
+
   /// The algorithm restarted.
   A algorithm;
   Index restarts = 9;  ///< after the first run

@@ -9,6 +9,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/concepts.hpp"
+#include "vernier/search/detail/explain_search.hpp"
 #include "vernier/search/minimize.hpp"
 
 namespace vernier {
@@ -28,11 +29,53 @@ concept TunableRegressor = std::copyable<R> &&
   { regressor.fit_at(x, y, theta) } -> Predictor;
 };
 
+namespace detail {
+
+/// Does not compile for a type that is no `TunableRegressor`: each failed assertion names one requirement. The last one
+/// is for requirements that have no sentence.
+template <class R>
+constexpr bool explain_tunable_regressor() {
+  if constexpr (!TunableRegressor<R>) {
+    using X = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+    using Y = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+    static_assert(std::copyable<R>, "TunableRegressor: the recipe must be copyable");
+    static_assert(
+        requires(const R& regressor) {
+          { regressor.dimension(6) } -> std::convertible_to<Index>;
+        },
+        "TunableRegressor: `dimension(inputs)` must be const and return the number of inner parameters");
+    static_assert(
+        requires(const R& regressor) {
+          { regressor.box(6) } -> std::same_as<Box>;
+        },
+        "TunableRegressor: `box(inputs)` must be const and return vernier::Box, the bounds of the inner parameters");
+    static_assert(
+        requires(const R& regressor, const X& x, const Y& y) {
+          { regressor.objective(x, y) } -> Objective;
+        },
+        "TunableRegressor: `objective(X, Y)` must be const and return a vernier::Objective of the inner parameters");
+    static_assert(
+        requires(const R& regressor, const X& x, const Y& y, const VectorX& theta) {
+          { regressor.fit_at(x, y, theta) } -> Predictor;
+        },
+        "TunableRegressor: `fit_at(X, Y, theta)` must be const and return a vernier::Predictor");
+    static_assert(TunableRegressor<R>, "TunableRegressor: the type does not satisfy the concept");
+  }
+  return true;
+}
+
+}  // namespace detail
+
 /// A regressor fitted at the best inner parameters a search finds.
 /// `const Tuned pso_elm{Elm{.hidden_nodes = 65}, Pso{.particles = 50, .iterations = 300}};`
+/// @tparam R a `TunableRegressor`
+/// @tparam A a `Metaheuristic`
 /// @cite Feng, Dong, Jin
-template <TunableRegressor R, Metaheuristic A>
+template <class R, class A>
 struct Tuned {
+  static_assert(detail::explain_tunable_regressor<R>());
+  static_assert(detail::explain_metaheuristic<A>());
+
   /// The regressor fitted.
   R regressor;
   /// The search.

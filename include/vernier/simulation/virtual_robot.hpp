@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/distances.hpp"
@@ -63,6 +64,14 @@ Dataset<Actual::dof> measure(const Actual& actual, const JointRows<Actual::dof>&
                              const MeasurementNoise& noise = {}, std::uint64_t seed = 0) {
   detail::MeasuredPoses measured = detail::measured_poses(poses(actual, joints), noise, seed);
   return {joints, std::move(measured.positions), std::move(measured.orientations)};
+}
+
+/// Measured poses of an arm at configurations in a matrix whose size is known at run time only.
+/// @throws std::invalid_argument on another number of columns
+template <KinematicModel Actual, ColumnsAtRunTime Rows>
+Dataset<Actual::dof> measure(const Actual& actual, const Rows& joints, const MeasurementNoise& noise = {},
+                             std::uint64_t seed = 0) {
+  return measure(actual, detail::joint_rows<Actual::dof>(joints), noise, seed);
 }
 
 /// Measured distances of an arm's tool point from a fixed point at n joint configurations, as by a draw-wire encoder or

@@ -12,16 +12,23 @@ namespace vernier {
 
 namespace detail {
 
+/// `GeometrySolver` by Ceres, which the component `ceres` defines.
+struct CeresSolver {
+  VERNIER_API SolverSummary operator()(CalibrationProblem& problem, int max_iterations) const;
+};
+
 /// An arm identified from one set.
 template <class Chain>
 Identified<Chain> identified_from(const Framed<Chain>& arm, const MeasuredSet& set, const IdentifyOptions& options,
-                                  const SensorModel& sensors) {
-  const CeresSolver solver;
+                                  const SensorModel& sensors, GeometrySolver solver) {
   const IdentifiedGeometry found = identify_geometry(ArmGeometry(arm), set, options, sensors, solver);
   return {found.report, {found.arm.framed(arm.model()), arm.model()}};
 }
 
 }  // namespace detail
+
+/// Ceres as the solver of an identification.
+inline constexpr detail::CeresSolver ceres_solver{};
 
 /// Identifies the geometry of an arm and its base and tool frames from measurements (Levenberg-Marquardt in Ceres).
 ///
@@ -45,7 +52,7 @@ Identified<ChainOf<Arm>> identify(const Arm& nominal, const Measurements<ChainOf
                                   const SensorModel& sensors = {.loss = Loss::squared}) {
   require(data.sets().size() == 1, "identify: ", data.sets().size(),
           " sets of measurements; it takes one, `calibrate` takes several");
-  return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors);
+  return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors, ceres_solver);
 }
 
 }  // namespace vernier

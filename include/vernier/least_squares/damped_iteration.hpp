@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The iteration of all nonlinear least-squares problems of calibration: Levenberg-Marquardt on normal equations, with a
-/// robust loss reweighted before every step.
+/// The iteration of all nonlinear least-squares problems of calibration: Levenberg-Marquardt on normal equations, with
+/// a robust loss reweighted before every step.
 
 #include "vernier/core/function_ref.hpp"
 #include "vernier/least_squares/normal_equations.hpp"
@@ -21,10 +21,10 @@ struct LinearisedProblem {
 
 /// What the iteration asks of a problem.
 struct IteratedProblem {
-  FunctionRef<LinearisedProblem()> linearise;  ///< at the present values, with new weights
+  FunctionRef<LinearisedProblem()> linearise;                              ///< at the present values, with new weights
   FunctionRef<void(const VectorX& step, const VectorX& local_step)> move;  ///< changes the present values
-  FunctionRef<void()> keep;                    ///< keeps the present values and weights
-  FunctionRef<void()> restore;                 ///< returns to those that were kept
+  FunctionRef<void()> keep;                                                ///< keeps the present values and weights
+  FunctionRef<void()> restore;                                             ///< returns to those that were kept
 };
 
 /// When the iteration ends.

@@ -15,9 +15,9 @@ std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& f
     for (const vernier::DataFinding& finding : audits[k].findings) {
       std::string rows;
       for (std::size_t i = 0; i < std::min(most, finding.rows.size()); ++i)
-        rows += vernier::message(i > 0 ? ", " : "", finding.rows[i]);
+        rows += vernier::message(i > 0 ? ", " : "", audits[k].origin.line[static_cast<std::size_t>(finding.rows[i])]);
       if (finding.rows.size() > most) rows += vernier::message(" and ", finding.rows.size() - most, " more");
-      if (rows.empty()) rows = "all";
+      rows = rows.empty() ? "all" : (finding.rows.size() == 1 ? "line " : "lines ") + rows;
       out.push_back({std::string(vernier::fault_name(finding.kind)),
                      audits.size() > 1 ? vernier::message(rows, " of ", files[k]) : rows, finding.message});
     }

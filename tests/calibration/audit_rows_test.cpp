@@ -172,7 +172,7 @@ std::vector<DataFinding> single_rows(detail::AuditRows rows, const std::vector<s
   const VectorX stds = detail::audit_frames_std(arm, rows.oriented());
   const detail::AuditFit found = detail::audit_fit(arm, arm.parameters(), stds, rows, 12);
   std::vector<DataFinding> out;
-  detail::audit_single_rows(found, stds, rows, numbers, 9, out);
+  detail::audit_single_rows(found, stds, rows, numbers, {}, 9, out);
   return out;
 }
 

@@ -222,15 +222,16 @@ TEST_F(Guide, SeveralStations) {
 TEST_F(Guide, Distances) {
   const Dataset<6> data = measured(real_arm(), 60, 1);
   const JointRows<6> joints = sample_joints(limits, 300, 3);
-  const auto wire = measure_distances(real_arm(), {1, -1, 0.2}, joints, 0.1e-3, 4);
+  const auto lengths = measure_distances(real_arm(), {1, -1, 0.2}, joints, 0.1e-3, 4);
   std::string text = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,distance_mm\n";
-  for (Index i = 0; i < wire.size(); ++i) {
+  for (Index i = 0; i < lengths.size(); ++i) {
     for (int j = 0; j < 6; ++j) text += message(joints(i, j), ',');
-    text += message(wire.length(i) * 1e3, '\n');
+    text += message(lengths.length(i) * 1e3, '\n');
   }
   write_file("wire.csv", text);
 #include "guide_6.inc"
-  EXPECT_EQ(with_poses.distances, 300);
+  ASSERT_EQ(with_poses.others.size(), 1u);
+  EXPECT_EQ(with_poses.others[0].measurements, 300);
   EXPECT_LT(error(with_poses.model()), 0.2e-3);
   EXPECT_EQ(alone.poses, 0);
   const auto fresh = measure_distances(real_arm(), {1, -1, 0.2}, sample_joints(limits, 100, 5));

@@ -249,10 +249,10 @@ TEST(HtmlReport, NumbersEqualThoseOfTheJson) {
   EXPECT_EQ(std::stod(between(page, "data-value=\"", "\"")), json.at("stages").at("jointwise").at("mean_mm"));
   const Json poses = Json::parse(between(page, "id=\"points\">", "</script>"));
   const ReportInput input = input_of(2773);
-  ASSERT_EQ(poses.at("row").size(), 2773u);
+  ASSERT_EQ(poses.at("line").size(), 2773u);
   for (const std::size_t i : {0, 1, 1500, 2772}) {
     const auto row = static_cast<Index>(i);
-    EXPECT_EQ(poses.at("row").at(i), 5 * row);
+    EXPECT_EQ(poses.at("line").at(i), 5 * row);
     EXPECT_NEAR(poses.at("after").at(i), input.stages[2].position(row) * 1e6, 0.5);
     EXPECT_NEAR(poses.at("before").at(i), input.stages[0].position(row) * 1e6, 0.5);
     EXPECT_NEAR(poses.at("xyz").at(3 * i + 2), input.poses.positions(row, 2) * 1e3, 0.5);
@@ -295,12 +295,12 @@ TEST(HtmlReport, RefusesWhatDoesNotFit) {
   complains(wrong, "6 joints, poses have 5");
   wrong = input;
   wrong.poses.line.pop_back();
-  complains(wrong, "29 row numbers of 30 poses");
+  complains(wrong, "29 lines of 30 poses");
 }
 
 TEST(HtmlReport, ThinsManyPosesInTheViewAlone) {
   const std::string page = report_html(input_of(7000));
-  EXPECT_EQ(Json::parse(between(page, "id=\"points\">", "</script>")).at("row").size(), 5000u);
+  EXPECT_EQ(Json::parse(between(page, "id=\"points\">", "</script>")).at("line").size(), 5000u);
   EXPECT_TRUE(has(page, "Of all 7000 poses these were drawn by lot."));
 }
 
@@ -410,7 +410,7 @@ TEST_F(HtmlReportSeen, FollowsThePointerAndTheKeys) {
     canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp', cancelable: true}));
     document.body.dataset.stepped = location.hash;
     for (var x = 10; x < box.width; x += 10)
-      for (var y = 10; y < box.height && picked.textContent.indexOf('Row ') !== 0; y += 10) {
+      for (var y = 10; y < box.height && picked.textContent.indexOf('Line ') !== 0; y += 10) {
         send('pointerdown', x, y); send('pointerup', x, y);
       }
     document.body.dataset.clicked = picked.textContent;
@@ -426,7 +426,7 @@ TEST_F(HtmlReportSeen, FollowsThePointerAndTheKeys) {
   };
   EXPECT_EQ(noted("dragged"), "#rotate=70&amp;tilt=10&amp;show=after");
   EXPECT_EQ(noted("stepped"), "#rotate=75&amp;tilt=15&amp;show=after");
-  EXPECT_EQ(noted("clicked").rfind("Row ", 0), 0u) << noted("clicked");
+  EXPECT_EQ(noted("clicked").rfind("Line ", 0), 0u) << noted("clicked");
 }
 
 }  // namespace

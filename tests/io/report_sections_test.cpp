@@ -415,15 +415,15 @@ TEST(ReportSections, Suspects) {
   for (Index i = 0; i < 21; ++i) input.poses.line.push_back(10 * i);
   input.suspects = {{"3 of c.csv", 0.5e-3, 5.25, "why"}};
   std::string text = detail::suspects_section(input);
-  EXPECT_EQ(row(text, "20 of b.csv"), "held out|2.000|4.0|");
-  EXPECT_EQ(row(text, "70 of b.csv"), "held out|7.000|9.0|outside the measured joint ranges");
-  EXPECT_EQ(row(text, "80 of b.csv"), "");
+  EXPECT_EQ(row(text, "line 20 of b.csv"), "held out|2.000|4.0|");
+  EXPECT_EQ(row(text, "line 70 of b.csv"), "held out|7.000|9.0|outside the measured joint ranges");
+  EXPECT_EQ(row(text, "line 80 of b.csv"), "");
   EXPECT_EQ(row(text, "3 of c.csv"), "training|0.500|5.2|why");
   EXPECT_LT(text.find("70 of b.csv"), text.find("3 of c.csv"));  // the largest first
   EXPECT_LT(text.find("3 of c.csv"), text.find("20 of b.csv"));
   EXPECT_FALSE(has(text, " more."));
   input.held_out = false;
-  EXPECT_TRUE(has(row(detail::suspects_section(input), "20 of b.csv"), "checked|"));
+  EXPECT_TRUE(has(row(detail::suspects_section(input), "line 20 of b.csv"), "checked|"));
   input.suspects.clear();
   for (int k = 0; k < 26; ++k) input.suspects.push_back({message("row ", k), 1e-3, 5, ""});
   text = detail::suspects_section(input);
@@ -455,7 +455,7 @@ TEST(ReportSections, PosesInSpace) {
   EXPECT_EQ(json.at("half"), 200);
   EXPECT_NEAR(json.at("clip").at("before").get<double>(), 39800, 1e-3);
   EXPECT_NEAR(json.at("clip").at("after").get<double>(), 19800, 1e-3);
-  EXPECT_EQ(json.at("row").at(3), 103);
+  EXPECT_EQ(json.at("line").at(3), 103);
   EXPECT_EQ(json.at("before").at(3), 23000);
   EXPECT_EQ(json.at("after").at(3), 3000);
   EXPECT_EQ(json.at("xyz").at(9), 60);

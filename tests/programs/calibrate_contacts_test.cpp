@@ -90,7 +90,7 @@ TEST_F(CalibrateContacts, BesidePosesBothAreUsed) {
   const CommandResult both = calibrate(
       "--data poses.csv --harmonics 0 --threads 1 --contacts contacts.csv --contact-sigma 0.01 --save both.json");
   ASSERT_EQ(both.exit_code, 0) << both.errors;
-  EXPECT_NE(both.output.find("contacts to learn from"), std::string::npos) << both.output;
+  EXPECT_NE(both.output.find("40 measurements (plane) to learn from: contact table"), std::string::npos) << both.output;
   // the poses alone bring 0.35 mm
   EXPECT_LT(registered_mean(load<6>(folder_ / "both.json")), 0.2e-3);
 }

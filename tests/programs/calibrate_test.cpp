@@ -389,7 +389,7 @@ TEST(Calibrate, DistancesBesidePosesAndTunedPriors) {
         run(folder, "calibrate",
             "--robot abb_irb120 --data poses.csv --test-every 5 --harmonics 5 --json r.json --out f " + options);
     EXPECT_EQ(done.exit_code, 0) << done.errors;
-    EXPECT_EQ(done.output.find("100 distances to learn from") != std::string::npos,
+    EXPECT_EQ(done.output.find("100 measurements (distances) to learn from") != std::string::npos,
               options.find("wire") != std::string::npos);
     return Json::parse(read_file(folder / "r.json"));
   };

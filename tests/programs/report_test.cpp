@@ -92,10 +92,10 @@ TEST(Report, SaysWhatTheJsonSays) {
   EXPECT_TRUE(has(r.page, sha256(read_file(r.folder / "poses.csv"))));
   EXPECT_TRUE(has(r.page, sha256(read_file(r.folder / "model.json"))));
   EXPECT_TRUE(has(r.page, "calibrate --robot robot.json --data poses.csv"));
-  // rows of the file: every fifth is held out
+  // lines of the file: every fifth row is held out
   const Json points = Json::parse(between(r.page, "id=\"points\">", "</script>"));
-  ASSERT_EQ(points.at("row").size(), 30u);
-  for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(points.at("row").at(i), 5 * i);
+  ASSERT_EQ(points.at("line").size(), 30u);
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(points.at("line").at(i), 5 * i + 2)  // behind the header;
   EXPECT_FALSE(has(r.page, "<script>alert"));
   EXPECT_TRUE(has(r.page, "Calibration: &lt;script&gt;alert(1)&lt;/script&gt;"));
 }

@@ -31,6 +31,7 @@ struct DataAudit {
   std::vector<DataFinding> findings{};  ///< faults of all rows first
   /// Position errors [m] of the nominal arm in robustly registered frames, after the correction of what was found.
   ErrorStatistics registered{};
+  RowOrigin origin{};  ///< where the audited rows stand in files
 
   /// Whether there is a finding of a kind.
   VERNIER_API bool has(FaultKind kind) const;

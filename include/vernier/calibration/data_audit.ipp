@@ -144,7 +144,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet&
                                     {options.length_std, "length_std"},
                                     {options.angle_std, "angle_std"}})
     require(value > 0 && std::isfinite(value), "audit_data: ", name, " is ", value, ", must be positive and finite");
-  DataAudit out;
+  DataAudit out{.origin = data.origin};
   AuditRows rows{data.joints, *data.positions(), data.oriented() ? data.orientations() : std::vector<Matrix3>(),
                  rotation_vectors};
   std::vector<Index> numbers(static_cast<std::size_t>(rows.size()));  // of the rows, in the data
@@ -179,9 +179,11 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet&
     }
     DataFinding finding{FaultKind::shifted_rows, -1, {}, static_cast<double>(shift->shift)};
     for (Index i = shift->first; i < shift->end; ++i) finding.rows.push_back(i);
-    finding.message = message("rows ", shift->first, " to ", shift->end - 1, ": the pose of a row lies ",
-                              counted(std::abs(shift->shift), "row", "rows"), shift->shift > 0 ? " below" : " above",
-                              " its joints: pair them again, a row was lost or added");
+    finding.message =
+        message(data.origin.empty() ? message("rows ", shift->first, " to ", shift->end - 1)
+                                    : data.origin.where(shift->first) + " to " + data.origin.where(shift->end - 1),
+                ": the pose of a row lies ", counted(std::abs(shift->shift), "row", "rows"),
+                shift->shift > 0 ? " below" : " above", " its joints: pair them again, a row was lost or added");
     out.findings.push_back(std::move(finding));
     rows = std::move(paired);
     numbers = shift->fitting;
@@ -224,7 +226,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet&
       geometry = audit_fit(geometry.arm, arm.parameters(), stds, rows, 12);
     }
   }
-  audit_single_rows(geometry, stds, rows, numbers, options.outlier_factor, out.findings);
+  audit_single_rows(geometry, stds, rows, numbers, data.origin, options.outlier_factor, out.findings);
   audit_duplicates(data, rotation_vectors, out.findings);
   audit_joint_values(rows.joints, out.findings);
   audit_approaches(data, out.findings);

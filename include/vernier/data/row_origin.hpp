@@ -26,6 +26,9 @@ struct RowOrigin {
   bool empty() const { return line.empty(); }
   /// A row for a message: "measured.csv, line 57"; "row 55" (from 0) where its file is not known.
   VERNIER_API std::string where(Index row) const;
+  /// Several rows for a message: "measured.csv, lines 3, 5 and 8"; "rows 1, 3 and 6" (from 0) where files are not
+  /// known; ten of them at most, then their number.
+  VERNIER_API std::string where(const std::vector<Index>& of_rows) const;
   /// The named rows, in the given order.
   VERNIER_API RowOrigin rows(std::span<const Index> indices) const;
   /// Appends rows of other files; empty where either of both is not known.

@@ -21,6 +21,19 @@ VERNIER_IMPL std::string RowOrigin::where(Index row) const {
   return message(files[static_cast<std::size_t>(file[i])], ", line ", line[i]);
 }
 
+VERNIER_IMPL std::string RowOrigin::where(const std::vector<Index>& of_rows) const {
+  const bool lines = files.size() == 1, several = files.size() > 1;
+  std::string out =
+      several ? "" : message(lines ? files[0] + ", " : "", lines ? "line" : "row", of_rows.size() == 1 ? " " : "s ");
+  const std::size_t shown = of_rows.size() > 10 ? 10 : of_rows.size();
+  for (std::size_t k = 0; k < shown; ++k) {
+    out += k == 0 ? "" : k + 1 == of_rows.size() ? " and " : several ? "; " : ", ";
+    out += several ? where(of_rows[k]) : message(lines ? line[static_cast<std::size_t>(of_rows[k])] : of_rows[k]);
+  }
+  if (shown < of_rows.size()) out += message(", ... (", of_rows.size(), lines ? " lines)" : " rows)");
+  return out;
+}
+
 VERNIER_IMPL RowOrigin RowOrigin::rows(std::span<const Index> indices) const {
   if (empty()) return {};
   RowOrigin out;

@@ -42,6 +42,7 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
   VectorX times(rows), temperatures(thermal ? rows : 0);
   PointRows positions(rows, 3), orientations(oriented ? rows : 0, 3);
   Index at = 0;
+  RowOrigin origin;
   for (std::size_t s = 0; s < bases.size(); ++s) {
     const Dataset<N>& data = std::data(stations)[s];
     joints.middleRows(at, data.size()) = data.joints();
@@ -50,12 +51,14 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     if (thermal) temperatures.segment(at, data.size()) = data.temperatures();
     detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at,
                        positions, orientations);
+    origin.append(data.origin(), at);
     at += data.size();
   }
   return Dataset<N>(joints, positions, orientations)
       .approached_from(previous)
       .measured_at(times)
-      .at_temperatures(temperatures);
+      .at_temperatures(temperatures)
+      .from(origin);
 }
 
 }  // namespace vernier

@@ -10,12 +10,15 @@ namespace vernier {
 VERNIER_IMPL nlohmann::ordered_json to_json(const DataAudit& audit) {
   using Json = nlohmann::ordered_json;
   Json findings = Json::array();
-  for (const DataFinding& finding : audit.findings)
+  for (const DataFinding& finding : audit.findings) {
     findings.push_back({{"kind", std::string(fault_name(finding.kind))},
                         {"joint", finding.joint < 0 ? Json() : Json(finding.joint + 1)},
                         {"rows", finding.rows},
                         {"size", finding.size},
                         {"message", finding.message}});
+    for (std::size_t k = 0; k < finding.rows.size() && !audit.origin.empty(); ++k)
+      findings.back()["lines"].push_back(audit.origin.line[static_cast<std::size_t>(finding.rows[k])]);
+  }
   const ErrorStatistics& e = audit.registered;
   return {{"findings", std::move(findings)},
           {"registered",

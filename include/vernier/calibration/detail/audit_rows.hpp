@@ -12,10 +12,11 @@ namespace vernier::detail {
 /// @param geometry a robust fit of the geometry
 /// @param stds      of its parameters
 /// @param numbers  of the rows, in the data
+/// @param origin   where the rows of the data stand
 /// @param least_factor studentised residual from which on a row is an outlier; larger where the tails are longer than
 ///                     those of noise
 VERNIER_API void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
-                                   const std::vector<Index>& numbers, double least_factor,
+                                   const std::vector<Index>& numbers, const RowOrigin& origin, double least_factor,
                                    std::vector<DataFinding>& findings);
 
 /// Poses that occur again in all digits.

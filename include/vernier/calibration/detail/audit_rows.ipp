@@ -13,17 +13,8 @@
 
 namespace vernier::detail {
 
-/// "row 3", "rows 3, 5 and 8", "rows 3, 5, ... (12 rows)".
-VERNIER_API std::string name_rows(const std::vector<Index>& rows) {
-  std::string out = rows.size() == 1 ? "row " : "rows ";
-  const std::size_t shown = rows.size() > 10 ? 10 : rows.size();
-  for (std::size_t k = 0; k < shown; ++k) out += message(k == 0 ? "" : k + 1 == rows.size() ? " and " : ", ", rows[k]);
-  if (shown < rows.size()) out += message(", ... (", rows.size(), " rows)");
-  return out;
-}
-
 VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
-                                    const std::vector<Index>& numbers, double least_factor,
+                                    const std::vector<Index>& numbers, const RowOrigin& origin, double least_factor,
                                     std::vector<DataFinding>& findings) {
   const std::vector<LeftOut> left = leave_out_rows(geometry, stds, rows);
   std::vector<Index> wrong;
@@ -65,7 +56,7 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
                             -1,
                             {first, second},
                             left[static_cast<std::size_t>(wrong[a])].position,
-                            message("rows ", first, " and ", second, ": their poses are exchanged: swap them")});
+                            message(origin.where({first, second}), ": their poses are exchanged: swap them")});
       }
   DataFinding outliers{FaultKind::outlier};
   bool by_position = false;
@@ -84,7 +75,7 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
   if (!by_position) outliers.size = turn;
   std::string by = by_position ? brief(outliers.size * 1e3) + " mm" : "";
   if (turn > 0) by += (by.empty() ? "" : " and ") + brief(turn * 180 / std::numbers::pi) + " deg";
-  outliers.message = name_rows(outliers.rows) + ": the pose is not that of the joints, off by up to " + by +
+  outliers.message = origin.where(outliers.rows) + ": the pose is not that of the joints, off by up to " + by +
                      ": check the entries, measure again or leave them out";
   findings.push_back(std::move(outliers));
 }
@@ -117,7 +108,7 @@ VERNIER_IMPL void audit_duplicates(const MeasuredSet& data, const PointRows& rot
       for (const Index row : finding.rows)
         for (Index j = 0; j < data.joints.cols(); ++j)
           same = same && data.joints(row, j) == data.joints(finding.rows.front(), j);
-      finding.message = name_rows(finding.rows) +
+      finding.message = data.origin.where(finding.rows) +
                         (same ? ": joints and pose are the same in all digits: leave out all but one"
                               : ": the same pose in all digits at different joints: the sensor was not read again, "
                                 "measure these rows again or leave them out");

@@ -108,7 +108,7 @@ VERNIER_IMPL std::string poses_json(const ReportInput& input, const PoseView& vi
                  "},\n\"file\":", poses.file.empty() ? "[]" : list([&](std::string& out, Index i) {
                    whole(out, poses.file[static_cast<std::size_t>(i)]);
                  }),
-                 ",\n\"row\":", list([&](std::string& out, Index i) {
+                 ",\n\"line\":", list([&](std::string& out, Index i) {
                    whole(out, static_cast<double>(poses.line.empty() ? i : poses.line[static_cast<std::size_t>(i)]));
                  }),
                  ",\n\"xyz\":", list([&](std::string& out, Index i) {

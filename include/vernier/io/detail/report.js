@@ -5,7 +5,7 @@ R"js(
   function get(id) { return document.getElementById(id); }
   var canvas = get('canvas'), holder = get('points');
   if (!holder || !canvas || !canvas.getContext) { root.dataset.state = 'ready'; root.dataset.points = '0'; return; }
-  var data = JSON.parse(holder.textContent), n = data.row.length, joints = data.units.length;
+  var data = JSON.parse(holder.textContent), n = data.line.length, joints = data.units.length;
   var pen = canvas.getContext('2d'), picked = get('picked');
   var state = {rotate: 35, tilt: 25, show: 'after'}, chosen = -1, seen = [], order = [], drag = null;
 
@@ -61,11 +61,11 @@ R"js(
     });
   }
   function say() {
-    if (chosen < 0) { picked.textContent = 'Click a point for its row and joints.'; return; }
+    if (chosen < 0) { picked.textContent = 'Click a point for its line and joints.'; return; }
     var name = data.files[data.file.length ? data.file[chosen] : 0], values = [];
     for (var k = 0; k < joints; ++k)
       values.push((data.joints[joints * chosen + k] / 100).toFixed(2) + ' ' + data.units[k]);
-    picked.textContent = 'Row ' + data.row[chosen] + (name ? ' of ' + name : '') + ': ' +
+    picked.textContent = 'Line ' + data.line[chosen] + (name ? ' of ' + name : '') + ': ' +
       (data.after[chosen] / 1000).toFixed(3) + ' mm after, ' + (data.before[chosen] / 1000).toFixed(3) +
       ' mm before; joints ' + values.join(', ');
   }

@@ -30,7 +30,7 @@ void expect_one_minimum(const DhChain<N>& chain, const Dataset<N>& data, Loss lo
     const ParameterEstimate &own = by_own.parameters[static_cast<std::size_t>(k)],
                             &ceres = by_ceres.parameters[static_cast<std::size_t>(k)];
     EXPECT_LT(std::abs(own.identified - ceres.identified), 1e-4 * ceres.std) << own.name;
-    EXPECT_NEAR(own.std, ceres.std, 1e-4 * ceres.std) << own.name;
+    EXPECT_NEAR(own.std, ceres.std, 1e-2 * ceres.std) << own.name;  // of weak ones a function of their values
   }
   for (Index i = 0; i < data.size(); ++i)
     ASSERT_LT((by_own.model.position(data.joints(i)) - by_ceres.model.position(data.joints(i))).norm(), 1e-8) << i;

@@ -32,6 +32,7 @@ struct IterationLimits {
   int max_iterations = 20;   ///< the last step is taken without a check that it lowered the sum of squares
   double least_step = 1e-6;  ///< converged where no unknown moves by more, in its unit
   double least_gain = 0;     ///< or where a step lowers the sum of squares by less than this share
+  double most_damping = 1;   ///< above it small steps are no sign of a minimum
 };
 
 /// How it ended.

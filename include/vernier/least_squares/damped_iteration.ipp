@@ -46,7 +46,8 @@ VERNIER_IMPL IterationEnd minimise(const IteratedProblem& problem, const Iterati
       largest = std::max(largest, std::abs(step));
     }
     predicted = gain + damping.value() * damped;
-    out.converged = damping.value() < 1 && (largest < limits.least_step || gain < limits.least_gain * at.normal.cost);
+    out.converged = damping.value() < limits.most_damping &&
+                    (largest < limits.least_step || gain < limits.least_gain * at.normal.cost);
     if (out.converged) break;
   }
   return out;

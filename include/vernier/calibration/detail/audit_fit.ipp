@@ -176,12 +176,11 @@ VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& 
                      PoseSensor(rows.positions, rows.orientations, {before.position_scale, angle}))},
         Loss::cauchy);
     problem.joint_columns = false;
+    problem.loss_scale = 4 / 2.8;  // that of `audit_weights`, in place of the usual one
     if (!problem.solve(steps_at_a_time, 1e-4).usable) break;
-    AuditResiduals after = audit_residuals(problem.arm.geometry(0), rows);
-    if (!(after.score() < before.score())) break;
     arm = problem.arm;
-    out = {arm.geometry(0), std::move(after)};
-    if (out.residuals.score() > (1 - 1e-3) * before.score()) break;
+    out = {arm.geometry(0), audit_residuals(arm.geometry(0), rows)};
+    if (std::abs(out.residuals.score() - before.score()) < 1e-3 * before.score()) break;
   }
   return out;
 }

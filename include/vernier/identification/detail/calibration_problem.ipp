@@ -376,8 +376,9 @@ VERNIER_API std::array<double, 3> loss_thresholds(const CalibrationProblem& prob
     kinds[set.projected() ? 2 : 0].push_back(norms(b, 0));
     if (set.oriented()) kinds[1].push_back(norms(b, 1));
   }
-  return {robust_threshold(std::move(kinds[0]), 3), robust_threshold(std::move(kinds[1]), 3),
-          robust_threshold(std::move(kinds[2]), 1)};
+  return {problem.loss_scale * robust_threshold(std::move(kinds[0]), 3),
+          problem.loss_scale * robust_threshold(std::move(kinds[1]), 3),
+          problem.loss_scale * robust_threshold(std::move(kinds[2]), 1)};
 }
 
 VERNIER_IMPL std::array<double, 3> CalibrationProblem::thresholds() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
@@ -79,7 +80,8 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const MeasuredSet& da
     total = accepted_total;
     move_to(accepted);
   };
-  const IterationEnd end = minimise({linearise, move, keep, restore}, {50, 1e-10, 0});
+  constexpr double exact = std::numeric_limits<double>::infinity();  // sums of exact poses are rounding errors
+  const IterationEnd end = minimise({linearise, move, keep, restore}, {50, 1e-10, 0, exact});
   fit.determined = fit.determined && end.usable;
   fit.converged = fit.determined && end.converged;
   fit.covariance.resize(0, 0);

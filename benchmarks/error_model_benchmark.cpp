@@ -5,7 +5,8 @@
 #include <chrono>
 
 #include "program.hpp"
-#include "vernier/ceres.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/evaluate.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"

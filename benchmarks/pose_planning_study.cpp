@@ -20,7 +20,8 @@
 
 #include "figures.hpp"
 #include "vernier/calibration/evaluate.hpp"
-#include "vernier/ceres.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/evaluate.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/evaluation/quantile.hpp"

@@ -9,7 +9,8 @@
 #include "dispatch.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
-#include "vernier/ceres.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/evaluate.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 
@@ -42,7 +43,7 @@ vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, cons
   vn::IdentifyOptions frames = o.calibrate.geometry;
   frames.geometry = false;
   const auto registered =
-      vn::identify(description.arm<N>().arm, measured.train.poses()[0], frames, o.calibrate.sensors);
+      vn::identify(description.arm<N>().arm, measured.train.poses()[0], frames, o.calibrate.sensors, vn::own_solver);
   return vn::prediction_error(registered.model, measured.test.poses()[0]);
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
 /// @file
-/// Identification with Ceres, and the calibration pipeline, which starts with it.
+/// Identification with Ceres: `identify`, and `ceres_solver` for `calibrate`.
 
-#include "vernier/calibration/calibrate.hpp"
-#include "vernier/calibration/evaluate.hpp"
 #include "vernier/ceres/identify.hpp"

@@ -8,7 +8,10 @@
 /// (`identification/identify_by_contacts.hpp`, `simulation/touches.hpp`) and robot programs
 /// (`robot_programs/correct_program.hpp`). The library's own headers never include this one.
 
+#include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/evaluate.hpp"
+#include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/compensation/joint_space.hpp"
@@ -16,7 +19,6 @@
 #include "vernier/core/version.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
-#include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/iso9283.hpp"
 #include "vernier/evaluation/iso9283_path.hpp"
 #include "vernier/evaluation/iso9283_poses.hpp"

@@ -337,13 +337,14 @@ TEST(AuditFitWhiteBox, PriorsAndWeightsBalance) {
   centre(11) += 1e-3;
   const detail::AuditFit fit = detail::audit_fit(arm, centre, stds, rows, 60);
   const VectorX found = fit.arm.parameters();
+  constexpr double square = 4 * 4;  // of the threshold of the loss, in robust scales
   // Lightly curved, so that the derivative of the cost at the scales of the solution is zero.
   const auto cost = [&](const VectorX& p) {
     const detail::AuditResiduals r = detail::audit_residuals(arm.with_parameters(p), rows);
     double sum = std::pow((p(11) - centre(11)) / 0.2e-3, 2);
     for (Index i = 0; i < n; ++i) {
-      sum += 16 * std::log1p(std::pow(point(r.position, i).norm() / fit.residuals.position_scale, 2) / 16);
-      sum += 16 * std::log1p(std::pow(point(r.rotation, i).norm() / fit.residuals.rotation_scale, 2) / 16);
+      sum += square * std::log1p(std::pow(point(r.position, i).norm() / fit.residuals.position_scale, 2) / square);
+      sum += square * std::log1p(std::pow(point(r.rotation, i).norm() / fit.residuals.rotation_scale, 2) / square);
     }
     return sum;
   };

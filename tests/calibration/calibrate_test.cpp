@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 
-#include "vernier/ceres/solver.hpp"
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "vernier/ceres.hpp"
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/evaluate.hpp"
+#include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"

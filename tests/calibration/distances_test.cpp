@@ -4,7 +4,6 @@
 
 #include "complaint.hpp"
 #include "vernier/calibration/calibrate.hpp"
-#include "vernier/ceres/solver.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"

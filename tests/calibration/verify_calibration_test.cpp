@@ -12,7 +12,6 @@
 
 #include "complaint.hpp"
 #include "vernier/calibration/calibrate.hpp"
-#include "vernier/ceres/solver.hpp"
 #include "vernier/evaluation/chi_square.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
 #include "vernier/kinematics/robots.hpp"

@@ -97,6 +97,20 @@ int main() {
   } catch (const std::invalid_argument&) {
   }
 #endif
+#ifdef CONSUMER_UMBRELLA  // an arm is calibrated with Eigen alone
+  const vn::Robot<6> robot = vn::robots::ur10();
+  const auto actual = vn::with_geometric_errors(robot.chain, {}, 1);
+  const auto measured = [&](vn::Index n, std::uint64_t seed) {
+    return vn::measure(actual, vn::sample_joints(robot.limits, n, seed));
+  };
+  vn::CalibrateOptions geometry;
+  geometry.errors = {.compliance = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
+  geometry.remainder.learners.clear();
+  const auto calibration = vn::calibrate(robot.chain, measured(30, 1), geometry);
+  const auto report = vn::evaluate(calibration, measured(10, 2), robot.limits);
+  right = right && report.stage(vn::Stage::geometry).position.maxCoeff() < 1e-6;
+#endif
+
   std::printf("%-11s vernier %d.%d.%d: a reach of %.1f mm\n", CONSUMER_MODE, VERNIER_VERSION_MAJOR,
               VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH, reach * 1e3);
   return right ? 0 : 1;

@@ -363,7 +363,7 @@ TEST(IdentificationWhiteBox, OffsetsOfParallelAxesAreFreeWhereAxesAreNot) {
 TEST(IdentificationWhiteBox, ASolverThatGivesUpIsReported) {
   const Framed<Chain> arm(robot.chain, base, tool);
   const Dataset<6> data = measured(30, 7);
-  const auto gives_up = [](detail::CalibrationProblem&, int) { return detail::SolverSummary{false, 3, "gave up"}; };
+  const auto gives_up = [](detail::CalibrationProblem&, int) { return SolverSummary{false, 3, "gave up"}; };
   const auto found = detail::identify_geometry(ArmGeometry(arm), vernier_test::set_of(data, squared),
                                                {.frames = Frames::base_and_tool, .priors = false}, squared, gives_up);
   EXPECT_EQ(found.report.status, IdentifyStatus::not_converged);

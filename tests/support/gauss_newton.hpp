@@ -9,7 +9,7 @@
 namespace vernier_test {
 
 /// A geometry solver: undamped Gauss-Newton steps.
-inline vernier::detail::SolverSummary gauss_newton(vernier::detail::CalibrationProblem& problem, int max_iterations) {
+inline vernier::SolverSummary gauss_newton(vernier::detail::CalibrationProblem& problem, int max_iterations) {
   const bool converged = problem.solve(max_iterations);
   problem.reset_weights();
   return {converged, max_iterations, "Gauss-Newton"};

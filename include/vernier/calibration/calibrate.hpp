@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file
-/// The calibration pipeline: from measurements to everything known of a real arm. It starts with `identify`, so it
-/// needs the component `ceres`: include vernier/ceres.hpp.
+/// The calibration pipeline: from measurements to everything known of a real arm.
 
 #include <chrono>
 #include <optional>
@@ -29,6 +28,7 @@ struct CalibrateOptions {
   RemainderOptions remainder{};                               ///< of what is learned on top
   FitOptions fit{};                  ///< seed and observer of what is learned, executor of that and of the error model
   PriorSearch search{};              ///< of priors, see `fit_error_model`
+  GeometrySolver solver{};           ///< of the geometric identification; by default `own_solver`, or `ceres_solver`
   bool refuse_implausible = true;    ///< throw for data that do not fit the arm, or do not support a calibration
   std::string arm_name = "the arm";  ///< how messages name the arm
 };
@@ -56,13 +56,14 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   options.errors.validate();
   options.sensors.validate();
   const std::vector<MeasuredSet> sets = measured.sets(options.sensors);
+  const GeometrySolver solver = options.solver ? options.solver : GeometrySolver(own_solver);
 
   IdentifyOptions frames_alone = options.geometry;
   frames_alone.geometry = false;
   StagedModels<Chain> frames{Stage::frames, true, {}};
   std::vector<Isometry3> bases;
   for (std::size_t s = 0; s < poses.size(); ++s) {
-    const auto registered = identify(nominal, poses[s], frames_alone, options.sensors);
+    const auto registered = detail::identified_from(nominal, sets[s], frames_alone, options.sensors, solver);
     if (options.refuse_implausible) {
       detail::require_plausible(ArmGeometry(nominal), sets[s], registered.rms_after, options.arm_name);
       detail::require_usable(registered, "registering the frames");
@@ -79,10 +80,12 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
 
   const auto began = std::chrono::steady_clock::now();
   const auto identified = [&](const IdentifyOptions& of_geometry) {
-    if (!poses.empty())
-      return identify(nominal, in_one_frame<N>(poses, bases, options.sensors.use_orientations), of_geometry,
-                      options.sensors);
-    return detail::identified_from(nominal, sets.front(), of_geometry, options.sensors);
+    const auto from = [&](const MeasuredSet& set) {
+      return detail::identified_from(nominal, set, of_geometry, options.sensors, solver);
+    };
+    if (poses.empty()) return from(sets.front());
+    const Measurements<N> joined(in_one_frame<N>(poses, bases, options.sensors.use_orientations));
+    return from(joined.sets(options.sensors).front());
   };
   Identified<Chain> geometry = identified(options.geometry);
   if (options.errors.prior != nullptr && geometry.status == IdentifyStatus::underdetermined)

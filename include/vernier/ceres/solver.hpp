@@ -3,7 +3,7 @@
 /// @file
 /// The solver of `identify`, by Ceres.
 
-#include "vernier/identification/detail/identification.hpp"
+#include "vernier/identification/identify.hpp"
 
 #if VERNIER_HEADER_ONLY
 #include "vernier/ceres/solver.ipp"

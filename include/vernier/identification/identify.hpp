@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Identification of an arm's geometry and frames by nonlinear least squares in Ceres, which the component `ceres`
-/// brings: include vernier/ceres/identify.hpp, or vernier/ceres.hpp for the whole pipeline.
+/// Identification of an arm's geometry and frames by nonlinear least squares: in Ceres, which the component `ceres`
+/// brings (vernier/ceres.hpp), or by the library's own solver.
 
 #include "vernier/identification/detail/identification.hpp"
 #include "vernier/identification/identified.hpp"
@@ -12,18 +12,25 @@ namespace vernier {
 
 namespace detail {
 
+/// `GeometrySolver` by Ceres, which the component `ceres` defines.
+struct CeresSolver {
+  VERNIER_API SolverSummary operator()(CalibrationProblem& problem, int max_iterations) const;
+};
+
 /// An arm identified from one set.
 template <class Chain>
 Identified<Chain> identified_from(const Framed<Chain>& arm, const MeasuredSet& set, const IdentifyOptions& options,
-                                  const SensorModel& sensors) {
-  const CeresSolver solver;
+                                  const SensorModel& sensors, GeometrySolver solver) {
   const IdentifiedGeometry found = identify_geometry(ArmGeometry(arm), set, options, sensors, solver);
   return {found.report, {found.arm.framed(arm.model()), arm.model()}};
 }
 
 }  // namespace detail
 
-/// Identifies the geometry of an arm and its base and tool frames from measurements (Levenberg-Marquardt in Ceres).
+/// Ceres as the solver of an identification.
+inline constexpr detail::CeresSolver ceres_solver{};
+
+/// Identifies the geometry of an arm and its base and tool frames from measurements (Levenberg-Marquardt).
 ///
 /// Parameters that are linearly dependent on others in these measurements keep their values and are named; weakly
 /// determined ones get a prior of physical size, so that they stay plausible; an underdetermined problem is reported as
@@ -35,6 +42,7 @@ Identified<Chain> identified_from(const Framed<Chain>& arm, const MeasuredSet& s
 /// @param data    n >= 1 measurements from one place, e.g. a `Dataset` or `Distances`. Not kept.
 /// @param options which parameters are estimated, with which priors
 /// @param sensors accuracy of the measurements, and the loss; plain least squares by default
+/// @param solver  `ceres_solver`, which needs the component, or `own_solver`, which needs Eigen alone
 /// @return        model, status, rms before and after [m], rank, condition, covariance (empty where rank deficient)
 /// @throws std::invalid_argument on no data, several sets or an unusable option, never for poor data
 /// @complexity    O(n * free^2) per iteration; allocates
@@ -42,10 +50,11 @@ Identified<Chain> identified_from(const Framed<Chain>& arm, const MeasuredSet& s
 template <NominalArm Arm>
 Identified<ChainOf<Arm>> identify(const Arm& nominal, const Measurements<ChainOf<Arm>::dof>& data,
                                   const IdentifyOptions& options = {},
-                                  const SensorModel& sensors = {.loss = Loss::squared}) {
+                                  const SensorModel& sensors = {.loss = Loss::squared},
+                                  GeometrySolver solver = ceres_solver) {
   require(data.sets().size() == 1, "identify: ", data.sets().size(),
           " sets of measurements; it takes one, `calibrate` takes several");
-  return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors);
+  return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors, solver);
 }
 
 }  // namespace vernier

@@ -7,6 +7,7 @@
 #include "vernier/calibration/detail/audit_fit.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/measurements/pose_sensor.hpp"
 
 namespace vernier::detail {
@@ -147,65 +148,39 @@ VERNIER_API VectorX audit_weights(const VectorX& whitened) {
   return out;
 }
 
-VERNIER_API double audit_cost(const VectorX& whitened, const VectorX& precision, const VectorX& deviation) {
-  double sum = weighted_square(precision, deviation);
-  for (Index k = 0; k + 3 <= whitened.size(); k += 3) sum += 16 * std::log1p(three(whitened, k).squaredNorm() / 16);
-  return sum;
-}
-
 VERNIER_IMPL AuditFit audit_fit(const ArmGeometry& start, const ConstVectorRef& centre, const ConstVectorRef& stds,
                                 const AuditRows& rows, int iterations) {
   const AuditColumns columns(stds);
+  const VectorX values = start.parameters();
+  VectorX means = centre;  // of the priors
+  std::vector<GeometricUnknown> unknowns;
+  VectorX steps(columns.size());
+  for (Index k = 0; k < columns.size(); ++k) {
+    const Index p = columns.free[static_cast<std::size_t>(k)];
+    const bool known = std::isfinite(stds(p));
+    if (!known) means(p) = values(p);
+    const double scale = known ? stds(p) : 1;
+    unknowns.push_back({p, -1, scale, columns.precision(k) * scale * scale});
+    steps(k) = (values(p) - means(p)) / scale;
+  }
+  ArmParameterisation arm({start.with_parameters(means)}, std::move(unknowns));
+  arm.move(steps);
   AuditFit out{start, audit_residuals(start, rows)};
-  VectorX values = start.parameters();
-  const auto deviation = [&](const VectorX& at) {
-    VectorX d(columns.size());
-    for (Index k = 0; k < d.size(); ++k) {
-      const Index p = columns.free[static_cast<std::size_t>(k)];
-      d(k) = std::isfinite(stds(p)) ? at(p) - centre(p) : 0;
-    }
-    return d;
-  };
-  PosesAndJacobians at;
-  double damping = 0;
-  for (int round = 0; round < iterations; ++round) {
-    out.arm.poses_and_parameter_jacobians(rows.joints, at);
-    const MatrixX jacobian = audit_jacobian(at, columns, rows.oriented(), out.residuals);
-    const VectorX whitened = audit_whitened(out.residuals), weights = audit_weights(whitened);
-    const VectorX from = deviation(values);
-    const MatrixX normal = normal_matrix(jacobian, weights, columns.precision);
-    const VectorX of_prior = columns.precision.cwiseProduct(from), diagonal = diagonal_of(normal);
-    const VectorX right = transposed_product(jacobian, weights.cwiseProduct(whitened)) - of_prior;
-    const double before = audit_cost(whitened, columns.precision, from);
-    const double old_score = out.residuals.score();
-    bool better = false;
-    for (int attempt = 0; attempt < 5 && !better; ++attempt) {
-      MatrixX factor = normal;
-      for (Index k = 0; k < diagonal.size(); ++k) factor(k, k) = diagonal(k) * (1 + damping);
-      VectorX step = right;
-      if (!cholesky(factor)) {
-        damping = std::max(10 * damping, 1e-3);
-        continue;
-      }
-      solve_cholesky(factor, step);
-      VectorX next = values;
-      for (Index k = 0; k < step.size(); ++k) next(columns.free[static_cast<std::size_t>(k)]) += step(k);
-      if (!next.allFinite()) break;
-      const ArmGeometry arm = out.arm.with_parameters(next);
-      AuditResiduals residuals = audit_residuals(arm, rows);
-      AuditResiduals old_scales = residuals;
-      old_scales.position_scale = out.residuals.position_scale;
-      old_scales.rotation_scale = out.residuals.rotation_scale;
-      if (audit_cost(audit_whitened(old_scales), columns.precision, deviation(next)) <= before) {
-        better = true;
-        damping = damping > 1e-6 ? damping * 0.1 : 0;
-        out = {arm, std::move(residuals)};
-        values = next;
-      } else {
-        damping = std::max(10 * damping, 1e-3);
-      }
-    }
-    if (!better || std::abs(out.residuals.score() - old_score) < 1e-3 * old_score) break;
+  constexpr int steps_at_a_time = 3;  // then the scales of the residuals are estimated again
+  for (int done = 0; done < iterations; done += steps_at_a_time) {
+    const AuditResiduals before = out.residuals;
+    const double angle = rows.oriented() ? before.rotation_scale : 1;
+    CalibrationProblem problem(
+        arm,
+        {MeasuredSet("poses", rows.joints,
+                     PoseSensor(rows.positions, rows.orientations, {before.position_scale, angle}))},
+        Loss::cauchy);
+    problem.joint_columns = false;
+    problem.loss_scale = 4 / 2.8;  // that of `audit_weights`, in place of the usual one
+    if (!problem.solve(steps_at_a_time, 1e-4).usable) break;
+    arm = problem.arm;
+    out = {arm.geometry(0), audit_residuals(arm.geometry(0), rows)};
+    if (std::abs(out.residuals.score() - before.score()) < 1e-3 * before.score()) break;
   }
   return out;
 }

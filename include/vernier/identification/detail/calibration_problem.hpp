@@ -10,7 +10,7 @@
 
 #include "vernier/identification/arm_parameterisation.hpp"
 #include "vernier/identification/session_drift.hpp"
-#include "vernier/least_squares/normal_equations.hpp"
+#include "vernier/least_squares/damped_iteration.hpp"
 #include "vernier/measurements/measured_set.hpp"
 
 namespace vernier::detail {
@@ -37,6 +37,7 @@ class CalibrationProblem {
   double reference_temperature = 0;  ///< at which thermal unknowns have no effect [deg C]
   std::optional<JointPrior> prior;   ///< with correlations; of unknowns that have no prior of their own
   ExecutorRef executor{};            ///< computes the normal equations
+  double loss_scale = 1;             ///< the loss begins to tell outliers at so many times its usual threshold
   bool joint_columns = true;         ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }
@@ -107,8 +108,10 @@ class CalibrationProblem {
   /// (distances, heights); 0 where there are none.
   VERNIER_API std::array<double, 3> thresholds() const;
 
-  /// Levenberg-Marquardt, undamped until a step fails; a robust loss is reweighted before every step. The last of
-  /// `max_iterations` steps is taken without a check that it lowered the cost.
+  /// Minimises from the present values, see `minimise`. A robust loss leaves its weights behind.
+  /// @param least_gain ends where a step lowers the sum of squares by less than this share
+  VERNIER_API IterationEnd solve(int max_iterations, double least_gain);
+  /// The same with the usual precision.
   /// @return whether the iteration converged
   VERNIER_API bool solve(int max_iterations = 20);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -12,8 +11,6 @@
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/twists.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
-#include "vernier/least_squares/factorised_equations.hpp"
-#include "vernier/least_squares/marquardt_damping.hpp"
 
 namespace vernier::detail {
 
@@ -379,8 +376,9 @@ VERNIER_API std::array<double, 3> loss_thresholds(const CalibrationProblem& prob
     kinds[set.projected() ? 2 : 0].push_back(norms(b, 0));
     if (set.oriented()) kinds[1].push_back(norms(b, 1));
   }
-  return {robust_threshold(std::move(kinds[0]), 3), robust_threshold(std::move(kinds[1]), 3),
-          robust_threshold(std::move(kinds[2]), 1)};
+  return {problem.loss_scale * robust_threshold(std::move(kinds[0]), 3),
+          problem.loss_scale * robust_threshold(std::move(kinds[1]), 3),
+          problem.loss_scale * robust_threshold(std::move(kinds[2]), 1)};
 }
 
 VERNIER_IMPL std::array<double, 3> CalibrationProblem::thresholds() const {
@@ -410,52 +408,36 @@ VERNIER_IMPL std::array<double, 2> CalibrationProblem::reweight() {
 }
 
 VERNIER_IMPL bool CalibrationProblem::solve(int max_iterations) {
+  return solve(max_iterations, loss_ == Loss::squared ? 1e-9 : 1e-5).converged;
+}
+
+VERNIER_IMPL IterationEnd CalibrationProblem::solve(int max_iterations, double least_gain) {
   const bool robust = loss_ != Loss::squared;
-  MarquardtDamping damping;
   ArmParameterisation accepted = arm;
   std::vector<SessionDrift> accepted_drift = drift;
-  double reached = std::numeric_limits<double>::infinity(), predicted = 0;
-  bool returned = false;  // to where the step before began, since it failed
-  for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    const VectorX steps = arm.steps(), precisions = arm.precisions();
-    const VectorX local_steps = drift_steps();
-    std::array<double, 2> sums{};
-    if (robust) sums = reweight();
-    const NormalEquations normal = normal_equations();
-    double of_priors = weighted_square(precisions, steps) + local_prior_cost(normal, local_steps);
-    if (!robust) sums = {normal.cost, normal.cost};
-    if (robust && prior) of_priors += prior->cost(steps);  // `normal.cost` has it
-    const double sum = sums[0] + of_priors;
-    if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
-      damping.reject();
-      arm = accepted;
-      drift = accepted_drift;
-      if (robust) reweight();
-      returned = true;
-      continue;
-    }
-    if (damping.value() > 0 && !returned) damping.accept(std::max(reached - sum, 0.0), predicted);
-    returned = false;
+  const auto linearise = [&] {
+    const std::array<double, 2> weighted = robust ? reweight() : std::array<double, 2>{};
+    LinearisedProblem out{normal_equations(), arm.precisions(), arm.steps(), drift_steps()};
+    double of_priors = weighted_square(out.precisions, out.steps) + local_prior_cost(out.normal, out.local_steps);
+    if (robust && prior) of_priors += prior->cost(out.steps);  // `normal.cost` has it
+    out.with_old_weights = of_priors + (robust ? weighted[0] : out.normal.cost);
+    out.with_new_weights = of_priors + (robust ? weighted[1] : out.normal.cost);
+    return out;
+  };
+  const auto move = [&](const VectorX& step, const VectorX& local_step) {
+    arm.move(step);
+    if (!drift.empty()) move_drift(local_step);
+  };
+  const auto keep = [&] {
     accepted = arm;
     accepted_drift = drift;
-    reached = sums[1] + of_priors;
-    const FactorisedEquations solved(normal, precisions, steps, local_steps, eigen_sparse_solver, damping.value());
-    if (!solved.usable()) return false;
-    arm.move(solved.step());
-    if (!drift.empty()) move_drift(solved.local_step());
-    // converged when steps vanish, or change no more than digits of the cost
-    double gain = -local_gain(normal, solved.local_step(), local_steps), damped = 0;
-    for (Index k = 0; k < steps.size(); ++k) {
-      const double step = solved.step()(k);
-      gain -= step * (normal.gradient(k) + precisions(k) * steps(k));
-      damped += step * step * (normal.matrix(k, k) + precisions(k));
-    }
-    predicted = gain + damping.value() * damped;
-    if (damping.value() < 1 &&
-        (solved.step().cwiseAbs().maxCoeff() < 1e-6 || gain < (robust ? 1e-5 : 1e-9) * normal.cost))
-      return true;
-  }
-  return false;
+  };
+  const auto restore = [&] {
+    arm = accepted;
+    drift = accepted_drift;
+    if (robust) reweight();
+  };
+  return minimise({linearise, move, keep, restore}, {max_iterations, 1e-6, least_gain});
 }
 
 }  // namespace vernier::detail

@@ -3,24 +3,12 @@
 /// @file
 /// The steps of an identification, whatever the number of joints and the solver.
 
-#include <string>
-
-#include "vernier/core/function_ref.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/identification/geometry_solver.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/identification/options.hpp"
 
 namespace vernier::detail {
-
-/// Outcome of a nonlinear solve.
-struct SolverSummary {
-  bool converged = true;
-  int iterations = 0;
-  std::string message;
-};
-
-/// Minimises a problem from its present values; a robust loss settles its scale.
-using GeometrySolver = FunctionRef<SolverSummary(CalibrationProblem& problem, int max_iterations)>;
 
 /// An identified geometry and its report.
 struct IdentifiedGeometry {
@@ -32,11 +20,6 @@ struct IdentifiedGeometry {
 VERNIER_API IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
                                                  const IdentifyOptions& options, const SensorModel& sensors,
                                                  GeometrySolver solver);
-
-/// `GeometrySolver` by Ceres, which the component `ceres` defines (vernier/ceres.hpp).
-struct CeresSolver {
-  VERNIER_API SolverSummary operator()(CalibrationProblem& problem, int max_iterations) const;
-};
 
 }  // namespace vernier::detail
 

@@ -286,6 +286,15 @@ class IdentificationRun {
   SolverSummary summary_{true, 0, "nothing to estimate"};
 };
 
+VERNIER_IMPL SolverSummary OwnSolver::operator()(CalibrationProblem& problem, int max_iterations) const {
+  const IterationEnd end = problem.solve(max_iterations, 1e-14);
+  problem.reset_weights();
+  return {end.converged, end.iterations,
+          end.converged ? "the steps vanished"
+          : end.usable  ? "the steps did not vanish"
+                        : "the normal equations have no solution"};
+}
+
 VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
                                                   const IdentifyOptions& options, const SensorModel& sensors,
                                                   GeometrySolver solver) {

@@ -6,8 +6,8 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/least_squares/damped_iteration.hpp"
 #include "vernier/least_squares/factorised_equations.hpp"
-#include "vernier/least_squares/marquardt_damping.hpp"
 #include "vernier/registration/detail/frame_fit.hpp"
 
 namespace vernier::detail {
@@ -50,46 +50,44 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const MeasuredSet& da
   const BlockSystem system{data.size(), data.size(), fit.update.size(), {}, rows};
   VectorX precisions(fit.prior_std.size());
   for (Index k = 0; k < precisions.size(); ++k) precisions(k) = 1 / (fit.prior_std(k) * fit.prior_std(k));
-  fit.determined = fit.converged = false;
-  fit.covariance.resize(0, 0);
-  MarquardtDamping damping;
   VectorX total = fit.total, accepted_total = total;
   FrameMotion accepted = fit.motion;
-  double reached = std::numeric_limits<double>::infinity(), predicted = 0;
-  bool returned = false;  // to where the step before began, since it failed
-  for (int iteration = 0; iteration < 50 && !fit.converged; ++iteration) {
-    NormalEquations normal(system);
-    hold(fit, total, normal);
-    const double sum = normal.cost + weighted_square(precisions, total);
-    if (sum > (1 + 1e-9) * reached) {  // the step failed, by more than rounding
-      damping.reject();
-      fit.motion = accepted;
-      total = accepted_total;
-      evaluate(fit.motion, fit.poses, jacobians);
-      returned = true;
-      continue;
-    }
-    if (damping.value() > 0 && !returned) damping.accept(std::max(reached - sum, 0.0), predicted);
-    returned = false;
+  fit.determined = true;
+  const auto linearise = [&] {
+    LinearisedProblem out{NormalEquations(system), precisions, total};
+    hold(fit, total, out.normal);
+    out.with_old_weights = out.with_new_weights = out.normal.cost + weighted_square(precisions, total);
+    MatrixX information = out.normal.matrix;
+    for (Index k = 0; k < precisions.size(); ++k) information(k, k) += precisions(k);
+    const VectorX spectrum = right_singular(information).values;  // eigenvalues are squares of singular values
+    fit.determined = fit.determined && spectrum(spectrum.size() - 1) > 1e-14 * spectrum(0);
+    return out;
+  };
+  const auto move_to = [&](const FrameMotion& motion) {
+    fit.motion = motion;
+    evaluate(fit.motion, fit.poses, jacobians);
+  };
+  const auto move = [&](const VectorX& step, const VectorX&) {
+    if (!fit.determined) return;
+    total += step;
+    move_to(fit.update.apply(fit.motion, step));
+  };
+  const auto keep = [&] {
     accepted = fit.motion;
     accepted_total = total;
-    reached = sum;
-    MatrixX information = normal.matrix;
-    for (Index k = 0; k < precisions.size(); ++k) information(k, k) += precisions(k);
-    // eigenvalues are squares of singular values
-    const VectorX spectrum = right_singular(information).values;
-    fit.determined = spectrum(spectrum.size() - 1) > 1e-14 * spectrum(0);
-    if (!fit.determined) break;
-    const FactorisedEquations solved(normal, precisions, total, {}, eigen_sparse_solver, damping.value());
-    if (!solved.usable()) break;
-    predicted = damping.value() * weighted_square(diagonal_of(information), solved.step());
-    for (Index k = 0; k < precisions.size(); ++k)
-      predicted -= solved.step()(k) * (normal.gradient(k) + precisions(k) * total(k));
-    total += solved.step();
-    fit.motion = fit.update.apply(fit.motion, solved.step());
-    evaluate(fit.motion, fit.poses, jacobians);
-    fit.converged = solved.step().cwiseAbs().maxCoeff() < 1e-10;
-    fit.covariance = FactorisedEquations(normal, precisions, accepted_total).inverse();
+  };
+  const auto restore = [&] {
+    total = accepted_total;
+    move_to(accepted);
+  };
+  constexpr double exact = std::numeric_limits<double>::infinity();  // sums of exact poses are rounding errors
+  const IterationEnd end = minimise({linearise, move, keep, restore}, {50, 1e-10, 0, exact});
+  fit.determined = fit.determined && end.usable;
+  fit.converged = fit.determined && end.converged;
+  fit.covariance.resize(0, 0);
+  if (fit.determined) {
+    const LinearisedProblem at = linearise();
+    fit.covariance = FactorisedEquations(at.normal, precisions, total).inverse();
   }
   fit.total = total;
   if (fit.covariance.size() == 0) return;

@@ -36,6 +36,11 @@ JointVector<N> joint_vector(const Q& q) {
     refuse_joint_values(q.size(), N);
   return JointVector<N>(q);
 }
+/// One configuration of which the compiler checks the number of values, as it is.
+template <int N, class Q>
+const Q& joint_vector(const Q& q) {
+  return q;
+}
 
 /// Configurations of an arm of N joints, one a row.
 /// @throws std::invalid_argument on another number of columns
@@ -44,6 +49,11 @@ JointRows<N> joint_rows(const Rows& rows) {
   if (rows.cols() != N) [[unlikely]]
     refuse_joint_values(rows.cols(), N);
   return JointRows<N>(rows);
+}
+/// Configurations of which the compiler checks the number of columns, as they are.
+template <int N, class Rows>
+const Rows& joint_rows(const Rows& rows) {
+  return rows;
 }
 
 }  // namespace detail

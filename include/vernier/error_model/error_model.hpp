@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -81,8 +82,15 @@ class ApproachedErrorModel;
 /// known where the joints were measured: outside, the model falls back smoothly (by `JointCoverage`) to one fitted
 /// without them. It keeps the nominal arm in the same frames, so that commands can be corrected towards it.
 template <class C>
-class ErrorModel {
+class ErrorModel : public ChecksJoints<ErrorModel<C>> {
+  using Checks = ChecksJoints<ErrorModel>;
+
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// The kind of chain.
   using Chain = C;
   /// Chain, joint errors and frames.
@@ -170,15 +178,34 @@ class ErrorModel {
     return out;
   }
 
+  /// The same arm moved, with offsets whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  ErrorModel moved(const Isometry3& base, const Q& offsets, const Isometry3& tool) const {
+    return moved(base, detail::joint_vector<dof>(offsets), tool);
+  }
+
   /// The arm as it moves to the next configuration from given joint values: with the hysteresis of its joints.
   /// Non-owning: the model must outlive the view.
   /// @param previous joint values [rad, m]
   ApproachedErrorModel<Chain> approached_from(const JointVector<dof>& previous) const noexcept {
     return {*this, previous};
   }
+  /// The arm as it moves to the next configuration from joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  ApproachedErrorModel<Chain> approached_from(const Q& previous) const {
+    return {*this, detail::joint_vector<dof>(previous)};
+  }
 
   /// Share of `identified` in the prediction at q, in [0, 1]; the rest is `fallback`.
   double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }
+  /// That share at joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  double gate(const Q& q) const {
+    return gate(detail::joint_vector<dof>(q));
+  }
 
   /// base_T_tool; where the joints have hysteresis, in the middle of both directions of approach.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return gated().pose(q); }
@@ -215,8 +242,15 @@ class ErrorModel {
 
 /// An `ErrorModel` that came from known joint values: a view of it, see `ErrorModel::approached_from`.
 template <class C>
-class ApproachedErrorModel {
+class ApproachedErrorModel : public ChecksJoints<ApproachedErrorModel<C>> {
+  using Checks = ChecksJoints<ApproachedErrorModel>;
+
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// The kind of chain.
   using Chain = C;
   /// Number of joints.
@@ -228,9 +262,20 @@ class ApproachedErrorModel {
       : near_(around(model.identified(), previous)), coverage_(model.coverage()) {
     if (model.fallback() != nullptr) far_.emplace(around(*model.fallback(), previous));
   }
+  /// The model, approached from joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  ApproachedErrorModel(const ErrorModel<Chain>& model, const Q& previous)
+      : ApproachedErrorModel(model, detail::joint_vector<dof>(previous)) {}
 
   /// Share of the joint-wise terms in the prediction at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }
+  /// That share at joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  double gate(const Q& q) const {
+    return gate(detail::joint_vector<dof>(q));
+  }
   /// base_T_tool.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return gated().pose(q); }
   /// Tool position [m], base frame.

@@ -14,6 +14,7 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
@@ -42,8 +43,17 @@ struct Provenance {
 /// top. A kinematic model (of the identified arm) and a compensator. Frames are kept by their six values, so that what
 /// is loaded from a file is bit for bit what was saved.
 template <int N, class Convention = StandardDh>
-class CalibratedRobot {
+class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
+  using Checks = ChecksJoints<CalibratedRobot>;
+
  public:
+  using Checks::correct;
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+  using Checks::predict;
+
   /// Number of joints.
   static constexpr int dof = N;
   /// The kind of chain.
@@ -131,6 +141,12 @@ class CalibratedRobot {
   double gate(const JointVector<N>& q) const noexcept {
     return corrected_ ? std::min(corrected_->gate(q), model_.gate(q)) : model_.gate(q);
   }
+  /// That share at joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  double gate(const Q& q) const {
+    return gate(detail::joint_vector<N>(q));
+  }
 
   /// A sphere that contains every position of its tool; none is known where a position error was learned.
   ReachSphere reach_sphere() const {
@@ -149,6 +165,13 @@ class CalibratedRobot {
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q, const JointVector<N>& previous) const noexcept {
     return compensated(previous).correct(q);
   }
+  /// The command for the approach from known joint values, where a number of them is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <class Q, class P>
+    requires(SizedAtRunTime<Q> || SizedAtRunTime<P>)
+  [[nodiscard]] Correction<N> correct(const Q& q, const P& previous) const {
+    return correct(JointVector<N>(detail::joint_vector<N>(q)), JointVector<N>(detail::joint_vector<N>(previous)));
+  }
   /// The command that brings the arm to a pose in the frame of the measurements.
   /// @param target the pose
   /// @param seed   joints near the solution; they choose the branch
@@ -162,6 +185,14 @@ class CalibratedRobot {
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
                                       const JointVector<N>& previous) const noexcept {
     return compensated(previous).correct(target, seed);
+  }
+  /// The command for the approach from known joint values, where a number of them is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <class Q, class P>
+    requires(SizedAtRunTime<Q> || SizedAtRunTime<P>)
+  [[nodiscard]] Correction<N> correct(const Isometry3& target, const Q& seed, const P& previous) const {
+    return correct(target, JointVector<N>(detail::joint_vector<N>(seed)),
+                   JointVector<N>(detail::joint_vector<N>(previous)));
   }
 
   /// Radius around the modelled tool position within which the arm's is with 95 % probability [m], for n commands that
@@ -193,11 +224,24 @@ class CalibratedRobot {
       out[static_cast<std::size_t>(rows[k])] = radius_95(covariances[k].template topLeftCorner<3, 3>());
     return out;
   }
+  /// These radii for commands whose number of joints is known at run time.
+  /// @throws std::invalid_argument on another number of columns, or where the covariance was not kept
+  template <ColumnsAtRunTime Rows>
+  std::vector<double> radii_95(const Rows& commands) const {
+    return radii_95(detail::joint_rows<N>(commands));
+  }
 
   /// The arm as it moves to a configuration from known joint values: a kinematic model, a view of the robot, which must
   /// outlive it.
-  class Approached {
+  class Approached : public ChecksJoints<Approached> {
+    using Checks = ChecksJoints<Approached>;
+
    public:
+    using Checks::jacobian;
+    using Checks::pose;
+    using Checks::pose_and_jacobian;
+    using Checks::position;
+
     /// Number of joints.
     static constexpr int dof = N;
 
@@ -205,6 +249,11 @@ class CalibratedRobot {
     /// @param previous joint values from which it moves to the next configuration [rad, m]; not finite where unknown
     Approached(const CalibratedRobot& robot, const JointVector<N>& previous) noexcept
         : robot_(&robot), model_(robot.model_, previous) {}
+    /// The robot, approached from joint values whose number is known at run time.
+    /// @throws std::invalid_argument on another number
+    template <SizedAtRunTime Q>
+    Approached(const CalibratedRobot& robot, const Q& previous)
+        : Approached(robot, detail::joint_vector<N>(previous)) {}
 
     /// base_T_tool.
     Isometry3 pose(const JointVector<N>& q) const noexcept {
@@ -227,6 +276,12 @@ class CalibratedRobot {
     }
     /// Share of what was learned over the joints that is used at q.
     double gate(const JointVector<N>& q) const noexcept { return robot_->gate(q); }
+    /// That share at joint values whose number is known at run time.
+    /// @throws std::invalid_argument on another number
+    template <SizedAtRunTime Q>
+    double gate(const Q& q) const {
+      return robot_->gate(q);
+    }
 
    private:
     const CalibratedRobot* robot_;
@@ -235,6 +290,12 @@ class CalibratedRobot {
   /// The arm as it moves to the next configuration from known joint values, with the hysteresis of its joints.
   /// @param previous joint values [rad, m]
   Approached approached_from(const JointVector<N>& previous) const noexcept { return {*this, previous}; }
+  /// The arm as it moves to the next configuration from joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  Approached approached_from(const Q& previous) const {
+    return {*this, previous};
+  }
 
  private:
   Compensated<Approached, Framed<Chain>> compensated(const JointVector<N>& previous) const {

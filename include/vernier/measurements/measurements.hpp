@@ -23,19 +23,15 @@
 
 namespace vernier {
 
+template <int N>
+class Measurements;
+
 namespace detail {
 
 /// A contact as a set.
 VERNIER_API MeasuredSet contact_set(const Contact& contact);
 /// A name for messages: the one that is given, else the files of the rows, else the kind with a number.
 VERNIER_API std::string set_name(std::string given, const RowOrigin& origin, const char* kind, std::size_t number);
-
-}  // namespace detail
-
-template <int N>
-class Measurements;
-
-namespace detail {
 
 /// Number of joints of data; 0 of anything else.
 template <class Data>
@@ -55,8 +51,8 @@ inline constexpr int joints_of<Data> = joints_of_one<typename Data::value_type>;
 
 /// Data of an arm of another number of joints than N.
 template <class Data, int N>
-concept DataOfOtherJoints = joints_of<Data> >
-0 && joints_of<Data> != N;
+concept DataOfOtherJoints = joints_of<Data>
+!= 0 && joints_of<Data> != N;
 
 }  // namespace detail
 

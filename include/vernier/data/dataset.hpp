@@ -23,18 +23,17 @@ VERNIER_API bool finite_row(const ConstMatrixRef& values, Index row);
 VERNIER_API void check_samples(const ConstMatrixRef& joints, const PointRows& positions, const PointRows& orientations);
 VERNIER_API [[noreturn]] void refuse_coordinates(Index columns);
 
-/// Points, one a row: of which the compiler checks the number of coordinates, as they are.
+/// Points, one a row, in a matrix of either kind.
+/// @throws std::invalid_argument on another number of coordinates than three
 template <class Rows>
-const Rows& point_rows(const Rows& rows) {
-  return rows;
-}
-/// Points whose number of coordinates is known at run time.
-/// @throws std::invalid_argument on another number than three
-template <ColumnsAtRunTime Rows>
-PointRows point_rows(const Rows& rows) {
-  if (rows.cols() != 3) [[unlikely]]
-    refuse_coordinates(rows.cols());
-  return PointRows(rows);
+PointRows fixed_points(const Rows& rows) {
+  if constexpr (ColumnsAtRunTime<Rows>) {
+    if (rows.cols() != 3) [[unlikely]]
+      refuse_coordinates(rows.cols());
+    return PointRows(rows);
+  } else {
+    return rows;
+  }
 }
 
 /// Copies the named rows, in the given order, into a matrix of that many rows.
@@ -66,8 +65,7 @@ class Dataset {
   template <class Joints, class Positions, class Orientations = PointRows>
     requires(ColumnsAtRunTime<Joints> || ColumnsAtRunTime<Positions> || ColumnsAtRunTime<Orientations>)
   Dataset(const Joints& joints, const Positions& positions, const Orientations& orientations = PointRows(0, 3))
-      : Dataset(JointRows<N>(detail::joint_rows<N>(joints)), PointRows(detail::point_rows(positions)),
-                PointRows(detail::point_rows(orientations))) {}
+      : Dataset(detail::fixed_rows<N>(joints), detail::fixed_points(positions), detail::fixed_points(orientations)) {}
 
   /// Number of samples.
   Index size() const { return joints_.rows(); }

@@ -86,6 +86,8 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   using Checks = ChecksJoints<ErrorModel>;
 
  public:
+  using Checks::approached_from;
+  using Checks::gate;
   using Checks::jacobian;
   using Checks::pose;
   using Checks::pose_and_jacobian;
@@ -191,21 +193,9 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   ApproachedErrorModel<Chain> approached_from(const JointVector<dof>& previous) const noexcept {
     return {*this, previous};
   }
-  /// The arm as it moves to the next configuration from joint values whose number is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <SizedAtRunTime Q>
-  ApproachedErrorModel<Chain> approached_from(const Q& previous) const {
-    return {*this, detail::joint_vector<dof>(previous)};
-  }
 
   /// Share of `identified` in the prediction at q, in [0, 1]; the rest is `fallback`.
   double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }
-  /// That share at joint values whose number is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <SizedAtRunTime Q>
-  double gate(const Q& q) const {
-    return gate(detail::joint_vector<dof>(q));
-  }
 
   /// base_T_tool; where the joints have hysteresis, in the middle of both directions of approach.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return gated().pose(q); }
@@ -246,6 +236,7 @@ class ApproachedErrorModel : public ChecksJoints<ApproachedErrorModel<C>> {
   using Checks = ChecksJoints<ApproachedErrorModel>;
 
  public:
+  using Checks::gate;
   using Checks::jacobian;
   using Checks::pose;
   using Checks::pose_and_jacobian;
@@ -270,12 +261,6 @@ class ApproachedErrorModel : public ChecksJoints<ApproachedErrorModel<C>> {
 
   /// Share of the joint-wise terms in the prediction at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }
-  /// That share at joint values whose number is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <SizedAtRunTime Q>
-  double gate(const Q& q) const {
-    return gate(detail::joint_vector<dof>(q));
-  }
   /// base_T_tool.
   Isometry3 pose(const JointVector<dof>& q) const noexcept { return gated().pose(q); }
   /// Tool position [m], base frame.

@@ -87,10 +87,7 @@ struct FittedErrorModel : ErrorModelEstimate {
     requires(SizedAtRunTime<P> || SizedAtRunTime<Q>)
   PredictedPose predicted_from(const P& previous, const Q& q, int station = 0,
                                double temperature = std::numeric_limits<double>::quiet_NaN())
-  const {
-    return predicted_from(JointVector<N>(detail::joint_vector<N>(previous)), JointVector<N>(detail::joint_vector<N>(q)),
-                          station, temperature);
-  }
+  const { return predicted_from(detail::fixed_vector<N>(previous), detail::fixed_vector<N>(q), station, temperature); }
 };
 
 }  // namespace vernier

@@ -20,24 +20,10 @@
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/fitted_arm.hpp"
+#include "vernier/io/provenance.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
 namespace vernier {
-
-/// Where a calibration comes from.
-struct Provenance {
-  std::string data_file{};           ///< name of the file of measured poses; of several, joined by commas
-  Index rows = 0;                    ///< number of poses it was fitted to, or of touches
-  std::string date{};                ///< as given by the caller
-  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
-  std::string measured = "poses";    ///< what was measured: poses, or positions; or contacts
-  double position_sigma = 0;         ///< of a visit, per component, as estimated from the data [m]; 0: unknown
-  double left_out_error = 0;         ///< rms position error of poses that were left out in turn [m]; 0: unknown
-  double held_out_error = 0;         ///< mean position error of poses it was not fitted to [m]; 0: unknown
-
-  /// Equal in every entry.
-  bool operator==(const Provenance&) const = default;
-};
 
 /// A nominal chain, its error model in base and tool frames, its limits, and optionally a learned position error on
 /// top. A kinematic model (of the identified arm) and a compensator. Frames are kept by their six values, so that what
@@ -47,7 +33,9 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   using Checks = ChecksJoints<CalibratedRobot>;
 
  public:
+  using Checks::approached_from;
   using Checks::correct;
+  using Checks::gate;
   using Checks::jacobian;
   using Checks::pose;
   using Checks::pose_and_jacobian;
@@ -141,12 +129,6 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   double gate(const JointVector<N>& q) const noexcept {
     return corrected_ ? std::min(corrected_->gate(q), model_.gate(q)) : model_.gate(q);
   }
-  /// That share at joint values whose number is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <SizedAtRunTime Q>
-  double gate(const Q& q) const {
-    return gate(detail::joint_vector<N>(q));
-  }
 
   /// A sphere that contains every position of its tool; none is known where a position error was learned.
   ReachSphere reach_sphere() const {
@@ -165,13 +147,6 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q, const JointVector<N>& previous) const noexcept {
     return compensated(previous).correct(q);
   }
-  /// The command for the approach from known joint values, where a number of them is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <class Q, class P>
-    requires(SizedAtRunTime<Q> || SizedAtRunTime<P>)
-  [[nodiscard]] Correction<N> correct(const Q& q, const P& previous) const {
-    return correct(JointVector<N>(detail::joint_vector<N>(q)), JointVector<N>(detail::joint_vector<N>(previous)));
-  }
   /// The command that brings the arm to a pose in the frame of the measurements.
   /// @param target the pose
   /// @param seed   joints near the solution; they choose the branch
@@ -185,14 +160,6 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
                                       const JointVector<N>& previous) const noexcept {
     return compensated(previous).correct(target, seed);
-  }
-  /// The command for the approach from known joint values, where a number of them is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <class Q, class P>
-    requires(SizedAtRunTime<Q> || SizedAtRunTime<P>)
-  [[nodiscard]] Correction<N> correct(const Isometry3& target, const Q& seed, const P& previous) const {
-    return correct(target, JointVector<N>(detail::joint_vector<N>(seed)),
-                   JointVector<N>(detail::joint_vector<N>(previous)));
   }
 
   /// Radius around the modelled tool position within which the arm's is with 95 % probability [m], for n commands that
@@ -237,6 +204,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     using Checks = ChecksJoints<Approached>;
 
    public:
+    using Checks::gate;
     using Checks::jacobian;
     using Checks::pose;
     using Checks::pose_and_jacobian;
@@ -276,12 +244,6 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     }
     /// Share of what was learned over the joints that is used at q.
     double gate(const JointVector<N>& q) const noexcept { return robot_->gate(q); }
-    /// That share at joint values whose number is known at run time.
-    /// @throws std::invalid_argument on another number
-    template <SizedAtRunTime Q>
-    double gate(const Q& q) const {
-      return robot_->gate(q);
-    }
 
    private:
     const CalibratedRobot* robot_;
@@ -290,12 +252,6 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   /// The arm as it moves to the next configuration from known joint values, with the hysteresis of its joints.
   /// @param previous joint values [rad, m]
   Approached approached_from(const JointVector<N>& previous) const noexcept { return {*this, previous}; }
-  /// The arm as it moves to the next configuration from joint values whose number is known at run time.
-  /// @throws std::invalid_argument on another number
-  template <SizedAtRunTime Q>
-  Approached approached_from(const Q& previous) const {
-    return {*this, previous};
-  }
 
  private:
   Compensated<Approached, Framed<Chain>> compensated(const JointVector<N>& previous) const {

@@ -51,8 +51,7 @@ inline constexpr int joints_of<Data> = joints_of_one<typename Data::value_type>;
 
 /// Data of an arm of another number of joints than N.
 template <class Data, int N>
-concept DataOfOtherJoints = joints_of<Data>
-!= 0 && joints_of<Data> != N;
+concept DataOfOtherJoints = (joints_of<Data> != 0 && joints_of<Data> != N);
 
 }  // namespace detail
 
@@ -150,8 +149,8 @@ class Measurements {
   template <class From, class To, class S>
   Measurements& add_between(const From& from, const To& to, S sensor, std::string name = {}) {
     if constexpr (detail::explain_sensor<S>() && Sensor<S>) {
-      MeasuredSet set(std::move(name), JointRows<N>(detail::joint_rows<N>(to)), std::move(sensor));
-      set.seen_from = JointRows<N>(detail::joint_rows<N>(from));
+      MeasuredSet set(std::move(name), detail::fixed_rows<N>(to), std::move(sensor));
+      set.seen_from = detail::fixed_rows<N>(from);
       require(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(),
               " second");
       require(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());

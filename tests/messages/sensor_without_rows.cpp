@@ -1,6 +1,5 @@
 // A sensor that does not say how its measurements depend on the pose.
-// expect: Sensor: `sense(i, pose, rows)` must be const and take vernier::Index, vernier::Isometry3 and
-// vernier::SensedRows&
+// expect: Sensor: `sense(i, pose, rows)` must be const and take vernier::Index, vernier::Isometry3
 #include <vernier/measurements/measurements.hpp>
 
 namespace vn = vernier;

@@ -36,6 +36,16 @@ JointVector<N> joint_vector(const Q& q) {
     refuse_joint_values(q.size(), N);
   return JointVector<N>(q);
 }
+/// One configuration, in a vector of either kind.
+/// @throws std::invalid_argument on another number of values
+template <int N, class Q>
+JointVector<N> fixed_vector(const Q& q) {
+  if constexpr (SizedAtRunTime<Q>) {
+    return joint_vector<N>(q);
+  } else {
+    return q;
+  }
+}
 
 /// Configurations of an arm of N joints, one a row.
 /// @throws std::invalid_argument on another number of columns
@@ -44,6 +54,16 @@ JointRows<N> joint_rows(const Rows& rows) {
   if (rows.cols() != N) [[unlikely]]
     refuse_joint_values(rows.cols(), N);
   return JointRows<N>(rows);
+}
+/// Configurations, in a matrix of either kind.
+/// @throws std::invalid_argument on another number of columns
+template <int N, class Rows>
+JointRows<N> fixed_rows(const Rows& rows) {
+  if constexpr (ColumnsAtRunTime<Rows>) {
+    return joint_rows<N>(rows);
+  } else {
+    return rows;
+  }
 }
 
 }  // namespace detail
@@ -124,6 +144,32 @@ class ChecksJoints {
   template <SizedAtRunTime Q>
   [[nodiscard]] auto correct(const Isometry3& target, const Q& seed) const {
     return self().correct(target, detail::joint_vector<Self::dof>(seed));
+  }
+  /// The command for the approach from known joint values, where a number of them is known at run time.
+  /// @throws std::invalid_argument on another number of joint values
+  template <class Q, class P>
+    requires(SizedAtRunTime<Q> || SizedAtRunTime<P>)
+  [[nodiscard]] auto correct(const Q& q, const P& previous) const {
+    return self().correct(detail::fixed_vector<Self::dof>(q), detail::fixed_vector<Self::dof>(previous));
+  }
+  /// The command that brings the arm to a pose from known joint values, where a number of them is known at run time.
+  /// @throws std::invalid_argument on another number of joint values
+  template <class Q, class P>
+    requires(SizedAtRunTime<Q> || SizedAtRunTime<P>)
+  [[nodiscard]] auto correct(const Isometry3& target, const Q& seed, const P& previous) const {
+    return self().correct(target, detail::fixed_vector<Self::dof>(seed), detail::fixed_vector<Self::dof>(previous));
+  }
+  /// Share of what is known only where the joints were measured.
+  /// @throws std::invalid_argument on another number of joint values
+  template <SizedAtRunTime Q>
+  double gate(const Q& q) const {
+    return self().gate(detail::joint_vector<Self::dof>(q));
+  }
+  /// The arm as it moves to the next configuration from known joint values: a view.
+  /// @throws std::invalid_argument on another number of joint values
+  template <SizedAtRunTime Q>
+  auto approached_from(const Q& previous) const {
+    return self().approached_from(detail::joint_vector<Self::dof>(previous));
   }
 
   /// All joint values with which a nominal arm is at a pose; `more` follows `near` there.

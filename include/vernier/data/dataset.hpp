@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/types.hpp"
@@ -20,6 +21,21 @@ namespace detail {
 /// Whether a row has finite values only.
 VERNIER_API bool finite_row(const ConstMatrixRef& values, Index row);
 VERNIER_API void check_samples(const ConstMatrixRef& joints, const PointRows& positions, const PointRows& orientations);
+VERNIER_API [[noreturn]] void refuse_coordinates(Index columns);
+
+/// Points, one a row, in a matrix of either kind.
+/// @throws std::invalid_argument on another number of coordinates than three
+template <class Rows>
+PointRows fixed_points(const Rows& rows) {
+  if constexpr (ColumnsAtRunTime<Rows>) {
+    if (rows.cols() != 3) [[unlikely]]
+      refuse_coordinates(rows.cols());
+    return PointRows(rows);
+  } else {
+    return rows;
+  }
+}
+
 /// Copies the named rows, in the given order, into a matrix of that many rows.
 VERNIER_API void copy_rows(const ConstMatrixRef& from, std::span<const Index> indices, MatrixRef to);
 
@@ -44,6 +60,12 @@ class Dataset {
     if (size() > 1) previous_.bottomRows(size() - 1) = joints_.topRows(size() - 1);
     times_ = VectorX::LinSpaced(size(), 0, static_cast<double>(size() - 1));
   }
+  /// Samples in matrices of which some have a number of columns that is known at run time only.
+  /// @throws std::invalid_argument when that number is another, beside what the other constructor refuses
+  template <class Joints, class Positions, class Orientations = PointRows>
+    requires(ColumnsAtRunTime<Joints> || ColumnsAtRunTime<Positions> || ColumnsAtRunTime<Orientations>)
+  Dataset(const Joints& joints, const Positions& positions, const Orientations& orientations = PointRows(0, 3))
+      : Dataset(detail::fixed_rows<N>(joints), detail::fixed_points(positions), detail::fixed_points(orientations)) {}
 
   /// Number of samples.
   Index size() const { return joints_.rows(); }
@@ -72,6 +94,12 @@ class Dataset {
     Dataset out = *this;
     out.previous_ = std::move(previous);
     return out;
+  }
+  /// The same samples approached from other joint values, whose number is known at run time.
+  /// @throws std::invalid_argument for another number of rows or columns
+  template <ColumnsAtRunTime Rows>
+  Dataset approached_from(const Rows& previous) const {
+    return approached_from(detail::joint_rows<N>(previous));
   }
   /// The same samples, their approach unknown.
   Dataset without_approach() const {

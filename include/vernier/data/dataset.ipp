@@ -24,6 +24,10 @@ VERNIER_IMPL void check_samples(const ConstMatrixRef& joints, const PointRows& p
         "Dataset: row ", i, " has a value that is not finite");
 }
 
+VERNIER_IMPL [[noreturn]] void refuse_coordinates(Index columns) {
+  throw std::invalid_argument(message(counted(columns, "coordinate", "coordinates"), " for a point in space"));
+}
+
 VERNIER_IMPL void copy_rows(const ConstMatrixRef& from, std::span<const Index> indices, MatrixRef to) {
   for (Index i = 0; i < to.rows(); ++i) {
     const Index row = indices[static_cast<std::size_t>(i)];

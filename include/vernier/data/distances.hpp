@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/data/dataset.hpp"
@@ -32,6 +33,10 @@ class Distances {
   Distances(JointRows<N> joints, VectorX lengths) : joints_(std::move(joints)), lengths_(std::move(lengths)) {
     detail::check_distances(joints_, lengths_);
   }
+  /// Distances at joint values whose number is known at run time.
+  /// @throws std::invalid_argument for another number of columns, beside what the other constructor refuses
+  template <ColumnsAtRunTime Rows>
+  Distances(const Rows& joints, VectorX lengths) : Distances(detail::joint_rows<N>(joints), std::move(lengths)) {}
 
   /// Number of samples.
   Index size() const { return joints_.rows(); }

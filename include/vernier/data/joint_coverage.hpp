@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "vernier/core/check.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -52,11 +54,20 @@ struct JointCoverage {
       coverage.ranges[static_cast<std::size_t>(i)] = detail::covered_ranges(joints.col(i), coverage.margin(i));
     return coverage;
   }
+  /// The ranges of measured joints whose number is known at run time.
+  /// @throws std::invalid_argument on another number of columns
+  template <ColumnsAtRunTime Rows>
+  static JointCoverage covering(const Rows& joints) {
+    return covering(detail::joint_rows<N>(joints));
+  }
 
   /// The same with the measured ranges of other measurements.
   /// @param others  of each joint, ascending; no joints: those measurements were everywhere
   /// @param margins of each joint; the larger of the two counts
+  /// @throws std::invalid_argument for ranges or margins of another number of joints
   JointCoverage joined(const std::vector<std::vector<JointRange>>& others, const VectorX& margins) const {
+    require(others.empty() || (others.size() == N && margins.size() == N), "JointCoverage: ranges of ", others.size(),
+            " joints and margins of ", margins.size(), " for an arm of ", N, " joints");
     JointCoverage out = *this;
     for (std::size_t i = 0; i < N; ++i) {
       if (others.empty()) {
@@ -78,6 +89,12 @@ struct JointCoverage {
     for (int i = 0; i < N; ++i) product *= factor(i, q(i)).value;
     return product;
   }
+  /// The gate at joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  double operator()(const Q& q) const {
+    return (*this)(detail::joint_vector<N>(q));
+  }
 
   /// Its derivative with respect to q; no allocation.
   Eigen::Matrix<double, 1, N> derivative(const JointVector<N>& q) const noexcept {
@@ -90,6 +107,12 @@ struct JointCoverage {
         if (i != j) out(j) *= factors[static_cast<std::size_t>(i)].value;
     }
     return out;
+  }
+  /// Its derivative with respect to joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  Eigen::Matrix<double, 1, N> derivative(const Q& q) const {
+    return derivative(detail::joint_vector<N>(q));
   }
 
  private:

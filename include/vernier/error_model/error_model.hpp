@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -81,8 +82,17 @@ class ApproachedErrorModel;
 /// known where the joints were measured: outside, the model falls back smoothly (by `JointCoverage`) to one fitted
 /// without them. It keeps the nominal arm in the same frames, so that commands can be corrected towards it.
 template <class C>
-class ErrorModel {
+class ErrorModel : public ChecksJoints<ErrorModel<C>> {
+  using Checks = ChecksJoints<ErrorModel>;
+
  public:
+  using Checks::approached_from;
+  using Checks::gate;
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// The kind of chain.
   using Chain = C;
   /// Chain, joint errors and frames.
@@ -170,6 +180,13 @@ class ErrorModel {
     return out;
   }
 
+  /// The same arm moved, with offsets whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  ErrorModel moved(const Isometry3& base, const Q& offsets, const Isometry3& tool) const {
+    return moved(base, detail::joint_vector<dof>(offsets), tool);
+  }
+
   /// The arm as it moves to the next configuration from given joint values: with the hysteresis of its joints.
   /// Non-owning: the model must outlive the view.
   /// @param previous joint values [rad, m]
@@ -215,8 +232,16 @@ class ErrorModel {
 
 /// An `ErrorModel` that came from known joint values: a view of it, see `ErrorModel::approached_from`.
 template <class C>
-class ApproachedErrorModel {
+class ApproachedErrorModel : public ChecksJoints<ApproachedErrorModel<C>> {
+  using Checks = ChecksJoints<ApproachedErrorModel>;
+
  public:
+  using Checks::gate;
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// The kind of chain.
   using Chain = C;
   /// Number of joints.
@@ -228,6 +253,11 @@ class ApproachedErrorModel {
       : near_(around(model.identified(), previous)), coverage_(model.coverage()) {
     if (model.fallback() != nullptr) far_.emplace(around(*model.fallback(), previous));
   }
+  /// The model, approached from joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  ApproachedErrorModel(const ErrorModel<Chain>& model, const Q& previous)
+      : ApproachedErrorModel(model, detail::joint_vector<dof>(previous)) {}
 
   /// Share of the joint-wise terms in the prediction at q, in [0, 1].
   double gate(const JointVector<dof>& q) const noexcept { return gated().gate(q); }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
 
@@ -58,6 +59,12 @@ struct FittedErrorModel : ErrorModelEstimate {
     const double gate = model.gate(q);
     return {model.pose(q), visit_covariance(q, gate, station), gate};
   }
+  /// The predicted pose at joint values whose number is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <SizedAtRunTime Q>
+  PredictedPose predicted(const Q& q, int station = 0) const {
+    return predicted(detail::joint_vector<N>(q), station);
+  }
   /// The same, approached from known joint values.
   /// @param previous joint values from which q is approached [rad, m]; not finite where unknown
   /// @param q        joint values [rad, m]
@@ -74,6 +81,13 @@ struct FittedErrorModel : ErrorModelEstimate {
     return std::isfinite(temperature) && model.thermal() != nullptr ? predict(model.at_temperature(temperature))
                                                                     : predict(model);
   }
+  /// The predicted pose, approached from known joint values, where a number of them is known at run time.
+  /// @throws std::invalid_argument on another number
+  template <class P, class Q>
+    requires(SizedAtRunTime<P> || SizedAtRunTime<Q>)
+  PredictedPose predicted_from(const P& previous, const Q& q, int station = 0,
+                               double temperature = std::numeric_limits<double>::quiet_NaN())
+  const { return predicted_from(detail::fixed_vector<N>(previous), detail::fixed_vector<N>(q), station, temperature); }
 };
 
 }  // namespace vernier

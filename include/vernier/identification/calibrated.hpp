@@ -3,6 +3,7 @@
 /// @file
 /// An identified arm beside its nominal one, both in the identified frames.
 
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/kinematics/framed.hpp"
 
 namespace vernier {
@@ -10,8 +11,15 @@ namespace vernier {
 /// The arm as identified. It keeps the nominal arm in the same base and tool frames, so that commands can be corrected
 /// towards it.
 template <KinematicModel Model>
-class Calibrated {
+class Calibrated : public ChecksJoints<Calibrated<Model>> {
+  using Checks = ChecksJoints<Calibrated>;
+
  public:
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+
   /// Number of joints.
   static constexpr int dof = Model::dof;
 

@@ -14,36 +14,34 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/fitted_arm.hpp"
+#include "vernier/io/provenance.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
 namespace vernier {
-
-/// Where a calibration comes from.
-struct Provenance {
-  std::string data_file{};           ///< name of the file of measured poses; of several, joined by commas
-  Index rows = 0;                    ///< number of poses it was fitted to, or of touches
-  std::string date{};                ///< as given by the caller
-  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
-  std::string measured = "poses";    ///< what was measured: poses, or positions; or contacts
-  double position_sigma = 0;         ///< of a visit, per component, as estimated from the data [m]; 0: unknown
-  double left_out_error = 0;         ///< rms position error of poses that were left out in turn [m]; 0: unknown
-  double held_out_error = 0;         ///< mean position error of poses it was not fitted to [m]; 0: unknown
-
-  /// Equal in every entry.
-  bool operator==(const Provenance&) const = default;
-};
 
 /// A nominal chain, its error model in base and tool frames, its limits, and optionally a learned position error on
 /// top. A kinematic model (of the identified arm) and a compensator. Frames are kept by their six values, so that what
 /// is loaded from a file is bit for bit what was saved.
 template <int N, class Convention = StandardDh>
-class CalibratedRobot {
+class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
+  using Checks = ChecksJoints<CalibratedRobot>;
+
  public:
+  using Checks::approached_from;
+  using Checks::correct;
+  using Checks::gate;
+  using Checks::jacobian;
+  using Checks::pose;
+  using Checks::pose_and_jacobian;
+  using Checks::position;
+  using Checks::predict;
+
   /// Number of joints.
   static constexpr int dof = N;
   /// The kind of chain.
@@ -193,11 +191,25 @@ class CalibratedRobot {
       out[static_cast<std::size_t>(rows[k])] = radius_95(covariances[k].template topLeftCorner<3, 3>());
     return out;
   }
+  /// These radii for commands whose number of joints is known at run time.
+  /// @throws std::invalid_argument on another number of columns, or where the covariance was not kept
+  template <ColumnsAtRunTime Rows>
+  std::vector<double> radii_95(const Rows& commands) const {
+    return radii_95(detail::joint_rows<N>(commands));
+  }
 
   /// The arm as it moves to a configuration from known joint values: a kinematic model, a view of the robot, which must
   /// outlive it.
-  class Approached {
+  class Approached : public ChecksJoints<Approached> {
+    using Checks = ChecksJoints<Approached>;
+
    public:
+    using Checks::gate;
+    using Checks::jacobian;
+    using Checks::pose;
+    using Checks::pose_and_jacobian;
+    using Checks::position;
+
     /// Number of joints.
     static constexpr int dof = N;
 
@@ -205,6 +217,11 @@ class CalibratedRobot {
     /// @param previous joint values from which it moves to the next configuration [rad, m]; not finite where unknown
     Approached(const CalibratedRobot& robot, const JointVector<N>& previous) noexcept
         : robot_(&robot), model_(robot.model_, previous) {}
+    /// The robot, approached from joint values whose number is known at run time.
+    /// @throws std::invalid_argument on another number
+    template <SizedAtRunTime Q>
+    Approached(const CalibratedRobot& robot, const Q& previous)
+        : Approached(robot, detail::joint_vector<N>(previous)) {}
 
     /// base_T_tool.
     Isometry3 pose(const JointVector<N>& q) const noexcept {

@@ -14,26 +14,33 @@
 
 namespace vernier {
 
+template <int N, class Convention>
+struct Robot;
+
 namespace detail {
 
 template <class Arm>
-struct ChainOfArm {};
+struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot {};
 template <int N, class Convention>
-struct ChainOfArm<DhChain<N, Convention>> {
+struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<DhChain<N, Convention>> {
   using type = DhChain<N, Convention>;
 };
 template <int N, class Convention>
-struct ChainOfArm<Framed<DhChain<N, Convention>>> {
+struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Framed<DhChain<N, Convention>>> {
+  using type = DhChain<N, Convention>;
+};
+template <int N, class Convention>
+struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Robot<N, Convention>> {
   using type = DhChain<N, Convention>;
 };
 
 }  // namespace detail
 
-/// The chain of a nominal arm: of a `DhChain`, or of one between known base and tool frames.
+/// The chain of a nominal arm: of a `DhChain`, of one between known base and tool frames, or of a `Robot`.
 template <class Arm>
-using ChainOf = typename detail::ChainOfArm<Arm>::type;
+using ChainOf = typename detail::nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Arm>::type;
 
-/// A nominal arm: a `DhChain`, or one between known (or guessed) base and tool frames.
+/// A nominal arm: a `DhChain`, one between known (or guessed) base and tool frames, or a `Robot` of the catalogue.
 template <class Arm>
 concept NominalArm = requires {
   typename ChainOf<Arm>;
@@ -43,6 +50,11 @@ concept NominalArm = requires {
 template <NominalArm Arm>
 Framed<ChainOf<Arm>> in_frames(const Arm& arm) {
   return Framed<ChainOf<Arm>>(arm);
+}
+/// The chain of a robot between frames that are identity.
+template <int N, class Convention>
+Framed<DhChain<N, Convention>> in_frames(const Robot<N, Convention>& robot) {
+  return Framed<DhChain<N, Convention>>(robot.chain);
 }
 
 /// What `Framed<DhChain<N, Convention>>` is for a number of joints known at compile time: what identification computes

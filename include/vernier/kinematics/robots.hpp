@@ -14,9 +14,13 @@
 
 namespace vernier {
 
-/// A nominal arm: its chain, its joint limits and its name in the catalogue.
+/// A nominal arm: its chain, its joint limits and its name in the catalogue. Functions that take a `NominalArm` take it
+/// as they take its chain.
 template <int N, class Convention = StandardDh>
 struct Robot {
+  /// Number of joints.
+  static constexpr int dof = N;
+
   /// The nominal chain.
   DhChain<N, Convention> chain;
   /// Joint limits.

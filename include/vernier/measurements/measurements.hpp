@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/checked_joints.hpp"
 #include "vernier/data/contacts.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/distances.hpp"
 #include "vernier/data/ranges.hpp"
+#include "vernier/measurements/detail/explain_sensor.hpp"
 #include "vernier/measurements/distance_sensor.hpp"
 #include "vernier/measurements/measured_set.hpp"
 #include "vernier/measurements/pose_sensor.hpp"
@@ -21,12 +23,35 @@
 
 namespace vernier {
 
+template <int N>
+class Measurements;
+
 namespace detail {
 
 /// A contact as a set.
 VERNIER_API MeasuredSet contact_set(const Contact& contact);
 /// A name for messages: the one that is given, else the files of the rows, else the kind with a number.
 VERNIER_API std::string set_name(std::string given, const RowOrigin& origin, const char* kind, std::size_t number);
+
+/// Number of joints of data; 0 of anything else.
+template <class Data>
+inline constexpr int joints_of_one = 0;
+template <int M>
+inline constexpr int joints_of_one<Dataset<M>> = M;
+template <int M>
+inline constexpr int joints_of_one<Distances<M>> = M;
+template <int M>
+inline constexpr int joints_of_one<Measurements<M>> = M;
+/// Number of joints of data, or of a range of them; 0 of anything else.
+template <class Data>
+inline constexpr int joints_of = joints_of_one<Data>;
+template <class Data>
+  requires requires { typename Data::value_type; }
+inline constexpr int joints_of<Data> = joints_of_one<typename Data::value_type>;
+
+/// Data of an arm of another number of joints than N.
+template <class Data, int N>
+concept DataOfOtherJoints = (joints_of<Data> != 0 && joints_of<Data> != N);
 
 }  // namespace detail
 
@@ -48,10 +73,9 @@ class Measurements {
       for (const auto& set : sets) add(set);
     }
   /// Data of an arm with another number of joints are refused.
-  template <template <int> class Data, int M>
-    requires(M != N && (std::same_as<Data<M>, Dataset<M>> || std::same_as<Data<M>, Distances<M>>))
-  Measurements(const Data<M>&) {  // NOLINT
-    static_assert(M == N, "the data have another number of joints than the arm");
+  template <detail::DataOfOtherJoints<N> Data>
+  Measurements(const Data&) {  // NOLINT
+    static_assert(detail::joints_of<Data> == N, "the data have another number of joints than the arm");
   }
 
   /// Poses from a further station, which has a base frame of its own.
@@ -90,29 +114,48 @@ class Measurements {
     for (const Contact& contact : contacts) add(contact);
     return *this;
   }
+  /// Data of an arm with another number of joints are refused.
+  template <detail::DataOfOtherJoints<N> Data>
+  Measurements& add(const Data&, std::string = {}) {
+    static_assert(detail::joints_of<Data> == N, "the data have another number of joints than the arm");
+    return *this;
+  }
   /// Measurements by any sensor.
+  /// @tparam S     a `Sensor`
   /// @param joints n x N [rad, m]
   /// @throws std::invalid_argument for another number of measurements
-  template <Sensor S>
+  template <class S>
   Measurements& add(const JointRows<N>& joints, S sensor, std::string name = {}) {
-    MeasuredSet set(std::move(name), joints, std::move(sensor));
-    const auto end =
-        std::find_if(sets_.begin(), sets_.end(), [](const MeasuredSet& other) { return !other.locates(); });
-    sets_.insert(set.locates() ? end : sets_.end(), std::move(set));
+    if constexpr (detail::explain_sensor<S>() && Sensor<S>) {
+      MeasuredSet set(std::move(name), joints, std::move(sensor));
+      const auto end =
+          std::find_if(sets_.begin(), sets_.end(), [](const MeasuredSet& other) { return !other.locates(); });
+      sets_.insert(set.locates() ? end : sets_.end(), std::move(set));
+    }
     return *this;
+  }
+  /// Measurements by any sensor, of as many joints as are known at run time.
+  /// @throws std::invalid_argument for another number of measurements, or of joints
+  template <ColumnsAtRunTime Rows, class S>
+  Measurements& add(const Rows& joints, S sensor, std::string name = {}) {
+    return add(detail::joint_rows<N>(joints), std::move(sensor), std::move(name));
   }
   /// Measurements between two configurations by a sensor of one length: each sees the pose at `to` in the tool frame of
   /// the pose at `from`, wherever the base stands. With a `DistanceSensor` these are distances between two positions of
   /// the tool point.
+  /// @tparam S      a `Sensor`
   /// @param from,to n x N [rad, m]
-  /// @throws std::invalid_argument for other numbers of measurements, or a sensor of several values
-  template <Sensor S>
-  Measurements& add_between(const JointRows<N>& from, const JointRows<N>& to, S sensor, std::string name = {}) {
-    MeasuredSet set(std::move(name), to, std::move(sensor));
-    require(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(), " second");
-    require(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());
-    set.seen_from = from;
-    sets_.push_back(std::move(set));
+  /// @throws std::invalid_argument for other numbers of measurements or of joints, or a sensor of several values
+  template <class From, class To, class S>
+  Measurements& add_between(const From& from, const To& to, S sensor, std::string name = {}) {
+    if constexpr (detail::explain_sensor<S>() && Sensor<S>) {
+      MeasuredSet set(std::move(name), detail::fixed_rows<N>(to), std::move(sensor));
+      set.seen_from = detail::fixed_rows<N>(from);
+      require(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(),
+              " second");
+      require(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());
+      sets_.push_back(std::move(set));
+    }
     return *this;
   }
 

@@ -1,0 +1,12 @@
+// Something that is no arm, calibrated.
+// expect: nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot
+#include <vernier/calibration/calibrate.hpp>
+#include <vernier/kinematics/robots.hpp>
+
+#ifdef MISTAKE
+struct Arm {};
+#else
+using Arm = vernier::Robot<6>;
+#endif
+
+double seconds(const Arm& arm, const vernier::Dataset<6>& data) { return vernier::calibrate(arm, data).fit_seconds; }

@@ -69,11 +69,10 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
     constraints.tracker = vn::Tracker{.position = mm * vn::Vector3(o.tracker[0], o.tracker[1], o.tracker[2]),
                                       .acceptance = o.acceptance_deg * std::numbers::pi / 180};
   if (o.link_radius_mm > 0) constraints.link_radii.assign(N, mm * o.link_radius_mm);
-  vn::MeasurementCandidates<N> measured;
+  vn::Measurements<N> measured;
   if (!o.data.empty()) {
-    const auto data = vn::read_dataset<N>(o.data, types);
-    measured = {data.joints(), data.previous(), {}};
-    options.oriented = options.oriented || data.has_orientations();
+    measured.add(vn::read_dataset<N>(o.data, types));
+    options.oriented = options.oriented || measured.poses().front().has_orientations();
   }
   vn::Framed<vn::DhChain<N>> arm = robot.arm;
   double left_out_error = 0;
@@ -114,7 +113,7 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
           arm.positions(plan.joints),
           arm.positions(candidates.joints),
           {},
-          measured.joints.rows(),
+          measured.size(),
           left_out_error};
 }
 

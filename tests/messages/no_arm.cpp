@@ -1,5 +1,5 @@
 // Something that is no arm, calibrated.
-// expect: nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot
+// expect: calibrate takes an arm as designed: a Robot, a DhChain, or a Framed DhChain
 #include <vernier/calibration/calibrate.hpp>
 #include <vernier/kinematics/robots.hpp>
 

@@ -33,6 +33,12 @@ MeasurementCandidates<6> some_candidates(Index n, std::uint64_t seed) {
   return out;
 }
 
+/// Configurations that were measured, wherever.
+Measurements<6> as_measured(const MeasurementCandidates<6>& at) {
+  if (at.joints.rows() == 0) return {};
+  return Dataset<6>(at.joints, PointRows::Zero(at.joints.rows(), 3)).approached_from(at.previous);
+}
+
 PlanOptions few_harmonics(Index count) {
   PlanOptions out{.count = count};
   out.errors.harmonics = 6;
@@ -173,7 +179,8 @@ TEST(PlanMeasurements, MeasurementsOfBeforeDecideOnTheOrders) {
   const MeasurementCandidates<6> candidates = some_candidates(5, 9);
   Index before = 0;
   for (const Index made : {397, 398}) {
-    const Index unknowns = plan_measurements(chain, candidates, options, some_candidates(made, 10)).unknowns;
+    const Index unknowns =
+        plan_measurements(chain, candidates, options, as_measured(some_candidates(made, 10))).unknowns;
     EXPECT_EQ(unknowns - before, made == 397 ? unknowns : 12);
     before = unknowns;
   }
@@ -318,7 +325,7 @@ TEST(PlanMeasurements, OnePoseMeasuredBeforeCounts) {
   measured.previous.resize(1, 6);
   set_configuration(measured.joints, 0, configuration(candidates.joints, at_once.chosen[0]));
   set_configuration(measured.previous, 0, configuration(candidates.previous, at_once.chosen[0]));
-  const auto more = plan_measurements(chain, candidates, few_harmonics(3), measured);
+  const auto more = plan_measurements(chain, candidates, few_harmonics(3), as_measured(measured));
   EXPECT_EQ(more.chosen, (std::vector<Index>(at_once.chosen.begin() + 1, at_once.chosen.end())));
   EXPECT_NEAR(more.log_det(3), at_once.log_det(4) - at_once.log_det(1), 1e-6);
 }
@@ -339,7 +346,7 @@ TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   for (Index i = 0; i < 20; ++i)
     set_configuration(measured.previous, i,
                       configuration(candidates.previous, plan.chosen[static_cast<std::size_t>(i)]));
-  const auto more = plan_measurements(chain, candidates, few_harmonics(10), measured);
+  const auto more = plan_measurements(chain, candidates, few_harmonics(10), as_measured(measured));
   PlanOptions both = few_harmonics(30);
   const auto at_once = plan_measurements(chain, candidates, both);
   for (const Index c : more.chosen) EXPECT_EQ(std::find(plan.chosen.begin(), plan.chosen.end(), c), plan.chosen.end());
@@ -348,7 +355,7 @@ TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   // the bound is one without them
   PlanOptions bounded = few_harmonics(10);
   bounded.bound_iterations = 2;
-  EXPECT_TRUE(std::isinf(plan_measurements(chain, candidates, bounded, measured).bound));
+  EXPECT_TRUE(std::isinf(plan_measurements(chain, candidates, bounded, as_measured(measured)).bound));
 }
 
 TEST(PlanMeasurements, VisitsRegisterFirstAndCheckRepeatedly) {
@@ -420,7 +427,7 @@ TEST(PlanMeasurements, CoversTheBinsOfAllJoints) {
   // what was measured before covers, too
   MeasurementCandidates<6> measured;
   measured.joints = covering.joints;
-  EXPECT_TRUE(plan_measurements(chain, some_candidates(300, 8), options, measured).uncovered.empty());
+  EXPECT_TRUE(plan_measurements(chain, some_candidates(300, 8), options, as_measured(measured)).uncovered.empty());
 }
 
 // Bins of a quarter from the smallest value to the largest, which lies in the last of them.
@@ -438,7 +445,7 @@ TEST(PlanMeasurements, BinsByHand) {
     for (const bool turned : {false, true})
       for (const auto& measured : {MeasurementCandidates<6>(), outside, other_side}) {
         const std::vector<double> values = turned ? std::vector<double>{0.5, 0} : std::vector<double>{0, 0.5};
-        const auto plan = plan_measurements(chain, in_a_row(values), options, measured);
+        const auto plan = plan_measurements(chain, in_a_row(values), options, as_measured(measured));
         ASSERT_EQ(plan.uncovered.size(), 2u) << wanted;
         for (const int joint : {0, 1}) {
           const UncoveredBin& bin = plan.uncovered[static_cast<std::size_t>(joint)];
@@ -450,7 +457,7 @@ TEST(PlanMeasurements, BinsByHand) {
   }
   // the half that was measured needs no further pose
   for (const double half : {0.1, 0.4}) {
-    const auto rest = plan_measurements(chain, in_a_row({0, 0.5}), options, in_a_row({half}));
+    const auto rest = plan_measurements(chain, in_a_row({0, 0.5}), options, as_measured(in_a_row({half})));
     EXPECT_EQ(rest.chosen, std::vector<Index>{half < 0.25 ? 1 : 0});
     EXPECT_TRUE(rest.uncovered.empty());
   }
@@ -467,7 +474,8 @@ TEST(PlanMeasurements, BinsMayWantSeveralMeasurements) {
   options.bin_count = 2;
   const auto uncovered = [&](Index count, const MeasurementCandidates<6>& measured) {
     options.count = count;
-    return plan_measurements(chain, in_a_row({0, 0.05, 0.1, 0.55, 0.6, 0.65}), options, measured).uncovered;
+    return plan_measurements(chain, in_a_row({0, 0.05, 0.1, 0.55, 0.6, 0.65}), options, as_measured(measured))
+        .uncovered;
   };
   for (const UncoveredBin& bin : uncovered(3, {})) EXPECT_LT(bin.joint, 2);
   EXPECT_EQ(uncovered(3, {}).size(), 2u);  // one bin of each of the joints that move
@@ -608,10 +616,12 @@ TEST(PlanMeasurements, RefusesWhatIsNotUsable) {
   for (const int bad : {0, 1, 2}) {
     std::array<MeasurementCandidates<6>, 3> rows{some_candidates(3, 1), some_candidates(3, 2), some_candidates(3, 3)};
     rows[static_cast<std::size_t>(bad)].joints(1, 2) = std::nan("");
-    EXPECT_EQ(vernier_test::complaint([&] {
-                (void)plan_measurements(robots::abb_irb120().chain, rows[0], few_harmonics(2), rows[1], rows[2].joints);
-              }),
-              "plan_measurements: a joint value is not finite")
+    EXPECT_EQ(
+        vernier_test::complaint([&] {
+          (void)plan_measurements(robots::abb_irb120().chain, rows[0], few_harmonics(2), as_measured(rows[1]),
+                                  rows[2].joints);
+        }),
+        bad == 1 ? "Dataset: row 1 has a value that is not finite" : "plan_measurements: a joint value is not finite")
         << bad;
   }
 }

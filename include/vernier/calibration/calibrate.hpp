@@ -128,4 +128,11 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   return out;
 }
 
+/// Something else than an arm is refused in a sentence.
+template <class Arm, class... More>
+  requires(!NominalArm<Arm>)
+void calibrate(const Arm&, const More&...) {
+  static_assert(NominalArm<Arm>, "calibrate takes an arm as designed: a Robot, a DhChain, or a Framed DhChain");
+}
+
 }  // namespace vernier

@@ -172,9 +172,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     }
     return normalised;
   });
-  // 95 % of chi squared with 3 degrees of freedom
   const auto within = std::count_if(out.normalised_errors.begin(), out.normalised_errors.end(),
-                                    [](double error) { return error <= std::sqrt(7.8147); });
+                                    [](double error) { return error <= std::sqrt(chi_square_95); });
   out.ellipsoid_coverage = static_cast<double>(within) / static_cast<double>(out.normalised_errors.size());
   out.left_out_errors = errors.left_out_errors;
   out.left_out_rows = errors.left_out_rows;

@@ -163,7 +163,9 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   ErrorModel moved(const Isometry3& base, const JointVector<dof>& offsets, const Isometry3& tool) const {
     const auto move = [&](const Arm& arm) {
       auto p = arm.chain().parameters();
-      for (int i = 0; i < dof; ++i) p(5 * i + (arm.chain().row(i).joint == JointType::revolute ? 3 : 2)) += offsets(i);
+      for (int i = 0; i < dof; ++i)
+        p(5 * i + static_cast<int>(arm.chain().row(i).joint == JointType::revolute ? DhParameter::theta
+                                                                                   : DhParameter::d)) += offsets(i);
       return Arm(WithJointErrors<Chain>(arm.chain().with_parameters(p), arm.model().joint_errors()),
                  Isometry3(base * arm.base()), Isometry3(arm.tool() * tool));
     };

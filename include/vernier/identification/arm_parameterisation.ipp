@@ -196,8 +196,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     };
     rows.factor.resize(6, factored ? n : 0);
     for (int j = 0; factored && j < n; ++j)  // a joint adds to a parameter of its row
-      copy(6 + 5 * j + static_cast<int>(arm.chain().revolute(j) ? DhParameter::theta : DhParameter::d), 1,
-           rows.factor.data() + 6 * j);
+      copy(arm.joint_parameter(j), 1, rows.factor.data() + 6 * j);
     rows.dense.resize(6, num_dense());
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       double* column = rows.dense.data() + 6 * k;

@@ -39,7 +39,7 @@ VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std
   out.advice = report.next();
   out.left_out = report.left_out_errors.size();
   if (out.left_out > 0) {
-    const double sigma = quantile(report.left_out_errors, 0.5) / 1.5382;  // the median of the norm of three components
+    const double sigma = quantile(report.left_out_errors, 0.5) / median_norm;
     for (Index k = 0; k < out.left_out; ++k) {
       if (!(report.left_out_errors(k) > 4 * sigma)) continue;
       const auto row = static_cast<std::size_t>(report.left_out_rows[static_cast<std::size_t>(k)]);
@@ -65,7 +65,7 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
   out.passed = report.valid;
   out.poses.normalised = report.normalised;
   const auto within = std::count_if(report.normalised.begin(), report.normalised.end(),
-                                    [](double error) { return error <= std::sqrt(7.8147); });
+                                    [](double error) { return error <= std::sqrt(chi_square_95); });
   out.ellipsoid_coverage = static_cast<double>(within) / static_cast<double>(report.normalised.size());
   ReportTable joints{"Joint by joint",
                      message("Changes of zero and of transmission once a turn, each joint looked at alone; p is the "

@@ -20,17 +20,17 @@ struct Robot;
 namespace detail {
 
 template <class Arm>
-struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot {};
+struct ChainOfArm {};
 template <int N, class Convention>
-struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<DhChain<N, Convention>> {
+struct ChainOfArm<DhChain<N, Convention>> {
   using type = DhChain<N, Convention>;
 };
 template <int N, class Convention>
-struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Framed<DhChain<N, Convention>>> {
+struct ChainOfArm<Framed<DhChain<N, Convention>>> {
   using type = DhChain<N, Convention>;
 };
 template <int N, class Convention>
-struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Robot<N, Convention>> {
+struct ChainOfArm<Robot<N, Convention>> {
   using type = DhChain<N, Convention>;
 };
 
@@ -38,7 +38,7 @@ struct nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Robot<N, Conventio
 
 /// The chain of a nominal arm: of a `DhChain`, of one between known base and tool frames, or of a `Robot`.
 template <class Arm>
-using ChainOf = typename detail::nominal_arm_must_be_DhChain_or_Framed_DhChain_or_Robot<Arm>::type;
+using ChainOf = typename detail::ChainOfArm<Arm>::type;
 
 /// A nominal arm: a `DhChain`, one between known (or guessed) base and tool frames, or a `Robot` of the catalogue.
 template <class Arm>
@@ -57,9 +57,21 @@ Framed<DhChain<N, Convention>> in_frames(const Robot<N, Convention>& robot) {
   return Framed<DhChain<N, Convention>>(robot.chain);
 }
 
+/// Where the parameters of an arm stand in a vector: six of the base frame, five per row of the chain, six of the tool
+/// frame.
+struct ArmParameters {
+  /// The first one of the chain.
+  static constexpr Index chain_begin = 6;
+  /// The first one behind the chain: of the tool frame.
+  static constexpr Index chain_end(Index joints) { return chain_begin + 5 * joints; }
+  /// One of a row, from 0.
+  static constexpr Index of_row(Index row, DhParameter parameter) {
+    return chain_begin + 5 * row + static_cast<Index>(parameter);
+  }
+};
+
 /// What `Framed<DhChain<N, Convention>>` is for a number of joints known at compile time: what identification computes
-/// with, so that it is compiled once for all arms. Parameters: 6 of the base, 5 a joint (a, alpha, d, theta, beta), 6
-/// of the tool.
+/// with, so that it is compiled once for all arms. Its parameters are in the order of `ArmParameters`.
 class ArmGeometry {
  public:
   /// A chain between frames.
@@ -86,7 +98,11 @@ class ArmGeometry {
   /// Number of joints.
   int joints() const { return chain_.joints(); }
   /// Number of parameters.
-  Index num_parameters() const { return 12 + 5 * joints(); }
+  Index num_parameters() const { return ArmParameters::chain_end(joints()) + 6; }
+  /// The parameter to which a joint's value adds: theta of a revolute joint, d of a prismatic one.
+  Index joint_parameter(int joint) const {
+    return ArmParameters::of_row(joint, chain_.revolute(joint) ? DhParameter::theta : DhParameter::d);
+  }
   /// The chain between the frames.
   const detail::ChainTable& chain() const { return chain_; }
   /// Base frame with its six values.

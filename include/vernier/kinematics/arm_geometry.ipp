@@ -24,7 +24,7 @@ VERNIER_IMPL ArmGeometry ArmGeometry::with_parameters(const ConstVectorRef& valu
   };
   std::vector<DhRow> rows = chain_.rows();
   for (int i = 0; i < joints(); ++i) {
-    const double* p = values.data() + 6 + 5 * i;
+    const double* p = values.data() + ArmParameters::of_row(i, DhParameter::a);
     DhRow& row = rows[static_cast<std::size_t>(i)];
     row = {p[0], p[1], p[2], p[3], p[4], row.joint};
   }

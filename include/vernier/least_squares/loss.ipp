@@ -23,8 +23,8 @@ VERNIER_IMPL double robust_sigma(std::vector<double> norms, int dimension) {
   if (norms.empty()) return 0;
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());
-  // the median norm of a standard normal 3-vector is 1.538, of a standard normal number 0.6745
-  return *middle / (dimension == 1 ? 0.6745 : 1.538);
+  constexpr double median_size = 0.6744897502;  // of a standard normal number
+  return *middle / (dimension == 1 ? median_size : median_norm);
 }
 
 VERNIER_IMPL double robust_threshold(std::vector<double> norms, int dimension) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/function_ref.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/data/row_origin.hpp"
 #include "vernier/measurements/sensor.hpp"
@@ -79,7 +80,11 @@ class MeasuredSet {
   /// See `Plausibility`.
   const Plausibility& plausibility() const { return plausibility_; }
 
-  /// Measurement i at a pose of the tool point in the set's frame.
+  /// Poses as the sensor sees them: those of `joints`, in the tool frames of `seen_from` where there are some.
+  /// @param poses_of base_T_tool at n configurations
+  VERNIER_API std::vector<Isometry3> seen_poses(
+      FunctionRef<std::vector<Isometry3>(const MatrixX& joints)> poses_of) const;
+  /// Measurement i at a pose of the tool point as the sensor sees it.
   VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
   /// Base frame that fits poses in the arm's own base frame. Where the sensor leaves rotations open and would stand
   /// upside down, it turns the set's frame by half a turn: rotation vectors are singular there.

@@ -26,6 +26,15 @@ VERNIER_IMPL bool MeasuredSet::locates() const {
          std::all_of(unknown_frame_.begin(), unknown_frame_.end(), [](bool unknown) { return unknown; });
 }
 
+VERNIER_IMPL std::vector<Isometry3> MeasuredSet::seen_poses(
+    FunctionRef<std::vector<Isometry3>(const MatrixX& joints)> poses_of) const {
+  std::vector<Isometry3> out = poses_of(joints);
+  if (seen_from.rows() == 0) return out;
+  const std::vector<Isometry3> from = poses_of(seen_from);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = composed(inverse_of(from[i]), out[i]);
+  return out;
+}
+
 VERNIER_IMPL void MeasuredSet::sense(Index i, const Isometry3& pose, SensedRows& rows) const {
   const Index reading = i % size_;
   if (turned_.isIdentity(0)) return functions_->sense(sensor_.get(), reading, pose, rows);
@@ -61,7 +70,11 @@ VERNIER_IMPL MeasuredSet MeasuredSet::at_joints(MatrixX other) const {
   MeasuredSet out = *this;
   out.joints = std::move(other);
   out.previous.resize(0, 0);
-  out.seen_from.resize(0, 0);
+  if (seen_from.rows() > 0) {  // the same configurations, in another order
+    out.seen_from = out.joints;
+    for (Index i = 0; i < out.size(); ++i)
+      for (Index j = 0; j < out.joints.cols(); ++j) out.seen_from(i, j) = out.joints(out.size() - 1 - i, j);
+  }
   out.times.resize(0);
   out.temperatures.resize(0);
   out.origin = {};

@@ -10,6 +10,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
+#include "vernier/measurements/measurements.hpp"
 #include "vernier/planning/detail/expected_rows.hpp"
 #include "vernier/planning/measurement_constraints.hpp"
 #include "vernier/planning/pose_design.hpp"
@@ -116,20 +117,25 @@ MeasurementCandidates<Arm::dof> sample_candidates(const Arm& arm, const JointLim
 /// @param arm        as designed, with its tool
 /// @param candidates to choose from
 /// @param options    how many, by which criterion, for which fit
-/// @param measured   what was measured before, in the same frame: the plan is what to add
+/// @param measured   poses that were measured before: the plan is what to add
 /// @param region     joint rows of the working region, whose positions are to be predicted well; without rows some of
 ///                   the candidates
 /// @throws std::invalid_argument for fewer candidates than measurements, or an unusable option
 template <NominalArm Arm>
 MeasurementPlan<Arm::dof> plan_measurements(const Arm& arm, const MeasurementCandidates<Arm::dof>& candidates,
                                             const PlanOptions& options = {},
-                                            const MeasurementCandidates<Arm::dof>& measured = {},
+                                            const Measurements<Arm::dof>& measured = {},
                                             const JointRows<Arm::dof>& region = JointRows<Arm::dof>(0, Arm::dof)) {
-  MeasurementPlan<Arm::dof> out{
-      detail::plan_measurements(ArmGeometry(in_frames(arm)),
-                                {candidates.joints, candidates.previous, measured.joints, measured.previous, region},
-                                options),
-      JointRows<Arm::dof>(), candidates.rejected};
+  detail::PlanInput input{candidates.joints, candidates.previous, MatrixX(0, Arm::dof), MatrixX(0, Arm::dof), region};
+  for (const Dataset<Arm::dof>& poses : measured.poses()) {
+    const Index before = input.measured.rows(), rows = before + poses.size();
+    input.measured.conservativeResize(rows, Arm::dof);
+    input.measured_previous.conservativeResize(rows, Arm::dof);
+    input.measured.bottomRows(poses.size()) = poses.joints();
+    input.measured_previous.bottomRows(poses.size()) = poses.previous();
+  }
+  MeasurementPlan<Arm::dof> out{detail::plan_measurements(ArmGeometry(in_frames(arm)), input, options),
+                                JointRows<Arm::dof>(), candidates.rejected};
   out.joints = detail::rows_of(candidates.joints, out.chosen);
   return out;
 }

@@ -8,6 +8,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
+#include "vernier/least_squares/loss.hpp"
 #include "vernier/measurements/pose_sensor.hpp"
 
 namespace vernier::detail {
@@ -36,9 +37,6 @@ VERNIER_API double median_of(std::vector<double> values) {
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
-
-/// Median of the norm of three standard normal components.
-constexpr double median_norm = 1.538172254;
 
 VERNIER_IMPL double robust_scale(const PointRows& residuals) {
   const VectorX norms = distances_from(residuals, Vector3::Zero());
@@ -78,13 +76,12 @@ VERNIER_IMPL VectorX audit_frames_std(const ArmGeometry& arm, bool oriented) {
 VERNIER_IMPL VectorX audit_geometry_std(const ArmGeometry& arm, bool oriented, double length_std, double angle_std) {
   VectorX out = audit_frames_std(arm, oriented);
   for (int j = 0; j < arm.joints(); ++j)
-    for (Index k = 0; k < 5; ++k) out(6 + 5 * j + k) = k == 0 || k == 2 ? length_std : angle_std;
+    for (Index k = 0; k < 5; ++k)
+      out(ArmParameters::of_row(j, DhParameter::a) + k) = k == 0 || k == 2 ? length_std : angle_std;
   return out;
 }
 
-VERNIER_IMPL Index zero_parameter(const ArmGeometry& arm, int joint) {
-  return 6 + 5 * joint + (arm.chain().revolute(joint) ? 3 : 2);
-}
+VERNIER_IMPL Index zero_parameter(const ArmGeometry& arm, int joint) { return arm.joint_parameter(joint); }
 
 /// Free columns, and the precisions of their priors.
 struct AuditColumns {

@@ -23,11 +23,11 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
   const std::size_t stations = input.sets.size();
   std::size_t locating = 0;
   while (locating < stations && input.sets[locating].locates()) ++locating;
-  const Index chain_end = 6 + 5 * input.identified.joints();
+  const Index chain_end = ArmParameters::chain_end(input.identified.joints());
   std::vector<GeometricUnknown> out;
   for (const Index k : input.identification.free) {
     const ParameterEstimate& p = input.identification.parameters[static_cast<std::size_t>(k)];
-    const bool of_chain = k >= 6 && k < chain_end;
+    const bool of_chain = k >= ArmParameters::chain_begin && k < chain_end;
     // thirty expected sizes do not affect what is determined
     const double deviation = std::isfinite(p.prior_std) ? p.prior_std / p.scale : 30;
     const double precision = of_chain ? 1 / (deviation * deviation) : 0;

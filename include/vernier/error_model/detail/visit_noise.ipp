@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "vernier/error_model/detail/visit_noise.hpp"
+#include "vernier/least_squares/loss.hpp"
 
 namespace vernier::detail {
 
@@ -32,7 +33,7 @@ inline ExplainedError explained(const LeftOutVisit& visit, double space, double 
 VERNIER_API void widen(const std::vector<LeftOutVisit>& visits, VisitNoise& noise) {
   constexpr std::size_t enough = 100;
   if (visits.size() < enough) return;
-  constexpr double within = 7.8147;  // 95 % of chi squared with 3 degrees of freedom
+  constexpr double within = chi_square_95;
   const auto held = [&](const VisitNoise& wider) {
     std::size_t count = 0;
     for (const LeftOutVisit& v : visits)

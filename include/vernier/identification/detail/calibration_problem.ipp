@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
@@ -22,6 +23,9 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
   for (const MeasuredSet& set : sets_)
     if (set.locates()) validation_blocks_ += set.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
+  for (const MeasuredSet& set : sets_)
+    require(joint_sigma == 0 || set.seen_from.rows() == 0, set.name,
+            ": errors of joint readings are not estimated between two configurations");
 }
 
 VERNIER_IMPL BlockSystem CalibrationProblem::system() const {

@@ -39,7 +39,7 @@ VERNIER_IMPL MatrixX touching_joints(const ArmGeometry& arm, const MeasuredSet& 
       set.sense(i, at.poses[static_cast<std::size_t>(i)], sensed);
       MatrixX rows = MatrixX::Zero(values, dof);
       for (int j = 0; j < static_cast<int>(dof); ++j) {  // a joint adds to a parameter of its row
-        const Index k = 6 + 5 * j + static_cast<int>(arm.chain().revolute(j) ? DhParameter::theta : DhParameter::d);
+        const Index k = arm.joint_parameter(j);
         for (Index c = 0; c < 6; ++c)
           for (Index r = 0; r < values; ++r)
             rows(r, j) += sensed.motion(r, c) * at.jacobians.data()[(6 * k + c) * n + i];

@@ -211,7 +211,8 @@ class IdentificationRun {
   VERNIER_API Rms rms(const ArmGeometry& arm) const {
     Rms sum;
     SensedRows sensed;
-    const std::vector<Isometry3> poses = arm.poses(data().joints);
+    const auto poses_of = [&](const MatrixX& joints) { return arm.poses(joints); };
+    const std::vector<Isometry3> poses = data().seen_poses(poses_of);
     for (Index i = 0; i < data().size(); ++i) {
       data().sense(i, poses[static_cast<std::size_t>(i)], sensed);
       sum.length += sensed.residual.head<3>().squaredNorm();

@@ -14,7 +14,7 @@ namespace vernier::detail {
 struct IdentificationPlan {
   VERNIER_API IdentificationPlan(const ArmGeometry& nominal, const IdentifyOptions& options);
 
-  Index chain_begin = 6, chain_end;
+  Index chain_begin = ArmParameters::chain_begin, chain_end;
   std::vector<std::string> names;
   std::vector<ParameterKind> kinds;
   VectorX scales;                 ///< expected size of the error of each parameter [m, rad]

@@ -8,7 +8,7 @@
 namespace vernier::detail {
 
 VERNIER_IMPL IdentificationPlan::IdentificationPlan(const ArmGeometry& nominal, const IdentifyOptions& options)
-    : chain_end(6 + 5 * nominal.joints()),
+    : chain_end(ArmParameters::chain_end(nominal.joints())),
       names(nominal.parameter_names()),
       kinds(nominal.parameter_kinds()),
       scales(nominal.num_parameters()) {
@@ -29,8 +29,8 @@ VERNIER_IMPL IdentificationPlan::IdentificationPlan(const ArmGeometry& nominal, 
   }
   if (options.hayati && options.geometry)
     for (const int row : parallel_rows(nominal.chain())) {
-      free[static_cast<std::size_t>(chain_begin + 5 * row + static_cast<int>(DhParameter::beta))] = true;
-      free[static_cast<std::size_t>(chain_begin + 5 * row + static_cast<int>(DhParameter::d))] = false;
+      free[static_cast<std::size_t>(ArmParameters::of_row(row, DhParameter::beta))] = true;
+      free[static_cast<std::size_t>(ArmParameters::of_row(row, DhParameter::d))] = false;
     }
   for (const auto& name : options.fixed)
     free[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())] = false;

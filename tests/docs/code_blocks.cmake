@@ -48,7 +48,7 @@ function(vernier_add_pages test)
 
   file(CONFIGURE OUTPUT "${folder}/readme_program.cpp" CONTENT "#include \"README_1.inc\"\n")
   add_executable(readme_program "${folder}/readme_program.cpp")
-  target_link_libraries(readme_program PRIVATE vernier_internal vernier::compiled_ceres vernier::compiled_io)
+  target_link_libraries(readme_program PRIVATE vernier_internal vernier::compiled_io)
   add_dependencies(${test} readme_program)
   target_compile_definitions(${test} PRIVATE VERNIER_README_PROGRAM="$<TARGET_FILE:readme_program>")
   if(TARGET MPI::MPI_CXX)

@@ -10,7 +10,9 @@
 
 #include "guide_blocks.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/evaluate.hpp"
 #include "vernier/ceres.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/correct_path.hpp"
@@ -102,6 +104,8 @@ TEST_F(Guide, CalibratesSavesAndCorrects) {
 #include "guide_2.inc"
     EXPECT_NE(::testing::internal::GetCapturedStdout().find("jointwise: "), std::string::npos);
     EXPECT_LT(error(model), 0.1e-3);
+    EXPECT_GT(error(links_alone), 1.5 * error(model));
+    EXPECT_EQ(&deployed, &report.stage(report.chosen));
     EXPECT_EQ(predicted.gate, 1);
     const double sigma = std::sqrt(predicted.covariance.topLeftCorner<3, 3>().trace());
     EXPECT_LT((predicted.pose.translation() - real_arm().position(q)).norm(), 4 * sigma);

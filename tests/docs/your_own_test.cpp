@@ -4,24 +4,35 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <span>
 #include <string>
+#include <utility>
 
+#include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/evaluate.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
+#include "vernier/kinematics/robots.hpp"
+#include "vernier/measurements/sensor.hpp"
 #include "vernier/regression/os_elm.hpp"
 #include "vernier/search/minimize.hpp"
+#include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
 #include "vernier/testing/kinematic_laws.hpp"
 #include "vernier/testing/metaheuristic_laws.hpp"
 #include "vernier/testing/regressor_laws.hpp"
+#include "vernier/testing/sensor_laws.hpp"
 #include "your_own_blocks.hpp"
 
 namespace vernier::your_own_test {
 namespace {
 
-static_assert(your_own_blocks == 7, "a block of docs/your_own.md without a test");
+static_assert(your_own_blocks == 10, "a block of docs/your_own.md without a test");
 
 namespace vn = vernier;
 
@@ -160,6 +171,47 @@ TEST(YourOwn, Search) {
   EXPECT_LT(search.state.best_fitness, 1e-4);
 #include "your_own_7.inc"
   EXPECT_EQ(violations, std::vector<std::string>());
+}
+
+// --- a sensor of your own
+
+#include "your_own_8.inc"
+
+/// A dial gauge with a derivative that is a thousand times too small.
+struct Shrunk : DialGauge {
+  using DialGauge::DialGauge;
+  void sense(vn::Index i, const vn::Isometry3& pose, vn::SensedRows& rows) const {
+    DialGauge::sense(i, pose, rows);
+    rows.motion *= 1e-3;
+  }
+};
+
+template <class Gauge>
+std::string printed_violations(const Gauge& exact, const std::vector<vn::Isometry3>& poses) {
+  ::testing::internal::CaptureStdout();
+#include "your_own_9.inc"
+  return ::testing::internal::GetCapturedStdout();
+}
+
+TEST(YourOwn, Sensor) {
+  const auto robot = vn::robots::ur10();
+  const auto& arm = robot.chain;
+  const auto actual = vn::with_geometric_errors(arm, {}, 3);
+  const vn::Vector3 direction(0.6, 0, 0.8);
+  const vn::JointRows<6> joints = vn::sample_joints(robot.limits, 60, 1);
+  const vn::VectorX readings = (vn::positions(actual, joints) * direction).array() + 0.4;
+  const std::vector<vn::Isometry3> poses = vn::poses(actual, joints);
+  EXPECT_EQ(printed_violations(DialGauge(readings), poses), "");
+  EXPECT_NE(printed_violations(Shrunk(readings), poses), "");
+  const auto tracked = vn::measure(actual, vn::sample_joints(robot.limits, 60, 2), {.position = 0.05e-3}, 3);
+#include "your_own_10.inc"
+  const auto report = vn::evaluate(calibration, tracked);
+  ASSERT_EQ(report.others.size(), 1u);
+  EXPECT_EQ(report.others[0].kind, "dial gauge");
+  EXPECT_EQ(report.others[0].name, "gauge.csv");
+  EXPECT_LT(report.others[0].rms, 0.02e-3);
+  const auto fresh = vn::measure(actual, vn::sample_joints(robot.limits, 200, 4));
+  EXPECT_LT(vn::prediction_error(calibration.errors.models(vn::Stage::geometry).front(), fresh).mean, 0.02e-3);
 }
 
 }  // namespace

@@ -377,7 +377,7 @@ TEST_F(HtmlReportSeen, DrawsItsPosesInABrowser) {
   ASSERT_EQ(dom.exit_code, 0) << dom.errors;
   EXPECT_TRUE(has(dom.output, "data-state=\"ready\"")) << dom.output.substr(0, 300);
   EXPECT_TRUE(has(dom.output, "data-points=\"300\""));
-  EXPECT_TRUE(has(dom.output, "Click a point for its row and joints."));
+  EXPECT_TRUE(has(dom.output, "Click a point for its line and joints."));
   const auto shot = [&](const std::string& name, const std::string& fragment) {
     EXPECT_EQ(chromium("--screenshot=" + name, fragment).exit_code, 0);
     return read_file(folder_ / name);

@@ -503,7 +503,8 @@ TEST(ReportInputs, OfACalibrationNameRowsThatAreOff) {
   CalibrationReport report;
   report.stages = {{Stage::geometry, "geometry", VectorX::Ones(4), {}}};
   report.gates = VectorX::Ones(4);
-  report.left_out_errors = list({1e-3, 1.5382e-3, 1.6e-3, 3.9e-3, 4.1e-3, 1.2e-3, 0});  // a median of 1.5382 sigma
+  report.left_out_errors =
+      list({1e-3, 1e-3 * median_norm, 1.6e-3, 3.9e-3, 4.1e-3, 1.2e-3, 0});  // the median of sigma 1 mm
   report.left_out_rows = {0, 1, 2, 3, 4, 5, 6};
   report.train_poses = 7;
   report.converged = false;

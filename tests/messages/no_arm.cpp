@@ -9,4 +9,4 @@ struct Arm {};
 using Arm = vernier::Robot<6>;
 #endif
 
-double seconds(const Arm& arm, const vernier::Dataset<6>& data) { return vernier::calibrate(arm, data).fit_seconds; }
+auto calibrated(const Arm& arm, const vernier::Dataset<6>& data) { return vernier::calibrate(arm, data); }

@@ -36,7 +36,8 @@ MeasurementCandidates<6> some_candidates(Index n, std::uint64_t seed) {
 /// Configurations that were measured, wherever.
 Measurements<6> as_measured(const MeasurementCandidates<6>& at) {
   if (at.joints.rows() == 0) return {};
-  return Dataset<6>(at.joints, PointRows::Zero(at.joints.rows(), 3)).approached_from(at.previous);
+  const Dataset<6> data(at.joints, PointRows::Zero(at.joints.rows(), 3));
+  return at.previous.rows() > 0 ? data.approached_from(at.previous) : data.without_approach();
 }
 
 PlanOptions few_harmonics(Index count) {

@@ -95,7 +95,7 @@ TEST(Report, SaysWhatTheJsonSays) {
   // lines of the file: every fifth row is held out
   const Json points = Json::parse(between(r.page, "id=\"points\">", "</script>"));
   ASSERT_EQ(points.at("line").size(), 30u);
-  for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(points.at("line").at(i), 5 * i + 2)  // behind the header;
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(points.at("line").at(i), 5 * i + 2);  // behind the header
   EXPECT_FALSE(has(r.page, "<script>alert"));
   EXPECT_TRUE(has(r.page, "Calibration: &lt;script&gt;alert(1)&lt;/script&gt;"));
 }

@@ -18,8 +18,11 @@ struct StageName {
   Stage stage = Stage::geometry;     ///< the stage
   std::optional<Learner> learner{};  ///< of `geometry_learned` and `learned`
 
+  /// Geometry.
   StageName() = default;
+  /// A stage, learned ones with their learner.
   StageName(Stage of, std::optional<Learner> by = {}) : stage(of), learner(by) {}
+  /// The same stage by the same learner.
   friend bool operator==(const StageName&, const StageName&) = default;
 
   /// Its key in files: `jointwise`, `jointwise_pso_elm`.

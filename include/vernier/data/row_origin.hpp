@@ -32,7 +32,8 @@ struct RowOrigin {
   /// The named rows, in the given order.
   VERNIER_API RowOrigin rows(std::span<const Index> indices) const;
   /// Appends rows of other files; empty where either of both is not known.
-  /// @param size number of rows of this
+  /// @param other of the rows that are appended
+  /// @param size  number of rows of this
   VERNIER_API void append(const RowOrigin& other, Index size);
 };
 

@@ -79,7 +79,8 @@ class Measurements {
   }
 
   /// Poses from a further station, which has a base frame of its own.
-  /// @param name how messages call it; by default its file
+  /// @param poses of the station
+  /// @param name  how messages call it; by default its file
   Measurements& add(Dataset<N> poses, std::string name = {}) {
     name = detail::set_name(std::move(name), poses.origin(), "station", poses_.size() + 1);
     MeasuredSet set = poses.has_orientations()
@@ -94,6 +95,8 @@ class Measurements {
     return *this;
   }
   /// Distances from a further fixed point.
+  /// @param distances from it
+  /// @param name      how messages call it; by default its file
   Measurements& add(const Distances<N>& distances, std::string name = {}) {
     name = detail::set_name(std::move(name), distances.origin(), "distances", sets_.size() - poses_.size() + 1);
     sets_.push_back(MeasuredSet(std::move(name), distances.joints(), DistanceSensor(distances.lengths())));
@@ -123,6 +126,8 @@ class Measurements {
   /// Measurements by any sensor.
   /// @tparam S     a `Sensor`
   /// @param joints n x N [rad, m]
+  /// @param sensor with n measurements
+  /// @param name   how messages call it; by default its kind
   /// @throws std::invalid_argument for another number of measurements
   template <class S>
   Measurements& add(const JointRows<N>& joints, S sensor, std::string name = {}) {
@@ -145,6 +150,8 @@ class Measurements {
   /// the tool point.
   /// @tparam S      a `Sensor`
   /// @param from,to n x N [rad, m]
+  /// @param sensor  with n measurements
+  /// @param name    how messages call it; by default its kind
   /// @throws std::invalid_argument for other numbers of measurements or of joints, or a sensor of several values
   template <class From, class To, class S>
   Measurements& add_between(const From& from, const To& to, S sensor, std::string name = {}) {

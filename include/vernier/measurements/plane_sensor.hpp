@@ -19,15 +19,24 @@ class PlaneSensor {
   explicit PlaneSensor(VectorX heights, double sigma = SensorModel{}.contact_sigma)
       : heights_(std::move(heights)), sigma_(sigma) {}
 
+  /// Its name in messages and reports.
   const char* kind() const { return "plane"; }
+  /// Number of measurements.
   Index size() const { return heights_.size(); }
+  /// Measured values of each.
   Index values() const { return 1; }
+  /// Standard deviations of the values.
   SensorSigma sigma() const { return {sigma_, 1}; }
+  /// What the measurements determine of the base frame.
   std::array<bool, 6> unknown_frame() const { return {false, false, true, true, true, false}; }
+  /// With the accuracy that a user states for its kind.
   PlaneSensor with(const SensorModel& sensors) const { return PlaneSensor(heights_, sensors.contact_sigma); }
 
+  /// When the measurements cannot be of this arm.
   VERNIER_API Plausibility plausibility() const;
+  /// Measurement i at a pose of the tool point.
   VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
+  /// The base frame that fits poses in the arm's own base frame.
   VERNIER_API Isometry3 base_from(std::span<const Isometry3> poses) const;
 
  private:

@@ -21,13 +21,21 @@ class PoseSensor {
              SensorSigma sigma = {SensorModel{}.position_sigma, SensorModel{}.orientation_sigma})
       : positions_(std::move(positions)), orientations_(std::move(orientations)), sigma_(sigma) {}
 
+  /// Its name in messages and reports.
   const char* kind() const { return "poses"; }
+  /// Number of measurements.
   Index size() const { return positions_.rows(); }
+  /// Measured values of each.
   Index values() const { return orientations_.empty() ? 3 : 6; }
+  /// Standard deviations of the values.
   SensorSigma sigma() const { return sigma_; }
+  /// Measured positions [m], n x 3.
   const PointRows& positions() const { return positions_; }
+  /// Measured orientations; none if positions alone are used.
   const std::vector<Matrix3>& orientations() const { return orientations_; }
+  /// What the measurements determine of the base frame.
   std::array<bool, 6> unknown_frame() const { return {true, true, true, true, true, true}; }
+  /// When the measurements cannot be of this arm.
   Plausibility plausibility() const { return {0.05, "the arm is off by", "wrong robot, units or columns?"}; }
   /// Without orientations where `use_orientations` is off.
   PoseSensor with(const SensorModel& sensors) const {
@@ -36,6 +44,7 @@ class PoseSensor {
             {sensors.position_sigma, sensors.orientation_sigma}};
   }
 
+  /// Measurement i at a pose of the tool point.
   VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
   /// By positions alone.
   VERNIER_API Isometry3 base_from(std::span<const Isometry3> poses) const;

@@ -19,16 +19,26 @@ class PositionSensor {
   explicit PositionSensor(PointRows positions, double sigma = SensorModel{}.position_sigma)
       : positions_(std::move(positions)), sigma_(sigma) {}
 
+  /// Its name in messages and reports.
   const char* kind() const { return "positions"; }
+  /// Number of measurements.
   Index size() const { return positions_.rows(); }
+  /// Measured values of each.
   Index values() const { return 3; }
+  /// Standard deviations of the values.
   SensorSigma sigma() const { return {sigma_, 1}; }
+  /// Measured positions [m], n x 3.
   const PointRows& positions() const { return positions_; }
+  /// What the measurements determine of the base frame.
   std::array<bool, 6> unknown_frame() const { return {true, true, true, true, true, true}; }
+  /// When the measurements cannot be of this arm.
   Plausibility plausibility() const { return {0.05, "the arm is off by", "wrong robot, units or columns?"}; }
+  /// With the accuracy that a user states for its kind.
   PositionSensor with(const SensorModel& sensors) const { return PositionSensor(positions_, sensors.position_sigma); }
 
+  /// Measurement i at a pose of the tool point.
   VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
+  /// The base frame that fits poses in the arm's own base frame.
   VERNIER_API Isometry3 base_from(std::span<const Isometry3> poses) const;
 
  private:

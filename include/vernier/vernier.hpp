@@ -2,11 +2,13 @@
 
 /// @file
 /// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for four parts that
-/// few programs use, which would add a quarter to its compile time. Include those by name: the general inverse
-/// kinematics
-/// (`kinematics/general_six_axis.hpp`), tables of a tracker (`data/pair_points.hpp`), calibration by contacts
-/// (`identification/identify_by_contacts.hpp`, `simulation/touches.hpp`) and robot programs
-/// (`robot_programs/correct_program.hpp`). The library's own headers never include this one.
+/// few programs use, which would add a quarter to its compile time. Include those by name:
+/// - the general inverse kinematics: `kinematics/general_six_axis.hpp`
+/// - tables of a tracker: `data/pair_points.hpp`
+/// - calibration by contacts: `identification/identify_by_contacts.hpp`, `simulation/touches.hpp`
+/// - robot programs: `robot_programs/correct_program.hpp`
+///
+/// The library's own headers never include this one.
 
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/data_audit.hpp"

@@ -311,7 +311,7 @@ TEST(VerificationReport, VerdictByHand) {
   EXPECT_EQ(report.verdict(),
             "The calibration is no longer valid: mean error 0.25 mm, at most 0.375 mm, accepted up to 0.5 mm; errors "
             "are larger than predicted, of no single joint (chi-square 51.2 of 54 degrees of freedom, p = below "
-            "0.0001), rows 4 7 set aside.");
+            "0.0001), rows 4 and 7 set aside.");
   report.options.accept.reset();
   report.aside.clear();
   report.p_value = 2e-4;

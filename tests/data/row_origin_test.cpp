@@ -18,10 +18,10 @@ namespace {
 TEST(RowOrigin, NamesRowsOfNoFileOneFileAndSeveral) {
   const RowOrigin none, one = RowOrigin::of("a.csv", {2, 3, 7});
   EXPECT_EQ(none.where(4), "row 4");
-  EXPECT_EQ(none.where({4}), "row 4");
+  EXPECT_EQ(none.where(std::vector<Index>{4}), "row 4");
   EXPECT_EQ(none.where({1, 3, 6}), "rows 1, 3 and 6");
   EXPECT_EQ(one.where(2), "a.csv, line 7");
-  EXPECT_EQ(one.where({2}), "a.csv, line 7");
+  EXPECT_EQ(one.where(std::vector<Index>{2}), "a.csv, line 7");
   EXPECT_EQ(one.where({0, 1, 2}), "a.csv, lines 2, 3 and 7");
   EXPECT_EQ(none.where({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), "rows 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, ... (11 rows)");
   RowOrigin both = one;

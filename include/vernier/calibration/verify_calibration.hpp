@@ -59,6 +59,7 @@ struct VerificationReport {
   VectorX rotations_as_fitted{};  ///< in the frames of the calibration, likewise
   VectorX normalised{};           ///< position errors in standard deviations of their predicted ellipsoids
   std::vector<Index> aside{};     ///< rows that contradict all others, left out of all tests
+  RowOrigin origin{};             ///< where the rows stand in files
   double mean_error = 0;          ///< mean of `errors` but those aside [m]
   double mean_upper = 0;          ///< upper end of its 95 % interval by Student's t [m]
   VerifyOptions options{};        ///< as given

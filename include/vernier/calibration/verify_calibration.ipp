@@ -190,6 +190,7 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
   const Index n = data.size(), joints = data.joints.cols(), values = data.oriented() ? 6 : 3;
   VerificationReport out;
   out.poses = n;
+  out.origin = data.origin;
   out.joint_types = input.joint_types;
   out.options = options;
   out.registration = input.registration;
@@ -301,9 +302,7 @@ VERNIER_IMPL std::string VerificationReport::verdict() const {
                    " (", chi, ')');
   }
   if (!aside.empty()) {
-    out += message(", row", aside.size() > 1 ? "s" : "");
-    for (const Index row : aside) out += message(' ', row);
-    out += " set aside";
+    out += ", " + origin.where(aside) + " set aside";
   }
   return out + ".";
 }

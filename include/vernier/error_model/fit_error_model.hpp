@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Fits geometry, frames and joint errors together, to poses and distances measured from one place or several.
+/// Fits geometry, frames and joint errors together, to measurements of any kinds from one place or several.
 
 #include <algorithm>
 #include <array>

@@ -34,7 +34,8 @@ struct FittedErrorModel : ErrorModelEstimate {
   /// Number of joints.
   static constexpr int N = Chain::dof;
 
-  /// In order, `geometry`, `elastic` and `jointwise` always; the last one has everything that the data support.
+  /// In order: `frames`, which `calibrate` adds, then `geometry`, `elastic` and `jointwise` always. The last one has
+  /// everything that the data support.
   std::vector<StagedModels<Chain>> stages{};
 
   /// Without arms.
@@ -44,7 +45,7 @@ struct FittedErrorModel : ErrorModelEstimate {
   const std::vector<ErrorModel<Chain>>& models() const { return stages.back().models; }
   /// The model of the first, or only, station.
   const ErrorModel<Chain>& model() const { return models().front(); }
-  /// The models of a stage, one a station; those of the last one before it where there is no such stage.
+  /// The models of a stage, one a station. If there is no such stage, those of the last one before it, or of the first.
   const std::vector<ErrorModel<Chain>>& models(Stage stage) const {
     std::size_t last = 0;
     for (std::size_t k = 0; k < stages.size(); ++k)

@@ -2,7 +2,7 @@
 
 /// @file
 /// The stages of a calibration, and the blocks of unknowns on which it decides: one table each. A new effect is a row
-/// of both, and everything that prints, draws or saves them follows.
+/// of both. `evaluate`, the verdict, tables and JSON of reports follow them.
 
 #include <array>
 #include <cstddef>

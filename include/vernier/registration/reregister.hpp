@@ -82,12 +82,12 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSet
 ///
 /// Where positions and orientations contradict each other by a constant rotation of the tool frame (a remounted probe),
 /// that rotation is estimated as well and reported, for orientations alone: the model's tool stays as it was.
-/// @param model   as fitted, wherever it stood then
-/// @param measured n >= 1 poses from where it stands now, of one station; temperatures count where the model changes
-/// with them
-/// @param options what is estimated
-/// @param sensors their accuracy, the least that residuals are taken for; they are weighted by squares, whatever its
-/// loss, and its `joint_sigma` is not used
+/// @param model    as fitted, wherever it stood then
+/// @param measured n >= 1 poses from where it stands now, of one station; temperatures count if the model changes with
+///                 them
+/// @param options  what is estimated
+/// @param sensors  accuracy of the poses, the least that residuals are taken for. They are weighted by squares, whatever
+///                 its loss; its `joint_sigma` is not used
 /// @throws std::invalid_argument on no data or an unusable option
 template <class Chain>
 Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Measurements<Chain::dof>& measured,

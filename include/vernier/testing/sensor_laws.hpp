@@ -27,9 +27,8 @@ VERNIER_API Index frame_rank(MeasuredSet set, std::span<const Isometry3> poses, 
 /// - the residual at a pose does not change from call to call, and rows that are not measured are zero;
 /// - `base_from` brings exact measurements to residuals of zero;
 /// - `motion` is the derivative of the residual by shifts and rotations of the pose;
-/// - what `unknown_frame` leaves out has no effect that the rest does not have as well, unless it is `known`; all of
-/// the
-///   rest has an effect of its own.
+/// - each parameter of the frame that `unknown_frame` names has an effect of its own;
+/// - the others have none beside these, unless they are known.
 /// @param sensor with exact measurements of `poses`
 /// @param poses  of the tool point in the arm's base frame, wherever that stands in the sensor's; many, and spread
 /// @param known  whether parameters of the frame that `unknown_frame` leaves out are known, and not without effect

@@ -33,7 +33,7 @@ class CalibrationProblem {
                                  double joint_sigma = 0);
 
   ArmParameterisation arm;           ///< at its present values
-  std::vector<SessionDrift> drift;   ///< of each station, at its present values; may be empty
+  std::vector<SessionDrift> drift;   ///< of each set, at its present values; may be empty
   double reference_temperature = 0;  ///< at which thermal unknowns have no effect [deg C]
   std::optional<JointPrior> prior;   ///< with correlations; of unknowns that have no prior of their own
   ExecutorRef executor{};            ///< computes the normal equations
@@ -47,7 +47,7 @@ class CalibrationProblem {
   const MeasuredSet& set_of(Index block) const { return sets_[static_cast<std::size_t>(at(block).station)]; }
   const std::vector<MeasuredSet>& sets() const { return sets_; }
   int station_index(Index block) const { return at(block).station; }
-  /// Which sample of its station a block is.
+  /// Which measurement of its set a block is.
   Index row_of(Index block) const { return at(block).row; }
   /// Measured values: three per position, six per pose, one per distance or height.
   VERNIER_API Index measured_values() const;
@@ -56,12 +56,12 @@ class CalibrationProblem {
 
   /// Temperatures of the poses.
   struct Temperatures {
-    double mean = 0, std = 0;       ///< [deg C]; both 0 where a station has none
+    double mean = 0, std = 0;       ///< [deg C]; both 0 where a set has none
     std::array<double, 2> range{};  ///< lowest and highest
   };
   VERNIER_API Temperatures temperatures() const;
 
-  /// Lets the bases of stations of poses drift from now on, from no motion.
+  /// Lets the bases of sets that locate them drift from now on, from no motion.
   /// @param rows_per_knot number of poses from one knot to the next, on average
   VERNIER_API void start_drift(Index rows_per_knot);
   /// Lets the joints' zeros drift along, from no change.
@@ -133,7 +133,7 @@ class CalibrationProblem {
   double joint_sigma_;
   std::vector<Block> blocks_;
   Index validation_blocks_ = 0;
-  std::vector<Index> first_state_;          // of each station
+  std::vector<Index> first_state_;          // of each set
   VectorX drift_scale_ = VectorX::Ones(6);  // as the rows of knots
   Loss loss_;
 };

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "figures.hpp"
-#include "vernier/calibration/evaluate.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
 #include "vernier/data/csv.hpp"

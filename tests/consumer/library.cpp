@@ -1,5 +1,6 @@
 // A translation unit that uses the compiled library, beside one that is header-only.
 
+#include <vernier/core/register_points.hpp>
 #include <vernier/identification/frames.hpp>
 #include <vernier/kinematics/dh_chain.hpp>
 

@@ -2,6 +2,7 @@
 // and functions that are compiled here (header-only) or come from the library.
 
 #include <vernier/core/literals.hpp>
+#include <vernier/core/register_points.hpp>
 #include <vernier/core/version.hpp>
 #include <vernier/identification/frames.hpp>
 #include <vernier/kinematics/inverse_kinematics.hpp>

@@ -86,7 +86,8 @@ VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSet
 /// @param measured n >= 1 poses from where it stands now, of one station; temperatures count if the model changes with
 ///                 them
 /// @param options  what is estimated
-/// @param sensors  accuracy of the poses, the least that residuals are taken for. They are weighted by squares, whatever
+/// @param sensors  accuracy of the poses, the least that residuals are taken for. They are weighted by squares,
+/// whatever
 ///                 its loss; its `joint_sigma` is not used
 /// @throws std::invalid_argument on no data or an unusable option
 template <class Chain>

@@ -258,7 +258,7 @@ TEST(IdentificationWhiteBox, ErrorsAndScaleOfDistances) {
   }
   EXPECT_NEAR(found.rms_after, std::sqrt(squares), 1e-12);
   std::sort(off.begin(), off.end());
-  const double sigma = off[20] / 0.6744897502;
+  const double sigma = off[20] / 0.6745;
   const RealMatrix wanted = sigma * sigma * (40.0 / 37) * (jacobian.transpose() * jacobian).inverse();
   EXPECT_LT(relative_difference(found.covariance, wanted), 1e-6);
 }

@@ -23,10 +23,10 @@ enum class Loss {
 /// @cite Huber 1964; Holland and Welsch 1977
 VERNIER_API double robust_weight(Loss loss, double norm, double threshold);
 
-/// Median of the norm of three standard normal components.
-inline constexpr double median_norm = 1.538172254;
+/// Median of the norm of three standard normal components, to four digits.
+inline constexpr double median_norm = 1.538;
 /// 95 % of the squared norms of three standard normal components are below: chi-square with three degrees of freedom.
-inline constexpr double chi_square_95 = 7.814727903;
+inline constexpr double chi_square_95 = 7.8147;
 
 /// Robust estimate of the standard deviation of the components of residuals, from the median of their norms. 0 for no
 /// residuals.

@@ -23,7 +23,7 @@ VERNIER_IMPL double robust_sigma(std::vector<double> norms, int dimension) {
   if (norms.empty()) return 0;
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());
-  constexpr double median_size = 0.6744897502;  // of a standard normal number
+  constexpr double median_size = 0.6745;  // of a standard normal number
   return *middle / (dimension == 1 ? median_size : median_norm);
 }
 

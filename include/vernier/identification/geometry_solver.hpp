@@ -23,7 +23,7 @@ struct SolverSummary {
   std::string message{};  ///< why it ended, in words
 };
 
-/// Minimises a problem from its present values with at most so many iterations; a robust loss settles its scale.
+/// Minimises a problem from its present values, with a limit of iterations; a robust loss settles its scale.
 /// `own_solver` needs Eigen alone, `ceres_solver` is in vernier/ceres.hpp. Both find the same minimum.
 using GeometrySolver = FunctionRef<SolverSummary(detail::CalibrationProblem& problem, int max_iterations)>;
 

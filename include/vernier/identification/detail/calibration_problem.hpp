@@ -37,7 +37,7 @@ class CalibrationProblem {
   double reference_temperature = 0;  ///< at which thermal unknowns have no effect [deg C]
   std::optional<JointPrior> prior;   ///< with correlations; of unknowns that have no prior of their own
   ExecutorRef executor{};            ///< computes the normal equations
-  double loss_scale = 1;             ///< the loss begins to tell outliers at so many times its usual threshold
+  double loss_scale = 1;             ///< multiple of the usual thresholds of the loss
   bool joint_columns = true;         ///< whether blocks have `factor` also where no coefficient acts through it
 
   Loss loss() const { return loss_; }

@@ -36,7 +36,7 @@ VERNIER_API void write_model(const std::string& path, const ModelData& model);
 /// @param file    its name in messages
 /// @throws DataError naming file and key
 VERNIER_API ModelData parse_model(const std::string& content, const std::string& file);
-/// Throws a `DataError` unless a model has so many joints, and its chain the convention.
+/// Requires of a model the number of joints and the convention; throws a `DataError` otherwise.
 VERNIER_API void require_chain(const ModelData& model, const std::string& file, int joints, bool modified);
 
 /// A calibrated arm without its type.

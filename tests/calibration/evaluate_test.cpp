@@ -282,6 +282,10 @@ TEST(Evaluate, EveryStationNeedsItsHeldOutPoses) {
             }).find("2 sets of held-out poses for 1 stations"),
             std::string::npos);
   EXPECT_THROW((void)evaluate(found, std::vector<Dataset<6>>{}), std::invalid_argument);
+  const Measurements<6> lengths =
+      Measurements<6>(fresh).add(fresh.joints(), DistanceSensor(VectorX::Ones(fresh.size())));
+  EXPECT_EQ(complaint([&] { (void)evaluate(found, lengths); }),
+            "evaluate: 1 of 2 sets of measurements are no data sets of poses; errors are those of poses");
 }
 
 /// What a calibration is refused with; empty where it is not.

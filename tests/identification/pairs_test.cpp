@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "complaint.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
@@ -90,6 +92,11 @@ TEST(Pairs, MisuseIsNamed) {
               (void)Measurements<6>().add_between(three, three, PositionSensor(PointRows::Zero(3, 3)), "tracker");
             }),
             "tracker: between two configurations a sensor has one value, not 3");
+  JointRows<6> unknown = three;
+  unknown(1, 4) = std::nan("");
+  EXPECT_EQ(vernier_test::complaint(
+                [&] { (void)Measurements<6>().add_between(unknown, three, DistanceSensor(VectorX::Ones(3)), "bar"); }),
+            "bar, row 1: a joint value of the first configuration is not finite");
   EXPECT_FALSE(between(nominal, three, joints(3, 2)).sets().front().locates());
 }
 

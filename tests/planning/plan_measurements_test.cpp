@@ -614,6 +614,16 @@ TEST(PlanMeasurements, RefusesWhatIsNotUsable) {
   EXPECT_EQ(complaint({.count = 2, .bin = 0}, 10), "plan_measurements: bin is 0, must be positive");
   EXPECT_NE(complaint({.count = 2, .errors = {.harmonics = -1}}, 10), "");
   EXPECT_NE(complaint({.count = 2, .sensors = {.position_sigma = 0}}, 10), "");
+  MeasurementCandidates<6> half = some_candidates(10, 1);
+  half.previous.conservativeResize(5, 6);
+  EXPECT_EQ(
+      vernier_test::complaint([&] { (void)plan_measurements(robots::abb_irb120().chain, half, few_harmonics(2)); }),
+      "plan_measurements: 5 approaches for 10 candidates");
+  const MeasurementCandidates<6> some = some_candidates(10, 1);
+  const Measurements<6> lengths = as_measured(some).add(some.joints, DistanceSensor(VectorX::Ones(10)));
+  EXPECT_EQ(vernier_test::complaint(
+                [&] { (void)plan_measurements(robots::abb_irb120().chain, some, few_harmonics(2), lengths); }),
+            "plan_measurements: 1 of 2 sets of measurements are no data sets of poses; a plan counts these alone");
   for (const int bad : {0, 1, 2}) {
     std::array<MeasurementCandidates<6>, 3> rows{some_candidates(3, 1), some_candidates(3, 2), some_candidates(3, 3)};
     rows[static_cast<std::size_t>(bad)].joints(1, 2) = std::nan("");

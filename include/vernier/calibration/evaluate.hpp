@@ -48,7 +48,7 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
 /// @param calibration from poses, one set a station
 /// @param held_out    poses that it was not fitted to, as many sets in the same order
 /// @param limits      of the joints, for advice on poses
-/// @throws std::invalid_argument for another number of stations, or no poses
+/// @throws std::invalid_argument for another number of stations, no poses, or measurements that are no poses
 template <class Chain>
 CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurements<Chain::dof>& held_out,
                            const JointLimits<Chain::dof>& limits = {}) {
@@ -59,6 +59,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   const std::size_t stations = errors.stages.front().stage == Stage::frames ? errors.stages.front().models.size() : 0;
   require(test.size() == stations && !test.empty(), "evaluate: ", test.size(), " sets of held-out poses for ", stations,
           " stations");
+  require(held_out.sets().size() == test.size(), "evaluate: ", held_out.sets().size() - test.size(), " of ",
+          held_out.sets().size(), " sets of measurements are no data sets of poses; errors are those of poses");
   CalibrationReport out;
   out.identification = calibration.geometry;
   out.blocks = errors.blocks;

@@ -152,7 +152,9 @@ class Measurements {
   /// @param from,to n x N [rad, m]
   /// @param sensor  with n measurements
   /// @param name    how messages call it; by default its kind
-  /// @throws std::invalid_argument for other numbers of measurements or of joints, or a sensor of several values
+  /// @throws std::invalid_argument for other numbers of measurements or of joints, a joint value that is not finite, or
+  /// a
+  ///         sensor of several values
   template <class From, class To, class S>
   Measurements& add_between(const From& from, const To& to, S sensor, std::string name = {}) {
     if constexpr (detail::explain_sensor<S>() && Sensor<S>) {
@@ -160,6 +162,9 @@ class Measurements {
       set.seen_from = detail::fixed_rows<N>(from);
       require(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(),
               " second");
+      for (Index i = 0; i < set.size(); ++i)
+        require(detail::finite_row(set.seen_from, i), set.name, ", ", set.origin.where(i),
+                ": a joint value of the first configuration is not finite");
       require(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());
       sets_.push_back(std::move(set));
     }

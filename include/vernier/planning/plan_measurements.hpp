@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 #include "vernier/measurements/measurements.hpp"
@@ -120,12 +121,16 @@ MeasurementCandidates<Arm::dof> sample_candidates(const Arm& arm, const JointLim
 /// @param measured   poses that were measured before: the plan is what to add
 /// @param region     joint rows of the working region, whose positions are to be predicted well; without rows some of
 ///                   the candidates
-/// @throws std::invalid_argument for fewer candidates than measurements, or an unusable option
+/// @throws std::invalid_argument for fewer candidates than measurements, an approach for some candidates alone,
+///         measurements that are no data set of poses, or an unusable option
 template <NominalArm Arm>
 MeasurementPlan<Arm::dof> plan_measurements(const Arm& arm, const MeasurementCandidates<Arm::dof>& candidates,
                                             const PlanOptions& options = {},
                                             const Measurements<Arm::dof>& measured = {},
                                             const JointRows<Arm::dof>& region = JointRows<Arm::dof>(0, Arm::dof)) {
+  require(measured.sets().size() == measured.poses().size(),
+          "plan_measurements: ", measured.sets().size() - measured.poses().size(), " of ", measured.sets().size(),
+          " sets of measurements are no data sets of poses; a plan counts these alone");
   detail::PlanInput input{candidates.joints, candidates.previous, MatrixX(0, Arm::dof), MatrixX(0, Arm::dof), region};
   for (const Dataset<Arm::dof>& poses : measured.poses()) {
     const Index before = input.measured.rows(), rows = before + poses.size();

@@ -106,6 +106,8 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   const Index n = input.candidates.rows();
   require(options.count >= 1, "plan_measurements: count is ", options.count, ", must be at least 1");
   require(n >= options.count, "plan_measurements: ", n, " candidates for ", options.count, " measurements");
+  require(input.candidates_previous.rows() == 0 || input.candidates_previous.rows() == n,
+          "plan_measurements: ", input.candidates_previous.rows(), " approaches for ", n, " candidates");
   require(all_finite(input.candidates) && all_finite(input.measured) && all_finite(input.region),
           "plan_measurements: a joint value is not finite");
   require(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");

@@ -152,9 +152,8 @@ class Measurements {
   /// @param from,to n x N [rad, m]
   /// @param sensor  with n measurements
   /// @param name    how messages call it; by default its kind
-  /// @throws std::invalid_argument for other numbers of measurements or of joints, a joint value that is not finite, or
-  /// a
-  ///         sensor of several values
+  /// @throws std::invalid_argument for other numbers of measurements or of joints, a sensor of several values, or a
+  ///         joint value that is not finite
   template <class From, class To, class S>
   Measurements& add_between(const From& from, const To& to, S sensor, std::string name = {}) {
     if constexpr (detail::explain_sensor<S>() && Sensor<S>) {

@@ -41,7 +41,7 @@ struct DataAudit {
 
 namespace detail {
 
-/// See `vernier::audit_data`.
+/// `vernier::audit_data` for an arm whose number of joints is known at run time.
 VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& data, const PointRows& rotation_vectors,
                                  const DataAuditOptions& options);
 

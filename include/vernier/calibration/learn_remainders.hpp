@@ -113,7 +113,7 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   return BestLearner{out.trials.size() - 1 - best, clearly_better(with, without), changed(with)};
 }
 
-/// See `RemainderOptions`. What is learned on geometry is deployed where it predicts left-out poses better than the
+/// Learns what the stages leave, as `RemainderOptions` says. What is learned on geometry is deployed where it predicts left-out poses better than the
 /// error model does, by more than a standard error.
 template <class Chain>
 void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::dof>> stations,

@@ -14,7 +14,7 @@ namespace vernier {
 
 namespace detail {
 
-/// See `vernier::pose_advice`.
+/// `vernier::pose_advice` for an arm whose number of joints is known at run time.
 /// @param lower,upper joint limits, one a joint
 VERNIER_API std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estimate,
                                                 const IdentificationReport& identification, const VectorX& lower,

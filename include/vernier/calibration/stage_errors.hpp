@@ -22,7 +22,7 @@ struct StageName {
   StageName() = default;
   /// A stage, learned ones with their learner.
   StageName(Stage of, std::optional<Learner> by = {}) : stage(of), learner(by) {}
-  /// The same stage by the same learner.
+  /// Whether both are one stage by one learner.
   friend bool operator==(const StageName&, const StageName&) = default;
 
   /// Its key in files: `jointwise`, `jointwise_pso_elm`.
@@ -46,7 +46,7 @@ struct StageErrors {
   /// @param rotation_errors  n values [rad], or none
   StageErrors(Stage of, VectorX position_errors, VectorX rotation_errors)
       : StageErrors(of, traits_of(of).title, std::move(position_errors), std::move(rotation_errors)) {}
-  /// The same with another title.
+  /// Errors of a stage with a title of its own.
   StageErrors(StageName of, std::string its_title, VectorX position_errors, VectorX rotation_errors)
       : name(of),
         title(std::move(its_title)),

@@ -14,7 +14,7 @@ namespace vernier {
 ///     const FactorisedEquations solved(normal, precisions, steps, local_steps, cholmod);
 /// @cite Chen, Davis, Hager and Rajamanickam 2008
 struct CholmodSolver {
-  /// See `SparseSolve`.
+  /// Solves by CHOLMOD's supernodal factorisation.
   /// @throws std::bad_alloc where memory is exhausted
   VERNIER_API SparseOutcome operator()(const SparseSymmetric& matrix, MatrixRef right) const;
 };

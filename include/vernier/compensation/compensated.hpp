@@ -41,7 +41,7 @@ class Compensated : public ChecksJoints<Compensated<Arm, Nominal>> {
   /// How commands are corrected.
   const CorrectionOptions& options() const { return options_; }
 
-  /// The same with commands kept within joint limits.
+  /// This arm with commands kept within joint limits.
   Compensated within(const JointLimits<dof>& limits) const {
     Compensated out = *this;
     out.limits_ = limits;

@@ -49,7 +49,7 @@ class LearnedError : public detail::PredictorInterface<LearnedError<N>, N, 3> {
   const Kernels* kernels() const { return std::get_if<Kernels>(&fitted_); }
   /// Whether it is the same everywhere.
   bool constant() const { return network() != nullptr ? network()->beta().isZero(0) : kernels()->alpha().isZero(0); }
-  /// The same in a frame that is turned: errors are multiplied by the rotation.
+  /// This error in a frame that is turned: errors are multiplied by the rotation.
   LearnedError turned(const Matrix3& rotation) const {
     if (const Network* from = network())
       return Network(from->layer(), from->scaling(), from->theta(), from->beta() * rotation.transpose(),

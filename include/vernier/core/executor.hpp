@@ -36,7 +36,7 @@ concept DistributedExecutor = Executor<E> && requires(E& executor, VectorRef val
 
 /// Everything on the calling thread.
 struct SequentialExecutor {
-  /// See `Executor`.
+  /// Calls `work` once, on the whole range, on the calling thread.
   void for_ranges(Index n, RangeFunction work) const {
     if (n > 0) work(0, n);
   }
@@ -53,7 +53,7 @@ class ThreadExecutor {
   /// Number of threads, including the calling one.
   int threads() const { return threads_; }
 
-  /// See `Executor`. Starts its threads anew with every call.
+  /// Calls `work` on a range for each thread. Starts its threads anew with every call.
   VERNIER_API void for_ranges(Index n, RangeFunction work) const;
 
  private:
@@ -77,7 +77,7 @@ class ExecutorRef {
       };
   }
 
-  /// See `Executor`.
+  /// Calls `work` on ranges that cover 0 to n, by the executor that it refers to.
   void for_ranges(Index n, RangeFunction work) const {
     for_ranges_ != nullptr ? for_ranges_(object_, n, work) : SequentialExecutor{}.for_ranges(n, work);
   }
@@ -85,7 +85,7 @@ class ExecutorRef {
   /// Whether it refers to a `DistributedExecutor`.
   bool is_distributed() const { return allgather_ != nullptr; }
 
-  /// See `DistributedExecutor`; `for_ranges` where the executor is none.
+  /// Computes `values` over all processes; by `for_ranges` if the executor is no `DistributedExecutor`.
   VERNIER_API void allgather(VectorRef values, RangeFunction work) const;
 
   /// The value of `condition`, evaluated once, on the calling thread: over several processes in the first one, whose

@@ -12,7 +12,7 @@
 
 /// Inlined even where the compiler would rather not.
 #define VERNIER_INLINE inline __attribute__((always_inline))
-/// The same for a lambda, behind its parameters.
+/// Inlines a lambda, behind its parameters, even where the compiler would rather not.
 #define VERNIER_INLINED __attribute__((always_inline))
 /// Before a loop of a constant few steps: unrolls it whole, so that what it indexes stays in registers.
 #define VERNIER_UNROLL _Pragma("GCC unroll 16")
@@ -97,7 +97,7 @@ template <class Kernel>
 }
 #endif
 
-/// The same with all that an instruction set has: results of another set differ in their last bits.
+/// Runs a kernel with all that an instruction set has: results of another set differ in their last bits.
 template <class Kernel>
 void run_widest(const Kernel& kernel, InstructionSet set = widest_instruction_set()) noexcept {
 #if defined(__x86_64__)

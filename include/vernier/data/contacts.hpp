@@ -46,7 +46,7 @@ class Contact {
   const VectorX& known() const { return known_; }
   /// Where the touches stand in a file; empty where they are from none.
   const RowOrigin& origin() const { return origin_; }
-  /// The same touches, said to be from some rows of a file.
+  /// These touches, said to be from some rows of a file.
   Contact from(RowOrigin origin) const {
     Contact out = *this;
     out.origin_ = std::move(origin);

@@ -87,7 +87,7 @@ class Dataset {
   /// Temperatures of the arm [deg C], one a sample; none where they were not measured.
   const VectorX& temperatures() const { return temperatures_; }
 
-  /// The same samples approached from other joint values; rows that are not finite are unknown.
+  /// These samples approached from other joint values; rows that are not finite are unknown.
   /// @throws std::invalid_argument for another number of rows
   Dataset approached_from(JointRows<N> previous) const {
     require(previous.rows() == size(), "Dataset: ", previous.rows(), " previous configurations of ", size(), " rows");
@@ -95,17 +95,17 @@ class Dataset {
     out.previous_ = std::move(previous);
     return out;
   }
-  /// The same samples approached from other joint values, whose number is known at run time.
+  /// These samples approached from other joint values, whose number is known at run time.
   /// @throws std::invalid_argument for another number of rows or columns
   template <ColumnsAtRunTime Rows>
   Dataset approached_from(const Rows& previous) const {
     return approached_from(detail::joint_rows<N>(previous));
   }
-  /// The same samples, their approach unknown.
+  /// These samples, their approach unknown.
   Dataset without_approach() const {
     return approached_from(JointRows<N>::Constant(size(), N, std::numeric_limits<double>::quiet_NaN()));
   }
-  /// The same samples measured at other times, in any unit.
+  /// These samples measured at other times, in any unit.
   /// @throws std::invalid_argument for another number of times, or one that is not finite
   Dataset measured_at(VectorX times) const {
     require(times.size() == size() && times.allFinite(), "Dataset: ", times.size(), " times of ", size(),
@@ -115,7 +115,7 @@ class Dataset {
     return out;
   }
 
-  /// The same samples measured at some temperatures [deg C]; none for unknown.
+  /// These samples measured at some temperatures [deg C]; none for unknown.
   /// @throws std::invalid_argument for another number of temperatures, or one that is not finite
   Dataset at_temperatures(VectorX temperatures) const {
     require((temperatures.size() == 0 || temperatures.size() == size()) && temperatures.allFinite(),
@@ -127,7 +127,7 @@ class Dataset {
 
   /// Where the samples stand in files; empty where they are from none.
   const RowOrigin& origin() const { return origin_; }
-  /// The same samples, said to be from some rows of files.
+  /// These samples, said to be from some rows of files.
   /// @throws std::invalid_argument for another number of rows
   Dataset from(RowOrigin origin) const {
     require(origin.empty() || static_cast<Index>(origin.line.size()) == size(), "Dataset: ", origin.line.size(),
@@ -169,7 +169,7 @@ class Dataset {
     return out;
   }
 
-  /// The same samples with positions only.
+  /// These samples with positions only.
   Dataset without_orientations() const {
     Dataset out = *this;
     out.orientations_.resize(0, 3);

@@ -51,7 +51,7 @@ class Distances {
 
   /// Where the samples stand in files; empty where they are from none.
   const RowOrigin& origin() const { return origin_; }
-  /// The same samples, said to be from some rows of files.
+  /// These samples, said to be from some rows of files.
   Distances from(RowOrigin origin) const {
     Distances out = *this;
     out.origin_ = std::move(origin);

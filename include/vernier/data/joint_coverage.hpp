@@ -61,7 +61,7 @@ struct JointCoverage {
     return covering(detail::joint_rows<N>(joints));
   }
 
-  /// The same with the measured ranges of other measurements.
+  /// This gate widened to the measured ranges of other measurements.
   /// @param others  of each joint, ascending; no joints: those measurements were everywhere
   /// @param margins of each joint; the larger of the two counts
   /// @throws std::invalid_argument for ranges or margins of another number of joints

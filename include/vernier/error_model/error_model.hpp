@@ -132,7 +132,7 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   /// The measured joint ranges; null where `identified` is valid everywhere.
   const JointCoverage<dof>* coverage() const { return outside_ ? &outside_->coverage : nullptr; }
 
-  /// The same with a geometry that changes with temperature; its present parameters are those at the reference.
+  /// This model with a geometry that changes with temperature; its present parameters are those at the reference.
   /// @throws std::invalid_argument for another number of rates
   ErrorModel with_thermal(ThermalRates rates) const {
     require(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
@@ -145,7 +145,7 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   /// How the geometry changes with temperature; null where it does not, or that is unknown.
   const ThermalRates* thermal() const { return thermal_ ? &*thermal_ : nullptr; }
   /// The arm at a temperature [deg C], at the nearest measured one outside the measured range; the nominal arm stays.
-  /// The same model where it does not change with temperature.
+  /// This model without its change with temperature.
   ErrorModel at_temperature(double celsius) const {
     if (!thermal_ || !std::isfinite(celsius)) return *this;
     const double measured = std::clamp(celsius, thermal_->lower, thermal_->upper);
@@ -156,7 +156,7 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
     return out;
   }
 
-  /// The same arm in another place, with another tool and other joint zeros; the nominal arm is moved along.
+  /// This arm in another place, with another tool and other joint zeros; the nominal arm is moved along.
   /// @param base    applied in front: motion of the frame of the measurements
   /// @param offsets added to the joint values [rad, m]
   /// @param tool    applied behind
@@ -182,7 +182,7 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
     return out;
   }
 
-  /// The same arm moved, with offsets whose number is known at run time.
+  /// This arm moved, with offsets whose number is known at run time.
   /// @throws std::invalid_argument on another number
   template <SizedAtRunTime Q>
   ErrorModel moved(const Isometry3& base, const Q& offsets, const Isometry3& tool) const {

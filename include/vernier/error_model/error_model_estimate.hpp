@@ -82,11 +82,11 @@ struct ErrorModelEstimate {
 
   /// What it says of the first station.
   VERNIER_API ErrorModelEstimate first_station() const;
-  /// The same estimate at other values of the unknowns: of the arm in other frames, with other joint zeros.
+  /// This estimate at other values of the unknowns: of the arm in other frames, with other joint zeros.
   /// @param now with the same terms
   VERNIER_API ErrorModelEstimate of_arm(const FittedArm& now) const;
 
-  /// See `JointFunction`.
+  /// The transmission error of a joint with its standard deviation, at some angles.
   /// @param joint  from 0
   /// @param angles n >= 1 values [rad]
   VERNIER_API JointFunction transmission(int joint, const std::vector<double>& angles) const;
@@ -111,7 +111,7 @@ struct ErrorModelEstimate {
   VERNIER_API Matrix6 visit_covariance(const ConstVectorRef& q, double gate, int station = 0,
                                        const ConstVectorRef& previous = VectorX(),
                                        double temperature = std::numeric_limits<double>::quiet_NaN()) const;
-  /// The same of n visits, in a quarter of the time each.
+  /// Covariances of n visits, in a quarter of the time each.
   /// @param joints       n x joints
   /// @param gates        n
   /// @param station      from 0

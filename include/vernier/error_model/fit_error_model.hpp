@@ -37,7 +37,7 @@ struct ErrorModelOutput {
   std::array<double, 2> temperatures{};  ///< lowest and highest [deg C]
 };
 
-/// See `vernier::fit_error_model`.
+/// `vernier::fit_error_model` for an arm whose number of joints is known at run time.
 VERNIER_API ErrorModelOutput fit_error_model(ErrorModelInput input, const ErrorModelOptions& options,
                                              const SensorModel& sensors, PriorSearch search, ExecutorRef executor);
 

@@ -66,7 +66,7 @@ struct FittedErrorModel : ErrorModelEstimate {
   PredictedPose predicted(const Q& q, int station = 0) const {
     return predicted(detail::joint_vector<N>(q), station);
   }
-  /// The same, approached from known joint values.
+  /// The prediction for an approach from known joint values.
   /// @param previous joint values from which q is approached [rad, m]; not finite where unknown
   /// @param q        joint values [rad, m]
   /// @param station  from 0

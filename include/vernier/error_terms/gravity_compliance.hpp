@@ -20,7 +20,7 @@ class GravityCompliance {
   template <int N, class Convention>
   explicit GravityCompliance(const DhChain<N, Convention>& chain, const Vector3& down = -Vector3::UnitZ())
       : GravityCompliance(detail::ChainTable(chain.view()), down) {}
-  /// The same of any number of joints.
+  /// Compliance columns of an arm whose number of joints is known at run time.
   VERNIER_API GravityCompliance(const detail::ChainTable& chain, const Vector3& down);
 
   /// Direction of gravity in the base frame of the chain.
@@ -33,7 +33,7 @@ class GravityCompliance {
   static constexpr Index size(int n) { return n * (n + 1) / 2; }
   /// Position of the product of joint i and link j >= i, both from 0, of an arm of n joints.
   static constexpr Index index(int i, int j, int n) { return i * n - i * (i - 1) / 2 + (j - i); }
-  /// The same of this arm.
+  /// Position of the product of joint i and link j >= i, both from 0, of this arm.
   Index index(int i, int j) const { return index(i, j, joints()); }
 
   /// Joint errors by one unit of each product: [N m] for a weight of 1 N (or [N] at a prismatic joint).

@@ -21,7 +21,7 @@ class GravityTilt {
   template <int N, class Convention>
   explicit GravityTilt(const DhChain<N, Convention>& chain, const Vector3& down = -Vector3::UnitZ())
       : GravityTilt(detail::ChainTable(chain.view()), down) {}
-  /// The same of any number of joints.
+  /// Tilt columns of an arm whose number of joints is known at run time.
   VERNIER_API GravityTilt(const detail::ChainTable& chain, const Vector3& down);
 
   /// Direction of gravity in the base frame of the chain.

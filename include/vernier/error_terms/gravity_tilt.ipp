@@ -15,7 +15,7 @@ struct TiltingFrames {
   Vector3 x[max_joints], y[max_joints], z[max_joints];
 };
 
-/// See `TiltingFrames`; a frame is the one behind the joint, whose z axis is the joint's.
+/// Walks along the chain and fills in its tilting frames; a frame is the one behind the joint, whose z axis is the joint's.
 template <class Convention>
 void walk_tilting_frames(const ChainView& c, const double* q, TiltingFrames& out) noexcept {
   MovingFrame<double, 3> frame;

@@ -128,13 +128,13 @@ class JointErrors {
   VERNIER_API void evaluate(const double* q, int n, double* effective, double* derivative,
                             const double* previous = nullptr) const noexcept;
 
-  /// The same with N known at compile time.
+  /// Effective joint values of N joints, and their derivative.
   template <int N>
   struct Effective {
     JointVector<N> joints;                   ///< q + dq(q)
     Eigen::Matrix<double, N, N> derivative;  ///< I + d dq/dq
   };
-  /// See `Effective`.
+  /// Evaluates joint errors at q. Does not allocate.
   template <int N>
   Effective<N> effective(const JointVector<N>& q, const double* previous = nullptr) const noexcept {
     Effective<N> out;
@@ -234,7 +234,7 @@ class WithJointErrors : public ChecksJoints<WithJointErrors<C>> {
     if (errors_.tilts()) errors_.tilt(q.data(), out);
     return out;
   }
-  /// The same with the geometric Jacobian.
+  /// Pose and geometric Jacobian, approached from given joint values (see `pose_from`).
   PoseAndJacobian<dof> pose_and_jacobian_from(const double* previous, const JointVector<dof>& q) const noexcept {
     const auto effective = errors_.effective<dof>(q, previous);
     const PoseAndJacobian<dof> inner = chain_.pose_and_jacobian(effective.joints);

@@ -21,7 +21,7 @@ VERNIER_API double radius_95(const Matrix3& covariance) noexcept;
 
 namespace detail {
 
-/// The same of values in ascending order.
+/// Quantile of values that are in ascending order, as `quantile` defines it.
 VERNIER_API double quantile_of_sorted(const ConstVectorRef& values, double probability);
 
 }  // namespace detail

@@ -46,7 +46,7 @@ VERNIER_API double two_sided(const std::vector<double>& ways, double statistic) 
   return std::min(1.0, 2 * std::min(below, above) / std::accumulate(ways.begin(), ways.end(), 0.0));
 }
 
-/// The same from a normal distribution, with the correction of 1/2 for a statistic in whole steps.
+/// Two-sided p of a statistic by a normal distribution, with the correction of 1/2 for a statistic in whole steps.
 VERNIER_API double two_sided(double statistic, double mean, double variance) {
   if (!(variance > 0)) return 1;
   return std::erfc(std::max(0.0, std::abs(statistic - mean) - 0.5) / std::sqrt(2 * variance));

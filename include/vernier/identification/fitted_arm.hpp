@@ -13,16 +13,16 @@ struct FittedArm {
   ArmGeometry geometry;  ///< chain and frames
   JointErrors errors;    ///< of the joints; may be empty
 
-  /// The same with its type.
+  /// The fitted arm with the type of the robot.
   template <class Chain>
   Framed<WithJointErrors<Chain>> typed(const Chain& like) const {
     const Framed<Chain> arm = geometry.framed(like);
     return arm.around(WithJointErrors<Chain>(arm.model(), errors));
   }
-  /// The same with the hysteresis of another arm in place of its own.
+  /// This arm with the hysteresis of another in place of its own.
   VERNIER_API FittedArm with_hysteresis_of(const FittedArm& other) const;
 
-  /// The same without its type.
+  /// A fitted arm without the type of its robot.
   template <class Chain>
   static FittedArm of(const Framed<WithJointErrors<Chain>>& arm) {
     return {ArmGeometry(arm.around(arm.chain())), arm.model().joint_errors()};

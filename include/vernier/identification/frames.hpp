@@ -10,7 +10,7 @@ namespace vernier {
 
 namespace detail {
 
-/// See `vernier::starting_frames`.
+/// `vernier::starting_frames` for an arm whose number of joints is known at run time.
 VERNIER_API ArmGeometry starting_frames(const ArmGeometry& nominal, const MeasuredSet& data, bool fit_base,
                                         bool fit_tool);
 /// An arm in the frame of a set, as its present geometry says; its own base frame is not used.

@@ -37,7 +37,7 @@ struct IdentifyOptions {
 
 namespace detail {
 
-/// See `vernier::parallel_rows`.
+/// `vernier::parallel_rows` of rows whose number is known at run time.
 VERNIER_API std::vector<int> parallel_rows(const ChainTable& chain);
 
 }  // namespace detail

@@ -28,13 +28,13 @@ struct SessionDrift {
     Index first;   ///< a knot
     double share;  ///< of the next knot, in [0, 1)
   };
-  /// See `Position`.
+  /// Where a time lies between two knots.
   VERNIER_API Position position(double time) const;
   /// Changes of the joints' zeros at a time [rad, m]; empty where they rest.
   VERNIER_API VectorX joint_zeros(double time) const;
   /// Translation and rotation at a time.
   VERNIER_API Vector6 twist(double time) const;
-  /// The same as a motion, to be applied in front of a modelled pose.
+  /// The drift as a motion, to be applied in front of a modelled pose.
   VERNIER_API Isometry3 motion(double time) const;
   /// Covariance by which drift has moved a pose before the first knot or after the last: of a random walk from there.
   /// Position [m^2], then orientation [rad^2], sensor's frame. Zero between the knots.

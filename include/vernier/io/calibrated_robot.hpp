@@ -65,14 +65,14 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
               " is of another type in the identified chain than in the nominal one");
   }
 
-  /// The same with a learned position error.
+  /// This robot with a learned position error.
   CalibratedRobot with_learned(const Learned& learned, const JointCoverage<N>& gate) const {
     CalibratedRobot out = *this;
     out.corrected_.emplace(model_, learned, gate);
     return out;
   }
 
-  /// The same arm with another model, in other frames perhaps: what was learned in its base frame rotates with it.
+  /// This robot with another model, in other frames perhaps: what was learned in its base frame rotates with it.
   CalibratedRobot with_model(const Model& model, Provenance provenance) const {
     CalibratedRobot out(name_, model, limits_, std::move(provenance));
     if (estimate_) out = out.with_estimate(estimate_->of_arm(FittedArm::of(out.identified())));
@@ -81,7 +81,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     return out.with_learned(corrected_->learned().turned(turn), corrected_->coverage());
   }
 
-  /// The same arm at a temperature [deg C], see `ErrorModel::at_temperature`.
+  /// This robot at a temperature [deg C], see `ErrorModel::at_temperature`.
   CalibratedRobot at_temperature(double celsius) const {
     CalibratedRobot out = *this;
     out.model_ = model_.at_temperature(celsius);
@@ -89,7 +89,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     return out;
   }
 
-  /// The same with what its calibration estimated: unknowns with their covariance, and noise.
+  /// This robot with the estimate of its calibration: unknowns with their covariance, and noise.
   CalibratedRobot with_estimate(ErrorModelEstimate estimate) const {
     CalibratedRobot out = *this;
     out.estimate_ = std::make_shared<const ErrorModelEstimate>(std::move(estimate));
@@ -141,7 +141,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   Isometry3 predict(const JointVector<N>& q) const noexcept { return pose(q); }
   /// The command that brings the arm where the nominal one would be at q, in the middle of both directions of approach.
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q) const noexcept { return correct(q, unknown()); }
-  /// The same for the approach from known joint values.
+  /// The command that brings the arm where the nominal one would be at q, approached from known joint values.
   /// @param q        where the nominal arm is to be [rad, m]
   /// @param previous the command before [rad, m]; not finite where unknown
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q, const JointVector<N>& previous) const noexcept {
@@ -153,7 +153,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed) const noexcept {
     return correct(target, seed, unknown());
   }
-  /// The same for the approach from known joint values.
+  /// The command that brings the arm to a pose, approached from known joint values.
   /// @param target   the pose
   /// @param seed     joints near the solution; they choose the branch
   /// @param previous the command before [rad, m]; not finite where unknown

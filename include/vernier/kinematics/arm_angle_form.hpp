@@ -43,7 +43,7 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
     require(std::isfinite(arm_angle), "ArmAngleForm: the arm angle is ", arm_angle);
   }
 
-  /// The same arm at another arm angle [rad].
+  /// This arm's solutions at another arm angle [rad].
   ArmAngleForm at(double arm_angle) const {
     ArmAngleForm out = *this;
     out.angle_ = arm_angle;

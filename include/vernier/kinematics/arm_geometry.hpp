@@ -83,7 +83,7 @@ class ArmGeometry {
   ArmGeometry(detail::ChainTable chain, const FrameParameters& base, const FrameParameters& tool)
       : chain_(std::move(chain)), base_(base), tool_(tool) {}
 
-  /// The same with the number of joints and the convention known at compile time: those of a chain.
+  /// This arm as a chain between frames whose number of joints and convention are known at compile time.
   /// @throws std::invalid_argument where they are others
   template <int N, class Convention>
   Framed<DhChain<N, Convention>> framed(const DhChain<N, Convention>&) const {
@@ -109,7 +109,7 @@ class ArmGeometry {
   const FrameParameters& base() const { return base_; }
   /// Tool frame with its six values.
   const FrameParameters& tool() const { return tool_; }
-  /// The same chain between other frames.
+  /// This chain between other frames.
   ArmGeometry with_frames(const FrameParameters& base, const FrameParameters& tool) const {
     return {chain_, base, tool};
   }

@@ -163,7 +163,7 @@ class ClosedForm : public ChecksJoints<ClosedForm<N>> {
       : moving_(HeldJoint{-1, 0}),
         arm_(detail::six_axes_of(nominal, moving_.held), tolerance),
         length_(detail::arm_length(detail::arm_axes(nominal))) {}
-  /// The same with one of seven joints held.
+  /// The closed form of an arm with seven joints, one of them held.
   template <NominalArm Arm>
     requires(N == 7 && Arm::dof == 7)
   ClosedForm(const Arm& nominal, HeldJoint held, double tolerance = 1e-6)

@@ -9,12 +9,12 @@ namespace vernier {
 
 namespace detail {
 
-/// See `vernier::to_standard`.
+/// `vernier::to_standard` of rows whose number is known at run time.
 VERNIER_API ArmGeometry to_standard(const ChainTable& modified);
 
 }  // namespace detail
 
-/// The same arm in the standard convention. A modified row rotates and translates about x before it does about z, so
+/// An arm of the modified convention in the standard one. A modified row rotates and translates about x before it does about z, so
 /// each standard row takes theta and d from its own row and a, alpha and beta from the next; what precedes the first
 /// joint becomes the base frame, and the last row has a = alpha = beta = 0. Joint values keep their meaning.
 /// @cite Craig 2005; Denavit and Hartenberg 1955

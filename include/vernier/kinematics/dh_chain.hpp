@@ -93,7 +93,7 @@ class DhChain : public ChecksJoints<DhChain<N, Convention>> {
 
   /// Both in one pass.
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept { return with_jacobian(q, {}); }
-  /// The same of the chain standing in a base frame, at a point [m] fixed in the tool frame: the pose's origin.
+  /// Pose and Jacobian of the chain in a base frame, at a point [m] fixed in the tool frame: the pose's origin.
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q, const Isometry3& base,
                                        const Vector3& point) const noexcept {
     return with_jacobian(q, {base.data(), point.data()});
@@ -188,7 +188,7 @@ class DhChain : public ChecksJoints<DhChain<N, Convention>> {
     return p;
   }
 
-  /// The same arm with other values.
+  /// A chain of this structure with other parameter values.
   DhChain with_parameters(const Parameters& p) const {
     std::array<DhRow, N> rows;
     for (int i = 0; i < N; ++i)

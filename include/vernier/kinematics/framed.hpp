@@ -102,7 +102,7 @@ class Framed : public ChecksJoints<Framed<Model>> {
   /// Tool frame with its six values.
   const FrameParameters& tool_frame() const { return tool_; }
 
-  /// The same frames around another model.
+  /// These frames around another model.
   template <KinematicModel Other>
   Framed<Other> around(const Other& other) const {
     return Framed<Other>(other, base_, tool_);

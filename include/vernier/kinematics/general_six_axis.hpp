@@ -34,7 +34,7 @@ class GeneralSixAxis : public ChecksJoints<GeneralSixAxis<N>> {
       : moving_(HeldJoint{-1, 0}),
         axes_(detail::six_axes_of(nominal, moving_.held)),
         length_(detail::arm_length(detail::arm_axes(nominal))) {}
-  /// The same with one of seven joints held.
+  /// The branches of an arm with seven joints, one of them held.
   template <NominalArm Arm>
     requires(N == 7 && Arm::dof == 7)
   GeneralSixAxis(const Arm& nominal, HeldJoint held)

@@ -69,7 +69,7 @@ struct IkOutcome {
 /// @cite Levenberg 1944; Marquardt 1963; Nakamura and Hanafusa 1986; Sugihara 2011
 VERNIER_API IkOutcome solve_inverse_kinematics(const IkProblem& problem, double* joints) noexcept;
 
-/// The same with the number of joints known at compile time.
+/// `solve_inverse_kinematics` for a model whose number of joints is known at compile time.
 template <KinematicModel M>
 IkResult<M::dof> inverse_kinematics(const M& model, const Isometry3& target, bool oriented,
                                     const JointVector<M::dof>& seed, const IkOptions<M::dof>& options) noexcept {

@@ -131,7 +131,7 @@ inline Robot<6> puma560() {
   return {chain, detail::puma560_limits(), "puma560"};
 }
 
-/// The same PUMA 560 in the modified convention: every pose equals that of `puma560()`.
+/// The PUMA 560 in the modified convention: every pose equals that of `puma560()`.
 inline Robot<6, ModifiedDh> puma560_modified() {
   constexpr DhChain<6, ModifiedDh> chain{{{
       {.a = 0_mm, .alpha = 0_deg, .d = 0_mm},

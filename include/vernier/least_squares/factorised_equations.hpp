@@ -28,7 +28,7 @@ class FactorisedEquations {
   FactorisedEquations(NormalEquations&&, const VectorX&, const VectorX&, const VectorX& = {},
                       SparseSolve = eigen_sparse_solver, double = 0) = delete;
 
-  /// The same, undamped, with other priors of dense and factored unknowns: local ones are not eliminated again.
+  /// The undamped solution with other priors of dense and factored unknowns: local ones are not eliminated again.
   VERNIER_API FactorisedEquations with(const VectorX& precisions, const VectorX& steps) const;
 
   /// Whether there is a solution.

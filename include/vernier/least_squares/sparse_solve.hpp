@@ -30,7 +30,7 @@ using SparseSolve = FunctionRef<SparseOutcome(const SparseSymmetric& matrix, Mat
 /// A `SparseSolve` by Eigen's simplicial Cholesky factorisation, the default everywhere; `CholmodSolver` of the
 /// component `cholmod` takes its place.
 struct EigenSparseSolver {
-  /// See `SparseSolve`.
+  /// Solves by Eigen's sparse Cholesky factorisation.
   VERNIER_API SparseOutcome operator()(const SparseSymmetric& matrix, MatrixRef right) const;
 };
 

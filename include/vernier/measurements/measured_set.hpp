@@ -77,7 +77,7 @@ class MeasuredSet {
   Vector3 position(Index i) const { return point(*positions_, i); }
   /// Measured orientations, n; only where `oriented()`, of a sensor that measures them directly.
   const std::vector<Matrix3>& orientations() const { return *orientations_; }
-  /// See `Plausibility`.
+  /// Bounds beyond which these measurements are not of the arm.
   const Plausibility& plausibility() const { return plausibility_; }
 
   /// Poses as the sensor sees them: those of `joints`, in the tool frames of `seen_from` where there are some.
@@ -94,7 +94,7 @@ class MeasuredSet {
   /// With the accuracy that a user states for its kind.
   /// @throws std::invalid_argument for an unusable one
   VERNIER_API MeasuredSet with(const SensorModel& sensors) const;
-  /// The same sensor at other joint values, its readings in turn: for derivatives alone.
+  /// This sensor at other joint values, its readings in turn: for derivatives alone.
   VERNIER_API MeasuredSet at_joints(MatrixX other) const;
 
  private:

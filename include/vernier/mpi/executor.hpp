@@ -105,10 +105,10 @@ class MpiExecutor {
   /// Number of processes.
   int ranks() const { return ranks_; }
 
-  /// See `Executor`: the whole range, in every rank.
+  /// Calls `work` on the whole range, in every rank.
   void for_ranges(Index n, RangeFunction work) const { local_.for_ranges(n, work); }
 
-  /// See `DistributedExecutor`. Collective.
+  /// Computes a part of `values` in each rank, and exchanges them. Collective.
   void allgather(VectorRef values, RangeFunction work) const {
     const Index n = values.size(), begin = first(rank_, n), end = first(rank_ + 1, n);
     const long long before = fingerprint(values);

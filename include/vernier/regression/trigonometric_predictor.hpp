@@ -63,7 +63,7 @@ class TrigonometricSum {
 
   /// One row a feature.
   const Coefficients& coefficients() const { return coefficients_; }
-  /// See `TrigonometricSpread`.
+  /// Uncertainty of the coefficients.
   const TrigonometricSpread& spread() const { return *spread_; }
 
  private:

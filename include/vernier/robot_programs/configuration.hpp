@@ -25,7 +25,7 @@ namespace detail {
 VERNIER_API JointVector<6> reference_joints(ProgramLanguage language, const ControllerArm& arm);
 /// The factors whose sign differs from the reference: bit 0 shoulder, bit 1 elbow, bit 2 wrist.
 VERNIER_API int branch_from(const SingularityDistances& reference, const SingularityDistances& at);
-/// The same as the configuration states them.
+/// The bits of `branch_from` as a configuration states them.
 VERNIER_API int stated_branch(ProgramLanguage language, const std::vector<int>& configuration);
 /// The bits that a branch must have in common with what is stated; others only choose between several.
 VERNIER_API int binding_bits(ProgramLanguage language);

@@ -31,7 +31,7 @@ struct TouchStep {
   VectorX step;  ///< to be subtracted from the joint values
   double left;   ///< distance of the point before it [m]
 };
-/// See `TouchStep`.
+/// The step of the joints that brings a point closer to the surface of an object.
 /// @param jacobian of the point by the joints: its first three rows
 VERNIER_API TouchStep step_towards(const VirtualObject& object, const Vector3& point, double known,
                                    const ConstMatrixRef& jacobian);

@@ -125,7 +125,7 @@ std::vector<std::string> compensator_violations(const C& compensator, const Refe
   return violations;
 }
 
-/// The same where the compensator knows its reference; without one, the laws that need none.
+/// Holds a compensator to the laws, with its own reference; without one, to the laws that need none.
 /// @param compensator the compensator; `compensator.nominal()` is the arm as it should be
 /// @param samples     target joints, n x dof, n >= 1
 /// @param options     tolerances

@@ -36,7 +36,7 @@ struct UrdfChain {
 VERNIER_API UrdfChain read_urdf(const std::string& path, const std::string& base_link = {},
                                 const std::string& tip_link = {});
 
-/// The same of a file's content.
+/// The chain of a URDF text that was read already.
 /// @param text      its content
 /// @param file      its name in messages
 /// @param base_link,tip_link as above

@@ -59,7 +59,7 @@ struct LeftOut {
 /// Which parameters of an arm are fitted: a standard deviation about the nominal value each, infinite for free ones,
 /// 0 for those that are kept.
 VERNIER_API VectorX audit_frames_std(const ArmGeometry& arm, bool oriented);
-/// The same, with the parameters of the chain about their nominal values.
+/// The fit with the parameters of the chain free about their nominal values.
 VERNIER_API VectorX audit_geometry_std(const ArmGeometry& arm, bool oriented, double length_std, double angle_std);
 
 /// Index of the parameter that moves a joint's zero.

@@ -14,7 +14,7 @@
 
 namespace vernier::detail {
 
-/// The same value for each of n joints.
+/// One value for each of n joints.
 inline PathJoints same_joints(int n, double value) noexcept {
   PathJoints out(n);
   for (int j = 0; j < n; ++j) out(j) = value;

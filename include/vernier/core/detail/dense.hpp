@@ -74,7 +74,7 @@ struct QrSolution {
   MatrixX solution;  ///< of `min |matrix x - right|`
   MatrixX triangle;  ///< R, n x n
 };
-/// See `QrSolution`.
+/// Solves least squares by a QR decomposition.
 VERNIER_API QrSolution solve_by_qr(const ConstMatrixRef& matrix, const ConstMatrixRef& right);
 
 /// Eigenvalues, in ascending order, and eigenvectors of a symmetric matrix, its lower triangle.
@@ -83,7 +83,7 @@ struct SymmetricEigen {
   MatrixX vectors;  ///< n x n
   bool converged;   ///< false where a value is not finite
 };
-/// See `SymmetricEigen`.
+/// Decomposes a symmetric matrix, of which the lower triangle is read.
 VERNIER_API SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix);
 
 /// Tridiagonal form of a symmetric matrix, its lower triangle: `Q T Q'` for an orthogonal Q. Where T will do, this
@@ -93,7 +93,7 @@ struct TridiagonalForm {
   VectorX diagonal;     ///< of T, n
   VectorX subdiagonal;  ///< of T, n - 1
 };
-/// See `TridiagonalForm`.
+/// Brings a symmetric matrix, of which the lower triangle is read, to tridiagonal form.
 VERNIER_API TridiagonalForm tridiagonal_form(const ConstMatrixRef& matrix);
 
 /// Singular values, in descending order, and right singular vectors of a matrix of n columns and at least as many rows.
@@ -101,7 +101,7 @@ struct RightSingular {
   VectorX values;   ///< n
   MatrixX vectors;  ///< n x n
 };
-/// See `RightSingular`. By Jacobi rotations: slow and accurate.
+/// Singular values and right singular vectors by Jacobi rotations: slow and accurate.
 VERNIER_API RightSingular right_singular(const ConstMatrixRef& matrix);
 
 /// Thin singular value decomposition `H = U diag(s) V'`: QR of the longer side, then one-sided Jacobi rotations of the
@@ -111,7 +111,7 @@ struct ThinSvd {
   VectorX s;  ///< k, descending
   MatrixX v;  ///< h x k
 };
-/// See `ThinSvd`.
+/// Decomposes a matrix as `U diag(s) V'`.
 /// @param h n x h
 VERNIER_API ThinSvd thin_svd(const ConstMatrixRef& h);
 

@@ -72,7 +72,7 @@ class CalibrationProblem {
   VERNIER_API void stop_joint_drift();
   /// Precision of the random walks of bases, relative to steps of 0.03 mm and 20 urad in 200 poses.
   double drift_precision = 1;
-  /// The same of joints' zeros, relative to steps of 10 urad or 10 um.
+  /// Precision of the random walks of joints' zeros, relative to steps of 10 urad or 10 um in 200 poses.
   double joint_drift_precision = 1;
   /// The priors of the drift: random walks, held near zero, which is the stations' base.
   VERNIER_API std::vector<LocalPrior> drift_priors() const;
@@ -96,7 +96,7 @@ class CalibrationProblem {
   VERNIER_API void operator()(Index first, Index count, RowBlock* out) const;
   /// All rows at once.
   VERNIER_API StackedRows stacked(bool with_jacobian) const;
-  /// The same into rows of this problem, whose memory is used again.
+  /// All rows at once, into rows of this problem: their memory is used again.
   VERNIER_API void stack(bool with_jacobian, StackedRows& out) const;
 
   /// Weights of the loss from the present residuals.
@@ -111,7 +111,7 @@ class CalibrationProblem {
   /// Minimises from the present values, see `minimise`. A robust loss leaves its weights behind.
   /// @param least_gain ends where a step lowers the sum of squares by less than this share
   VERNIER_API IterationEnd solve(int max_iterations, double least_gain);
-  /// The same with the usual precision.
+  /// Minimises to the usual precision.
   /// @return whether the iteration converged
   VERNIER_API bool solve(int max_iterations = 20);
 

@@ -17,7 +17,7 @@ struct GeometryByContacts {
   ContactReport report;
 };
 
-/// See `vernier::identify_by_contacts`.
+/// `vernier::identify_by_contacts` for an arm whose number of joints is known at run time.
 VERNIER_API GeometryByContacts identify_geometry_by_contacts(const ArmGeometry& nominal,
                                                              std::span<const Contact> contacts,
                                                              const IdentifyOptions& options,

@@ -16,7 +16,7 @@ struct IdentifiedGeometry {
   IdentificationReport report;
 };
 
-/// See `vernier::identify`.
+/// `vernier::identify` for an arm whose number of joints is known at run time.
 VERNIER_API IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
                                                  const IdentifyOptions& options, const SensorModel& sensors,
                                                  GeometrySolver solver);

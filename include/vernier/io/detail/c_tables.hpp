@@ -20,7 +20,7 @@ VERNIER_API std::string c_text(std::string_view text);
 
 /// `static const double name[n] = {...};`, some numbers a line.
 VERNIER_API std::string c_table(const std::string& name, std::span<const double> values, std::size_t per_line);
-/// The same of integers.
+/// `static const int name[n] = {...};`.
 VERNIER_API std::string c_table(const std::string& name, std::span<const int> values);
 
 /// Of each joint: theta, d, a, sin and cos of alpha, sin and cos of beta.

@@ -59,7 +59,7 @@ struct ChainView {
   const SinCos* hayati;   ///< of beta
 };
 
-/// The same, with the numbers it points to.
+/// Rows of a chain of N joints by value: the numbers that a `ChainView` points to.
 template <int N, class Convention>
 struct ChainRows {
   std::array<DhRow, N> rows{};

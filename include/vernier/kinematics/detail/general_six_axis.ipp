@@ -60,7 +60,7 @@ VERNIER_API void normalize_lengths(SixAxes& arm, Isometry3& target) {
   }
 }
 
-/// The same arm with each axis displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
+/// An arm whose axes are each displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
 /// for every angle; displaced, they leave it regular, and Newton steps make up for it.
 VERNIER_API SixAxes with_displaced_axes(SixAxes arm) {
   Rng rng;

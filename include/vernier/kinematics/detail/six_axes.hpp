@@ -21,7 +21,7 @@ struct SixAxes {
   Vector3 point_of(int i) const { return {point(0, i), point(1, i), point(2, i)}; }
 };
 
-/// The same of an arm of 6 or 7 revolute joints.
+/// Axes of an arm of 6 or 7 revolute joints, and its tool at joint values zero.
 struct ArmAxes {
   int joints;
   Vector3 direction[7], point[7];  ///< of each

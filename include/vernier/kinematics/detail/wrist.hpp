@@ -32,7 +32,7 @@ struct MeetingPoint {
   Vector3 point;
   double miss;  ///< largest distance from one of them; 1e300 where they are parallel
 };
-/// See `MeetingPoint`.
+/// Finds where lines meet, in the sense of least squares.
 /// @param directions, points of the lines
 VERNIER_API MeetingPoint meeting_point(const Vector3* directions, const Vector3* points, int lines) noexcept;
 
@@ -65,7 +65,7 @@ struct WristAngles {
 /// @param widest angle from the straight wrist that counts as next to a singularity [rad]: then samples of joint 4, too
 VERNIER_API WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation, double near4, double widest) noexcept;
 
-/// The same angle in (-pi, pi] [rad].
+/// An angle brought into (-pi, pi] by whole turns [rad].
 VERNIER_API double wrapped_angle(double angle) noexcept;
 
 }  // namespace vernier::detail

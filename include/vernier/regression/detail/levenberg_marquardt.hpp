@@ -26,7 +26,7 @@ struct LeastSquaresProblem {
 VERNIER_API double levenberg_marquardt(const LeastSquaresProblem& problem, VectorX& theta, int iterations,
                                        double tolerance, ExecutorRef executor, FunctionRef<bool(double best)> watch);
 
-/// The same of an object that has these members.
+/// Levenberg-Marquardt on an object that has these members.
 template <class Problem>
 double levenberg_marquardt(Problem& problem, VectorX& theta, int iterations, double tolerance, ExecutorRef executor,
                            FunctionRef<bool(double best)> watch) {

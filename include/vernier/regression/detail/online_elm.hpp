@@ -31,7 +31,7 @@ class OnlineElm {
   VERNIER_API MatrixX covariance() const;
   /// Of a sample of weight one, each output.
   VERNIER_API VectorX noise_variance() const;
-  /// The same of one output.
+  /// The update for one output.
   double noise_variance(Index output) const noexcept { return square_(output) / total_; }
 
  private:

@@ -10,7 +10,7 @@
 
 #include "vernier/ceres/identify.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
 #include "vernier/kinematics/robots.hpp"

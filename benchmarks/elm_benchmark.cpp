@@ -16,7 +16,7 @@
 #include "vernier/core/executor.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/kinematics/robots.hpp"
-#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/layer_equations.hpp"
 #include "vernier/regression/detail/tile_product.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 #include <vernier/compensation/cartesian.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/regression/ridge_elm.hpp>
 #include <vernier/simulation/sampling.hpp>

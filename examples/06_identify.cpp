@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <vernier/ceres/identify.hpp>
 #include <vernier/compensation/compensated.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/sampling.hpp>
 #include <vernier/simulation/virtual_robot.hpp>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <vernier/compensation/cartesian.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/regression/ridge_elm.hpp>
 #include <vernier/simulation/sampling.hpp>
 #include <vernier/simulation/virtual_robot.hpp>

@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <cstdio>
 #include <vernier/compensation/cartesian.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/regression/elm.hpp>
 #include <vernier/simulation/sampling.hpp>

@@ -5,7 +5,7 @@
 #include <pagmo/algorithms/gaco.hpp>
 #include <pagmo/algorithms/pso_gen.hpp>
 #include <vernier/compensation/cartesian.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/regression/elm.hpp>
 #include <vernier/search/pso.hpp>

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "figures.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 
 namespace support {
 

@@ -10,7 +10,7 @@
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/report_json.hpp"
 #include "vernier/registration/reregister.hpp"

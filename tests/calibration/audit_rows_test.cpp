@@ -15,7 +15,7 @@
 #include "real_matrix.hpp"
 #include "vernier/calibration/detail/audit_fit.hpp"
 #include "vernier/calibration/detail/audit_hypotheses.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"

@@ -9,7 +9,7 @@
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"

@@ -6,7 +6,7 @@
 
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"

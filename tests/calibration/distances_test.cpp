@@ -4,7 +4,7 @@
 
 #include "complaint.hpp"
 #include "vernier/calibration/calibrate.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "set_of.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/touches.hpp"

@@ -12,7 +12,7 @@
 #include "real_matrix.hpp"
 #include "set_of.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"

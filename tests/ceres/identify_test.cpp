@@ -9,7 +9,7 @@
 #include "vernier/core/literals.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 #include "vernier/simulation/virtual_robot.hpp"

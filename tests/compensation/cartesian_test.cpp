@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 #include <vernier/compensation/cartesian.hpp>
-#include <vernier/core/points.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/core/rigid_motions.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/identification/calibrated.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/regression/elm.hpp>

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <string>
 #include <vernier/compensation/compensated.hpp>
-#include <vernier/core/points.hpp>
+#include <vernier/core/rigid_motions.hpp>
 #include <vernier/core/rng.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/identification/calibrated.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/sampling.hpp>

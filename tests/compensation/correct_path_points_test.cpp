@@ -9,7 +9,7 @@
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/virtual_robot.hpp"

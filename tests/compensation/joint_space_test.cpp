@@ -8,8 +8,8 @@
 #include <string>
 #include <vernier/compensation/cartesian.hpp>
 #include <vernier/compensation/joint_space.hpp>
-#include <vernier/core/points.hpp>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/core/rigid_motions.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/regression/elm.hpp>
 #include <vernier/regression/ridge_elm.hpp>

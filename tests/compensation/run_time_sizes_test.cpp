@@ -7,7 +7,7 @@
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/joint_space.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/simulation/virtual_robot.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vernier/core/points.hpp>
+#include <vernier/core/rigid_motions.hpp>
 #include <vernier/data/dataset.hpp>
 
 #include "complaint.hpp"

@@ -13,7 +13,7 @@
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/pair_search.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/pair_search.hpp"

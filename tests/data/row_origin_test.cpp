@@ -10,7 +10,7 @@
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
-#include "vernier/identification/stations.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 
 namespace vernier::row_origin_test {
 namespace {

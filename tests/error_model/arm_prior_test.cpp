@@ -17,7 +17,7 @@
 #include "set_of.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"

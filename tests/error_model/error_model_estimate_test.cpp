@@ -10,7 +10,7 @@
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/robots.hpp"
 

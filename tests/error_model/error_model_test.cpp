@@ -8,7 +8,7 @@
 #include <numbers>
 #include <type_traits>
 #include <vernier/compensation/compensated.hpp>
-#include <vernier/core/points.hpp>
+#include <vernier/core/rigid_motions.hpp>
 #include <vernier/core/so3.hpp>
 #include <vernier/error_model/error_model.hpp>
 #include <vernier/kinematics/all_branches.hpp>

@@ -16,7 +16,7 @@
 #include "larger.hpp"
 #include "real_matrix.hpp"
 #include "set_of.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"

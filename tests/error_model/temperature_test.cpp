@@ -9,7 +9,7 @@
 
 #include "gauss_newton.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_model/fit_error_model.hpp"

@@ -10,8 +10,8 @@
 
 #include "complaint.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
 #include "vernier/core/register_points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/iso9283.hpp"

@@ -12,7 +12,7 @@
 #include "random_blocks.hpp"
 #include "real_matrix.hpp"
 #include "set_of.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 
 namespace vernier::session_drift_test {

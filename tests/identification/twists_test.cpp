@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 
 namespace vernier::iso9283_json_test {

@@ -83,7 +83,7 @@ Tally solve_many(int n, MakeArm&& make_arm) {
     const detail::SixAxes arm = make_arm(rng);
     const JointVector<6> q = random_joints<6>(rng);
     const Isometry3 target = pose_of(arm, q);
-    const detail::SixAxisRoots roots = solve_general(arm, target);
+    const detail::SixAxisRoots roots = solve_six_axes(arm, target);
     expect_distinct_roots(arm, target, roots);
     bool found = false;
     for (const detail::SixAxisRoot& root : roots) found |= difference(root.joints, q) < 1e-6;
@@ -130,7 +130,7 @@ TEST(GeneralSixAxis, MissesNothingThatASearchFinds) {
                              : i % 3 == 1 ? with_errors(robots::ur10().chain, rng)
                                           : robots::abb_irb120().chain;
     const Isometry3 target = chain.pose(random_joints<6>(rng));
-    const detail::SixAxisRoots roots = solve_general(axes_of(chain), target);
+    const detail::SixAxisRoots roots = solve_six_axes(axes_of(chain), target);
     for (int start = 0; start < 50; ++start) {
       const IkResult<6> result = inverse_kinematics(chain, target, random_joints<6>(rng));
       if (result.status != IkStatus::converged) continue;
@@ -162,7 +162,7 @@ TEST(GeneralSixAxis, FindsBothRootsNearAFold) {
   for (const double elbow : {1e-1, 1e-2, 3e-3}) {
     const JointVector<6> q{0.4, -1.1, elbow, 0.7, 1.2, -0.3};
     const Isometry3 target = pose_of(arm, q);
-    const detail::SixAxisRoots roots = solve_general(arm, target);
+    const detail::SixAxisRoots roots = solve_six_axes(arm, target);
     expect_distinct_roots(arm, target, roots);
     int near = 0;
     for (const detail::SixAxisRoot& root : roots) near += difference(root.joints, q) < 4 * elbow;
@@ -185,7 +185,7 @@ TEST(GeneralSixAxis, UnitsAndPlacementOfTheArmDoNotMatter) {
     other.direction = base.linear() * arm.direction;
     other.point = 1000 * (base * arm.point);
     other.tool = placed(arm.tool);
-    EXPECT_EQ(solve_general(arm, target).count, solve_general(other, placed(target)).count);
+    EXPECT_EQ(solve_six_axes(arm, target).count, solve_six_axes(other, placed(target)).count);
   }
 }
 
@@ -222,20 +222,20 @@ TEST(GeneralSixAxis, FindsNoRootsOutOfReachNorOfTargetsThatAreNone) {
   const detail::SixAxes arm = random_arm(rng);
   Isometry3 target = pose_of(arm, random_joints<6>(rng));
   target.translation().x() += 100;
-  EXPECT_EQ(solve_general(arm, target).count, 0);
+  EXPECT_EQ(solve_six_axes(arm, target).count, 0);
   target.translation().x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(solve_general(arm, target).count, 0);
+  EXPECT_EQ(solve_six_axes(arm, target).count, 0);
   target.translation().x() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(solve_general(arm, target).count, 0);
+  EXPECT_EQ(solve_six_axes(arm, target).count, 0);
 }
 
 TEST(GeneralSixAxis, YieldsTheSameBitsAgainWithoutAllocation) {
   Rng rng(6);
   for (const detail::SixAxes& arm : {random_arm(rng), axes_of(robots::abb_irb120().chain)}) {
     const Isometry3 target = pose_of(arm, random_joints<6>(rng));
-    const detail::SixAxisRoots once = solve_general(arm, target);
+    const detail::SixAxisRoots once = solve_six_axes(arm, target);
     detail::SixAxisRoots again;
-    EXPECT_EQ(vernier_test::allocations([&] { again = solve_general(arm, target); }), 0);
+    EXPECT_EQ(vernier_test::allocations([&] { again = solve_six_axes(arm, target); }), 0);
     ASSERT_EQ(once.count, again.count);
     EXPECT_EQ(once.condition, again.condition);
     for (int i = 0; i < once.count; ++i) EXPECT_EQ(once.begin()[i].joints, again.begin()[i].joints);

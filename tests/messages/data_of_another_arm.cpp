@@ -1,6 +1,6 @@
 // Data of seven joints and a model of six.
 // expect: the data have another number of joints than the model
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/kinematics/dh_chain.hpp>
 
 #ifdef MISTAKE

@@ -1,6 +1,6 @@
 // A model without Jacobians, compared with data.
 // expect: `jacobian(q)` must be const and noexcept and return vernier::Jacobian<dof>
-#include <vernier/evaluation/statistics.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 
 namespace vn = vernier;
 

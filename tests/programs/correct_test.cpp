@@ -13,7 +13,7 @@
 #include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/csv.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"

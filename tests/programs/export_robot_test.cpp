@@ -14,7 +14,7 @@
 #include "urdf_samples.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/urdf.hpp"
 
 namespace vernier::export_robot_test {

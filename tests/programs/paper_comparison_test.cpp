@@ -7,7 +7,7 @@
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/data/csv.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/kinematics/robots.hpp"
 

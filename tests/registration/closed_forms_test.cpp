@@ -10,7 +10,7 @@
 
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/registration/reregister.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 #include "vernier/kinematics/robots.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/registration/reregister.hpp"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/registration/reregister.hpp"

@@ -14,7 +14,7 @@
 #include "complaint.hpp"
 #include "larger.hpp"
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/registration/recursive_calibration.hpp"

@@ -15,7 +15,7 @@
 #include "complaint.hpp"
 #include "replaced.hpp"
 #include "vernier/compensation/compensated.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/robot_programs/correct_program.hpp"

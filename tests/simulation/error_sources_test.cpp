@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
-#include <vernier/core/points.hpp>
+#include <vernier/core/rigid_motions.hpp>
 #include <vernier/kinematics/framed.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/error_sources.hpp>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vernier/core/points.hpp>
+#include <vernier/core/rigid_motions.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/sampling.hpp>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 #include <string>
-#include <vernier/core/points.hpp>
+#include <vernier/core/rigid_motions.hpp>
 #include <vernier/core/rng.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>

@@ -11,7 +11,7 @@
 
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/core/rng.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/frames.hpp"
 
 namespace vernier {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 #include "vernier/kinematics/joint_limits.hpp"

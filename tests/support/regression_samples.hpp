@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "real_matrix.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/regression/hidden_layer.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vernier/core/points.hpp"
 #include "vernier/core/register_points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"

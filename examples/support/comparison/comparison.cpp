@@ -15,7 +15,7 @@
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 

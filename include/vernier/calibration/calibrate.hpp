@@ -13,9 +13,9 @@
 #include "vernier/calibration/detail/plausibility.hpp"
 #include "vernier/calibration/learn_remainders.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/identify.hpp"
-#include "vernier/identification/stations.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measurements.hpp"
 
 namespace vernier {

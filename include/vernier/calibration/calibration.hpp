@@ -13,7 +13,7 @@
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/identification/identified.hpp"
 #include "vernier/measurements/measured_set.hpp"
@@ -106,8 +106,8 @@ ErrorModel<Chain> at_temperature_of(const ErrorModel<Chain>& model, const Datase
 /// Poses as predicted with their configurations of approach, moved by drift.
 /// @param temperature whether each is predicted at its temperature, not at the mean one
 template <class Chain>
-std::vector<Isometry3> visited_poses(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, bool temperature,
-                                     const SessionDrift& drift) {
+std::vector<Isometry3> predicted_visits(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
+                                        bool temperature, const SessionDrift& drift) {
   std::vector<Isometry3> out;
   const auto visit = [&](const ErrorModel<Chain>& now, Index i) {
     JointVector<Chain::dof> q = data.joints(i);
@@ -131,7 +131,7 @@ std::vector<Dataset<Chain::dof>> static_poses(const std::vector<ErrorModel<Chain
   for (std::size_t s = 0; s < stations.size(); ++s) {
     const Dataset<Chain::dof>& data = stations[s];
     const std::vector<Isometry3> visited =
-        visited_poses(models[s], data, true, s < drift.size() ? drift[s] : SessionDrift{});
+        predicted_visits(models[s], data, true, s < drift.size() ? drift[s] : SessionDrift{});
     PointRows positions = data.positions();
     for (Index i = 0; i < data.size(); ++i)
       positions.row(i) -=

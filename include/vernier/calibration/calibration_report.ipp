@@ -10,7 +10,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 
 namespace vernier {
 
@@ -42,7 +42,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
 namespace detail {
 
 /// Accuracy inside the measured joint ranges.
-VERNIER_API void describe_accuracy(const CalibrationReport& report, std::vector<std::string>& out) {
+VERNIER_LOCAL void describe_accuracy(const CalibrationReport& report, std::vector<std::string>& out) {
   const VectorX& last = report.stage(report.chosen).position;
   std::vector<double> inside;
   for (Index i = 0; i < last.size(); ++i)
@@ -61,7 +61,7 @@ VERNIER_API void describe_accuracy(const CalibrationReport& report, std::vector<
 }
 
 /// Measured joint ranges, in degrees or millimetres.
-VERNIER_API std::string describe_ranges(const std::vector<JointReport>& joints) {
+VERNIER_LOCAL std::string describe_ranges(const std::vector<JointReport>& joints) {
   std::string out;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double unit = joints[j].revolute ? 180 / std::numbers::pi : 1e3;
@@ -76,7 +76,7 @@ VERNIER_API std::string describe_ranges(const std::vector<JointReport>& joints) 
 }
 
 /// A decision on a block of joint errors.
-VERNIER_API std::string describe_block(const BlockChoice& block) {
+VERNIER_LOCAL std::string describe_block(const BlockChoice& block) {
   const BlockTraits& traits = traits_of(block.block);
   return message(
       block.used ? traits.included : traits.left_out, "(leave-one-pose-out error: ", brief(block.without * 1e3),
@@ -88,8 +88,8 @@ VERNIER_API std::string describe_block(const BlockChoice& block) {
 }
 
 /// Poses that would determine a parameter.
-VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vector<JointReport>& joints,
-                                        bool oriented) {
+VERNIER_LOCAL std::string describe_advice(const PoseAdvice& advice, const std::vector<JointReport>& joints,
+                                          bool oriented) {
   const bool length = advice.kind == ParameterKind::length;
   std::string out = message(advice.parameter, " is weakly determined (standard deviation ", brief(advice.std_now * 1e3),
                             length ? " mm" : " mrad", ')');
@@ -111,8 +111,8 @@ VERNIER_API std::string describe_advice(const PoseAdvice& advice, const std::vec
 }
 
 /// How far a base moved, and when.
-VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::vector<JointReport>& joints,
-                                       const std::string& station) {
+VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::vector<JointReport>& joints,
+                                         const std::string& station) {
   const Index knots = drift.knots.cols();
   const auto apart = [&](Index a, Index b, Index part) {
     const auto change = [&](Index k) { return drift.knots(part + k, b) - drift.knots(part + k, a); };
@@ -154,7 +154,7 @@ VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::vec
 }
 
 /// Lines of a joint's gear and encoder, which errors of its assembly do not reach; empty where there are none.
-VERNIER_API std::string describe_lines(const JointReport& joint, std::size_t number) {
+VERNIER_LOCAL std::string describe_lines(const JointReport& joint, std::size_t number) {
   constexpr int assembly = 28;
   constexpr int most = 3;
   std::string out;

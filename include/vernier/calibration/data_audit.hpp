@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vernier/calibration/data_finding.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/measurements/measurements.hpp"
 

@@ -50,7 +50,7 @@ VERNIER_IMPL std::string DataAudit::summary() const {
 namespace detail {
 
 /// The finding of a fault of all rows.
-VERNIER_API DataFinding global_finding(const HypothesisFit& found) {
+VERNIER_LOCAL DataFinding global_finding(const HypothesisFit& found) {
   const AuditHypothesis& h = found.hypothesis;
   DataFinding out{*h.kind, h.joint};
   const std::string joint = message("joint ", h.joint + 1);
@@ -81,7 +81,7 @@ VERNIER_API DataFinding global_finding(const HypothesisFit& found) {
   return out;
 }
 
-VERNIER_API DataFinding zero_finding(const ArmGeometry& arm, int joint, double zero) {
+VERNIER_LOCAL DataFinding zero_finding(const ArmGeometry& arm, int joint, double zero) {
   DataFinding out{FaultKind::joint_zero, joint, {}, zero};
   const bool revolute = arm.chain().revolute(joint);
   out.message = message("all rows: joint ", joint + 1, " counts from a zero that is off by ",
@@ -92,8 +92,8 @@ VERNIER_API DataFinding zero_finding(const ArmGeometry& arm, int joint, double z
 
 /// A zero so small that other parameters of the chain hide it, or none: of the joint whose zero explains more than all
 /// expected deviations of the geometry.
-VERNIER_API std::pair<int, double> small_zero(const ArmGeometry& nominal, const AuditFit& frames, const AuditRows& rows,
-                                              const VectorX& stds, double smallest_zero) {
+VERNIER_LOCAL std::pair<int, double> small_zero(const ArmGeometry& nominal, const AuditFit& frames,
+                                                const AuditRows& rows, const VectorX& stds, double smallest_zero) {
   const VectorX centre = nominal.parameters();
   const AuditFit plain = audit_fit(frames.arm, centre, stds, rows, 12);
   std::vector<AuditFit> fits;

@@ -14,8 +14,8 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/pose_advice.hpp"
-#include "vernier/evaluation/statistics.hpp"
-#include "vernier/identification/stations.hpp"
+#include "vernier/evaluation/position_errors.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
@@ -81,8 +81,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   const auto assess = [&](const StagedModels<Chain>& staged) {
     const StageTraits& traits = traits_of(staged.stage);
     const auto poses = [&](std::size_t s, const Dataset<N>& data) {
-      return detail::visited_poses(staged.models[s], data, traits.thermal,
-                                   traits.drift && s < errors.drift.size() ? errors.drift[s] : SessionDrift{});
+      return detail::predicted_visits(staged.models[s], data, traits.thermal,
+                                      traits.drift && s < errors.drift.size() ? errors.drift[s] : SessionDrift{});
     };
     const auto position = [&](std::size_t s, const Dataset<N>& data) {
       return traits.visits ? detail::position_errors_of(poses(s, data), data.positions())
@@ -156,7 +156,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     for (Index i = 0; i < data.size(); ++i) gates(i) = models[s].gate(data.joints(i));
     const std::vector<Matrix6> covariances =
         errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
-    const std::vector<Isometry3> poses = detail::visited_poses(models[s], data, true, {});
+    const std::vector<Isometry3> poses = detail::predicted_visits(models[s], data, true, {});
     const Matrix3 back = rotation(errors.model().identified().base()).transpose();
     const Matrix3 turn = rotation(models[s].identified().base()) * back;
     for (Index i = 0; i < data.size(); ++i) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "vernier/calibration/calibration.hpp"
-#include "vernier/evaluation/statistics.hpp"
-#include "vernier/identification/stations.hpp"
+#include "vernier/evaluation/position_errors.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 #include "vernier/regression/kernel_elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
@@ -21,7 +21,7 @@ namespace vernier::detail {
 /// Errors of the models of all stations at poses as they were visited, of one station.
 template <class Chain>
 VectorX visited_errors(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
-  return position_errors_of(visited_poses(model, data, true, {}), data.positions());
+  return position_errors_of(predicted_visits(model, data, true, {}), data.positions());
 }
 
 /// Learns what a model leaves at some poses in its frame.
@@ -113,8 +113,8 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   return BestLearner{out.trials.size() - 1 - best, clearly_better(with, without), changed(with)};
 }
 
-/// Learns what the stages leave, as `RemainderOptions` says. What is learned on geometry is deployed where it predicts left-out poses better than the
-/// error model does, by more than a standard error.
+/// Learns what the stages leave, as `RemainderOptions` says. What is learned on geometry is deployed where it predicts
+/// left-out poses better than the error model does, by more than a standard error.
 template <class Chain>
 void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::dof>> stations,
                       const RemainderOptions& options, const FitOptions& fit) {

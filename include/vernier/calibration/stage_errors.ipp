@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "vernier/calibration/stage_errors.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 
 namespace vernier {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
 #include "vernier/registration/reregister.hpp"

@@ -37,7 +37,7 @@ struct WhitenedResiduals {
 
 /// Takes off what columns explain, by modified Gram-Schmidt, twice; columns that depend on others are left out.
 /// @return number of columns that were taken off
-VERNIER_API Index take_off(const ConstMatrixRef& nuisance, VectorX& residual, MatrixX& columns) {
+VERNIER_LOCAL Index take_off(const ConstMatrixRef& nuisance, VectorX& residual, MatrixX& columns) {
   std::vector<VectorX> axes;
   for (Index k = 0; k < nuisance.cols(); ++k) {
     VectorX axis = nuisance.col(k);
@@ -59,7 +59,7 @@ struct ColumnTest {
   double chi_square = 0;
   Index rank = 0;
 };
-VERNIER_API ColumnTest test_columns(const WhitenedResiduals& of, const std::vector<Index>& which) {
+VERNIER_LOCAL ColumnTest test_columns(const WhitenedResiduals& of, const std::vector<Index>& which) {
   MatrixX columns(of.residual.size(), static_cast<Index>(which.size())), none(of.residual.size(), 0);
   Index used = 0;
   for (const Index k : which)
@@ -70,8 +70,8 @@ VERNIER_API ColumnTest test_columns(const WhitenedResiduals& of, const std::vect
 }
 
 /// Covariance of the residuals of some poses: that of the calibration's unknowns, which they share, and of each visit.
-VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const VerifyOptions& options, Index values,
-                                        std::vector<Matrix6>& visits) {
+VERNIER_LOCAL MatrixX residual_covariance(const VerificationInput& input, const VerifyOptions& options, Index values,
+                                          std::vector<Matrix6>& visits) {
   const MeasuredSet& data = input.data;
   const Index n = data.size(), unknowns = input.estimate.arm.size();
   const VectorX& temperatures = data.temperatures;
@@ -103,8 +103,8 @@ VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const Ve
 }
 
 /// Tests of everything and of each joint, some rows left out.
-VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covariance, const VectorX& residual,
-                          const MatrixX& registered, const MatrixX& changes, Index values, VerificationReport& out) {
+VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covariance, const VectorX& residual,
+                            const MatrixX& registered, const MatrixX& changes, Index values, VerificationReport& out) {
   const Index n = input.data.size(), joints = static_cast<Index>(out.joint_types.size());
   std::vector<Index> kept;
   for (Index i = 0; i < n; ++i)
@@ -267,7 +267,7 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
 }
 
 /// The joints that are named, and how far their zeros moved.
-VERNIER_API std::string named_changes(const VerificationReport& report) {
+VERNIER_LOCAL std::string named_changes(const VerificationReport& report) {
   std::string out;
   for (std::size_t j = 0; j < report.joints.size(); ++j) {
     const JointCheck& joint = report.joints[j];

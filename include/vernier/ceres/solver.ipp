@@ -15,12 +15,12 @@ namespace vernier::detail {
 /// linearised together before each evaluation; cost functions copy theirs.
 class CeresProblem {
  public:
-  VERNIER_API CeresProblem(CalibrationProblem& problem)
+  VERNIER_LOCAL CeresProblem(CalibrationProblem& problem)
       : problem_(problem), steps_(problem.arm.steps()), evaluation_(*this) {}
 
   /// Minimises from the present values.
   /// @param thresholds of the loss, of positions, orientations and distances; null for least squares
-  VERNIER_API SolverSummary solve(const std::array<double, 3>* thresholds, int max_iterations) {
+  VERNIER_LOCAL SolverSummary solve(const std::array<double, 3>* thresholds, int max_iterations) {
     steps_ = problem_.arm.steps();
     ceres::Problem::Options options;
     options.evaluation_callback = &evaluation_;
@@ -56,7 +56,7 @@ class CeresProblem {
   }
 
  private:
-  VERNIER_API void move_to(const VectorX& steps) { problem_.arm.move(steps - problem_.arm.steps()); }
+  VERNIER_LOCAL void move_to(const VectorX& steps) { problem_.arm.move(steps - problem_.arm.steps()); }
 
   /// Linearises all rows at a new point; with the Jacobian always: most steps are accepted, and then it is needed.
   struct Evaluation : ceres::EvaluationCallback {
@@ -115,7 +115,7 @@ class CeresProblem {
     VectorX root_;
   };
 
-  VERNIER_API ceres::LossFunction* loss(double threshold) const {
+  VERNIER_LOCAL ceres::LossFunction* loss(double threshold) const {
     if (!(threshold > 0)) return nullptr;
     if (problem_.loss() == Loss::huber) return new ceres::HuberLoss(threshold);
     return new ceres::CauchyLoss(threshold);

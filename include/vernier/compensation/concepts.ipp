@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vernier/compensation/concepts.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 
 namespace vernier {
 

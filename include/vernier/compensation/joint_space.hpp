@@ -5,7 +5,7 @@
 
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/regression/detail/explain_regressor.hpp"

@@ -8,6 +8,7 @@
 ///
 ///     VERNIER_API Isometry3 register_points(const PointRows& from, const PointRows& to);  // in .hpp
 ///     VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) { ... }  // in .ipp
+/// `VERNIER_LOCAL` stands before a function that one `.ipp` file defines for itself, and nobody else calls.
 /// `VERNIER_TEMPLATE_API` stands before a function template of which the library has instances.
 ///
 /// Header-only, the first two make a function template with a default argument: callers notice nothing, and a compiler
@@ -35,6 +36,7 @@
 #define VERNIER_IMPL template <class VernierHeaderOnly>
 #define VERNIER_TEMPLATE_API
 #endif
+#define VERNIER_LOCAL VERNIER_API
 
 /// @endcond
 

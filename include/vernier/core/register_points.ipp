@@ -6,7 +6,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 
 namespace vernier {
 

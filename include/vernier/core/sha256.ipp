@@ -11,7 +11,7 @@ namespace vernier {
 namespace detail {
 
 /// One block of 64 bytes, compressed into the state.
-VERNIER_API void sha256_block(const unsigned char* block, std::array<std::uint32_t, 8>& state) {
+VERNIER_LOCAL void sha256_block(const unsigned char* block, std::array<std::uint32_t, 8>& state) {
   // the fractional parts of the cube roots of the first 64 primes
   static constexpr std::array<std::uint32_t, 64> constants{
       0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,

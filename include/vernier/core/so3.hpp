@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 
 namespace vernier {
 

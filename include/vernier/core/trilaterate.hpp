@@ -3,7 +3,7 @@
 /// @file
 /// The place of a fixed point from its distances.
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {

@@ -173,8 +173,8 @@ class CsvTable {
 
 /// Columns q1 .. qN behind a prefix: angles, or lengths for prismatic joints. Refuses a file with more joints, and
 /// units that do not fit the types of joints, where these are given.
-VERNIER_API std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types,
-                                                 std::string_view prefix = "") {
+VERNIER_LOCAL std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types,
+                                                   std::string_view prefix = "") {
   require(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
           " types of joints for ", joints, " joints");
   std::vector<CsvColumn> columns;

@@ -9,7 +9,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/data/row_origin.hpp"
@@ -20,7 +20,8 @@ namespace detail {
 
 /// Whether a row has finite values only.
 VERNIER_API bool finite_row(const ConstMatrixRef& values, Index row);
-VERNIER_API void check_samples(const ConstMatrixRef& joints, const PointRows& positions, const PointRows& orientations);
+VERNIER_API void check_measured_samples(const ConstMatrixRef& joints, const PointRows& positions,
+                                        const PointRows& orientations);
 VERNIER_API [[noreturn]] void refuse_coordinates(Index columns);
 
 /// Points, one a row, in a matrix of either kind.
@@ -55,7 +56,7 @@ class Dataset {
   /// @throws std::invalid_argument when the numbers of rows differ or a value is not finite, naming the row
   Dataset(JointRows<N> joints, PointRows positions, PointRows orientations = PointRows(0, 3))
       : joints_(std::move(joints)), positions_(std::move(positions)), orientations_(std::move(orientations)) {
-    detail::check_samples(joints_, positions_, orientations_);
+    detail::check_measured_samples(joints_, positions_, orientations_);
     previous_ = JointRows<N>::Constant(size(), N, std::numeric_limits<double>::quiet_NaN());
     if (size() > 1) previous_.bottomRows(size() - 1) = joints_.topRows(size() - 1);
     times_ = VectorX::LinSpaced(size(), 0, static_cast<double>(size() - 1));

@@ -12,8 +12,8 @@ VERNIER_IMPL bool finite_row(const ConstMatrixRef& values, Index row) {
   return true;
 }
 
-VERNIER_IMPL void check_samples(const ConstMatrixRef& joints, const PointRows& positions,
-                                const PointRows& orientations) {
+VERNIER_IMPL void check_measured_samples(const ConstMatrixRef& joints, const PointRows& positions,
+                                         const PointRows& orientations) {
   const Index n = joints.rows();
   require(n == positions.rows(), "Dataset: ", n, " rows of joints, but ", positions.rows(), " rows of positions");
   require(orientations.rows() == 0 || orientations.rows() == n, "Dataset: ", n, " rows of joints, but ",

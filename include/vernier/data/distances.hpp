@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/data/dataset.hpp"
 

@@ -18,9 +18,9 @@ namespace detail {
 
 /// Index of every name.
 /// @throws DataError where one is there twice
-VERNIER_API std::map<std::string, Index> unique_names(const std::vector<std::string>& names,
-                                                      const std::vector<Index>& lines, const std::string& file,
-                                                      const std::string& column) {
+VERNIER_LOCAL std::map<std::string, Index> unique_names(const std::vector<std::string>& names,
+                                                        const std::vector<Index>& lines, const std::string& file,
+                                                        const std::string& column) {
   std::map<std::string, Index> out;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (const auto [known, added] = out.emplace(names[i], static_cast<Index>(i)); !added)
@@ -29,7 +29,7 @@ VERNIER_API std::map<std::string, Index> unique_names(const std::vector<std::str
   return out;
 }
 
-VERNIER_API Pairing proven_pairing(const PairSearch& search, std::vector<PairingFault> faults) {
+VERNIER_LOCAL Pairing proven_pairing(const PairSearch& search, std::vector<PairingFault> faults) {
   auto [proof, found] = prove(search);
   if (proof.status != PairingStatus::proven) return {{}, std::move(faults), proof};
   const FaultSearch unpaired(search, *found);

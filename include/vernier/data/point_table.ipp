@@ -14,7 +14,7 @@ namespace vernier {
 namespace detail {
 
 /// The index of a column that may be there once; -1 where it is not.
-VERNIER_API Index column_index(const std::vector<std::string>& columns, std::string_view name) {
+VERNIER_LOCAL Index column_index(const std::vector<std::string>& columns, std::string_view name) {
   const auto found = std::find(columns.begin(), columns.end(), name);
   if (found == columns.end()) return -1;
   require(std::find(found + 1, columns.end(), name) == columns.end(), "PointTableFormat: column ", name,
@@ -23,7 +23,7 @@ VERNIER_API Index column_index(const std::vector<std::string>& columns, std::str
 }
 
 /// The cells of a line, between blanks or separators; of a line that has more than `most_columns` one more than these.
-VERNIER_API std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+VERNIER_LOCAL std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   std::vector<std::string_view> out;
   if (separator == ' ') {
     for (std::size_t begin = 0;

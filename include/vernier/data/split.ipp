@@ -12,14 +12,14 @@
 namespace vernier::detail {
 
 /// Number of rows held out of n; at least one on each side.
-VERNIER_API Index num_test_rows(const char* caller, Index n, double fraction) {
+VERNIER_LOCAL Index num_test_rows(const char* caller, Index n, double fraction) {
   require(fraction > 0 && fraction < 1, caller, ": test_fraction is ", fraction, ", must lie strictly between 0 and 1");
   require(n >= 2, caller, ": ", n, " rows cannot be split, at least 2 are needed");
   return std::clamp<Index>(static_cast<Index>(std::llround(fraction * static_cast<double>(n))), 1, n - 1);
 }
 
 /// The first rows of an order as test rows, the others as training rows.
-VERNIER_API SplitRows split_order(std::vector<Index> order, Index tests) {
+VERNIER_LOCAL SplitRows split_order(std::vector<Index> order, Index tests) {
   std::sort(order.begin(), order.begin() + tests);
   std::sort(order.begin() + tests, order.end());
   return {{order.begin() + tests, order.end()}, {order.begin(), order.begin() + tests}};

@@ -112,9 +112,9 @@ inline MatrixX one_row(const ConstVectorRef& values) {
 }
 
 /// Covariances of modelled poses at n configurations; `rows` are the linearised poses.
-VERNIER_API std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate, const ConstMatrixRef& joints,
-                                                  int station, const ConstMatrixRef& previous, const VectorX& warmer,
-                                                  std::vector<RowBlock>& rows) {
+VERNIER_LOCAL std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate, const ConstMatrixRef& joints,
+                                                    int station, const ConstMatrixRef& previous, const VectorX& warmer,
+                                                    std::vector<RowBlock>& rows) {
   const Index n = joints.rows(), unknowns = estimate.arm.size();
   rows.resize(static_cast<std::size_t>(n));
   estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer);

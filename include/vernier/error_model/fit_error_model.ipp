@@ -18,8 +18,8 @@ namespace vernier::detail {
 /// The steps of `fit_error_model`.
 class ErrorModelFit {
  public:
-  VERNIER_API ErrorModelFit(const ErrorModelInput& input, const ErrorModelOptions& options, const SensorModel& sensors,
-                            ExecutorRef executor)
+  VERNIER_LOCAL ErrorModelFit(const ErrorModelInput& input, const ErrorModelOptions& options,
+                              const SensorModel& sensors, ExecutorRef executor)
       : input_(input),
         options_(options),
         model_(CalibrationProblem(ArmParameterisation(input.arms, geometric_unknowns(input, options)), input.sets,
@@ -29,7 +29,7 @@ class ErrorModelFit {
     problem_.executor = executor;
   }
 
-  VERNIER_API ErrorModelOutput run(PriorSearch search) {
+  VERNIER_LOCAL ErrorModelOutput run(PriorSearch search) {
     ErrorModelOutput out{.estimate = {.arm = problem_.arm}};
     ErrorModelEstimate& estimate = out.estimate;
     model_.solve();
@@ -137,7 +137,7 @@ class ErrorModelFit {
   }
 
  private:
-  VERNIER_API std::vector<FittedArm> arms() const {
+  VERNIER_LOCAL std::vector<FittedArm> arms() const {
     std::vector<FittedArm> out;
     for (int s = 0; s < problem_.arm.stations(); ++s)
       out.push_back({problem_.arm.geometry(s), problem_.arm.joint_errors()});
@@ -145,7 +145,7 @@ class ErrorModelFit {
   }
 
   /// Lets the geometry change with temperature, if leave-one-pose-out errors support that.
-  VERNIER_API bool add_temperature(ErrorModelEstimate& estimate) {
+  VERNIER_LOCAL bool add_temperature(ErrorModelEstimate& estimate) {
     const double mean = problem_.temperatures().mean, std = problem_.temperatures().std;
     if (!(std > 0.02)) return false;  // not measured, or it did not vary
     const ArmParameterisation before = problem_.arm;
@@ -171,7 +171,7 @@ class ErrorModelFit {
 
   /// Fits again with what an earlier calibration knows as the prior, and keeps that where left-out poses are predicted
   /// better.
-  VERNIER_API bool inherit(ErrorModelOutput& out) {
+  VERNIER_LOCAL bool inherit(ErrorModelOutput& out) {
     const ArmPrior& prior = *options_.prior;
     require(prior.nominal.joints() == input_.nominal.joints() && prior.nominal.modified() == input_.nominal.modified(),
             "fit_error_model: the earlier calibration is of an arm of ", prior.nominal.joints(), " joints in the ",
@@ -229,7 +229,7 @@ class ErrorModelFit {
   }
 
   /// Priors of the joint errors by a search over leave-one-pose-out errors; kept where those are smaller than before.
-  VERNIER_API void tune(PriorSearch search) {
+  VERNIER_LOCAL void tune(PriorSearch search) {
     VectorX amplitudes(problem_.arm.size() - problem_.arm.num_dense());
     const Index dense_terms = problem_.arm.terms().num_dense_terms();
     for (const JointTermBlock& block : problem_.arm.terms().blocks())

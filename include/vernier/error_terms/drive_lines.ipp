@@ -15,7 +15,7 @@ namespace detail {
 inline constexpr std::array<int, 9> periods_of_input{1, 2, 4, 5, 8, 10, 12, 20, 24};
 
 /// What of a drive errs at an order.
-VERNIER_API std::string source_at(int order, const JointDrive& drive) {
+VERNIER_LOCAL std::string source_at(int order, const JointDrive& drive) {
   if (drive.encoder_periods > 0)
     for (const int multiple : {1, 2})
       if (std::abs(order - multiple * drive.encoder_periods) <= 1)

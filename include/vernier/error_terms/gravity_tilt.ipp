@@ -15,7 +15,8 @@ struct TiltingFrames {
   Vector3 x[max_joints], y[max_joints], z[max_joints];
 };
 
-/// Walks along the chain and fills in its tilting frames; a frame is the one behind the joint, whose z axis is the joint's.
+/// Walks along the chain and fills in its tilting frames; a frame is the one behind the joint, whose z axis is the
+/// joint's.
 template <class Convention>
 void walk_tilting_frames(const ChainView& c, const double* q, TiltingFrames& out) noexcept {
   MovingFrame<double, 3> frame;
@@ -43,7 +44,7 @@ void walk_tilting_frames(const ChainView& c, const double* q, TiltingFrames& out
   }
 }
 
-VERNIER_API void find_tilting_frames(const ChainView& c, const double* q, TiltingFrames& out) noexcept {
+VERNIER_LOCAL void find_tilting_frames(const ChainView& c, const double* q, TiltingFrames& out) noexcept {
   c.modified ? walk_tilting_frames<ModifiedDh>(c, q, out) : walk_tilting_frames<StandardDh>(c, q, out);
 }
 

@@ -10,7 +10,7 @@
 
 #include "vernier/core/checked_joints.hpp"
 #include "vernier/core/function_ref.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_terms/detail/harmonic_table.hpp"
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"

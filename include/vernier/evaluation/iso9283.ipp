@@ -61,7 +61,7 @@ struct DrawnRepeatability {
   double error;  ///< 0 where all distances are equal
 };
 
-VERNIER_API DrawnRepeatability drawn_repeatability(const PointRows& points, const VectorX& counts, VectorX& l) {
+VERNIER_LOCAL DrawnRepeatability drawn_repeatability(const PointRows& points, const VectorX& counts, VectorX& l) {
   const double n = counts.sum();
   const Vector3 centre = Vector3(counts.dot(points.col(0)), counts.dot(points.col(1)), counts.dot(points.col(2))) / n;
   for (Index i = 0; i < l.size(); ++i) l(i) = (point(points, i) - centre).squaredNorm();
@@ -75,7 +75,7 @@ VERNIER_API DrawnRepeatability drawn_repeatability(const PointRows& points, cons
 }
 
 /// 95 % interval of RP by the bootstrap-t.
-VERNIER_API std::pair<double, double> repeatability_interval(const PointRows& points, int draws, std::uint64_t seed) {
+VERNIER_LOCAL std::pair<double, double> repeatability_interval(const PointRows& points, int draws, std::uint64_t seed) {
   const Index n = points.rows();
   if (n < 3 || draws == 0) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   const PointRows centred = rows_minus(points, centroid(points));
@@ -97,8 +97,8 @@ VERNIER_API std::pair<double, double> repeatability_interval(const PointRows& po
           std::max(0.0, all.value - quantile_of_sorted(t, 0.025) * all.error)};
 }
 
-VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, const Isometry3& command,
-                                         const Iso9283Options& options) {
+VERNIER_LOCAL Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, const Isometry3& command,
+                                           const Iso9283Options& options) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double n = static_cast<double>(visited.positions.rows());
   Iso9283Pose out{.pose = pose,
@@ -128,8 +128,8 @@ VERNIER_API Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, c
   return out;
 }
 
-VERNIER_API std::optional<Isometry3> registration_of(const std::vector<Iso9283Pose>& poses,
-                                                     std::span<const Isometry3> commanded) {
+VERNIER_LOCAL std::optional<Isometry3> registration_of(const std::vector<Iso9283Pose>& poses,
+                                                       std::span<const Isometry3> commanded) {
   const auto n = static_cast<Index>(poses.size());
   PointRows from(n, 3), to(n, 3);
   for (Index k = 0; k < n; ++k) {
@@ -144,7 +144,7 @@ VERNIER_API std::optional<Isometry3> registration_of(const std::vector<Iso9283Po
 }
 
 /// Distance of two poses, along each axis, and the angles between them: 1 + 3 + 3 values.
-VERNIER_API VectorX distance_and_angles(const Isometry3& a, const Isometry3& b) {
+VERNIER_LOCAL VectorX distance_and_angles(const Isometry3& a, const Isometry3& b) {
   const Vector3 p = translation(a) - translation(b), r = rotation_difference(rotation(a), rotation(b));
   VectorX out(7);
   out(0) = p.norm();
@@ -155,9 +155,9 @@ VERNIER_API VectorX distance_and_angles(const Isometry3& a, const Isometry3& b) 
   return out;
 }
 
-VERNIER_API std::optional<Iso9283Distance> accuracy_of_distance(const VisitedPose& first, const VisitedPose& second,
-                                                                const Isometry3& from, const Isometry3& to,
-                                                                bool oriented) {
+VERNIER_LOCAL std::optional<Iso9283Distance> accuracy_of_distance(const VisitedPose& first, const VisitedPose& second,
+                                                                  const Isometry3& from, const Isometry3& to,
+                                                                  bool oriented) {
   std::map<int, const Iso9283Visit*> cycles;
   for (const auto* v : second.visits) cycles.emplace(v->cycle, v);
   std::vector<VectorX> pairs;
@@ -176,7 +176,7 @@ VERNIER_API std::optional<Iso9283Distance> accuracy_of_distance(const VisitedPos
       accuracy.segment(1, 3),     accuracy.segment(4, 3),      scatter.segment(1, 3), scatter.segment(4, 3)};
 }
 
-VERNIER_API Iso9283Variation variation_of(int pose, const std::map<int, VisitedPose>& directions, bool oriented) {
+VERNIER_LOCAL Iso9283Variation variation_of(int pose, const std::map<int, VisitedPose>& directions, bool oriented) {
   Iso9283Variation out{pose, 0, 0, Vector3::Zero()};
   if (!oriented) out.vap_abc.setConstant(std::numeric_limits<double>::quiet_NaN());
   std::vector<Vector3> centres;
@@ -196,7 +196,7 @@ VERNIER_API Iso9283Variation variation_of(int pose, const std::map<int, VisitedP
   return out;
 }
 
-VERNIER_API Iso9283Drift drift_of(int pose, const VisitedPose& visited, const Isometry3& command, int together) {
+VERNIER_LOCAL Iso9283Drift drift_of(int pose, const VisitedPose& visited, const Isometry3& command, int together) {
   Iso9283Drift out{pose, {}, 0, 0};
   for (Index i = 0; i + together <= visited.positions.rows(); i += together) {
     const PointRows points = visited.positions.middleRows(i, together);

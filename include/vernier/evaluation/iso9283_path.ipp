@@ -21,7 +21,7 @@ struct PoseLine {
   std::vector<Isometry3> poses;
 
   /// Where `at` is reached first.
-  VERNIER_API Isometry3 pose(double at, bool oriented) const {
+  VERNIER_LOCAL Isometry3 pose(double at, bool oriented) const {
     const auto next = std::find_if(arc.begin() + 1, arc.end() - 1, [&](double s) { return s >= at; });
     const auto k = static_cast<std::size_t>(next - arc.begin());
     const double step = arc[k] - arc[k - 1];
@@ -35,7 +35,7 @@ struct PathProjection {
   double arc, distance;
 };
 
-VERNIER_API PathProjection nearest_on_path(const PoseLine& path, const Vector3& p, double from, double to) {
+VERNIER_LOCAL PathProjection nearest_on_path(const PoseLine& path, const Vector3& p, double from, double to) {
   PathProjection best{from, std::numeric_limits<double>::infinity()};
   for (std::size_t k = 1; k < path.arc.size(); ++k) {
     const double begin = path.arc[k - 1], length = path.arc[k] - begin;
@@ -51,7 +51,7 @@ VERNIER_API PathProjection nearest_on_path(const PoseLine& path, const Vector3& 
 }
 
 /// A run over the arc length of the path.
-VERNIER_API PoseLine along_path(const PoseLine& path, const std::vector<Isometry3>& run) {
+VERNIER_LOCAL PoseLine along_path(const PoseLine& path, const std::vector<Isometry3>& run) {
   PoseLine out{{}, run};
   const double length = path.arc.back();
   PathProjection last = nearest_on_path(path, translation(run.front()), 0, length / 2);
@@ -65,8 +65,8 @@ VERNIER_API PoseLine along_path(const PoseLine& path, const std::vector<Isometry
   return out;
 }
 
-VERNIER_API Iso9283PathPoint accuracy_at_point(double arc, const Isometry3& commanded,
-                                               const std::vector<Isometry3>& passed, bool oriented) {
+VERNIER_LOCAL Iso9283PathPoint accuracy_at_point(double arc, const Isometry3& commanded,
+                                                 const std::vector<Isometry3>& passed, bool oriented) {
   Iso9283PathPoint out{.arc_length = arc, .commanded = commanded};
   PointRows positions(static_cast<Index>(passed.size()), 3);
   std::vector<Matrix3> rotations;

@@ -7,7 +7,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/evaluation/detail/iso9283_visits.hpp"
 
 namespace vernier {

@@ -30,7 +30,7 @@ VERNIER_IMPL VectorX ranks(const ConstVectorRef& values) {
 namespace detail {
 
 /// Sum of t^3 - t over groups of t equal ranks: t^2 - 1 for each of their members. O(n^2).
-VERNIER_API double ties(const VectorX& ranks) {
+VERNIER_LOCAL double ties(const VectorX& ranks) {
   double sum = 0;
   for (const double rank : ranks) {
     const auto t = static_cast<double>(std::count(ranks.begin(), ranks.end(), rank));
@@ -40,14 +40,14 @@ VERNIER_API double ties(const VectorX& ranks) {
 }
 
 /// Two-sided p of a whole-numbered statistic, given the number of ways in which its values 0, 1, ... arise.
-VERNIER_API double two_sided(const std::vector<double>& ways, double statistic) {
+VERNIER_LOCAL double two_sided(const std::vector<double>& ways, double statistic) {
   const auto at = ways.begin() + static_cast<std::ptrdiff_t>(std::lround(statistic));
   const double below = std::accumulate(ways.begin(), at + 1, 0.0), above = std::accumulate(at, ways.end(), 0.0);
   return std::min(1.0, 2 * std::min(below, above) / std::accumulate(ways.begin(), ways.end(), 0.0));
 }
 
 /// Two-sided p of a statistic by a normal distribution, with the correction of 1/2 for a statistic in whole steps.
-VERNIER_API double two_sided(double statistic, double mean, double variance) {
+VERNIER_LOCAL double two_sided(double statistic, double mean, double variance) {
   if (!(variance > 0)) return 1;
   return std::erfc(std::max(0.0, std::abs(statistic - mean) - 0.5) / std::sqrt(2 * variance));
 }

@@ -127,9 +127,9 @@ namespace detail {
 
 /// Moves a pose and its columns by the tilts of joint frames, and writes the columns of their coefficients.
 /// @param of_base whether each of the first columns turns the arm about its base, and not about a point of the arm
-VERNIER_API void tilt_columns(const JointErrors& errors, const VectorX& q, const Isometry3& base,
-                              const std::vector<bool>& of_base, Index first, const ConstVectorRef& scales,
-                              Isometry3& pose, RowBlock& rows) {
+VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, const Isometry3& base,
+                                const std::vector<bool>& of_base, Index first, const ConstVectorRef& scales,
+                                Isometry3& pose, RowBlock& rows) {
   const GravityTilt& tilt = *errors.terms().tilt;
   const Index begin = errors.terms().tilt_begin();
   const Vector6 at = tilt.motion(q.data(), errors.coefficients().data() + begin);

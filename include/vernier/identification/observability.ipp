@@ -39,7 +39,7 @@ namespace detail {
 
 /// `rows * covariance`, whitened: multiplied by the inverse Cholesky factor of `I + rows covariance rows'`, so that
 /// measuring the rows subtracts the square of this from the covariance.
-VERNIER_API MatrixX whitened_gain(const MatrixX& rows, const MatrixX& covariance) {
+VERNIER_LOCAL MatrixX whitened_gain(const MatrixX& rows, const MatrixX& covariance) {
   MatrixX cross = MatrixX::Zero(rows.rows(), covariance.cols()), inner = MatrixX::Identity(rows.rows(), rows.rows());
   add_product(cross, rows, covariance);
   add_product(inner, cross, rows.transpose());

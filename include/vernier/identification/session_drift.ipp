@@ -18,7 +18,7 @@ VERNIER_IMPL SessionDrift::Position SessionDrift::position(double time) const {
 namespace detail {
 
 /// Some rows of the knots at a time.
-VERNIER_API VectorX interpolated_knots(const SessionDrift& drift, Index first_row, Index rows, double time) {
+VERNIER_LOCAL VectorX interpolated_knots(const SessionDrift& drift, Index first_row, Index rows, double time) {
   const auto [first, share] = drift.position(time);
   VectorX out(rows);
   for (Index r = 0; r < rows; ++r) {

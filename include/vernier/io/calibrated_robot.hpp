@@ -15,7 +15,7 @@
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/evaluation/quantile.hpp"

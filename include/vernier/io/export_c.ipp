@@ -21,7 +21,7 @@ namespace vernier {
 namespace detail {
 
 /// @throws std::invalid_argument on a name that cannot begin names in C
-VERNIER_API void require_identifier(const std::string& name) {
+VERNIER_LOCAL void require_identifier(const std::string& name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   bool valid = !name.empty() && letter(name.front());
   for (const char c : name) valid = valid && (letter(c) || (c >= '0' && c <= '9') || c == '_');
@@ -30,7 +30,7 @@ VERNIER_API void require_identifier(const std::string& name) {
 }
 
 /// What an arm has, in the words of the C text.
-VERNIER_API std::set<std::string> c_features(const ModelData& model) {
+VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   std::set<std::string> out;
   const auto add = [&](const char* feature, bool present) {
     if (present) out.insert(feature);
@@ -69,7 +69,7 @@ VERNIER_API std::set<std::string> c_features(const ModelData& model) {
 }
 
 /// What the file says about itself, and its macros.
-VERNIER_API std::string c_preamble(const ModelData& model, const CExport& options) {
+VERNIER_LOCAL std::string c_preamble(const ModelData& model, const CExport& options) {
   const Provenance& from = model.provenance;
   const CorrectionOptions correction;
   const double held_out_error = options.held_out_error.value_or(from.held_out_error);

@@ -11,11 +11,11 @@ namespace vernier {
 namespace detail {
 
 /// In thousandths; null where it is not finite.
-VERNIER_API nlohmann::ordered_json milli(double value) {
+VERNIER_LOCAL nlohmann::ordered_json milli(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value * 1e3) : nlohmann::ordered_json();
 }
 
-VERNIER_API nlohmann::ordered_json milli_each(const Vector3& values) {
+VERNIER_LOCAL nlohmann::ordered_json milli_each(const Vector3& values) {
   return {milli(values.x()), milli(values.y()), milli(values.z())};
 }
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vernier/error_terms/drive_lines.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/report_json.hpp"
 
 namespace vernier {

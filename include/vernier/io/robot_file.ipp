@@ -4,7 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/robot_file.hpp"
 
@@ -13,7 +13,7 @@ namespace vernier {
 namespace detail {
 
 /// One joint of a robot file.
-VERNIER_API void read_joint(const JsonNode& joint, RobotDescription& robot) {
+VERNIER_LOCAL void read_joint(const JsonNode& joint, RobotDescription& robot) {
   joint.allow_only({"type",      "a_mm",      "a_m",       "alpha_deg", "alpha_rad", "d_mm",       "d_m",
                     "theta_deg", "theta_rad", "beta_deg",  "beta_rad",  "lower_deg", "lower_rad",  "lower_mm",
                     "lower_m",   "upper_deg", "upper_rad", "upper_mm",  "upper_m",   "gear_ratio", "encoder_periods"});

@@ -29,7 +29,7 @@ static_assert(std::is_trivially_copyable_v<Rng> && sizeof(Rng) == sizeof(RngWord
 
 /// A number, exactly; values that are not finite, which JSON does not have, as texts.
 template <class T>
-nlohmann::ordered_json exact_number(T value) {
+nlohmann::ordered_json json_number(T value) {
   if constexpr (std::floating_point<T>) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -49,10 +49,10 @@ nlohmann::ordered_json state_to_json(const S& state) {
     } else if constexpr (std::same_as<T, Rng>) {
       json = std::bit_cast<RngWords>(member);
     } else if constexpr (std::is_arithmetic_v<T>) {
-      json = exact_number(member);
+      json = json_number(member);
     } else {
       json = {{"rows", member.rows()}, {"values", nlohmann::ordered_json::array()}};
-      for (Index i = 0; i < member.size(); ++i) json["values"].push_back(exact_number(member.data()[i]));
+      for (Index i = 0; i < member.size(); ++i) json["values"].push_back(json_number(member.data()[i]));
     }
   });
   return out;

@@ -26,7 +26,7 @@ struct UrDeltas {
 };
 
 /// `[ x, x, x, x, x, x]`
-VERNIER_API std::array<double, 6> six_numbers(std::string_view list, const std::string& place) {
+VERNIER_LOCAL std::array<double, 6> six_numbers(std::string_view list, const std::string& place) {
   if (!list.starts_with('[') || !list.ends_with(']')) throw DataError(place + " must be a list, [x, x, x, x, x, x]");
   std::array<double, 6> out{};
   std::string_view rest = list.substr(1, list.size() - 2);
@@ -48,7 +48,7 @@ VERNIER_API std::array<double, 6> six_numbers(std::string_view list, const std::
   return out;
 }
 
-VERNIER_API UrDeltas read_ur_deltas(const std::string& path) {
+VERNIER_LOCAL UrDeltas read_ur_deltas(const std::string& path) {
   std::string content;
   try {
     content = read_file(path, std::size_t{1} << 20);
@@ -92,7 +92,7 @@ VERNIER_API UrDeltas read_ur_deltas(const std::string& path) {
 }
 
 /// base_T_end of rows of the standard convention without beta, all joints zero, and each joint's axis on the way.
-VERNIER_API Isometry3 end_of_rows(const std::vector<DhRow>& rows, std::vector<JointAxis>& axes) {
+VERNIER_LOCAL Isometry3 end_of_rows(const std::vector<DhRow>& rows, std::vector<JointAxis>& axes) {
   Isometry3 at = Isometry3::Identity();
   for (const DhRow& row : rows) {
     axes.push_back({{at(0, 2), at(1, 2), at(2, 2)}, translation(at), row.joint});

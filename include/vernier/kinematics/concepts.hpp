@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/concepts.hpp"
 #include "vernier/kinematics/detail/chain_blocks.hpp"
 #include "vernier/kinematics/detail/explain_model.hpp"

@@ -47,7 +47,7 @@ class GeneralSixAxis : public ChecksJoints<GeneralSixAxis<N>> {
   /// @complexity   0.1 to 1 ms
   InverseRoots<N> roots(const Isometry3& target, const JointVector<N>& = JointVector<N>::Zero(),
                         double = 0) const noexcept {
-    return moving_.around(detail::solve_general(axes_, target));
+    return moving_.around(detail::solve_six_axes(axes_, target));
   }
   /// The determinant of the Jacobian, see `SingularityDistances::factored`.
   SingularityDistances distances(const JointVector<N>& q) const noexcept {

@@ -21,8 +21,8 @@ struct IkIterate {
 };
 
 /// Starts at `next.q`; the iterates change places, the better one is `*best`.
-VERNIER_API IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* best, IkIterate* next,
-                                           double* joints) noexcept {
+VERNIER_LOCAL IkOutcome damped_least_squares(const IkProblem& problem, IkIterate* best, IkIterate* next,
+                                             double* joints) noexcept {
   const int n = problem.joints, moving = std::clamp(problem.moving_joints, 1, n), rows = problem.oriented ? 6 : 3;
   // With fewer equations than joints the step is J' (J J' + d)^-1 e = (J' J + d)^-1 J' e, without rounding errors along
   // the null space of J, which the singular J' J would magnify.

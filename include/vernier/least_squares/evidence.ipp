@@ -17,9 +17,9 @@ struct PenalisedMinimum {
   double cost, freedom;
 };
 
-VERNIER_API PenalisedMinimum penalised_minimum(const NormalEquations& normal, const FactorisedEquations& solved,
-                                               const VectorX& precisions, const VectorX& steps, Index values,
-                                               const VectorX& local_steps) {
+VERNIER_LOCAL PenalisedMinimum penalised_minimum(const NormalEquations& normal, const FactorisedEquations& solved,
+                                                 const VectorX& precisions, const VectorX& steps, Index values,
+                                                 const VectorX& local_steps) {
   double at_present = normal.cost + local_prior_cost(normal, local_steps);
   double gain = local_gain(normal, solved.local_step(), local_steps);
   double without_prior = -static_cast<double>(normal.prior_unknowns);
@@ -33,7 +33,7 @@ VERNIER_API PenalisedMinimum penalised_minimum(const NormalEquations& normal, co
 }
 
 /// log determinant of the precisions of local unknowns.
-VERNIER_API double local_prior_log_determinant(const NormalEquations& normal) {
+VERNIER_LOCAL double local_prior_log_determinant(const NormalEquations& normal) {
   if (normal.local.size == 0) return 0;
   MatrixX none = MatrixX::Zero(normal.local.size, 1);
   return eigen_sparse_solver(normal.local_prior, none).log_determinant;
@@ -58,8 +58,8 @@ namespace detail {
 /// normal distribution is all that the factor acts on.
 class ScaledEvidence {
  public:
-  VERNIER_API ScaledEvidence(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
-                             Index values, const UnknownGroup& group, const VectorX& local_steps)
+  VERNIER_LOCAL ScaledEvidence(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
+                               Index values, const UnknownGroup& group, const VectorX& local_steps)
       : size_(static_cast<Index>(group.size())) {
     const FactorisedEquations solved(normal, precisions, steps, local_steps);
     if (!solved.usable()) return;
@@ -77,7 +77,7 @@ class ScaledEvidence {
     usable_ = true;
   }
 
-  VERNIER_API double operator()(double factor) const {
+  VERNIER_LOCAL double operator()(double factor) const {
     if (!usable_) return -std::numeric_limits<double>::infinity();
     MatrixX change = (factor - 1) * share_, value = value_;
     for (Index k = 0; k < size_; ++k) change(k, k) += 1;

@@ -60,7 +60,7 @@ class PairBlocks {
 };
 
 /// The local part of the normal equations.
-VERNIER_API void add_local(const BlockSystem& system, const std::vector<LocalPrior>& priors, NormalEquations& out) {
+VERNIER_LOCAL void add_local(const BlockSystem& system, const std::vector<LocalPrior>& priors, NormalEquations& out) {
   const Index k = system.local_size;
   std::vector<PairBlocks::Pair> pairs;
   for (Index s = 0; s < system.local_states; ++s) pairs.push_back({s, s});

@@ -11,7 +11,7 @@ namespace vernier {
 namespace detail {
 
 /// Standard error of the mean of some values.
-VERNIER_API double standard_error(const VectorX& values) {
+VERNIER_LOCAL double standard_error(const VectorX& values) {
   const double n = static_cast<double>(values.size()), mean = values.mean();
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
@@ -35,7 +35,7 @@ VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& 
 namespace detail {
 
 /// What the position errors of each block are smaller by [m].
-VERNIER_API VectorX saved_errors(const LeftOutBlocks& with, const LeftOutBlocks& without) {
+VERNIER_LOCAL VectorX saved_errors(const LeftOutBlocks& with, const LeftOutBlocks& without) {
   return error_norms(without.errors) - error_norms(with.errors);
 }
 

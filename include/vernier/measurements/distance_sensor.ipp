@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/trilaterate.hpp"
 #include "vernier/measurements/distance_sensor.hpp"
 #include "vernier/measurements/touch.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "vernier/core/function_ref.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/data/row_origin.hpp"
 #include "vernier/measurements/sensor.hpp"
 #include "vernier/measurements/sensor_model.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/measurements/measured_set.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vernier/core/points.hpp"
 #include "vernier/core/register_points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/measurements/pose_sensor.hpp"
 

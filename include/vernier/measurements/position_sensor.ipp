@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vernier/core/points.hpp"
 #include "vernier/core/register_points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/measurements/position_sensor.hpp"
 
 namespace vernier {

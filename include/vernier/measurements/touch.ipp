@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "vernier/core/detail/dense.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/measurements/touch.hpp"
 

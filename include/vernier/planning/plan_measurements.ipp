@@ -24,7 +24,7 @@ namespace detail {
 /// Bins of each joint between the smallest and the largest value of the candidates.
 class JointBins {
  public:
-  VERNIER_API JointBins(const MatrixX& candidates, double width) : width_(width), lower_(candidates.cols()) {
+  VERNIER_LOCAL JointBins(const MatrixX& candidates, double width) : width_(width), lower_(candidates.cols()) {
     first_.push_back(0);
     for (Index j = 0; j < candidates.cols(); ++j) {
       lower_(j) = candidates.col(j).minCoeff();
@@ -35,20 +35,20 @@ class JointBins {
 
   int size() const { return first_.back(); }
   /// Bin of a value of joint j; -1 outside all.
-  VERNIER_API int of(Index j, double q) const {
+  VERNIER_LOCAL int of(Index j, double q) const {
     const int begin = first_[static_cast<std::size_t>(j)], end = first_[static_cast<std::size_t>(j) + 1];
     const double at = (q - lower_(j)) / width_;
     if (!(at >= 0) || at > end - begin + 1e-9) return -1;
     return begin + std::min(static_cast<int>(at), end - begin - 1);
   }
   /// Bins of all joints of some configurations.
-  VERNIER_API Eigen::MatrixXi of_rows(const MatrixX& joints) const {
+  VERNIER_LOCAL Eigen::MatrixXi of_rows(const MatrixX& joints) const {
     Eigen::MatrixXi out(joints.rows(), joints.cols());
     for (Index i = 0; i < out.rows(); ++i)
       for (Index j = 0; j < out.cols(); ++j) out(i, j) = of(j, joints(i, j));
     return out;
   }
-  VERNIER_API UncoveredBin named(int bin) const {
+  VERNIER_LOCAL UncoveredBin named(int bin) const {
     int joint = 0;
     while (bin >= first_[static_cast<std::size_t>(joint) + 1]) ++joint;
     const double from = lower_(joint) + width_ * (bin - first_[static_cast<std::size_t>(joint)]);
@@ -62,7 +62,7 @@ class JointBins {
 };
 
 /// Three of some points that register a frame best: the two farthest apart, and the one farthest from their line.
-VERNIER_API std::vector<Index> registering_points(const PointRows& points) {
+VERNIER_LOCAL std::vector<Index> registering_points(const PointRows& points) {
   const Index n = points.rows();
   if (n < 3) return {};
   std::vector<Index> out{0, 1, 2};
@@ -87,8 +87,8 @@ VERNIER_API std::vector<Index> registering_points(const PointRows& points) {
 }
 
 /// Visits of the chosen configurations, see `PlannedMeasurements`.
-VERNIER_API std::vector<Index> planned_visits(const MatrixX& joints, const PointRows& positions,
-                                              const PlanOptions& options) {
+VERNIER_LOCAL std::vector<Index> planned_visits(const MatrixX& joints, const PointRows& positions,
+                                                const PlanOptions& options) {
   std::vector<Index> first = registering_points(positions);
   const auto fixed = static_cast<Index>(first.size());
   std::vector<Index> rows = first;

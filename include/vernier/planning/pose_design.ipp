@@ -15,7 +15,7 @@ namespace vernier {
 namespace detail {
 
 /// Lower Cholesky factor of I + v, v of at most six rows; I where v has none.
-VERNIER_API Matrix6 factor_of_sum(const ConstMatrixRef& v) {
+VERNIER_LOCAL Matrix6 factor_of_sum(const ConstMatrixRef& v) {
   const Index n = v.rows();
   Matrix6 out = Matrix6::Identity();
   for (Index j = 0; j < n; ++j) {
@@ -37,7 +37,7 @@ class GrowingDesign {
  public:
   /// @param candidates p x n b, what the rows are transposed
   /// @param region     p x r, likewise
-  VERNIER_API GrowingDesign(MatrixX candidates, MatrixX region, Index block, const PoseDesignOptions& options)
+  VERNIER_LOCAL GrowingDesign(MatrixX candidates, MatrixX region, Index block, const PoseDesignOptions& options)
       : columns_(std::move(candidates)),
         region_(std::move(region)),
         block_(block),
@@ -60,7 +60,7 @@ class GrowingDesign {
   /// Whether V of a candidate is that of all choices.
   bool up_to_date(Index c) const { return level_[static_cast<std::size_t>(c)] == chosen_; }
   /// Brings V of some candidates up to date, all of which were last at the same time.
-  VERNIER_API void update(Index first, Index count) {
+  VERNIER_LOCAL void update(Index first, Index count) {
     const Index from = level_[static_cast<std::size_t>(first)] * block_, rows = chosen_ * block_ - from;
     const MatrixX tail = solved(columns_, known_, first * block_, count * block_, from);
     known_.block(from, first * block_, rows, count * block_) = tail;
@@ -73,15 +73,15 @@ class GrowingDesign {
                              known_region_.middleRows(from, rows), tail, -1);
   }
   /// Information of a candidate that is up to date [nat].
-  VERNIER_API double information(Index c) const { return cholesky_log_determinant(factor(c)); }
+  VERNIER_LOCAL double information(Index c) const { return cholesky_log_determinant(factor(c)); }
   /// By how much it reduces the sum of the region's variances.
-  VERNIER_API double reduction(Index c) const {
+  VERNIER_LOCAL double reduction(Index c) const {
     Matrix6 sum = products(to_region_, c);
     solve_cholesky(factor(c), sum);
     return sum.trace();
   }
   /// Chooses a candidate that is up to date.
-  VERNIER_API void choose(Index c) {
+  VERNIER_LOCAL void choose(Index c) {
     const Index at = chosen_ * block_;
     picks_.middleCols(at, block_) = columns_.middleCols(c * block_, block_);
     const Matrix6 own = factor(c);
@@ -100,7 +100,7 @@ class GrowingDesign {
 
  private:
   /// Products of a candidate's columns with each other; zero beyond them.
-  VERNIER_API Matrix6 products(const MatrixX& columns, Index c) const {
+  VERNIER_LOCAL Matrix6 products(const MatrixX& columns, Index c) const {
     Matrix6 out = Matrix6::Zero();
     for (Index a = 0; a < block_; ++a)
       for (Index b = 0; b <= a; ++b)
@@ -112,9 +112,10 @@ class GrowingDesign {
       for (Index a = 0; a < block_; ++a) variance_(a, c * block_ + b) += sign * change(a, b);
   }
   /// Cholesky factor of I + V of a candidate.
-  VERNIER_API Matrix6 factor(Index c) const { return factor_of_sum(variance_.middleCols(c * block_, block_)); }
+  VERNIER_LOCAL Matrix6 factor(Index c) const { return factor_of_sum(variance_.middleCols(c * block_, block_)); }
   /// Rows `from` .. of some columns of the solution of `F known = P' columns`, of which those before are known.
-  VERNIER_API MatrixX solved(const MatrixX& columns, const MatrixX& known, Index first, Index count, Index from) const {
+  VERNIER_LOCAL MatrixX solved(const MatrixX& columns, const MatrixX& known, Index first, Index count,
+                               Index from) const {
     const Index rows = chosen_ * block_ - from;
     MatrixX out = MatrixX::Zero(rows, count);
     add_transposed_product(out, picks_.middleCols(from, rows), columns.middleCols(first, count));
@@ -133,7 +134,7 @@ class GrowingDesign {
 };
 
 /// Solves for columns in which unknowns of the prior precision I + measured' measured have the prior precision I.
-VERNIER_API void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
+VERNIER_LOCAL void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
   MatrixX precision = MatrixX::Identity(measured.cols(), measured.cols());
   add_transposed_product(precision, measured, measured);
   require(cholesky(precision), "design_poses: the measured rows are not usable");
@@ -141,8 +142,8 @@ VERNIER_API void account_for_measured(const ConstMatrixRef& measured, MatrixX& c
   solve_lower(precision, region);
 }
 
-VERNIER_API void check_design(const ConstMatrixRef& rows, Index block, const ConstMatrixRef& measured,
-                              const ConstMatrixRef& region, const PoseDesignOptions& options) {
+VERNIER_LOCAL void check_design(const ConstMatrixRef& rows, Index block, const ConstMatrixRef& measured,
+                                const ConstMatrixRef& region, const PoseDesignOptions& options) {
   require(block >= 1 && block <= 6, "design_poses: ", block, " rows a candidate, must be 1 to 6");
   require(rows.rows() % block == 0, "design_poses: ", rows.rows(), " rows are no multiple of ", block);
   const Index n = rows.rows() / block, p = rows.cols();
@@ -240,7 +241,8 @@ struct WeightedInformation {
   double value;
   VectorX gradient;
 };
-VERNIER_API WeightedInformation weighted_information(const ConstMatrixRef& rows, Index block, const VectorX& weights) {
+VERNIER_LOCAL WeightedInformation weighted_information(const ConstMatrixRef& rows, Index block,
+                                                       const VectorX& weights) {
   VectorX roots(rows.rows());
   for (Index i = 0; i < roots.size(); ++i) roots(i) = std::sqrt(weights(i / block));
   const MatrixX weighted = rows_scaled(roots, rows);
@@ -255,7 +257,7 @@ VERNIER_API WeightedInformation weighted_information(const ConstMatrixRef& rows,
 }
 
 /// Weights of at most one whose sum is that of `total`, in proportion to others where they are below one.
-VERNIER_API void share_out(double total, VectorX& weights) {
+VERNIER_LOCAL void share_out(double total, VectorX& weights) {
   std::vector<bool> full(static_cast<std::size_t>(weights.size()), false);
   for (bool clipped = true; clipped;) {
     clipped = false;

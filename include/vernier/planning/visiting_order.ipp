@@ -14,7 +14,7 @@ namespace vernier {
 namespace detail {
 
 /// Times from every configuration to every other.
-VERNIER_API MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& speeds) {
+VERNIER_LOCAL MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& speeds) {
   require(all_finite(joints), "visiting_order: a joint value is not finite");
   require(speeds.size() == 0 || speeds.size() == joints.cols(), "visiting_order: ", speeds.size(), " speeds of ",
           joints.cols(), " joints");
@@ -37,13 +37,13 @@ VERNIER_API MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& sp
 /// An open path whose first visits stay, and what makes it shorter.
 class OpenPath {
  public:
-  VERNIER_API OpenPath(const MatrixX& times, std::vector<Index> order, Index fixed)
+  VERNIER_LOCAL OpenPath(const MatrixX& times, std::vector<Index> order, Index fixed)
       : times_(times), order_(std::move(order)), fixed_(fixed) {}
 
   const std::vector<Index>& order() const { return order_; }
 
   /// Reverses stretches where that is shorter.
-  VERNIER_API bool reverse_stretches() {
+  VERNIER_LOCAL bool reverse_stretches() {
     bool any = false;
     const Index n = size();
     for (Index i = fixed_; i + 1 < n; ++i)
@@ -56,7 +56,7 @@ class OpenPath {
     return any;
   }
   /// Moves one to three visits elsewhere where that is shorter.
-  VERNIER_API bool move_stretches() {
+  VERNIER_LOCAL bool move_stretches() {
     bool any = false;
     const Index n = size();
     for (Index length = 1; length <= 3; ++length)

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/measurements/measurements.hpp"
 #include "vernier/registration/detail/frame_fit.hpp"

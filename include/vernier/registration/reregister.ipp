@@ -116,7 +116,7 @@ namespace detail {
 /// Kronecker products of `modelled_i` and `measured_i` has X, as a vector, for its dominant left singular vector; Y
 /// follows.
 /// @cite Shah 2013
-VERNIER_API Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
+VERNIER_LOCAL Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
   MatrixX sum = MatrixX::Zero(9, 9);
   for (std::size_t i = 0; i < modelled.size(); ++i)
     for (Index r = 0; r < 9; ++r)
@@ -136,8 +136,8 @@ VERNIER_API Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, cons
 
 /// Base motion that brings modelled poses to the measured ones, in closed form; its rotation by the orientations or by
 /// the positions.
-VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const MeasuredSet& data,
-                                  bool by_orientations) {
+VERNIER_LOCAL Isometry3 base_motion(const std::vector<Isometry3>& modelled, const MeasuredSet& data,
+                                    bool by_orientations) {
   PointRows points(data.size(), 3);
   for (Index i = 0; i < data.size(); ++i) set_point(points, i, translation(modelled[static_cast<std::size_t>(i)]));
   if (!by_orientations) return register_points(points, *data.positions());
@@ -149,14 +149,14 @@ VERNIER_API Isometry3 base_motion(const std::vector<Isometry3>& modelled, const 
 }
 
 /// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
-VERNIER_API Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
+VERNIER_LOCAL Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t i = 0; i < modelled.size(); ++i) sum += rotation(inverse_of(modelled[i])) * measured[i];
   return log_so3(nearest_rotation(sum));
 }
 
 /// Prior standard deviations of what is estimated.
-VERNIER_API VectorX prior_std_of(const FrameUpdate& update, const ReregisterOptions& options, double probe_std) {
+VERNIER_LOCAL VectorX prior_std_of(const FrameUpdate& update, const ReregisterOptions& options, double probe_std) {
   VectorX out = VectorX::Constant(update.size(), std::numeric_limits<double>::infinity());
   if (update.offsets) out.segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);
   if (update.tool) {
@@ -170,7 +170,7 @@ VERNIER_API VectorX prior_std_of(const FrameUpdate& update, const ReregisterOpti
 /// Holds what the poses tell little about: directions of the tool's position and rotation of which more than half of
 /// the prior's standard deviation is left. They would follow errors of the model by as much as a prior allows.
 /// @return what is held, in words
-VERNIER_API std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
+VERNIER_LOCAL std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
   std::vector<std::string> out;
   for (const Index part : {0, 3}) {
     const Index begin = fit.update.tool_begin() + part;
@@ -201,8 +201,8 @@ VERNIER_API std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
 
 /// Decides whether the orientations are turned against the tool, from a fit in which they are free to, and solves again
 /// where they are not.
-VERNIER_API void judge_probe(const MovedPoses& evaluate, const MeasuredSet& data, const ReregisterOptions& options,
-                             const SensorModel& sensors, FrameFit& fit, ReregistrationReport& report) {
+VERNIER_LOCAL void judge_probe(const MovedPoses& evaluate, const MeasuredSet& data, const ReregisterOptions& options,
+                               const SensorModel& sensors, FrameFit& fit, ReregistrationReport& report) {
   const Index begin = fit.update.probe_begin();
   // A mean error of the model's orientations is no remounted probe: it may be as large as their scatter.
   const double own =

@@ -20,8 +20,8 @@ namespace detail {
 /// Steps of Adam on a `NetworkError`.
 /// @param theta where to start; then the last weights
 /// @param watch `bool(double value)`, called with the objective for the start and after every epoch; false ends it
-VERNIER_API void train_by_adam(NetworkError& problem, VectorX& theta, const Adam& adam, std::uint64_t seed,
-                               FunctionRef<bool(double value)> watch) {
+VERNIER_LOCAL void train_by_adam(NetworkError& problem, VectorX& theta, const Adam& adam, std::uint64_t seed,
+                                 FunctionRef<bool(double value)> watch) {
   Rng rng(seed);
   VectorX gradient, roots, mean = VectorX::Zero(theta.size()), square = mean;
   double mean_bias = 1, square_bias = 1;

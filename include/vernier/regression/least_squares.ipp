@@ -91,7 +91,7 @@ namespace detail {
 
 /// Shares of samples in the sum of their weights.
 /// @param weights null: all the same
-VERNIER_API VectorX shares_of(const VectorX* weights, Index samples) {
+VERNIER_LOCAL VectorX shares_of(const VectorX* weights, Index samples) {
   if (weights != nullptr) return *weights / weights->sum();
   return VectorX::Constant(samples, 1 / static_cast<double>(samples));
 }

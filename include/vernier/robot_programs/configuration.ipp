@@ -50,7 +50,7 @@ VERNIER_IMPL int binding_bits(ProgramLanguage language) {
 }
 
 /// The interval of a joint's values that a configuration states [rad]; without bounds where it does not.
-VERNIER_API JointRange stated_interval(ProgramLanguage language, const std::vector<int>& configuration, int joint);
+VERNIER_LOCAL JointRange stated_interval(ProgramLanguage language, const std::vector<int>& configuration, int joint);
 
 VERNIER_IMPL JointRange stated_interval(ProgramLanguage language, const std::vector<int>& configuration, int joint) {
   constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/robot_programs/corrected_program.hpp"
 
 namespace vernier {

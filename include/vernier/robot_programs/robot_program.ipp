@@ -20,7 +20,7 @@ namespace detail {
 inline constexpr std::string_view program_stamp = "VERNIER-CORRECTED";
 
 /// A number, rounded to a number of decimals.
-VERNIER_API std::string with_decimals(double value, int decimals);
+VERNIER_LOCAL std::string with_decimals(double value, int decimals);
 
 VERNIER_IMPL std::string with_decimals(double value, int decimals) {
   char text[400];
@@ -31,8 +31,8 @@ VERNIER_IMPL std::string with_decimals(double value, int decimals) {
 }
 
 /// The numbers of a pose or joints as the language writes them.
-VERNIER_API std::vector<std::string> written_numbers(ProgramLanguage language, const ProgramTarget& target,
-                                                     const ReplacedTarget& replaced);
+VERNIER_LOCAL std::vector<std::string> written_numbers(ProgramLanguage language, const ProgramTarget& target,
+                                                       const ReplacedTarget& replaced);
 
 VERNIER_IMPL std::vector<std::string> written_numbers(ProgramLanguage language, const ProgramTarget& target,
                                                       const ReplacedTarget& replaced) {

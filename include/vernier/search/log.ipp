@@ -10,7 +10,7 @@ namespace vernier {
 namespace detail {
 
 /// Seconds on a monotonic clock.
-VERNIER_API double steady_seconds() {
+VERNIER_LOCAL double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/data/contacts.hpp"
 #include "vernier/kinematics/concepts.hpp"

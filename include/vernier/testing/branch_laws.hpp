@@ -46,7 +46,7 @@ JointVector<N> turnless_difference(const JointVector<N>& a, const JointVector<N>
 
 /// The largest difference of joint values; infinite where one is not a number.
 template <int N>
-double largest_difference(const JointVector<N>& differences) {
+double largest_of(const JointVector<N>& differences) {
   double out = 0;
   for (int i = 0; i < N; ++i) {
     if (std::isnan(differences(i))) return std::numeric_limits<double>::infinity();
@@ -169,11 +169,11 @@ std::vector<std::string> branch_violations(const Solver& solver, const M& model,
       for (const double value : {branch.position_error, branch.rotation_error, branch.sigma_min, branch.radius})
         finite.hold(std::isfinite(value) && value >= 0, s);
       const JointVector<N> missed = detail::turnless_difference<N>(branch.joints, q);
-      found = found || detail::largest_difference<N>(missed) < options.generating_tolerance;
+      found = found || detail::largest_of<N>(missed) < options.generating_tolerance;
       for (const Branch<N>& other : branches) {
         if (&other == &branch) continue;
         const JointVector<N> apart = detail::turnless_difference<N>(branch.joints, other.joints);
-        const bool same = detail::largest_difference<N>(apart) < options.distinct;
+        const bool same = detail::largest_of<N>(apart) < options.distinct;
         if (&other < &branch) distinct.hold(!same, s);
         if (!same) radius.hold(apart.norm() >= branch.radius, s);
       }

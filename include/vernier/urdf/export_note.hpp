@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 
 namespace vernier {
 

@@ -22,7 +22,7 @@ inline constexpr std::array<const char*, 6> ur_links{"shoulder", "upper_arm", "f
 inline constexpr std::array<const char*, 6> ur_values{"x", "y", "z", "roll", "pitch", "yaw"};
 
 /// Whether a hash can stand in a file as it is: 1 to 64 letters, digits and underscores.
-VERNIER_API bool is_ur_hash(const std::string& hash) {
+VERNIER_LOCAL bool is_ur_hash(const std::string& hash) {
   return !hash.empty() && hash.size() <= 64 &&
          hash.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string::npos;
 }
@@ -38,16 +38,16 @@ class UrYaml {
     const int line = node_.Mark().line + 1;
     throw DataError(line > 0 ? message(file_, ", line ", line, ": ", parts...) : message(file_, ": ", parts...));
   }
-  VERNIER_API bool has(const std::string& key) const { return static_cast<bool>(map()[key]); }
-  VERNIER_API UrYaml at(const std::string& key) const {
+  VERNIER_LOCAL bool has(const std::string& key) const { return static_cast<bool>(map()[key]); }
+  VERNIER_LOCAL UrYaml at(const std::string& key) const {
     if (!has(key)) fail("key '", path(key), "' is missing");
     return {map()[key], file_, path(key)};
   }
-  VERNIER_API std::string text() const {
+  VERNIER_LOCAL std::string text() const {
     if (!node_.IsScalar()) fail("'", key_, "' must be a text");
     return node_.Scalar();
   }
-  VERNIER_API double number() const {
+  VERNIER_LOCAL double number() const {
     if (!node_.IsScalar()) fail("'", key_, "' must be a number");
     const std::string& word = node_.Scalar();
     const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
@@ -61,8 +61,8 @@ class UrYaml {
   }
 
  private:
-  VERNIER_API std::string path(const std::string& key) const { return key_.empty() ? key : key_ + "." + key; }
-  VERNIER_API const YAML::Node& map() const {
+  VERNIER_LOCAL std::string path(const std::string& key) const { return key_.empty() ? key : key_ + "." + key; }
+  VERNIER_LOCAL const YAML::Node& map() const {
     if (!node_.IsMap()) fail(key_.empty() ? "must be a map of keys" : "'" + key_ + "' must be a map of keys");
     std::set<std::string> keys;
     for (const auto& entry : node_)

@@ -17,7 +17,7 @@ namespace vernier {
 namespace detail {
 
 /// Names for a message, the first few.
-VERNIER_API std::string listed(const std::vector<std::string>& names) {
+VERNIER_LOCAL std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t most = 8;
   std::string out;
   for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
@@ -27,7 +27,7 @@ VERNIER_API std::string listed(const std::vector<std::string>& names) {
 
 /// The only link that is an end of the tree.
 /// @param root whether that without a parent, else that without a child
-VERNIER_API std::string only_end(const UrdfDocument& document, bool root, const std::string& file) {
+VERNIER_LOCAL std::string only_end(const UrdfDocument& document, bool root, const std::string& file) {
   std::set<std::string> inner;
   for (const UrdfJoint& joint : document.joints) inner.insert(root ? joint.child : joint.parent);
   std::vector<std::string> ends = document.links;
@@ -38,8 +38,8 @@ VERNIER_API std::string only_end(const UrdfDocument& document, bool root, const 
 }
 
 /// The joints from base to tip.
-VERNIER_API std::vector<const UrdfJoint*> joints_between(const UrdfDocument& document, const std::string& base,
-                                                         const std::string& tip, const std::string& file) {
+VERNIER_LOCAL std::vector<const UrdfJoint*> joints_from_base(const UrdfDocument& document, const std::string& base,
+                                                             const std::string& tip, const std::string& file) {
   for (const std::string* link : {&base, &tip})
     if (std::find(document.links.begin(), document.links.end(), *link) == document.links.end())
       throw DataError(file + ": there is no link '" + quotable(*link) + "'; there are " + listed(document.links));
@@ -61,7 +61,7 @@ VERNIER_API std::vector<const UrdfJoint*> joints_between(const UrdfDocument& doc
 }
 
 /// A joint of the chain that rows cannot describe.
-VERNIER_API void require_movable(const UrdfJoint& joint, const std::string& file) {
+VERNIER_LOCAL void require_movable(const UrdfJoint& joint, const std::string& file) {
   const auto fail = [&](const auto&... parts) {
     throw DataError(
         message(file, ", line ", joint.line, ": joint '", quotable(joint.name), "' of the chain ", parts...));
@@ -95,7 +95,7 @@ VERNIER_IMPL UrdfChain parse_urdf(const std::string& text, const std::string& fi
   std::vector<detail::JointAxis> axes;
   std::vector<Isometry3> links;
   Isometry3 at = Isometry3::Identity();
-  for (const detail::UrdfJoint* joint : detail::joints_between(document, out.base_link, out.tip_link, file)) {
+  for (const detail::UrdfJoint* joint : detail::joints_from_base(document, out.base_link, out.tip_link, file)) {
     detail::require_movable(*joint, file);
     at = at * joint->origin;
     for (const std::string& what : joint->ignored)

@@ -32,7 +32,7 @@ VERNIER_IMPL AuditRows AuditRows::rows(std::span<const Index> indices, Index shi
   return out;
 }
 
-VERNIER_API double median_of(std::vector<double> values) {
+VERNIER_LOCAL double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -45,7 +45,7 @@ VERNIER_IMPL double robust_scale(const PointRows& residuals) {
 
 VERNIER_IMPL double AuditResiduals::score() const { return std::hypot(position_scale, 0.25 * rotation_scale); }
 
-VERNIER_API AuditResiduals residuals_of_poses(const std::vector<Isometry3>& poses, const AuditRows& rows) {
+VERNIER_LOCAL AuditResiduals residuals_of_poses(const std::vector<Isometry3>& poses, const AuditRows& rows) {
   const Index n = rows.size();
   AuditResiduals out{PointRows(n, 3), PointRows(rows.oriented() ? n : 0, 3)};
   for (Index i = 0; i < n; ++i) {
@@ -88,7 +88,7 @@ struct AuditColumns {
   std::vector<Index> free;
   VectorX precision;
 
-  VERNIER_API explicit AuditColumns(const ConstVectorRef& stds) {
+  VERNIER_LOCAL explicit AuditColumns(const ConstVectorRef& stds) {
     for (Index k = 0; k < stds.size(); ++k)
       if (stds(k) > 0) free.push_back(k);
     precision.resize(static_cast<Index>(free.size()));
@@ -101,15 +101,15 @@ struct AuditColumns {
 };
 
 /// J' W J, and precisions of the unknowns.
-VERNIER_API MatrixX normal_matrix(const MatrixX& jacobian, const VectorX& weights, const VectorX& precision) {
+VERNIER_LOCAL MatrixX normal_matrix(const MatrixX& jacobian, const VectorX& weights, const VectorX& precision) {
   MatrixX out = transposed_matrix_product(jacobian, rows_scaled(weights, jacobian));
   for (Index k = 0; k < precision.size(); ++k) out(k, k) += precision(k);
   return out;
 }
 
 /// Whitened Jacobian of the free columns, six (or three) rows a pose, unweighted.
-VERNIER_API MatrixX audit_jacobian(const PosesAndJacobians& at, const AuditColumns& columns, bool oriented,
-                                   const AuditResiduals& residuals) {
+VERNIER_LOCAL MatrixX audit_jacobian(const PosesAndJacobians& at, const AuditColumns& columns, bool oriented,
+                                     const AuditResiduals& residuals) {
   const Index n = at.jacobians.rows(), values = oriented ? 6 : 3;
   MatrixX out(values * n, columns.size());
   for (Index c = 0; c < columns.size(); ++c)
@@ -121,7 +121,7 @@ VERNIER_API MatrixX audit_jacobian(const PosesAndJacobians& at, const AuditColum
   return out;
 }
 
-VERNIER_API VectorX audit_whitened(const AuditResiduals& residuals) {
+VERNIER_LOCAL VectorX audit_whitened(const AuditResiduals& residuals) {
   const Index n = residuals.position.rows(), values = residuals.rotation.rows() > 0 ? 6 : 3;
   VectorX out(values * n);
   for (Index i = 0; i < n; ++i) {
@@ -137,7 +137,7 @@ VERNIER_API VectorX audit_whitened(const AuditResiduals& residuals) {
 inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
 
 /// Weights of Cauchy's loss, positions and orientations apart.
-VERNIER_API VectorX audit_weights(const VectorX& whitened) {
+VERNIER_LOCAL VectorX audit_weights(const VectorX& whitened) {
   constexpr double tuning = 4;
   VectorX out(whitened.size());
   for (Index k = 0; k + 3 <= whitened.size(); k += 3)

@@ -25,7 +25,7 @@ VERNIER_IMPL std::string convention_name(int convention) {
   }
 }
 
-VERNIER_API Matrix3 rotation_by_convention(int convention, const Vector3& v) {
+VERNIER_LOCAL Matrix3 rotation_by_convention(int convention, const Vector3& v) {
   const Vector3 angles = convention % 2 == 0 ? Vector3(v * std::numbers::pi / 180) : v;
   if (convention == 1) return exp_so3(v).transpose();
   if (convention == 2) return exp_so3(angles);

@@ -11,7 +11,7 @@
 namespace vernier::detail {
 
 /// Root of the mean squared distance from the mean of points [m].
-VERNIER_API double point_spread(const PointRows& points) {
+VERNIER_LOCAL double point_spread(const PointRows& points) {
   const VectorX distances = distances_from(points, centroid(points));
   return std::sqrt(distances.squaredNorm() / static_cast<double>(points.rows()));
 }

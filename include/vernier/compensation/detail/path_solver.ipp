@@ -29,7 +29,7 @@ inline double largest_difference(const PathJoints& a, const PathJoints& b) noexc
 }
 
 /// a, and a share of the way to b.
-inline PathJoints joints_between(const PathJoints& a, const PathJoints& b, double share) noexcept {
+inline PathJoints joints_at_share(const PathJoints& a, const PathJoints& b, double share) noexcept {
   PathJoints out = a;
   for (Index j = 0; j < a.size(); ++j) out(j) += share * (b(j) - a(j));
   return out;
@@ -74,7 +74,7 @@ struct PathState {
 inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
 
 /// The cheapest first; of equals in their order.
-VERNIER_API std::vector<PathState> by_cost(const std::vector<PathState>& states) {
+VERNIER_LOCAL std::vector<PathState> by_cost(const std::vector<PathState>& states) {
   VectorX costs(static_cast<Index>(states.size()));
   for (Index i = 0; i < costs.size(); ++i) costs(i) = states[static_cast<std::size_t>(i)].cost;
   std::vector<PathState> out;
@@ -89,7 +89,7 @@ class PathSearch {
   PathSearch(const PathArm& arm, const std::vector<PathGoal>& goals, const PathSettings& settings)
       : arm_(arm), goals_(goals), settings_(settings) {}
 
-  VERNIER_API SolvedPath run();
+  VERNIER_LOCAL SolvedPath run();
 
  private:
   /// Time of a joint move, in units of the speeds.
@@ -126,17 +126,17 @@ class PathSearch {
     states.push_back(state);
   }
 
-  VERNIER_API Reach find_branches(const PathGoal& goal, const PathJoints& near, std::vector<PathBranch>& out) const;
-  VERNIER_API std::optional<PathJoints> end_of_line(const PathState& from, const PathGoal& start, const PathBranch& to,
-                                                    const PathGoal& end) const;
-  VERNIER_API void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
-                           const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
-  VERNIER_API double worst_ratio(const PathJoints& coming, const PathJoints& a, const PathJoints& b,
-                                 const Isometry3& from, const Isometry3& to, double& deviation) const;
-  VERNIER_API bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
-                             const Isometry3& start, const Isometry3& end, int pieces, std::vector<SolvedPoint>& out,
-                             double& worst, double& deviation) const;
-  VERNIER_API void move_to(Index target, const PathState& state, const SolvedPoint* before, SolvedPath& out) const;
+  VERNIER_LOCAL Reach find_branches(const PathGoal& goal, const PathJoints& near, std::vector<PathBranch>& out) const;
+  VERNIER_LOCAL std::optional<PathJoints> end_of_line(const PathState& from, const PathGoal& start,
+                                                      const PathBranch& to, const PathGoal& end) const;
+  VERNIER_LOCAL void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
+                             const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
+  VERNIER_LOCAL double worst_ratio(const PathJoints& coming, const PathJoints& a, const PathJoints& b,
+                                   const Isometry3& from, const Isometry3& to, double& deviation) const;
+  VERNIER_LOCAL bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
+                               const Isometry3& start, const Isometry3& end, int pieces, std::vector<SolvedPoint>& out,
+                               double& worst, double& deviation) const;
+  VERNIER_LOCAL void move_to(Index target, const PathState& state, const SolvedPoint* before, SolvedPath& out) const;
 
   const PathArm& arm_;
   const std::vector<PathGoal>& goals_;
@@ -224,7 +224,7 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& coming, const Path
   const Isometry3 first = arm_.nominal_pose(a), last = arm_.nominal_pose(b);
   double worst = 0;
   for (const double share : {0.25, 0.5, 0.75}) {
-    const PathJoints straight = joints_between(a, b, share);
+    const PathJoints straight = joints_at_share(a, b, share);
     PathJoints q = straight;
     if (!arm_.nominal_joints(interpolated(first, last, share), q) ||
         largest_difference(q, straight) > settings_.max_joint_step)

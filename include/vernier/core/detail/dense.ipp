@@ -182,7 +182,7 @@ VERNIER_IMPL double solve_general(MatrixRef a, VectorRef b) {
 }
 
 /// R of a decomposition of a matrix of n columns, n x n.
-VERNIER_API MatrixX triangle_of(const Eigen::HouseholderQR<MatrixX>& qr) {
+VERNIER_LOCAL MatrixX triangle_of(const Eigen::HouseholderQR<MatrixX>& qr) {
   const Index columns = qr.cols(), height = std::min(qr.rows(), columns);
   MatrixX out = MatrixX::Zero(columns, columns);
   out.topRows(height) = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();

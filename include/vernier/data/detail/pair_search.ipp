@@ -7,14 +7,14 @@
 namespace vernier::detail {
 
 /// The median, by choice the upper one.
-VERNIER_API double middle_of(std::vector<double> values) {
+VERNIER_LOCAL double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
 /// Median distance from the point of median coordinates.
-VERNIER_API double median_spread(const PointRows& points) {
+VERNIER_LOCAL double median_spread(const PointRows& points) {
   Vector3 centre;
   for (int k = 0; k < 3; ++k) centre(k) = middle_of({points.col(k).begin(), points.col(k).end()});
   const VectorX distances = distances_from(points, centre);

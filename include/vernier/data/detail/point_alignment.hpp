@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vernier/core/function_ref.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/data/point_pair.hpp"
 
 namespace vernier::detail {

@@ -13,7 +13,7 @@ namespace vernier::detail {
 
 /// Adds three equations to normal equations, of which the lower triangle is used.
 /// @param coefficients unknowns x 3
-VERNIER_API void add_equations(const MatrixX& coefficients, const Vector3& values, MatrixX& normal, VectorX& right) {
+VERNIER_LOCAL void add_equations(const MatrixX& coefficients, const Vector3& values, MatrixX& normal, VectorX& right) {
   for (Index j = 0; j < right.size(); ++j) {
     const double a = coefficients(j, 0), b = coefficients(j, 1), c = coefficients(j, 2);
     for (Index i = j; i < right.size(); ++i)
@@ -23,14 +23,14 @@ VERNIER_API void add_equations(const MatrixX& coefficients, const Vector3& value
 }
 
 /// Adds a share of the trace to the diagonal.
-VERNIER_API void damp(MatrixX& normal, double share) {
+VERNIER_LOCAL void damp(MatrixX& normal, double share) {
   const double more = share * diagonal_of(normal).sum();
   for (Index k = 0; k < normal.rows(); ++k) normal(k, k) += more;
 }
 
 /// Rotation of the base where the inverse of the base is taken for an affine map A p + b: A m - R t + b = p is linear.
-VERNIER_API Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, const PointRows& points,
-                                         std::span<const PointPair> pairs) {
+VERNIER_LOCAL Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, const PointRows& points,
+                                           std::span<const PointPair> pairs) {
   constexpr int unknowns = 15;
   MatrixX normal = MatrixX::Zero(unknowns, unknowns);
   VectorX right = VectorX::Zero(unknowns);
@@ -60,8 +60,8 @@ VERNIER_API Matrix3 affine_base_rotation(std::span<const Isometry3> flanges, con
 }
 
 /// Gauss-Newton from a rotation of the base.
-VERNIER_API PointFrames refined_frames(std::span<const Isometry3> flanges, const PointRows& points,
-                                       std::span<const PointPair> pairs, const Matrix3& start, int max_steps) {
+VERNIER_LOCAL PointFrames refined_frames(std::span<const Isometry3> flanges, const PointRows& points,
+                                         std::span<const PointPair> pairs, const Matrix3& start, int max_steps) {
   constexpr double offset_weight = 1e-6;  // a prior of little: an offset of 1 m is worth 1 mm at every point
   const auto n = static_cast<double>(pairs.size());
   PointFrames frames;

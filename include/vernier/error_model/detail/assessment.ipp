@@ -12,7 +12,7 @@
 namespace vernier::detail {
 
 /// Columns of a block's rows as changes of its position [m].
-VERNIER_API Vector3 position_change(const RowBlock& rows, const Rows6& columns, Index k) {
+VERNIER_LOCAL Vector3 position_change(const RowBlock& rows, const Rows6& columns, Index k) {
   Vector3 out = Vector3::Zero();
   for (Index s = 0; s < 6; ++s)
     for (Index r = 0; r < 3; ++r) out(r) += rows.unwhiten(r, s) * columns(s, k);
@@ -22,11 +22,11 @@ VERNIER_API Vector3 position_change(const RowBlock& rows, const Rows6& columns, 
 /// Collects poses left out, and the covariances that the unknowns give their positions: many at once.
 class LeftOutVisits {
  public:
-  VERNIER_API explicit LeftOutVisits(const MatrixX& covariance)
+  VERNIER_LOCAL explicit LeftOutVisits(const MatrixX& covariance)
       : covariance_(covariance), rows_(covariance.rows(), 3 * batch) {}
 
   /// @param columns of all unknowns, as in `rows`
-  VERNIER_API void add(const Vector3& error, const Matrix3& joint_noise, const RowBlock& rows, const Rows6& columns) {
+  VERNIER_LOCAL void add(const Vector3& error, const Matrix3& joint_noise, const RowBlock& rows, const Rows6& columns) {
     for (Index k = 0; k < covariance_.rows(); ++k) {
       const Vector3 change = position_change(rows, columns, k);
       for (Index r = 0; r < 3; ++r) rows_(k, 3 * waiting_ + r) = change(r);
@@ -35,13 +35,13 @@ class LeftOutVisits {
     if (++waiting_ == batch) multiply();
   }
 
-  VERNIER_API const std::vector<LeftOutVisit>& all() {
+  VERNIER_LOCAL const std::vector<LeftOutVisit>& all() {
     multiply();
     return visits_;
   }
 
  private:
-  VERNIER_API void multiply() {
+  VERNIER_LOCAL void multiply() {
     const MatrixX half = matrix_product(covariance_, rows_.leftCols(3 * waiting_));
     for (Index i = 0; i < waiting_; ++i) {
       Matrix3& model = visits_[visits_.size() - static_cast<std::size_t>(waiting_ - i)].model;

@@ -7,7 +7,8 @@ namespace vernier::detail {
 
 /// Chooses the precisions of random walks, of unknowns first .. end - 1 of each state: their factor by evidence, in
 /// steps of four from 1 down to `lowest` or up to 64, and whether there is such a drift by leave-one-pose-out errors.
-VERNIER_API BlockChoice choose_drift(const ModelSelection& model, Block block, Index first, Index end, double lowest) {
+VERNIER_LOCAL BlockChoice choose_drift(const ModelSelection& model, Block block, Index first, Index end,
+                                       double lowest) {
   ModelSelection::Linearised at = model.linearised();  // the precisions of the random walks are all that changes
   SparseSymmetric& prior = at.normal.local_prior;
   const std::vector<double> expected = prior.values;
@@ -38,7 +39,7 @@ VERNIER_API BlockChoice choose_drift(const ModelSelection& model, Block block, I
 }
 
 /// Lets the joints' zeros drift beside the bases, if leave-one-pose-out errors support that.
-VERNIER_API void add_joint_drift(ModelSelection& model) {
+VERNIER_LOCAL void add_joint_drift(ModelSelection& model) {
   CalibrationProblem& problem = model.problem;
   problem.start_joint_drift();
   problem.joint_drift_precision = 1;

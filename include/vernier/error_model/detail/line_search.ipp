@@ -11,7 +11,7 @@
 namespace vernier::detail {
 
 /// Orders of each joint that are not in the model and stand out of what it leaves.
-VERNIER_API std::vector<std::vector<int>> lines_beyond(const ModelSelection& model, int highest) {
+VERNIER_LOCAL std::vector<std::vector<int>> lines_beyond(const ModelSelection& model, int highest) {
   const ModelSelection::Linearised& at = model.linearised();
   const JointTerms& terms = model.problem.arm.terms();
   const VectorX precisions = model.problem.arm.precisions();

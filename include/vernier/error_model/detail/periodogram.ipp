@@ -12,7 +12,7 @@ struct Waves {
   VectorX cosine, sine;
 };
 
-VERNIER_API Waves waves(const VectorX& angles, int order) {
+VERNIER_LOCAL Waves waves(const VectorX& angles, int order) {
   Waves out{angles, angles};
   for (Index i = 0; i < angles.size(); ++i) {
     out.cosine(i) = std::cos(order * angles(i));
@@ -49,8 +49,8 @@ struct OrderFit {
   double cosine = 0, sine = 0, chi_square = 0;
 };
 
-VERNIER_API OrderFit fit_order(const VectorX& score, const VectorX& weight, double sum, const VectorX& c,
-                               const VectorX& s) {
+VERNIER_LOCAL OrderFit fit_order(const VectorX& score, const VectorX& weight, double sum, const VectorX& c,
+                                 const VectorX& s) {
   const double gc = score.dot(c), gs = score.dot(s);
   const double cc = weight.cwiseProduct(c).dot(c), cs = weight.cwiseProduct(c).dot(s), ss = sum - cc;
   const double determinant = cc * ss - cs * cs;

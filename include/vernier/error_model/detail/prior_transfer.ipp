@@ -35,7 +35,7 @@ VERNIER_IMPL JointPrior TransferredUnknowns::prior(Index size, double geometry, 
 }
 
 /// Whether an unknown is of the chain, and not of a frame.
-VERNIER_API bool of_chain(const GeometricUnknown& unknown, int joints) {
+VERNIER_LOCAL bool of_chain(const GeometricUnknown& unknown, int joints) {
   return unknown.parameter >= ArmParameters::chain_begin && unknown.parameter < ArmParameters::chain_end(joints);
 }
 

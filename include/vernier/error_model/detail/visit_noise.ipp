@@ -30,7 +30,7 @@ inline ExplainedError explained(const LeftOutVisit& visit, double space, double 
 }
 
 /// Widens noise until the 95 % ellipsoids hold as many of the visits: errors have longer tails than normal ones.
-VERNIER_API void widen(const std::vector<LeftOutVisit>& visits, VisitNoise& noise) {
+VERNIER_LOCAL void widen(const std::vector<LeftOutVisit>& visits, VisitNoise& noise) {
   constexpr std::size_t enough = 100;
   if (visits.size() < enough) return;
   constexpr double within = chi_square_95;

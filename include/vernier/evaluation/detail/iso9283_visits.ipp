@@ -10,7 +10,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 
 namespace vernier::detail {
 
@@ -23,7 +23,7 @@ VERNIER_IMPL const char* fault_of_pose(const Isometry3& pose, bool oriented) {
   return turns ? nullptr : "the orientation is not a rotation";
 }
 
-VERNIER_API VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
+VERNIER_LOCAL VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
   bool timed = true;
   for (const auto* v : visits) timed = timed && std::isfinite(v->time_s);
   std::sort(visits.begin(), visits.end(), [timed](const Iso9283Visit* a, const Iso9283Visit* b) {
@@ -90,7 +90,7 @@ class Departures {
 
 /// Whether P1 is the centre, and P2 to P5 are on the diagonals of a diagonal plane of a cube, at 10 +- 2 % from their
 /// ends.
-VERNIER_API bool on_cube(std::span<const Isometry3> p) {
+VERNIER_LOCAL bool on_cube(std::span<const Isometry3> p) {
   std::array<Vector3, 4> arm;
   double mean = 0;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -109,7 +109,7 @@ VERNIER_API bool on_cube(std::span<const Isometry3> p) {
 }
 
 /// Where times are known: cycles out of order, and poses reached from more than one other pose.
-VERNIER_API void check_sequence(std::span<const Iso9283Visit> visits, Departures& departures) {
+VERNIER_LOCAL void check_sequence(std::span<const Iso9283Visit> visits, Departures& departures) {
   std::vector<const Iso9283Visit*> sequence;
   for (const Iso9283Visit& v : visits) {
     if (!std::isfinite(v.time_s)) return;

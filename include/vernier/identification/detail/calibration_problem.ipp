@@ -203,7 +203,7 @@ VERNIER_IMPL void CalibrationProblem::add_drift(const Block& block, Isometry3& p
 /// Whitens rows: each column is mapped by the derivative of the residual, already weighted and divided by the sensor's
 /// standard deviations.
 /// @param mixed whether lengths depend on rotations, or angles on shifts
-VERNIER_API void whiten_rows(const Matrix6& motion, Index values, bool mixed, Rows6& rows) {
+VERNIER_LOCAL void whiten_rows(const Matrix6& motion, Index values, bool mixed, Rows6& rows) {
   const double* m = motion.data();
   for (Index k = 0; k < rows.cols(); ++k) {
     double* column = rows.data() + 6 * k;
@@ -226,8 +226,8 @@ VERNIER_API void whiten_rows(const Matrix6& motion, Index values, bool mixed, Ro
 /// Poses seen from those of other configurations, and their columns, of measurements of one length: transmissions act
 /// through both configurations, so what they do is in `functions`, and `factor` is one along the length.
 /// @param along  the derivative of the length by a small motion of the relative pose
-VERNIER_API void fold_pair(const RowBlock& from, const Isometry3& from_pose, const Isometry3& relative,
-                           const std::vector<Index>& group_sizes, const Vector6& along, RowBlock& rows) {
+VERNIER_LOCAL void fold_pair(const RowBlock& from, const Isometry3& from_pose, const Isometry3& relative,
+                             const std::vector<Index>& group_sizes, const Vector6& along, RowBlock& rows) {
   const Matrix3 back = rotation(from_pose).transpose();
   const auto relative_rate = [&](const double* of, const double* of_from) {
     const Vector3 lever = rotation(from_pose) * translation(relative);
@@ -373,7 +373,7 @@ VERNIER_IMPL void CalibrationProblem::reset_weights() {
 }
 
 /// Thresholds of norms of residuals: of positions, orientations, single numbers.
-VERNIER_API std::array<double, 3> loss_thresholds(const CalibrationProblem& problem, const MatrixX& norms) {
+VERNIER_LOCAL std::array<double, 3> loss_thresholds(const CalibrationProblem& problem, const MatrixX& norms) {
   std::array<std::vector<double>, 3> kinds;
   for (Index b = 0; b < problem.num_blocks(); ++b) {
     const MeasuredSet& set = problem.set_of(b);

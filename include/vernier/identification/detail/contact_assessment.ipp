@@ -16,7 +16,7 @@
 namespace vernier::detail {
 
 /// How many directions of the arm measured positions at the same joints determine, apart from its base.
-VERNIER_API Index rank_by_positions(const ContactProblem& solved, const ArmGeometry& arm) {
+VERNIER_LOCAL Index rank_by_positions(const ContactProblem& solved, const ArmGeometry& arm) {
   Index count = 0;
   for (const Contact& contact : solved.contacts) count += contact.size();
   MatrixX joints(count, arm.joints());
@@ -37,7 +37,7 @@ VERNIER_API Index rank_by_positions(const ContactProblem& solved, const ArmGeome
 }
 
 /// Singular values of everything: base (which has no effect), objects, tool and chain.
-VERNIER_API VectorX contact_singular_values(const ContactProblem& solved) {
+VERNIER_LOCAL VectorX contact_singular_values(const ContactProblem& solved) {
   ArmParameterisation all = solved.problem.arm;
   std::vector<GeometricUnknown> unknowns = solved.unknowns_of_objects();
   for (const GeometricUnknown& unknown : solved.unknowns_of_arm()) unknowns.push_back(unknown);
@@ -54,9 +54,9 @@ VERNIER_API VectorX contact_singular_values(const ContactProblem& solved) {
 }
 
 /// Parameters as they were and are; those that touches do not determine with the reason.
-VERNIER_API std::vector<ParameterEstimate> contact_parameters(const ContactProblem& solved,
-                                                              const ArmGeometry& identified,
-                                                              const ContactSelection& selection) {
+VERNIER_LOCAL std::vector<ParameterEstimate> contact_parameters(const ContactProblem& solved,
+                                                                const ArmGeometry& identified,
+                                                                const ContactSelection& selection) {
   const IdentificationPlan& plan = solved.plan;
   const VectorX before = solved.nominal.parameters(), now = identified.parameters();
   std::vector<ParameterEstimate> out;
@@ -95,7 +95,7 @@ VERNIER_API std::vector<ParameterEstimate> contact_parameters(const ContactProbl
 }
 
 /// Adds the covariance of what was estimated, and what follows from it, to a report with parameters.
-VERNIER_API void add_contact_covariance(const ContactProblem& solved, ContactReport& report) {
+VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactReport& report) {
   const CalibrationProblem& problem = solved.problem;
   const auto& estimated = problem.arm.geometric();
   const StackedRows rows = problem.stacked(true);
@@ -140,8 +140,8 @@ VERNIER_API void add_contact_covariance(const ContactProblem& solved, ContactRep
 }
 
 /// Status and message, of a report that has everything else about the arm.
-VERNIER_API void add_contact_status(const ContactProblem& solved, const ArmGeometry& identified, bool converged,
-                                    ContactReport& report) {
+VERNIER_LOCAL void add_contact_status(const ContactProblem& solved, const ArmGeometry& identified, bool converged,
+                                      ContactReport& report) {
   const CalibrationProblem& problem = solved.problem;
   const auto estimated = static_cast<Index>(problem.arm.geometric().size()),
              of_arm = static_cast<Index>(report.free.size());
@@ -163,7 +163,7 @@ VERNIER_API void add_contact_status(const ContactProblem& solved, const ArmGeome
 }
 
 /// Where the objects are, in the frame of the base.
-VERNIER_API std::vector<TouchedObject> touched_objects(const ContactProblem& solved) {
+VERNIER_LOCAL std::vector<TouchedObject> touched_objects(const ContactProblem& solved) {
   std::vector<TouchedObject> out;
   for (int c = 0; c < static_cast<int>(solved.contacts.size()); ++c) {
     const Contact& contact = solved.contact(c);

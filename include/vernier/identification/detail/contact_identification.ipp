@@ -15,14 +15,14 @@
 namespace vernier::detail {
 
 /// @return whether the iteration converged
-VERNIER_API bool solve_contacts(ContactProblem& contacts) {
+VERNIER_LOCAL bool solve_contacts(ContactProblem& contacts) {
   if (contacts.problem.arm.size() == 0) return true;
   return contacts.problem.solve(contacts.options.max_iterations);
 }
 
 /// Frames of the objects and the tool's point, links nominal: from the given tool, and where that does not fit, from
 /// points around it, for many a tool is only roughly known.
-VERNIER_API void register_objects(ContactProblem& contacts) {
+VERNIER_LOCAL void register_objects(ContactProblem& contacts) {
   std::vector<GeometricUnknown> unknowns = contacts.unknowns_of_objects();
   for (const GeometricUnknown& unknown : contacts.unknowns_of_arm())
     if (unknown.parameter >= contacts.plan.chain_end) {
@@ -45,7 +45,7 @@ VERNIER_API void register_objects(ContactProblem& contacts) {
 }
 
 /// Gives the priors of the chain the common width of most evidence.
-VERNIER_API void size_chain_priors(ContactProblem& contacts) {
+VERNIER_LOCAL void size_chain_priors(ContactProblem& contacts) {
   CalibrationProblem& problem = contacts.problem;
   UnknownGroup chain;
   const auto& unknowns = problem.arm.geometric();

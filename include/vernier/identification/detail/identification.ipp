@@ -28,7 +28,7 @@ struct ParameterSelection {
   std::vector<Index> base;
   std::vector<Dependent> dependent;
 
-  VERNIER_API ParameterSelection(const std::vector<Index>& candidates, const MatrixX& jacobian) {
+  VERNIER_LOCAL ParameterSelection(const std::vector<Index>& candidates, const MatrixX& jacobian) {
     const IdentifiableParameters columns(jacobian);
     const auto parameters = [&](const std::vector<Index>& which) {
       std::vector<Index> out;
@@ -44,8 +44,8 @@ struct ParameterSelection {
 /// The steps of `identify_geometry`.
 class IdentificationRun {
  public:
-  VERNIER_API IdentificationRun(const ArmGeometry& nominal, const MeasuredSet& data, const IdentifyOptions& options,
-                                const SensorModel& sensors, GeometrySolver solver)
+  VERNIER_LOCAL IdentificationRun(const ArmGeometry& nominal, const MeasuredSet& data, const IdentifyOptions& options,
+                                  const SensorModel& sensors, GeometrySolver solver)
       : options_(options),
         solver_(solver),
         plan_(nominal, options),
@@ -54,7 +54,7 @@ class IdentificationRun {
     problem_.joint_columns = false;
   }
 
-  VERNIER_API IdentifiedGeometry run() {
+  VERNIER_LOCAL IdentifiedGeometry run() {
     // Frames alone first: a good start, and a fair figure of the nominal arm.
     estimate(select(plan_.frames).base);
     solve();
@@ -111,27 +111,27 @@ class IdentificationRun {
   std::size_t num_free() const { return problem_.arm.geometric().size(); }
 
   /// Names the parameters to be estimated; present values stay, priors go.
-  VERNIER_API void estimate(const std::vector<Index>& parameters) {
+  VERNIER_LOCAL void estimate(const std::vector<Index>& parameters) {
     std::vector<GeometricUnknown> unknowns;
     for (const Index k : parameters) unknowns.push_back({k, -1, plan_.scales(k), 0});
     problem_.arm.set_geometric(std::move(unknowns));
     weak_.assign(parameters.size(), false);
   }
 
-  VERNIER_API void solve() {
+  VERNIER_LOCAL void solve() {
     if (num_free() == 0) return;
     summary_ = solver_(problem_, options_.max_iterations);
     iterations_ += summary_.iterations;
   }
 
   /// Separates independent from dependent candidates at the present values.
-  VERNIER_API ParameterSelection select(const std::vector<Index>& candidates) {
+  VERNIER_LOCAL ParameterSelection select(const std::vector<Index>& candidates) {
     estimate(candidates);
     return ParameterSelection(candidates, problem_.stacked(true).jacobian);
   }
 
   /// Variance of whitened rows, one factor a sensor, from residuals; the sensors' own where there is no redundancy.
-  VERNIER_API VectorX row_variance(const StackedRows& rows) const {
+  VERNIER_LOCAL VectorX row_variance(const StackedRows& rows) const {
     const Index n = rows.residuals.size();
     VectorX out = VectorX::Ones(n);
     const double degrees = static_cast<double>(n) - static_cast<double>(num_free());
@@ -162,7 +162,7 @@ class IdentificationRun {
 
   /// Gives chain parameters whose standard deviation exceeds their expected size a prior, and solves again. How wide
   /// the prior is, 1, 3 or 10 sizes, is decided by leave-one-pose-out errors.
-  VERNIER_API void regularise_weak() {
+  VERNIER_LOCAL void regularise_weak() {
     if (!options_.priors || num_free() == 0) return;
     const std::vector<GeometricUnknown> unknowns = problem_.arm.geometric();
     const StackedRows rows = problem_.stacked(true);
@@ -208,7 +208,7 @@ class IdentificationRun {
   struct Rms {
     double length = 0, angle = 0;
   };
-  VERNIER_API Rms rms(const ArmGeometry& arm) const {
+  VERNIER_LOCAL Rms rms(const ArmGeometry& arm) const {
     Rms sum;
     SensedRows sensed;
     const auto poses_of = [&](const MatrixX& joints) { return arm.poses(joints); };
@@ -222,8 +222,8 @@ class IdentificationRun {
     return {std::sqrt(sum.length / n), std::sqrt(sum.angle / n)};
   }
 
-  VERNIER_API void describe_parameters(IdentificationReport& report, const ArmGeometry& identified,
-                                       const EstimateCovariance& covariance) const {
+  VERNIER_LOCAL void describe_parameters(IdentificationReport& report, const ArmGeometry& identified,
+                                         const EstimateCovariance& covariance) const {
     const VectorX before = start_.parameters(), now = identified.parameters();
     for (Index k = 0; k < before.size(); ++k)
       report.parameters.push_back({plan_.names[static_cast<std::size_t>(k)],
@@ -247,7 +247,7 @@ class IdentificationRun {
   }
 
   /// Why parameters are dependent: by the structure of arm and sensor, so at random poses too, or for want of poses.
-  VERNIER_API void explain(IdentificationReport& report, const ArmGeometry& arm, const ParameterSelection& columns) {
+  VERNIER_LOCAL void explain(IdentificationReport& report, const ArmGeometry& arm, const ParameterSelection& columns) {
     Rng rng(0);
     MatrixX joints(100, arm.joints());
     for (Index k = 0; k < joints.size(); ++k) joints.data()[k] = rng.uniform(-3, 3);

@@ -30,14 +30,14 @@ VERNIER_IMPL DhRow row_from_json(const JsonNode& node, JointType type) {
           node.at("theta_rad").number(), node.at("beta_rad").number(),  type};
 }
 
-VERNIER_API OrderedJson frame_to_json(const FrameParameters& frame) {
+VERNIER_LOCAL OrderedJson frame_to_json(const FrameParameters& frame) {
   require(all_finite(frame.values()), "save: a frame is not finite");
   OrderedJson out;
   for (std::size_t k = 0; k < 6; ++k) out[std::string(frame_keys[k])] = frame.values()(static_cast<Index>(k));
   return out;
 }
 
-VERNIER_API FrameParameters frame_from_json(const JsonNode& node) {
+VERNIER_LOCAL FrameParameters frame_from_json(const JsonNode& node) {
   Vector6 values;
   for (std::size_t k = 0; k < 6; ++k) values(static_cast<Index>(k)) = node.at(std::string(frame_keys[k])).number();
   return FrameParameters(values);
@@ -77,7 +77,7 @@ VERNIER_IMPL CoverageData coverage_from_json(const JsonNode& node, int joints) {
   return out;
 }
 
-VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
+VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
   using Kind = JointTermBlock::Kind;
   const JointTerms& terms = errors.terms();
   OrderedJson out{{"coefficients", terms.size()}};  // so that a block that got lost is missed
@@ -111,14 +111,14 @@ VERNIER_API OrderedJson joint_errors_to_json(const JointErrors& errors) {
   return out;
 }
 
-VERNIER_API Vector3 direction_from_json(const JsonNode& node) {
+VERNIER_LOCAL Vector3 direction_from_json(const JsonNode& node) {
   const Vector3 out = node.numbers(3);
   if (!(std::abs(out.norm() - 1) < 1e-6)) node.fail("must have length 1");
   return out;
 }
 
 /// @param nominal the chain whose torques gravity compliance needs, and whose frames tilt
-VERNIER_API JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
+VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
   node.allow_only(
       {"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "hysteresis", "tilt", "transmission"});
   const auto joints = static_cast<std::size_t>(nominal.joints());

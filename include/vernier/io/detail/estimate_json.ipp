@@ -59,7 +59,7 @@ VERNIER_IMPL std::vector<float> floats_of(const std::string& base64) {
 }
 
 /// Unknowns by their order, those of geometry and few terms first.
-VERNIER_API std::vector<Index> unknowns_by_order(const ArmParameterisation& arm) {
+VERNIER_LOCAL std::vector<Index> unknowns_by_order(const ArmParameterisation& arm) {
   const auto geometric = static_cast<Index>(arm.geometric().size());
   std::vector<int> orders(static_cast<std::size_t>(arm.size()), 0);
   for (const JointTermBlock& block : arm.terms().blocks())

@@ -10,7 +10,7 @@
 namespace vernier::detail {
 
 /// Bytes of the UTF-8 character at a place, 0 where there is none.
-VERNIER_API std::size_t utf8_length(std::string_view text, std::size_t at) {
+VERNIER_LOCAL std::size_t utf8_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at);
   if (first < 0x80) return 1;

@@ -14,7 +14,7 @@ inline constexpr std::array<std::string_view, 2> kernel_names{"squared_exponenti
 inline constexpr std::array<std::string_view, 3> scaling_names{"none", "min_max", "standard"};
 
 /// A matrix, column by column.
-VERNIER_API MatrixX matrix_from_json(const JsonNode& node, Index rows, Index columns) {
+VERNIER_LOCAL MatrixX matrix_from_json(const JsonNode& node, Index rows, Index columns) {
   const VectorX values = node.numbers(static_cast<std::size_t>(rows * columns));
   return Eigen::Map<const MatrixX>(values.data(), rows, columns);
 }
@@ -50,7 +50,7 @@ VERNIER_IMPL OrderedJson learned_to_json(const LearnedData& learned) {
           {"coverage", coverage_to_json(learned.coverage)}};
 }
 
-VERNIER_API FittedNetwork network_from_json(const JsonNode& node, int joints) {
+VERNIER_LOCAL FittedNetwork network_from_json(const JsonNode& node, int joints) {
   FittedNetwork out;
   HiddenLayer& layer = out.layer;
   layer.nodes = static_cast<int>(node.at("hidden_nodes").integer(1, 100000));
@@ -67,7 +67,7 @@ VERNIER_API FittedNetwork network_from_json(const JsonNode& node, int joints) {
   return out;
 }
 
-VERNIER_API FittedKernels kernels_from_json(const JsonNode& node, int joints) {
+VERNIER_LOCAL FittedKernels kernels_from_json(const JsonNode& node, int joints) {
   FittedKernels out;
   out.kernel = static_cast<Kernel>(named(node.at("kernel"), kernel_names));
   out.input_map = static_cast<InputMap>(named(node.at("input_map"), input_map_names));

@@ -78,7 +78,7 @@ VERNIER_IMPL void write_model(const std::string& path, const ModelData& model) {
 
 /// Checks version and convention, which every model file starts with.
 /// @return whether it is a modified chain
-VERNIER_API bool check_schema(const JsonNode& root) {
+VERNIER_LOCAL bool check_schema(const JsonNode& root) {
   if (!root.has("schema_version")) root.fail("key 'schema_version' is missing; is this a model that calibrate saved?");
   const auto version = root.at("schema_version").integer(0, INT32_MAX);
   if (version < oldest_schema_version || version > model_schema_version)

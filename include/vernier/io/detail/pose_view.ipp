@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "vernier/calibration/detail/wording.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"
@@ -55,7 +55,7 @@ struct PoseBounds {
   Vector3 centre = Vector3::Zero();
   double half = 1e-3;
 };
-VERNIER_API PoseBounds pose_bounds(const ReportInput& input, const PoseView& view) {
+VERNIER_LOCAL PoseBounds pose_bounds(const ReportInput& input, const PoseView& view) {
   if (view.shown.empty()) return {};
   PoseBounds out;
   for (Index c = 0; c < 3; ++c) {

@@ -8,8 +8,8 @@
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
-#include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/report_functions.hpp"
 #include "vernier/io/detail/report_sections.hpp"
@@ -18,8 +18,8 @@
 namespace vernier::detail {
 
 /// What a transmission adds over one measured range, in at most 240 columns: the extremes of each, with the band.
-VERNIER_API void append_function(const JointReport& joint, std::size_t from, std::size_t to, double unit,
-                                 ChartSeries& function, ChartSeries& band) {
+VERNIER_LOCAL void append_function(const JointReport& joint, std::size_t from, std::size_t to, double unit,
+                                   ChartSeries& function, ChartSeries& band) {
   const std::size_t count = to - from, columns = std::min<std::size_t>(count, 240);
   for (std::size_t c = 0; c < columns; ++c) {
     const std::size_t first = from + c * count / columns, last = from + (c + 1) * count / columns;

@@ -7,7 +7,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/version.hpp"
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/report_sections.hpp"
 #include "vernier/io/detail/svg_chart.hpp"

@@ -7,8 +7,8 @@
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
-#include "vernier/evaluation/statistics.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/report_sections.hpp"
 #include "vernier/io/detail/report_verdict.hpp"
@@ -19,7 +19,7 @@ namespace vernier::detail {
 inline constexpr double suspect_sigmas = 4;
 
 /// Name of a row of the poses.
-VERNIER_API std::string row_name(const ReportPoses& poses, Index i) {
+VERNIER_LOCAL std::string row_name(const ReportPoses& poses, Index i) {
   const auto at = static_cast<std::size_t>(i);
   const std::size_t file = poses.file.empty() ? 0 : static_cast<std::size_t>(poses.file[at]);
   return message(poses.line.empty() ? message(i) : message("line ", poses.line[at]),
@@ -27,7 +27,7 @@ VERNIER_API std::string row_name(const ReportPoses& poses, Index i) {
 }
 
 /// A suspect row, of those shown or of training.
-VERNIER_API std::vector<std::vector<std::string>> suspect_rows(const ReportInput& input) {
+VERNIER_LOCAL std::vector<std::vector<std::string>> suspect_rows(const ReportInput& input) {
   std::vector<std::pair<double, std::vector<std::string>>> all;
   const VectorX& errors = stage_of(input, input.after).position;
   const ReportPoses& poses = input.poses;
@@ -50,7 +50,7 @@ VERNIER_API std::vector<std::vector<std::string>> suspect_rows(const ReportInput
 }
 
 /// What deserves a look, at most five lines, each with a link.
-VERNIER_API std::string look_at(const ReportInput& input) {
+VERNIER_LOCAL std::string look_at(const ReportInput& input) {
   std::vector<std::pair<const char*, std::string>> all;
   if (input.audit && !input.audit->empty())
     all.emplace_back("audit", "The audit of the data has " + counted(input.audit->size(), "finding.", "findings."));

@@ -32,7 +32,7 @@ VERNIER_IMPL std::vector<double> chart_ticks(double lower, double upper, bool lo
 }
 
 /// A tick in up to six digits.
-VERNIER_API std::string tick_text(double value) {
+VERNIER_LOCAL std::string tick_text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.6g", value);
   return buffer;
@@ -58,7 +58,7 @@ struct ChartScale {
 };
 
 /// Makes room around the values of an axis.
-VERNIER_API void widen(ChartScale& scale, double margin) {
+VERNIER_LOCAL void widen_scale(ChartScale& scale, double margin) {
   if (scale.logarithmic) {
     const double factor = scale.upper > scale.lower ? std::pow(scale.upper / scale.lower, margin) : 2;
     scale.lower /= factor;
@@ -72,7 +72,7 @@ VERNIER_API void widen(ChartScale& scale, double margin) {
 }
 
 /// The path of one series; a class gives it colour.
-VERNIER_API std::string series_path(const ChartSeries& series, const ChartScale& x, const ChartScale& y) {
+VERNIER_LOCAL std::string series_path(const ChartSeries& series, const ChartScale& x, const ChartScale& y) {
   const std::size_t n = std::min(series.x.size(), series.y.size());
   const auto point = [&](double a, double b) { return tenths(x(a)) + ' ' + tenths(y(b)); };
   std::string path;
@@ -109,8 +109,8 @@ VERNIER_IMPL std::string chart_svg(const Chart& chart) {
     if (series.style == ChartStyle::sticks && !chart.log_y) y.include(0);
   }
   if (!(x.upper >= x.lower) || !(y.upper >= y.lower)) return "";
-  widen(x, x.upper > x.lower ? 0 : 1);
-  widen(y, 0.05);
+  widen_scale(x, x.upper > x.lower ? 0 : 1);
+  widen_scale(y, 0.05);
   x.from = left;
   x.to = width - right;
   y.from = chart.height - bottom;

@@ -64,7 +64,7 @@ inline double square6(const Matrix6& a) noexcept {
 
 /// Eigenvector of the largest eigenvalue of a symmetric matrix whose eigenvalues are not negative and whose trace is 1:
 /// power iteration on a matrix squared thrice. What is left cannot underflow: that eigenvalue is at least a sixth.
-VERNIER_API Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
+VERNIER_LOCAL Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
   Matrix6 square, power;
   product66(matrix, matrix, power);
   product66(power, power, square);
@@ -78,7 +78,7 @@ VERNIER_API Vector6 dominant_eigenvector(const Matrix6& matrix) noexcept {
   return out / out.norm();
 }
 
-VERNIER_API void evaluate_iterate(const BranchProblem& problem, const double* q, BranchIterate& out) noexcept {
+VERNIER_LOCAL void evaluate_iterate(const BranchProblem& problem, const double* q, BranchIterate& out) noexcept {
   Isometry3 pose;
   problem.model(q, pose, out.jacobian.data());
   // between rotations that are nearly the same, two terms of the arc sine have an error of 1e-11
@@ -130,8 +130,8 @@ VERNIER_IMPL double lipschitz_bound(double arm_length, double rotation_length) n
 /// @param damped whether damped least squares, which take many more evaluations, are tried; without, a step of
 ///               more than half a turn ends the search early
 /// @return whether the target is met
-VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
-                            bool damped = true) noexcept {
+VERNIER_LOCAL bool solve_near(const BranchProblem& problem, double* q, BranchIterate& at, int& iterations,
+                              bool damped = true) noexcept {
   constexpr double longest_step = 0.3;                  // rad
   constexpr double negligible = 1e-2 * accepted_error;  // m
   double start[most_branch_joints];
@@ -200,7 +200,7 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
 }
 
 /// Whether joint values differ by less than a distance [rad], whole turns aside.
-VERNIER_API bool are_near(const BranchProblem& problem, const double* a, const double* b, double distance) noexcept {
+VERNIER_LOCAL bool are_near(const BranchProblem& problem, const double* a, const double* b, double distance) noexcept {
   for (int i = 0; i < problem.joints; ++i) {
     const double turns = (a[i] - b[i]) / (2 * std::numbers::pi);
     if (!(std::abs(turns - std::nearbyint(turns)) * (2 * std::numbers::pi) < distance)) return false;
@@ -209,15 +209,15 @@ VERNIER_API bool are_near(const BranchProblem& problem, const double* a, const d
 }
 
 /// Whether a branch was found so near to q.
-VERNIER_API bool is_known(const BranchSet& set, const BranchProblem& problem, const double* q,
-                          double distance) noexcept {
+VERNIER_LOCAL bool is_known(const BranchSet& set, const BranchProblem& problem, const double* q,
+                            double distance) noexcept {
   return std::any_of(set.branches.begin(), set.branches.begin() + set.count,
                      [&](const FoundBranch& branch) { return are_near(problem, q, branch.q, distance); });
 }
 
 /// Adds a solution unless it is there.
-VERNIER_API bool add_branch(BranchSet& set, const BranchProblem& problem, const double* q, const BranchIterate& at,
-                            int iterations) noexcept {
+VERNIER_LOCAL bool add_branch(BranchSet& set, const BranchProblem& problem, const double* q, const BranchIterate& at,
+                              int iterations) noexcept {
   if (is_known(set, problem, q, 1e-5)) return false;
   if (set.count == BranchSet::capacity) return false;
   FoundBranch& out = set.branches[static_cast<std::size_t>(set.count++)];
@@ -275,8 +275,8 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
 
 /// Looks for branches on the other side of a fold: along the direction in which the Jacobian is singular, two solutions
 /// lie on a parabola, whose curvature gives the distance of the other one.
-VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const double* from, bool met,
-                             double near_fold) noexcept {
+VERNIER_LOCAL void cross_folds(BranchSet& set, const BranchProblem& problem, const double* from, bool met,
+                               double near_fold) noexcept {
   BranchIterate here;
   evaluate_iterate(problem, from, here);
   if (!std::isfinite(square6(here.jacobian))) return;

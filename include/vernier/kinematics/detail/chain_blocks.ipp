@@ -100,8 +100,8 @@ void evaluate_blocks(const ChainView& c, const ChainFrames& frames, const double
 }
 
 /// For fewer configurations than a vector holds: the last one is repeated.
-VERNIER_API void evaluate_padded(const ChainView& c, const ChainFrames& frames, const double* joints, Index n,
-                                 Index stride, const BlockResults& results, InstructionSet set) {
+VERNIER_LOCAL void evaluate_padded(const ChainView& c, const ChainFrames& frames, const double* joints, Index n,
+                                   Index stride, const BlockResults& results, InstructionSet set) {
   constexpr Index padded = 4;
   const Index entries = 6 * (5 * c.joints + (frames.base_rate != nullptr ? 12 : 0));
   std::vector<double> q(static_cast<std::size_t>(padded * c.joints)), positions(3 * padded), joint_columns,
@@ -155,8 +155,8 @@ void elementary_motions(const ChainView& c, const Placement& placement, const do
   });
 }
 
-VERNIER_API void any_elementary_motions(const ChainView& c, const Placement& placement, const double* q,
-                                        ElementaryMotion* motions, double* pose) noexcept {
+VERNIER_LOCAL void any_elementary_motions(const ChainView& c, const Placement& placement, const double* q,
+                                          ElementaryMotion* motions, double* pose) noexcept {
   c.modified ? elementary_motions<ModifiedDh>(c, placement, q, motions, pose)
              : elementary_motions<StandardDh>(c, placement, q, motions, pose);
 }

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/detail/closed_form_arm.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 
@@ -13,15 +13,15 @@ namespace vernier::detail {
 struct AxisLines {
   Vector3 h[6], o[6];
 
-  VERNIER_API double angle(int i, int j) const { return std::atan2(h[i].cross(h[j]).norm(), h[i].dot(h[j])); }
+  VERNIER_LOCAL double angle(int i, int j) const { return std::atan2(h[i].cross(h[j]).norm(), h[i].dot(h[j])); }
   /// Angle between lines, whatever their directions.
-  VERNIER_API double deviation(int i, int j) const {
+  VERNIER_LOCAL double deviation(int i, int j) const {
     const double a = angle(i, j);
     return std::min(a, std::numbers::pi - a);
   }
-  VERNIER_API double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
+  VERNIER_LOCAL double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
   /// The point nearest to lines i..j, and the largest distance from one of them.
-  VERNIER_API double meeting(int i, int j, Vector3& point) const {
+  VERNIER_LOCAL double meeting(int i, int j, Vector3& point) const {
     const MeetingPoint found = meeting_point(h + i, o + i, j - i + 1);
     point = found.point;
     return found.miss;
@@ -30,7 +30,7 @@ struct AxisLines {
 
 /// Sorts an arm, seen from one of its ends, into a family.
 /// @param why what keeps it out of each, where there is none
-VERNIER_API bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std::string& why) {
+VERNIER_LOCAL bool classify(AxisLines& lines, double tolerance, ArmKind& kind, std::string& why) {
   constexpr double apart = 0.05;  // rad: axes that have to be distinct
   Vector3 centre;
   const double spherical = lines.meeting(3, 5, centre);

@@ -23,7 +23,7 @@ namespace vernier::detail {
 /// @return       roots more than 1e-5 rad apart, margins 0; `condition` is the least of the eliminations made, infinite
 ///               where there was none
 /// @cite Raghavan and Roth 1993; Manocha and Canny 1994
-VERNIER_API SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& target) noexcept;
+VERNIER_API SixAxisRoots solve_six_axes(const SixAxes& arm, const Isometry3& target) noexcept;
 
 /// The determinant of the Jacobian over the product of its columns' lengths.
 VERNIER_API SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept;

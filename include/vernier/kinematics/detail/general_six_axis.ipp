@@ -15,17 +15,17 @@
 
 namespace vernier::detail {
 
-VERNIER_API AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point_of(joint), arm.direction_of(joint)}; }
+VERNIER_LOCAL AxisLine axis_of(const SixAxes& arm, int joint) { return {arm.point_of(joint), arm.direction_of(joint)}; }
 
 /// Angle in (-pi, pi].
-VERNIER_API double half_turn_angle(double angle) {
+VERNIER_LOCAL double half_turn_angle(double angle) {
   constexpr double pi = std::numbers::pi;
   const double out = std::remainder(angle, 2 * pi);
   return out > -pi ? out : pi;
 }
 
 /// Greatest difference of two joints, modulo turns [rad].
-VERNIER_API double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
+VERNIER_LOCAL double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
   double out = 0;
   for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(half_turn_angle(a(i) - b(i))));
   return out;
@@ -33,7 +33,7 @@ VERNIER_API double root_distance(const JointVector<6>& a, const JointVector<6>& 
 
 /// Moves the origin to the middle of the axes and makes their distance from it the unit of length, that the equations
 /// of lengths, squares of lengths and directions weigh alike.
-VERNIER_API void normalize_lengths(SixAxes& arm, Isometry3& target) {
+VERNIER_LOCAL void normalize_lengths(SixAxes& arm, Isometry3& target) {
   const auto nearest = [&](int i, const Vector3& to) {
     const AxisLine axis = axis_of(arm, i);
     const Vector3 off = to - axis.point;
@@ -62,7 +62,7 @@ VERNIER_API void normalize_lengths(SixAxes& arm, Isometry3& target) {
 
 /// An arm whose axes are each displaced by 1e-7. Exactly parallel or intersecting axes can make the pencil singular
 /// for every angle; displaced, they leave it regular, and Newton steps make up for it.
-VERNIER_API SixAxes with_displaced_axes(SixAxes arm) {
+VERNIER_LOCAL SixAxes with_displaced_axes(SixAxes arm) {
   Rng rng;
   for (int i = 0; i < 6; ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -78,7 +78,7 @@ VERNIER_API SixAxes with_displaced_axes(SixAxes arm) {
 /// The loop of an arm and its target in which joint `first` comes first, counted from 0. A joint moves from the start
 /// of the product to its end with its axis moved by the inverse of the closure. Points next to the origin, so that the
 /// coordinates of lines stay small.
-VERNIER_API ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int first) noexcept {
+VERNIER_LOCAL ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int first) noexcept {
   const Isometry3 closure = composed(target, inverse_of(arm.tool)), back = inverse_of(closure);
   ClosedLoop out;
   for (int i = 0; i < 6; ++i) {
@@ -95,7 +95,7 @@ VERNIER_API ClosedLoop loop_of(const SixAxes& arm, const Isometry3& target, int 
 }
 
 /// All joints of a loop, from the third.
-VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPencil& pencil, double q3) noexcept {
+VERNIER_LOCAL JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPencil& pencil, double q3) noexcept {
   // The null vector of the pencil: (cos 3h, sin 3h, cos h, sin h) by (1, cos q5, sin q5), times any number.
   double equations[12][12], rows[12][12], null[12];
   equations_at(pencil, q3, equations);
@@ -147,7 +147,7 @@ VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPen
 
 /// Damped Newton steps until the pose is met. Returns whether it is.
 /// @cite Levenberg 1944; Nakamura and Hanafusa 1986
-VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
+VERNIER_LOCAL bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
   constexpr int steps_to_come_near = 15, max_steps = 40;
   constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
   double jacobian[6][6], normal[6][6], newton[6];
@@ -188,7 +188,7 @@ VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointV
 }
 
 /// Whether the joints were new.
-VERNIER_API bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
+VERNIER_LOCAL bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
   constexpr double same = 1e-5;  // rad
   for (const SixAxisRoot& root : roots)
     if (root_distance(root.joints, q) < same) return false;
@@ -200,8 +200,8 @@ VERNIER_API bool insert_root(SixAxisRoots& roots, const JointVector<6>& q) {
 
 /// Adds the roots that one elimination on an arm near by finds. Returns whether they are likely to be all: the
 /// elimination is to be trusted, and each real value of the hidden joint led to a root of its own with that value.
-VERNIER_API bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, const Isometry3& target, int hidden,
-                                   SixAxisRoots& roots) noexcept {
+VERNIER_LOCAL bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, const Isometry3& target, int hidden,
+                                     SixAxisRoots& roots) noexcept {
   constexpr double largest_imaginary = 0.2, nearly_real = 0.01;  // rad; Newton steps and the residual decide
   constexpr double trusted_condition = 1e6, accounted = 1e-3;
   const int first = (hidden + 4) % 6;
@@ -232,7 +232,7 @@ VERNIER_API bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, co
   return complete && roots.count % 2 == 0;  // real roots come and go in pairs
 }
 
-VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& target) noexcept {
+VERNIER_IMPL SixAxisRoots solve_six_axes(const SixAxes& arm, const Isometry3& target) noexcept {
   SixAxisRoots out;
   out.condition = std::numeric_limits<double>::infinity();
   SixAxes scaled = arm;

@@ -6,7 +6,7 @@
 #include <array>
 #include <complex>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 
 namespace vernier::detail {

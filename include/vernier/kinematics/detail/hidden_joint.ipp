@@ -39,8 +39,8 @@ VERNIER_IMPL LineCoordinates coordinates_of(const AxisLine& line) noexcept {
 /// The coordinates of a line turned about `inner` and then about `outer`, as coefficients, a column each, of the
 /// products of (1, cos, sin) of the outer and of the inner angle. They follow from three angles each, a third of a turn
 /// apart.
-VERNIER_API void turned_twice(const AxisLine& outer, const AxisLine& inner, const AxisLine& line,
-                              double (&out)[9][14]) noexcept {
+VERNIER_LOCAL void turned_twice(const AxisLine& outer, const AxisLine& inner, const AxisLine& line,
+                                double (&out)[9][14]) noexcept {
   constexpr double angles[3] = {0, 2 * std::numbers::pi / 3, -2 * std::numbers::pi / 3};
   std::fill_n(out[0], 9 * 14, 0.0);
   Isometry3 outer_turns[3];
@@ -100,7 +100,7 @@ VERNIER_IMPL LoopPencil eliminate(const ClosedLoop& loop) noexcept {
 }
 
 /// What turns with joint 3, turned [rad].
-VERNIER_API void turned_by(const LoopPencil& pencil, double q3, double (&out)[12][16]) noexcept {
+VERNIER_LOCAL void turned_by(const LoopPencil& pencil, double q3, double (&out)[12][16]) noexcept {
   const double c = std::cos(q3), s = std::sin(q3);
   for (int j = 0; j < 12; ++j)
     for (int half = 0; half < 16; half += 8) {

@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 
 namespace vernier::detail {
 
 /// The first frame: z along the axis, its origin the axis' point nearest to the base, x next to the base's.
-VERNIER_API Isometry3 frame_of_axis(const JointAxis& axis) {
+VERNIER_LOCAL Isometry3 frame_of_axis(const JointAxis& axis) {
   const Vector3 z = axis.direction;
   Vector3 x = std::abs(z.x()) < 0.9 ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
   x -= x.dot(z) * z;
@@ -29,7 +29,7 @@ VERNIER_API Isometry3 frame_of_axis(const JointAxis& axis) {
 
 /// A row from a frame to the next axis, whose direction and point are in that frame.
 /// @param theta the angle to be next to
-VERNIER_API DhRow row_to_axis(const Vector3& direction, const Vector3& point, bool wanted, double theta) {
+VERNIER_LOCAL DhRow row_to_axis(const Vector3& direction, const Vector3& point, bool wanted, double theta) {
   const double nearly_parallel = std::cos(0.2);
   const Vector3 &u = direction, &w = point, up(0, 0, 1);
   const bool parallel = std::abs(u.z()) > nearly_parallel;

@@ -20,7 +20,7 @@ VERNIER_IMPL Isometry3 pose_of(const SixAxes& arm, const JointVector<6>& q) noex
 
 /// Moves points along the axes, each as near to its neighbours as a few rounds bring it. Any points give a bound of the
 /// arm's length; these give a tight one.
-VERNIER_API void move_together(const ArmAxes& arm, Vector3* points) noexcept {
+VERNIER_LOCAL void move_together(const ArmAxes& arm, Vector3* points) noexcept {
   const int last = arm.joints - 1;
   for (int round = 0; round < 20; ++round)
     for (int i = 0; i <= last; ++i) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/detail/spherical_arm.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 

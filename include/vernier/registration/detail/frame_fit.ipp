@@ -13,8 +13,8 @@
 namespace vernier::detail {
 
 /// Residual and derivatives of a sample, divided by the standard deviations.
-VERNIER_API void frame_rows(const MeasuredSet& data, const FrameFit& fit, const MatrixX& jacobians, Index i,
-                            RowBlock& out) {
+VERNIER_LOCAL void frame_rows(const MeasuredSet& data, const FrameFit& fit, const MatrixX& jacobians, Index i,
+                              RowBlock& out) {
   const Isometry3& pose = fit.poses[static_cast<std::size_t>(i)];
   out.residual.setZero();
   out.residual.head<3>() = (translation(pose) - data.position(i)) / fit.position_sigma;
@@ -29,7 +29,7 @@ VERNIER_API void frame_rows(const MeasuredSet& data, const FrameFit& fit, const 
 }
 
 /// Adds priors so tight that the held directions stay where they are.
-VERNIER_API void hold(const FrameFit& fit, const VectorX& total, NormalEquations& normal) {
+VERNIER_LOCAL void hold(const FrameFit& fit, const VectorX& total, NormalEquations& normal) {
   for (Index k = 0; k < fit.held.cols(); ++k) {
     const VectorX axis = fit.held.col(k);
     double variance = 0;

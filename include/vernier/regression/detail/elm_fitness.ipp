@@ -5,7 +5,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/detail/elm_fitness.hpp"
-#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/layer_equations.hpp"
 #include "vernier/regression/least_squares.hpp"
 
 namespace vernier::detail {

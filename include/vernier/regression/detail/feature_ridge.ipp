@@ -11,7 +11,7 @@
 namespace vernier::detail {
 
 /// Lower triangle of a'a.
-VERNIER_API MatrixX lower_gram(const MatrixX& a) {
+VERNIER_LOCAL MatrixX lower_gram(const MatrixX& a) {
   constexpr Index width = 128;
   MatrixX out = MatrixX::Zero(a.cols(), a.cols());
   for (Index first = 0; first < a.cols(); first += width) {

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/layer_equations.hpp"
 
 namespace vernier::detail {
 

@@ -27,7 +27,7 @@ VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
 }
 
 /// A tile of values of nodes, zero beyond the last.
-VERNIER_API void fill_tile(const NodeSum& nodes, const double* features, Index first, double* out) noexcept {
+VERNIER_LOCAL void fill_tile(const NodeSum& nodes, const double* features, Index first, double* out) noexcept {
   const Index padded = (nodes.nodes() + 7) / 8 * 8, count = std::min(LowerInverseTiles::size, padded - first);
   nodes.node_values(features, first, count, out);
   std::fill(out + count, out + LowerInverseTiles::size, 0.0);

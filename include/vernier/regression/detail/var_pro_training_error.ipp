@@ -6,7 +6,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/regression/concepts.hpp"
-#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/layer_equations.hpp"
 #include "vernier/regression/detail/var_pro_training_error.hpp"
 #include "vernier/regression/detail/variable_projection.hpp"
 #include "vernier/regression/least_squares.hpp"

@@ -252,7 +252,7 @@ class KrlReader {
     return out;
   }
 
-  VERNIER_API static std::optional<Isometry3> frame_of(const std::vector<Component>& parts) {
+  VERNIER_LOCAL static std::optional<Isometry3> frame_of(const std::vector<Component>& parts) {
     static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "a", "b", "c"};
     Vector6 v;
     for (std::size_t k = 0; k < 6; ++k) {

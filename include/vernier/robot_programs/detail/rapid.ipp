@@ -146,7 +146,7 @@ class RapidReader {
     return !value.group && text_.is_word(value.token) && lower_case(text_.at(value.token)) == expected;
   }
 
-  VERNIER_API static std::optional<Isometry3> frame(const BracketValue& pose) {
+  VERNIER_LOCAL static std::optional<Isometry3> frame(const BracketValue& pose) {
     if (!pose.group || pose.values.size() != 2 || !pose.values[0].numbers(3) || !pose.values[1].numbers(4)) return {};
     const auto& p = pose.values[0].values;
     const auto& q = pose.values[1].values;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 #include "vernier/robot_programs/detail/target_correction.hpp"
@@ -19,8 +19,8 @@ namespace vernier::detail {
 /// The frames that a program states, with those of the options in their place and beside them.
 /// @param kind of the frames, for messages
 /// @throws std::invalid_argument naming a frame that is no rigid motion
-VERNIER_API ProgramFrames known_frames(const std::map<std::string, Isometry3>& stated, const ProgramFrames& given,
-                                       std::string_view kind);
+VERNIER_LOCAL ProgramFrames known_frames(const std::map<std::string, Isometry3>& stated, const ProgramFrames& given,
+                                         std::string_view kind);
 
 VERNIER_IMPL ProgramFrames known_frames(const std::map<std::string, Isometry3>& stated, const ProgramFrames& given,
                                         std::string_view kind) {
@@ -34,7 +34,7 @@ VERNIER_IMPL ProgramFrames known_frames(const std::map<std::string, Isometry3>& 
 }
 
 /// The frame of this name; null where it is unknown.
-VERNIER_API const Isometry3* frame_named(const ProgramFrames& frames, const std::string& name);
+VERNIER_LOCAL const Isometry3* frame_named(const ProgramFrames& frames, const std::string& name);
 
 VERNIER_IMPL const Isometry3* frame_named(const ProgramFrames& frames, const std::string& name) {
   if (const auto named = frames.by_name.find(name); named != frames.by_name.end()) return &named->second;
@@ -42,7 +42,7 @@ VERNIER_IMPL const Isometry3* frame_named(const ProgramFrames& frames, const std
 }
 
 /// A length [m] in mm, with two significant digits.
-VERNIER_API std::string rounded_mm(double length);
+VERNIER_LOCAL std::string rounded_mm(double length);
 
 VERNIER_IMPL std::string rounded_mm(double length) {
   char text[64];
@@ -67,7 +67,7 @@ class TargetCorrection {
         stands_(program.targets.size(), unknown()),
         commands_(program.targets.size(), unknown()) {}
 
-  VERNIER_API CorrectedProgram run();
+  VERNIER_LOCAL CorrectedProgram run();
 
  private:
   /// Frames around the pose of a target.
@@ -81,9 +81,9 @@ class TargetCorrection {
     out_.uncorrected.push_back({target.line, target.name.empty() ? "target" : target.name, std::move(reason), missing});
   }
 
-  VERNIER_API bool find_frames(const ProgramTarget& target, Frames& frames);
-  VERNIER_API JointVector<6> near(std::size_t k) const;
-  VERNIER_API void correct(std::size_t k);
+  VERNIER_LOCAL bool find_frames(const ProgramTarget& target, Frames& frames);
+  VERNIER_LOCAL JointVector<6> near(std::size_t k) const;
+  VERNIER_LOCAL void correct(std::size_t k);
 
   const RobotProgram& program_;
   const ProgramArm& arm_;

@@ -21,8 +21,8 @@ struct TextPatch {
 /// What makes an origin of a joint's element between two tags.
 /// @param joint the joint's start tag
 /// @param origin its origin, if it has one
-VERNIER_API void patch_origin(std::string_view text, const XmlTag& joint, const std::optional<XmlTag>& origin,
-                              const Isometry3& frame, std::vector<TextPatch>& patches) {
+VERNIER_LOCAL void patch_origin(std::string_view text, const XmlTag& joint, const std::optional<XmlTag>& origin,
+                                const Isometry3& frame, std::vector<TextPatch>& patches) {
   const auto three = [](const Vector3& v) {
     return exact_number(v.x()) + " " + exact_number(v.y()) + " " + exact_number(v.z());
   };

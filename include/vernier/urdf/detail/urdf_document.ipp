@@ -36,13 +36,13 @@ class UrdfElement {
     return found;
   }
   /// An attribute that must be there, not empty.
-  VERNIER_API std::string text(const char* attribute, const std::string& owner) const {
+  VERNIER_LOCAL std::string text(const char* attribute, const std::string& owner) const {
     const char* value = element_->Attribute(attribute);
     if (value == nullptr || *value == '\0') fail(owner, " has no ", attribute);
     return value;
   }
   /// Three numbers.
-  VERNIER_API Vector3 vector(const char* attribute, const Vector3& otherwise, const std::string& owner) const {
+  VERNIER_LOCAL Vector3 vector(const char* attribute, const Vector3& otherwise, const std::string& owner) const {
     const char* value = element_->Attribute(attribute);
     if (value == nullptr) return otherwise;
     Vector3 out;
@@ -60,13 +60,13 @@ class UrdfElement {
     return out;
   }
   /// A number; 0 where there is none, as URDF has it.
-  VERNIER_API double limit(const char* attribute, const std::string& owner) const {
+  VERNIER_LOCAL double limit(const char* attribute, const std::string& owner) const {
     const char* value = element_->Attribute(attribute);
     return value == nullptr ? 0 : number(value, attribute, owner);
   }
 
  private:
-  VERNIER_API double number(std::string_view word, const char* attribute, const std::string& owner) const {
+  VERNIER_LOCAL double number(std::string_view word, const char* attribute, const std::string& owner) const {
     const std::string_view unsigned_word = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
     const auto [end, error] = std::from_chars(unsigned_word.data(), unsigned_word.data() + unsigned_word.size(), value);
@@ -84,7 +84,7 @@ class UrdfElement {
 };
 
 /// What URDF does not have: document types, includes, xacro; nesting beyond reason.
-VERNIER_API void refuse_foreign(const tinyxml2::XMLNode& node, const std::string& file, int depth) {
+VERNIER_LOCAL void refuse_foreign(const tinyxml2::XMLNode& node, const std::string& file, int depth) {
   constexpr int deepest = 50;
   for (const tinyxml2::XMLNode* child = node.FirstChild(); child != nullptr; child = child->NextSibling()) {
     const auto fail = [&](const std::string& what) {
@@ -101,7 +101,7 @@ VERNIER_API void refuse_foreign(const tinyxml2::XMLNode& node, const std::string
   }
 }
 
-VERNIER_API UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const std::string& file) {
+VERNIER_LOCAL UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const std::string& file) {
   const UrdfElement element(xml, file);
   UrdfJoint out;
   out.line = element.line();
@@ -141,7 +141,7 @@ VERNIER_API UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const std
 }
 
 /// One parent a link, all links there, no cycle.
-VERNIER_API void check_tree(const UrdfDocument& document, const std::string& file) {
+VERNIER_LOCAL void check_tree(const UrdfDocument& document, const std::string& file) {
   std::map<std::string, const UrdfJoint*> above;  // by child; null for one that nothing is above
   for (const std::string& link : document.links) above[link] = nullptr;
   for (const UrdfJoint& joint : document.joints) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/layer_equations.hpp"
 #include "vernier/regression/detail/tile_product_kernel.hpp"
 
 namespace vernier::detail {

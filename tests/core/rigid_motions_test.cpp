@@ -1,6 +1,6 @@
 // Points and parts of poses, by hand.
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 
 #include <gtest/gtest.h>
 

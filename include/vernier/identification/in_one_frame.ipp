@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vernier/core/so3.hpp"
-#include "vernier/identification/stations.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 
 namespace vernier::detail {
 

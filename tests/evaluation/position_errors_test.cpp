@@ -9,8 +9,8 @@
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/core/rng.hpp>
 #include <vernier/core/so3.hpp>
+#include <vernier/evaluation/position_errors.hpp>
 #include <vernier/evaluation/quantile.hpp>
-#include <vernier/evaluation/statistics.hpp>
 #include <vernier/kinematics/robots.hpp>
 #include <vernier/simulation/virtual_robot.hpp>
 

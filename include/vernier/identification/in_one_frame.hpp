@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/ranges.hpp"
 
@@ -64,5 +64,5 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
 }  // namespace vernier
 
 #if VERNIER_HEADER_ONLY
-#include "vernier/identification/stations.ipp"
+#include "vernier/identification/in_one_frame.ipp"
 #endif

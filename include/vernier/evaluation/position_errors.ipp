@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vernier/evaluation/statistics.hpp"
+#include "vernier/evaluation/position_errors.hpp"
 
 #include <algorithm>
 #include <cmath>

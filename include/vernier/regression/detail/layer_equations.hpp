@@ -64,5 +64,5 @@ class LayerEquations {
 }  // namespace vernier::detail
 
 #if VERNIER_HEADER_ONLY
-#include "vernier/regression/detail/normal_equations.ipp"
+#include "vernier/regression/detail/layer_equations.ipp"
 #endif

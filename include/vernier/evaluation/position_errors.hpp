@@ -9,7 +9,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/checked_joints.hpp"
-#include "vernier/core/points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/kinematics/detail/explain_model.hpp"
@@ -154,5 +154,5 @@ JointRows<C::dof> corrected_commands(const C& compensator, const Rows& targets) 
 }  // namespace vernier
 
 #if VERNIER_HEADER_ONLY
-#include "vernier/evaluation/statistics.ipp"
+#include "vernier/evaluation/position_errors.ipp"
 #endif

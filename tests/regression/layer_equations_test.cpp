@@ -1,4 +1,4 @@
-#include "vernier/regression/detail/normal_equations.hpp"
+#include "vernier/regression/detail/layer_equations.hpp"
 
 #include <gtest/gtest.h>
 

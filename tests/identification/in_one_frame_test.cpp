@@ -1,4 +1,4 @@
-#include "vernier/identification/stations.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 
 #include <gtest/gtest.h>
 

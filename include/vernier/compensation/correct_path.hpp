@@ -227,8 +227,8 @@ template <KinematicModel Arm, BranchRoots Roots>
                                                    const PathOptions<Arm::dof>& options = {}) {
   return detail::correct_path(arm, closed_form, targets, options);
 }
-/// Corrects a path of an arm without closed form: its branch is that of the joints of a target, else of the point before; at
-/// the first target of `start`.
+/// Corrects a path of an arm without closed form: its branch is that of the joints of a target, else of the point
+/// before; at the first target of `start`.
 template <KinematicModel Arm>
 [[nodiscard]] CorrectedPath<Arm::dof> correct_path(const Arm& arm, const std::vector<PathTarget<Arm::dof>>& targets,
                                                    const PathOptions<Arm::dof>& options = {}) {

@@ -68,7 +68,8 @@ class TbbExecutor {
   /// Number of threads, including the calling one.
   int threads() const { return arena_.max_concurrency(); }
 
-  /// Calls `work` on ranges that cover 0 to n, on the threads of oneTBB. A range of one is computed on the calling thread.
+  /// Calls `work` on ranges that cover 0 to n, on the threads of oneTBB. A range of one is computed on the calling
+  /// thread.
   void for_ranges(Index n, RangeFunction work) const {
     if (n <= 1) return SequentialExecutor{}.for_ranges(n, work);
     [[maybe_unused]] const detail::SeenByThreadSanitizer<true> call{};

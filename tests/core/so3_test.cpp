@@ -98,13 +98,6 @@ TEST(ExpSo3, SmallElementsOfSmallRotationsHaveTheirDigits) {
   }
 }
 
-TEST(ExpSo3, QuarterTurnsByHand) {
-  const RealMatrix about_z(3, 3, {0, -1, 0, 1, 0, 0, 0, 0, 1});
-  EXPECT_LE((RealMatrix(vn::exp_so3(vn::Vector3(0, 0, pi / 2))) - about_z).norm(), 1e-15);
-  const RealMatrix half = vn::exp_so3(vn::Vector3(pi, 0, 0));
-  EXPECT_LE((half - RealMatrix::diagonal(vector({1, -1, -1}))).norm(), 1e-15);
-}
-
 TEST(LogSo3, UndoesExpAtEveryAngle) {
   vn::Rng rng(2);
   for (const double angle : angles()) {

@@ -15,10 +15,7 @@ namespace vernier::dense_test {
 namespace {
 
 using namespace detail;
-using vernier_test::difference;
-using vernier_test::lower_triangle;
-using vernier_test::RealMatrix;
-using vernier_test::vector;
+using namespace vernier_test;
 
 constexpr Index sizes[] = {1, 2, 5, 33, 200};
 

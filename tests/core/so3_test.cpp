@@ -13,13 +13,11 @@
 #include "vernier/core/check.hpp"
 
 namespace vn = vernier;
-using vernier_test::difference;
-using vernier_test::random_direction;
-using vernier_test::RealMatrix;
-using vernier_test::vector;
 
 namespace so3_test {
 namespace {
+
+using namespace vernier_test;
 
 constexpr double pi = std::numbers::pi;
 const RealMatrix identity = RealMatrix::identity(3);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 #include <string>
 #include <vernier/core/points.hpp>
 #include <vernier/core/rng.hpp>

@@ -46,7 +46,7 @@ VERNIER_API void describe_accuracy(const CalibrationReport& report, std::vector<
   const VectorX& last = report.stage(report.chosen).position;
   std::vector<double> inside;
   for (Index i = 0; i < last.size(); ++i)
-    if (report.gates(i) == 1) inside.push_back(last(i) * 1e3);
+    if (report.gates(i) >= 1) inside.push_back(last(i) * 1e3);
   if (!inside.empty()) {
     const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
     out.push_back(

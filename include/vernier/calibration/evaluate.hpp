@@ -181,7 +181,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   out.left_out_rows = errors.left_out_rows;
   const VectorX &geometry = out.stage(Stage::geometry).position, &of_chosen = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
-    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, of_chosen(i) - geometry(i));
+    if (out.gates(i) >= 1) out.max_degradation = std::max(out.max_degradation, of_chosen(i) - geometry(i));
   for (int j = 0; j < N; ++j) {
     JointReport joint;
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;

@@ -7,6 +7,7 @@
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/chi_square.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -78,7 +79,7 @@ VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const Ve
   visits = input.estimate.visit_covariances(data.joints, input.gates, 0, data.previous, temperatures);
   std::vector<RowBlock> blocks(static_cast<std::size_t>(n));
   VectorX warmer = VectorX::Zero(n);
-  if (temperatures.size() > 0 && input.estimate.mean_temperature != 0)
+  if (temperatures.size() > 0 && !same_value(input.estimate.mean_temperature, 0))
     for (Index i = 0; i < n; ++i) warmer(i) = temperatures(i) - input.estimate.mean_temperature;
   input.estimate.arm.linearise(0, data.joints, data.previous, blocks.data(), true, warmer);
   MatrixX effects(unknowns, values * n);

@@ -47,7 +47,7 @@ class CartesianCorrected : public ChecksJoints<CartesianCorrected<Model, Learned
   /// Subtracts the learned error from a pose and a Jacobian at q: of the model, or of the same arm with hysteresis.
   void correct(const JointVector<dof>& q, PoseAndJacobian<dof>& at) const noexcept {
     const double gate = gate_(q);
-    if (gate == 0) return;
+    if (gate <= 0) return;
     Vector3 error;
     Eigen::Matrix<double, 3, dof> slope;
     if constexpr (requires { learned_.predict_and_derivative(q); }) {

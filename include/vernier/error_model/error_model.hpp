@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vernier/core/checked_joints.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -39,21 +40,21 @@ struct GatedModels {
 
   Isometry3 pose(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate == 1) return near.pose(q);
+    if (gate >= 1) return near.pose(q);
     const Isometry3 fallback = far->pose(q);
-    return gate == 0 ? fallback : interpolated(fallback, near.pose(q), gate);
+    return gate <= 0 ? fallback : interpolated(fallback, near.pose(q), gate);
   }
   Vector3 position(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate == 1) return near.position(q);
+    if (gate >= 1) return near.position(q);
     const Vector3 fallback = far->position(q);
-    return gate == 0 ? fallback : Vector3(fallback + gate * (near.position(q) - fallback));
+    return gate <= 0 ? fallback : Vector3(fallback + gate * (near.position(q) - fallback));
   }
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate == 1) return near.pose_and_jacobian(q);
+    if (gate >= 1) return near.pose_and_jacobian(q);
     PoseAndJacobian<N> out = far->pose_and_jacobian(q);
-    if (gate == 0) return out;
+    if (gate <= 0) return out;
     const PoseAndJacobian<N> at = near.pose_and_jacobian(q);
     const Eigen::Matrix<double, 1, N> slope = coverage->derivative(q);
     blend_jacobians(gate, slope.data(), at.pose, at.jacobian.data(), out.pose, N, out.jacobian.data());
@@ -72,7 +73,10 @@ struct ThermalRates {
   VectorX parameters{};  ///< changes of the parameters as `ArmGeometry` counts them [m/K, rad/K]
 
   /// Equal in every entry.
-  bool operator==(const ThermalRates&) const = default;
+  bool operator==(const ThermalRates& other) const {
+    return same_value(reference, other.reference) && same_value(lower, other.lower) && same_value(upper, other.upper) &&
+           parameters == other.parameters;
+  }
 };
 
 template <class C>

@@ -5,6 +5,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/error_model/detail/assessment.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
@@ -214,7 +215,7 @@ class ErrorModelFit {
       return false;
     }
     model_.converged = true;
-    if (estimate.fallback_error == 0) estimate.fallback_error = error_without;
+    if (same_value(estimate.fallback_error, 0)) estimate.fallback_error = error_without;
     expected_ = before.arm.precisions().tail(terms.size());
     if (before.temperature_std > 0) {
       out.temperatures = estimate.temperature_std > 0 ? std::array{std::min(out.temperatures[0], prior.temperatures[0]),

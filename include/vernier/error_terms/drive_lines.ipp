@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 
 namespace vernier {
@@ -50,7 +51,7 @@ VERNIER_IMPL std::string cause_of(int order, const JointDrive& drive) {
   if (const std::string stated = detail::source_at(order, drive); !stated.empty()) return stated;
   JointDrive typical;
   if (drive.encoder_periods == 0) typical.encoder_periods = 128;
-  if (drive.gear_ratio == 0) typical.gear_ratio = 101;
+  if (same_value(drive.gear_ratio, 0)) typical.gear_ratio = 101;
   const std::string source = detail::source_at(order, typical);
   return source.empty() ? source : "probably " + source;
 }

@@ -5,6 +5,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 
@@ -134,7 +135,7 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     for (int i = 0; i < n; ++i) {
       const double linear = terms_.linear_value(i, q[i]);
       effective[i] += beta[i] * linear;
-      if (linear == q[i]) derivative[i * n + i] += beta[i];
+      if (same_value(linear, q[i])) derivative[i * n + i] += beta[i];
     }
     beta += n;
   }
@@ -142,7 +143,7 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     for (int i = 1; i < n; ++i) {
       const double linear = terms_.linear_value(i - 1, q[i - 1]);
       effective[i] += beta[i - 1] * linear;
-      if (linear == q[i - 1]) derivative[(i - 1) * n + i] += beta[i - 1];
+      if (same_value(linear, q[i - 1])) derivative[(i - 1) * n + i] += beta[i - 1];
     }
     beta += n - 1;
   }
@@ -154,7 +155,7 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     for (int i = 0; i < n; ++i) {
       const double step = detail::step_of(q, previous, i, width);
       effective[i] += beta[i] * step;
-      if (step != 0) derivative[i * n + i] += beta[i] * (1 - step * step) / width;
+      if (!same_value(step, 0)) derivative[i * n + i] += beta[i] * (1 - step * step) / width;
     }
     beta += n;
   }

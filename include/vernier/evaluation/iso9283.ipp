@@ -12,6 +12,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/detail/iso9283_visits.hpp"
 #include "vernier/evaluation/quantile.hpp"
@@ -81,7 +82,7 @@ VERNIER_API std::pair<double, double> repeatability_interval(const PointRows& po
   const PointRows centred = rows_minus(points, centroid(points));
   VectorX counts = VectorX::Ones(n), l(n), t(draws);
   const DrawnRepeatability all = drawn_repeatability(centred, counts, l);
-  if (all.error == 0) return {all.value, all.value};
+  if (same_value(all.error, 0)) return {all.value, all.value};
   Rng rng(seed);
   Index kept = 0;
   for (int k = 0; k < draws; ++k) {

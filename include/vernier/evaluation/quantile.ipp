@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 
 namespace vernier {
 
@@ -21,7 +22,7 @@ VERNIER_IMPL double quantile(const ConstVectorRef& values, double probability) {
 VERNIER_IMPL double radius_95(const Matrix3& covariance) noexcept {
   const Matrix3 square = covariance * covariance;
   const double mean = covariance.trace(), variance = 2 * square.trace();
-  if (!(mean > 0)) return mean == 0 ? 0 : std::nan("");
+  if (!(mean > 0)) return mean >= 0 ? 0 : std::nan("");
   const double degrees = 2 * mean * mean / variance, z = 1.6448536269514722;  // 95 % of a standard normal
   const double spread = 2 / (9 * degrees);
   return std::sqrt(mean * std::pow(1 - spread + z * std::sqrt(spread), 3));
@@ -32,7 +33,7 @@ VERNIER_IMPL double detail::quantile_of_sorted(const ConstVectorRef& values, dou
   const auto below = static_cast<Index>(at);
   const double low = values(below), high = values(std::min(below + 1, values.size() - 1));
   const double share = at - static_cast<double>(below);
-  return share == 0 || low == high ? low : low + share * (high - low);  // no difference of infinite values
+  return share <= 0 || same_value(low, high) ? low : low + share * (high - low);  // no difference of infinite values
 }
 
 }  // namespace vernier

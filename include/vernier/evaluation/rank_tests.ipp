@@ -13,6 +13,7 @@
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 
 namespace vernier {
 
@@ -21,7 +22,7 @@ VERNIER_IMPL VectorX ranks(const ConstVectorRef& values) {
   const auto order = argsort(values);
   VectorX out(values.size());
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() && values(order[end]) == values(order[begin])) ++end;
+    while (end < order.size() && same_value(values(order[end]), values(order[begin]))) ++end;
     for (std::size_t i = begin; i < end; ++i) out(order[i]) = static_cast<double>(begin + end + 1) / 2;
   }
   return out;
@@ -61,7 +62,7 @@ VERNIER_IMPL RankTest rank_sum_test(const ConstVectorRef& a, const ConstVectorRe
   joined << a, b;
   const VectorX rank = ranks(joined);
   const double u = rank.head(n).sum() - static_cast<double>(n * (n + 1)) / 2, tied = detail::ties(rank);
-  if (tied == 0 && std::max(n, m) <= exact_up_to) {
+  if (tied <= 0 && std::max(n, m) <= exact_up_to) {
     // ways(k, u): choices of k of the ranks so far with that U; rank r as the k-th chosen beats r - k of the others
     MatrixX ways = MatrixX::Zero(n * m + 1, n + 1);
     ways(0, 0) = 1;
@@ -79,7 +80,7 @@ VERNIER_IMPL RankTest signed_rank_test(const ConstVectorRef& a, const ConstVecto
           " values are no pairs");
   std::vector<double> differences;
   for (Index i = 0; i < a.size(); ++i)
-    if (a(i) != b(i)) differences.push_back(a(i) - b(i));  // equal infinities have no difference
+    if (!same_value(a(i), b(i))) differences.push_back(a(i) - b(i));  // equal infinities have no difference
   const auto n = static_cast<Index>(differences.size());
   VectorX sizes(n);
   for (Index i = 0; i < n; ++i) sizes(i) = std::abs(differences[static_cast<std::size_t>(i)]);
@@ -87,7 +88,7 @@ VERNIER_IMPL RankTest signed_rank_test(const ConstVectorRef& a, const ConstVecto
   double w = 0;
   for (Index i = 0; i < n; ++i) w += differences[static_cast<std::size_t>(i)] > 0 ? rank(i) : 0;
   const double tied = detail::ties(rank);
-  if (tied == 0 && n == a.size() && n <= exact_up_to) {
+  if (tied <= 0 && n == a.size() && n <= exact_up_to) {
     std::vector<double> ways(static_cast<std::size_t>(n * (n + 1) / 2 + 1));
     ways[0] = 1;
     for (std::size_t r = 1; r <= static_cast<std::size_t>(n); ++r)

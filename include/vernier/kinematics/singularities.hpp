@@ -36,7 +36,7 @@ struct SingularityDistances {
   std::string_view nearest() const {
     if (!factored) return "any";
     const double least = std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist)});
-    return std::abs(wrist) == least ? "wrist" : std::abs(elbow) == least ? "elbow" : "shoulder";
+    return std::abs(wrist) <= least ? "wrist" : std::abs(elbow) <= least ? "elbow" : "shoulder";
   }
 };
 

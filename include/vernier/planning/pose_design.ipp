@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/planning/pose_design.hpp"
 
 namespace vernier {
@@ -170,7 +171,7 @@ struct DesignOffer {
   /// Of equals the first candidate comes first.
   bool operator<(const DesignOffer& other) const {
     if (covered != other.covered) return covered < other.covered;
-    if (gain != other.gain) return gain < other.gain;
+    if (!same_value(gain, other.gain)) return gain < other.gain;
     return candidate > other.candidate;
   }
 };

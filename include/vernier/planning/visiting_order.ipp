@@ -7,6 +7,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/planning/visiting_order.hpp"
 
 namespace vernier {
@@ -108,7 +109,7 @@ VERNIER_IMPL std::vector<Index> visiting_order(const ConstMatrixRef& joints, con
     const auto here = order.begin() + i;
     const Index from = *(here - 1);
     std::iter_swap(here, std::min_element(here, order.end(), [&](Index a, Index b) {
-                     return times(from, a) < times(from, b) || (times(from, a) == times(from, b) && a < b);
+                     return times(from, a) < times(from, b) || (same_value(times(from, a), times(from, b)) && a < b);
                    }));
   }
   detail::OpenPath path(times, std::move(order), fixed);

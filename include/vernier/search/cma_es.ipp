@@ -8,6 +8,7 @@
 
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/search/bounds.hpp"
 
 namespace vernier {
@@ -164,7 +165,7 @@ VERNIER_IMPL void CmaEs::check_convergence(State& s, double best, double worst) 
   if (s.history.size() == length) std::copy(s.history.begin() + 1, s.history.end(), s.history.begin());
   if (s.history.size() < length) s.history.conservativeResize(s.history.size() + 1);
   s.history(s.history.size() - 1) = best;
-  const auto within = [&](double a, double b) { return a == b || std::abs(a - b) <= tolerance_f; };
+  const auto within = [&](double a, double b) { return same_value(a, b) || std::abs(a - b) <= tolerance_f; };
   const bool flat =
       s.history.size() == length && within(s.history.minCoeff(), s.history.maxCoeff()) && within(best, worst);
   const double spread = s.sigma * std::max({s.path_c.maxCoeff(), -s.path_c.minCoeff(),

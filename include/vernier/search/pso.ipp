@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/search/bounds.hpp"
 
 namespace vernier {
@@ -41,7 +42,7 @@ VERNIER_IMPL void Pso::step(State& s, const Box& box, Evaluate evaluate) const {
         v = 0;
       } else {
         // an odd number of reflections reverses the velocity
-        if (std::fmod(std::floor((x - box.lower(d)) / (box.upper(d) - box.lower(d))), 2) != 0) v = -v;
+        if (!same_value(std::fmod(std::floor((x - box.lower(d)) / (box.upper(d) - box.lower(d))), 2), 0)) v = -v;
         x = reflected(x, box.lower(d), box.upper(d));
       }
     }

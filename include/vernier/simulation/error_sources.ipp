@@ -3,6 +3,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "vernier/core/same_value.hpp"
+
 #include "vernier/simulation/error_sources.hpp"
 
 namespace vernier::detail {
@@ -20,7 +22,7 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
             ", must be 0 or more and finite");
   require(sizes.harmonics >= 0 && sizes.harmonics <= 500, "JointErrorSizes: harmonics is ", sizes.harmonics,
           ", must lie in 0..500");
-  require(sizes.ripple == 0 || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
+  require(same_value(sizes.ripple, 0) || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
           "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (",
           sizes.harmonics, ") and in 1..500");
 

@@ -8,6 +8,7 @@
 
 #include "vernier/calibration/detail/audit_rows.hpp"
 #include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/quantile.hpp"
 
@@ -85,11 +86,12 @@ VERNIER_IMPL void audit_duplicates(const MeasuredSet& data, const PointRows& rot
   const Index n = data.size();
   const auto before = [&](Index a, Index b) {
     for (Index c = 0; c < 3; ++c)
-      if ((*data.positions())(a, c) != (*data.positions())(b, c))
+      if (!same_value((*data.positions())(a, c), (*data.positions())(b, c)))
         return (*data.positions())(a, c) < (*data.positions())(b, c);
     if (rotation_vectors.rows() == n)
       for (Index c = 0; c < 3; ++c)
-        if (rotation_vectors(a, c) != rotation_vectors(b, c)) return rotation_vectors(a, c) < rotation_vectors(b, c);
+        if (!same_value(rotation_vectors(a, c), rotation_vectors(b, c)))
+          return rotation_vectors(a, c) < rotation_vectors(b, c);
     return false;
   };
   std::vector<Index> order(static_cast<std::size_t>(n));
@@ -107,7 +109,7 @@ VERNIER_IMPL void audit_duplicates(const MeasuredSet& data, const PointRows& rot
       bool same = true;
       for (const Index row : finding.rows)
         for (Index j = 0; j < data.joints.cols(); ++j)
-          same = same && data.joints(row, j) == data.joints(finding.rows.front(), j);
+          same = same && same_value(data.joints(row, j), data.joints(finding.rows.front(), j));
       finding.message = data.origin.where(finding.rows) +
                         (same ? ": joints and pose are the same in all digits: leave out all but one"
                               : ": the same pose in all digits at different joints: the sensor was not read again, "

@@ -10,6 +10,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/detail/dense_kernels.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/simd.hpp"
 
 namespace vernier::detail {
@@ -36,7 +37,7 @@ inline double operations(Index a, Index b, Index c) {
 VERNIER_IMPL void add_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b, double factor) {
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.cols())))
     return wide->add_product(at(out), at(a), at(b), factor);
-  if (factor == 1)
+  if (same_value(factor, 1))
     out.noalias() += a * b;
   else
     out.noalias() += a * ConstMatrixRef(MatrixX(factor * b));
@@ -46,7 +47,7 @@ VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a,
                                          double factor) {
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.rows())))
     return wide->add_transposed_product(at(out), at(a), at(b), factor);
-  if (factor == 1)
+  if (same_value(factor, 1))
     out.noalias() += a.transpose() * b;
   else
     out.noalias() += a.transpose() * ConstMatrixRef(MatrixX(factor * b));

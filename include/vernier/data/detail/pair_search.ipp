@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "vernier/core/same_value.hpp"
+
 namespace vernier::detail {
 
 /// The median, by choice the upper one.
@@ -99,7 +101,7 @@ VERNIER_IMPL void PairSearch::settle(Found& found, double widest) const {
     const double typical = distances[9 * n / 10] * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 3));
     const double limit = wide ? widest : std::clamp(std::min(3 * typical, 6 * found.median), smallest, 2 * widest);
     std::vector<PointPair> pairs = aligned(found, limit);
-    const bool grown = pairs.size() > found.pairs.size(), same = pairs == found.pairs && limit == found.limit;
+    const bool grown = pairs.size() > found.pairs.size(), same = pairs == found.pairs && same_value(limit, found.limit);
     found.limit = limit;
     found.pairs = std::move(pairs);
     if (same && !wide) break;
@@ -193,7 +195,7 @@ VERNIER_IMPL std::pair<PairingProof, std::optional<PairSearch::Found>> prove(con
       proof.scale = factor * changed.scale(*found);
       for (Index i = 1; i < search.rows(); ++i)
         proof.indistinct += (point(found->nominal, i) - point(found->nominal, i - 1)).norm() <= found->limit;
-      proof.status = factor != 1                                    ? PairingStatus::wrong_unit
+      proof.status = !same_value(factor, 1)                         ? PairingStatus::wrong_unit
                      : sign < 0                                     ? PairingStatus::mirrored
                      : search.by_order && changed.ambiguous(*found) ? PairingStatus::ambiguous
                                                                     : PairingStatus::proven;

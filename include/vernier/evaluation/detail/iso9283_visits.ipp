@@ -11,6 +11,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/points.hpp"
+#include "vernier/core/same_value.hpp"
 
 namespace vernier::detail {
 
@@ -27,7 +28,7 @@ VERNIER_API VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
   bool timed = true;
   for (const auto* v : visits) timed = timed && std::isfinite(v->time_s);
   std::sort(visits.begin(), visits.end(), [timed](const Iso9283Visit* a, const Iso9283Visit* b) {
-    return timed && a->time_s != b->time_s ? a->time_s < b->time_s : a->cycle < b->cycle;
+    return timed && !same_value(a->time_s, b->time_s) ? a->time_s < b->time_s : a->cycle < b->cycle;
   });
   VisitedPose out{std::move(visits), {}, {}};
   out.positions.resize(static_cast<Index>(out.visits.size()), 3);
@@ -116,7 +117,7 @@ VERNIER_API void check_sequence(std::span<const Iso9283Visit> visits, Departures
     sequence.push_back(&v);
   }
   std::sort(sequence.begin(), sequence.end(), [](const Iso9283Visit* a, const Iso9283Visit* b) {
-    return a->time_s < b->time_s || (a->time_s == b->time_s && a < b);
+    return a->time_s < b->time_s || (same_value(a->time_s, b->time_s) && a < b);
   });
   std::map<std::pair<int, int>, const Iso9283Visit*> last;
   std::map<int, std::map<int, int>> before;

@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/twists.hpp"
@@ -24,7 +25,7 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
     if (set.locates()) validation_blocks_ += set.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
   for (const MeasuredSet& set : sets_)
-    require(joint_sigma == 0 || set.seen_from.rows() == 0, set.name,
+    require(same_value(joint_sigma, 0) || set.seen_from.rows() == 0, set.name,
             ": errors of joint readings are not estimated between two configurations");
 }
 
@@ -294,7 +295,7 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       bool mixed = false;
       for (Index c = 0; c < 6; ++c)
         for (Index r = 0; r < 6; ++r) {
-          mixed = mixed || ((r < 3) != (c < 3) && sensed.motion(r, c) != 0);
+          mixed = mixed || ((r < 3) != (c < 3) && !same_value(sensed.motion(r, c), 0));
           sensed.motion(r, c) *= r < 3 ? position : orientation;
         }
       rows.unwhiten.setIdentity();

@@ -24,7 +24,7 @@ VERNIER_IMPL ContactProblem::ContactProblem(const ArmGeometry& nominal_arm, std:
 
 VERNIER_IMPL CalibrationProblem ContactProblem::registered(const Vector3& tool_point) const {
   const Isometry3& tool = nominal.tool().isometry();
-  const bool given = (tool_point - translation(tool)).norm() == 0;
+  const bool given = (tool_point - translation(tool)).norm() <= 0;
   const FrameParameters of_tool = given ? nominal.tool() : FrameParameters(rigid_motion(rotation(tool), tool_point));
   std::vector<MeasuredSet> sets;
   std::vector<ArmGeometry> arms;

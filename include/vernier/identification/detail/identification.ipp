@@ -146,7 +146,7 @@ class IdentificationRun {
         ++count;
         squares[static_cast<std::size_t>(rows.block[static_cast<std::size_t>(i)])] += square;
       }
-      if (count == 0) continue;
+      if (count < 1) continue;
       double variance = square_sum / count;
       if (problem_.loss() != Loss::squared) {
         for (double& square : squares) square = std::sqrt(square);

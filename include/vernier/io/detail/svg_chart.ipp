@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/svg_chart.hpp"
 
@@ -19,15 +20,14 @@ VERNIER_IMPL std::vector<double> chart_ticks(double lower, double upper, bool lo
     for (int power = static_cast<int>(std::floor(std::log10(lower))); power <= std::ceil(std::log10(upper)); ++power)
       for (const double digit : {1.0, 2.0, 5.0}) {
         const double tick = digit * std::pow(10, power);
-        if ((digit == 1 || decades < 2) && tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9))
-          out.push_back(tick);
+        if ((digit < 2 || decades < 2) && tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9)) out.push_back(tick);
       }
     return out;
   }
   const double rough = (upper - lower) / count, power = std::pow(10, std::floor(std::log10(rough)));
   const double step = power * (rough < 1.5 * power ? 1 : rough < 3.5 * power ? 2 : rough < 7.5 * power ? 5 : 10);
   for (double k = std::ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * step; ++k)
-    out.push_back(k == 0 ? 0 : k * step);
+    out.push_back(same_value(k, 0) ? 0 : k * step);
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
 #include "vernier/kinematics/detail/small_systems.hpp"
@@ -256,14 +257,14 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
     bool changed = false;
     for (const int i : problem.moving) {
       const double value = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
-      changed = changed || value != q[i];
+      changed = changed || !same_value(value, q[i]);
       q[i] = value;
     }
     return !changed || solve_near(problem, q, at, iterations, damped);
   };
   if (!solve_near(problem, q, at, iterations, damped) || !turned()) {
     if (sampled) return;  // one of many
-    if (margin == 0) ++seeds_lost;
+    if (same_value(margin, 0)) ++seeds_lost;
     suspicious = true;
     const bool known = std::any_of(stalled, stalled + stalled_count,
                                    [&](const auto& other) { return are_near(problem, q, other.data(), 0.01); });
@@ -326,7 +327,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
       bool same = true;
       for (const int i : problem.moving) {
         turned[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
-        same = same && turned[i] == q[i];
+        same = same && same_value(turned[i], q[i]);
       }
       if (same || solve_near(problem, turned, at, iterations)) add_branch(set, problem, turned, at, iterations);
     };

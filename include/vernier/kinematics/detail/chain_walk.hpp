@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/kinematics/detail/constexpr_trig.hpp"
 #include "vernier/kinematics/detail/moving_frame.hpp"
@@ -34,7 +35,7 @@ VERNIER_INLINE void walk_row(const DhRow& row, const SinCos& twist, const SinCos
         break;
       case DhParameter::beta:
         record(parameter, frame.y);
-        if (hayati.sin != 0) frame.rotate_y(hayati.cos, hayati.sin);
+        if (!same_value(hayati.sin, 0)) frame.rotate_y(hayati.cos, hayati.sin);
         break;
       case DhParameter::d:
         record(parameter, frame.z);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 #include "vernier/kinematics/detail/wrist.hpp"
 
@@ -49,7 +50,7 @@ VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double near, double w
   if (!any) {
     angles[0] = pair.centre + pair.half;
     angles[1] = pair.centre - pair.half;
-    if (margin == 0 && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
+    if (same_value(margin, 0) && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
   }
   exact = count;
   if (pair.radius >= widest) return;

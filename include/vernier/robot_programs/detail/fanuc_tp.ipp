@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 
 namespace vernier::detail {
@@ -97,7 +98,7 @@ class FanucReader {
       if (key.size() == 2 && key[0] == 'j') joints = true;
       if (key.size() == 2 && key[0] == 'e') {
         const std::optional<double> axis = signed_number(text_, k + 2, next, range);
-        external = external || !axis || *axis != 0;
+        external = external || !axis || !same_value(*axis, 0);
       }
     }
     if (!group) return refuse("no group 1");

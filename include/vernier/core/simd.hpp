@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "vernier/core/language.hpp"
+
 /// Inlined even where the compiler would rather not.
 #define VERNIER_INLINE inline __attribute__((always_inline))
 /// The same for a lambda, behind its parameters.

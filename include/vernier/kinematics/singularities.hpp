@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// The three factors into which the determinant of the Jacobian of an arm with a closed form decomposes, each scaled

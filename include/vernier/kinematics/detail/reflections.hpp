@@ -9,6 +9,8 @@
 #include <complex>
 #include <limits>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier::detail {
 
 /// Replaces x by the unit vector v with which `x - 2 v (v.x)` keeps only its first component; by zero where it is zero.

@@ -86,7 +86,7 @@ struct VerificationInput {
   std::vector<JointType> joint_types;                ///< of the arm
   std::optional<ReregistrationReport> registration;  ///< where base or tool was registered
 };
-VERNIER_API VerificationReport verify(const VerificationInput& input, const VerifyOptions& options);
+VERNIER_API VerificationReport verified(const VerificationInput& input, const VerifyOptions& options);
 
 }  // namespace detail
 
@@ -155,7 +155,7 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     std::copy_n(at.jacobian.data(), 6 * N, input.jacobians.data() + 6 * N * i);
     input.gates(i) = model.gate(q);
   }
-  return detail::verify(input, options);
+  return detail::verified(input, options);
 }
 
 }  // namespace vernier

@@ -164,8 +164,8 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
     bool once = false;
     for (Index j = 0; j < joints; ++j)
       for (const bool turn : {false, true}) {
-        JointCheck& check = out.joints[static_cast<std::size_t>(j)];
-        if (check.zero_changed || check.transmission_changed) continue;
+        JointCheck& joint_check = out.joints[static_cast<std::size_t>(j)];
+        if (joint_check.zero_changed || joint_check.transmission_changed) continue;
         if (turn && out.joint_types[static_cast<std::size_t>(j)] != JointType::revolute) continue;
         std::vector<Index> together = named;
         for (const Index k : columns_of(j, turn)) together.push_back(k);
@@ -179,14 +179,14 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
         once = turn;
       }
     if (joint < 0) break;
-    JointCheck& check = out.joints[static_cast<std::size_t>(joint)];
-    (once ? check.transmission_changed : check.zero_changed) = true;
+    JointCheck& joint_check = out.joints[static_cast<std::size_t>(joint)];
+    (once ? joint_check.transmission_changed : joint_check.zero_changed) = true;
     for (const Index k : columns_of(joint, once)) named.push_back(k);
   }
   out.consistent = out.p_value >= 0.5 * out.options.level && named.empty();
 }
 
-VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const VerifyOptions& options) {
+VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const VerifyOptions& options) {
   const MeasuredSet& data = input.data;
   const Index n = data.size(), joints = data.joints.cols(), values = data.oriented() ? 6 : 3;
   VerificationReport out;
@@ -247,12 +247,12 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
   test_all(input, covariance, residual, registered, changes, values, out);
   if (!out.consistent) {  // a reflector that was bumped is no change of the arm
     const double typical = quantile(out.normalised, 0.5);
-    std::vector<Index> far;
+    std::vector<Index> distant;
     for (Index i = 0; i < n; ++i)
-      if (out.normalised(i) > std::max(4.5, 6 * typical)) far.push_back(i);
-    if (!far.empty() && static_cast<Index>(far.size()) <= std::max<Index>(1, n / 10) &&
-        n - static_cast<Index>(far.size()) >= 3) {
-      out.aside = far;
+      if (out.normalised(i) > std::max(4.5, 6 * typical)) distant.push_back(i);
+    if (!distant.empty() && static_cast<Index>(distant.size()) <= std::max<Index>(1, n / 10) &&
+        n - static_cast<Index>(distant.size()) >= 3) {
+      out.aside = distant;
       test_all(input, covariance, residual, registered, changes, values, out);
     }
   }

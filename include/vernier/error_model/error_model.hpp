@@ -19,43 +19,45 @@ namespace vernier {
 
 namespace detail {
 
-/// The Jacobian of `interpolated(far(q), near(q), gate(q))`; `jacobian` holds that of `far` and is overwritten.
+/// The Jacobian of `interpolated(outside(q), inside(q), gate(q))`; `jacobian` holds that of `outside` and is
+/// overwritten.
 /// @param slope gradient of the gate
-VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometry3& near, const double* near_jacobian,
-                                 const Isometry3& far, Index joints, double* jacobian) noexcept;
+VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometry3& inside,
+                                 const double* inside_jacobian, const Isometry3& outside, Index joints,
+                                 double* jacobian) noexcept;
 
 }  // namespace detail
 
 namespace detail {
 
-/// A blend of two models by a gate: `near` where the joints were measured, `far` elsewhere. Null pointers: `near`
-/// alone.
+/// A blend of two models by a gate: `inside` where the joints were measured, `outside` elsewhere. Null pointers:
+/// `inside` alone.
 template <class Near, int N>
 struct GatedModels {
-  const Near& near;
-  const Near* far;
+  const Near& inside;
+  const Near* outside;
   const JointCoverage<N>* coverage;
 
   double gate(const JointVector<N>& q) const noexcept { return coverage != nullptr ? (*coverage)(q) : 1; }
 
   Isometry3 pose(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate >= 1) return near.pose(q);
-    const Isometry3 fallback = far->pose(q);
-    return gate <= 0 ? fallback : interpolated(fallback, near.pose(q), gate);
+    if (gate >= 1) return inside.pose(q);
+    const Isometry3 fallback = outside->pose(q);
+    return gate <= 0 ? fallback : interpolated(fallback, inside.pose(q), gate);
   }
   Vector3 position(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate >= 1) return near.position(q);
-    const Vector3 fallback = far->position(q);
-    return gate <= 0 ? fallback : Vector3(fallback + gate * (near.position(q) - fallback));
+    if (gate >= 1) return inside.position(q);
+    const Vector3 fallback = outside->position(q);
+    return gate <= 0 ? fallback : Vector3(fallback + gate * (inside.position(q) - fallback));
   }
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate >= 1) return near.pose_and_jacobian(q);
-    PoseAndJacobian<N> out = far->pose_and_jacobian(q);
+    if (gate >= 1) return inside.pose_and_jacobian(q);
+    PoseAndJacobian<N> out = outside->pose_and_jacobian(q);
     if (gate <= 0) return out;
-    const PoseAndJacobian<N> at = near.pose_and_jacobian(q);
+    const PoseAndJacobian<N> at = inside.pose_and_jacobian(q);
     const Eigen::Matrix<double, 1, N> slope = coverage->derivative(q);
     blend_jacobians(gate, slope.data(), at.pose, at.jacobian.data(), out.pose, N, out.jacobian.data());
     out.pose = interpolated(out.pose, at.pose, gate);

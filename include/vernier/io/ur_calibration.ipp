@@ -138,15 +138,15 @@ VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const
   constexpr double farthest_length = 0.1, farthest_angle = 0.3;  // of arms as made: 5 mm, 0.1 rad
   for (std::size_t i = 0; i < 6; ++i) {
     const DhRow &row = out.rows[i], &design = nominal.rows[i];
-    const auto check = [&](const char* name, double value, double nominal_value, double farthest, const char* unit) {
+    const auto limit = [&](const char* name, double value, double nominal_value, double farthest, const char* unit) {
       if (!(std::abs(value - nominal_value) <= farthest))
         throw DataError(message(path, ": ", name, i + 1, " becomes ", value, " ", unit, ", far from ", nominal_value,
                                 " ", unit, " of '", detail::quotable(nominal.name), "'; is it of another arm?"));
     };
-    check("a", row.a, design.a, farthest_length, "m");
-    check("d", row.d, design.d, farthest_length, "m");
-    check("alpha", row.alpha, design.alpha, farthest_angle, "rad");
-    check("theta", row.theta, design.theta, farthest_angle, "rad");
+    limit("a", row.a, design.a, farthest_length, "m");
+    limit("d", row.d, design.d, farthest_length, "m");
+    limit("alpha", row.alpha, design.alpha, farthest_angle, "rad");
+    limit("theta", row.theta, design.theta, farthest_angle, "rad");
   }
   return out;
 }

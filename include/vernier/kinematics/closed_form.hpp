@@ -173,13 +173,13 @@ class ClosedForm : public ChecksJoints<ClosedForm<N>> {
 
   /// All joint values with which the nominal arm is at a pose; does not allocate.
   /// @param target base_T_tool, a proper rigid motion
-  /// @param near   values of joints whose value is arbitrary in a singularity [rad]
+  /// @param close_to   values of joints whose value is arbitrary in a singularity [rad]
   /// @param width  [m, rad] where the target is so near to a singularity of shoulder or wrist, samples of the joint
   /// whose value hardly matters are added, with a positive margin: seeds for an arm that is not quite the nominal one
   /// @complexity   about 2 us
-  InverseRoots<N> roots(const Isometry3& target, const JointVector<N>& near = JointVector<N>::Zero(),
+  InverseRoots<N> roots(const Isometry3& target, const JointVector<N>& close_to = JointVector<N>::Zero(),
                         double width = 0) const noexcept {
-    return moving_.around(arm_.solve(target, moving_.of(near), width));
+    return moving_.around(arm_.solve(target, moving_.of(close_to), width));
   }
 
   /// How far joint values are from singularities, and on which side of them: the branch.

@@ -61,7 +61,7 @@ VERNIER_IMPL MeasurementScene::MeasurementScene(const ArmGeometry& arm, Measurem
   require(c.tracker->min_range < c.tracker->max_range, "MeasurementScene: the tracker's range is empty");
 }
 
-VERNIER_IMPL Rejection MeasurementScene::check(const ConstVectorRef& q) const {
+VERNIER_IMPL Rejection MeasurementScene::rejection(const ConstVectorRef& q) const {
   const MeasurementConstraints& c = constraints_;
   const Index joints = arm_.joints();
   require(q.size() == joints, "MeasurementScene: ", q.size(), " joint values for an arm of ", joints);

@@ -170,7 +170,7 @@ VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const Vector
   Index tried = 0;
   for (Index i = 0; i < n;) {
     for (Index j = 0; j < lower.size(); ++j) out(i, j) = rng.uniform(lower(j), upper(j));
-    const Rejection reason = scene.check(row_of(out, i));
+    const Rejection reason = scene.rejection(row_of(out, i));
     ++rejected[static_cast<std::size_t>(reason)];
     if (reason == Rejection::none) ++i;
     ++tried;

@@ -55,15 +55,15 @@ VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
     if (change_std(zeros_begin + i) > 0.5 * estimated.offset_prior_std) zeros += " " + std::to_string(i + 1);
   if (!zeros.empty())
     out.push_back("The poses tell little about the zeros of joints" + zeros + ": held near where they were.");
-  const auto far = [&](const char* how, double moved, double prior, const char* unit) {
+  const auto far_off = [&](const char* how, double moved, double prior, const char* unit) {
     if (moved > 3 * prior)
       out.push_back(
           detail::formatted("The tool has %s by %.2f %s, where %.2f are expected of one remounted: if it is "
                             "another tool, register it as such (with infinite priors).",
                             how, 1e3 * moved, unit, 1e3 * prior));
   };
-  far("moved", translation(motion.tool).norm(), estimated.tool_position_prior_std, "mm");
-  far("turned", log_so3(rotation(motion.tool)).norm(), estimated.tool_rotation_prior_std, "mrad");
+  far_off("moved", translation(motion.tool).norm(), estimated.tool_position_prior_std, "mm");
+  far_off("turned", log_so3(rotation(motion.tool)).norm(), estimated.tool_rotation_prior_std, "mrad");
   const auto vague = [&](const char* what, double sigma, double prior, const char* unit) {
     if (std::isinf(prior) && sigma > 1e-3)
       out.push_back(

@@ -76,11 +76,11 @@ VERNIER_IMPL JointRange stated_interval(ProgramLanguage language, const std::vec
 }
 
 VERNIER_IMPL double stated_turn(ProgramLanguage language, const std::vector<int>& configuration, int joint,
-                                double angle, double near, double lower, double upper) {
+                                double angle, double close_to, double lower, double upper) {
   constexpr double whole = 2 * std::numbers::pi, degree = std::numbers::pi / 180;
   const double tolerance = language == ProgramLanguage::krl ? 2 * degree : 0.05 * degree;
   const JointRange stated = stated_interval(language, configuration, joint);
-  const double centre = std::isfinite(near) ? near : 0;
+  const double centre = std::isfinite(close_to) ? close_to : 0;
   double best = std::numeric_limits<double>::quiet_NaN(), best_cost = std::numeric_limits<double>::infinity();
   for (int turn = -4; turn <= 4; ++turn) {
     const double q = angle + whole * turn;

@@ -64,9 +64,9 @@ CorrectedProgram correct_program(const RobotProgram& program, const Robot& robot
   const ControllerArm arm = options.arm.value_or(ControllerArm{});
   const Isometry3 from_base = frames.base().inverse(), to_flange = frames.tool().inverse();
   const auto pose = [&](const JointVector<6>& q) { return Isometry3(from_base * controller.pose(q) * to_flange); };
-  const auto joints = [&](const Isometry3& at, const std::vector<int>& configuration, const JointVector<6>& near) {
+  const auto joints = [&](const Isometry3& at, const std::vector<int>& configuration, const JointVector<6>& close_to) {
     return controller_joints(roots, controller, limits, program.language, arm, frames.base() * at * frames.tool(),
-                             configuration, near);
+                             configuration, close_to);
   };
   const auto correct = [&](const Isometry3& at, const JointVector<6>& q, const JointVector<6>& previous) {
     return robot.correct(Isometry3(nominal.base() * at * nominal.tool()), q, previous);

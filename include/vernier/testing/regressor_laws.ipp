@@ -139,8 +139,8 @@ class RegressorCheck {
         x(j) += steps * step;
         return predictor.predict(x);
       };
-      const VectorX near = value(1) - value(-1), far = value(2) - value(-2);
-      for (Index k = 0; k < recipe_.outputs; ++k) out(k, j) = (8 * near(k) - far(k)) / (12 * step);
+      const VectorX inner = value(1) - value(-1), outer = value(2) - value(-2);
+      for (Index k = 0; k < recipe_.outputs; ++k) out(k, j) = (8 * inner(k) - outer(k)) / (12 * step);
     }
     return out;
   }

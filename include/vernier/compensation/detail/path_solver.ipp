@@ -98,10 +98,10 @@ class PathSearch {
     for (int j = 0; j < arm_.joints; ++j) out = std::max(out, std::abs(b(j) - a(j)) / settings_.speed(j));
     return out;
   }
-  PathJoints turned(const PathJoints& joints, const PathJoints& near) const {
+  PathJoints turned(const PathJoints& joints, const PathJoints& close_to) const {
     PathJoints out = joints;
     for (int j = 0; j < arm_.joints; ++j)
-      out(j) = nearest_turn(joints(j), near(j), settings_.lower(j), settings_.upper(j));
+      out(j) = nearest_turn(joints(j), close_to(j), settings_.lower(j), settings_.upper(j));
     return out;
   }
   bool within(const PathJoints& q) const {
@@ -126,14 +126,14 @@ class PathSearch {
     states.push_back(state);
   }
 
-  VERNIER_API Reach find_branches(const PathGoal& goal, const PathJoints& near, std::vector<PathBranch>& out) const;
+  VERNIER_API Reach find_branches(const PathGoal& goal, const PathJoints& close_to, std::vector<PathBranch>& out) const;
   VERNIER_API std::optional<PathJoints> end_of_line(const PathState& from, const PathGoal& start, const PathBranch& to,
                                                     const PathGoal& end) const;
   VERNIER_API void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
                            const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
   VERNIER_API double worst_ratio(const PathJoints& coming, const PathJoints& a, const PathJoints& b,
                                  const Isometry3& from, const Isometry3& to, double& deviation) const;
-  VERNIER_API bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
+  VERNIER_API bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& close_to,
                              const Isometry3& start, const Isometry3& end, int pieces, std::vector<SolvedPoint>& out,
                              double& worst, double& deviation) const;
   VERNIER_API void move_to(Index target, const PathState& state, const SolvedPoint* before, SolvedPath& out) const;
@@ -143,10 +143,10 @@ class PathSearch {
   const PathSettings& settings_;
 };
 
-VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& near,
+VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& close_to,
                                              std::vector<PathBranch>& out) const {
   if (!is_pose(goal.pose)) return Reach::invalid_target;
-  if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
+  if (goal.joints.size() == 0) return arm_.branches(goal.pose, close_to, out);
   PathJoints command = goal.joints, unknown = same_joints(arm_.joints, std::nan(""));
   double errors[2];
   arm_.correct(goal.pose, unknown, command, errors);  // or the joint values that come nearest
@@ -159,8 +159,8 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
                                                                const PathBranch& to, const PathGoal& end) const {
   constexpr double small = 0.2, step = 0.1;  // rad
   if (from.id != to.id) return std::nullopt;
-  PathJoints near = turned(to.joints, from.joints);
-  const double largest = largest_difference(near, from.joints);
+  PathJoints close_to = turned(to.joints, from.joints);
+  const double largest = largest_difference(close_to, from.joints);
   if (largest > small) {
     const int n = std::clamp(static_cast<int>(std::ceil(largest / step)), 4, 64);
     PathJoints q = from.joints;
@@ -170,10 +170,10 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
           largest_difference(q, before) > settings_.max_joint_step || arm_.branch_id(q) != from.id)
         return std::nullopt;
     }
-    near = turned(to.joints, q);
-    if (largest_difference(near, q) > 0.1) return std::nullopt;
+    close_to = turned(to.joints, q);
+    if (largest_difference(close_to, q) > 0.1) return std::nullopt;
   }
-  return within(near) ? std::optional<PathJoints>(near) : std::nullopt;
+  return within(close_to) ? std::optional<PathJoints>(close_to) : std::nullopt;
 }
 
 /// States at a target from those before.
@@ -240,16 +240,17 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& coming, const Path
 
 /// Commands that divide a line into equal pieces, the last one at its end.
 /// @return whether all of them were found next to one another
-VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
-                                        const Isometry3& start, const Isometry3& end, int pieces,
-                                        std::vector<SolvedPoint>& out, double& worst, double& deviation) const {
+VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const PathJoints& from,
+                                        const PathJoints& close_to, const Isometry3& start, const Isometry3& end,
+                                        int pieces, std::vector<SolvedPoint>& out, double& worst,
+                                        double& deviation) const {
   PathJoints before = from, tracked = from, coming = coming_from;
   Isometry3 at = start;
   worst = deviation = 0;
   for (int k = 1; k <= pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
     const Isometry3 wanted = k == pieces ? end : interpolated(start, end, share);
-    SolvedPoint point{k == pieces ? near : tracked, 0, k < pieces, PointStatus::met, 0, 0};
+    SolvedPoint point{k == pieces ? close_to : tracked, 0, k < pieces, PointStatus::met, 0, 0};
     if (k < pieces) {
       if (!arm_.nominal_joints(wanted, point.command)) return false;
       tracked = point.command;
@@ -339,14 +340,14 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   std::vector<Reach> reach(n);
   std::vector<PathBranch> branches;
   bool started = true;
-  PathJoints near = same_joints(arm_.joints, 0);
+  PathJoints close_to = same_joints(arm_.joints, 0);
   for (int j = 0; j < arm_.joints; ++j) {
     started = started && std::isfinite(settings_.start(j));
     if (std::isfinite(settings_.lower(j) + settings_.upper(j)))
-      near(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
+      close_to(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
   }
-  if (started) near = settings_.start;
-  const std::vector<PathState> beginning{{near, 0, 0, -1, false}};
+  if (started) close_to = settings_.start;
+  const std::vector<PathState> beginning{{close_to, 0, 0, -1, false}};
 
   std::size_t last = n;
   for (std::size_t k = 0; k < n; ++k) {

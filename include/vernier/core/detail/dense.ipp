@@ -144,7 +144,7 @@ VERNIER_IMPL double weighted_square(const ConstVectorRef& weights, const ConstVe
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
   if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
     return wide->cholesky(at(matrix));
-  return Eigen::LLT<MatrixRef>(matrix).info() == Eigen::Success;  // in place
+  return succeeded(Eigen::LLT<MatrixRef>(matrix));  // in place
 }
 
 VERNIER_IMPL void solve_lower(const ConstMatrixRef& factor, MatrixRef right) {
@@ -201,7 +201,7 @@ VERNIER_IMPL QrSolution solve_by_qr(const ConstMatrixRef& matrix, const ConstMat
 
 VERNIER_IMPL SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(matrix);
-  return {eigen.eigenvalues(), eigen.eigenvectors(), eigen.info() == Eigen::Success};
+  return {eigen.eigenvalues(), eigen.eigenvectors(), succeeded(eigen)};
 }
 
 VERNIER_IMPL TridiagonalForm tridiagonal_form(const ConstMatrixRef& matrix) {

@@ -101,10 +101,10 @@ VERNIER_API void evaluate_iterate(const BranchProblem& problem, const double* q,
   }
 }
 
-VERNIER_IMPL double nearest_turn(double angle, double near, double lower, double upper) noexcept {
+VERNIER_IMPL double nearest_turn(double angle, double close_to, double lower, double upper) noexcept {
   constexpr double turn = 2 * std::numbers::pi, slack = 1e-9;
   const double least = std::ceil((lower - slack - angle) / turn), most = std::floor((upper + slack - angle) / turn);
-  double k = std::nearbyint((near - angle) / turn);
+  double k = std::nearbyint((close_to - angle) / turn);
   if (least <= most) {
     k = std::clamp(k, least, most);
   } else if (std::isfinite(lower) && std::isfinite(upper)) {
@@ -247,16 +247,16 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
                                     bool sampled) noexcept {
   double q[most_branch_joints];
   for (int i = 0; i < problem.joints; ++i) q[i] = seed[i];
-  for (const int i : problem.moving) q[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+  for (const int i : problem.moving) q[i] = nearest_turn(q[i], problem.close_to[i], problem.lower[i], problem.upper[i]);
   BranchIterate at;
   int iterations = 0;
   if (margin > 0) suspicious = true;
   const bool damped = !sampled || margin > sampled_margin;  // beyond a boundary the Jacobian is singular
-  // Newton's method may lead across a limit, or farther than half a turn from `near`
+  // Newton's method may lead across a limit, or farther than half a turn from `close_to`
   const auto turned = [&] {
     bool changed = false;
     for (const int i : problem.moving) {
-      const double value = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+      const double value = nearest_turn(q[i], problem.close_to[i], problem.lower[i], problem.upper[i]);
       changed = changed || !same_value(value, q[i]);
       q[i] = value;
     }
@@ -326,7 +326,7 @@ VERNIER_API void cross_folds(BranchSet& set, const BranchProblem& problem, const
       std::copy_n(q, problem.joints, turned);
       bool same = true;
       for (const int i : problem.moving) {
-        turned[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+        turned[i] = nearest_turn(q[i], problem.close_to[i], problem.lower[i], problem.upper[i]);
         same = same && same_value(turned[i], q[i]);
       }
       if (same || solve_near(problem, turned, at, iterations)) add_branch(set, problem, turned, at, iterations);

@@ -111,11 +111,11 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   wrist_ = wrist_of(kind_ == ArmKind::three_parallel ? h_[1] : h_[3], h_[4], h_[5]);
 }
 
-VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const JointVector<6>& near,
+VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const JointVector<6>& close_to,
                                                double width) const noexcept {
   SixAxisRoots out;
-  const auto nearby = [&](int i) { return near(mirrored_ ? 5 - i : i); };
-  const auto emit = [&](const double(&q)[6], double margin, unsigned free, bool sampled) {
+  const auto nearby = [&](int i) { return close_to(mirrored_ ? 5 - i : i); };
+  const auto offer = [&](const double(&q)[6], double margin, unsigned free, bool sampled) {
     if (out.count >= SixAxisRoots::capacity) return;
     SixAxisRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
     root.margin = margin;
@@ -157,8 +157,8 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     const WristAngles end = solve_wrist(wrist_, transposed_times3(to_wrist, turn), nearby(3), sampled ? 0 : width);
     missed(end.margin);
     for (int k = 0; k < end.count; ++k)
-      emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin_of(k)),
-           free | (end.any ? 8u : 0u), sampled || k >= end.exact);
+      offer({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin_of(k)),
+            free | (end.any ? 8u : 0u), sampled || k >= end.exact);
   };
 
   switch (kind_) {
@@ -250,10 +250,10 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
             const Vector3 bent = p_[1] + rotated(rotation_about(h_[2], q3), p_[2]);
             const AngleAbout second = angle_between(h_[1], bent, u, negligible_length);
             const double q2 = second.any ? nearby(1) : second.angle;
-            emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
-                 std::max({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
-                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u),
-                 i >= firsts.exact);
+            offer({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
+                  std::max({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
+                  (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u),
+                  i >= firsts.exact);
           }
         }
       }

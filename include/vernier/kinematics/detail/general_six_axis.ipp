@@ -149,7 +149,7 @@ VERNIER_API JointVector<6> back_substitute(const ClosedLoop& loop, const LoopPen
 /// @cite Levenberg 1944; Nakamura and Hanafusa 1986
 VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
   constexpr int steps_to_come_near = 15, max_steps = 40;
-  constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
+  constexpr double longest_step = 0.3, close = 1e-3, enough = 1e-13, accepted = 1e-10;
   double jacobian[6][6], normal[6][6], newton[6];
   for (int step = 0;; ++step) {
     Matrix3 turned = Matrix3::Identity();
@@ -172,7 +172,7 @@ VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointV
     const Vector6 error = pose_difference(target, pose);
     const double left = error.norm();
     if (left < enough) return true;
-    if (step == max_steps || (step >= steps_to_come_near && !(left < near)) || !std::isfinite(left))
+    if (step == max_steps || (step >= steps_to_come_near && !(left < close)) || !std::isfinite(left))
       return left < accepted;
     // Damping in proportion to the square of the error: convergence stays quadratic.
     for (int j = 0; j < 6; ++j) {

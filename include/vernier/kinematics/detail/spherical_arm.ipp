@@ -53,8 +53,8 @@ inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
   return out;
 }
 
-VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, double angle, const JointVector<7>& near,
-                                                   double width) const noexcept {
+VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, double angle,
+                                                   const JointVector<7>& close_to, double width) const noexcept {
   SphericalArmRoots out;
   const Matrix3 back_at_zero = rotation(axes_.tool).transpose(), turn = times3(rotation(target), back_at_zero);
   const Vector3 lever = wrist_ - translation(axes_.tool);
@@ -62,7 +62,7 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
   const auto missed = [&](double margin) {
     if (margin > most_margin) out.nearest_margin = std::min(out.nearest_margin, margin);
   };
-  const Candidates elbows(angles_to_distance(axis4_, fore_, -upper_, to_wrist.norm(), negligible_length), near(3));
+  const Candidates elbows(angles_to_distance(axis4_, fore_, -upper_, to_wrist.norm(), negligible_length), close_to(3));
   missed(elbows.margin);
   if (!(to_wrist.norm() > negligible_length)) return out;  // the wrist in the shoulder: no arm angle
   const Vector3 along = to_wrist.normalized();
@@ -75,8 +75,8 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
     // the rotation of the upper arm brings the wrist and axis 4 where they have to be
     const Matrix3 now = frame_of_two(from / from.norm(), axis4_), back = now.transpose();
     const Matrix3 upper_arm = times3(then, back), forearm = times3(upper_arm, r4);
-    const WristAngles begin = solve_wrist(first_, upper_arm, near(0), 0);
-    const WristAngles end = solve_wrist(last_, transposed_times3(forearm, turn), near(4), width);
+    const WristAngles begin = solve_wrist(first_, upper_arm, close_to(0), 0);
+    const WristAngles end = solve_wrist(last_, transposed_times3(forearm, turn), close_to(4), width);
     missed(begin.margin);
     missed(end.margin);
     for (int k = 0; k < begin.count; ++k)

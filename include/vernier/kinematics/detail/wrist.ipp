@@ -41,8 +41,8 @@ VERNIER_IMPL MeetingPoint meeting_point(const Vector3* directions, const Vector3
   return out;
 }
 
-VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double near, double widest)
-    : angles{near, near}, count(1), margin(pair.margin), any(pair.any) {
+VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double close_to, double widest)
+    : angles{close_to, close_to}, count(1), margin(pair.margin), any(pair.any) {
   if (margin > most_margin && !(margin * pair.radius < widest))
     count = 0;
   else

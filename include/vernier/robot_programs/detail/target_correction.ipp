@@ -82,7 +82,7 @@ class TargetCorrection {
   }
 
   VERNIER_API bool find_frames(const ProgramTarget& target, Frames& frames);
-  VERNIER_API JointVector<6> near(std::size_t k) const;
+  VERNIER_API JointVector<6> joints_near(std::size_t k) const;
   VERNIER_API void correct(std::size_t k);
 
   const RobotProgram& program_;
@@ -111,7 +111,7 @@ VERNIER_IMPL bool TargetCorrection::find_frames(const ProgramTarget& target, Fra
 }
 
 /// Joint values near those of a target: its own, else those before it.
-VERNIER_IMPL JointVector<6> TargetCorrection::near(std::size_t k) const {
+VERNIER_IMPL JointVector<6> TargetCorrection::joints_near(std::size_t k) const {
   const ProgramTarget& target = program_.targets[k];
   JointVector<6> out = target.joints;
   if (!out.allFinite() && target.previous) out = stands_[*target.previous];
@@ -129,7 +129,7 @@ VERNIER_IMPL void TargetCorrection::correct(std::size_t k) {
   if (pose) {
     if (!find_frames(target, frames)) return;
     meant = options_.robot_base * *frames.object * target.pose * frames.tool->inverse() * options_.flange.inverse();
-    const ControllerJoints found = arm_.joints(meant, target.configuration, near(k));
+    const ControllerJoints found = arm_.joints(meant, target.configuration, joints_near(k));
     if (!found.joints) return refuse(target, found.reason);
     joints = *found.joints;
   } else {

@@ -122,8 +122,8 @@ VERNIER_API std::string describe_drift(const SessionDrift& drift, const std::vec
   Index at = 0;
   for (Index a = 0; a < knots; ++a)
     for (Index b = a + 1; b < knots; ++b) {
-      translation = std::max(translation, apart(a, b, 0));
-      rotation = std::max(rotation, apart(a, b, 3));
+      translation = (std::max)(translation, apart(a, b, 0));
+      rotation = (std::max)(rotation, apart(a, b, 3));
     }
   const Index window = std::max<Index>(1, knots / 8);
   for (Index k = 0; k + window < knots; ++k) {

@@ -17,9 +17,9 @@
 namespace vernier {
 
 VERNIER_IMPL void VerifyOptions::validate() const {
-  require(level > 0 && level < 1, "VerifyOptions: level ", level, " must lie in (0, 1)");
-  require(!accept || (*accept > 0 && std::isfinite(*accept)), "VerifyOptions: accept ", accept.value_or(0),
-          " must be positive");
+  demand(level > 0 && level < 1, "VerifyOptions: level ", level, " must lie in (0, 1)");
+  demand(!accept || (*accept > 0 && std::isfinite(*accept)), "VerifyOptions: accept ", accept.value_or(0),
+         " must be positive");
   sensors.validate();
 }
 
@@ -91,7 +91,7 @@ VERNIER_API MatrixX residual_covariance(const VerificationInput& input, const Ve
   }
   MatrixX out = matrix_product(transposed_matrix_product(effects, input.estimate.covariance), effects);
   // a sensor worse than that of the calibration, whose noise is in that of a visit
-  const auto excess = [](double now, double then) { return std::max(0.0, now * now - then * then); };
+  const auto excess = [](double now, double then) { return (std::max)(0.0, now * now - then * then); };
   const double position = excess(options.sensors.position_sigma, input.estimate.position_sigma),
                orientation = excess(options.sensors.orientation_sigma, input.estimate.orientation_sigma);
   for (Index i = 0; i < n; ++i) {
@@ -115,7 +115,7 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
   MatrixX factor = rows_of(covariance, kept);
   for (Index c = 0; c < rows; ++c) factor.col(c) = factor.col(kept[static_cast<std::size_t>(c)]);  // in ascending order
   factor.conservativeResize(rows, rows);
-  require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
+  demand(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
   MatrixX all(rows, 1 + registered.cols() + changes.cols());
   all.col(0) = rows_of(residual, kept);
   all.middleCols(1, registered.cols()) = rows_of(registered, kept);
@@ -126,7 +126,7 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
   const Index rank = take_off(all.middleCols(1, registered.cols()), whitened.residual, whitened.columns);
   whitened.informative = squared_column_norms(whitened.columns);
   for (Index k = 0; k < whitened.informative.size(); ++k)
-    whitened.informative(k) = std::sqrt(whitened.informative(k) / std::max(before_registration(k), 1e-300));
+    whitened.informative(k) = std::sqrt(whitened.informative(k) / (std::max)(before_registration(k), 1e-300));
   out.chi_square = whitened.residual.squaredNorm();
   out.dof = rows - rank;
   out.p_value = out.dof > 0 ? chi_square_tail(out.chi_square, static_cast<double>(out.dof)) : 1;
@@ -171,7 +171,7 @@ VERNIER_API void test_all(const VerificationInput& input, const MatrixX& covaria
         for (const Index k : columns_of(j, turn)) together.push_back(k);
         const ColumnTest with = test_columns(whitened, together);
         if (with.rank == before.rank) continue;
-        const double p = chi_square_tail(std::max(0.0, with.chi_square - before.chi_square),
+        const double p = chi_square_tail((std::max)(0.0, with.chi_square - before.chi_square),
                                          static_cast<double>(with.rank - before.rank));
         if (!(p < best)) continue;
         best = p;
@@ -238,7 +238,7 @@ VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const V
     const MatrixX visit = visits[static_cast<std::size_t>(i)];
     MatrixX factor = visit.topLeftCorner(3, 3);
     VectorX whitened = error;
-    require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
+    demand(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
     solve_lower(factor, whitened);
     out.errors(i) = error.norm();
     out.normalised(i) = whitened.norm();
@@ -249,7 +249,7 @@ VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const V
     const double typical = quantile(out.normalised, 0.5);
     std::vector<Index> distant;
     for (Index i = 0; i < n; ++i)
-      if (out.normalised(i) > std::max(4.5, 6 * typical)) distant.push_back(i);
+      if (out.normalised(i) > (std::max)(4.5, 6 * typical)) distant.push_back(i);
     if (!distant.empty() && static_cast<Index>(distant.size()) <= std::max<Index>(1, n / 10) &&
         n - static_cast<Index>(distant.size()) >= 3) {
       out.aside = distant;

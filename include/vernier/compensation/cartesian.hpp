@@ -107,7 +107,7 @@ struct CartesianCompensation {
   template <KinematicModel Model>
   Compensated<CartesianCorrected<Model, PredictorOf<R, Model::dof, 3>>, NominalOf<Model>> fit(
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
-    require(data.size() >= 1, "CartesianCompensation: no samples");
+    demand(data.size() >= 1, "CartesianCompensation: no samples");
     const PointRows error = positions(model, data.joints()) - data.positions();
     detail::require_same_frames("CartesianCompensation", error);
     return {{model, regressor.fit(data.joints(), error, options), JointCoverage<Model::dof>::covering(data.joints())},

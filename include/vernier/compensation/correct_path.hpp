@@ -100,10 +100,10 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   constexpr bool branches_known = !std::is_same_v<Roots, NoClosedForm>;
   static_assert(N <= PathJoints::MaxRowsAtCompileTime);
   using Joints = JointVector<N>;
-  require(options.tolerance > 0 && options.rotation_tolerance > 0 && options.max_joint_step > 0 &&
-              options.max_inserted >= 0 &&
-              std::all_of(options.speed.data(), options.speed.data() + N, [](double speed) { return speed > 0; }),
-          "correct_path: tolerances, steps and speeds must be positive");
+  demand(options.tolerance > 0 && options.rotation_tolerance > 0 && options.max_joint_step > 0 &&
+             options.max_inserted >= 0 &&
+             std::all_of(options.speed.data(), options.speed.data() + N, [](double speed) { return speed > 0; }),
+         "correct_path: tolerances, steps and speeds must be positive");
   const auto& nominal = nominal_of(arm);
   IkOptions<N> tight;
   tight.max_iterations = 30;

@@ -176,8 +176,8 @@ class CsvTable {
 /// units that do not fit the types of joints, where these are given.
 VERNIER_API std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types,
                                                  std::string_view prefix = "") {
-  require(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
-          " types of joints for ", joints, " joints");
+  demand(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
+         " types of joints for ", joints, " joints");
   std::vector<CsvColumn> columns;
   for (int i = 1; i <= joints; ++i) {
     const std::string stem = message(prefix, "q", i);

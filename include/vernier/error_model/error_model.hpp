@@ -130,7 +130,7 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
     ReachSphere out = vernier::reach_sphere(identified_);
     if (fallback() != nullptr) {  // positions are blended
       const ReachSphere other = vernier::reach_sphere(*fallback());
-      out.radius = std::max(out.radius, other.radius) + (out.centre - other.centre).norm();
+      out.radius = (std::max)(out.radius, other.radius) + (out.centre - other.centre).norm();
     }
     out.radius *= 1 + 1e-6;  // tilts are rotations to first order
     return out;
@@ -141,9 +141,9 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   /// The same with a geometry that changes with temperature; its present parameters are those at the reference.
   /// @throws std::invalid_argument for another number of rates
   ErrorModel with_thermal(ThermalRates rates) const {
-    require(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
-            "ErrorModel: ", rates.parameters.size(), " thermal rates of ", 12 + 5 * dof,
-            " parameters, all must be finite");
+    demand(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
+           "ErrorModel: ", rates.parameters.size(), " thermal rates of ", 12 + 5 * dof,
+           " parameters, all must be finite");
     ErrorModel out = *this;
     out.thermal_ = std::move(rates);
     return out;

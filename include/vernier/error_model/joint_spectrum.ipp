@@ -71,7 +71,7 @@ VERNIER_IMPL std::vector<HarmonicEstimate> lines_in(const std::vector<HarmonicEs
   });
   for (const HarmonicEstimate& one : sorted) {
     const bool beside = std::any_of(out.begin(), out.end(), [&](const HarmonicEstimate& line) {
-      return std::abs(line.order - one.order) <= std::min(4, one.order / 4);
+      return std::abs(line.order - one.order) <= (std::min)(4, one.order / 4);
     });
     if (!beside) out.push_back(one);
   }

@@ -34,8 +34,8 @@ VERNIER_API std::string source_at(int order, const JointDrive& drive) {
 VERNIER_IMPL HarmonicSpectrum lines_of(const JointDrive& drive) {
   HarmonicSpectrum out;
   if (const int n = drive.encoder_periods; n > 0) {
-    out.push_back({std::max(1, n - 2), n + 2, 10e-6});
-    out.push_back({std::max(1, 2 * n - 2), 2 * n + 2, 6e-6});
+    out.push_back({(std::max)(1, n - 2), n + 2, 10e-6});
+    out.push_back({(std::max)(1, 2 * n - 2), 2 * n + 2, 6e-6});
   }
   for (const int periods : {2, 4, 5, 8, 10, 12, 20, 24}) {
     const int order = static_cast<int>(std::lround(periods * drive.gear_ratio));

@@ -109,8 +109,8 @@ VERNIER_API Isometry3 end_of_rows(const std::vector<DhRow>& rows, std::vector<Jo
 VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const RobotDescription& nominal) {
   bool fits = nominal.dof() == 6 && !nominal.modified;
   for (const DhRow& row : nominal.rows) fits = fits && row.joint == JointType::revolute && same_value(row.beta, 0);
-  require(fits, "read_ur_calibration: '", nominal.name,
-          "' is not an arm of six revolute joints in the standard convention, without beta");
+  demand(fits, "read_ur_calibration: '", nominal.name,
+         "' is not an arm of six revolute joints in the standard convention, without beta");
   const detail::UrDeltas deltas = detail::read_ur_deltas(path);
   std::vector<DhRow> exact = nominal.rows;
   std::vector<double> thetas;

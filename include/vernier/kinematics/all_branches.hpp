@@ -68,7 +68,7 @@ struct Branches {
     double least = 0;
     for (const Branch<N>& branch : *this) {
       double largest = 0;
-      for (int j = 0; j < N; ++j) largest = std::max(largest, std::abs(branch.joints(j) - q(j)));
+      for (int j = 0; j < N; ++j) largest = (std::max)(largest, std::abs(branch.joints(j) - q(j)));
       if (!branch.within_limits || (best != nullptr && !(largest < least))) continue;
       best = &branch;
       least = largest;
@@ -165,7 +165,7 @@ template <BranchRoots Roots, KinematicModel M>
     out.margin = 0;
   } else {
     out.margin = roots.nearest_margin;
-    for (const InverseRoot<N>& root : roots) out.margin = std::min(out.margin, root.margin);
+    for (const InverseRoot<N>& root : roots) out.margin = (std::min)(out.margin, root.margin);
     double excess = 0;
     if constexpr (geometric) {
       excess = detail::reach_excess(detail::arm_axes(model), target);

@@ -40,7 +40,7 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
       : arm_(detail::arm_axes(nominal), tolerance),
         angle_(arm_angle),
         length_(detail::arm_length(detail::arm_axes(nominal))) {
-    require(std::isfinite(arm_angle), "ArmAngleForm: the arm angle is ", arm_angle);
+    demand(std::isfinite(arm_angle), "ArmAngleForm: the arm angle is ", arm_angle);
   }
 
   /// The same arm at another arm angle [rad].

@@ -94,7 +94,7 @@ ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Ar
   const auto framed = in_frames(arm);
   const auto& chain = framed.model();
   for (int i = 0; i < Arm::dof; ++i)
-    require(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
+    demand(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
   const auto links = chain.links(q);
   ArmAxes out;
   out.joints = Arm::dof;
@@ -113,8 +113,8 @@ template <NominalArm Arm>
 SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
   constexpr int N = Arm::dof;
   static_assert(N == 6 || N == 7, "closed forms move six joints; of seven, one is held");
-  require(N == 6 ? held.joint < 0 : held.joint >= 0 && held.joint < N, "ClosedForm: no joint ", held.joint + 1,
-          " to be held");
+  demand(N == 6 ? held.joint < 0 : held.joint >= 0 && held.joint < N, "ClosedForm: no joint ", held.joint + 1,
+         " to be held");
   JointVector<N> q = JointVector<N>::Zero();
   if (held.joint >= 0) q(held.joint) = held.value;
   const ArmAxes all = arm_axes(arm, q);

@@ -28,8 +28,8 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
     std::array<Vector6, batch> residuals;
     std::array<Matrix6, batch> unwhiten;
     VectorX sigmas(batch);
-    for (Index first = from * batch; first < std::min(to * batch, size); first += batch) {
-      const Index n = std::min(batch, size - first);
+    for (Index first = from * batch; first < (std::min)(to * batch, size); first += batch) {
+      const Index n = (std::min)(batch, size - first);
       kept.clear();
       detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
         rows.expand(system.group_sizes, expanded);

@@ -26,15 +26,15 @@ VERNIER_IMPL int branch_from(const SingularityDistances& reference, const Singul
 }
 
 VERNIER_IMPL int stated_branch(ProgramLanguage language, const std::vector<int>& configuration) {
-  const auto bit = [](int value, int from, int to) { return (value >> from & 1) << to; };
+  const auto bit_moved = [](int value, int from, int to) { return (value >> from & 1) << to; };
   switch (language) {
     case ProgramLanguage::rapid: {
       const int cfx = configuration[3];
-      return bit(cfx, 2, 0) | bit(cfx, 1, 1) | bit(cfx, 0, 2);
+      return bit_moved(cfx, 2, 0) | bit_moved(cfx, 1, 1) | bit_moved(cfx, 0, 2);
     }
     case ProgramLanguage::krl: {
       const int status = configuration[0];
-      return bit(status, 0, 0) | bit(~status, 1, 1) | bit(status, 2, 2);
+      return bit_moved(status, 0, 0) | bit_moved(~status, 1, 1) | bit_moved(status, 2, 2);
     }
     case ProgramLanguage::fanuc_tp: return (1 - configuration[2]) | (1 - configuration[1]) << 1 | configuration[0] << 2;
     default: return 0;
@@ -85,7 +85,7 @@ VERNIER_IMPL double stated_turn(ProgramLanguage language, const std::vector<int>
   for (int turn = -4; turn <= 4; ++turn) {
     const double q = angle + whole * turn;
     if (!(q >= lower - 1e-6 && q <= upper + 1e-6)) continue;
-    const double outside = std::max({0.0, stated.lower - q, q - stated.upper});
+    const double outside = (std::max)({0.0, stated.lower - q, q - stated.upper});
     if (outside > tolerance) continue;
     const double cost = (outside > 1e-9 ? 1e-6 : 0) + std::abs(q - centre);
     if (cost < best_cost) {

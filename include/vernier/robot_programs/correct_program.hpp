@@ -42,8 +42,8 @@ namespace detail {
 template <NominalArm Arm>
 ClosedForm<6> program_roots(const Arm& nominal) {
   for (int j = 0; j < 6; ++j)
-    require(in_frames(nominal).model().row(j).joint == JointType::revolute, "joint ", j + 1,
-            " is prismatic; programs are corrected for revolute joints");
+    demand(in_frames(nominal).model().row(j).joint == JointType::revolute, "joint ", j + 1,
+           " is prismatic; programs are corrected for revolute joints");
   try {
     return ClosedForm<6>(nominal);
   } catch (const std::invalid_argument& e) {

@@ -59,7 +59,7 @@ class ExecutorCheck {
         if (begin < 0 || begin >= end || end > n) ++unusable;
         // The last range is slow, which detects an executor that does not wait for it.
         if (end == n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        for (Index i = std::max<Index>(begin, 0); i < std::min(end, n); ++i) ++seen[static_cast<std::size_t>(i)];
+        for (Index i = std::max<Index>(begin, 0); i < (std::min)(end, n); ++i) ++seen[static_cast<std::size_t>(i)];
         --running;
       });
       expect(running == 0, message("returned before all work was done, n = ", n));

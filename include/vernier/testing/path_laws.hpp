@@ -61,7 +61,7 @@ double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& coming, 
     const JointVector<Arm::dof> approach = vernier::detail::approach_on_the_way(coming, a, q);
     const Vector3 off = translation(pose_from(arm, approach, q)) - translation(between(start, end, s));
     if (std::isnan(off.norm())) return std::numeric_limits<double>::infinity();
-    worst = std::max(worst, off.norm());
+    worst = (std::max)(worst, off.norm());
   }
   return worst;
 }
@@ -151,7 +151,7 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
   if (returned.points.size() != path.points.size()) return out;
   double worst = 0;
   for (std::size_t i = 0; i < path.points.size(); ++i)
-    worst = std::max(
+    worst = (std::max)(
         worst, (path.points[i].command - returned.points[path.points.size() - 1 - i].command).cwiseAbs().maxCoeff());
   expect(worst <= laws.joint_tolerance, "the way back differs from the way by ", worst);
   return out;

@@ -24,7 +24,7 @@ inline void set_row(MatrixX& matrix, Index i, const VectorX& values) {
 inline double largest_of(const MatrixX& matrix) {
   if (!all_finite(matrix)) return std::numeric_limits<double>::infinity();
   double out = 0;
-  for (Index k = 0; k < matrix.size(); ++k) out = std::max(out, std::abs(matrix.data()[k]));
+  for (Index k = 0; k < matrix.size(); ++k) out = (std::max)(out, std::abs(matrix.data()[k]));
   return out;
 }
 

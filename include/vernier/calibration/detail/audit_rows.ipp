@@ -68,9 +68,9 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
     outliers.rows.push_back(numbers[static_cast<std::size_t>(wrong[k])]);
     if (row.position_factor > factor) {
       by_position = true;
-      outliers.size = std::max(outliers.size, row.position);
+      outliers.size = (std::max)(outliers.size, row.position);
     }
-    if (row.rotation_factor > rotation_limit) turn = std::max(turn, row.rotation);
+    if (row.rotation_factor > rotation_limit) turn = (std::max)(turn, row.rotation);
   }
   if (outliers.rows.empty()) return;
   if (!by_position) outliers.size = turn;
@@ -137,11 +137,11 @@ VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFind
       double width = 0, widest = 0;
       for (const double gap : in_order) {
         width = gap > gaps[k] ? 0 : width + gap;
-        widest = std::max(widest, width);
+        widest = (std::max)(widest, width);
       }
       if (widest > 0.2 * gaps[k + 1] || widest > 0.02) continue;
       read.push_back(j);
-      scatter = std::max(scatter, widest);
+      scatter = (std::max)(scatter, widest);
       break;
     }
   }
@@ -167,7 +167,7 @@ VERNIER_IMPL void audit_approaches(const MeasuredSet& data, std::vector<DataFind
       if (move > 1e-6) ++up;
       if (move < -1e-6) ++down;
     }
-    if (std::min(up, down) > 0 || std::max(up, down) < 25) continue;
+    if ((std::min)(up, down) > 0 || (std::max)(up, down) < 25) continue;
     findings.push_back({FaultKind::approach_never_varies,
                         j,
                         {},

@@ -104,7 +104,7 @@ VERNIER_IMPL MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> row
 }
 
 VERNIER_IMPL VectorX diagonal_of(const ConstMatrixRef& a) {
-  VectorX out(std::min(a.rows(), a.cols()));
+  VectorX out((std::min)(a.rows(), a.cols()));
   for (Index k = 0; k < out.size(); ++k) out(k) = a(k, k);
   return out;
 }
@@ -184,7 +184,7 @@ VERNIER_IMPL double solve_general(MatrixRef a, VectorRef b) {
 
 /// R of a decomposition of a matrix of n columns, n x n.
 VERNIER_API MatrixX triangle_of(const Eigen::HouseholderQR<MatrixX>& qr) {
-  const Index columns = qr.cols(), height = std::min(qr.rows(), columns);
+  const Index columns = qr.cols(), height = (std::min)(qr.rows(), columns);
   MatrixX out = MatrixX::Zero(columns, columns);
   out.topRows(height) = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();
   return out;
@@ -219,7 +219,7 @@ VERNIER_IMPL RightSingular right_singular(const ConstMatrixRef& matrix) {
 
 VERNIER_IMPL ThinSvd thin_svd(const ConstMatrixRef& h) {
   const bool tall = h.rows() >= h.cols();
-  const Index k = std::min(h.rows(), h.cols());
+  const Index k = (std::min)(h.rows(), h.cols());
   const Eigen::HouseholderQR<MatrixX> qr(tall ? MatrixX(h) : MatrixX(h.transpose()));
   const JacobiSvd svd(triangle_of(qr), Eigen::ComputeFullU | Eigen::ComputeFullV);
   MatrixX longer = MatrixX::Zero(qr.rows(), k);

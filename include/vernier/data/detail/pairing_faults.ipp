@@ -94,7 +94,7 @@ VERNIER_IMPL void FaultSearch::add_moved(std::vector<PairingFault>& out) const {
     const Index other = place[static_cast<std::size_t>(pair.row)];
     const bool swapped = other != pair.row && place[static_cast<std::size_t>(other)] == pair.row;
     if (swapped) {
-      const Index first = std::min(pair.row, other), last = std::max(pair.row, other);
+      const Index first = (std::min)(pair.row, other), last = (std::max)(pair.row, other);
       out.push_back({PairingFault::Kind::swapped, {first, last}, {point_of(first), point_of(last)}, 2});
       told.push_back(other);
     } else {

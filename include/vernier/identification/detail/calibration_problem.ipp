@@ -25,8 +25,8 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
     if (set.locates()) validation_blocks_ += set.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
   for (const MeasuredSet& set : sets_)
-    require(same_value(joint_sigma, 0) || set.seen_from.rows() == 0, set.name,
-            ": errors of joint readings are not estimated between two configurations");
+    demand(same_value(joint_sigma, 0) || set.seen_from.rows() == 0, set.name,
+           ": errors of joint readings are not estimated between two configurations");
 }
 
 VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
@@ -155,7 +155,7 @@ VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance(double noise_varian
   VectorX out(drift_scale_.size());
   for (Index k = 0; k < out.size(); ++k)
     out(k) = drift_scale_(k) * drift_scale_(k) *
-             std::max(1.0, noise_variance / (k < 6 ? drift_precision : joint_drift_precision));
+             (std::max)(1.0, noise_variance / (k < 6 ? drift_precision : joint_drift_precision));
   return out;
 }
 
@@ -262,7 +262,7 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
   for (Index done = 0; done < count;) {  // stretches of one set
     const Block& begin = at(first + done);
     const MeasuredSet& set = sets_[static_cast<std::size_t>(begin.station)];
-    const Index stretch = std::min(count - done, set.size() - begin.row);
+    const Index stretch = (std::min)(count - done, set.size() - begin.row);
     VectorX warmer;
     if (set.temperatures.size() > 0) warmer.resize(stretch);
     for (Index i = 0; i < warmer.size(); ++i) warmer(i) = set.temperatures(begin.row + i) - reference_temperature;

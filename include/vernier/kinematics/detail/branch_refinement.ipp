@@ -143,8 +143,8 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
     at.moved += share * length;
   };
   const auto finish = [&](double left) {
-    at.position_error = std::min(at.position_error, left);
-    at.rotation_error = std::min(at.rotation_error, left / problem.rotation_length);
+    at.position_error = (std::min)(at.position_error, left);
+    at.rotation_error = (std::min)(at.rotation_error, left / problem.rotation_length);
     return true;
   };
   at.moved = std::numeric_limits<double>::infinity();
@@ -167,9 +167,9 @@ VERNIER_API bool solve_near(const BranchProblem& problem, double* q, BranchItera
     const Vector6 step = product6(at.inverse, at.error);
     const double length = step.norm();
     double largest = 0;
-    for (int i = 0; i < 6; ++i) largest = std::max(largest, std::abs(step(i)));
+    for (int i = 0; i < 6; ++i) largest = (std::max)(largest, std::abs(step(i)));
     if (!std::isfinite(length) || (!damped && k < 2 && largest > std::numbers::pi)) break;
-    const double share = std::min(1.0, longest_step / largest);
+    const double share = (std::min)(1.0, longest_step / largest);
     advance(step, share, length);
     if (const double left = 0.5 * problem.lipschitz * length * length; left < negligible) return finish(left);
   }

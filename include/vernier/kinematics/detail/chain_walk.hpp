@@ -96,7 +96,7 @@ VERNIER_INLINE void walk_pose(const ChainView& c, const double* q, PoseFrame<W>&
     VERNIER_UNROLL
     for (int k = 0; k < vectors; ++k) {
       if (joints >= W) {
-        const int first = std::min(next + k * W, joints - W);  // the last vector overlaps with the one before
+        const int first = (std::min)(next + k * W, joints - W);  // the last vector overlaps with the one before
         Double joint, turning;
         load<W>(joint, q + first);
         load<W>(turning, c.turning + first);
@@ -111,7 +111,7 @@ VERNIER_INLINE void walk_pose(const ChainView& c, const double* q, PoseFrame<W>&
     sincos<W>(angle, sine, cosine);
     VERNIER_UNROLL
     for (int k = 0; k < vectors; ++k) {
-      const int first = std::max(0, std::min(next + k * W, joints - W));
+      const int first = (std::max)(0, (std::min)(next + k * W, joints - W));
       store<W>(sines + first, sine[k]);
       store<W>(cosines + first, cosine[k]);
     }

@@ -27,7 +27,7 @@ VERNIER_API double half_turn_angle(double angle) {
 /// Greatest difference of two joints, modulo turns [rad].
 VERNIER_API double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
   double out = 0;
-  for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(half_turn_angle(a(i) - b(i))));
+  for (int i = 0; i < 6; ++i) out = (std::max)(out, std::abs(half_turn_angle(a(i) - b(i))));
   return out;
 }
 
@@ -182,8 +182,8 @@ VERNIER_API bool polish_root(const SixAxes& arm, const Isometry3& target, JointV
     }
     solve_few(normal[0], newton, 6);
     double largest = 0;
-    for (const double value : newton) largest = std::max(largest, std::abs(value));
-    for (int i = 0; i < 6; ++i) q(i) += newton[i] * std::min(1.0, longest_step / largest);
+    for (const double value : newton) largest = (std::max)(largest, std::abs(value));
+    for (int i = 0; i < 6; ++i) q(i) += newton[i] * (std::min)(1.0, longest_step / largest);
   }
 }
 
@@ -208,7 +208,7 @@ VERNIER_API bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, co
   const ClosedLoop loop = loop_of(nearby, target, first);
   const LoopPencil pencil = eliminate(loop);
   const HiddenJointValues values = hidden_joint_values(pencil);
-  roots.condition = std::min(roots.condition, values.condition);
+  roots.condition = (std::min)(roots.condition, values.condition);
   bool complete = values.count > 0 && values.condition < trusted_condition;
   SixAxisRoots found;
   for (int i = 0; i < values.count; ++i) {
@@ -251,7 +251,7 @@ VERNIER_IMPL SixAxisRoots solve_general(const SixAxes& arm, const Isometry3& tar
 VERNIER_IMPL SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept {
   double columns[6][6];
   Isometry3 moved = Isometry3::Identity();
-  const double length = std::max(arm_length(arm), 1e-9);
+  const double length = (std::max)(arm_length(arm), 1e-9);
   for (int i = 0; i < 6; ++i) {
     const AxisLine axis = axis_of(arm, i), at = moved * axis;
     const Vector3 moment = at.point.cross(at.direction) / length;

@@ -57,7 +57,7 @@ struct WristAngles {
   double margin;  ///< of the exact ones
   bool any;
 
-  double margin_of(int k) const { return k < exact ? margin : std::max(margin, sampled_margin); }
+  double margin_of(int k) const { return k < exact ? margin : (std::max)(margin, sampled_margin); }
 };
 
 /// The angles of a wrist for a rotation.

@@ -17,7 +17,7 @@ VERNIER_IMPL VectorX varying_outputs(const ConstMatrixRef& targets) {
   VectorX out(targets.cols());
   for (Index o = 0; o < targets.cols(); ++o) {
     const double low = targets.col(o).minCoeff(), high = targets.col(o).maxCoeff();
-    out(o) = high - low > 1e-12 * std::max(std::abs(low), std::abs(high)) ? 1 : 0;
+    out(o) = high - low > 1e-12 * (std::max)(std::abs(low), std::abs(high)) ? 1 : 0;
   }
   return out;
 }

@@ -194,7 +194,7 @@ class FanucReader {
       }
       any = true;
       const std::size_t first = i + (position ? 2 : 3), last = text.find_first_of(":]", first);
-      const std::size_t close = std::min(text.find(']', first), text.size());
+      const std::size_t close = (std::min)(text.find(']', first), text.size());
       i = close;  // words of its comment are no options
       if (registers || last == std::string_view::npos) {
         steps_.push_back({{}, {}, {}, kind});
@@ -212,7 +212,7 @@ class FanucReader {
       }
       options = close;
     }
-    const std::string rest = lower_case(text.substr(std::min(options, text.size())));
+    const std::string rest = lower_case(text.substr((std::min)(options, text.size())));
     if (rest.find("offset") != std::string::npos) remark("an offset that a register adds");
     const std::string increment = " inc";  // not the beginning of a longer word
     std::size_t at = rest.find(increment);

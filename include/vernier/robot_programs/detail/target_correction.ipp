@@ -25,9 +25,9 @@ VERNIER_API ProgramFrames known_frames(const std::map<std::string, Isometry3>& s
 VERNIER_IMPL ProgramFrames known_frames(const std::map<std::string, Isometry3>& stated, const ProgramFrames& given,
                                         std::string_view kind) {
   ProgramFrames out{stated, given.others};
-  require(!given.others || is_pose(*given.others), "correct_program: a frame of ", kind, "s is no rigid motion");
+  demand(!given.others || is_pose(*given.others), "correct_program: a frame of ", kind, "s is no rigid motion");
   for (const auto& [name, frame] : given.by_name) {
-    require(is_pose(frame), "correct_program: the frame of the ", kind, " ", name, " is no rigid motion");
+    demand(is_pose(frame), "correct_program: the frame of the ", kind, " ", name, " is no rigid motion");
     out.by_name[lower_case(name)] = frame;
   }
   return out;
@@ -173,13 +173,13 @@ VERNIER_IMPL CorrectedProgram TargetCorrection::run() {
 
 VERNIER_IMPL CorrectedProgram correct_targets(const RobotProgram& program, const ProgramArm& arm,
                                               const ProgramOptions& options) {
-  require(is_pose(options.robot_base), "correct_program: robot_base is no rigid motion");
-  require(is_pose(options.flange), "correct_program: flange is no rigid motion");
+  demand(is_pose(options.robot_base), "correct_program: robot_base is no rigid motion");
+  demand(is_pose(options.flange), "correct_program: flange is no rigid motion");
   if (program.language == ProgramLanguage::fanuc_tp && !options.arm)
     for (const ProgramTarget& target : program.targets)
-      require(target.kind != TargetKind::pose,
-              "correct_program: a Fanuc program with poses needs ProgramOptions::arm, the sign of J5 at a position "
-              "with N");
+      demand(target.kind != TargetKind::pose,
+             "correct_program: a Fanuc program with poses needs ProgramOptions::arm, the sign of J5 at a position "
+             "with N");
   const ProgramFrames tools = known_frames(program.tools, options.tools, "tool"),
                       objects = known_frames(program.workobjects, options.workobjects, "work object");
   return TargetCorrection(program, arm, options, tools, objects).run();

@@ -54,7 +54,7 @@ class UrscriptReader {
   }
 
   std::size_t line_end(std::size_t i) const {
-    const std::size_t stop = std::min(i + 20, text_.tokens.size());  // enough for a remark
+    const std::size_t stop = (std::min)(i + 20, text_.tokens.size());  // enough for a remark
     while (i < stop && !text_.is_line_end(i)) ++i;
     return i;
   }
@@ -151,7 +151,7 @@ class UrscriptReader {
 
   std::size_t argument_end(std::size_t i, std::size_t stop) const {
     while (i < stop && !text_.is(i, ',')) i = is_open(i) ? behind_brackets(text_, i, stop) : i + 1;
-    return std::min(i, stop);
+    return (std::min)(i, stop);
   }
   bool is_open(std::size_t i) const { return text_.is(i, '(') || text_.is(i, '[') || text_.is(i, '{'); }
 

@@ -68,8 +68,8 @@ VERNIER_API std::vector<Index> unknowns_by_order(const ArmParameterisation& arm)
           arm.terms().transmission[static_cast<std::size_t>(block.joint)].order(k);
   std::vector<Index> out(orders.size());
   std::iota(out.begin(), out.end(), Index{0});
-  std::stable_sort(out.begin(), out.end(), [&](Index a, Index b) {
-    return orders[static_cast<std::size_t>(a)] < orders[static_cast<std::size_t>(b)];
+  std::sort(out.begin(), out.end(), [&](Index a, Index b) {
+    return std::pair(orders[static_cast<std::size_t>(a)], a) < std::pair(orders[static_cast<std::size_t>(b)], b);
   });
   return out;
 }

@@ -1,4 +1,5 @@
-# With VERNIER_CHECK_HEADERS the target `headers` compiles every header alone, where the libraries it needs are at hand.
+# With VERNIER_CHECK_HEADERS the target `headers` compiles every header alone, where the libraries it needs are at hand,
+# the .ipp files as the compiled libraries have them, and a program that calls the common functions header-only.
 #
 # Most of that time would go into parsing Eigen again and again. It is parsed once for the headers that include
 # vernier/core/types.hpp, which begins with the same headers of Eigen: an include that such a header forgets is found
@@ -44,4 +45,19 @@ function(vernier_check_headers target)
       set_source_files_properties("${source}" PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
     endif()
   endforeach()
+endfunction()
+
+# vernier_check_calls(): templates give warnings where they are called, and this program calls them. To be called where
+# all targets are known.
+function(vernier_check_calls)
+  foreach(compiled IN ITEMS vernier_compiled vernier_compiled_io vernier_compiled_urdf vernier_compiled_ceres vernier_compiled_cholmod)
+    if(TARGET ${compiled})
+      add_dependencies(headers ${compiled})
+    endif()
+  endforeach()
+  if(TARGET nlohmann_json::nlohmann_json AND TARGET tinyxml2::tinyxml2 AND TARGET yaml-cpp::yaml-cpp)
+    add_library(common_calls OBJECT EXCLUDE_FROM_ALL "${PROJECT_SOURCE_DIR}/tests/consumer/common_calls.cpp")
+    target_link_libraries(common_calls PRIVATE vernier::urdf)
+    add_dependencies(headers common_calls)
+  endif()
 endfunction()

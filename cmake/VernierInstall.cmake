@@ -43,7 +43,7 @@ endif()
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/vernierConfigVersion.cmake"
                                  COMPATIBILITY SameMinorVersion ${independent})
 install(FILES "${PROJECT_BINARY_DIR}/vernierConfig.cmake" "${PROJECT_BINARY_DIR}/vernierConfigVersion.cmake"
-        cmake/FindCHOLMOD.cmake
+        cmake/FindCHOLMOD.cmake cmake/VernierBuildType.cmake
         DESTINATION "${vernier_package_dir}")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 

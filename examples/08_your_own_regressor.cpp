@@ -42,8 +42,8 @@ struct HarmonicMap {
 struct HarmonicRegression {
   template <class X, class Y>
   auto fit(const Eigen::MatrixBase<X>& x, const Eigen::MatrixBase<Y>& y, const vn::FitOptions& options = {}) const {
-    vn::require(options.weights == nullptr, "HarmonicRegression takes no weights");
-    vn::require(x.rows() == y.rows(), "HarmonicRegression: ", x.rows(), " inputs, but ", y.rows(), " targets");
+    vn::demand(options.weights == nullptr, "HarmonicRegression takes no weights");
+    vn::demand(x.rows() == y.rows(), "HarmonicRegression: ", x.rows(), " inputs, but ", y.rows(), " targets");
     using Map = HarmonicMap<X::ColsAtCompileTime, Y::ColsAtCompileTime>;
     vn::MatrixX h(x.rows(), 2 * Map::inputs + 1);
     for (vn::Index i = 0; i < x.rows(); ++i) h.row(i) = Map::features(x.row(i).transpose()).transpose();

@@ -19,7 +19,7 @@ int main() {
   std::printf("nominal arm: %d joint values\n", closed_form.roots(target).count);
 
   // From each root to the actual arm; all of them, or a status that says why there is none.
-  const vn::Branches<6> found = vn::all_branches(closed_form, actual, target, {.limits = robot.limits, .near = q});
+  const vn::Branches<6> found = vn::all_branches(closed_form, actual, target, {.limits = robot.limits, .close_to = q});
   std::printf("actual arm: %s\n", found.describe().c_str());
   for (const vn::Branch<6>& branch : found) {
     const vn::JointVector<6> deg = branch.joints * 180 / std::numbers::pi;

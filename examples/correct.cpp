@@ -115,7 +115,7 @@ void list_branches(const vn::CalibratedRobot<N>& robot, const Roots& roots,
   for (const auto& target : targets) {
     const vn::Index number = static_cast<vn::Index>(&target - targets.data()) + 1;
     vn::BranchOptions<N> options{.limits = robot.limits()};
-    if (target.joints.allFinite()) options.near = target.joints;
+    if (target.joints.allFinite()) options.close_to = target.joints;
     const vn::Branches<N> found = vn::all_branches(roots, robot, target.pose, options);
     std::vector<vn::Branch<N>> sorted(found.begin(), found.end());
     std::stable_sort(sorted.begin(), sorted.end(),

@@ -167,8 +167,8 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
   std::string plots;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Series& s = series[k];
-    vernier::require(s.x.size() == s.y.size(), "plot_svg: series '", s.name, "' has ", s.x.size(), " x and ",
-                     s.y.size(), " y");
+    vernier::demand(s.x.size() == s.y.size(), "plot_svg: series '", s.name, "' has ", s.x.size(), " x and ", s.y.size(),
+                    " y");
     fmt::format_to(std::back_inserter(script), "$data{} << EOD\n", k);
     bool any = false;
     for (std::size_t i = 0; i < s.x.size(); ++i) {
@@ -201,13 +201,13 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
       fmt::format_to(std::back_inserter(plots),
                      ", NaN with points pointtype 7 pointsize 0.9 linecolor rgb '{}' title {}", c, quoted(s.name));
   }
-  vernier::require(!plots.empty(), "plot_svg: nothing to draw in ", path.string());
+  vernier::demand(!plots.empty(), "plot_svg: nothing to draw in ", path.string());
   return draw(path, script + "plot " + plots + "\n");
 }
 
 bool intervals_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
                    const std::vector<Interval>& intervals) {
-  vernier::require(!intervals.empty(), "intervals_svg: nothing to draw in ", path.string());
+  vernier::demand(!intervals.empty(), "intervals_svg: nothing to draw in ", path.string());
   std::string script = preamble(title, "", {.height = 130 + 26 * static_cast<int>(intervals.size())}), data, ticks;
   double row = 0;
   for (const Interval& i : intervals) {
@@ -227,7 +227,7 @@ bool intervals_svg(const std::filesystem::path& path, const std::string& title, 
 
 bool dots_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
               const std::vector<std::string>& labels, const std::vector<Series>& series) {
-  vernier::require(!labels.empty() && !series.empty(), "dots_svg: nothing to draw in ", path.string());
+  vernier::demand(!labels.empty() && !series.empty(), "dots_svg: nothing to draw in ", path.string());
   const auto rows = static_cast<int>(labels.size());
   std::string script = preamble(title, "", {.height = 150 + 30 * rows}), ticks, plots;
   for (int i = 0; i < rows; ++i)
@@ -245,8 +245,8 @@ bool dots_svg(const std::filesystem::path& path, const std::string& title, const
   script += log_axis("x", series, std::pair{lower * std::pow(lower / upper, 0.15), upper * 1.15},
                      [](const Series& s) { return s.y; });
   for (std::size_t k = 0; k < series.size(); ++k) {
-    vernier::require(series[k].y.size() == labels.size(), "dots_svg: series '", series[k].name, "' has ",
-                     series[k].y.size(), " values for ", rows, " labels");
+    vernier::demand(series[k].y.size() == labels.size(), "dots_svg: series '", series[k].name, "' has ",
+                    series[k].y.size(), " values for ", rows, " labels");
     fmt::format_to(std::back_inserter(script), "$data{} << EOD\n", k);
     for (int i = 0; i < rows; ++i)
       if (const double value = series[k].y[static_cast<std::size_t>(i)]; std::isfinite(value) && value > 0)
@@ -261,7 +261,7 @@ bool dots_svg(const std::filesystem::path& path, const std::string& title, const
 }
 
 std::vector<Series> histogram(const std::vector<Sample>& samples, int bins, bool log, std::optional<double> smallest) {
-  vernier::require(bins >= 1, "histogram: ", bins, " bins, must be at least 1");
+  vernier::demand(bins >= 1, "histogram: ", bins, " bins, must be at least 1");
   const auto counted = [&](double value) { return std::isfinite(value) && (!log || value > 0); };
   double lower = std::numeric_limits<double>::infinity(), upper = -lower;
   for (const Sample& sample : samples)
@@ -271,7 +271,7 @@ std::vector<Series> histogram(const std::vector<Sample>& samples, int bins, bool
         upper = std::max(upper, value);
       }
   if (smallest) lower = *smallest;
-  vernier::require(std::isfinite(lower) && std::isfinite(upper) && (!log || lower > 0), "histogram: nothing to count");
+  vernier::demand(std::isfinite(lower) && std::isfinite(upper) && (!log || lower > 0), "histogram: nothing to count");
   if (!(upper > lower)) upper = log ? lower * 1.1 : lower + 1;
   const auto scale = [&](double value) { return log ? std::log(value) : value; };
   const double width = (scale(upper) - scale(lower)) / bins;

@@ -166,7 +166,7 @@ TEST(CorrectPath, ChoosesTheShortestWayOverAllTargets) {
   }
   PathOptions<6> options{.limits = robot.limits};
   for (const auto& branch :
-       all_branches(closed_form, arm, targets.front().pose, {.limits = robot.limits, .near = home})) {
+       all_branches(closed_form, arm, targets.front().pose, {.limits = robot.limits, .close_to = home})) {
     options.start = branch.joints;
     const auto path = correct_path(arm, closed_form, targets, options);
     ASSERT_EQ(path.first_failure(), nullptr);

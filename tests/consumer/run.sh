@@ -84,6 +84,28 @@ not_aligned() {
   printf '%-14s %-17s %s\n' installed refused "another alignment of Eigen's types"
 }
 
+# build_type PROJECT: a project without a build type is told so, in one line, and no other
+build_type() {
+  local project=$1 folder="$build/build_type-$1" said
+  # says TIMES CMAKE ARG...
+  says() {
+    said=$(env -u CMAKE_BUILD_TYPE cmake --fresh -S "$here/$project" -B "$folder" -G Ninja \
+      "-DCMAKE_PREFIX_PATH=$build/bare" $no_ceres $no_json "${no_urdf[@]}" "${no_parallel[@]}" "${@:2}" 2>&1) || {
+      printf '%s\n' "$said" >&2
+      fail "failed: $project with ${*:2}"
+    }
+    [[ $(grep -c '^-- vernier: CMAKE_BUILD_TYPE is empty.*-DCMAKE_BUILD_TYPE=Release' <<<"$said") == "$1" ]] || {
+      printf '%s\n' "$said" >&2
+      fail "$project with '${*:2}' does not say $1 times that the build type is empty"
+    }
+  }
+  says 1
+  says 0 -DCMAKE_BUILD_TYPE=Debug
+  says 0 -DCMAKE_CXX_FLAGS=-O2
+  rm -rf "$folder"
+  printf '%-14s %-17s %s\n' "$project" "no build type" "is said"
+}
+
 # Where a program does not ask for a library, that library is not looked for.
 no_ceres=-DCMAKE_DISABLE_FIND_PACKAGE_Ceres=ON
 no_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
@@ -168,6 +190,9 @@ in_background consume installed header_only "io;urdf;ceres;cholmod;tbb;mpi"
 in_background consume installed compiled "io;urdf;ceres;cholmod;tbb;mpi" "-DCMAKE_PREFIX_PATH=$whole"
 in_background consume installed mixed ""
 in_background not_aligned
+for project in in_tree fetch_content installed; do
+  in_background build_type $project
+done
 in_background refuse "vernier has no component 'warp'" -DCONSUMER_COMPONENTS=warp
 in_background refuse "find_package for module Ceres called with REQUIRED" -DCONSUMER_COMPONENTS=ceres $no_ceres
 in_background refuse "find_package for module yaml-cpp called with REQUIRED" -DCONSUMER_COMPONENTS=urdf \

@@ -39,9 +39,13 @@ TEST(Message, CountsInSingularAndPlural) {
 }
 
 TEST(Require, ThrowsTheMessageWhenTheConditionFails) {
-  EXPECT_NO_THROW(vn::require(true, "never seen"));
-  EXPECT_EQ(complaint([] { vn::require(false, "Elm: hidden_nodes is ", 0, ", must be at least ", 1); }),
-            "Elm: hidden_nodes is 0, must be at least 1");
+  EXPECT_NO_THROW(vn::demand(true, "never seen"));
+  try {
+    vn::demand(false, "Elm: hidden_nodes is ", 0, ", must be at least ", 1);
+    FAIL() << "did not throw";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "Elm: hidden_nodes is 0, must be at least 1");
+  }
 }
 
 TEST(Box, ChecksItsBoundsAndNamesThem) {

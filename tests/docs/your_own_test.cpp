@@ -113,8 +113,8 @@ template <class X, class Y>
 HarmonicMap<X::ColsAtCompileTime, Y::ColsAtCompileTime> HarmonicRegression::fit(const Eigen::MatrixBase<X>& x,
                                                                                 const Eigen::MatrixBase<Y>& y,
                                                                                 const vn::FitOptions& options) const {
-  vn::require(options.weights == nullptr, "HarmonicRegression takes no weights");
-  vn::require(x.rows() == y.rows(), "HarmonicRegression: ", x.rows(), " inputs, but ", y.rows(), " targets");
+  vn::demand(options.weights == nullptr, "HarmonicRegression takes no weights");
+  vn::demand(x.rows() == y.rows(), "HarmonicRegression: ", x.rows(), " inputs, but ", y.rows(), " targets");
   constexpr int inputs = X::ColsAtCompileTime;
   vn::MatrixX h(x.rows(), 2 * inputs + 1);
   for (vn::Index i = 0; i < x.rows(); ++i) h.row(i) = features<inputs>(x.row(i).transpose()).transpose();

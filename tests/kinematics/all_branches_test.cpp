@@ -340,7 +340,7 @@ TEST(AllBranches, TakeTheTurnNearestToTheGivenJoints) {
     const JointVector<6> q = random_joints<6>(rng);
     BranchOptions<6> options;
     options.limits = robot.limits;
-    options.near = random_joints<6>(rng, 2 * pi);
+    options.close_to = random_joints<6>(rng, 2 * pi);
     const auto branches = all_branches(form, arm, arm.pose(q), options);
     EXPECT_EQ(branches.reach, Reach::met);
     for (const auto& branch : branches) {
@@ -349,11 +349,11 @@ TEST(AllBranches, TakeTheTurnNearestToTheGivenJoints) {
       for (int j = 0; j < 6; ++j)
         for (const double other : {branch.joints(j) - 2 * pi, branch.joints(j) + 2 * pi})
           if (std::abs(other) < 2 * pi - 1e-3) {
-            EXPECT_LE(std::abs(branch.joints(j) - options.near(j)), std::abs(other - options.near(j)) + 1e-2);
+            EXPECT_LE(std::abs(branch.joints(j) - options.close_to(j)), std::abs(other - options.close_to(j)) + 1e-2);
           }
     }
     // no turn: the joints themselves
-    const auto same = all_branches(form, arm, arm.pose(q), {.limits = robot.limits, .near = q});
+    const auto same = all_branches(form, arm, arm.pose(q), {.limits = robot.limits, .close_to = q});
     const auto* nearest = same.nearest(q);
     ASSERT_NE(nearest, nullptr);
     EXPECT_LT(vernier_test::difference(nearest->joints, q), 1e-5);
@@ -400,7 +400,7 @@ TEST(AllBranches, KeepTheHeldJointWhateverNearAndLimits) {
   const auto wam = robots::barrett_wam().chain;
   const ClosedForm form(wam, HeldJoint{2, held_value});
   BranchOptions<7> options;
-  options.near = JointVector<7>::Constant(6);
+  options.close_to = JointVector<7>::Constant(6);
   options.limits.lower(2) = 5;
   const auto arm = as_made(wam, rng);
   const auto branches = all_branches(form, arm, arm.pose({0.4, 0.7, held_value, 1.2, 0.3, -0.6, 0.2}), options);
@@ -427,7 +427,7 @@ TEST(AllBranches, MeetTargetsNextToSingularities) {
         const auto arm = as_made(nominal, rng);
         JointVector<6> q = random_joints<6>(rng);
         q(joint) = at + offset;
-        const auto branches = all_branches(form, arm, arm.pose(q), {.near = q});
+        const auto branches = all_branches(form, arm, arm.pose(q), {.close_to = q});
         ++targets;
         lost += branches.count == 0;
         for (const auto& branch : branches)

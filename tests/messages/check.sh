@@ -3,7 +3,7 @@
 #
 # A case is a file FOLDER/*.cpp. Compiled with -DMISTAKE it must fail, and each of its lines `// expect: <text>` must occur
 # among the first ten lines of the errors. Compiled without, it must pass: the mistake alone is what the compiler refuses.
-# `// flags: <flag>...` are those of the mistake. "In file included from" lines are not counted.
+# `// flags: <flag>...` are those of the mistake, `// compiler: <name>` the one compiler that knows them. "In file included from" lines are not counted.
 set -uo pipefail
 export LC_ALL=C  # the texts are those of compilers that speak English
 compiler=$1
@@ -37,6 +37,8 @@ for file in "$cases"/*.cpp; do
   name=$(basename "$file")
   mapfile -t expected < <(sed -n 's|^// expect: ||p' "$file")
   own=$(sed -n 's|^// flags: ||p' "$file")
+  only=$(sed -n 's|^// compiler: ||p' "$file")
+  [[ $(basename "$compiler") == "$only"* ]] || continue
   if [[ ${#expected[@]} == 0 ]]; then
     : > "$work/all"
     complain "has no line '// expect: <text>'"

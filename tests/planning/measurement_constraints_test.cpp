@@ -22,7 +22,7 @@ ArmGeometry planar_arm() {
 }
 
 Rejection checked(const MeasurementConstraints& constraints, const Vector3& q) {
-  return MeasurementScene(planar_arm(), constraints).check(q);
+  return MeasurementScene(planar_arm(), constraints).rejection(q);
 }
 
 TEST(MeasurementConstraints, WithoutAnyAllIsPossible) { EXPECT_EQ(checked({}, {100, -3, 7}), Rejection::none); }
@@ -52,7 +52,7 @@ TEST(MeasurementConstraints, BoundariesBelongToWhatIsPossible) {
 TEST(MeasurementConstraints, LimitsOfOneJointCount) {
   const ArmGeometry arm(in_frames(DhChain<1>{{{{.a = 1}}}}));
   const auto checked_at = [&](const MeasurementConstraints& c, double q) {
-    return MeasurementScene(arm, c).check(VectorX::Constant(1, q));
+    return MeasurementScene(arm, c).rejection(VectorX::Constant(1, q));
   };
   EXPECT_EQ(checked_at({.lower = VectorX::Constant(1, -1)}, -2), Rejection::joint_limits);
   EXPECT_EQ(checked_at({.upper = VectorX::Constant(1, 1)}, 2), Rejection::joint_limits);
@@ -124,7 +124,7 @@ TEST(MeasurementConstraints, TheToolIsPartOfTheWayToTheReflector) {
   for (const double radius : {0.4, 0.6}) {
     const MeasurementConstraints c{.tracker = Tracker{.position = {2, -5, 0}, .beam_radius = 0},
                                    .link_radii = {0, 0, radius}};
-    EXPECT_EQ(MeasurementScene(arm, c).check(bent), radius < 0.5 ? Rejection::line_of_sight : Rejection::none);
+    EXPECT_EQ(MeasurementScene(arm, c).rejection(bent), radius < 0.5 ? Rejection::line_of_sight : Rejection::none);
   }
 }
 
@@ -147,7 +147,7 @@ TEST(MeasurementConstraints, AllLinksBetweenTwoKeepThemApart) {
   square(0) = 0;
   for (const double radius : {0.7, 1.1}) {
     const MeasurementScene scene(ArmGeometry(in_frames(chain)), {.link_radii = {radius, 0, 0, radius}});
-    EXPECT_EQ(scene.check(square), radius < 1 ? Rejection::self_collision : Rejection::none) << radius;
+    EXPECT_EQ(scene.rejection(square), radius < 1 ? Rejection::self_collision : Rejection::none) << radius;
   }
 }
 
@@ -157,7 +157,7 @@ Rejection checked_square(double second, double third, double tool, const Measure
   const DhChain<3> chain{{{{.a = 1}, {.a = second}, {.a = third}}}};
   const ArmGeometry arm(
       Framed<DhChain<3>>(chain, Isometry3::Identity(), rigid_motion(Matrix3::Identity(), {tool, 0, 0})));
-  return MeasurementScene(arm, constraints).check(Vector3(0, half_turn / 2, half_turn / 2));
+  return MeasurementScene(arm, constraints).rejection(Vector3(0, half_turn / 2, half_turn / 2));
 }
 
 // A beam straight down from the end of the third link passes the first, which hides it unless the links between
@@ -183,7 +183,7 @@ TEST(MeasurementConstraints, ALinkEndsBeforeTheTool) {
   const ArmGeometry arm(
       Framed<DhChain<3>>(chain, Isometry3::Identity(), rigid_motion(Matrix3::Identity(), {0.3, 0, 0})));
   for (const double radius : {0.9, 1.1})
-    EXPECT_EQ(MeasurementScene(arm, {.link_radii = {radius * height, 0, 0}}).check(q),
+    EXPECT_EQ(MeasurementScene(arm, {.link_radii = {radius * height, 0, 0}}).rejection(q),
               radius < 1 ? Rejection::none : Rejection::self_collision);
   // folded over: the third link 0.2 m away at both of its ends, wide links that the second alone keeps apart
   EXPECT_EQ(checked_square(0.2, 0.9, 0, {.link_radii = {0.15, 0, 0.15}}), Rejection::none);
@@ -198,10 +198,10 @@ TEST(MeasurementConstraints, HoldInTheFrameOfTheBase) {
   MeasurementConstraints c{.tracker = Tracker{.position = Vector3(0.5, -5, 0) + moved, .beam_radius = 0.05},
                            .link_radii = {0.1, 0.1, 0.1}};
   const VectorX square = Vector3(0, half_turn / 2, half_turn / 2), crossed = Vector3(0, 2.4, 2.4);
-  EXPECT_EQ(MeasurementScene(there, c).check(square), Rejection::line_of_sight);
+  EXPECT_EQ(MeasurementScene(there, c).rejection(square), Rejection::line_of_sight);
   c.tracker->position.z() += 40;
-  EXPECT_EQ(MeasurementScene(there, c).check(square), Rejection::none);
-  EXPECT_EQ(MeasurementScene(there, c).check(crossed), Rejection::self_collision);
+  EXPECT_EQ(MeasurementScene(there, c).rejection(square), Rejection::none);
+  EXPECT_EQ(MeasurementScene(there, c).rejection(crossed), Rejection::self_collision);
 }
 
 TEST(MeasurementConstraints, DistancesOfSegmentsEqualAFineSearch) {
@@ -243,7 +243,7 @@ TEST(MeasurementConstraints, RefusesWhatIsNotUsable) {
             "MeasurementScene: the reflector has no direction");
   EXPECT_EQ(complaint({.tracker = Tracker{.min_range = 2, .max_range = 2}}),
             "MeasurementScene: the tracker's range is empty");
-  EXPECT_EQ(vernier_test::complaint([&] { (void)MeasurementScene(planar_arm(), {}).check(VectorX::Zero(2)); }),
+  EXPECT_EQ(vernier_test::complaint([&] { (void)MeasurementScene(planar_arm(), {}).rejection(VectorX::Zero(2)); }),
             "MeasurementScene: 2 joint values for an arm of 3");
 }
 

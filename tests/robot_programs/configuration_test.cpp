@@ -192,7 +192,7 @@ TEST_F(ControllerJointsOfIrb120, WithoutTheBranchBeforeTheNearestOfTheOthers) {
   double least = 1e9, second = 1e9;
   JointVector<6> expected = near;
   for (const Branch<6>& branch :
-       all_branches(roots_, robot_.chain, pose, BranchOptions<6>{.limits = limits, .near = near})) {
+       all_branches(roots_, robot_.chain, pose, BranchOptions<6>{.limits = limits, .close_to = near})) {
     if (!branch.within_limits) continue;
     const double apart = (branch.joints - near).cwiseAbs().maxCoeff();
     if (apart < least) {

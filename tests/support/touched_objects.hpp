@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/register_points.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/identification/contact_report.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"

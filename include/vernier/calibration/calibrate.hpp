@@ -52,7 +52,7 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   constexpr int N = Chain::dof;
   const Framed<Chain> nominal = in_frames(arm);
   const std::vector<Dataset<N>>& poses = measured.poses();
-  require(!measured.sets().empty(), "calibrate: no measurements");
+  demand(!measured.sets().empty(), "calibrate: no measurements");
   options.errors.validate();
   options.sensors.validate();
   const std::vector<MeasuredSet> sets = measured.sets(options.sensors);

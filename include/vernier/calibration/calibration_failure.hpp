@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// A calibration that must not be used; the message names the reason and the remedy in one line.

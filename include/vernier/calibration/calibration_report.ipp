@@ -46,7 +46,7 @@ VERNIER_LOCAL void describe_accuracy(const CalibrationReport& report, std::vecto
   const VectorX& last = report.stage(report.chosen).position;
   std::vector<double> inside;
   for (Index i = 0; i < last.size(); ++i)
-    if (report.gates(i) == 1) inside.push_back(last(i) * 1e3);
+    if (report.gates(i) >= 1) inside.push_back(last(i) * 1e3);
   if (!inside.empty()) {
     const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
     out.push_back(
@@ -122,8 +122,8 @@ VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::v
   Index at = 0;
   for (Index a = 0; a < knots; ++a)
     for (Index b = a + 1; b < knots; ++b) {
-      translation = std::max(translation, apart(a, b, 0));
-      rotation = std::max(rotation, apart(a, b, 3));
+      translation = (std::max)(translation, apart(a, b, 0));
+      rotation = (std::max)(rotation, apart(a, b, 3));
     }
   const Index window = std::max<Index>(1, knots / 8);
   for (Index k = 0; k + window < knots; ++k) {

@@ -62,7 +62,7 @@ VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& 
 template <NominalArm Arm>
 DataAudit audit_data(const Arm& nominal, const Measurements<ChainOf<Arm>::dof>& data,
                      const DataAuditOptions& options = {}) {
-  require(data.poses().size() == 1, "audit_data: ", data.poses().size(), " sets of poses; it looks at one at a time");
+  demand(data.poses().size() == 1, "audit_data: ", data.poses().size(), " sets of poses; it looks at one at a time");
   return detail::audit_data(ArmGeometry(in_frames(nominal)), data.sets().front(), data.poses().front().orientations(),
                             options);
 }

@@ -106,8 +106,8 @@ VERNIER_LOCAL std::pair<int, double> small_zero(const ArmGeometry& nominal, cons
   }
   double sigma = plain.residuals.position_scale, turn = plain.residuals.rotation_scale;
   for (const AuditFit& fit : fits) {
-    sigma = std::min(sigma, fit.residuals.position_scale);
-    turn = std::min(turn, fit.residuals.rotation_scale);
+    sigma = (std::min)(sigma, fit.residuals.position_scale);
+    turn = (std::min)(turn, fit.residuals.rotation_scale);
   }
   const auto cost = [&](const AuditFit& fit, int joint) {
     double sum = 0;
@@ -138,12 +138,12 @@ VERNIER_LOCAL std::pair<int, double> small_zero(const ArmGeometry& nominal, cons
 
 VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& data,
                                   const PointRows& rotation_vectors, const DataAuditOptions& options) {
-  require(data.size() >= 10, "audit_data: ", data.size(), " poses, 10 or more are needed");
+  demand(data.size() >= 10, "audit_data: ", data.size(), " poses, 10 or more are needed");
   for (const auto& [value, name] : {std::pair<double, const char*>{options.smallest_zero, "smallest_zero"},
                                     {options.outlier_factor, "outlier_factor"},
                                     {options.length_std, "length_std"},
                                     {options.angle_std, "angle_std"}})
-    require(value > 0 && std::isfinite(value), "audit_data: ", name, " is ", value, ", must be positive and finite");
+    demand(value > 0 && std::isfinite(value), "audit_data: ", name, " is ", value, ", must be positive and finite");
   DataAudit out{.origin = data.origin};
   AuditRows rows{data.joints, *data.positions(), data.oriented() ? data.orientations() : std::vector<Matrix3>(),
                  rotation_vectors};

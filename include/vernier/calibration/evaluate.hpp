@@ -57,10 +57,10 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   const FittedErrorModel<Chain>& errors = calibration.errors;
   const std::vector<ErrorModel<Chain>>& models = errors.models();
   const std::size_t stations = errors.stages.front().stage == Stage::frames ? errors.stages.front().models.size() : 0;
-  require(test.size() == stations && !test.empty(), "evaluate: ", test.size(), " sets of held-out poses for ", stations,
-          " stations");
-  require(held_out.sets().size() == test.size(), "evaluate: ", held_out.sets().size() - test.size(), " of ",
-          held_out.sets().size(), " sets of measurements are no data sets of poses; errors are those of poses");
+  demand(test.size() == stations && !test.empty(), "evaluate: ", test.size(), " sets of held-out poses for ", stations,
+         " stations");
+  demand(held_out.sets().size() == test.size(), "evaluate: ", held_out.sets().size() - test.size(), " of ",
+         held_out.sets().size(), " sets of measurements are no data sets of poses; errors are those of poses");
   CalibrationReport out;
   out.identification = calibration.geometry;
   out.blocks = errors.blocks;
@@ -181,7 +181,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   out.left_out_rows = errors.left_out_rows;
   const VectorX &geometry = out.stage(Stage::geometry).position, &of_chosen = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
-    if (out.gates(i) == 1) out.max_degradation = std::max(out.max_degradation, of_chosen(i) - geometry(i));
+    if (out.gates(i) >= 1) out.max_degradation = (std::max)(out.max_degradation, of_chosen(i) - geometry(i));
   for (int j = 0; j < N; ++j) {
     JointReport joint;
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;

@@ -15,7 +15,7 @@ VERNIER_IMPL double normalised_error(const Vector3& error, const Matrix3& covari
 
 VERNIER_IMPL void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {
   for (const auto& [lower, upper] : out.measured_ranges) {
-    const int samples = std::max(360, static_cast<int>(200 * (upper - lower)));  // three a period of order 404
+    const int samples = (std::max)(360, static_cast<int>(200 * (upper - lower)));  // three a period of order 404
     for (int k = 0; k <= samples; ++k) out.angle.push_back(lower + (upper - lower) * k / samples);
   }
   if (out.angle.empty()) return;

@@ -26,7 +26,7 @@ VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estim
   for (Index c = 0; c < candidates; ++c)
     for (int i = 0; i < arm.joints(); ++i) {
       const double widest = arm.chain().revolute(i) ? std::numbers::pi : 0.5;
-      joints(c, i) = rng.uniform(std::max(lower(i), -widest), std::min(upper(i), widest));
+      joints(c, i) = rng.uniform((std::max)(lower(i), -widest), (std::min)(upper(i), widest));
     }
   std::vector<RowBlock> blocks(candidates);
   estimate.arm.linearise(0, joints, MatrixX(), blocks.data());

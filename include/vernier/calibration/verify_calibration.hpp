@@ -86,7 +86,7 @@ struct VerificationInput {
   std::vector<JointType> joint_types;                ///< of the arm
   std::optional<ReregistrationReport> registration;  ///< where base or tool was registered
 };
-VERNIER_API VerificationReport verify(const VerificationInput& input, const VerifyOptions& options);
+VERNIER_API VerificationReport verified(const VerificationInput& input, const VerifyOptions& options);
 
 }  // namespace detail
 
@@ -115,11 +115,11 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   constexpr int N = Chain::dof;
   options.validate();
   const Dataset<N>& data = detail::only_poses(measured, "verify_calibration");
-  require(data.size() >= 3, "verify_calibration: ", data.size(), " poses, at least 3 are needed");
-  require(data.size() <= 1000, "verify_calibration: ", data.size(),
-          " poses, at most 1000 are taken: their covariance is dense");
-  require(learned.rows() == 0 || learned.rows() == data.size(), "verify_calibration: ", learned.rows(),
-          " learned errors of ", data.size(), " poses");
+  demand(data.size() >= 3, "verify_calibration: ", data.size(), " poses, at least 3 are needed");
+  demand(data.size() <= 1000, "verify_calibration: ", data.size(),
+         " poses, at most 1000 are taken: their covariance is dense");
+  demand(learned.rows() == 0 || learned.rows() == data.size(), "verify_calibration: ", learned.rows(),
+         " learned errors of ", data.size(), " poses");
   const auto types = model.nominal().chain().joint_types();
   std::optional<ReregistrationReport> registration;
   ErrorModel<Chain> now = model;
@@ -128,7 +128,7 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     // orientations that are turned may be the zero of the last joint: no probe is taken to be remounted unasked
     if (!options.tool) free.contradiction_threshold = std::numeric_limits<double>::infinity();
     auto found = reregister(model, data, free, options.sensors);
-    require(found.determined, "verify_calibration: the poses do not determine where the arm stands; measure more");
+    demand(found.determined, "verify_calibration: the poses do not determine where the arm stands; measure more");
     now = found.model;
     registration = std::move(static_cast<ReregistrationReport&>(found));
   }
@@ -155,7 +155,7 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     std::copy_n(at.jacobian.data(), 6 * N, input.jacobians.data() + 6 * N * i);
     input.gates(i) = model.gate(q);
   }
-  return detail::verify(input, options);
+  return detail::verified(input, options);
 }
 
 }  // namespace vernier

@@ -7,6 +7,7 @@
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/chi_square.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -16,9 +17,9 @@
 namespace vernier {
 
 VERNIER_IMPL void VerifyOptions::validate() const {
-  require(level > 0 && level < 1, "VerifyOptions: level ", level, " must lie in (0, 1)");
-  require(!accept || (*accept > 0 && std::isfinite(*accept)), "VerifyOptions: accept ", accept.value_or(0),
-          " must be positive");
+  demand(level > 0 && level < 1, "VerifyOptions: level ", level, " must lie in (0, 1)");
+  demand(!accept || (*accept > 0 && std::isfinite(*accept)), "VerifyOptions: accept ", accept.value_or(0),
+         " must be positive");
   sensors.validate();
 }
 
@@ -78,7 +79,7 @@ VERNIER_LOCAL MatrixX residual_covariance(const VerificationInput& input, const 
   visits = input.estimate.visit_covariances(data.joints, input.gates, 0, data.previous, temperatures);
   std::vector<RowBlock> blocks(static_cast<std::size_t>(n));
   VectorX warmer = VectorX::Zero(n);
-  if (temperatures.size() > 0 && input.estimate.mean_temperature != 0)
+  if (temperatures.size() > 0 && !same_value(input.estimate.mean_temperature, 0))
     for (Index i = 0; i < n; ++i) warmer(i) = temperatures(i) - input.estimate.mean_temperature;
   input.estimate.arm.linearise(0, data.joints, data.previous, blocks.data(), true, warmer);
   MatrixX effects(unknowns, values * n);
@@ -90,7 +91,7 @@ VERNIER_LOCAL MatrixX residual_covariance(const VerificationInput& input, const 
   }
   MatrixX out = matrix_product(transposed_matrix_product(effects, input.estimate.covariance), effects);
   // a sensor worse than that of the calibration, whose noise is in that of a visit
-  const auto excess = [](double now, double then) { return std::max(0.0, now * now - then * then); };
+  const auto excess = [](double now, double then) { return (std::max)(0.0, now * now - then * then); };
   const double position = excess(options.sensors.position_sigma, input.estimate.position_sigma),
                orientation = excess(options.sensors.orientation_sigma, input.estimate.orientation_sigma);
   for (Index i = 0; i < n; ++i) {
@@ -114,7 +115,7 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
   MatrixX factor = rows_of(covariance, kept);
   for (Index c = 0; c < rows; ++c) factor.col(c) = factor.col(kept[static_cast<std::size_t>(c)]);  // in ascending order
   factor.conservativeResize(rows, rows);
-  require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
+  demand(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
   MatrixX all(rows, 1 + registered.cols() + changes.cols());
   all.col(0) = rows_of(residual, kept);
   all.middleCols(1, registered.cols()) = rows_of(registered, kept);
@@ -125,7 +126,7 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
   const Index rank = take_off(all.middleCols(1, registered.cols()), whitened.residual, whitened.columns);
   whitened.informative = squared_column_norms(whitened.columns);
   for (Index k = 0; k < whitened.informative.size(); ++k)
-    whitened.informative(k) = std::sqrt(whitened.informative(k) / std::max(before_registration(k), 1e-300));
+    whitened.informative(k) = std::sqrt(whitened.informative(k) / (std::max)(before_registration(k), 1e-300));
   out.chi_square = whitened.residual.squaredNorm();
   out.dof = rows - rank;
   out.p_value = out.dof > 0 ? chi_square_tail(out.chi_square, static_cast<double>(out.dof)) : 1;
@@ -163,14 +164,14 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
     bool once = false;
     for (Index j = 0; j < joints; ++j)
       for (const bool turn : {false, true}) {
-        JointCheck& check = out.joints[static_cast<std::size_t>(j)];
-        if (check.zero_changed || check.transmission_changed) continue;
+        JointCheck& joint_check = out.joints[static_cast<std::size_t>(j)];
+        if (joint_check.zero_changed || joint_check.transmission_changed) continue;
         if (turn && out.joint_types[static_cast<std::size_t>(j)] != JointType::revolute) continue;
         std::vector<Index> together = named;
         for (const Index k : columns_of(j, turn)) together.push_back(k);
         const ColumnTest with = test_columns(whitened, together);
         if (with.rank == before.rank) continue;
-        const double p = chi_square_tail(std::max(0.0, with.chi_square - before.chi_square),
+        const double p = chi_square_tail((std::max)(0.0, with.chi_square - before.chi_square),
                                          static_cast<double>(with.rank - before.rank));
         if (!(p < best)) continue;
         best = p;
@@ -178,14 +179,14 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
         once = turn;
       }
     if (joint < 0) break;
-    JointCheck& check = out.joints[static_cast<std::size_t>(joint)];
-    (once ? check.transmission_changed : check.zero_changed) = true;
+    JointCheck& joint_check = out.joints[static_cast<std::size_t>(joint)];
+    (once ? joint_check.transmission_changed : joint_check.zero_changed) = true;
     for (const Index k : columns_of(joint, once)) named.push_back(k);
   }
   out.consistent = out.p_value >= 0.5 * out.options.level && named.empty();
 }
 
-VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const VerifyOptions& options) {
+VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const VerifyOptions& options) {
   const MeasuredSet& data = input.data;
   const Index n = data.size(), joints = data.joints.cols(), values = data.oriented() ? 6 : 3;
   VerificationReport out;
@@ -237,7 +238,7 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
     const MatrixX visit = visits[static_cast<std::size_t>(i)];
     MatrixX factor = visit.topLeftCorner(3, 3);
     VectorX whitened = error;
-    require(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
+    demand(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
     solve_lower(factor, whitened);
     out.errors(i) = error.norm();
     out.normalised(i) = whitened.norm();
@@ -246,12 +247,12 @@ VERNIER_IMPL VerificationReport verify(const VerificationInput& input, const Ver
   test_all(input, covariance, residual, registered, changes, values, out);
   if (!out.consistent) {  // a reflector that was bumped is no change of the arm
     const double typical = quantile(out.normalised, 0.5);
-    std::vector<Index> far;
+    std::vector<Index> distant;
     for (Index i = 0; i < n; ++i)
-      if (out.normalised(i) > std::max(4.5, 6 * typical)) far.push_back(i);
-    if (!far.empty() && static_cast<Index>(far.size()) <= std::max<Index>(1, n / 10) &&
-        n - static_cast<Index>(far.size()) >= 3) {
-      out.aside = far;
+      if (out.normalised(i) > (std::max)(4.5, 6 * typical)) distant.push_back(i);
+    if (!distant.empty() && static_cast<Index>(distant.size()) <= std::max<Index>(1, n / 10) &&
+        n - static_cast<Index>(distant.size()) >= 3) {
+      out.aside = distant;
       test_all(input, covariance, residual, registered, changes, values, out);
     }
   }

@@ -47,7 +47,7 @@ class CartesianCorrected : public ChecksJoints<CartesianCorrected<Model, Learned
   /// Subtracts the learned error from a pose and a Jacobian at q: of the model, or of the same arm with hysteresis.
   void correct(const JointVector<dof>& q, PoseAndJacobian<dof>& at) const noexcept {
     const double gate = gate_(q);
-    if (gate == 0) return;
+    if (gate <= 0) return;
     Vector3 error;
     Eigen::Matrix<double, 3, dof> slope;
     if constexpr (requires { learned_.predict_and_derivative(q); }) {
@@ -107,7 +107,7 @@ struct CartesianCompensation {
   template <KinematicModel Model>
   Compensated<CartesianCorrected<Model, PredictorOf<R, Model::dof, 3>>, NominalOf<Model>> fit(
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
-    require(data.size() >= 1, "CartesianCompensation: no samples");
+    demand(data.size() >= 1, "CartesianCompensation: no samples");
     const PointRows error = positions(model, data.joints()) - data.positions();
     detail::require_same_frames("CartesianCompensation", error);
     return {{model, regressor.fit(data.joints(), error, options), JointCoverage<Model::dof>::covering(data.joints())},

@@ -100,10 +100,10 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   constexpr bool branches_known = !std::is_same_v<Roots, NoClosedForm>;
   static_assert(N <= PathJoints::MaxRowsAtCompileTime);
   using Joints = JointVector<N>;
-  require(options.tolerance > 0 && options.rotation_tolerance > 0 && options.max_joint_step > 0 &&
-              options.max_inserted >= 0 &&
-              std::all_of(options.speed.data(), options.speed.data() + N, [](double speed) { return speed > 0; }),
-          "correct_path: tolerances, steps and speeds must be positive");
+  demand(options.tolerance > 0 && options.rotation_tolerance > 0 && options.max_joint_step > 0 &&
+             options.max_inserted >= 0 &&
+             std::all_of(options.speed.data(), options.speed.data() + N, [](double speed) { return speed > 0; }),
+         "correct_path: tolerances, steps and speeds must be positive");
   const auto& nominal = nominal_of(arm);
   IkOptions<N> tight;
   tight.max_iterations = 30;
@@ -124,14 +124,14 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
     }
     return use(arm);
   };
-  const auto find_branches = [&](const Isometry3& target, const PathJoints& near, std::vector<PathBranch>& out) {
+  const auto find_branches = [&](const Isometry3& target, const PathJoints& close_to, std::vector<PathBranch>& out) {
     if constexpr (branches_known) {
       const Branches<N> found =
-          all_branches(closed_form, arm, target, {.limits = options.limits, .near = Joints(near)});
+          all_branches(closed_form, arm, target, {.limits = options.limits, .close_to = Joints(close_to)});
       for (const Branch<N>& branch : found) out.push_back({branch.joints, branch.singularities.branch()});
       return found.reach;
     } else {
-      const IkResult<N> found = solve(arm, target, Joints(near), within);
+      const IkResult<N> found = solve(arm, target, Joints(close_to), within);
       if (found.status != IkStatus::converged) return Reach::not_found;
       out.push_back({found.joints, 0});
       return Reach::met;

@@ -146,8 +146,8 @@ JointErrorLabels<Nominal::dof> joint_error_labels(const Nominal& nominal, const 
 /// @throws std::invalid_argument where the data have positions only
 template <KinematicModel Model>
 JointErrorLabels<Model::dof> joint_error_labels(const Model& model, const Dataset<Model::dof>& data) {
-  require(data.has_orientations(),
-          "joint_error_labels: joint-space compensation needs measured orientations, the data have positions only");
+  demand(data.has_orientations(),
+         "joint_error_labels: joint-space compensation needs measured orientations, the data have positions only");
   return detail::joint_errors(
       model, data.joints(), [&](Index i) { return data.pose(i); }, +1);
 }
@@ -170,10 +170,10 @@ struct JointCompensation {
   template <KinematicModel Model>
   Compensated<JointCorrected<Model, PredictorOf<R, Model::dof, Model::dof>>, NominalOf<Model>> fit(
       const Model& model, const Dataset<Model::dof>& data, const FitOptions& options = {}) const {
-    require(data.size() >= 1, "JointCompensation: no samples");
+    demand(data.size() >= 1, "JointCompensation: no samples");
     detail::require_same_frames("JointCompensation", positions(model, data.joints()) - data.positions());
     const auto labels = joint_error_labels(model, data);
-    require(labels.joints.rows() >= 1, "JointCompensation: inverse kinematics failed for all ", data.size(), " poses");
+    demand(labels.joints.rows() >= 1, "JointCompensation: inverse kinematics failed for all ", data.size(), " poses");
     return {{model, regressor.fit(labels.joints, labels.errors, options),
              JointCoverage<Model::dof>::covering(labels.joints)},
             nominal_of(model),
@@ -185,7 +185,7 @@ struct JointCompensation {
   DirectJointCompensator<Model, PredictorOf<R, Model::dof, Model::dof>> fit(const Model& model,
                                                                             const JointErrorLabels<Model::dof>& labels,
                                                                             const FitOptions& options = {}) const {
-    require(labels.joints.rows() >= 1, "JointCompensation: no labels");
+    demand(labels.joints.rows() >= 1, "JointCompensation: no labels");
     return {model, regressor.fit(labels.joints, labels.errors, options),
             JointCoverage<Model::dof>::covering(labels.joints)};
   }

@@ -23,6 +23,11 @@
 
 /// @cond
 
+static_assert(!Eigen::MatrixXd::IsRowMajor,
+              "Vernier stores matrices by columns: compile without EIGEN_DEFAULT_TO_ROW_MAJOR");
+static_assert(sizeof(Eigen::Index) >= 8,
+              "Vernier counts in 64 bits: compile for a machine of 64 bits, without EIGEN_DEFAULT_DENSE_INDEX_TYPE");
+
 #if defined(VERNIER_COMPILED)
 #define VERNIER_HEADER_ONLY 0
 #define VERNIER_DETAIL_TEXT(dynamic, fixed) "eigen_align_" #dynamic "_" #fixed

@@ -5,8 +5,8 @@
 namespace vernier {
 
 VERNIER_IMPL Box Box::cube(Index dimension, double lower, double upper) {
-  require(dimension >= 1, "Box::cube: dimension is ", dimension, ", must be at least 1");
-  require(lower < upper, "Box::cube: lower bound ", lower, " is not below upper bound ", upper);
+  demand(dimension >= 1, "Box::cube: dimension is ", dimension, ", must be at least 1");
+  demand(lower < upper, "Box::cube: lower bound ", lower, " is not below upper bound ", upper);
   return {VectorX::Constant(dimension, lower), VectorX::Constant(dimension, upper)};
 }
 
@@ -18,11 +18,11 @@ VERNIER_IMPL bool Box::contains(const ConstVectorRef& x) const {
 }
 
 VERNIER_IMPL void Box::validate() const {
-  require(lower.size() == upper.size() && lower.size() >= 1, "Box: ", lower.size(), " lower and ", upper.size(),
-          " upper bounds");
+  demand(lower.size() == upper.size() && lower.size() >= 1, "Box: ", lower.size(), " lower and ", upper.size(),
+         " upper bounds");
   for (Index i = 0; i < lower.size(); ++i)
-    require(lower(i) < upper(i) && upper(i) - lower(i) < 1e300, "Box: dimension ", i, " has bounds [", lower(i), ", ",
-            upper(i), "], must be finite and lower below upper");
+    demand(lower(i) < upper(i) && upper(i) - lower(i) < 1e300, "Box: dimension ", i, " has bounds [", lower(i), ", ",
+           upper(i), "], must be finite and lower below upper");
 }
 
 }  // namespace vernier

@@ -73,7 +73,7 @@ std::string counted(Integer number, std::string_view one, std::string_view many)
 
 /// Throws `std::invalid_argument` with the joined parts unless `condition` holds.
 template <class... Parts>
-void require(bool condition, const Parts&... parts) {
+void demand(bool condition, const Parts&... parts) {
   if (!condition) [[unlikely]]
     detail::throw_invalid_argument({detail::MessagePart(parts)...});
 }

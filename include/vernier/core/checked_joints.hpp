@@ -172,11 +172,11 @@ class ChecksJoints {
     return self().approached_from(detail::joint_vector<Self::dof>(previous));
   }
 
-  /// All joint values with which a nominal arm is at a pose; `more` follows `near` there.
+  /// All joint values with which a nominal arm is at a pose; `more` follows `close_to` there.
   /// @throws std::invalid_argument on another number of joint values
   template <SizedAtRunTime Q, class... More>
-  auto roots(const Isometry3& target, const Q& near, More... more) const {
-    return self().roots(target, detail::joint_vector<Self::dof>(near), more...);
+  auto roots(const Isometry3& target, const Q& close_to, More... more) const {
+    return self().roots(target, detail::joint_vector<Self::dof>(close_to), more...);
   }
   /// How far joint values are from singularities.
   /// @throws std::invalid_argument on another number of joint values

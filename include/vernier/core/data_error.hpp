@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// A file whose content is invalid; the message names the file and the place in it.

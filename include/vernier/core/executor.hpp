@@ -47,7 +47,7 @@ class ThreadExecutor {
  public:
   /// @param threads at least 1
   explicit ThreadExecutor(int threads) : threads_(threads) {
-    require(threads >= 1, "ThreadExecutor: threads is ", threads, ", must be at least 1");
+    demand(threads >= 1, "ThreadExecutor: threads is ", threads, ", must be at least 1");
   }
 
   /// Number of threads, including the calling one.

@@ -40,7 +40,7 @@ VERNIER_IMPL bool ExecutorRef::broadcast(FunctionRef<bool()> condition) const {
   if (allgather_ == nullptr) return condition();
   VectorX value = VectorX::Zero(1);
   allgather(value, [&](Index, Index) { value(0) = condition() ? 1 : 0; });
-  return value(0) != 0;
+  return value(0) > 0;
 }
 
 }  // namespace vernier

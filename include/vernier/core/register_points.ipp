@@ -20,8 +20,7 @@ VERNIER_IMPL Matrix3 nearest_rotation(const Matrix3& matrix) {
 }
 
 VERNIER_IMPL Isometry3 register_points(const PointRows& from, const PointRows& to) {
-  require(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(),
-          " points");
+  demand(from.rows() == to.rows() && from.rows() >= 1, "register_points: ", from.rows(), " and ", to.rows(), " points");
   const Vector3 from_mean = centroid(from), to_mean = centroid(to);
   Matrix3 sum = Matrix3::Zero();
   for (Index i = 0; i < from.rows(); ++i) {

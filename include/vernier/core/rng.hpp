@@ -34,9 +34,9 @@ class Rng {
   }
 
   /// Smallest value of a call.
-  static constexpr result_type min() { return 0; }
+  static constexpr result_type(min)() { return 0; }
   /// Largest value of a call.
-  static constexpr result_type max() { return ~result_type{0}; }
+  static constexpr result_type(max)() { return ~result_type{0}; }
 
   /// The next 64 bits.
   constexpr result_type operator()() {

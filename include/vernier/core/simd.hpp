@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "vernier/core/language.hpp"
+
 /// Inlined even where the compiler would rather not.
 #define VERNIER_INLINE inline __attribute__((always_inline))
 /// Inlines a lambda, behind its parameters, even where the compiler would rather not.
@@ -17,7 +19,7 @@
 /// Before a loop of a constant few steps: unrolls it whole, so that what it indexes stays in registers.
 #define VERNIER_UNROLL _Pragma("GCC unroll 16")
 
-/// A sum from which nothing is cancelled, so that -ffast-math does not undo the rounding it is there for.
+/// A sum from which nothing is cancelled, so that -fassociative-math does not undo the rounding it is there for.
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_assoc_barrier)
 #define VERNIER_AS_WRITTEN(sum) __builtin_assoc_barrier(sum)

@@ -8,7 +8,7 @@ namespace vernier {
 
 VERNIER_IMPL Vector3 trilaterate(const PointRows& points, const VectorX& distances) {
   const Index n = points.rows();
-  require(n == distances.size() && n >= 1, "trilaterate: ", n, " points, ", distances.size(), " distances");
+  demand(n == distances.size() && n >= 1, "trilaterate: ", n, " points, ", distances.size(), " distances");
   // |p - a|^2 = l^2 is linear in a and |a|^2; about the mean of the points the two separate
   const Vector3 mean = centroid(points);
   MatrixX scatter = MatrixX::Zero(3, 3);

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "vernier/core/api.hpp"
+#include "vernier/core/same_value.hpp"
 
 /// Calibration and error compensation of serial robot arms.
 namespace vernier {
@@ -54,7 +55,9 @@ struct JointRange {
   double upper;  ///< maximum
 
   /// Equal at both ends.
-  bool operator==(const JointRange&) const = default;
+  constexpr bool operator==(const JointRange& other) const {
+    return same_value(lower, other.lower) && same_value(upper, other.upper);
+  }
 };
 
 /// Joint values of n configurations, n x N.

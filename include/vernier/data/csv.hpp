@@ -97,7 +97,7 @@ struct TargetRows {
   std::vector<bool> linear{};  ///< whether the move to each is a linear one; empty where the file does not say
 
   /// Number of targets.
-  Index size() const { return std::max(joints.rows(), positions.rows()); }
+  Index size() const { return (std::max)(joints.rows(), positions.rows()); }
 };
 
 /// Targets from a CSV file: columns q1_rad .. or poses x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad, or both, in the units

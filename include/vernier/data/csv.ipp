@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/text_lines.hpp"
 
@@ -175,8 +176,8 @@ class CsvTable {
 /// units that do not fit the types of joints, where these are given.
 VERNIER_LOCAL std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types,
                                                    std::string_view prefix = "") {
-  require(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
-          " types of joints for ", joints, " joints");
+  demand(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
+         " types of joints for ", joints, " joints");
   std::vector<CsvColumn> columns;
   for (int i = 1; i <= joints; ++i) {
     const std::string stem = message(prefix, "q", i);
@@ -224,7 +225,7 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   const std::optional<VectorX> segment = column("segment");
   out.previous.setConstant(n, joints, std::numeric_limits<double>::quiet_NaN());
   for (Index i = 1; i < n; ++i)
-    for (Index j = 0; j < joints && (!segment || (*segment)(i) == (*segment)(i - 1)); ++j)
+    for (Index j = 0; j < joints && (!segment || same_value((*segment)(i), (*segment)(i - 1))); ++j)
       out.previous(i, j) = out.values(i - 1, j);
   return out;
 }
@@ -272,9 +273,10 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows
   bool in_order = true, counted = true;  // whether the order of the rows says it all
   for (Index i = 0; i < joints.rows(); ++i) {
     bool follows = i > 0 || !finite_row(previous, i);
-    for (Index j = 0; i > 0 && j < joints.cols(); ++j) follows = follows && previous(i, j) == joints(i - 1, j);
+    for (Index j = 0; i > 0 && j < joints.cols(); ++j)
+      follows = follows && same_value(previous(i, j), joints(i - 1, j));
     in_order = in_order && follows;
-    counted = counted && times(i) == static_cast<double>(i);
+    counted = counted && same_value(times(i), static_cast<double>(i));
   }
   std::string out;
   for (Index j = 1; j <= joints.cols() && !in_order; ++j) out += message("from_q", j, "_rad,");
@@ -319,7 +321,8 @@ VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::ini
       if (!column && label < static_cast<Index>(labels.size())) throw DataError(message(path, ": no column ", name));
       const VectorX numbers = column ? VectorX(table.numbers({*column})) : VectorX(VectorX::Zero(values.rows()));
       for (Index i = 0; i < numbers.size(); ++i) {
-        if (numbers(i) != std::floor(numbers(i))) table.fail_in_row(i, *column, numbers(i), ", must be a whole number");
+        if (!same_value(numbers(i), std::floor(numbers(i))))
+          table.fail_in_row(i, *column, numbers(i), ", must be a whole number");
         out.labels(i, label) = static_cast<int>(numbers(i));
       }
       ++label;
@@ -378,7 +381,7 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     if (ball && std::isnan(radii(i)))
       throw DataError(message(path, ": contact ", object.name, ": a ball needs its radius, in a column radius_mm"));
     if (ball && !(radii(i) > 0)) table.fail_in_row(i, *radius_column, "a radius must be positive");
-    if (ball && !std::isnan(offsets(i)) && offsets(i) != 0)
+    if (ball && !std::isnan(offsets(i)) && !same_value(offsets(i), 0))
       table.fail_in_row(i, *offset_column, "a ball has a radius, but no offset");
     if (!ball && !std::isnan(radii(i))) table.fail_in_row(i, *radius_column, "a ", word, " has no radius");
     known(i) = ball ? radii(i) : std::isnan(offsets(i)) ? 0 : offsets(i);

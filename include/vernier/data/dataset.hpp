@@ -91,7 +91,7 @@ class Dataset {
   /// These samples approached from other joint values; rows that are not finite are unknown.
   /// @throws std::invalid_argument for another number of rows
   Dataset approached_from(JointRows<N> previous) const {
-    require(previous.rows() == size(), "Dataset: ", previous.rows(), " previous configurations of ", size(), " rows");
+    demand(previous.rows() == size(), "Dataset: ", previous.rows(), " previous configurations of ", size(), " rows");
     Dataset out = *this;
     out.previous_ = std::move(previous);
     return out;
@@ -109,8 +109,8 @@ class Dataset {
   /// These samples measured at other times, in any unit.
   /// @throws std::invalid_argument for another number of times, or one that is not finite
   Dataset measured_at(VectorX times) const {
-    require(times.size() == size() && times.allFinite(), "Dataset: ", times.size(), " times of ", size(),
-            " rows, all must be finite");
+    demand(times.size() == size() && times.allFinite(), "Dataset: ", times.size(), " times of ", size(),
+           " rows, all must be finite");
     Dataset out = *this;
     out.times_ = std::move(times);
     return out;
@@ -119,8 +119,8 @@ class Dataset {
   /// These samples measured at some temperatures [deg C]; none for unknown.
   /// @throws std::invalid_argument for another number of temperatures, or one that is not finite
   Dataset at_temperatures(VectorX temperatures) const {
-    require((temperatures.size() == 0 || temperatures.size() == size()) && temperatures.allFinite(),
-            "Dataset: ", temperatures.size(), " temperatures of ", size(), " rows, all must be finite");
+    demand((temperatures.size() == 0 || temperatures.size() == size()) && temperatures.allFinite(),
+           "Dataset: ", temperatures.size(), " temperatures of ", size(), " rows, all must be finite");
     Dataset out = *this;
     out.temperatures_ = std::move(temperatures);
     return out;
@@ -131,8 +131,8 @@ class Dataset {
   /// These samples, said to be from some rows of files.
   /// @throws std::invalid_argument for another number of rows
   Dataset from(RowOrigin origin) const {
-    require(origin.empty() || static_cast<Index>(origin.line.size()) == size(), "Dataset: ", origin.line.size(),
-            " lines of ", size(), " rows");
+    demand(origin.empty() || static_cast<Index>(origin.line.size()) == size(), "Dataset: ", origin.line.size(),
+           " lines of ", size(), " rows");
     Dataset out = *this;
     out.origin_ = std::move(origin);
     return out;

@@ -15,11 +15,11 @@ VERNIER_IMPL bool finite_row(const ConstMatrixRef& values, Index row) {
 VERNIER_IMPL void check_measured_samples(const ConstMatrixRef& joints, const PointRows& positions,
                                          const PointRows& orientations) {
   const Index n = joints.rows();
-  require(n == positions.rows(), "Dataset: ", n, " rows of joints, but ", positions.rows(), " rows of positions");
-  require(orientations.rows() == 0 || orientations.rows() == n, "Dataset: ", n, " rows of joints, but ",
-          orientations.rows(), " rows of orientations");
+  demand(n == positions.rows(), "Dataset: ", n, " rows of joints, but ", positions.rows(), " rows of positions");
+  demand(orientations.rows() == 0 || orientations.rows() == n, "Dataset: ", n, " rows of joints, but ",
+         orientations.rows(), " rows of orientations");
   for (Index i = 0; i < n; ++i)
-    require(
+    demand(
         finite_row(joints, i) && finite_row(positions, i) && (orientations.rows() == 0 || finite_row(orientations, i)),
         "Dataset: row ", i, " has a value that is not finite");
 }
@@ -31,7 +31,7 @@ VERNIER_IMPL [[noreturn]] void refuse_coordinates(Index columns) {
 VERNIER_IMPL void copy_rows(const ConstMatrixRef& from, std::span<const Index> indices, MatrixRef to) {
   for (Index i = 0; i < to.rows(); ++i) {
     const Index row = indices[static_cast<std::size_t>(i)];
-    require(row >= 0 && row < from.rows(), "rows: row ", row, " of ", from.rows());
+    demand(row >= 0 && row < from.rows(), "rows: row ", row, " of ", from.rows());
     for (Index j = 0; j < to.cols(); ++j) to(i, j) = from(row, j);
   }
 }

@@ -7,12 +7,11 @@
 namespace vernier::detail {
 
 VERNIER_IMPL void check_distances(const ConstMatrixRef& joints, const VectorX& lengths) {
-  require(joints.rows() == lengths.size(), "Distances: ", joints.rows(), " rows of joints, but ", lengths.size(),
-          " distances");
+  demand(joints.rows() == lengths.size(), "Distances: ", joints.rows(), " rows of joints, but ", lengths.size(),
+         " distances");
   for (Index i = 0; i < lengths.size(); ++i) {
-    require(finite_row(joints, i) && std::isfinite(lengths(i)), "Distances: row ", i,
-            " has a value that is not finite");
-    require(lengths(i) > 0, "Distances: row ", i, " has a distance of ", lengths(i), " m, must be positive");
+    demand(finite_row(joints, i) && std::isfinite(lengths(i)), "Distances: row ", i, " has a value that is not finite");
+    demand(lengths(i) > 0, "Distances: row ", i, " has a distance of ", lengths(i), " m, must be positive");
   }
 }
 

@@ -66,8 +66,8 @@ struct JointCoverage {
   /// @param margins of each joint; the larger of the two counts
   /// @throws std::invalid_argument for ranges or margins of another number of joints
   JointCoverage joined(const std::vector<std::vector<JointRange>>& others, const VectorX& margins) const {
-    require(others.empty() || (others.size() == N && margins.size() == N), "JointCoverage: ranges of ", others.size(),
-            " joints and margins of ", margins.size(), " for an arm of ", N, " joints");
+    demand(others.empty() || (others.size() == N && margins.size() == N), "JointCoverage: ranges of ", others.size(),
+           " joints and margins of ", margins.size(), " for an arm of ", N, " joints");
     JointCoverage out = *this;
     for (std::size_t i = 0; i < N; ++i) {
       if (others.empty()) {
@@ -75,7 +75,7 @@ struct JointCoverage {
         continue;
       }
       const auto k = static_cast<Index>(i);
-      out.margin(k) = std::max(margin(k), margins(k));
+      out.margin(k) = (std::max)(margin(k), margins(k));
       out.ranges[i] = ranges[i].empty() || others[i].empty()
                           ? std::vector<JointRange>{}
                           : detail::joined_ranges(ranges[i], others[i], out.margin(k));

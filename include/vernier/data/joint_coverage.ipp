@@ -13,8 +13,8 @@ VERNIER_IMPL std::vector<JointRange> covered_ranges(const ConstVectorRef& values
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   const double total = sorted.back() - sorted.front();
-  margin = std::max(0.02, 0.1 * total);
-  const double wider = std::min(3 * total / static_cast<double>(sorted.size()), 0.5 * margin);
+  margin = (std::max)(0.02, 0.1 * total);
+  const double wider = (std::min)(3 * total / static_cast<double>(sorted.size()), 0.5 * margin);
   std::vector<JointRange> ranges;
   for (const double value : sorted) {
     if (ranges.empty() || value - wider - ranges.back().upper > 2 * margin)
@@ -33,7 +33,7 @@ VERNIER_IMPL std::vector<JointRange> joined_ranges(std::vector<JointRange> range
     if (out.empty() || range.lower - out.back().upper > 2 * margin)
       out.push_back(range);
     else
-      out.back().upper = std::max(out.back().upper, range.upper);
+      out.back().upper = (std::max)(out.back().upper, range.upper);
   return out;
 }
 
@@ -47,11 +47,11 @@ VERNIER_IMPL GateFactor gate_factor(const std::vector<JointRange>& ranges, doubl
     const double length = range.upper - range.lower, from_lower = q - range.lower;
     const double turned = periodic ? from_lower - turn * std::floor(from_lower / turn) : from_lower;
     if (turned >= 0 && turned <= length) return {1, 0};
-    if (turned > length) below = std::min(below, turned - length);
-    if (periodic || turned < 0) above = std::min(above, periodic ? turn - turned : -turned);
+    if (turned > length) below = (std::min)(below, turned - length);
+    if (periodic || turned < 0) above = (std::min)(above, periodic ? turn - turned : -turned);
   }
   if (above + below <= 2 * margin) return {1, 0};
-  const double outside = std::min(above, below) / margin;
+  const double outside = (std::min)(above, below) / margin;
   if (!(outside < 1)) return {0, 0};
   return {1 - outside * outside * (3 - 2 * outside), 6 * outside * (1 - outside) * (above < below ? 1 : -1) / margin};
 }

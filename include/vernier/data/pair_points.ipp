@@ -65,15 +65,15 @@ VERNIER_IMPL Pairing pair_by_name(const CsvText& commanded, const std::string& k
 
 VERNIER_IMPL Pairing check_pairs(const Pairing& pairing, std::span<const Isometry3> flanges, const PointRows& points) {
   for (const PointPair& pair : pairing.pairs)
-    require(
+    demand(
         pair.row >= 0 && pair.row < static_cast<Index>(flanges.size()) && pair.point >= 0 && pair.point < points.rows(),
         "check_pairs: row ", pair.row, " of ", flanges.size(), ", point ", pair.point, " of ", points.rows());
   return detail::proven_pairing({flanges, points, false, pairing.pairs}, pairing.faults);
 }
 
 VERNIER_IMPL Pairing pair_by_order(std::span<const Isometry3> flanges, const PointRows& points) {
-  require(static_cast<double>(flanges.size()) * static_cast<double>(points.rows()) <= 1e8,
-          "pair_by_order: ", flanges.size(), " rows and ", points.rows(), " points are too many: pair them by name");
+  demand(static_cast<double>(flanges.size()) * static_cast<double>(points.rows()) <= 1e8,
+         "pair_by_order: ", flanges.size(), " rows and ", points.rows(), " points are too many: pair them by name");
   return detail::proven_pairing({flanges, points, true, {}}, {});
 }
 
@@ -102,8 +102,8 @@ VERNIER_IMPL std::string describe(const PairingFault& fault, const CsvText& comm
       return message(p, ", ", lines(points.lines, fault.points, fault.count), ": no pose in ", c, ", expected ",
                      between(commanded.lines, fault.rows));
     case PairingFault::Kind::swapped:
-      return message(p, ", lines ", line(points.lines, std::min(fault.points.first, fault.points.last)), " and ",
-                     line(points.lines, std::max(fault.points.first, fault.points.last)), ": swapped; line ",
+      return message(p, ", lines ", line(points.lines, (std::min)(fault.points.first, fault.points.last)), " and ",
+                     line(points.lines, (std::max)(fault.points.first, fault.points.last)), ": swapped; line ",
                      line(points.lines, fault.points.first), " belongs to line ",
                      line(commanded.lines, fault.rows.first), " of ", c, ", line ",
                      line(points.lines, fault.points.last), " to line ", line(commanded.lines, fault.rows.last));

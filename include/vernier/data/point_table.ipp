@@ -17,8 +17,8 @@ namespace detail {
 VERNIER_LOCAL Index column_index(const std::vector<std::string>& columns, std::string_view name) {
   const auto found = std::find(columns.begin(), columns.end(), name);
   if (found == columns.end()) return -1;
-  require(std::find(found + 1, columns.end(), name) == columns.end(), "PointTableFormat: column ", name,
-          " is there twice");
+  demand(std::find(found + 1, columns.end(), name) == columns.end(), "PointTableFormat: column ", name,
+         " is there twice");
   return found - columns.begin();
 }
 
@@ -28,7 +28,7 @@ VERNIER_LOCAL std::vector<std::string_view> cells_of(std::string_view line, char
   if (separator == ' ') {
     for (std::size_t begin = 0;
          out.size() <= most_columns && (begin = line.find_first_not_of(" \t", begin)) != std::string_view::npos;) {
-      const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
+      const std::size_t end = (std::min)(line.find_first_of(" \t", begin), line.size());
       out.push_back(line.substr(begin, end - begin));
       begin = end;
     }
@@ -68,11 +68,11 @@ VERNIER_IMPL PointTable read_point_table(const std::string& path, const PointTab
   std::array<Index, 3> axes{};
   for (std::size_t k = 0; k < 3; ++k) {
     axes[k] = detail::column_index(format.columns, std::array{"x", "y", "z"}[k]);
-    require(axes[k] >= 0, "PointTableFormat: no column ", std::array{"x", "y", "z"}[k]);
+    demand(axes[k] >= 0, "PointTableFormat: no column ", std::array{"x", "y", "z"}[k]);
   }
-  require(format.separator != format.decimal, "PointTableFormat: '", format.decimal,
-          "' is both the separator and the decimal point");
-  require(format.unit > 0, "PointTableFormat: unit is ", format.unit, ", must be positive");
+  demand(format.separator != format.decimal, "PointTableFormat: '", format.decimal,
+         "' is both the separator and the decimal point");
+  demand(format.unit > 0, "PointTableFormat: unit is ", format.unit, ", must be positive");
 
   PointTable out{path, {}, {}, PointRows(0, 3)};
   const std::string content = detail::text_of(path);

@@ -7,6 +7,8 @@
 #include <ranges>
 #include <type_traits>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// One or more `T` in contiguous memory: a vector, an array, a span.

@@ -13,8 +13,8 @@ namespace vernier::detail {
 
 /// Number of rows held out of n; at least one on each side.
 VERNIER_LOCAL Index num_test_rows(const char* caller, Index n, double fraction) {
-  require(fraction > 0 && fraction < 1, caller, ": test_fraction is ", fraction, ", must lie strictly between 0 and 1");
-  require(n >= 2, caller, ": ", n, " rows cannot be split, at least 2 are needed");
+  demand(fraction > 0 && fraction < 1, caller, ": test_fraction is ", fraction, ", must lie strictly between 0 and 1");
+  demand(n >= 2, caller, ": ", n, " rows cannot be split, at least 2 are needed");
   return std::clamp<Index>(static_cast<Index>(std::llround(fraction * static_cast<double>(n))), 1, n - 1);
 }
 
@@ -31,16 +31,16 @@ VERNIER_IMPL SplitRows random_rows(Index n, const SplitOptions& options) {
 }
 
 VERNIER_IMPL SplitRows every_kth_row(Index n, Index k) {
-  require(k >= 2, "split_every: k is ", k, ", must be at least 2");
-  require(n >= 2, "split_every: ", n, " rows cannot be split, at least 2 are needed");
+  demand(k >= 2, "split_every: k is ", k, ", must be at least 2");
+  demand(n >= 2, "split_every: ", n, " rows cannot be split, at least 2 are needed");
   SplitRows out;
   for (Index i = 0; i < n; ++i) (i % k == 0 ? out.test : out.train).push_back(i);
   return out;
 }
 
 VERNIER_IMPL SplitRows rows_of_block(Index n, Index block, Index blocks) {
-  require(blocks >= 2 && blocks <= n, "split_block: ", blocks, " blocks of ", n, " rows, must be 2 to ", n);
-  require(block >= 0 && block < blocks, "split_block: block is ", block, ", must be 0 to ", blocks - 1);
+  demand(blocks >= 2 && blocks <= n, "split_block: ", blocks, " blocks of ", n, " rows, must be 2 to ", n);
+  demand(block >= 0 && block < blocks, "split_block: block is ", block, ", must be 0 to ", blocks - 1);
   SplitRows out;
   for (Index i = 0; i < n; ++i) (i * blocks / n == block ? out.test : out.train).push_back(i);
   return out;
@@ -62,7 +62,7 @@ VERNIER_IMPL SplitRows last_rows(Index n, double test_fraction) {
 }
 
 VERNIER_IMPL std::vector<Index> first_random_rows(Index size, Index n, std::uint64_t seed) {
-  require(n >= 1 && n <= size, "random_subset: ", n, " rows of ", size);
+  demand(n >= 1 && n <= size, "random_subset: ", n, " rows of ", size);
   std::vector<Index> order = Rng(seed).permutation(size);
   order.resize(static_cast<std::size_t>(n));
   return order;

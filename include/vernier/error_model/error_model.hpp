@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vernier/core/checked_joints.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/data/joint_coverage.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -18,43 +19,45 @@ namespace vernier {
 
 namespace detail {
 
-/// The Jacobian of `interpolated(far(q), near(q), gate(q))`; `jacobian` holds that of `far` and is overwritten.
+/// The Jacobian of `interpolated(outside(q), inside(q), gate(q))`; `jacobian` holds that of `outside` and is
+/// overwritten.
 /// @param slope gradient of the gate
-VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometry3& near, const double* near_jacobian,
-                                 const Isometry3& far, Index joints, double* jacobian) noexcept;
+VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometry3& inside,
+                                 const double* inside_jacobian, const Isometry3& outside, Index joints,
+                                 double* jacobian) noexcept;
 
 }  // namespace detail
 
 namespace detail {
 
-/// A blend of two models by a gate: `near` where the joints were measured, `far` elsewhere. Null pointers: `near`
-/// alone.
+/// A blend of two models by a gate: `inside` where the joints were measured, `outside` elsewhere. Null pointers:
+/// `inside` alone.
 template <class Near, int N>
 struct GatedModels {
-  const Near& near;
-  const Near* far;
+  const Near& inside;
+  const Near* outside;
   const JointCoverage<N>* coverage;
 
   double gate(const JointVector<N>& q) const noexcept { return coverage != nullptr ? (*coverage)(q) : 1; }
 
   Isometry3 pose(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate == 1) return near.pose(q);
-    const Isometry3 fallback = far->pose(q);
-    return gate == 0 ? fallback : interpolated(fallback, near.pose(q), gate);
+    if (gate >= 1) return inside.pose(q);
+    const Isometry3 fallback = outside->pose(q);
+    return gate <= 0 ? fallback : interpolated(fallback, inside.pose(q), gate);
   }
   Vector3 position(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate == 1) return near.position(q);
-    const Vector3 fallback = far->position(q);
-    return gate == 0 ? fallback : Vector3(fallback + gate * (near.position(q) - fallback));
+    if (gate >= 1) return inside.position(q);
+    const Vector3 fallback = outside->position(q);
+    return gate <= 0 ? fallback : Vector3(fallback + gate * (inside.position(q) - fallback));
   }
   PoseAndJacobian<N> pose_and_jacobian(const JointVector<N>& q) const noexcept {
     const double gate = this->gate(q);
-    if (gate == 1) return near.pose_and_jacobian(q);
-    PoseAndJacobian<N> out = far->pose_and_jacobian(q);
-    if (gate == 0) return out;
-    const PoseAndJacobian<N> at = near.pose_and_jacobian(q);
+    if (gate >= 1) return inside.pose_and_jacobian(q);
+    PoseAndJacobian<N> out = outside->pose_and_jacobian(q);
+    if (gate <= 0) return out;
+    const PoseAndJacobian<N> at = inside.pose_and_jacobian(q);
     const Eigen::Matrix<double, 1, N> slope = coverage->derivative(q);
     blend_jacobians(gate, slope.data(), at.pose, at.jacobian.data(), out.pose, N, out.jacobian.data());
     out.pose = interpolated(out.pose, at.pose, gate);
@@ -72,7 +75,10 @@ struct ThermalRates {
   VectorX parameters{};  ///< changes of the parameters as `ArmGeometry` counts them [m/K, rad/K]
 
   /// Equal in every entry.
-  bool operator==(const ThermalRates&) const = default;
+  bool operator==(const ThermalRates& other) const {
+    return same_value(reference, other.reference) && same_value(lower, other.lower) && same_value(upper, other.upper) &&
+           parameters == other.parameters;
+  }
 };
 
 template <class C>
@@ -124,7 +130,7 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
     ReachSphere out = vernier::reach_sphere(identified_);
     if (fallback() != nullptr) {  // positions are blended
       const ReachSphere other = vernier::reach_sphere(*fallback());
-      out.radius = std::max(out.radius, other.radius) + (out.centre - other.centre).norm();
+      out.radius = (std::max)(out.radius, other.radius) + (out.centre - other.centre).norm();
     }
     out.radius *= 1 + 1e-6;  // tilts are rotations to first order
     return out;
@@ -135,9 +141,9 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
   /// This model with a geometry that changes with temperature; its present parameters are those at the reference.
   /// @throws std::invalid_argument for another number of rates
   ErrorModel with_thermal(ThermalRates rates) const {
-    require(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
-            "ErrorModel: ", rates.parameters.size(), " thermal rates of ", 12 + 5 * dof,
-            " parameters, all must be finite");
+    demand(rates.parameters.size() == 12 + 5 * dof && rates.parameters.allFinite(),
+           "ErrorModel: ", rates.parameters.size(), " thermal rates of ", 12 + 5 * dof,
+           " parameters, all must be finite");
     ErrorModel out = *this;
     out.thermal_ = std::move(rates);
     return out;

@@ -62,15 +62,15 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::first_station() const {
 VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::of_arm(const FittedArm& now) const {
   ErrorModelEstimate out = *this;
   const Index terms = arm.terms().size();
-  require(now.errors.terms().size() == terms, "of_arm: ", now.errors.terms().size(),
-          " terms of joint errors, expected ", terms);
+  demand(now.errors.terms().size() == terms, "of_arm: ", now.errors.terms().size(), " terms of joint errors, expected ",
+         terms);
   out.arm = detail::parameterised(now, arm.geometric(), arm.scales().tail(terms), arm.precisions().tail(terms),
                                   arm.thermal_rates(0));
   return out;
 }
 
 VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std::vector<double>& angles) const {
-  require(!angles.empty(), "transmission: no angles");
+  demand(!angles.empty(), "transmission: no angles");
   const JointTerms& terms = arm.terms();
   const Index n = static_cast<Index>(angles.size());
   const Index count = terms.transmission[static_cast<std::size_t>(joint)].size();
@@ -89,7 +89,7 @@ VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std
   for (Index k = 0; k < n; ++k) {
     double variance = 0;
     for (Index c = 0; c < count; ++c) variance += spread(k, c) * rows(k, c);
-    out.std(k) = std::sqrt(std::max(variance, 0.0));
+    out.std(k) = std::sqrt((std::max)(variance, 0.0));
   }
   return out;
 }
@@ -163,7 +163,7 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
   std::vector<Matrix6> all;
   const VectorX steps = arm.steps();
   for (Index first = 0; first < joints.rows(); first += batch) {
-    const Index n = std::min(batch, joints.rows() - first);
+    const Index n = (std::min)(batch, joints.rows() - first);
     const MatrixX q = detail::consecutive_rows(joints, first, n),
                   before = previous.rows() > 0 ? detail::consecutive_rows(previous, first, n) : MatrixX();
     VectorX warmer = VectorX::Zero(n);

@@ -15,11 +15,11 @@ VERNIER_IMPL void ErrorModelOptions::validate() const {
                                     {"coupling_prior_std", coupling_prior_std},
                                     {"hysteresis_prior_std", hysteresis_prior_std},
                                     {"tilt_prior_std", tilt_prior_std}})
-    require(value > 0 && std::isfinite(value), "ErrorModelOptions: ", name, " is ", value, ", must be positive");
-  require(harmonics >= 0 && harmonics <= 500, "ErrorModelOptions: harmonics is ", harmonics, ", must lie in 0..500");
-  require(num_validation_poses >= 1, "ErrorModelOptions: num_validation_poses is ", num_validation_poses,
-          ", must be at least 1");
-  require(std::abs(down.norm() - 1) < 1e-6, "ErrorModelOptions: down has length ", down.norm(), ", must be 1");
+    demand(value > 0 && std::isfinite(value), "ErrorModelOptions: ", name, " is ", value, ", must be positive");
+  demand(harmonics >= 0 && harmonics <= 500, "ErrorModelOptions: harmonics is ", harmonics, ", must lie in 0..500");
+  demand(num_validation_poses >= 1, "ErrorModelOptions: num_validation_poses is ", num_validation_poses,
+         ", must be at least 1");
+  demand(std::abs(down.norm() - 1) < 1e-6, "ErrorModelOptions: down has length ", down.norm(), ", must be 1");
 }
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/error_model/detail/assessment.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
@@ -173,9 +174,9 @@ class ErrorModelFit {
   /// better.
   VERNIER_LOCAL bool inherit(ErrorModelOutput& out) {
     const ArmPrior& prior = *options_.prior;
-    require(prior.nominal.joints() == input_.nominal.joints() && prior.nominal.modified() == input_.nominal.modified(),
-            "fit_error_model: the earlier calibration is of an arm of ", prior.nominal.joints(), " joints in the ",
-            prior.nominal.modified() ? "modified" : "standard", " convention");
+    demand(prior.nominal.joints() == input_.nominal.joints() && prior.nominal.modified() == input_.nominal.modified(),
+           "fit_error_model: the earlier calibration is of an arm of ", prior.nominal.joints(), " joints in the ",
+           prior.nominal.modified() ? "modified" : "standard", " convention");
     ErrorModelEstimate& estimate = out.estimate;
     const CalibrationProblem without = problem_;
     const double error_without = model_.left_out_errors().mean();
@@ -203,7 +204,7 @@ class ErrorModelFit {
     const double error_with = model_.left_out_errors().mean();
     transfer.name = prior.name;
     constexpr double unrelated = 0.6;  // of errors that have nothing to do with each other it would be above 1
-    const bool holds = std::min(transfer.geometry, transfer.joints) < unrelated;
+    const bool holds = (std::min)(transfer.geometry, transfer.joints) < unrelated;
     transfer.used = converged && holds && error_with < error_without;
     estimate.prior = transfer;
     model_.blocks.push_back(
@@ -214,12 +215,13 @@ class ErrorModelFit {
       return false;
     }
     model_.converged = true;
-    if (estimate.fallback_error == 0) estimate.fallback_error = error_without;
+    if (same_value(estimate.fallback_error, 0)) estimate.fallback_error = error_without;
     expected_ = before.arm.precisions().tail(terms.size());
     if (before.temperature_std > 0) {
-      out.temperatures = estimate.temperature_std > 0 ? std::array{std::min(out.temperatures[0], prior.temperatures[0]),
-                                                                   std::max(out.temperatures[1], prior.temperatures[1])}
-                                                      : prior.temperatures;
+      out.temperatures = estimate.temperature_std > 0
+                             ? std::array{(std::min)(out.temperatures[0], prior.temperatures[0]),
+                                          (std::max)(out.temperatures[1], prior.temperatures[1])}
+                             : prior.temperatures;
       estimate.mean_temperature = before.mean_temperature;
       estimate.temperature_std = before.temperature_std;
     } else {
@@ -257,11 +259,11 @@ VERNIER_IMPL ErrorModelOutput fit_error_model(ErrorModelInput input, const Error
                                               const SensorModel& sensors, PriorSearch search, ExecutorRef executor) {
   options.validate();
   sensors.validate();
-  require(!input.sets.empty(), "fit_error_model: no measurements");
+  demand(!input.sets.empty(), "fit_error_model: no measurements");
   const MeasuredSet& first = input.sets.front();
   for (const MeasuredSet& set : input.sets)
-    require(first.locates() || set.kind() == first.kind(), "fit_error_model: ", set.name, " beside ", first.name,
-            ", but without poses");
+    demand(first.locates() || set.kind() == first.kind(), "fit_error_model: ", set.name, " beside ", first.name,
+           ", but without poses");
   input.place();
   return ErrorModelFit(input, options, sensors, executor).run(search);
 }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "vernier/core/same_value.hpp"
+
 #include "vernier/error_model/joint_spectrum.hpp"
 
 namespace vernier {
@@ -65,11 +67,11 @@ VERNIER_IMPL std::vector<HarmonicEstimate> lines_in(const std::vector<HarmonicEs
   for (const HarmonicEstimate& one : spectrum)
     if (one.chi_square > threshold) sorted.push_back(one);
   std::sort(sorted.begin(), sorted.end(), [](const HarmonicEstimate& a, const HarmonicEstimate& b) {
-    return a.amplitude > b.amplitude || (a.amplitude == b.amplitude && a.order < b.order);
+    return a.amplitude > b.amplitude || (same_value(a.amplitude, b.amplitude) && a.order < b.order);
   });
   for (const HarmonicEstimate& one : sorted) {
     const bool beside = std::any_of(out.begin(), out.end(), [&](const HarmonicEstimate& line) {
-      return std::abs(line.order - one.order) <= std::min(4, one.order / 4);
+      return std::abs(line.order - one.order) <= (std::min)(4, one.order / 4);
     });
     if (!beside) out.push_back(one);
   }

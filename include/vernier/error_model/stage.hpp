@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// Stages of a calibration, in order. Each has the effects of those before it, as far as the data support them.

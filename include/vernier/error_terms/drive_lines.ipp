@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 
 namespace vernier {
@@ -33,8 +34,8 @@ VERNIER_LOCAL std::string source_at(int order, const JointDrive& drive) {
 VERNIER_IMPL HarmonicSpectrum lines_of(const JointDrive& drive) {
   HarmonicSpectrum out;
   if (const int n = drive.encoder_periods; n > 0) {
-    out.push_back({std::max(1, n - 2), n + 2, 10e-6});
-    out.push_back({std::max(1, 2 * n - 2), 2 * n + 2, 6e-6});
+    out.push_back({(std::max)(1, n - 2), n + 2, 10e-6});
+    out.push_back({(std::max)(1, 2 * n - 2), 2 * n + 2, 6e-6});
   }
   for (const int periods : {2, 4, 5, 8, 10, 12, 20, 24}) {
     const int order = static_cast<int>(std::lround(periods * drive.gear_ratio));
@@ -50,7 +51,7 @@ VERNIER_IMPL std::string cause_of(int order, const JointDrive& drive) {
   if (const std::string stated = detail::source_at(order, drive); !stated.empty()) return stated;
   JointDrive typical;
   if (drive.encoder_periods == 0) typical.encoder_periods = 128;
-  if (drive.gear_ratio == 0) typical.gear_ratio = 101;
+  if (same_value(drive.gear_ratio, 0)) typical.gear_ratio = 101;
   const std::string source = detail::source_at(order, typical);
   return source.empty() ? source : "probably " + source;
 }

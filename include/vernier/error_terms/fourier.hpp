@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -46,7 +47,9 @@ struct HarmonicBand {
   double std;  ///< of each coefficient [rad]
 
   /// Equal in every entry.
-  bool operator==(const HarmonicBand&) const = default;
+  constexpr bool operator==(const HarmonicBand& other) const {
+    return first == other.first && last == other.last && same_value(std, other.std);
+  }
 };
 
 /// Expected sizes of harmonics by bands of orders; where bands overlap, the last one holds.

@@ -46,7 +46,7 @@ VERNIER_IMPL Fourier Fourier::up_to(int highest) {
 VERNIER_IMPL void Fourier::validate() const {
   int before = 0;
   for (const int order : orders) {
-    require(order > before, "Fourier: order ", order, " after ", before, ", must ascend from 1");
+    demand(order > before, "Fourier: order ", order, " after ", before, ", must ascend from 1");
     before = order;
   }
 }
@@ -84,7 +84,7 @@ VERNIER_IMPL double expected_std(const HarmonicSpectrum& spectrum, int order) {
 
 VERNIER_IMPL Fourier orders_of(const HarmonicSpectrum& spectrum, int highest) {
   int last = 0;
-  for (const HarmonicBand& band : spectrum) last = std::max(last, std::min(band.last, highest));
+  for (const HarmonicBand& band : spectrum) last = (std::max)(last, (std::min)(band.last, highest));
   Fourier out;
   for (int order = 1; order <= last; ++order)
     if (expected_std(spectrum, order) > 0) out.orders.push_back(order);

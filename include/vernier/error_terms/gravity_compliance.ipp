@@ -23,8 +23,8 @@ struct LinkVectors {
 
 VERNIER_IMPL GravityCompliance::GravityCompliance(const detail::ChainTable& chain, const Vector3& down)
     : chain_(chain), down_(down) {
-  require(std::abs(down.norm() - 1) < 1e-6, "GravityCompliance: the direction of gravity has length ", down.norm(),
-          ", must be 1");
+  demand(std::abs(down.norm() - 1) < 1e-6, "GravityCompliance: the direction of gravity has length ", down.norm(),
+         ", must be 1");
 }
 
 VERNIER_IMPL void GravityCompliance::basis(const double* q, MatrixRef out) const noexcept {
@@ -50,7 +50,7 @@ VERNIER_IMPL void GravityCompliance::add(const double* q, const double* products
     // moment(k): weights of the links from k on, about a point on axis k
     const auto moment = [&](int k) {
       Vector3 sum = Vector3::Zero();
-      for (int j = std::max(i, k); j < n; ++j) {
+      for (int j = (std::max)(i, k); j < n; ++j) {
         const Vector3 arm = links.origin(j) - links.point(k);
         sum += products[index(i, j)] * arm;
       }

@@ -52,8 +52,8 @@ VERNIER_LOCAL void find_tilting_frames(const ChainView& c, const double* q, Tilt
 
 VERNIER_IMPL GravityTilt::GravityTilt(const detail::ChainTable& chain, const Vector3& down)
     : chain_(chain), down_(down) {
-  require(std::abs(down.norm() - 1) < 1e-6, "GravityTilt: the direction of gravity has length ", down.norm(),
-          ", must be 1");
+  demand(std::abs(down.norm() - 1) < 1e-6, "GravityTilt: the direction of gravity has length ", down.norm(),
+         ", must be 1");
 }
 
 VERNIER_IMPL void GravityTilt::basis(const double* q, MatrixRef out) const noexcept {

@@ -189,8 +189,8 @@ class WithJointErrors : public ChecksJoints<WithJointErrors<C>> {
   /// @throws std::invalid_argument for joint errors of another number of joints
   WithJointErrors(const Chain& chain, JointErrors errors = {})  // NOLINT(google-explicit-constructor)
       : chain_(chain), errors_(std::move(errors)) {
-    require(errors_.empty() || errors_.terms().joints == dof, "WithJointErrors: errors of ", errors_.terms().joints,
-            " joints for a chain of ", dof);
+    demand(errors_.empty() || errors_.terms().joints == dof, "WithJointErrors: errors of ", errors_.terms().joints,
+           " joints for a chain of ", dof);
   }
 
   /// The chain.

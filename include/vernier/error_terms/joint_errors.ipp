@@ -5,6 +5,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_terms/joint_errors.hpp"
 
@@ -34,7 +35,7 @@ VERNIER_IMPL void detail::visit_common_terms(const JointTerms& first, const Join
     for (const JointTermBlock& b : second.blocks()) {
       if (a.kind != b.kind || a.joint != b.joint) continue;
       if (a.joint < 0) {
-        for (Index k = 0; k < std::min(a.count, b.count); ++k) f(a.begin + k, b.begin + k);
+        for (Index k = 0; k < (std::min)(a.count, b.count); ++k) f(a.begin + k, b.begin + k);
         continue;
       }
       const Fourier &before = first.transmission[static_cast<std::size_t>(a.joint)],
@@ -102,23 +103,23 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
 
 VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
     : terms_(std::move(terms)), coefficients_(std::move(coefficients)) {
-  require(terms_.transmission.size() == static_cast<std::size_t>(terms_.joints), "JointErrors: transmissions of ",
-          terms_.transmission.size(), " joints, expected ", terms_.joints);
-  require(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
-          terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
-  require(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
-          terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
+  demand(terms_.transmission.size() == static_cast<std::size_t>(terms_.joints), "JointErrors: transmissions of ",
+         terms_.transmission.size(), " joints, expected ", terms_.joints);
+  demand(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
+         terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
+  demand(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
+         terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
-  require(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
-          "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
+  demand(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
+         "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
   for (const JointRange& range : terms_.linear_ranges)
-    require(range.lower <= range.upper, "JointErrors: a linear range ends at ", range.upper, ", below its start");
+    demand(range.lower <= range.upper, "JointErrors: a linear range ends at ", range.upper, ", below its start");
   for (const double width : terms_.hysteresis)
-    require(width > 0 && std::isfinite(width), "JointErrors: a width of the hysteresis is ", width,
-            ", must be positive");
-  require(coefficients_.size() == terms_.size(), "JointErrors: ", coefficients_.size(), " coefficients for ",
-          terms_.size(), " terms");
-  require(detail::all_finite(coefficients_), "JointErrors: a coefficient is not finite");
+    demand(width > 0 && std::isfinite(width), "JointErrors: a width of the hysteresis is ", width,
+           ", must be positive");
+  demand(coefficients_.size() == terms_.size(), "JointErrors: ", coefficients_.size(), " coefficients for ",
+         terms_.size(), " terms");
+  demand(detail::all_finite(coefficients_), "JointErrors: a coefficient is not finite");
   const Index dense = terms_.num_dense_terms();
   harmonics_ = {terms_.transmission, {coefficients_.data() + dense, coefficients_.data() + coefficients_.size()}};
 }
@@ -134,7 +135,7 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     for (int i = 0; i < n; ++i) {
       const double linear = terms_.linear_value(i, q[i]);
       effective[i] += beta[i] * linear;
-      if (linear == q[i]) derivative[i * n + i] += beta[i];
+      if (same_value(linear, q[i])) derivative[i * n + i] += beta[i];
     }
     beta += n;
   }
@@ -142,7 +143,7 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     for (int i = 1; i < n; ++i) {
       const double linear = terms_.linear_value(i - 1, q[i - 1]);
       effective[i] += beta[i - 1] * linear;
-      if (linear == q[i - 1]) derivative[(i - 1) * n + i] += beta[i - 1];
+      if (same_value(linear, q[i - 1])) derivative[(i - 1) * n + i] += beta[i - 1];
     }
     beta += n - 1;
   }
@@ -154,7 +155,7 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     for (int i = 0; i < n; ++i) {
       const double step = detail::step_of(q, previous, i, width);
       effective[i] += beta[i] * step;
-      if (step != 0) derivative[i * n + i] += beta[i] * (1 - step * step) / width;
+      if (!same_value(step, 0)) derivative[i * n + i] += beta[i] * (1 - step * step) / width;
     }
     beta += n;
   }
@@ -181,7 +182,7 @@ VERNIER_IMPL double JointErrors::half_loop(int i) const noexcept {
   for (const JointTermBlock& block : terms_.blocks())
     for (Index k = i; block.kind == JointTermBlock::Kind::hysteresis && k < block.count; k += terms_.joints) {
       sum += coefficients_(block.begin + k);
-      largest = std::max(largest, std::abs(sum));
+      largest = (std::max)(largest, std::abs(sum));
     }
   return largest;
 }

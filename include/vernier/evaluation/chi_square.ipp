@@ -8,9 +8,9 @@
 namespace vernier {
 
 VERNIER_IMPL double chi_square_tail(double x, double dof) {
-  require(dof > 0 && std::isfinite(dof), "chi_square_tail: ", dof, " degrees of freedom must be positive");
-  require(x >= 0, "chi_square_tail: ", x, " must not be negative");
-  if (x == 0) return 1;
+  demand(dof > 0 && std::isfinite(dof), "chi_square_tail: ", dof, " degrees of freedom must be positive");
+  demand(x >= 0, "chi_square_tail: ", x, " must not be negative");
+  if (x <= 0) return 1;
   if (std::isinf(x)) return 0;
   const double a = dof / 2, z = x / 2, front = std::exp(a * std::log(z) - z - std::lgamma(a));
   constexpr int most = 100000;

@@ -12,6 +12,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/detail/iso9283_visits.hpp"
 #include "vernier/evaluation/quantile.hpp"
@@ -81,7 +82,7 @@ VERNIER_LOCAL std::pair<double, double> repeatability_interval(const PointRows& 
   const PointRows centred = rows_minus(points, centroid(points));
   VectorX counts = VectorX::Ones(n), l(n), t(draws);
   const DrawnRepeatability all = drawn_repeatability(centred, counts, l);
-  if (all.error == 0) return {all.value, all.value};
+  if (same_value(all.error, 0)) return {all.value, all.value};
   Rng rng(seed);
   Index kept = 0;
   for (int k = 0; k < draws; ++k) {
@@ -93,8 +94,8 @@ VERNIER_LOCAL std::pair<double, double> repeatability_interval(const PointRows& 
   if (kept == 0) return {all.value, all.value};
   t.conservativeResize(kept);
   std::sort(t.begin(), t.end());
-  return {std::max(0.0, all.value - quantile_of_sorted(t, 0.975) * all.error),
-          std::max(0.0, all.value - quantile_of_sorted(t, 0.025) * all.error)};
+  return {(std::max)(0.0, all.value - quantile_of_sorted(t, 0.975) * all.error),
+          (std::max)(0.0, all.value - quantile_of_sorted(t, 0.025) * all.error)};
 }
 
 VERNIER_LOCAL Iso9283Pose accuracy_of_pose(int pose, const VisitedPose& visited, const Isometry3& command,
@@ -186,10 +187,10 @@ VERNIER_LOCAL Iso9283Variation variation_of(int pose, const std::map<int, Visite
     centres.push_back(centroid(visited.positions));
     if (oriented) rotations.push_back(karcher_mean(visited.rotations));
     for (std::size_t k = 0; k + 1 < centres.size(); ++k) {
-      out.vap = std::max(out.vap, (centres.back() - centres[k]).norm());
+      out.vap = (std::max)(out.vap, (centres.back() - centres[k]).norm());
       if (!oriented) continue;
       const Vector3 turn = rotation_difference(rotations.back(), rotations[k]);
-      for (Index c = 0; c < 3; ++c) out.vap_abc(c) = std::max(out.vap_abc(c), std::abs(turn(c)));
+      for (Index c = 0; c < 3; ++c) out.vap_abc(c) = (std::max)(out.vap_abc(c), std::abs(turn(c)));
     }
   }
   out.directions = static_cast<int>(centres.size());
@@ -203,8 +204,8 @@ VERNIER_LOCAL Iso9283Drift drift_of(int pose, const VisitedPose& visited, const 
     double time = 0;
     for (Index k = i; k < i + together; ++k) time += visited.visits[static_cast<std::size_t>(k)]->time_s / together;
     out.groups.push_back({time, (centroid(points) - translation(command)).norm(), repeatability(points)});
-    out.dap = std::max(out.dap, std::abs(out.groups.back().ap - out.groups.front().ap));
-    out.drp = std::max(out.drp, std::abs(out.groups.back().rp - out.groups.front().rp));
+    out.dap = (std::max)(out.dap, std::abs(out.groups.back().ap - out.groups.front().ap));
+    out.drp = (std::max)(out.drp, std::abs(out.groups.back().rp - out.groups.front().rp));
   }
   return out;
 }
@@ -213,8 +214,8 @@ VERNIER_LOCAL Iso9283Drift drift_of(int pose, const VisitedPose& visited, const 
 
 VERNIER_IMPL Iso9283 iso9283(std::span<const Iso9283Visit> visits, std::span<const Isometry3> commanded,
                              const Iso9283Options& options) {
-  require(options.draws >= 0, "iso9283: ", options.draws, " draws, must be 0 or more");
-  require(options.drift_visits >= 2, "iso9283: ", options.drift_visits, " visits in a group, must be at least 2");
+  demand(options.draws >= 0, "iso9283: ", options.draws, " draws, must be 0 or more");
+  demand(options.drift_visits >= 2, "iso9283: ", options.drift_visits, " visits in a group, must be at least 2");
   const detail::VisitedPoses visited = detail::visited_poses(visits, commanded, options.orientations);
   const auto command = [&](int pose) { return commanded[static_cast<std::size_t>(pose - 1)]; };
   Iso9283 out;

@@ -59,7 +59,7 @@ VERNIER_LOCAL PoseLine along_path(const PoseLine& path, const std::vector<Isomet
   for (std::size_t k = 1; k < run.size(); ++k) {
     // corners that are cut short are passed in less way than the path's; noise may look like a step back
     const double reach = 3 * ((translation(run[k]) - translation(run[k - 1])).norm() + last.distance);
-    last = nearest_on_path(path, translation(run[k]), last.arc, std::min(length, last.arc + reach));
+    last = nearest_on_path(path, translation(run[k]), last.arc, (std::min)(length, last.arc + reach));
     out.arc.push_back(last.arc);
   }
   return out;
@@ -94,16 +94,16 @@ VERNIER_IMPL Iso9283Path iso9283_path(std::span<const Isometry3> commanded,
   constexpr int points_of_norm = 10;
   constexpr std::size_t runs_of_norm = 10;
   const bool oriented = options.orientations;
-  require(commanded.size() >= 2, "iso9283_path: ", counted(commanded.size(), "commanded pose", "commanded poses"),
-          ", a path has at least 2");
-  require(!runs.empty(), "iso9283_path: no runs");
-  require(options.points >= 1, "iso9283_path: ", options.points, " points, must be at least 1");
+  demand(commanded.size() >= 2, "iso9283_path: ", counted(commanded.size(), "commanded pose", "commanded poses"),
+         ", a path has at least 2");
+  demand(!runs.empty(), "iso9283_path: no runs");
+  demand(options.points >= 1, "iso9283_path: ", options.points, " points, must be at least 1");
   detail::PoseLine path;
   for (std::size_t k = 0; k < commanded.size(); ++k) {
     if (const char* fault = detail::fault_of_pose(commanded[k], oriented))
-      require(false, "iso9283_path: commanded pose ", k + 1, ": ", fault);
+      demand(false, "iso9283_path: commanded pose ", k + 1, ": ", fault);
     const double step = k == 0 ? 0 : (translation(commanded[k]) - translation(commanded[k - 1])).norm();
-    require(k == 0 || step > 0, "iso9283_path: commanded poses ", k, " and ", k + 1, " have the same position");
+    demand(k == 0 || step > 0, "iso9283_path: commanded poses ", k, " and ", k + 1, " have the same position");
     path.arc.push_back(k == 0 ? 0 : path.arc.back() + step);
     path.poses.push_back(commanded[k]);
   }
@@ -114,17 +114,17 @@ VERNIER_IMPL Iso9283Path iso9283_path(std::span<const Isometry3> commanded,
 
   std::vector<std::vector<Isometry3>> passed(stations.size());
   for (std::size_t j = 0; j < runs.size(); ++j) {
-    require(runs[j].size() >= 2, "iso9283_path: run ", j + 1, " has ", runs[j].size(), " poses, must be at least 2");
+    demand(runs[j].size() >= 2, "iso9283_path: run ", j + 1, " has ", runs[j].size(), " poses, must be at least 2");
     for (std::size_t k = 0; k < runs[j].size(); ++k)
       if (const char* fault = detail::fault_of_pose(runs[j][k], oriented))
-        require(false, "iso9283_path: run ", j + 1, ", pose ", k + 1, ": ", fault);
+        demand(false, "iso9283_path: run ", j + 1, ", pose ", k + 1, ": ", fault);
     const detail::PoseLine run = detail::along_path(path, runs[j]);
-    require(run.arc.front() <= stations.front() && run.arc.back() >= stations.back(), "iso9283_path: run ", j + 1,
-            " passes the path from ", run.arc.front(), " m to ", run.arc.back(), " m, the points to compare lie from ",
-            stations.front(), " m to ", stations.back(), " m");
+    demand(run.arc.front() <= stations.front() && run.arc.back() >= stations.back(), "iso9283_path: run ", j + 1,
+           " passes the path from ", run.arc.front(), " m to ", run.arc.back(), " m, the points to compare lie from ",
+           stations.front(), " m to ", stations.back(), " m");
     for (std::size_t i = 0; i < stations.size(); ++i) passed[i].push_back(run.pose(stations[i], oriented));
     double gap = 0;
-    for (std::size_t k = 1; k < run.arc.size(); ++k) gap = std::max(gap, run.arc[k] - run.arc[k - 1]);
+    for (std::size_t k = 1; k < run.arc.size(); ++k) gap = (std::max)(gap, run.arc[k] - run.arc[k - 1]);
     if (gap > spacing)
       out.departures.push_back(message("run ", j + 1, ": poses are up to ", gap, " m apart, the points to compare ",
                                        spacing, " m: interpolated between them"));
@@ -138,11 +138,11 @@ VERNIER_IMPL Iso9283Path iso9283_path(std::span<const Isometry3> commanded,
   for (std::size_t i = 0; i < stations.size(); ++i) {
     out.points.push_back(detail::accuracy_at_point(stations[i], path.pose(stations[i], oriented), passed[i], oriented));
     const Iso9283PathPoint& one = out.points.back();
-    out.at = std::max(out.at, one.at);
-    out.rt = i == 0 ? one.rt : std::max(out.rt, one.rt);
+    out.at = (std::max)(out.at, one.at);
+    out.rt = i == 0 ? one.rt : (std::max)(out.rt, one.rt);
     for (Index c = 0; c < 3; ++c) {  // NaN of all points, or of none
-      out.at_abc(c) = i == 0 ? std::abs(one.at_abc(c)) : std::max(out.at_abc(c), std::abs(one.at_abc(c)));
-      out.rt_abc(c) = i == 0 ? one.rt_abc(c) : std::max(out.rt_abc(c), one.rt_abc(c));
+      out.at_abc(c) = i == 0 ? std::abs(one.at_abc(c)) : (std::max)(out.at_abc(c), std::abs(one.at_abc(c)));
+      out.rt_abc(c) = i == 0 ? one.rt_abc(c) : (std::max)(out.rt_abc(c), one.rt_abc(c));
     }
   }
   return out;

@@ -13,10 +13,10 @@
 namespace vernier {
 
 VERNIER_IMPL std::array<Isometry3, 5> iso9283_poses(const Iso9283Cube& cube, const Matrix3& orientation, int plane) {
-  require(cube.edge > 0, "iso9283_poses: an edge of ", cube.edge, " m, must be positive");
-  require(plane >= 1 && plane <= 4, "iso9283_poses: plane ", plane, ", must be 1 to 4");
+  demand(cube.edge > 0, "iso9283_poses: an edge of ", cube.edge, " m, must be positive");
+  demand(plane >= 1 && plane <= 4, "iso9283_poses: plane ", plane, ", must be 1 to 4");
   const Isometry3 pose = rigid_motion(orientation, cube.centre);
-  if (const char* fault = detail::fault_of_pose(pose, true)) require(false, "iso9283_poses: ", fault);
+  if (const char* fault = detail::fault_of_pose(pose, true)) demand(false, "iso9283_poses: ", fault);
   std::array<Vector3, 4> above{Vector3(1, 1, 1), Vector3(-1, 1, 1), Vector3(-1, -1, 1), Vector3(1, -1, 1)};
   const Vector3 first = above[static_cast<std::size_t>(plane - 1)], second = above[static_cast<std::size_t>(plane % 4)];
   std::array<Isometry3, 5> out;
@@ -34,9 +34,9 @@ VERNIER_IMPL std::optional<Iso9283Cube> largest_iso9283_cube(const Vector3& lowe
                                                              FunctionRef<bool(const Isometry3&)> reachable,
                                                              const Matrix3& orientation, int plane) {
   const Vector3 diagonal = upper - lower;
-  require(diagonal.minCoeff() > 0 && detail::all_finite(lower) && detail::all_finite(upper),
-          "largest_iso9283_cube: the lower corner (", lower.x(), ", ", lower.y(), ", ", lower.z(),
-          ") must be below the upper one (", upper.x(), ", ", upper.y(), ", ", upper.z(), ")");
+  demand(diagonal.minCoeff() > 0 && detail::all_finite(lower) && detail::all_finite(upper),
+         "largest_iso9283_cube: the lower corner (", lower.x(), ", ", lower.y(), ", ", lower.z(),
+         ") must be below the upper one (", upper.x(), ", ", upper.y(), ", ", upper.z(), ")");
   constexpr int edges = 50, half = 4;
   std::vector<Vector3> places;  // in units of the free play, the middle first
   for (int i = -half; i <= half; ++i)

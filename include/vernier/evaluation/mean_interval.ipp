@@ -11,7 +11,7 @@ namespace vernier {
 
 VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
   const Index n = errors.size();
-  require(n > 0, "MeanInterval: no errors");
+  demand(n > 0, "MeanInterval: no errors");
   const double mean = errors.mean();
   if (n < 5) return {mean, 0, std::numeric_limits<double>::infinity()};
   // the quantile of Student's t at 0.975, expanded about that of the normal distribution
@@ -22,7 +22,7 @@ VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
   double squares = 0;
   for (const double error : errors) squares += (error - mean) * (error - mean);
   const double half = t * std::sqrt(squares / v / static_cast<double>(n));
-  return {mean, std::max(0.0, mean - half), mean + half};
+  return {mean, (std::max)(0.0, mean - half), mean + half};
 }
 
 }  // namespace vernier

@@ -101,7 +101,7 @@ VectorX position_errors(const M& model, const Dataset<M::dof>& data) {
 /// @throws std::invalid_argument where the data have positions only
 template <PosePredictor M>
 VectorX rotation_errors(const M& model, const Dataset<M::dof>& data) {
-  require(data.has_orientations(), "rotation_errors: the data have positions only");
+  demand(data.has_orientations(), "rotation_errors: the data have positions only");
   return detail::rotation_errors_of(detail::predicted_poses(model, data), data.orientations());
 }
 
@@ -127,8 +127,8 @@ ErrorStatistics prediction_error(const M&, const Dataset<N>&) {
 template <KinematicModel Actual, KinematicModel Reference>
 PositioningErrors positioning_errors(const Actual& actual, const Reference& reference,
                                      const JointRows<Actual::dof>& commands, const JointRows<Actual::dof>& targets) {
-  require(commands.rows() == targets.rows(), "positioning_errors: ", commands.rows(), " commands for ", targets.rows(),
-          " targets");
+  demand(commands.rows() == targets.rows(), "positioning_errors: ", commands.rows(), " commands for ", targets.rows(),
+         " targets");
   return detail::pose_errors(detail::predicted_poses(reference, targets), detail::predicted_poses(actual, commands));
 }
 

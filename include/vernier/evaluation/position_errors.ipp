@@ -10,7 +10,7 @@
 namespace vernier {
 
 VERNIER_IMPL ErrorStatistics ErrorStatistics::of(const ConstVectorRef& errors) {
-  require(errors.size() >= 1, "ErrorStatistics: no errors");
+  demand(errors.size() >= 1, "ErrorStatistics: no errors");
   VectorX sorted = errors;
   std::sort(sorted.begin(), sorted.end());
   return {errors.mean(),

@@ -13,7 +13,7 @@ namespace vernier {
 VERNIER_IMPL ArmParameterisation::ArmParameterisation(std::vector<ArmGeometry> arms,
                                                       std::vector<GeometricUnknown> unknowns)
     : arms_(std::move(arms)), unknowns_(std::move(unknowns)) {
-  require(!arms_.empty(), "ArmParameterisation: no stations");
+  demand(!arms_.empty(), "ArmParameterisation: no stations");
   for (const auto& arm : arms_) start_.push_back(arm.parameters());
   errors_ = JointErrors(JointTerms(arms_.front().joints()), VectorX());
 }
@@ -28,8 +28,8 @@ VERNIER_IMPL void ArmParameterisation::set_terms(JointTerms terms, VectorX scale
 }
 
 VERNIER_IMPL void ArmParameterisation::set_precisions(const VectorX& precisions) {
-  require(precisions.size() == size(), "ArmParameterisation: ", precisions.size(), " precisions of ", size(),
-          " unknowns");
+  demand(precisions.size() == size(), "ArmParameterisation: ", precisions.size(), " precisions of ", size(),
+         " unknowns");
   for (std::size_t k = 0; k < unknowns_.size(); ++k) unknowns_[k].precision = precisions(static_cast<Index>(k));
   coefficient_precisions_ = precisions.tail(terms().size());
 }
@@ -74,7 +74,7 @@ VERNIER_IMPL VectorX ArmParameterisation::steps() const {
       [&](const GeometricUnknown& u) {
         const auto unknown = static_cast<std::size_t>(k++);
         if (u.thermal) return thermal_rates_.empty() ? 0.0 : thermal_rates_[unknown] / u.scale;
-        const auto s = static_cast<std::size_t>(std::max(0, u.station));
+        const auto s = static_cast<std::size_t>((std::max)(0, u.station));
         return (now[s](u.parameter) - start_[s](u.parameter)) / u.scale;
       },
       errors_.empty() ? VectorX() : VectorX(errors_.coefficients().cwiseQuotient(coefficient_scales_)));

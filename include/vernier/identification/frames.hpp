@@ -29,7 +29,7 @@ template <NominalArm Arm>
 Framed<ChainOf<Arm>> starting_frames(const Arm& nominal, const Measurements<ChainOf<Arm>::dof>& data, bool fit_base,
                                      bool fit_tool) {
   const Framed<ChainOf<Arm>> arm = in_frames(nominal);
-  require(data.sets().size() == 1, "starting_frames: ", data.sets().size(), " sets of measurements, one is needed");
+  demand(data.sets().size() == 1, "starting_frames: ", data.sets().size(), " sets of measurements, one is needed");
   return detail::starting_frames(ArmGeometry(arm), data.sets().front(), fit_base, fit_tool).framed(arm.model());
 }
 

@@ -14,7 +14,7 @@ namespace detail {
 VERNIER_IMPL ArmGeometry starting_frames(const ArmGeometry& nominal, const MeasuredSet& data, bool fit_base,
                                          bool fit_tool) {
   const Index n = data.size();
-  require(n >= 1, "starting_frames: no samples");
+  demand(n >= 1, "starting_frames: no samples");
   Isometry3 base = nominal.base().isometry(), tool = nominal.tool().isometry();
   if (data.positions() == nullptr) {
     if (!fit_base || data.seen_from.rows() > 0) return nominal;

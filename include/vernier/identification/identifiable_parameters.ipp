@@ -11,7 +11,7 @@ namespace vernier {
 
 VERNIER_IMPL IdentifiableParameters::IdentifiableParameters(const ConstMatrixRef& jacobian, double tolerance) {
   const double largest = jacobian.cols() > 0 ? std::sqrt(detail::squared_column_norms(jacobian).maxCoeff()) : 0;
-  MatrixX basis(jacobian.rows(), std::min(jacobian.rows(), jacobian.cols()));
+  MatrixX basis(jacobian.rows(), (std::min)(jacobian.rows(), jacobian.cols()));
   MatrixX triangle = MatrixX::Zero(basis.cols(), basis.cols());  // base columns = basis * triangle
   Index rank = 0;
   for (Index k = 0; k < jacobian.cols(); ++k) {
@@ -42,7 +42,7 @@ VERNIER_IMPL IdentifiableParameters::IdentifiableParameters(const ConstMatrixRef
     for (Index j = rank - 1; j >= 0; --j) {  // the triangle's solution, in place
       projection(j) /= triangle(j, j);
       for (Index i = 0; i < j; ++i) projection(i) -= triangle(i, j) * projection(j);
-      largest_share = std::max(largest_share, std::abs(projection(j)));
+      largest_share = (std::max)(largest_share, std::abs(projection(j)));
     }
     Dependent d{k, {}};
     for (Index j = 0; j < rank; ++j)

@@ -52,8 +52,8 @@ Identified<ChainOf<Arm>> identify(const Arm& nominal, const Measurements<ChainOf
                                   const IdentifyOptions& options = {},
                                   const SensorModel& sensors = {.loss = Loss::squared},
                                   GeometrySolver solver = ceres_solver) {
-  require(data.sets().size() == 1, "identify: ", data.sets().size(),
-          " sets of measurements; it takes one, `calibrate` takes several");
+  demand(data.sets().size() == 1, "identify: ", data.sets().size(),
+         " sets of measurements; it takes one, `calibrate` takes several");
   return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors, solver);
 }
 

@@ -26,10 +26,10 @@ VERNIER_API void move_poses(const Isometry3& motion, const PointRows& positions,
 /// @throws std::invalid_argument for no stations, or another number of bases
 template <int N, RangeOf<Dataset<N>> Stations>
 Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& bases, bool use_orientations = true) {
-  require(std::size(stations) > 0, "in_one_frame: no stations");
+  demand(std::size(stations) > 0, "in_one_frame: no stations");
   if (std::size(stations) == 1) return *std::begin(stations);
-  require(bases.size() == std::size(stations), "in_one_frame: ", bases.size(), " bases for ", std::size(stations),
-          " stations");
+  demand(bases.size() == std::size(stations), "in_one_frame: ", bases.size(), " bases for ", std::size(stations),
+         " stations");
   Index rows = 0;
   bool oriented = use_orientations, thermal = true;
   for (const Dataset<N>& data : stations) {

@@ -10,8 +10,8 @@
 namespace vernier {
 
 VERNIER_IMPL Observability Observability::of(const VectorX& singular_values, Index poses) {
-  require(singular_values.size() >= 1 && poses >= 1, "Observability: ", singular_values.size(), " singular values of ",
-          poses, " poses");
+  demand(singular_values.size() >= 1 && poses >= 1, "Observability: ", singular_values.size(), " singular values of ",
+         poses, " poses");
   const double largest = singular_values(0), least = singular_values(singular_values.size() - 1);
   if (!(least > 0)) return {};
   double logarithms = 0, inverses = 0;
@@ -52,7 +52,7 @@ VERNIER_LOCAL MatrixX whitened_gain(const MatrixX& rows, const MatrixX& covarian
 
 VERNIER_IMPL HelpfulPoses helpful_poses(MatrixX covariance, const std::vector<MatrixX>& candidates, Index unknown,
                                         int count) {
-  require(unknown >= 0 && unknown < covariance.cols(), "helpful_poses: unknown ", unknown, " of ", covariance.cols());
+  demand(unknown >= 0 && unknown < covariance.cols(), "helpful_poses: unknown ", unknown, " of ", covariance.cols());
   HelpfulPoses out;
   for (int k = 0; k < count; ++k) {
     double best = 0;

@@ -13,11 +13,11 @@ VERNIER_IMPL void IdentifyOptions::validate(const std::vector<std::string>& name
   for (const auto& [name, value] : {std::pair{"length_prior_std", length_prior_std},
                                     {"angle_prior_std", angle_prior_std},
                                     {"joint_zero_prior_std", joint_zero_prior_std}})
-    require(value > 0 && std::isfinite(value), "IdentifyOptions: ", name, " is ", value, ", must be positive");
-  require(max_iterations >= 1, "IdentifyOptions: max_iterations is ", max_iterations, ", must be at least 1");
+    demand(value > 0 && std::isfinite(value), "IdentifyOptions: ", name, " is ", value, ", must be positive");
+  demand(max_iterations >= 1, "IdentifyOptions: max_iterations is ", max_iterations, ", must be at least 1");
   for (const auto& name : fixed)
-    require(std::find(names.begin(), names.end(), name) != names.end(), "IdentifyOptions: no parameter is called '",
-            name, "'; they are called like ", names.front(), " or ", names[names.size() / 2]);
+    demand(std::find(names.begin(), names.end(), name) != names.end(), "IdentifyOptions: no parameter is called '",
+           name, "'; they are called like ", names.front(), " or ", names[names.size() / 2]);
 }
 
 namespace detail {

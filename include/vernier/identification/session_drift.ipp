@@ -51,7 +51,7 @@ VERNIER_IMPL Matrix6 SessionDrift::covariance_beyond(double time, const Vector3&
   Matrix6 out = Matrix6::Zero();
   if (step_variance.size() == 0) return out;
   const double knot = (time - begin) / spacing;
-  const double steps = std::max({0.0, -knot, knot - static_cast<double>(knots.cols() - 1)});
+  const double steps = (std::max)({0.0, -knot, knot - static_cast<double>(knots.cols() - 1)});
   const Matrix6 of_base = detail::effect_of_twist(point - centre);
   const auto entry = [&](Index r, Index j) { return j < 6 ? of_base(r, j) : jacobian(r, j - 6); };
   for (Index j = 0; j < step_variance.size(); ++j)

@@ -61,8 +61,8 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   CalibratedRobot(std::string name, const Model& model, const JointLimits<N>& limits, Provenance provenance)
       : name_(std::move(name)), limits_(limits), provenance_(std::move(provenance)), model_(by_values(model)) {
     for (int i = 0; i < N; ++i)
-      require(nominal().chain().row(i).joint == identified().chain().row(i).joint, "CalibratedRobot: joint ", i + 1,
-              " is of another type in the identified chain than in the nominal one");
+      demand(nominal().chain().row(i).joint == identified().chain().row(i).joint, "CalibratedRobot: joint ", i + 1,
+             " is of another type in the identified chain than in the nominal one");
   }
 
   /// This robot with a learned position error.
@@ -127,7 +127,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   }
   /// Share of what was learned over the joints that is used at q; 1 where nothing was.
   double gate(const JointVector<N>& q) const noexcept {
-    return corrected_ ? std::min(corrected_->gate(q), model_.gate(q)) : model_.gate(q);
+    return corrected_ ? (std::min)(corrected_->gate(q), model_.gate(q)) : model_.gate(q);
   }
 
   /// A sphere that contains every position of its tool; none is known where a position error was learned.
@@ -169,7 +169,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   /// @throws std::invalid_argument where the covariance of the calibration was not kept
   /// @complexity O(n unknowns^2)
   std::vector<double> radii_95(const JointRows<N>& commands) const {
-    require(estimate_ != nullptr, name_, ": its model has no covariance; calibrate it again");
+    demand(estimate_ != nullptr, name_, ": its model has no covariance; calibrate it again");
     std::vector<double> out(static_cast<std::size_t>(commands.rows()), std::numeric_limits<double>::quiet_NaN());
     std::vector<Index> rows;
     for (Index i = 0; i < commands.rows(); ++i)
@@ -294,7 +294,7 @@ struct RobotInfo {
 /// @throws std::invalid_argument where its covariance was not kept
 template <int N, class Convention>
 ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
-  require(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
+  demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
   return arm_prior(robot.name(), robot.model(), *robot.estimate());
 }
 

@@ -25,8 +25,8 @@ VERNIER_LOCAL void require_identifier(const std::string& name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   bool valid = !name.empty() && letter(name.front());
   for (const char c : name) valid = valid && (letter(c) || (c >= '0' && c <= '9') || c == '_');
-  require(valid, "c_source: the name '", c_text(name),
-          "' is no C identifier: letters, digits and underscores, a letter first");
+  demand(valid, "c_source: the name '", c_text(name),
+         "' is no C identifier: letters, digits and underscores, a letter first");
 }
 
 /// What an arm has, in the words of the C text.
@@ -125,8 +125,8 @@ VERNIER_LOCAL std::string c_preamble(const ModelData& model, const CExport& opti
 VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options) {
   require_identifier(options.name);
   if (const auto* kernels = model.learned ? std::get_if<FittedKernels>(&model.learned->function) : nullptr)
-    require(false, "c_source: the position error that was learned is a sum of ", kernels->centres.rows(),
-            " kernels (kernel ELM, Gaussian process), which is not written as C source; networks are");
+    demand(false, "c_source: the position error that was learned is a sum of ", kernels->centres.rows(),
+           " kernels (kernel ELM, Gaussian process), which is not written as C source; networks are");
   const int joints = model.nominal.joints(), lanes = (joints + 1) / 2 * 2;  // vectors hold an even number
   const bool oriented = joints >= 6;
 
@@ -139,7 +139,7 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
     out += message("#define ", capitals, "_", what, "_ ", value, "\n");
   };
   define("LANES", message(lanes));
-  define("SIZE", message(std::min(joints, oriented ? 6 : 3)));
+  define("SIZE", message((std::min)(joints, oriented ? 6 : 3)));
   define("EVALUATIONS", message(CorrectionOptions{}.max_iterations));
   define("ROTATION_LENGTH", c_number(oriented ? IkOptions<6>{}.rotation_length : 0));
   const FittedNetwork* network = model.learned ? std::get_if<FittedNetwork>(&model.learned->function) : nullptr;

@@ -89,7 +89,7 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
     ReportTable frames{"Registration", "How the arm stands now against the calibration.", {"what", ""}, {}};
     std::string text = report.registration->summary();
     for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = std::min(text.find('\n', at), text.size());
+      const std::size_t end = (std::min)(text.find('\n', at), text.size());
       frames.rows.push_back({text.substr(at, end - at), ""});
       at = end + 1;
     }
@@ -104,11 +104,11 @@ VERNIER_IMPL std::string report_html(const ReportInput& input) {
   using namespace detail;
   const Index n = stage_of(input, input.after).position.size(), m = input.poses.positions.rows();
   for (const StageErrors& stage : input.stages)
-    require(stage.position.size() == n && (stage.rotation.size() == 0 || stage.rotation.size() == n),
-            "report_html: stage '", stage.key(), "' has ", stage.position.size(), " errors, expected ", n);
-  require(m == 0 || m == n, "report_html: ", m, " poses for ", n, " errors");
+    demand(stage.position.size() == n && (stage.rotation.size() == 0 || stage.rotation.size() == n),
+           "report_html: stage '", stage.key(), "' has ", stage.position.size(), " errors, expected ", n);
+  demand(m == 0 || m == n, "report_html: ", m, " poses for ", n, " errors");
   const auto fits = [&](const char* what, auto size) {
-    require(size == 0 || static_cast<Index>(size) == n, "report_html: ", size, ' ', what, " of ", n, " poses");
+    demand(size == 0 || static_cast<Index>(size) == n, "report_html: ", size, ' ', what, " of ", n, " poses");
   };
   fits("rows of joints", input.poses.joints.rows());
   fits("files", input.poses.file.size());
@@ -116,9 +116,9 @@ VERNIER_IMPL std::string report_html(const ReportInput& input) {
   fits("normalised errors", input.poses.normalised.size());
   fits("gates", input.poses.gates.size());
   fits("times", input.times.size());
-  require(input.joints.empty() || input.poses.joints.cols() == 0 ||
-              static_cast<Index>(input.joints.size()) == input.poses.joints.cols(),
-          "report_html: ", input.joints.size(), " joints, poses have ", input.poses.joints.cols());
+  demand(input.joints.empty() || input.poses.joints.cols() == 0 ||
+             static_cast<Index>(input.joints.size()) == input.poses.joints.cols(),
+         "report_html: ", input.joints.size(), " joints, poses have ", input.poses.joints.cols());
 
   const PoseView view = pose_view(input);
   std::string tables;

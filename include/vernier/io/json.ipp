@@ -52,7 +52,7 @@ VERNIER_IMPL nlohmann::json parse_json(std::string_view content, const std::stri
   try {
     return nlohmann::json::parse(content, watch);
   } catch (const nlohmann::json::parse_error& e) {
-    const std::size_t at = std::min(e.byte > 0 ? e.byte - 1 : 0, content.size());
+    const std::size_t at = (std::min)(e.byte > 0 ? e.byte - 1 : 0, content.size());
     const auto line = 1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     const std::size_t start = at == 0 ? std::string_view::npos : content.rfind('\n', at - 1);
     const std::size_t column = start == std::string_view::npos ? at + 1 : at - start;
@@ -60,7 +60,7 @@ VERNIER_IMPL nlohmann::json parse_json(std::string_view content, const std::stri
                             at == content.size() ? ": the file ends here, but its JSON does not" : ": not valid JSON"));
   } catch (const nlohmann::json::exception& e) {  // a number no double can hold
     const std::string_view what = e.what();
-    throw DataError(file + ": " + detail::quotable(what.substr(std::min(what.find("] ") + 2, what.size())), 100));
+    throw DataError(file + ": " + detail::quotable(what.substr((std::min)(what.find("] ") + 2, what.size())), 100));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -21,7 +22,11 @@ struct Provenance {
   double held_out_error = 0;         ///< mean position error of poses it was not fitted to [m]; 0: unknown
 
   /// Equal in every entry.
-  bool operator==(const Provenance&) const = default;
+  bool operator==(const Provenance& other) const {
+    return data_file == other.data_file && rows == other.rows && date == other.date && joints == other.joints &&
+           measured == other.measured && same_value(position_sigma, other.position_sigma) &&
+           same_value(left_out_error, other.left_out_error) && same_value(held_out_error, other.held_out_error);
+  }
 };
 
 }  // namespace vernier

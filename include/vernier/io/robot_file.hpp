@@ -58,7 +58,7 @@ struct RobotDescription {
   /// @throws std::invalid_argument unless N is `dof()`
   template <int N>
   DescribedRobot<N> arm() const {
-    require(dof() == N && limits.size() == rows.size(), "RobotDescription: ", dof(), " joints, expected ", N);
+    demand(dof() == N && limits.size() == rows.size(), "RobotDescription: ", dof(), " joints, expected ", N);
     DescribedRobot<N> out{name, geometry().framed(DhChain<N>::from_rows({})), {}, drives};
     for (int i = 0; i < N; ++i) {
       out.limits.lower(i) = limits[static_cast<std::size_t>(i)].first;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/text_lines.hpp"
 #include "vernier/io/json.hpp"
@@ -107,9 +108,9 @@ VERNIER_LOCAL Isometry3 end_of_rows(const std::vector<DhRow>& rows, std::vector<
 
 VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const RobotDescription& nominal) {
   bool fits = nominal.dof() == 6 && !nominal.modified;
-  for (const DhRow& row : nominal.rows) fits = fits && row.joint == JointType::revolute && row.beta == 0;
-  require(fits, "read_ur_calibration: '", nominal.name,
-          "' is not an arm of six revolute joints in the standard convention, without beta");
+  for (const DhRow& row : nominal.rows) fits = fits && row.joint == JointType::revolute && same_value(row.beta, 0);
+  demand(fits, "read_ur_calibration: '", nominal.name,
+         "' is not an arm of six revolute joints in the standard convention, without beta");
   const detail::UrDeltas deltas = detail::read_ur_deltas(path);
   std::vector<DhRow> exact = nominal.rows;
   std::vector<double> thetas;
@@ -137,15 +138,15 @@ VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const
   constexpr double farthest_length = 0.1, farthest_angle = 0.3;  // of arms as made: 5 mm, 0.1 rad
   for (std::size_t i = 0; i < 6; ++i) {
     const DhRow &row = out.rows[i], &design = nominal.rows[i];
-    const auto check = [&](const char* name, double value, double nominal_value, double farthest, const char* unit) {
+    const auto limit = [&](const char* name, double value, double nominal_value, double farthest, const char* unit) {
       if (!(std::abs(value - nominal_value) <= farthest))
         throw DataError(message(path, ": ", name, i + 1, " becomes ", value, " ", unit, ", far from ", nominal_value,
                                 " ", unit, " of '", detail::quotable(nominal.name), "'; is it of another arm?"));
     };
-    check("a", row.a, design.a, farthest_length, "m");
-    check("d", row.d, design.d, farthest_length, "m");
-    check("alpha", row.alpha, design.alpha, farthest_angle, "rad");
-    check("theta", row.theta, design.theta, farthest_angle, "rad");
+    limit("a", row.a, design.a, farthest_length, "m");
+    limit("d", row.d, design.d, farthest_length, "m");
+    limit("alpha", row.alpha, design.alpha, farthest_angle, "rad");
+    limit("theta", row.theta, design.theta, farthest_angle, "rad");
   }
   return out;
 }

@@ -22,7 +22,7 @@ struct BranchOptions {
   JointLimits<N> limits{};  ///< of the joints
   /// Of the whole turns by which a joint's value may differ, the nearest to this within the limits is taken [rad].
   /// Where a branch meets a singularity and a joint's value is arbitrary, it is this.
-  JointVector<N> near = JointVector<N>::Zero();
+  JointVector<N> close_to = JointVector<N>::Zero();
   /// So near to a singularity of the nominal arm, branches may lie anywhere around it [m, rad]: a few
   /// times what the model differs from the nominal arm.
   double near_singularity = 0.03;
@@ -68,7 +68,7 @@ struct Branches {
     double least = 0;
     for (const Branch<N>& branch : *this) {
       double largest = 0;
-      for (int j = 0; j < N; ++j) largest = std::max(largest, std::abs(branch.joints(j) - q(j)));
+      for (int j = 0; j < N; ++j) largest = (std::max)(largest, std::abs(branch.joints(j) - q(j)));
       if (!branch.within_limits || (best != nullptr && !(largest < least))) continue;
       best = &branch;
       least = largest;
@@ -82,10 +82,10 @@ struct Branches {
 /// Joint values that differ by whole turns from given ones: the nearest to other ones within limits. A joint that no
 /// turn brings within its limits takes the nearest turn to its limits.
 template <int N>
-JointVector<N> nearest_turns(const JointVector<N>& joints, const JointVector<N>& near,
+JointVector<N> nearest_turns(const JointVector<N>& joints, const JointVector<N>& close_to,
                              const JointLimits<N>& limits) noexcept {
   JointVector<N> out;
-  for (int j = 0; j < N; ++j) out(j) = detail::nearest_turn(joints(j), near(j), limits.lower(j), limits.upper(j));
+  for (int j = 0; j < N; ++j) out(j) = detail::nearest_turn(joints(j), close_to(j), limits.lower(j), limits.upper(j));
   return out;
 }
 
@@ -111,7 +111,7 @@ template <BranchRoots Roots, KinematicModel M>
     out.reach = Reach::invalid_target;
     return out;
   }
-  const InverseRoots<N> roots = nominal.roots(target, options.near, options.near_singularity);
+  const InverseRoots<N> roots = nominal.roots(target, options.close_to, options.near_singularity);
   const auto evaluate = [&](const double* q, Isometry3& pose, double* jacobian) {
     const PoseAndJacobian<N> at = model.pose_and_jacobian(JointVector<N>(q));
     pose = at.pose;
@@ -129,7 +129,7 @@ template <BranchRoots Roots, KinematicModel M>
                                       target,
                                       options.limits.lower.data(),
                                       options.limits.upper.data(),
-                                      options.near.data(),
+                                      options.close_to.data(),
                                       options.rotation_length,
                                       detail::lipschitz_bound(length, options.rotation_length)};
 
@@ -165,7 +165,7 @@ template <BranchRoots Roots, KinematicModel M>
     out.margin = 0;
   } else {
     out.margin = roots.nearest_margin;
-    for (const InverseRoot<N>& root : roots) out.margin = std::min(out.margin, root.margin);
+    for (const InverseRoot<N>& root : roots) out.margin = (std::min)(out.margin, root.margin);
     double excess = 0;
     if constexpr (geometric) {
       excess = detail::reach_excess(detail::arm_axes(model), target);

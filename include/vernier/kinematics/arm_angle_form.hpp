@@ -40,7 +40,7 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
       : arm_(detail::arm_axes(nominal), tolerance),
         angle_(arm_angle),
         length_(detail::arm_length(detail::arm_axes(nominal))) {
-    require(std::isfinite(arm_angle), "ArmAngleForm: the arm angle is ", arm_angle);
+    demand(std::isfinite(arm_angle), "ArmAngleForm: the arm angle is ", arm_angle);
   }
 
   /// This arm's solutions at another arm angle [rad].
@@ -54,9 +54,9 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
 
   /// All joint values with which the nominal arm is at a pose; see `ClosedForm::roots`. None where the wrist is in the
   /// shoulder.
-  InverseRoots<7> roots(const Isometry3& target, const JointVector<7>& near = JointVector<7>::Zero(),
+  InverseRoots<7> roots(const Isometry3& target, const JointVector<7>& close_to = JointVector<7>::Zero(),
                         double width = 0) const noexcept {
-    const detail::SphericalArmRoots from = arm_.solve(target, angle_, near, width);
+    const detail::SphericalArmRoots from = arm_.solve(target, angle_, close_to, width);
     InverseRoots<7> out;
     out.count = from.count;
     out.nearest_margin = from.nearest_margin;

@@ -87,9 +87,9 @@ class ArmGeometry {
   /// @throws std::invalid_argument where they are others
   template <int N, class Convention>
   Framed<DhChain<N, Convention>> framed(const DhChain<N, Convention>&) const {
-    require(joints() == N && chain_.modified() == Convention::modified, "ArmGeometry: an arm of ", joints(),
-            " joints in the ", chain_.modified() ? "modified" : "standard", " convention, expected ", N, " in the ",
-            Convention::modified ? "modified" : "standard", " one");
+    demand(joints() == N && chain_.modified() == Convention::modified, "ArmGeometry: an arm of ", joints(),
+           " joints in the ", chain_.modified() ? "modified" : "standard", " convention, expected ", N, " in the ",
+           Convention::modified ? "modified" : "standard", " one");
     std::array<DhRow, N> rows;
     std::copy(chain_.rows().begin(), chain_.rows().end(), rows.begin());
     return Framed<DhChain<N, Convention>>(DhChain<N, Convention>::from_rows(rows), base_, tool_);

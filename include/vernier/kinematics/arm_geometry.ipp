@@ -17,8 +17,7 @@ VERNIER_IMPL VectorX ArmGeometry::parameters() const {
 }
 
 VERNIER_IMPL ArmGeometry ArmGeometry::with_parameters(const ConstVectorRef& values) const {
-  require(values.size() == num_parameters(), "ArmGeometry: ", values.size(), " parameters, expected ",
-          num_parameters());
+  demand(values.size() == num_parameters(), "ArmGeometry: ", values.size(), " parameters, expected ", num_parameters());
   const auto frame = [](const FrameParameters& old, const double* now) {
     return std::equal(now, now + 6, old.values().data()) ? old : FrameParameters(Vector6(now));
   };

@@ -94,7 +94,7 @@ ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Ar
   const auto framed = in_frames(arm);
   const auto& chain = framed.model();
   for (int i = 0; i < Arm::dof; ++i)
-    require(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
+    demand(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
   const auto links = chain.links(q);
   ArmAxes out;
   out.joints = Arm::dof;
@@ -113,8 +113,8 @@ template <NominalArm Arm>
 SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
   constexpr int N = Arm::dof;
   static_assert(N == 6 || N == 7, "closed forms move six joints; of seven, one is held");
-  require(N == 6 ? held.joint < 0 : held.joint >= 0 && held.joint < N, "ClosedForm: no joint ", held.joint + 1,
-          " to be held");
+  demand(N == 6 ? held.joint < 0 : held.joint >= 0 && held.joint < N, "ClosedForm: no joint ", held.joint + 1,
+         " to be held");
   JointVector<N> q = JointVector<N>::Zero();
   if (held.joint >= 0) q(held.joint) = held.value;
   const ArmAxes all = arm_axes(arm, q);
@@ -173,13 +173,13 @@ class ClosedForm : public ChecksJoints<ClosedForm<N>> {
 
   /// All joint values with which the nominal arm is at a pose; does not allocate.
   /// @param target base_T_tool, a proper rigid motion
-  /// @param near   values of joints whose value is arbitrary in a singularity [rad]
+  /// @param close_to   values of joints whose value is arbitrary in a singularity [rad]
   /// @param width  [m, rad] where the target is so near to a singularity of shoulder or wrist, samples of the joint
   /// whose value hardly matters are added, with a positive margin: seeds for an arm that is not quite the nominal one
   /// @complexity   about 2 us
-  InverseRoots<N> roots(const Isometry3& target, const JointVector<N>& near = JointVector<N>::Zero(),
+  InverseRoots<N> roots(const Isometry3& target, const JointVector<N>& close_to = JointVector<N>::Zero(),
                         double width = 0) const noexcept {
-    return moving_.around(arm_.solve(target, moving_.of(near), width));
+    return moving_.around(arm_.solve(target, moving_.of(close_to), width));
   }
 
   /// How far joint values are from singularities, and on which side of them: the branch.

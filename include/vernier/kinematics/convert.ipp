@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/kinematics/convert.hpp"
 
 namespace vernier::detail {
@@ -18,7 +19,7 @@ VERNIER_IMPL ArmGeometry to_standard(const ChainTable& modified) {
   base.set_identity();
   base.rotate_x(std::cos(first.alpha), std::sin(first.alpha));
   base.move(base.x, first.a);
-  if (first.beta != 0) base.rotate_y(std::cos(first.beta), std::sin(first.beta));
+  if (!same_value(first.beta, 0)) base.rotate_y(std::cos(first.beta), std::sin(first.beta));
   return {ChainTable(std::move(rows), false), FrameParameters(base.isometry()), {}};
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -25,7 +26,10 @@ struct DhRow {
   JointType joint = JointType::revolute;
 
   /// Equal in every value.
-  bool operator==(const DhRow&) const = default;
+  constexpr bool operator==(const DhRow& other) const {
+    return same_value(a, other.a) && same_value(alpha, other.alpha) && same_value(d, other.d) &&
+           same_value(theta, other.theta) && same_value(beta, other.beta) && joint == other.joint;
+  }
 };
 
 /// The five geometric parameters of a row, in the order in which a chain counts them.

@@ -29,7 +29,7 @@ VERNIER_LOCAL IkOutcome damped_least_squares(const IkProblem& problem, IkIterate
   const bool redundant = rows < n;
   const int size = redundant ? rows : n;
   double normal[max_joints * max_joints], damped[max_joints * max_joints], gradient[max_joints], step[max_joints];
-  double solution[std::max(6, max_joints)];
+  double solution[(std::max)(6, max_joints)];
   bool held[max_joints];
   const double rotation_weight = problem.oriented ? problem.rotation_length : 0;
 
@@ -66,7 +66,7 @@ VERNIER_LOCAL IkOutcome damped_least_squares(const IkProblem& problem, IkIterate
   };
 
   std::swap(best, next);
-  for (int i = 0; i < moving; ++i) best->q[i] = std::min(std::max(best->q[i], problem.lower[i]), problem.upper[i]);
+  for (int i = 0; i < moving; ++i) best->q[i] = (std::min)((std::max)(best->q[i], problem.lower[i]), problem.upper[i]);
   evaluate(*best);
   double damping = 1e-3;  // in units of the cost
   if (!std::isfinite(best->cost)) return finish(IkStatus::stalled);
@@ -81,7 +81,7 @@ VERNIER_LOCAL IkOutcome damped_least_squares(const IkProblem& problem, IkIterate
       if (held[j]) gradient[j] = 0;
       gradient_square += gradient[j] * gradient[j];
     }
-    const double scale = std::max(trace, 1e-12);
+    const double scale = (std::max)(trace, 1e-12);
     if (redundant) {
       std::fill_n(normal, size * size, 0.0);
       for (int j = 0; j < n; ++j) {
@@ -98,7 +98,7 @@ VERNIER_LOCAL IkOutcome damped_least_squares(const IkProblem& problem, IkIterate
     }
     // Nothing to gain in any direction; and no motion below 10 rad (or m) would remove the error to first order, or it
     // is only the slow way out of a singularity.
-    if (std::sqrt(gradient_square) <= std::min(1e-3 * std::sqrt(scale * best->cost), 0.1 * best->cost))
+    if (std::sqrt(gradient_square) <= (std::min)(1e-3 * std::sqrt(scale * best->cost), 0.1 * best->cost))
       return finish(IkStatus::unreachable);
     for (;;) {
       if (iterations >= problem.max_iterations || damping > 1e12) return finish(IkStatus::stalled);
@@ -113,18 +113,19 @@ VERNIER_LOCAL IkOutcome damped_least_squares(const IkProblem& problem, IkIterate
       double square = 0;
       for (int i = 0; i < n; ++i) square += step[i] * step[i];
       const double shorten =
-          std::min(1.0, 1.5 / std::sqrt(square));  // rad (or m): no needless turns near a singularity
+          (std::min)(1.0, 1.5 / std::sqrt(square));  // rad (or m): no needless turns near a singularity
       for (int i = 0; i < n; ++i)
-        next->q[i] = i < moving ? std::min(std::max(best->q[i] + shorten * step[i], problem.lower[i]), problem.upper[i])
-                                : best->q[i];
+        next->q[i] = i < moving
+                         ? (std::min)((std::max)(best->q[i] + shorten * step[i], problem.lower[i]), problem.upper[i])
+                         : best->q[i];
       evaluate(*next);
       ++iterations;
       if (next->cost < best->cost) {  // false for NaN too
         std::swap(best, next);
-        damping = std::max(damping / 8, 1e-9);
+        damping = (std::max)(damping / 8, 1e-9);
         break;
       }
-      damping = std::max(damping * 8, 1e-9);
+      damping = (std::max)(damping * 8, 1e-9);
     }
   }
   return finish(IkStatus::converged);

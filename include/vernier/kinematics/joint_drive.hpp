@@ -3,7 +3,7 @@
 /// @file
 /// Gears and encoders of an arm's joints, as far as they are known.
 
-#include "vernier/core/language.hpp"
+#include "vernier/core/same_value.hpp"
 
 namespace vernier {
 
@@ -14,7 +14,9 @@ struct JointDrive {
   int encoder_periods = 0;  ///< signal periods of the encoder in a turn of the joint; 0: unknown
 
   /// Equal in both.
-  bool operator==(const JointDrive&) const = default;
+  constexpr bool operator==(const JointDrive& other) const {
+    return same_value(gear_ratio, other.gear_ratio) && encoder_periods == other.encoder_periods;
+  }
 };
 
 }  // namespace vernier

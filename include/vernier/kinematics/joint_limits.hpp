@@ -34,7 +34,7 @@ struct JointLimits {
   /// The nearest joints within.
   JointVector<N> clamp(const JointVector<N>& q) const noexcept {
     JointVector<N> out;
-    for (int j = 0; j < N; ++j) out(j) = std::min(std::max(q(j), lower(j)), upper(j));
+    for (int j = 0; j < N; ++j) out(j) = (std::min)((std::max)(q(j), lower(j)), upper(j));
     return out;
   }
   /// The nearest joints within to joint values whose number is known at run time only.

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// The three factors into which the determinant of the Jacobian of an arm with a closed form decomposes, each scaled
@@ -30,13 +32,13 @@ struct SingularityDistances {
   int branch() const { return (shoulder < 0 ? 1 : 0) + (elbow < 0 ? 2 : 0) + (wrist < 0 ? 4 : 0); }
   /// The smallest distance as an angle [rad].
   double nearest_angle() const {
-    return std::asin(std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist), 1.0}));
+    return std::asin((std::min)({std::abs(shoulder), std::abs(elbow), std::abs(wrist), 1.0}));
   }
   /// The singularity to which that belongs: `shoulder`, `elbow` or `wrist`; `any` where they are not told apart.
   std::string_view nearest() const {
     if (!factored) return "any";
-    const double least = std::min({std::abs(shoulder), std::abs(elbow), std::abs(wrist)});
-    return std::abs(wrist) == least ? "wrist" : std::abs(elbow) == least ? "elbow" : "shoulder";
+    const double least = (std::min)({std::abs(shoulder), std::abs(elbow), std::abs(wrist)});
+    return std::abs(wrist) <= least ? "wrist" : std::abs(elbow) <= least ? "elbow" : "shoulder";
   }
 };
 

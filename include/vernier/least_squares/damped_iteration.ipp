@@ -23,7 +23,7 @@ VERNIER_IMPL IterationEnd minimise(const IteratedProblem& problem, const Iterati
       returned = true;
       continue;
     }
-    if (damping.value() > 0 && !returned) damping.accept(std::max(reached - at.with_old_weights, 0.0), predicted);
+    if (damping.value() > 0 && !returned) damping.accept((std::max)(reached - at.with_old_weights, 0.0), predicted);
     returned = false;
     problem.keep();
     reached = at.with_new_weights;
@@ -43,7 +43,7 @@ VERNIER_IMPL IterationEnd minimise(const IteratedProblem& problem, const Iterati
       const double step = solved.step()(k);
       gain -= step * (at.normal.gradient(k) + at.precisions(k) * at.steps(k));
       damped += step * step * (at.normal.matrix(k, k) + at.precisions(k));
-      largest = std::max(largest, std::abs(step));
+      largest = (std::max)(largest, std::abs(step));
     }
     predicted = gain + damping.value() * damped;
     out.converged = damping.value() < limits.most_damping &&

@@ -28,8 +28,8 @@ VERNIER_LOCAL PenalisedMinimum penalised_minimum(const NormalEquations& normal, 
     gain += solved.step()(k) * (normal.gradient(k) + precisions(k) * steps(k));
     if (precisions(k) <= 0) without_prior += 1;
   }
-  return {std::max(at_present + gain, 0.0) + sensor_values,
-          std::max(1.0, static_cast<double>(values) - without_prior) + sensor_values};
+  return {(std::max)(at_present + gain, 0.0) + sensor_values,
+          (std::max)(1.0, static_cast<double>(values) - without_prior) + sensor_values};
 }
 
 /// log determinant of the precisions of local unknowns.
@@ -83,7 +83,7 @@ class ScaledEvidence {
     for (Index k = 0; k < size_; ++k) change(k, k) += 1;
     if (!cholesky(change)) return -std::numeric_limits<double>::infinity();
     solve_lower(change, value);
-    const double cost = std::max(minimum_.cost + (factor - 1) * value.squaredNorm(), 1e-300);
+    const double cost = (std::max)(minimum_.cost + (factor - 1) * value.squaredNorm(), 1e-300);
     return -0.5 * (minimum_.freedom * std::log(cost) + cholesky_log_determinant(change) -
                    static_cast<double>(size_) * std::log(factor));
   }
@@ -142,8 +142,8 @@ VERNIER_IMPL VectorX learn_priors(const NormalEquations& normal, VectorX precisi
         squares += precisions(k) * z(k) * z(k);
       }
       const double factor =
-          std::clamp(std::max(determined, 1e-3) * cost / freedom / std::max(squares, 1e-300), 0.1, 10.0);
-      for (const Index k : group) precisions(k) = std::min(precisions(k) * factor, 1e9);
+          std::clamp((std::max)(determined, 1e-3) * cost / freedom / (std::max)(squares, 1e-300), 0.1, 10.0);
+      for (const Index k : group) precisions(k) = (std::min)(precisions(k) * factor, 1e9);
     }
     if (i + 1 == iterations) break;
     solved = solved.with(precisions, steps);

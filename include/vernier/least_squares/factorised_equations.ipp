@@ -18,7 +18,7 @@ void visit_panels(ExecutorRef executor, Index n, Index width, const Use& use) {
     for (Index k = from; k < to; ++k) {
       // the first panels are the longest: every thread gets long and short ones
       const Index first = width * (k % 2 == 0 ? k / 2 : panels - 1 - k / 2);
-      use(first, std::min(width, n - first));
+      use(first, (std::min)(width, n - first));
     }
   });
 }
@@ -55,7 +55,7 @@ VERNIER_IMPL std::shared_ptr<const FactorisedEquations::Reduced> FactorisedEquat
   normal.executor.for_ranges(panels, [&](Index from, Index to) {
     for (Index k = from; k < to; ++k)
       outcomes[static_cast<std::size_t>(k)] =
-          solve(out.local, out.eliminated.middleCols(k * width, std::min(width, n + 1 - k * width)));
+          solve(out.local, out.eliminated.middleCols(k * width, (std::min)(width, n + 1 - k * width)));
   });
   if (!outcomes.front().solved) return {};
   out.log_determinant = outcomes.front().log_determinant;

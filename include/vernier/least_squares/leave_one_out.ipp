@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
 
@@ -27,8 +28,8 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
     std::array<Vector6, batch> residuals;
     std::array<Matrix6, batch> unwhiten;
     VectorX sigmas(batch);
-    for (Index first = from * batch; first < std::min(to * batch, size); first += batch) {
-      const Index n = std::min(batch, size - first);
+    for (Index first = from * batch; first < (std::min)(to * batch, size); first += batch) {
+      const Index n = (std::min)(batch, size - first);
       kept.clear();
       detail::visit_blocks(system, first * stride, stride, n, [&](Index b, const RowBlock& rows) {
         rows.expand(system.group_sizes, expanded);
@@ -48,8 +49,8 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
         values(first + b) = 0;
         for (Index i = 0; i < 6; ++i) {
           for (Index c = 0; c < expanded.cols(); ++c) columns(c, 6 * b + i) = expanded(i, c);
-          bool measured = rows.residual(i) != 0;
-          for (Index c = 0; c < rows.dense.cols() && !measured; ++c) measured = rows.dense(i, c) != 0;
+          bool measured = !same_value(rows.residual(i), 0);
+          for (Index c = 0; c < rows.dense.cols() && !measured; ++c) measured = !same_value(rows.dense(i, c), 0);
           if (measured) values(first + b) += 1;
         }
       });

@@ -12,14 +12,14 @@ VERNIER_IMPL double robust_weight(Loss loss, double norm, double threshold) {
   const double ratio = norm / threshold;
   switch (loss) {
     case Loss::squared: return 1;
-    case Loss::huber: return std::min(1.0, 1 / ratio);
+    case Loss::huber: return (std::min)(1.0, 1 / ratio);
     case Loss::cauchy: return 1 / (1 + ratio * ratio);
   }
   return 1;
 }
 
 VERNIER_IMPL double robust_sigma(std::vector<double> norms, int dimension) {
-  require(dimension == 1 || dimension == 3, "robust_sigma: dimension is ", dimension, ", must be 1 or 3");
+  demand(dimension == 1 || dimension == 3, "robust_sigma: dimension is ", dimension, ", must be 1 or 3");
   if (norms.empty()) return 0;
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());

@@ -8,7 +8,7 @@ namespace vernier {
 
 VERNIER_IMPL void MarquardtDamping::accept(double actual, double predicted) {
   const double surplus = 2 * actual / predicted - 1;
-  value_ *= std::max(1.0 / 3, 1 - surplus * surplus * surplus);
+  value_ *= (std::max)(1.0 / 3, 1 - surplus * surplus * surplus);
   raise_ = 2;
 }
 

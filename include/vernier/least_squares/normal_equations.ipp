@@ -22,7 +22,7 @@ class PairBlocks {
     values_.assign(pairs_.size() * static_cast<std::size_t>(size_ * size_), 0.0);
   }
 
-  static Pair pair(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+  static Pair pair(Index a, Index b) { return {(std::min)(a, b), (std::max)(a, b)}; }
 
   /// The block of rows of the later state and columns of the earlier one, by columns.
   double* block(const Pair& pair) {
@@ -66,7 +66,7 @@ VERNIER_LOCAL void add_local(const BlockSystem& system, const std::vector<LocalP
   for (Index s = 0; s < system.local_states; ++s) pairs.push_back({s, s});
   visit_blocks(system, 0, 1, system.blocks, [&](Index, const RowBlock& rows) {
     const Index a = rows.local[0].state, b = rows.local[1].state;
-    require(a != b || a < 0, "NormalEquations: a block depends twice on local state ", a);
+    demand(a != b || a < 0, "NormalEquations: a block depends twice on local state ", a);
     if (a >= 0 && b >= 0) pairs.push_back(PairBlocks::pair(a, b));
   });
   for (const LocalPrior& prior : priors) pairs.push_back(PairBlocks::pair(prior.first, prior.second));
@@ -121,9 +121,9 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
     for (Index i = 0; i <= j; ++i) pairs.push_back({i, j});
   }
   for (Index first = 0; first < system.blocks; first += chunk) {
-    const Index n = std::min(chunk, system.blocks - first);
+    const Index n = (std::min)(chunk, system.blocks - first);
     executor.for_ranges((n + detail::rows_at_a_time - 1) / detail::rows_at_a_time, [&](Index from, Index to) {
-      const Index start = from * detail::rows_at_a_time, stop = std::min(n, to * detail::rows_at_a_time);
+      const Index start = from * detail::rows_at_a_time, stop = (std::min)(n, to * detail::rows_at_a_time);
       detail::visit_blocks(system, first + start, 1, stop - start, [&](Index k, const RowBlock& rows) {
         const Index b = start + k;
         for (Index c = 0; c < d; ++c)

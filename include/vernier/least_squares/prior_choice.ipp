@@ -15,13 +15,13 @@ VERNIER_LOCAL double standard_error(const VectorX& values) {
   const double n = static_cast<double>(values.size()), mean = values.mean();
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
-  return std::sqrt(sum / std::max(1.0, n * (n - 1)));
+  return std::sqrt(sum / (std::max)(1.0, n * (n - 1)));
 }
 
 }  // namespace detail
 
 VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& trials) {
-  require(!trials.empty(), "one_standard_error_rule: no trials");
+  demand(!trials.empty(), "one_standard_error_rule: no trials");
   const auto best = std::min_element(trials.begin(), trials.end(), [](const PriorTrial& a, const PriorTrial& b) {
     return a.errors.mean() < b.errors.mean();
   });
@@ -60,7 +60,7 @@ VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEqu
     trials.push_back({precision, detail::error_norms(leave_one_out_errors(system, solved, stride))});
   }
   double smallest = trials.front().errors.mean();
-  for (const PriorTrial& trial : trials) smallest = std::min(smallest, trial.errors.mean());
+  for (const PriorTrial& trial : trials) smallest = (std::min)(smallest, trial.errors.mean());
   const PriorTrial& chosen = trials[one_standard_error_rule(trials)];
   return {chosen.precision, chosen.errors.mean(), smallest, trials.back().errors.mean()};
 }

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/least_squares/sparse_solve.hpp"
 
 namespace vernier {
@@ -12,7 +13,7 @@ VERNIER_IMPL SparseOutcome EigenSparseSolver::operator()(const SparseSymmetric& 
   const Eigen::Map<const Sparse> view(matrix.size, matrix.size, static_cast<Index>(matrix.values.size()),
                                       matrix.starts.data(), matrix.rows.data(), matrix.values.data());
   const Eigen::SimplicialLDLT<Sparse> factor{Sparse(view)};
-  if (factor.info() != Eigen::Success) return {};
+  if (!detail::succeeded(factor)) return {};
   const VectorX diagonal = factor.vectorD();
   if (!(diagonal.minCoeff() > 0)) return {};
   const MatrixX given = right, solution = factor.solve(given);

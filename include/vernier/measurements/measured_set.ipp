@@ -13,12 +13,12 @@
 namespace vernier {
 
 VERNIER_IMPL void MeasuredSet::validate() const {
-  require(size_ == joints.rows(), name, ": ", joints.rows(), " rows of joints, but ", size_, " measurements");
-  require(values_ == 1 || values_ == 3 || values_ == 6, name, ": a sensor has 1, 3 or 6 values, not ", values_);
-  require(sigma_.length > 0 && std::isfinite(sigma_.length) && sigma_.angle > 0 && std::isfinite(sigma_.angle), name,
-          ": standard deviations of ", sigma_.length, " m and ", sigma_.angle, " rad must be positive");
+  demand(size_ == joints.rows(), name, ": ", joints.rows(), " rows of joints, but ", size_, " measurements");
+  demand(values_ == 1 || values_ == 3 || values_ == 6, name, ": a sensor has 1, 3 or 6 values, not ", values_);
+  demand(sigma_.length > 0 && std::isfinite(sigma_.length) && sigma_.angle > 0 && std::isfinite(sigma_.angle), name,
+         ": standard deviations of ", sigma_.length, " m and ", sigma_.angle, " rad must be positive");
   for (Index i = 0; i < joints.rows(); ++i)
-    require(detail::finite_row(joints, i), name, ", ", origin.where(i), ": a joint value is not finite");
+    demand(detail::finite_row(joints, i), name, ", ", origin.where(i), ": a joint value is not finite");
 }
 
 VERNIER_IMPL bool MeasuredSet::locates() const {

@@ -106,8 +106,8 @@ class Measurements {
   /// Touches of an object.
   /// @throws std::invalid_argument for another number of joints
   Measurements& add(const Contact& contact) {
-    require(contact.joints().cols() == N, "contact ", contact.name(), ": ", contact.joints().cols(),
-            " joints, the arm has ", N);
+    demand(contact.joints().cols() == N, "contact ", contact.name(), ": ", contact.joints().cols(),
+           " joints, the arm has ", N);
     sets_.push_back(detail::contact_set(contact));
     return *this;
   }
@@ -159,12 +159,11 @@ class Measurements {
     if constexpr (detail::explain_sensor<S>() && Sensor<S>) {
       MeasuredSet set(std::move(name), detail::fixed_rows<N>(to), std::move(sensor));
       set.seen_from = detail::fixed_rows<N>(from);
-      require(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(),
-              " second");
+      demand(from.rows() == to.rows(), set.name, ": ", from.rows(), " first configurations and ", to.rows(), " second");
       for (Index i = 0; i < set.size(); ++i)
-        require(detail::finite_row(set.seen_from, i), set.name, ", ", set.origin.where(i),
-                ": a joint value of the first configuration is not finite");
-      require(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());
+        demand(detail::finite_row(set.seen_from, i), set.name, ", ", set.origin.where(i),
+               ": a joint value of the first configuration is not finite");
+      demand(set.projected(), set.name, ": between two configurations a sensor has one value, not ", set.values());
       sets_.push_back(std::move(set));
     }
     return *this;
@@ -204,8 +203,8 @@ namespace detail {
 /// @throws std::invalid_argument otherwise
 template <int N>
 const Dataset<N>& only_poses(const Measurements<N>& measured, const char* caller) {
-  require(measured.sets().size() == 1 && measured.poses().size() == 1, caller, ": ", measured.sets().size(),
-          " sets of measurements, it takes the poses of one station");
+  demand(measured.sets().size() == 1 && measured.poses().size() == 1, caller, ": ", measured.sets().size(),
+         " sets of measurements, it takes the poses of one station");
   return measured.poses().front();
 }
 

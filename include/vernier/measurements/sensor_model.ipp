@@ -13,9 +13,9 @@ VERNIER_IMPL void SensorModel::validate() const {
                                     {"orientation_sigma", orientation_sigma},
                                     {"distance_sigma", distance_sigma},
                                     {"contact_sigma", contact_sigma}})
-    require(value > 0 && std::isfinite(value), "SensorModel: ", name, " is ", value, ", must be positive");
-  require(joint_sigma >= 0 && std::isfinite(joint_sigma), "SensorModel: joint_sigma is ", joint_sigma,
-          ", must not be negative");
+    demand(value > 0 && std::isfinite(value), "SensorModel: ", name, " is ", value, ", must be positive");
+  demand(joint_sigma >= 0 && std::isfinite(joint_sigma), "SensorModel: joint_sigma is ", joint_sigma,
+         ", must not be negative");
 }
 
 }  // namespace vernier

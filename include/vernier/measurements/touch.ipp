@@ -4,6 +4,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rigid_motions.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/measurements/touch.hpp"
 
@@ -35,7 +36,7 @@ VERNIER_IMPL Vector3 fitted_normal(const PointRows& points, const VectorX& heigh
     Vector3 sum = Vector3::Zero();  // of the face that i is on
     double count = 0;
     for (Index k = 0; k < points.rows(); ++k)
-      if (heights(k) == heights(i)) {
+      if (same_value(heights(k), heights(i))) {
         sum += point(points, k);
         ++count;
       }

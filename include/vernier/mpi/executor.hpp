@@ -72,9 +72,9 @@ class MpiExecutor {
     int started = 0, ended = 0;
     MPI_Initialized(&started);
     MPI_Finalized(&ended);
-    require(started != 0, "MpiExecutor: MPI is not initialised, call MPI_Init_thread first");
-    require(ended == 0, "MpiExecutor: MPI is finalised already");
-    require(communicator != MPI_COMM_NULL, "MpiExecutor: the communicator is MPI_COMM_NULL");
+    demand(started != 0, "MpiExecutor: MPI is not initialised, call MPI_Init_thread first");
+    demand(ended == 0, "MpiExecutor: MPI is finalised already");
+    demand(communicator != MPI_COMM_NULL, "MpiExecutor: the communicator is MPI_COMM_NULL");
     detail::check_mpi(MPI_Comm_dup(communicator, &communicator_), "MPI_Comm_dup");
     detail::check_mpi(MPI_Comm_rank(communicator_, &rank_), "MPI_Comm_rank");
     detail::check_mpi(MPI_Comm_size(communicator_, &ranks_), "MPI_Comm_size");
@@ -87,8 +87,8 @@ class MpiExecutor {
   MpiExecutor(MPI_Comm communicator, ExecutorRef local) : MpiExecutor(communicator) {
     int level = MPI_THREAD_SINGLE;
     detail::check_mpi(MPI_Query_thread(&level), "MPI_Query_thread");
-    require(level >= MPI_THREAD_FUNNELED, "MpiExecutor: MPI's thread level is ", level,
-            ", must be at least MPI_THREAD_FUNNELED (", int{MPI_THREAD_FUNNELED}, ") for an executor inside a rank");
+    demand(level >= MPI_THREAD_FUNNELED, "MpiExecutor: MPI's thread level is ", level,
+           ", must be at least MPI_THREAD_FUNNELED (", int{MPI_THREAD_FUNNELED}, ") for an executor inside a rank");
     local_ = local;
   }
 
@@ -115,7 +115,7 @@ class MpiExecutor {
     std::exception_ptr failure;
     std::string text;
     try {
-      require(n <= std::numeric_limits<int>::max(), "MpiExecutor: ", n, " values are more than MPI can count");
+      demand(n <= (std::numeric_limits<int>::max)(), "MpiExecutor: ", n, " values are more than MPI can count");
       if (begin < end) local_.for_ranges(end - begin, [&](Index from, Index to) { work(begin + from, begin + to); });
     } catch (const std::exception& error) {
       failure = std::current_exception();
@@ -128,9 +128,9 @@ class MpiExecutor {
     long long agreed[3] = {failure ? rank_ : ranks_, before, -before};
     detail::check_mpi(MPI_Allreduce(MPI_IN_PLACE, agreed, 3, MPI_LONG_LONG, MPI_MIN, communicator_), "MPI_Allreduce");
     if (agreed[0] < ranks_) fail(static_cast<int>(agreed[0]), text, failure);
-    require(agreed[1] == -agreed[2], "MpiExecutor: rank ", rank_, " of ", ranks_, ", which has ", n,
-            " values to gather, runs another computation than the others: every rank needs the same seed, options and "
-            "calls");
+    demand(agreed[1] == -agreed[2], "MpiExecutor: rank ", rank_, " of ", ranks_, ", which has ", n,
+           " values to gather, runs another computation than the others: every rank needs the same seed, options and "
+           "calls");
     gather(values);
   }
 

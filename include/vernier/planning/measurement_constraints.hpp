@@ -60,7 +60,7 @@ class MeasurementScene {
   VERNIER_API MeasurementScene(const ArmGeometry& arm, MeasurementConstraints constraints);
 
   /// Why the joint values q [rad, m] cannot be measured; `none` where they can.
-  VERNIER_API Rejection check(const ConstVectorRef& q) const;
+  VERNIER_API Rejection rejection(const ConstVectorRef& q) const;
 
  private:
   VERNIER_API Rejection check_sight(const Vector3& tool, const Vector3& looks,

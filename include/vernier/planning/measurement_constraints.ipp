@@ -43,28 +43,28 @@ VERNIER_IMPL MeasurementScene::MeasurementScene(const ArmGeometry& arm, Measurem
   const MeasurementConstraints& c = constraints_;
   const Index joints = arm_.joints();
   for (const VectorX* limits : {&c.lower, &c.upper})
-    require(limits->size() == 0 || limits->size() == joints, "MeasurementScene: limits of ", limits->size(),
-            " joints for an arm of ", joints);
-  require(c.joint_margin >= 0, "MeasurementScene: joint_margin is ", c.joint_margin, ", must not be negative");
+    demand(limits->size() == 0 || limits->size() == joints, "MeasurementScene: limits of ", limits->size(),
+           " joints for an arm of ", joints);
+  demand(c.joint_margin >= 0, "MeasurementScene: joint_margin is ", c.joint_margin, ", must not be negative");
   if (c.tool_box)
     for (Index k = 0; k < 3; ++k)
-      require(c.tool_box->lower(k) < c.tool_box->upper(k),
-              "MeasurementScene: the lower corner of the tool box is not below the upper one");
-  require(c.link_radii.empty() || static_cast<Index>(c.link_radii.size()) == joints, "MeasurementScene: radii of ",
-          c.link_radii.size(), " links for an arm of ", joints);
+      demand(c.tool_box->lower(k) < c.tool_box->upper(k),
+             "MeasurementScene: the lower corner of the tool box is not below the upper one");
+  demand(c.link_radii.empty() || static_cast<Index>(c.link_radii.size()) == joints, "MeasurementScene: radii of ",
+         c.link_radii.size(), " links for an arm of ", joints);
   for (const double radius : c.link_radii)
-    require(radius >= 0 && std::isfinite(radius), "MeasurementScene: the radius of a link is ", radius);
+    demand(radius >= 0 && std::isfinite(radius), "MeasurementScene: the radius of a link is ", radius);
   if (!c.tracker) return;
-  require(detail::all_finite(c.tracker->position), "MeasurementScene: the tracker's position is not finite");
-  require(c.tracker->reflector_direction.norm() > 0, "MeasurementScene: the reflector has no direction");
-  require(c.tracker->acceptance > 0, "MeasurementScene: acceptance is ", c.tracker->acceptance, ", must be positive");
-  require(c.tracker->min_range < c.tracker->max_range, "MeasurementScene: the tracker's range is empty");
+  demand(detail::all_finite(c.tracker->position), "MeasurementScene: the tracker's position is not finite");
+  demand(c.tracker->reflector_direction.norm() > 0, "MeasurementScene: the reflector has no direction");
+  demand(c.tracker->acceptance > 0, "MeasurementScene: acceptance is ", c.tracker->acceptance, ", must be positive");
+  demand(c.tracker->min_range < c.tracker->max_range, "MeasurementScene: the tracker's range is empty");
 }
 
-VERNIER_IMPL Rejection MeasurementScene::check(const ConstVectorRef& q) const {
+VERNIER_IMPL Rejection MeasurementScene::rejection(const ConstVectorRef& q) const {
   const MeasurementConstraints& c = constraints_;
   const Index joints = arm_.joints();
-  require(q.size() == joints, "MeasurementScene: ", q.size(), " joint values for an arm of ", joints);
+  demand(q.size() == joints, "MeasurementScene: ", q.size(), " joint values for an arm of ", joints);
   for (Index j = 0; j < joints; ++j)
     if ((c.lower.size() > 0 && q(j) < c.lower(j) + c.joint_margin) ||
         (c.upper.size() > 0 && q(j) > c.upper(j) - c.joint_margin))

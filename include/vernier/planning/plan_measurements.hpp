@@ -128,9 +128,9 @@ MeasurementPlan<Arm::dof> plan_measurements(const Arm& arm, const MeasurementCan
                                             const PlanOptions& options = {},
                                             const Measurements<Arm::dof>& measured = {},
                                             const JointRows<Arm::dof>& region = JointRows<Arm::dof>(0, Arm::dof)) {
-  require(measured.sets().size() == measured.poses().size(),
-          "plan_measurements: ", measured.sets().size() - measured.poses().size(), " of ", measured.sets().size(),
-          " sets of measurements are no data sets of poses; a plan counts these alone");
+  demand(measured.sets().size() == measured.poses().size(),
+         "plan_measurements: ", measured.sets().size() - measured.poses().size(), " of ", measured.sets().size(),
+         " sets of measurements are no data sets of poses; a plan counts these alone");
   detail::PlanInput input{candidates.joints, candidates.previous, MatrixX(0, Arm::dof), MatrixX(0, Arm::dof), region};
   for (const Dataset<Arm::dof>& poses : measured.poses()) {
     const Index before = input.measured.rows(), rows = before + poses.size();

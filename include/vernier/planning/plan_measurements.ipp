@@ -29,7 +29,7 @@ class JointBins {
     for (Index j = 0; j < candidates.cols(); ++j) {
       lower_(j) = candidates.col(j).minCoeff();
       const double range = candidates.col(j).maxCoeff() - lower_(j);
-      first_.push_back(first_.back() + std::max(1, static_cast<int>(std::ceil(range / width - 1e-9))));
+      first_.push_back(first_.back() + (std::max)(1, static_cast<int>(std::ceil(range / width - 1e-9))));
     }
   }
 
@@ -39,7 +39,7 @@ class JointBins {
     const int begin = first_[static_cast<std::size_t>(j)], end = first_[static_cast<std::size_t>(j) + 1];
     const double at = (q - lower_(j)) / width_;
     if (!(at >= 0) || at > end - begin + 1e-9) return -1;
-    return begin + std::min(static_cast<int>(at), end - begin - 1);
+    return begin + (std::min)(static_cast<int>(at), end - begin - 1);
   }
   /// Bins of all joints of some configurations.
   VERNIER_LOCAL Eigen::MatrixXi of_rows(const MatrixX& joints) const {
@@ -104,15 +104,15 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   options.errors.validate();
   options.sensors.validate();
   const Index n = input.candidates.rows();
-  require(options.count >= 1, "plan_measurements: count is ", options.count, ", must be at least 1");
-  require(n >= options.count, "plan_measurements: ", n, " candidates for ", options.count, " measurements");
-  require(input.candidates_previous.rows() == 0 || input.candidates_previous.rows() == n,
-          "plan_measurements: ", input.candidates_previous.rows(), " approaches for ", n, " candidates");
-  require(all_finite(input.candidates) && all_finite(input.measured) && all_finite(input.region),
-          "plan_measurements: a joint value is not finite");
-  require(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");
-  require(options.criterion != DesignCriterion::region_variance || input.region.rows() > 0,
-          "plan_measurements: no region whose variance could be reduced");
+  demand(options.count >= 1, "plan_measurements: count is ", options.count, ", must be at least 1");
+  demand(n >= options.count, "plan_measurements: ", n, " candidates for ", options.count, " measurements");
+  demand(input.candidates_previous.rows() == 0 || input.candidates_previous.rows() == n,
+         "plan_measurements: ", input.candidates_previous.rows(), " approaches for ", n, " candidates");
+  demand(all_finite(input.candidates) && all_finite(input.measured) && all_finite(input.region),
+         "plan_measurements: a joint value is not finite");
+  demand(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");
+  demand(options.criterion != DesignCriterion::region_variance || input.region.rows() > 0,
+         "plan_measurements: no region whose variance could be reduced");
   const PlannedCalibration planned{nominal,         options.geometry, options.errors,
                                    options.sensors, options.oriented, options.count + input.measured.rows()};
   const Index block = options.oriented ? 6 : 3;
@@ -133,10 +133,10 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   PoseDesignOptions design{.count = options.count, .criterion = options.criterion};
   const Eigen::MatrixXi bins_of = bins.of_rows(input.candidates);
   Eigen::VectorXi wanted = Eigen::VectorXi::Zero(bins.size());
-  for (Index c = 0; c < bins_of.size(); ++c) wanted(bins_of.data()[c]) = std::max(1, options.bin_count);
+  for (Index c = 0; c < bins_of.size(); ++c) wanted(bins_of.data()[c]) = (std::max)(1, options.bin_count);
   const Eigen::MatrixXi bins_measured = bins.of_rows(input.measured);
   for (Index c = 0; c < bins_measured.size(); ++c)
-    if (const int bin = bins_measured.data()[c]; bin >= 0) wanted(bin) = std::max(0, wanted(bin) - 1);
+    if (const int bin = bins_measured.data()[c]; bin >= 0) wanted(bin) = (std::max)(0, wanted(bin) - 1);
   if (options.bin_count > 0) design.coverage = {bins_of, wanted};
   const PoseDesign found = design_poses(rows, block, design, measured, region);
 
@@ -160,24 +160,24 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
 
 VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const VectorX& lower, const VectorX& upper, Index n,
                                      std::uint64_t seed, RejectionCounts& rejected) {
-  require(n >= 1, "sample_candidates: ", n, " candidates requested");
+  demand(n >= 1, "sample_candidates: ", n, " candidates requested");
   bool usable = all_finite(lower) && all_finite(upper);
   for (Index j = 0; j < lower.size(); ++j) usable = usable && lower(j) < upper(j);
-  require(usable, "sample_candidates: the joint limits are not finite, or empty");
+  demand(usable, "sample_candidates: the joint limits are not finite, or empty");
   Rng rng(seed);
   MatrixX out(n, lower.size());
   constexpr Index attempts = 1000;
   Index tried = 0;
   for (Index i = 0; i < n;) {
     for (Index j = 0; j < lower.size(); ++j) out(i, j) = rng.uniform(lower(j), upper(j));
-    const Rejection reason = scene.check(row_of(out, i));
+    const Rejection reason = scene.rejection(row_of(out, i));
     ++rejected[static_cast<std::size_t>(reason)];
     if (reason == Rejection::none) ++i;
     ++tried;
     if (tried < attempts * (i + 1)) continue;
     const auto most = std::max_element(rejected.begin() + 1, rejected.end());
-    require(false, "sample_candidates: of ", tried, " configurations ", i, " can be measured; of the others ", *most,
-            " are ", name_of(static_cast<Rejection>(most - rejected.begin())));
+    demand(false, "sample_candidates: of ", tried, " configurations ", i, " can be measured; of the others ", *most,
+           " are ", name_of(static_cast<Rejection>(most - rejected.begin())));
   }
   rejected[0] = 0;
   return out;

@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/planning/pose_design.hpp"
 
 namespace vernier {
@@ -21,7 +22,7 @@ VERNIER_LOCAL Matrix6 factor_of_sum(const ConstMatrixRef& v) {
   for (Index j = 0; j < n; ++j) {
     double pivot = 1 + v(j, j);
     for (Index k = 0; k < j; ++k) pivot -= out(j, k) * out(j, k);
-    out(j, j) = std::sqrt(std::max(pivot, 1.0));  // I + v is no smaller than I
+    out(j, j) = std::sqrt((std::max)(pivot, 1.0));  // I + v is no smaller than I
     for (Index i = j + 1; i < n; ++i) {
       double sum = v(i, j);
       for (Index k = 0; k < j; ++k) sum -= out(i, k) * out(j, k);
@@ -137,29 +138,29 @@ class GrowingDesign {
 VERNIER_LOCAL void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
   MatrixX precision = MatrixX::Identity(measured.cols(), measured.cols());
   add_transposed_product(precision, measured, measured);
-  require(cholesky(precision), "design_poses: the measured rows are not usable");
+  demand(cholesky(precision), "design_poses: the measured rows are not usable");
   solve_lower(precision, candidates);
   solve_lower(precision, region);
 }
 
 VERNIER_LOCAL void check_design(const ConstMatrixRef& rows, Index block, const ConstMatrixRef& measured,
                                 const ConstMatrixRef& region, const PoseDesignOptions& options) {
-  require(block >= 1 && block <= 6, "design_poses: ", block, " rows a candidate, must be 1 to 6");
-  require(rows.rows() % block == 0, "design_poses: ", rows.rows(), " rows are no multiple of ", block);
+  demand(block >= 1 && block <= 6, "design_poses: ", block, " rows a candidate, must be 1 to 6");
+  demand(rows.rows() % block == 0, "design_poses: ", rows.rows(), " rows are no multiple of ", block);
   const Index n = rows.rows() / block, p = rows.cols();
-  require(options.count >= 0 && options.count <= n, "design_poses: ", options.count, " of ", n, " candidates");
-  require(measured.rows() == 0 || measured.cols() == p, "design_poses: measured rows of ", measured.cols(),
-          " unknowns, candidates of ", p);
-  require(region.rows() == 0 || region.cols() == p, "design_poses: a region of ", region.cols(),
-          " unknowns, candidates of ", p);
-  require(region.rows() % 3 == 0, "design_poses: ", region.rows(), " rows of the region are no multiple of 3");
-  require(options.criterion != DesignCriterion::region_variance || region.rows() > 0,
-          "design_poses: no region whose variance could be reduced");
-  require(all_finite(rows) && all_finite(measured) && all_finite(region), "design_poses: a row is not finite");
+  demand(options.count >= 0 && options.count <= n, "design_poses: ", options.count, " of ", n, " candidates");
+  demand(measured.rows() == 0 || measured.cols() == p, "design_poses: measured rows of ", measured.cols(),
+         " unknowns, candidates of ", p);
+  demand(region.rows() == 0 || region.cols() == p, "design_poses: a region of ", region.cols(),
+         " unknowns, candidates of ", p);
+  demand(region.rows() % 3 == 0, "design_poses: ", region.rows(), " rows of the region are no multiple of 3");
+  demand(options.criterion != DesignCriterion::region_variance || region.rows() > 0,
+         "design_poses: no region whose variance could be reduced");
+  demand(all_finite(rows) && all_finite(measured) && all_finite(region), "design_poses: a row is not finite");
   const Eigen::MatrixXi& bins = options.coverage.bins;
-  require(bins.rows() == 0 || bins.rows() == n, "design_poses: bins of ", bins.rows(), " candidates, expected ", n);
-  require(bins.size() == 0 || (bins.minCoeff() >= 0 && bins.maxCoeff() < options.coverage.missing.size()),
-          "design_poses: a bin is not in 0 .. ", options.coverage.missing.size() - 1);
+  demand(bins.rows() == 0 || bins.rows() == n, "design_poses: bins of ", bins.rows(), " candidates, expected ", n);
+  demand(bins.size() == 0 || (bins.minCoeff() >= 0 && bins.maxCoeff() < options.coverage.missing.size()),
+         "design_poses: a bin is not in 0 .. ", options.coverage.missing.size() - 1);
 }
 
 /// What a candidate offers; the greatest is chosen.
@@ -171,7 +172,7 @@ struct DesignOffer {
   /// Of equals the first candidate comes first.
   bool operator<(const DesignOffer& other) const {
     if (covered != other.covered) return covered < other.covered;
-    if (gain != other.gain) return gain < other.gain;
+    if (!same_value(gain, other.gain)) return gain < other.gain;
     return candidate > other.candidate;
   }
 };
@@ -226,7 +227,7 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
     out.log_det(step + 1) = out.log_det(step) + design.information(best);
     for (Index k = 0; bins.rows() > 0 && k < bins.cols(); ++k) {
       int& missing = out.missing(bins(best, k));
-      missing = std::max(0, missing - 1);
+      missing = (std::max)(0, missing - 1);
     }
     design.choose(best);
     if (region.rows() > 0) out.region_variance(step + 1) = design.region_variance();
@@ -248,7 +249,7 @@ VERNIER_LOCAL WeightedInformation weighted_information(const ConstMatrixRef& row
   const MatrixX weighted = rows_scaled(roots, rows);
   MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()), columns = rows.transpose();
   add_transposed_product(information, weighted, weighted);
-  require(cholesky(information), "information_bound: the rows are not usable");
+  demand(cholesky(information), "information_bound: the rows are not usable");
   solve_lower(information, columns);
   const VectorX squares = squared_column_norms(columns);
   WeightedInformation out{cholesky_log_determinant(information), VectorX::Zero(weights.size())};
@@ -280,18 +281,18 @@ VERNIER_LOCAL void share_out(double total, VectorX& weights) {
 }  // namespace detail
 
 VERNIER_IMPL double information_bound(const ConstMatrixRef& rows, Index block, Index count, int iterations) {
-  require(block >= 1 && rows.rows() % block == 0, "information_bound: ", rows.rows(), " rows are no multiple of ",
-          block);
+  demand(block >= 1 && rows.rows() % block == 0, "information_bound: ", rows.rows(), " rows are no multiple of ",
+         block);
   const Index n = rows.rows() / block;
-  require(count >= 0 && count <= n, "information_bound: ", count, " of ", n, " candidates");
-  require(iterations >= 1, "information_bound: ", iterations, " iterations, must be at least 1");
+  demand(count >= 0 && count <= n, "information_bound: ", count, " of ", n, " candidates");
+  demand(iterations >= 1, "information_bound: ", iterations, " iterations, must be at least 1");
   VectorX weights = VectorX::Constant(n, static_cast<double>(count) / static_cast<double>(std::max<Index>(n, 1)));
   double best = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const auto at = detail::weighted_information(rows, block, weights);
     VectorX largest = at.gradient;
     std::nth_element(largest.begin(), largest.begin() + count, largest.end(), std::greater<>());
-    best = std::min(best, at.value + largest.head(count).sum() - weights.dot(at.gradient));
+    best = (std::min)(best, at.value + largest.head(count).sum() - weights.dot(at.gradient));
     weights = weights.cwiseProduct(at.gradient);
     detail::share_out(static_cast<double>(count), weights);
   }

@@ -7,6 +7,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/planning/visiting_order.hpp"
 
 namespace vernier {
@@ -15,11 +16,11 @@ namespace detail {
 
 /// Times from every configuration to every other.
 VERNIER_LOCAL MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& speeds) {
-  require(all_finite(joints), "visiting_order: a joint value is not finite");
-  require(speeds.size() == 0 || speeds.size() == joints.cols(), "visiting_order: ", speeds.size(), " speeds of ",
-          joints.cols(), " joints");
-  require(speeds.size() == 0 || (all_finite(speeds) && speeds.minCoeff() > 0),
-          "visiting_order: a speed is not positive");
+  demand(all_finite(joints), "visiting_order: a joint value is not finite");
+  demand(speeds.size() == 0 || speeds.size() == joints.cols(), "visiting_order: ", speeds.size(), " speeds of ",
+         joints.cols(), " joints");
+  demand(speeds.size() == 0 || (all_finite(speeds) && speeds.minCoeff() > 0),
+         "visiting_order: a speed is not positive");
   MatrixX scaled = joints.transpose();
   for (Index k = 0; k < speeds.size(); ++k)
     for (Index i = 0; i < scaled.cols(); ++i) scaled(k, i) *= 1 / speeds(k);
@@ -28,7 +29,7 @@ VERNIER_LOCAL MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& 
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < i; ++j) {
       double slowest = 0;  // of the joints
-      for (Index k = 0; k < scaled.rows(); ++k) slowest = std::max(slowest, std::abs(scaled(k, i) - scaled(k, j)));
+      for (Index k = 0; k < scaled.rows(); ++k) slowest = (std::max)(slowest, std::abs(scaled(k, i) - scaled(k, j)));
       out(i, j) = out(j, i) = slowest;
     }
   return out;
@@ -66,7 +67,7 @@ class OpenPath {
           if (j >= i - 1 && j <= last) continue;
           const double removed = time(i - 1, i) + time(last, last + 1) - time(i - 1, last + 1);
           const double added =
-              std::min(time(j, i) + time(last, j + 1), time(j, last) + time(i, j + 1)) - time(j, j + 1);
+              (std::min)(time(j, i) + time(last, j + 1), time(j, last) + time(i, j + 1)) - time(j, j + 1);
           if (!(added < removed - tiny)) continue;
           if (time(j, last) + time(i, j + 1) < time(j, i) + time(last, j + 1))
             std::reverse(order_.begin() + i, order_.begin() + last + 1);
@@ -97,8 +98,7 @@ class OpenPath {
 
 VERNIER_IMPL std::vector<Index> visiting_order(const ConstMatrixRef& joints, const VectorX& speeds, Index fixed) {
   const Index n = joints.rows();
-  require(fixed >= 0 && fixed <= std::max<Index>(n, 1), "visiting_order: ", fixed, " of ", n,
-          " rows are to stay first");
+  demand(fixed >= 0 && fixed <= std::max<Index>(n, 1), "visiting_order: ", fixed, " of ", n, " rows are to stay first");
   if (n == 0) return {};
   const MatrixX times = detail::travel_times(joints, speeds);
   fixed = std::max<Index>(fixed, 1);
@@ -108,7 +108,7 @@ VERNIER_IMPL std::vector<Index> visiting_order(const ConstMatrixRef& joints, con
     const auto here = order.begin() + i;
     const Index from = *(here - 1);
     std::iter_swap(here, std::min_element(here, order.end(), [&](Index a, Index b) {
-                     return times(from, a) < times(from, b) || (times(from, a) == times(from, b) && a < b);
+                     return times(from, a) < times(from, b) || (same_value(times(from, a), times(from, b)) && a < b);
                    }));
   }
   detail::OpenPath path(times, std::move(order), fixed);
@@ -128,7 +128,7 @@ VERNIER_IMPL double path_time(const ConstMatrixRef& joints, const std::vector<In
 }
 
 VERNIER_IMPL std::vector<Index> with_check_visits(const std::vector<Index>& order, Index every) {
-  require(every >= 1, "with_check_visits: every is ", every, ", must be at least 1");
+  demand(every >= 1, "with_check_visits: every is ", every, ", must be at least 1");
   std::vector<Index> out;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i > 0 && i % static_cast<std::size_t>(every) == 0) out.push_back(order.front());

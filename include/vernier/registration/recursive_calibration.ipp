@@ -9,13 +9,12 @@ namespace vernier::detail {
 
 VERNIER_IMPL RecursiveEstimator::RecursiveEstimator(const VectorX& std, double forgetting)
     : start_(std.cwiseProduct(std)), covariance_(MatrixX::Zero(std.size(), std.size())), forgetting_(forgetting) {
-  require(forgetting > 0 && forgetting <= 1, "RecursiveCalibration: forgetting is ", forgetting,
-          ", must lie in (0, 1]");
+  demand(forgetting > 0 && forgetting <= 1, "RecursiveCalibration: forgetting is ", forgetting, ", must lie in (0, 1]");
   for (Index k = 0; k < std.size(); ++k) covariance_(k, k) = start_(k);
 }
 
 VERNIER_IMPL VectorX RecursiveEstimator::update(const MatrixX& rows, const VectorX& residual) {
-  require(all_finite(residual), "RecursiveCalibration: a measured value is not finite");
+  demand(all_finite(residual), "RecursiveCalibration: a measured value is not finite");
   if (forgetting_ < 1) {  // towards the initial covariance: what is not excited does not grow without bound
     cholesky(covariance_);
     MatrixX information = forgetting_ * inverse_from_cholesky(covariance_);
@@ -41,7 +40,7 @@ VERNIER_IMPL VectorX RecursiveEstimator::update(const MatrixX& rows, const Vecto
 VERNIER_IMPL VectorX initial_std(const FrameUpdate& update, const ReregisterOptions& options,
                                  const std::array<double, 2>& sizes) {
   options.validate();
-  require(sizes[0] > 0 && sizes[1] > 0, "RecursiveCalibration: initial standard deviations must be positive");
+  demand(sizes[0] > 0 && sizes[1] > 0, "RecursiveCalibration: initial standard deviations must be positive");
   VectorX out(update.size());
   for (Index k = 0; k < out.size(); ++k) out(k) = k < 3 ? sizes[0] : sizes[1];
   if (update.tool)

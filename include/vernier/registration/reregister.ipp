@@ -16,9 +16,9 @@
 namespace vernier {
 
 VERNIER_IMPL void ReregisterOptions::validate() const {
-  require(base || tool || offsets, "ReregisterOptions: nothing is to be estimated");
+  demand(base || tool || offsets, "ReregisterOptions: nothing is to be estimated");
   const auto positive = [](const char* name, double value) {
-    require(value > 0, "ReregisterOptions: ", name, " ", value, " must be positive");
+    demand(value > 0, "ReregisterOptions: ", name, " ", value, " must be positive");
   };
   positive("offset_prior_std", offset_prior_std);
   positive("tool_position_prior_std", tool_position_prior_std);
@@ -55,15 +55,15 @@ VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
     if (change_std(zeros_begin + i) > 0.5 * estimated.offset_prior_std) zeros += " " + std::to_string(i + 1);
   if (!zeros.empty())
     out.push_back("The poses tell little about the zeros of joints" + zeros + ": held near where they were.");
-  const auto far = [&](const char* how, double moved, double prior, const char* unit) {
+  const auto far_off = [&](const char* how, double moved, double prior, const char* unit) {
     if (moved > 3 * prior)
       out.push_back(
           detail::formatted("The tool has %s by %.2f %s, where %.2f are expected of one remounted: if it is "
                             "another tool, register it as such (with infinite priors).",
                             how, 1e3 * moved, unit, 1e3 * prior));
   };
-  far("moved", translation(motion.tool).norm(), estimated.tool_position_prior_std, "mm");
-  far("turned", log_so3(rotation(motion.tool)).norm(), estimated.tool_rotation_prior_std, "mrad");
+  far_off("moved", translation(motion.tool).norm(), estimated.tool_position_prior_std, "mm");
+  far_off("turned", log_so3(rotation(motion.tool)).norm(), estimated.tool_rotation_prior_std, "mrad");
   const auto vague = [&](const char* what, double sigma, double prior, const char* unit) {
     if (std::isinf(prior) && sigma > 1e-3)
       out.push_back(
@@ -71,7 +71,7 @@ VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
   };
   if (!estimated.tool || change_std.size() == 0) return out;
   const auto largest = [&](Index begin) {
-    return std::max({change_std(begin), change_std(begin + 1), change_std(begin + 2)});
+    return (std::max)({change_std(begin), change_std(begin + 1), change_std(begin + 2)});
   };
   vague("position", largest(change_std.size() - 6), estimated.tool_position_prior_std, "mm");
   vague("rotation", largest(change_std.size() - 3), estimated.tool_rotation_prior_std, "mrad");
@@ -235,7 +235,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSe
                                     ReregistrationReport& report) {
   options.validate();
   sensors.validate();
-  require(data.size() >= 1, "reregister: no samples");
+  demand(data.size() >= 1, "reregister: no samples");
   const int joints = static_cast<int>(data.joints.cols());
   // a tool that is freed follows the orientations by itself
   const FrameUpdate update{options.base, options.offsets, options.tool, joints, data.oriented() && !options.tool};

@@ -53,25 +53,25 @@ VERNIER_LOCAL void train_by_adam(NetworkError& problem, VectorX& theta, const Ad
 
 VERNIER_IMPL void BackPropagation::validate() const {
   layer().validate("BackPropagation");
-  require(activation == Activation::sigmoid || activation == Activation::tanh,
-          "BackPropagation: activation must be sigmoid or tanh");
-  require(weight_decay >= 0 && weight_decay < 1, "BackPropagation: weight_decay is ", weight_decay,
-          ", must lie in [0, 1)");
-  require(validation_share >= 0 && validation_share < 1, "BackPropagation: validation_share is ", validation_share,
-          ", must lie in [0, 1)");
-  require(patience >= 1, "BackPropagation: patience is ", patience, ", must be at least 1");
+  demand(activation == Activation::sigmoid || activation == Activation::tanh,
+         "BackPropagation: activation must be sigmoid or tanh");
+  demand(weight_decay >= 0 && weight_decay < 1, "BackPropagation: weight_decay is ", weight_decay,
+         ", must lie in [0, 1)");
+  demand(validation_share >= 0 && validation_share < 1, "BackPropagation: validation_share is ", validation_share,
+         ", must lie in [0, 1)");
+  demand(patience >= 1, "BackPropagation: patience is ", patience, ", must be at least 1");
   if (const auto* adam = std::get_if<Adam>(&training)) {
-    require(adam->epochs >= 0, "Adam: epochs is ", adam->epochs, ", must not be negative");
-    require(adam->batch >= 1, "Adam: batch is ", adam->batch, ", must be at least 1");
-    require(adam->learning_rate > 0 && adam->learning_rate < 1, "Adam: learning_rate is ", adam->learning_rate,
-            ", must lie in (0, 1)");
-    require(adam->momentum >= 0 && adam->momentum < 1, "Adam: momentum is ", adam->momentum, ", must lie in [0, 1)");
-    require(adam->memory >= 0 && adam->memory < 1, "Adam: memory is ", adam->memory, ", must lie in [0, 1)");
+    demand(adam->epochs >= 0, "Adam: epochs is ", adam->epochs, ", must not be negative");
+    demand(adam->batch >= 1, "Adam: batch is ", adam->batch, ", must be at least 1");
+    demand(adam->learning_rate > 0 && adam->learning_rate < 1, "Adam: learning_rate is ", adam->learning_rate,
+           ", must lie in (0, 1)");
+    demand(adam->momentum >= 0 && adam->momentum < 1, "Adam: momentum is ", adam->momentum, ", must lie in [0, 1)");
+    demand(adam->memory >= 0 && adam->memory < 1, "Adam: memory is ", adam->memory, ", must lie in [0, 1)");
   } else {
     const auto& lm = std::get<LevenbergMarquardt>(training);
-    require(lm.epochs >= 0, "LevenbergMarquardt: epochs is ", lm.epochs, ", must not be negative");
-    require(lm.tolerance >= 0 && lm.tolerance < 1, "LevenbergMarquardt: tolerance is ", lm.tolerance,
-            ", must lie in [0, 1)");
+    demand(lm.epochs >= 0, "LevenbergMarquardt: epochs is ", lm.epochs, ", must not be negative");
+    demand(lm.tolerance >= 0 && lm.tolerance < 1, "LevenbergMarquardt: tolerance is ", lm.tolerance,
+           ", must lie in [0, 1)");
   }
 }
 
@@ -85,7 +85,7 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
   const MatrixX features = in.apply(mapped), scaled = out.apply(targets);
 
   std::vector<Index> kept = Rng(child_seed(options.seed, 1)).permutation(n);
-  const auto cut = kept.begin() + std::min(n - 1, static_cast<Index>(validation_share * static_cast<double>(n)));
+  const auto cut = kept.begin() + (std::min)(n - 1, static_cast<Index>(validation_share * static_cast<double>(n)));
   std::vector<Index> held_out(kept.begin(), cut);
   kept.erase(kept.begin(), cut);
   if (held_out.empty()) std::sort(kept.begin(), kept.end());
@@ -103,7 +103,7 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
   Index epoch = -1, best_epoch = 0;
   const auto watch = [&](double objective) {
     ++epoch;
-    lowest = std::min(lowest, objective);
+    lowest = (std::min)(lowest, objective);
     const double error = held_out.empty() ? objective : validation.evaluate(theta);
     if (error < least) {
       least = error;
@@ -118,7 +118,7 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
     const auto& lm = std::get<LevenbergMarquardt>(training);
     detail::levenberg_marquardt(problem, theta, lm.epochs, lm.tolerance, options.executor, watch);
   }
-  require(best.size() > 0, "BackPropagation: the network is not finite at the weights to start from");
+  demand(best.size() > 0, "BackPropagation: the network is not finite at the weights to start from");
   MatrixX beta(hidden_nodes, m);
   VectorX offset = out.mean;
   for (Index o = 0, k = problem.hidden(); o < m; ++o) {

@@ -7,14 +7,14 @@ namespace vernier::detail {
 
 VERNIER_IMPL void check_samples(const char* caller, const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                 const VectorX* weights) {
-  require(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(),
-          " rows of targets");
-  require(inputs.rows() >= 1, caller, ": no samples");
-  require(all_finite(inputs) && all_finite(targets), caller, ": the samples have a value that is not finite");
+  demand(inputs.rows() == targets.rows(), caller, ": ", inputs.rows(), " rows of inputs, but ", targets.rows(),
+         " rows of targets");
+  demand(inputs.rows() >= 1, caller, ": no samples");
+  demand(all_finite(inputs) && all_finite(targets), caller, ": the samples have a value that is not finite");
   if (weights == nullptr) return;
-  require(weights->size() == inputs.rows(), caller, ": ", weights->size(), " weights for ", inputs.rows(), " samples");
-  require(all_finite(*weights) && weights->minCoeff() > 0, caller, ": the weights go down to ", weights->minCoeff(),
-          ", all must be finite and positive");
+  demand(weights->size() == inputs.rows(), caller, ": ", weights->size(), " weights for ", inputs.rows(), " samples");
+  demand(all_finite(*weights) && weights->minCoeff() > 0, caller, ": the weights go down to ", weights->minCoeff(),
+         ", all must be finite and positive");
 }
 
 VERNIER_IMPL VectorX weights_or_ones(const VectorX* weights, Index n) {
@@ -22,7 +22,7 @@ VERNIER_IMPL VectorX weights_or_ones(const VectorX* weights, Index n) {
 }
 
 VERNIER_IMPL void require_no_weights(const char* caller, const FitOptions& options) {
-  require(options.weights == nullptr, caller, " takes no weights");
+  demand(options.weights == nullptr, caller, " takes no weights");
 }
 
 }  // namespace vernier::detail

@@ -10,12 +10,12 @@ VERNIER_IMPL Box Elm::box(int inputs) const { return layer().box(inputs); }
 
 VERNIER_IMPL void Elm::validate() const {
   layer().validate("Elm");
-  require(rcond >= 0 && rcond < 1, "Elm: rcond is ", rcond, ", must lie in [0, 1)");
+  demand(rcond >= 0 && rcond < 1, "Elm: rcond is ", rcond, ", must lie in [0, 1)");
 }
 
 VERNIER_IMPL detail::ElmFitness Elm::fitness(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                              const VectorX* weights) const {
-  require(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda, ", must lie in (0, 1)");
+  demand(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda, ", must lie in (0, 1)");
   const MatrixX mapped = layer().map(inputs);
   return {layer(), layer().scaling(mapped).apply(mapped), ColumnScaling::fit(targets, target_scaling).apply(targets),
           fitness_lambda, weights};
@@ -24,7 +24,7 @@ VERNIER_IMPL detail::ElmFitness Elm::fitness(const ConstMatrixRef& inputs, const
 VERNIER_IMPL detail::FittedNetwork Elm::solve(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                               const VectorX& theta, const FitOptions& options) const {
   const Index expected = dimension(static_cast<int>(inputs.cols()));
-  require(theta.size() == expected, "Elm: ", theta.size(), " hidden weights, expected ", expected);
+  demand(theta.size() == expected, "Elm: ", theta.size(), " hidden weights, expected ", expected);
   const MatrixX mapped = layer().map(inputs);
   const ColumnScaling in = layer().scaling(mapped), out = ColumnScaling::fit(targets, target_scaling);
   MatrixX h, t = out.apply(targets);

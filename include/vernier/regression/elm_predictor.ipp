@@ -8,10 +8,10 @@ namespace vernier::detail {
 VERNIER_IMPL NodeSum node_sum_of(const FittedNetwork& network, int inputs) {
   const HiddenLayer& layer = network.layer;
   const Index f = layer.features(inputs);
-  require(network.theta.size() == layer.dimension(inputs) && network.beta.rows() == layer.nodes &&
-              network.scaling.offset.size() == f && network.scaling.factor.size() == f,
-          "ElmPredictor: ", layer.nodes, " nodes of ", f, " features need ", layer.dimension(inputs), " weights and ",
-          layer.nodes, " rows of output weights, got ", network.theta.size(), " and ", network.beta.rows());
+  demand(network.theta.size() == layer.dimension(inputs) && network.beta.rows() == layer.nodes &&
+             network.scaling.offset.size() == f && network.scaling.factor.size() == f,
+         "ElmPredictor: ", layer.nodes, " nodes of ", f, " features need ", layer.dimension(inputs), " weights and ",
+         layer.nodes, " rows of output weights, got ", network.theta.size(), " and ", network.beta.rows());
   const Eigen::Map<const MatrixX, 0, Eigen::OuterStride<>> weights(network.theta.data(), f, layer.nodes,
                                                                    Eigen::OuterStride<>(f + 1));
   VectorX biases(layer.nodes);

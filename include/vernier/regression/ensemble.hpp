@@ -29,7 +29,7 @@ class EnsemblePredictor : public detail::PredictorInterface<EnsemblePredictor<P>
 
   /// @param members at least one
   explicit EnsemblePredictor(std::vector<P> members) : members_(std::move(members)) {
-    require(!members_.empty(), "EnsemblePredictor: no members");
+    demand(!members_.empty(), "EnsemblePredictor: no members");
   }
 
   /// The mean of the members' predictions, and where `slope` is not null that of their derivatives.
@@ -99,8 +99,8 @@ struct Ensemble {
   EnsemblePredictor<PredictorOf<R, X::ColsAtCompileTime, Y::ColsAtCompileTime>> fit(
       const Eigen::MatrixBase<X>& inputs, const Eigen::MatrixBase<Y>& targets, const FitOptions& options = {}) const {
     using Member = PredictorOf<R, X::ColsAtCompileTime, Y::ColsAtCompileTime>;
-    require(members >= 2, "Ensemble: members is ", members, ", must be at least 2");
-    require(share > 0 && share <= 1, "Ensemble: share is ", share, ", must lie in (0, 1]");
+    demand(members >= 2, "Ensemble: members is ", members, ", must be at least 2");
+    demand(share > 0 && share <= 1, "Ensemble: share is ", share, ", must lie in (0, 1]");
     detail::require_samples("Ensemble", inputs, targets, options);
 
     std::vector<std::optional<Member>> fitted(static_cast<std::size_t>(members));

@@ -13,17 +13,17 @@
 namespace vernier {
 
 VERNIER_IMPL void GaussianProcess::validate(Index dimension) const {
-  require(input_map != InputMap::sine_cosine_products,
-          "GaussianProcess: products of sines and cosines have no length scale of one input");
-  require(length_scales.size() == 0 || length_scales.size() == dimension, "GaussianProcess: ", length_scales.size(),
-          " length scales for ", dimension, " inputs");
-  require(length_scales.size() == 0 || (detail::all_finite(length_scales) && length_scales.minCoeff() > 0),
-          "GaussianProcess: the length scales must be positive");
-  require(!noise_ratio || (*noise_ratio > 0 && std::isfinite(*noise_ratio)), "GaussianProcess: noise_ratio is ",
-          noise_ratio.value_or(0), ", must be positive");
-  require(starts >= 1 && iterations >= 1, "GaussianProcess: starts is ", starts, ", iterations is ", iterations,
-          ", both must be at least 1");
-  require(max_hyper_samples >= 2, "GaussianProcess: max_hyper_samples is ", max_hyper_samples, ", must be at least 2");
+  demand(input_map != InputMap::sine_cosine_products,
+         "GaussianProcess: products of sines and cosines have no length scale of one input");
+  demand(length_scales.size() == 0 || length_scales.size() == dimension, "GaussianProcess: ", length_scales.size(),
+         " length scales for ", dimension, " inputs");
+  demand(length_scales.size() == 0 || (detail::all_finite(length_scales) && length_scales.minCoeff() > 0),
+         "GaussianProcess: the length scales must be positive");
+  demand(!noise_ratio || (*noise_ratio > 0 && std::isfinite(*noise_ratio)), "GaussianProcess: noise_ratio is ",
+         noise_ratio.value_or(0), ", must be positive");
+  demand(starts >= 1 && iterations >= 1, "GaussianProcess: starts is ", starts, ", iterations is ", iterations,
+         ", both must be at least 1");
+  demand(max_hyper_samples >= 2, "GaussianProcess: max_hyper_samples is ", max_hyper_samples, ", must be at least 2");
 }
 
 VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
@@ -39,9 +39,9 @@ VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& 
   features.divide(scales);
   const VectorX inverse = weights.cwiseInverse();
   const detail::KernelSystem system(detail::kernel_matrix(kernel, features.values), ratio * inverse, targets);
-  require(system.solved, "GaussianProcess: noise_ratio is ", ratio, ", too small for ", inputs.rows(), " samples");
+  demand(system.solved, "GaussianProcess: noise_ratio is ", ratio, ", too small for ", inputs.rows(), " samples");
   VectorX variance = detail::varying_outputs(targets);
-  for (Index o = 0; o < variance.size(); ++o) variance(o) *= std::max(system.square(o), 0.0) / weights.sum();
+  for (Index o = 0; o < variance.size(); ++o) variance(o) *= (std::max)(system.square(o), 0.0) / weights.sum();
   return {{kernel, input_map, features.scaling, features.values, system.alpha, system.mean},
           detail::ProcessSpread(system, variance, ratio)};
 }

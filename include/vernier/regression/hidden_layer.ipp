@@ -14,9 +14,9 @@ VERNIER_IMPL Box HiddenLayer::box(int inputs) const {
 }
 
 VERNIER_IMPL void HiddenLayer::validate(const char* caller) const {
-  require(nodes >= 1, caller, ": hidden_nodes is ", nodes, ", must be at least 1");
-  require(weight_limit > 0 && weight_limit < 1e6, caller, ": weight_limit is ", weight_limit,
-          ", must be positive and below 1e6");
+  demand(nodes >= 1, caller, ": hidden_nodes is ", nodes, ", must be at least 1");
+  demand(weight_limit > 0 && weight_limit < 1e6, caller, ": weight_limit is ", weight_limit,
+         ", must be positive and below 1e6");
 }
 
 VERNIER_IMPL VectorX HiddenLayer::draw(int inputs, std::uint64_t seed) const {
@@ -38,8 +38,8 @@ VERNIER_IMPL MatrixX HiddenLayer::map(const ConstMatrixRef& inputs) const {
       }
     return out;
   }
-  require(n <= detail::max_inputs_of_products, "InputMap::sine_cosine_products: ", n, " inputs, must be at most ",
-          detail::max_inputs_of_products);
+  demand(n <= detail::max_inputs_of_products, "InputMap::sine_cosine_products: ", n, " inputs, must be at most ",
+         detail::max_inputs_of_products);
   VectorX features(out.cols()), sine(n), cosine(n);
   for (Index i = 0; i < out.rows(); ++i) {
     const VectorX x = detail::row_of(inputs, i);

@@ -10,7 +10,7 @@ namespace vernier::detail {
 VERNIER_IMPL void sines_and_cosines_of(const double* angles, Index n, double* sines, double* cosines) noexcept {
   constexpr Index block = 8;
   for (Index first = 0; first < n; first += block) {
-    const Index count = std::min(block, n - first);
+    const Index count = (std::min)(block, n - first);
     double x[block] = {}, s[block], c[block];
     std::copy(angles + first, angles + first + count, x);
     sines_and_cosines<block>(x, s, c);

@@ -14,11 +14,11 @@ namespace vernier {
 
 VERNIER_IMPL detail::FittedKernels KernelElm::solve(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                                     const FitOptions& options) const {
-  require(!length_scale || (*length_scale > 0 && std::isfinite(*length_scale)), "KernelElm: length_scale is ",
-          length_scale.value_or(0), ", must be positive");
-  require(!lambda || (*lambda > 0 && std::isfinite(*lambda)), "KernelElm: lambda is ", lambda.value_or(0),
-          ", must be positive");
-  require(max_search_samples >= 2, "KernelElm: max_search_samples is ", max_search_samples, ", must be at least 2");
+  demand(!length_scale || (*length_scale > 0 && std::isfinite(*length_scale)), "KernelElm: length_scale is ",
+         length_scale.value_or(0), ", must be positive");
+  demand(!lambda || (*lambda > 0 && std::isfinite(*lambda)), "KernelElm: lambda is ", lambda.value_or(0),
+         ", must be positive");
+  demand(max_search_samples >= 2, "KernelElm: max_search_samples is ", max_search_samples, ", must be at least 2");
   detail::KernelFeatures features(inputs, input_map, input_scaling);
   const VectorX weights = detail::weights_or_ones(options.weights, inputs.rows());
   const Choice chosen = choose(features.values, targets, weights, options);
@@ -33,15 +33,15 @@ VERNIER_IMPL detail::FittedKernels KernelElm::solve(const ConstMatrixRef& inputs
   const VectorX inverse = weights.cwiseInverse();
   const detail::KernelSystem system(detail::kernel_matrix(Kernel::squared_exponential, features.values),
                                     chosen.lambda * inverse, targets);
-  require(system.solved, "KernelElm: lambda is ", chosen.lambda, ", too small for ", inputs.rows(),
-          " samples at a length scale of ", chosen.length_scale);
+  demand(system.solved, "KernelElm: lambda is ", chosen.lambda, ", too small for ", inputs.rows(),
+         " samples at a length scale of ", chosen.length_scale);
   return {Kernel::squared_exponential, input_map, features.scaling, features.values, system.alpha, system.mean};
 }
 
 VERNIER_IMPL KernelElm::Choice KernelElm::choose(const MatrixX& features, const ConstMatrixRef& targets,
                                                  const VectorX& weights, const FitOptions& options) const {
   if (length_scale && lambda) return {*length_scale, *lambda, 0};
-  const Index n = features.rows(), m = std::min(n, max_search_samples);
+  const Index n = features.rows(), m = (std::min)(n, max_search_samples);
   if (n < 2) return {length_scale.value_or(1), lambda.value_or(std::numeric_limits<double>::infinity()), 0};
   std::vector<Index> rows = Rng(options.seed).permutation(n);
   rows.resize(static_cast<std::size_t>(m));

@@ -41,10 +41,10 @@ VERNIER_IMPL MatrixX kernel_matrix(Kernel kernel, const ConstMatrixRef& features
 
 VERNIER_IMPL NodeSum node_sum_of(const FittedKernels& fitted, int inputs) {
   const Index f = feature_count(fitted.input_map, inputs), n = fitted.centres.rows();
-  require(fitted.centres.cols() == f && fitted.alpha.rows() == n && fitted.scaling.offset.size() == f &&
-              fitted.scaling.factor.size() == f,
-          "KernelPredictor: ", n, " centres of ", fitted.centres.cols(), " features (expected ", f, ") and ",
-          fitted.alpha.rows(), " coefficients");
+  demand(fitted.centres.cols() == f && fitted.alpha.rows() == n && fitted.scaling.offset.size() == f &&
+             fitted.scaling.factor.size() == f,
+         "KernelPredictor: ", n, " centres of ", fitted.centres.cols(), " features (expected ", f, ") and ",
+         fitted.alpha.rows(), " coefficients");
   const NodeFunction function =
       fitted.kernel == Kernel::squared_exponential ? NodeFunction::squared_exponential : NodeFunction::matern_5_2;
   return {function,  fitted.input_map, inputs,     fitted.scaling, fitted.centres.transpose(),

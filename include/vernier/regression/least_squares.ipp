@@ -22,7 +22,7 @@ VERNIER_IMPL RidgeSolution relative_ridge(const ConstMatrixRef& h, const ConstMa
   const Index nodes = h.cols();
   MatrixX gram = MatrixX::Zero(nodes, nodes);  // its lower triangle, and blocks of the diagonal
   for (Index first = 0, width = 32; first < nodes; first += width) {
-    const Index rest = nodes - first, columns = std::min(width, rest);
+    const Index rest = nodes - first, columns = (std::min)(width, rest);
     detail::add_transposed_product(gram.block(first, first, rest, columns), h.rightCols(rest),
                                    h.middleCols(first, columns));
   }
@@ -111,8 +111,8 @@ VERNIER_IMPL RidgePath::RidgePath(const ConstMatrixRef& h, const ConstMatrixRef&
 
 VERNIER_IMPL Index RidgePath::rank() const {
   const Index k = svd_.s.size();
-  const double cut = k > 0 ? svd_.s(0) * 1e-14 * static_cast<double>(std::max(svd_.u.rows(), svd_.v.rows())) : 0;
-  return std::count_if(svd_.s.data(), svd_.s.data() + k, [&](double s) { return s > std::max(cut, 1e-300); });
+  const double cut = k > 0 ? svd_.s(0) * 1e-14 * static_cast<double>((std::max)(svd_.u.rows(), svd_.v.rows())) : 0;
+  return std::count_if(svd_.s.data(), svd_.s.data() + k, [&](double s) { return s > (std::max)(cut, 1e-300); });
 }
 
 VERNIER_IMPL double RidgePath::scale() const { return svd_.s.size() > 0 ? svd_.s(0) * svd_.s(0) : 0; }
@@ -141,7 +141,7 @@ VERNIER_IMPL MatrixX RidgePath::leave_one_out_residuals(double lambda) const {
     for (Index j = 0; j < r; ++j) kept(j) = lambda / (svd_.s(j) * svd_.s(j) + lambda);
     if (r < n - 1) {  // what U does not span; where it spans all centred samples, nothing but rounding
       const VectorX spanned = detail::product(squares, VectorX::Ones(r));
-      for (Index i = 0; i < n; ++i) one_minus_leverage(i) = std::max(one_minus_leverage(i) - spanned(i), 0.0);
+      for (Index i = 0; i < n; ++i) one_minus_leverage(i) = (std::max)(one_minus_leverage(i) - spanned(i), 0.0);
       detail::add_product(residual, u, projected, -1);
     } else {
       one_minus_leverage.setZero();
@@ -151,7 +151,7 @@ VERNIER_IMPL MatrixX RidgePath::leave_one_out_residuals(double lambda) const {
     detail::add_product(residual, u, detail::rows_scaled(kept, projected));
   }
   for (Index o = 0; o < residual.cols(); ++o)
-    for (Index i = 0; i < n; ++i) residual(i, o) /= std::max(one_minus_leverage(i), 1e-300);
+    for (Index i = 0; i < n; ++i) residual(i, o) /= (std::max)(one_minus_leverage(i), 1e-300);
   return residual;
 }
 

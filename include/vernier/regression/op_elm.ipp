@@ -28,7 +28,7 @@ VERNIER_IMPL detail::FittedNetwork OpElm::solve(const ConstMatrixRef& inputs, co
     if (ranked.press[count] < ranked.press[kept]) kept = count;
 
   HiddenLayer pruned = layer();
-  pruned.nodes = std::max(1, static_cast<int>(kept));
+  pruned.nodes = (std::max)(1, static_cast<int>(kept));
   const Index each = layer().features(n) + 1;
   if (kept == 0) return {pruned, scaling, theta.head(each), MatrixX::Zero(1, targets.cols()), mean};
   const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + static_cast<std::ptrdiff_t>(kept));

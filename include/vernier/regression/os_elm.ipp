@@ -8,8 +8,8 @@ namespace vernier {
 
 VERNIER_IMPL void OsElm::validate() const {
   layer().validate("OsElm");
-  require(lambda > 0 && std::isfinite(lambda), "OsElm: lambda is ", lambda, ", must be positive");
-  require(forgetting > 0 && forgetting <= 1, "OsElm: forgetting is ", forgetting, ", must lie in (0, 1]");
+  demand(lambda > 0 && std::isfinite(lambda), "OsElm: lambda is ", lambda, ", must be positive");
+  demand(forgetting > 0 && forgetting <= 1, "OsElm: forgetting is ", forgetting, ", must lie in (0, 1]");
 }
 
 }  // namespace vernier

@@ -19,7 +19,7 @@ VERNIER_IMPL detail::RidgeElmLeaveOneOutError RidgeElm::leave_one_out_error(cons
 VERNIER_IMPL detail::FittedNetwork RidgeElm::solve(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                                    const VectorX& theta, const FitOptions& options) const {
   const Index expected = dimension(static_cast<int>(inputs.cols()));
-  require(theta.size() == expected, "RidgeElm: ", theta.size(), " hidden weights, expected ", expected);
+  demand(theta.size() == expected, "RidgeElm: ", theta.size(), " hidden weights, expected ", expected);
   const MatrixX mapped = layer().map(inputs);
   const ColumnScaling in = layer().scaling(mapped);
   MatrixX h;

@@ -22,7 +22,7 @@ VERNIER_IMPL ColumnScaling ColumnScaling::fit(const ConstMatrixRef& columns, Sca
       width = std::sqrt(sum / static_cast<double>(n));
     }
     // differences at the level of rounding are no signal
-    if (width > 1e-12 * std::max(std::abs(low), std::abs(high))) s.factor(j) = 1 / width;
+    if (width > 1e-12 * (std::max)(std::abs(low), std::abs(high))) s.factor(j) = 1 / width;
   }
   return s;
 }

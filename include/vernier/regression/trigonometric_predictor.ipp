@@ -30,8 +30,8 @@ VERNIER_IMPL TrigonometricSum::TrigonometricSum(int inputs, const ConstMatrixRef
     : inputs_(inputs),
       coefficients_(coefficients),
       spread_(std::make_shared<const TrigonometricSpread>(std::move(spread))) {
-  require(coefficients.rows() == power_of_three(inputs), "TrigonometricPredictor: ", coefficients.rows(),
-          " rows of coefficients, expected ", power_of_three(inputs));
+  demand(coefficients.rows() == power_of_three(inputs), "TrigonometricPredictor: ", coefficients.rows(),
+         " rows of coefficients, expected ", power_of_three(inputs));
 }
 
 /// `T_0 + sine T_1 + cosine T_2` of the thirds T of an array.
@@ -104,7 +104,7 @@ VERNIER_IMPL void TrigonometricSum::standard_deviation(const double* x, double* 
     variance += s.gain(k) * along * along;
     left -= along * along;
   }
-  const double factor = std::sqrt(variance + s.rest * std::max(left, 0.0));
+  const double factor = std::sqrt(variance + s.rest * (std::max)(left, 0.0));
   for (Index o = 0; o < s.noise.size(); ++o) out[o] = s.noise(o) * factor;
 }
 

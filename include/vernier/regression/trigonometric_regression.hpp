@@ -20,7 +20,7 @@ namespace vernier {
 /// @cite Hoerl and Kennard 1970; Allen 1974
 struct TrigonometricRegression {
   /// Largest number of angles in a feature, at least 0; all features by default.
-  int max_degree = std::numeric_limits<int>::max();
+  int max_degree = (std::numeric_limits<int>::max)();
   /// Of the coefficient of a feature of one angle, per sample, divided by `growth`; at least 1e-15. By default chosen
   /// by the closed-form leave-one-out error, the mean alone being a candidate.
   std::optional<double> ridge = std::nullopt;

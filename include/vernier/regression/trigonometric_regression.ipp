@@ -10,10 +10,10 @@
 namespace vernier {
 
 VERNIER_IMPL void TrigonometricRegression::validate() const {
-  require(max_degree >= 0, "TrigonometricRegression: max_degree is ", max_degree, ", must not be negative");
-  require(!ridge || (*ridge >= 1e-15 && *ridge < 1e15), "TrigonometricRegression: ridge is ", ridge.value_or(0),
-          ", must lie in [1e-15, 1e15)");
-  require(growth >= 1e-3 && growth <= 1e3, "TrigonometricRegression: growth is ", growth, ", must lie in [1e-3, 1e3]");
+  demand(max_degree >= 0, "TrigonometricRegression: max_degree is ", max_degree, ", must not be negative");
+  demand(!ridge || (*ridge >= 1e-15 && *ridge < 1e15), "TrigonometricRegression: ridge is ", ridge.value_or(0),
+         ", must lie in [1e-15, 1e15)");
+  demand(growth >= 1e-3 && growth <= 1e3, "TrigonometricRegression: growth is ", growth, ", must lie in [1e-3, 1e3]");
 }
 
 VERNIER_IMPL detail::TrigonometricSum TrigonometricRegression::solve(const ConstMatrixRef& inputs,

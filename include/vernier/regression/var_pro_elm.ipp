@@ -16,10 +16,10 @@ VERNIER_IMPL Box VarProElm::box(int inputs) const { return layer().box(inputs); 
 
 VERNIER_IMPL void VarProElm::validate() const {
   layer().validate("VarProElm");
-  require(ridge > 0 && ridge < 1, "VarProElm: ridge is ", ridge, ", must lie in (0, 1)");
-  require(iterations >= 0, "VarProElm: iterations is ", iterations, ", must not be negative");
-  require(tolerance >= 0 && tolerance < 1, "VarProElm: tolerance is ", tolerance, ", must lie in [0, 1)");
-  require(starts >= 1, "VarProElm: starts is ", starts, ", must be at least 1");
+  demand(ridge > 0 && ridge < 1, "VarProElm: ridge is ", ridge, ", must lie in (0, 1)");
+  demand(iterations >= 0, "VarProElm: iterations is ", iterations, ", must not be negative");
+  demand(tolerance >= 0 && tolerance < 1, "VarProElm: tolerance is ", tolerance, ", must lie in [0, 1)");
+  demand(starts >= 1, "VarProElm: starts is ", starts, ", must be at least 1");
 }
 
 VERNIER_IMPL detail::VarProTrainingError VarProElm::training_error(const ConstMatrixRef& inputs,
@@ -33,8 +33,8 @@ VERNIER_IMPL detail::VarProTrainingError VarProElm::training_error(const ConstMa
 VERNIER_IMPL detail::FittedNetwork VarProElm::train(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                                     const VectorX* theta, const FitOptions& options) const {
   const int n = static_cast<int>(inputs.cols()), count = theta != nullptr ? 1 : starts;
-  require(theta == nullptr || theta->size() == dimension(n), "VarProElm: ", theta != nullptr ? theta->size() : 0,
-          " hidden weights, expected ", dimension(n));
+  demand(theta == nullptr || theta->size() == dimension(n), "VarProElm: ", theta != nullptr ? theta->size() : 0,
+         " hidden weights, expected ", dimension(n));
   const auto seed_of = [&](int start) {
     return start == 0 ? options.seed : child_seed(options.seed, static_cast<std::uint64_t>(start));
   };
@@ -52,7 +52,7 @@ VERNIER_IMPL detail::FittedNetwork VarProElm::train(const ConstMatrixRef& inputs
         detail::levenberg_marquardt(projection, hidden, iterations, tolerance, options.executor, [&](double so_far) {
           ++progress.generation;
           ++progress.evaluations;
-          progress.best = std::min(least, so_far);
+          progress.best = (std::min)(least, so_far);
           return go_on = options.observer(progress);
         });
     if (value < least) {
@@ -60,7 +60,7 @@ VERNIER_IMPL detail::FittedNetwork VarProElm::train(const ConstMatrixRef& inputs
       best = hidden;
     }
   }
-  require(std::isfinite(least), "VarProElm: the hidden layer is not finite at the weights to start from");
+  demand(std::isfinite(least), "VarProElm: the hidden layer is not finite at the weights to start from");
   projection.evaluate(best);  // the last step tried may have been another one
   return {layer(), in, best, out.spread * projection.beta(), out.mean + out.spread * projection.offset()};
 }

@@ -30,9 +30,9 @@ VERNIER_API int stated_branch(ProgramLanguage language, const std::vector<int>& 
 /// The bits that a branch must have in common with what is stated; others only choose between several.
 VERNIER_API int binding_bits(ProgramLanguage language);
 /// Of the values of a joint that differ by whole turns, the one within limits that the configuration means: the
-/// nearest to `near` where it does not say, or to 0 where `near` is not finite. NaN where there is none.
+/// nearest to `close_to` where it does not say, or to 0 where `close_to` is not finite. NaN where there is none.
 VERNIER_API double stated_turn(ProgramLanguage language, const std::vector<int>& configuration, int joint, double angle,
-                               double near, double lower, double upper);
+                               double close_to, double lower, double upper);
 
 }  // namespace detail
 
@@ -51,7 +51,7 @@ struct ControllerJoints {
 };
 
 /// The joint values to which a controller moves for a pose: of all branches and turns those that the configuration
-/// states; without one, on the branch of `near` the nearest, else the nearest of all.
+/// states; without one, on the branch of `close_to` the nearest, else the nearest of all.
 /// @param roots         of the nominal arm, in the frames of the controller's
 /// @param controller    kinematic model that the controller uses
 /// @param limits        of its joints
@@ -59,24 +59,24 @@ struct ControllerJoints {
 /// @param arm           what the language leaves open
 /// @param pose          base_T_flange
 /// @param configuration as in `ProgramTarget`; empty where the program states none
-/// @param near          joint values before [rad]; not finite where unknown
+/// @param close_to          joint values before [rad]; not finite where unknown
 template <BranchRoots Roots, KinematicModel M>
   requires(Roots::dof == 6 && M::dof == 6)
 [[nodiscard]] ControllerJoints controller_joints(const Roots& roots, const M& controller, const JointLimits<6>& limits,
                                                  ProgramLanguage language, const ControllerArm& arm,
                                                  const Isometry3& pose, const std::vector<int>& configuration,
-                                                 const JointVector<6>& near) {
-  const bool known = near.allFinite();
+                                                 const JointVector<6>& close_to) {
+  const bool known = close_to.allFinite();
   if (configuration.empty() && !known) return {{}, "no configuration, and no joint values before it are known"};
   BranchOptions<6> options{.limits = limits};
-  if (known) options.near = near;
+  if (known) options.close_to = close_to;
   const Branches<6> found = all_branches(roots, controller, pose, options);
   if (found.count == 0) return {{}, found.describe()};
   if (configuration.empty()) {
-    const int branch = roots.distances(near).branch();
+    const int branch = roots.distances(close_to).branch();
     const Branch<6>* best = nullptr;
     const auto cost = [&](const Branch<6>& b) {
-      return (b.joints - near).cwiseAbs().maxCoeff() + (b.singularities.branch() == branch ? 0 : 1e3);
+      return (b.joints - close_to).cwiseAbs().maxCoeff() + (b.singularities.branch() == branch ? 0 : 1e3);
     };
     for (const Branch<6>& b : found)
       if (b.within_limits && (best == nullptr || cost(b) < cost(*best))) best = &b;
@@ -90,7 +90,8 @@ template <BranchRoots Roots, KinematicModel M>
   for (const Branch<6>& b : found) {
     JointVector<6> q;
     for (int j = 0; j < 6; ++j)
-      q(j) = detail::stated_turn(language, configuration, j, b.joints(j), near(j), limits.lower(j), limits.upper(j));
+      q(j) =
+          detail::stated_turn(language, configuration, j, b.joints(j), close_to(j), limits.lower(j), limits.upper(j));
     if (!q.allFinite()) continue;
     const int differs = detail::branch_from(reference, roots.distances(q)) ^ stated;
     if ((differs & binding) != 0) continue;

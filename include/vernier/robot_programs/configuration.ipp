@@ -26,15 +26,15 @@ VERNIER_IMPL int branch_from(const SingularityDistances& reference, const Singul
 }
 
 VERNIER_IMPL int stated_branch(ProgramLanguage language, const std::vector<int>& configuration) {
-  const auto bit = [](int value, int from, int to) { return (value >> from & 1) << to; };
+  const auto bit_moved = [](int value, int from, int to) { return (value >> from & 1) << to; };
   switch (language) {
     case ProgramLanguage::rapid: {
       const int cfx = configuration[3];
-      return bit(cfx, 2, 0) | bit(cfx, 1, 1) | bit(cfx, 0, 2);
+      return bit_moved(cfx, 2, 0) | bit_moved(cfx, 1, 1) | bit_moved(cfx, 0, 2);
     }
     case ProgramLanguage::krl: {
       const int status = configuration[0];
-      return bit(status, 0, 0) | bit(~status, 1, 1) | bit(status, 2, 2);
+      return bit_moved(status, 0, 0) | bit_moved(~status, 1, 1) | bit_moved(status, 2, 2);
     }
     case ProgramLanguage::fanuc_tp: return (1 - configuration[2]) | (1 - configuration[1]) << 1 | configuration[0] << 2;
     default: return 0;
@@ -76,16 +76,16 @@ VERNIER_IMPL JointRange stated_interval(ProgramLanguage language, const std::vec
 }
 
 VERNIER_IMPL double stated_turn(ProgramLanguage language, const std::vector<int>& configuration, int joint,
-                                double angle, double near, double lower, double upper) {
+                                double angle, double close_to, double lower, double upper) {
   constexpr double whole = 2 * std::numbers::pi, degree = std::numbers::pi / 180;
   const double tolerance = language == ProgramLanguage::krl ? 2 * degree : 0.05 * degree;
   const JointRange stated = stated_interval(language, configuration, joint);
-  const double centre = std::isfinite(near) ? near : 0;
+  const double centre = std::isfinite(close_to) ? close_to : 0;
   double best = std::numeric_limits<double>::quiet_NaN(), best_cost = std::numeric_limits<double>::infinity();
   for (int turn = -4; turn <= 4; ++turn) {
     const double q = angle + whole * turn;
     if (!(q >= lower - 1e-6 && q <= upper + 1e-6)) continue;
-    const double outside = std::max({0.0, stated.lower - q, q - stated.upper});
+    const double outside = (std::max)({0.0, stated.lower - q, q - stated.upper});
     if (outside > tolerance) continue;
     const double cost = (outside > 1e-9 ? 1e-6 : 0) + std::abs(q - centre);
     if (cost < best_cost) {

@@ -42,8 +42,8 @@ namespace detail {
 template <NominalArm Arm>
 ClosedForm<6> program_roots(const Arm& nominal) {
   for (int j = 0; j < 6; ++j)
-    require(in_frames(nominal).model().row(j).joint == JointType::revolute, "joint ", j + 1,
-            " is prismatic; programs are corrected for revolute joints");
+    demand(in_frames(nominal).model().row(j).joint == JointType::revolute, "joint ", j + 1,
+           " is prismatic; programs are corrected for revolute joints");
   try {
     return ClosedForm<6>(nominal);
   } catch (const std::invalid_argument& e) {
@@ -64,9 +64,9 @@ CorrectedProgram correct_program(const RobotProgram& program, const Robot& robot
   const ControllerArm arm = options.arm.value_or(ControllerArm{});
   const Isometry3 from_base = frames.base().inverse(), to_flange = frames.tool().inverse();
   const auto pose = [&](const JointVector<6>& q) { return Isometry3(from_base * controller.pose(q) * to_flange); };
-  const auto joints = [&](const Isometry3& at, const std::vector<int>& configuration, const JointVector<6>& near) {
+  const auto joints = [&](const Isometry3& at, const std::vector<int>& configuration, const JointVector<6>& close_to) {
     return controller_joints(roots, controller, limits, program.language, arm, frames.base() * at * frames.tool(),
-                             configuration, near);
+                             configuration, close_to);
   };
   const auto correct = [&](const Isometry3& at, const JointVector<6>& q, const JointVector<6>& previous) {
     return robot.correct(Isometry3(nominal.base() * at * nominal.tool()), q, previous);

@@ -23,18 +23,18 @@ VERNIER_IMPL JointRows<6> CorrectedProgram::commands() const {
 VERNIER_IMPL double CorrectedProgram::mean_correction() const {
   double sum = 0;
   for (const CorrectedTarget& target : targets) sum += target.correction;
-  return sum / std::max(1.0, static_cast<double>(targets.size()));
+  return sum / (std::max)(1.0, static_cast<double>(targets.size()));
 }
 
 VERNIER_IMPL double CorrectedProgram::largest_correction() const {
   double out = 0;
-  for (const CorrectedTarget& target : targets) out = std::max(out, target.correction);
+  for (const CorrectedTarget& target : targets) out = (std::max)(out, target.correction);
   return out;
 }
 
 VERNIER_IMPL double CorrectedProgram::largest_predicted_error() const {
   double out = 0;
-  for (const CorrectedTarget& target : targets) out = std::max(out, target.predicted_error);
+  for (const CorrectedTarget& target : targets) out = (std::max)(out, target.predicted_error);
   return out;
 }
 

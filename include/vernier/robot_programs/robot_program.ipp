@@ -103,11 +103,11 @@ VERNIER_IMPL std::string replace_targets(std::string_view text, const RobotProgr
   };
   std::vector<Piece> pieces;
   for (const ReplacedTarget& one : replaced) {
-    require(one.target < program.targets.size(), "replace_targets: no target ", one.target);
+    demand(one.target < program.targets.size(), "replace_targets: no target ", one.target);
     const ProgramTarget& target = program.targets[one.target];
-    require(detail::all_finite(one.pose.matrix()) &&
-                std::all_of(one.joints.begin(), one.joints.end(), [](double q) { return std::abs(q) < 1e6; }),
-            "replace_targets: target ", one.target, " is not finite");
+    demand(detail::all_finite(one.pose.matrix()) &&
+               std::all_of(one.joints.begin(), one.joints.end(), [](double q) { return std::abs(q) < 1e6; }),
+           "replace_targets: target ", one.target, " is not finite");
     const std::vector<std::string> numbers = detail::written_numbers(program.language, target, one);
     for (std::size_t k = 0; k < target.numbers.size(); ++k) pieces.push_back({target.numbers[k], numbers[k]});
     const std::vector<int> configuration = updated_configuration(program.language, target.configuration, one.joints);
@@ -121,7 +121,7 @@ VERNIER_IMPL std::string replace_targets(std::string_view text, const RobotProgr
   out.reserve(text.size() + 8 * pieces.size());
   std::size_t at = 0;
   for (const Piece& piece : pieces) {
-    require(piece.range.begin >= at && piece.range.end <= text.size(), "replace_targets: a target is there twice");
+    demand(piece.range.begin >= at && piece.range.end <= text.size(), "replace_targets: a target is there twice");
     out.append(text.substr(at, piece.range.begin - at));
     if (!out.empty() && detail::is_word_character(out.back())) out += ' ';  // X-1.5 must not become X1.5
     out.append(piece.text);
@@ -149,9 +149,9 @@ VERNIER_IMPL std::string stamped(std::string_view text, const RobotProgram& prog
   add(message(detail::program_stamp, ":"));
   for (const std::string& line : lines)
     for (std::size_t i = 0; i < line.size(); i += width) add(std::string_view(line).substr(i, width));
-  std::string out(text.substr(0, std::min(program.stamp_at, text.size())));
+  std::string out(text.substr(0, (std::min)(program.stamp_at, text.size())));
   if (!out.empty() && out.back() != '\n' && program.stamp_at > 3) out += program.end_of_line;
-  return out.append(stamp).append(text.substr(std::min(program.stamp_at, text.size())));
+  return out.append(stamp).append(text.substr((std::min)(program.stamp_at, text.size())));
 }
 
 }  // namespace vernier

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier {
 
 /// x reflected at the bounds, as often as needed, into [lower, upper]; x itself where it lies between them.

@@ -8,6 +8,7 @@
 
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/search/bounds.hpp"
 
 namespace vernier {
@@ -22,15 +23,16 @@ VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
   mu_eff = effective(better);
   c_c = (4 + mu_eff / n) / (n + 4 + 2 * mu_eff / n);
   c_1 = 2 / ((n + 1.3) * (n + 1.3) + mu_eff);
-  c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((n + 2) * (n + 2) + mu_eff));
+  c_mu = (std::min)(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((n + 2) * (n + 2) + mu_eff));
   c_sigma = (mu_eff + 2) / (n + mu_eff + 5);
-  d_sigma = 1 + 2 * std::max(0.0, std::sqrt((mu_eff - 1) / (n + 1)) - 1) + c_sigma;
+  d_sigma = 1 + 2 * (std::max)(0.0, std::sqrt((mu_eff - 1) / (n + 1)) - 1) + c_sigma;
   expected_norm = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n));
   better /= better.sum();
   if (const double sum = -worse.sum(); sum > 0) {
     const double of_worse = effective(worse);
     worse *=
-        std::max(0.0, std::min({1 + c_1 / c_mu, 1 + 2 * of_worse / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)})) / sum;
+        (std::max)(0.0, (std::min)({1 + c_1 / c_mu, 1 + 2 * of_worse / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)})) /
+        sum;
   }
   weights.head(mu) = better;
   weights.tail(individuals - mu) = worse;
@@ -98,7 +100,7 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
 
   VectorX weights = c.weights;  // worse points count by direction, not by length: C stays positive definite
   const VectorX squares = detail::squared_column_norms(sorted);
-  for (Index i = c.mu; i < lambda; ++i) weights(i) *= static_cast<double>(n) / std::max(squares(i), 1e-300);
+  for (Index i = c.mu; i < lambda; ++i) weights(i) *= static_cast<double>(n) / (std::max)(squares(i), 1e-300);
   const MatrixX y = stretched(s, sorted);
   s.covariance *= 1 - c.c_1 - c.c_mu * c.weights.sum() + (moderate ? 0 : c.c_1 * c.c_c * (2 - c.c_c));
   const auto add_square = [&](double weight, const double* x) {
@@ -109,7 +111,7 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
   };
   add_square(c.c_1, s.path_c.data());
   for (Index k = 0; k < lambda; ++k) add_square(c.c_mu * weights(k), y.col(k).data());
-  s.sigma *= std::exp(std::min(1.0, c.c_sigma / c.d_sigma * (length / c.expected_norm - 1)));
+  s.sigma *= std::exp((std::min)(1.0, c.c_sigma / c.d_sigma * (length / c.expected_norm - 1)));
 
   if (static_cast<double>(s.updates - s.decomposed) > 1 / ((c.c_1 + c.c_mu) * static_cast<double>(n) * 10)) {
     const detail::SymmetricEigen eigen = detail::symmetric_eigen(s.covariance);
@@ -164,22 +166,22 @@ VERNIER_IMPL void CmaEs::check_convergence(State& s, double best, double worst) 
   if (s.history.size() == length) std::copy(s.history.begin() + 1, s.history.end(), s.history.begin());
   if (s.history.size() < length) s.history.conservativeResize(s.history.size() + 1);
   s.history(s.history.size() - 1) = best;
-  const auto within = [&](double a, double b) { return a == b || std::abs(a - b) <= tolerance_f; };
+  const auto within = [&](double a, double b) { return same_value(a, b) || std::abs(a - b) <= tolerance_f; };
   const bool flat =
       s.history.size() == length && within(s.history.minCoeff(), s.history.maxCoeff()) && within(best, worst);
-  const double spread = s.sigma * std::max({s.path_c.maxCoeff(), -s.path_c.minCoeff(),
-                                            std::sqrt(detail::diagonal_of(s.covariance).maxCoeff())});
+  const double spread = s.sigma * (std::max)({s.path_c.maxCoeff(), -s.path_c.minCoeff(),
+                                              std::sqrt(detail::diagonal_of(s.covariance).maxCoeff())});
   s.converged = s.converged || flat || !(spread >= tolerance_x) || !(spread < 1e6);
 }
 
 VERNIER_IMPL void CmaEs::validate() const {
-  require(individuals == 0 || individuals >= 2, "CmaEs: individuals is ", individuals, ", must be 0 or at least 2");
-  require(generations >= 0, "CmaEs: generations is ", generations, ", must not be negative");
-  require(sigma > 0 && sigma <= 100, "CmaEs: sigma is ", sigma, ", must lie in (0, 100]");
-  require(restarts >= 0 && restarts <= 30, "CmaEs: restarts is ", restarts, ", must lie in 0..30");
-  require(growth >= 1 && growth <= 10, "CmaEs: growth is ", growth, ", must lie in [1, 10]");
-  require(tolerance_x >= 0 && tolerance_f >= 0, "CmaEs: tolerance_x ", tolerance_x, " and tolerance_f ", tolerance_f,
-          " must not be negative");
+  demand(individuals == 0 || individuals >= 2, "CmaEs: individuals is ", individuals, ", must be 0 or at least 2");
+  demand(generations >= 0, "CmaEs: generations is ", generations, ", must not be negative");
+  demand(sigma > 0 && sigma <= 100, "CmaEs: sigma is ", sigma, ", must lie in (0, 100]");
+  demand(restarts >= 0 && restarts <= 30, "CmaEs: restarts is ", restarts, ", must lie in 0..30");
+  demand(growth >= 1 && growth <= 10, "CmaEs: growth is ", growth, ", must lie in [1, 10]");
+  demand(tolerance_x >= 0 && tolerance_f >= 0, "CmaEs: tolerance_x ", tolerance_x, " and tolerance_f ", tolerance_f,
+         " must not be negative");
 }
 
 }  // namespace vernier

@@ -38,11 +38,11 @@ VERNIER_IMPL void DifferentialEvolution::step(State& s, const Box& box, Evaluate
 }
 
 VERNIER_IMPL void DifferentialEvolution::validate() const {
-  require(individuals >= 4, "DifferentialEvolution: individuals is ", individuals, ", must be at least 4");
-  require(generations >= 0, "DifferentialEvolution: generations is ", generations, ", must not be negative");
-  require(weight > 0 && weight <= 10, "DifferentialEvolution: weight is ", weight, ", must lie in (0, 10]");
-  require(crossover_probability >= 0 && crossover_probability <= 1, "DifferentialEvolution: crossover_probability is ",
-          crossover_probability, ", must lie in [0, 1]");
+  demand(individuals >= 4, "DifferentialEvolution: individuals is ", individuals, ", must be at least 4");
+  demand(generations >= 0, "DifferentialEvolution: generations is ", generations, ", must not be negative");
+  demand(weight > 0 && weight <= 10, "DifferentialEvolution: weight is ", weight, ", must lie in (0, 10]");
+  demand(crossover_probability >= 0 && crossover_probability <= 1, "DifferentialEvolution: crossover_probability is ",
+         crossover_probability, ", must lie in [0, 1]");
 }
 
 }  // namespace vernier

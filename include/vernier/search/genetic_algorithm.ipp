@@ -73,16 +73,15 @@ VERNIER_IMPL void GeneticAlgorithm::cross(Codes& codes, Index k, Index cut) cons
 }
 
 VERNIER_IMPL void GeneticAlgorithm::validate() const {
-  require(individuals >= 2, "GeneticAlgorithm: individuals is ", individuals, ", must be at least 2");
-  require(generations >= 0, "GeneticAlgorithm: generations is ", generations, ", must not be negative");
-  require(bits >= 1 && bits <= 16, "GeneticAlgorithm: bits is ", bits, ", must lie in 1..16");
-  require(tournament >= 1, "GeneticAlgorithm: tournament is ", tournament, ", must be at least 1");
-  require(elites >= 0 && elites < individuals, "GeneticAlgorithm: elites is ", elites,
-          ", must lie in 0..individuals-1");
-  require(crossover_probability >= 0 && crossover_probability <= 1, "GeneticAlgorithm: crossover_probability is ",
-          crossover_probability, ", must lie in [0, 1]");
-  require(mutation_probability >= 0 && mutation_probability <= 1, "GeneticAlgorithm: mutation_probability is ",
-          mutation_probability, ", must lie in [0, 1]");
+  demand(individuals >= 2, "GeneticAlgorithm: individuals is ", individuals, ", must be at least 2");
+  demand(generations >= 0, "GeneticAlgorithm: generations is ", generations, ", must not be negative");
+  demand(bits >= 1 && bits <= 16, "GeneticAlgorithm: bits is ", bits, ", must lie in 1..16");
+  demand(tournament >= 1, "GeneticAlgorithm: tournament is ", tournament, ", must be at least 1");
+  demand(elites >= 0 && elites < individuals, "GeneticAlgorithm: elites is ", elites, ", must lie in 0..individuals-1");
+  demand(crossover_probability >= 0 && crossover_probability <= 1, "GeneticAlgorithm: crossover_probability is ",
+         crossover_probability, ", must lie in [0, 1]");
+  demand(mutation_probability >= 0 && mutation_probability <= 1, "GeneticAlgorithm: mutation_probability is ",
+         mutation_probability, ", must lie in [0, 1]");
 }
 
 }  // namespace vernier

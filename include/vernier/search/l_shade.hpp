@@ -66,7 +66,9 @@ struct LShade {
   bool done(const State& s) const { return s.evaluations >= max_evaluations; }
 
   /// One trial per individual, in the last generation as many as are left.
-  Index next_evaluations(const State& s) const { return std::min(s.positions.cols(), max_evaluations - s.evaluations); }
+  Index next_evaluations(const State& s) const {
+    return (std::min)(s.positions.cols(), max_evaluations - s.evaluations);
+  }
 
   /// Population size after a number of evaluations.
   VERNIER_API Index individuals(Index first_size, Index evaluations) const;

@@ -22,8 +22,8 @@ VERNIER_IMPL LShade::State LShade::start(const Box& box, std::uint64_t seed, Eva
   State s;
   s.first_size =
       std::max<Index>(final_individuals, std::lround(individuals_per_dimension * static_cast<double>(box.dimension())));
-  require(max_evaluations >= s.first_size, "LShade: max_evaluations is ", max_evaluations,
-          ", less than the first population of ", s.first_size);
+  demand(max_evaluations >= s.first_size, "LShade: max_evaluations is ", max_evaluations,
+         ", less than the first population of ", s.first_size);
   s.initialise(box, s.first_size, seed, evaluate);
   s.archive.resize(box.dimension(), 0);
   s.weights = s.crossover_rates = VectorX::Constant(memory, 0.5);
@@ -44,7 +44,7 @@ VERNIER_IMPL void LShade::step(State& s, const Box& box, Evaluate evaluate) cons
     const double rate = s.crossover_rates(pair);
     cr(k) = rate < 0 ? 0 : std::clamp(rate + 0.1 * s.rng.normal(), 0.0, 1.0);
     do {
-      f(k) = std::min(1.0, s.weights(pair) + 0.1 * std::tan(std::numbers::pi * (s.rng.uniform() - 0.5)));
+      f(k) = (std::min)(1.0, s.weights(pair) + 0.1 * std::tan(std::numbers::pi * (s.rng.uniform() - 0.5)));
     } while (!(f(k) > 0));
     const Index leader = order[s.rng.below(leaders)], r1 = detail::index_besides(n, {k}, s.rng),
                 r2 = detail::index_besides(n + s.archive.cols(), {k, r1}, s.rng);
@@ -71,7 +71,7 @@ VERNIER_IMPL Index LShade::individuals(Index first_size, Index evaluations) cons
 VERNIER_IMPL void LShade::remember(State& s, const VectorX& values, const VectorX& f, const VectorX& cr) {
   double largest = 0;  // finite improvement
   for (Index k = 0; k < values.size(); ++k)
-    if (const double gain = s.fitness(k) - values(k); std::isfinite(gain)) largest = std::max(largest, gain);
+    if (const double gain = s.fitness(k) - values(k); std::isfinite(gain)) largest = (std::max)(largest, gain);
   double f1 = 0, f2 = 0, cr1 = 0, cr2 = 0;
   bool any = false;
   for (Index k = 0; k < values.size(); ++k) {
@@ -92,7 +92,7 @@ VERNIER_IMPL void LShade::remember(State& s, const VectorX& values, const Vector
 
 VERNIER_IMPL void LShade::replace(State& s, const MatrixX& trials, const VectorX& values) const {
   const Index full = archive_size(s.positions.cols());
-  MatrixX archive(s.archive.rows(), std::max(full, s.archive.cols()));
+  MatrixX archive(s.archive.rows(), (std::max)(full, s.archive.cols()));
   Index filled = s.archive.cols();
   archive.leftCols(filled) = s.archive;
   for (Index k = 0; k < values.size(); ++k) {
@@ -131,13 +131,13 @@ VERNIER_IMPL Index LShade::archive_size(Index individuals) const {
 }
 
 VERNIER_IMPL void LShade::validate() const {
-  require(individuals_per_dimension > 0 && individuals_per_dimension <= 1e6, "LShade: individuals_per_dimension is ",
-          individuals_per_dimension, ", must lie in (0, 1e6]");
-  require(final_individuals >= 4, "LShade: final_individuals is ", final_individuals, ", must be at least 4");
-  require(memory >= 1, "LShade: memory is ", memory, ", must be at least 1");
-  require(archive_rate >= 0 && archive_rate <= 1000, "LShade: archive_rate is ", archive_rate,
-          ", must lie in [0, 1000]");
-  require(best_share >= 0 && best_share <= 1, "LShade: best_share is ", best_share, ", must lie in [0, 1]");
+  demand(individuals_per_dimension > 0 && individuals_per_dimension <= 1e6, "LShade: individuals_per_dimension is ",
+         individuals_per_dimension, ", must lie in (0, 1e6]");
+  demand(final_individuals >= 4, "LShade: final_individuals is ", final_individuals, ", must be at least 4");
+  demand(memory >= 1, "LShade: memory is ", memory, ", must be at least 1");
+  demand(archive_rate >= 0 && archive_rate <= 1000, "LShade: archive_rate is ", archive_rate,
+         ", must lie in [0, 1000]");
+  demand(best_share >= 0 && best_share <= 1, "LShade: best_share is ", best_share, ", must lie in [0, 1]");
 }
 
 }  // namespace vernier

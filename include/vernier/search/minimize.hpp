@@ -15,10 +15,10 @@ namespace vernier {
 /// Stopping criteria beside the algorithm's own schedule.
 struct StoppingCriteria {
   /// Generations that would exceed it are not stepped; the first population is always evaluated.
-  Index max_evaluations = std::numeric_limits<Index>::max();
-  Index max_generations = std::numeric_limits<Index>::max();  ///< generations after the first population
-  double target = -std::numeric_limits<double>::infinity();   ///< objective value that suffices
-  Index patience = std::numeric_limits<Index>::max();         ///< generations without any improvement
+  Index max_evaluations = (std::numeric_limits<Index>::max)();
+  Index max_generations = (std::numeric_limits<Index>::max)();  ///< generations after the first population
+  double target = -std::numeric_limits<double>::infinity();     ///< objective value that suffices
+  Index patience = (std::numeric_limits<Index>::max)();         ///< generations without any improvement
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;

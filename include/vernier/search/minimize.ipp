@@ -8,8 +8,8 @@
 namespace vernier {
 
 VERNIER_IMPL void StoppingCriteria::validate() const {
-  require(max_evaluations >= 1, "minimize: max_evaluations is ", max_evaluations, ", must be at least 1");
-  require(patience >= 1, "minimize: patience is ", patience, ", must be at least 1");
+  demand(max_evaluations >= 1, "minimize: max_evaluations is ", max_evaluations, ", must be at least 1");
+  demand(patience >= 1, "minimize: patience is ", patience, ", must be at least 1");
 }
 
 namespace detail {
@@ -46,8 +46,8 @@ VERNIER_IMPL SearchStatus run_search(FunctionRef<SearchSnapshot()> snapshot, Fun
     if (now.next_evaluations > stop.max_evaluations - evaluations) return SearchStatus::budget_spent;
     Index announced = now.next_evaluations;
     step([&](const MatrixX& population, VectorX& fitness) {
-      require(population.cols() <= announced, "minimize: a step evaluates more points than the ", now.next_evaluations,
-              " that next_evaluations announced");
+      demand(population.cols() <= announced, "minimize: a step evaluates more points than the ", now.next_evaluations,
+             " that next_evaluations announced");
       announced -= population.cols();
       objective.evaluate(executor, population, fitness);
       evaluations += population.cols();
@@ -59,8 +59,8 @@ VERNIER_IMPL SearchStatus run_search(FunctionRef<SearchSnapshot()> snapshot, Fun
 
 VERNIER_IMPL void check_resumable(Index dimension, const Box& box) {
   box.validate();
-  require(dimension == box.dimension(), "minimize: a search in ", dimension,
-          " dimensions cannot be resumed in a box of ", box.dimension());
+  demand(dimension == box.dimension(), "minimize: a search in ", dimension,
+         " dimensions cannot be resumed in a box of ", box.dimension());
 }
 
 }  // namespace detail

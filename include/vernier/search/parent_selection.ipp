@@ -13,7 +13,7 @@ VERNIER_IMPL ParentSelector::ParentSelector(ParentSelection selection, int tourn
   if (selection != ParentSelection::roulette) return;
   double worst = -std::numeric_limits<double>::infinity();
   for (const double value : fitness)
-    if (std::isfinite(value)) worst = std::max(worst, value);
+    if (std::isfinite(value)) worst = (std::max)(worst, value);
   double sum = 0;
   for (const double value : fitness) wheel_.push_back(sum += std::isfinite(value) ? worst - value : 0);
   if (!(sum > 0 && std::isfinite(sum))) {

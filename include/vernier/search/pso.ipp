@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/search/bounds.hpp"
 
 namespace vernier {
@@ -41,7 +42,7 @@ VERNIER_IMPL void Pso::step(State& s, const Box& box, Evaluate evaluate) const {
         v = 0;
       } else {
         // an odd number of reflections reverses the velocity
-        if (std::fmod(std::floor((x - box.lower(d)) / (box.upper(d) - box.lower(d))), 2) != 0) v = -v;
+        if (!same_value(std::fmod(std::floor((x - box.lower(d)) / (box.upper(d) - box.lower(d))), 2), 0)) v = -v;
         x = reflected(x, box.lower(d), box.upper(d));
       }
     }
@@ -66,12 +67,12 @@ VERNIER_IMPL Index Pso::informant(const VectorX& values, Index k, Index columns)
 }
 
 VERNIER_IMPL void Pso::validate() const {
-  require(particles >= 1, "Pso: particles is ", particles, ", must be at least 1");
-  require(iterations >= 0, "Pso: iterations is ", iterations, ", must not be negative");
-  require(velocity_limit > 0 && velocity_limit < 1e6, "Pso: velocity_limit is ", velocity_limit,
-          ", must be positive and below 1e6");
-  require(inertia_start >= 0 && inertia_end >= 0 && cognitive >= 0 && social >= 0, "Pso: inertia_start ", inertia_start,
-          ", inertia_end ", inertia_end, ", cognitive ", cognitive, " and social ", social, " must not be negative");
+  demand(particles >= 1, "Pso: particles is ", particles, ", must be at least 1");
+  demand(iterations >= 0, "Pso: iterations is ", iterations, ", must not be negative");
+  demand(velocity_limit > 0 && velocity_limit < 1e6, "Pso: velocity_limit is ", velocity_limit,
+         ", must be positive and below 1e6");
+  demand(inertia_start >= 0 && inertia_end >= 0 && cognitive >= 0 && social >= 0, "Pso: inertia_start ", inertia_start,
+         ", inertia_end ", inertia_end, ", cognitive ", cognitive, " and social ", social, " must not be negative");
 }
 
 }  // namespace vernier

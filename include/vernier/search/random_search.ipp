@@ -5,8 +5,8 @@
 namespace vernier {
 
 VERNIER_IMPL RandomSearch::State RandomSearch::start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
-  require(individuals >= 1, "RandomSearch: individuals is ", individuals, ", must be at least 1");
-  require(generations >= 0, "RandomSearch: generations is ", generations, ", must not be negative");
+  demand(individuals >= 1, "RandomSearch: individuals is ", individuals, ", must be at least 1");
+  demand(generations >= 0, "RandomSearch: generations is ", generations, ", must not be negative");
   State s;
   s.rng = Rng(seed);
   step(s, box, evaluate);

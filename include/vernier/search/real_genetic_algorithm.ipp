@@ -23,8 +23,8 @@ VERNIER_IMPL RealGeneticAlgorithm::State RealGeneticAlgorithm::start(const Box& 
 VERNIER_IMPL void RealGeneticAlgorithm::step(State& s, const Box& box, Evaluate evaluate) const {
   const auto mutated = [&](MatrixX& children) {
     const Index n = children.rows();
-    detail::for_each_hit(static_cast<double>(children.size()), std::min(1.0, mutations / static_cast<double>(n)), s.rng,
-                         [&](Index i) {
+    detail::for_each_hit(static_cast<double>(children.size()), (std::min)(1.0, mutations / static_cast<double>(n)),
+                         s.rng, [&](Index i) {
                            double& x = children.data()[i];
                            const double lower = box.lower(i % n), upper = box.upper(i % n);
                            x = mutation == RealMutation::polynomial
@@ -49,8 +49,8 @@ VERNIER_IMPL void RealGeneticAlgorithm::cross(MatrixX& children, Index k, const 
     double& b = children(d, k + 1);
     if (crossover == RealCrossover::blx) {
       const double reach = blend * std::abs(b - a);
-      const double lower = std::max(box.lower(d), std::min(a, b) - reach);
-      const double upper = std::min(box.upper(d), std::max(a, b) + reach);
+      const double lower = (std::max)(box.lower(d), (std::min)(a, b) - reach);
+      const double upper = (std::min)(box.upper(d), (std::max)(a, b) + reach);
       for (double* x : {&a, &b}) *x = std::clamp(rng.uniform(lower, upper), lower, upper);
     } else if (rng.sign() > 0) {
       if (crossover == RealCrossover::sbx)
@@ -62,7 +62,7 @@ VERNIER_IMPL void RealGeneticAlgorithm::cross(MatrixX& children, Index k, const 
 
 VERNIER_IMPL std::pair<double, double> RealGeneticAlgorithm::simulated_binary(double a, double b, double lower,
                                                                               double upper, double u) const {
-  const double low = std::min(a, b), high = std::max(a, b), distance = high - low;
+  const double low = (std::min)(a, b), high = (std::max)(a, b), distance = high - low;
   if (!(distance > 1e-14 * (upper - lower))) return {low, high};
   const double power = 1 / (crossover_index + 1);
   const auto spread = [&](double room) {
@@ -83,19 +83,19 @@ VERNIER_IMPL double RealGeneticAlgorithm::polynomial(double x, double lower, dou
 }
 
 VERNIER_IMPL void RealGeneticAlgorithm::validate() const {
-  require(individuals >= 2, "RealGeneticAlgorithm: individuals is ", individuals, ", must be at least 2");
-  require(generations >= 0, "RealGeneticAlgorithm: generations is ", generations, ", must not be negative");
-  require(tournament >= 1, "RealGeneticAlgorithm: tournament is ", tournament, ", must be at least 1");
-  require(elites >= 0 && elites < individuals, "RealGeneticAlgorithm: elites is ", elites,
-          ", must lie in 0..individuals-1");
-  require(crossover_probability >= 0 && crossover_probability <= 1, "RealGeneticAlgorithm: crossover_probability is ",
-          crossover_probability, ", must lie in [0, 1]");
-  require(mutations >= 0, "RealGeneticAlgorithm: mutations is ", mutations, ", must not be negative");
-  require(crossover_index >= 0 && crossover_index <= 1000 && mutation_index >= 0 && mutation_index <= 1000,
-          "RealGeneticAlgorithm: crossover_index ", crossover_index, " and mutation_index ", mutation_index,
-          " must lie in [0, 1000]");
-  require(blend >= 0 && blend <= 10 && mutation_sigma > 0 && mutation_sigma <= 10, "RealGeneticAlgorithm: blend ",
-          blend, " must lie in [0, 10] and mutation_sigma ", mutation_sigma, " in (0, 10]");
+  demand(individuals >= 2, "RealGeneticAlgorithm: individuals is ", individuals, ", must be at least 2");
+  demand(generations >= 0, "RealGeneticAlgorithm: generations is ", generations, ", must not be negative");
+  demand(tournament >= 1, "RealGeneticAlgorithm: tournament is ", tournament, ", must be at least 1");
+  demand(elites >= 0 && elites < individuals, "RealGeneticAlgorithm: elites is ", elites,
+         ", must lie in 0..individuals-1");
+  demand(crossover_probability >= 0 && crossover_probability <= 1, "RealGeneticAlgorithm: crossover_probability is ",
+         crossover_probability, ", must lie in [0, 1]");
+  demand(mutations >= 0, "RealGeneticAlgorithm: mutations is ", mutations, ", must not be negative");
+  demand(crossover_index >= 0 && crossover_index <= 1000 && mutation_index >= 0 && mutation_index <= 1000,
+         "RealGeneticAlgorithm: crossover_index ", crossover_index, " and mutation_index ", mutation_index,
+         " must lie in [0, 1000]");
+  demand(blend >= 0 && blend <= 10 && mutation_sigma > 0 && mutation_sigma <= 10, "RealGeneticAlgorithm: blend ", blend,
+         " must lie in [0, 10] and mutation_sigma ", mutation_sigma, " in (0, 10]");
 }
 
 }  // namespace vernier

@@ -50,7 +50,7 @@ struct Restarted {
 
   /// The first run's start.
   State start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
-    require(restarts >= 0, "Restarted: restarts is ", restarts, ", must not be negative");
+    demand(restarts >= 0, "Restarted: restarts is ", restarts, ", must not be negative");
     Index evaluations = 0;
     const auto counted = [&](const MatrixX& population, VectorX& fitness) {
       evaluations += population.cols();

@@ -64,11 +64,11 @@ VERNIER_IMPL std::vector<Index> Spso2011::best_informants(const VectorX& values,
 }
 
 VERNIER_IMPL void Spso2011::validate() const {
-  require(particles >= 1, "Spso2011: particles is ", particles, ", must be at least 1");
-  require(iterations >= 0, "Spso2011: iterations is ", iterations, ", must not be negative");
-  require(informed >= 1, "Spso2011: informed is ", informed, ", must be at least 1");
-  require(inertia >= 0 && inertia <= 1 && acceleration >= 0 && acceleration <= 10, "Spso2011: inertia ", inertia,
-          " must lie in [0, 1] and acceleration ", acceleration, " in [0, 10]");
+  demand(particles >= 1, "Spso2011: particles is ", particles, ", must be at least 1");
+  demand(iterations >= 0, "Spso2011: iterations is ", iterations, ", must not be negative");
+  demand(informed >= 1, "Spso2011: informed is ", informed, ", must be at least 1");
+  demand(inertia >= 0 && inertia <= 1 && acceleration >= 0 && acceleration <= 10, "Spso2011: inertia ", inertia,
+         " must lie in [0, 1] and acceleration ", acceleration, " in [0, 10]");
 }
 
 }  // namespace vernier

@@ -92,7 +92,7 @@ struct Tuned {
            const FitOptions& options = {}) const
       -> decltype(std::declval<const R&>().fit_at(inputs, targets, VectorX())) {  // known without compiling the body
     detail::require_samples("Tuned", inputs, targets, options);
-    require(search_samples >= 0, "Tuned: search_samples is ", search_samples, ", must not be negative");
+    demand(search_samples >= 0, "Tuned: search_samples is ", search_samples, ", must not be negative");
     const SearchResult found = search_samples > 0 && search_samples < inputs.rows()
                                    ? search_part(inputs, targets, options)
                                    : search(inputs, targets, options.weights, options);

@@ -83,14 +83,14 @@ Dataset<Actual::dof> measure_with_backlash(const Actual& actual, const JointRows
                                            const JointRows<Actual::dof>& approach, const MeasurementNoise& noise = {},
                                            std::uint64_t seed = 0) {
   for (int j = 0; j < Actual::dof; ++j)
-    require(backlash(j) >= 0 && std::isfinite(backlash(j)), "measure_with_backlash: the backlash of joint ", j + 1,
-            " is ", backlash(j), ", must be 0 or more and finite");
-  require(approach.rows() == joints.rows(), "measure_with_backlash: ", approach.rows(), " rows of directions for ",
-          joints.rows(), " rows of joints");
+    demand(backlash(j) >= 0 && std::isfinite(backlash(j)), "measure_with_backlash: the backlash of joint ", j + 1,
+           " is ", backlash(j), ", must be 0 or more and finite");
+  demand(approach.rows() == joints.rows(), "measure_with_backlash: ", approach.rows(), " rows of directions for ",
+         joints.rows(), " rows of joints");
   for (Index i = 0; i < approach.rows(); ++i)
     for (int j = 0; j < Actual::dof; ++j)
-      require(approach(i, j) == 0 || std::abs(approach(i, j)) == 1, "measure_with_backlash: row ", i, ", joint ", j + 1,
-              " is approached from ", approach(i, j), ", must be -1, 0 or 1");
+      demand(approach(i, j) == 0 || std::abs(approach(i, j)) == 1, "measure_with_backlash: row ", i, ", joint ", j + 1,
+             " is approached from ", approach(i, j), ", must be -1, 0 or 1");
   JointRows<Actual::dof> effective = joints;
   for (int j = 0; j < Actual::dof; ++j)
     for (Index i = 0; i < joints.rows(); ++i) effective(i, j) -= approach(i, j) * backlash(j);
@@ -113,8 +113,8 @@ struct WithOutliers {
 /// @throws std::invalid_argument on a share outside [0, 1] or a size that is negative or not finite
 template <int N>
 WithOutliers<N> with_outliers(const Dataset<N>& data, double share, double size, std::uint64_t seed) {
-  require(share >= 0 && share <= 1, "with_outliers: the share is ", share, ", must lie in [0, 1]");
-  require(size >= 0 && std::isfinite(size), "with_outliers: the size is ", size, " m, must be 0 or more and finite");
+  demand(share >= 0 && share <= 1, "with_outliers: the share is ", share, ", must lie in [0, 1]");
+  demand(size >= 0 && std::isfinite(size), "with_outliers: the size is ", size, " m, must be 0 or more and finite");
   Rng rng(seed);
   std::vector<Index> rows = rng.permutation(data.size());
   rows.resize(static_cast<std::size_t>(std::lround(share * static_cast<double>(data.size()))));

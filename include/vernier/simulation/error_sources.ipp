@@ -3,6 +3,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "vernier/core/same_value.hpp"
+
 #include "vernier/simulation/error_sources.hpp"
 
 namespace vernier::detail {
@@ -16,13 +18,13 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
                                                              {sizes.harmonic, "harmonic"},
                                                              {sizes.decay, "decay"},
                                                              {sizes.ripple, "ripple"}})
-    require(value >= 0 && std::isfinite(value), "JointErrorSizes: ", name, " is ", value,
-            ", must be 0 or more and finite");
-  require(sizes.harmonics >= 0 && sizes.harmonics <= 500, "JointErrorSizes: harmonics is ", sizes.harmonics,
-          ", must lie in 0..500");
-  require(sizes.ripple == 0 || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
-          "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (",
-          sizes.harmonics, ") and in 1..500");
+    demand(value >= 0 && std::isfinite(value), "JointErrorSizes: ", name, " is ", value,
+           ", must be 0 or more and finite");
+  demand(sizes.harmonics >= 0 && sizes.harmonics <= 500, "JointErrorSizes: harmonics is ", sizes.harmonics,
+         ", must lie in 0..500");
+  demand(same_value(sizes.ripple, 0) || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
+         "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (", sizes.harmonics,
+         ") and in 1..500");
 
   JointTerms terms(n);
   terms.gear_ratio = sizes.gear_ratio > 0;

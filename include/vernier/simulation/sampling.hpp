@@ -31,7 +31,7 @@ VERNIER_API void sample_rows(const ConstVectorRef& lower, const ConstVectorRef& 
 /// @throws std::invalid_argument for unbounded limits, or where fewer than one in a thousand is accepted
 template <int N, class Accept>
 JointRows<N> sample_joints(const JointLimits<N>& limits, Index n, std::uint64_t seed, Accept&& accept) {
-  require(n >= 0, "sample_joints: ", n, " configurations requested");
+  demand(n >= 0, "sample_joints: ", n, " configurations requested");
   JointRows<N> out(n, N);
   const auto accepted = [&](const double* q) -> bool { return accept(JointVector<N>(q)); };
   detail::sample_rows(limits.lower, limits.upper, seed, accepted, out);

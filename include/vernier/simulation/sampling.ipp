@@ -13,13 +13,13 @@ namespace vernier {
 VERNIER_IMPL void detail::sample_rows(const ConstVectorRef& lower, const ConstVectorRef& upper, std::uint64_t seed,
                                       FunctionRef<bool(const double*)> accept, MatrixRef out) {
   for (Index j = 0; j < lower.size(); ++j)
-    require(std::isfinite(lower(j)) && std::isfinite(upper(j)) && lower(j) <= upper(j),
-            "sample_joints: the limits must be finite, lower below upper");
+    demand(std::isfinite(lower(j)) && std::isfinite(upper(j)) && lower(j) <= upper(j),
+           "sample_joints: the limits must be finite, lower below upper");
   Rng rng(seed);
   VectorX q(lower.size());
   for (Index i = 0, tries = 0; i < out.rows();) {
-    require(++tries <= 1000 * (out.rows() + 10),
-            "sample_joints: fewer than one configuration in a thousand is accepted");
+    demand(++tries <= 1000 * (out.rows() + 10),
+           "sample_joints: fewer than one configuration in a thousand is accepted");
     for (Index j = 0; j < q.size(); ++j) q(j) = rng.uniform(lower(j), upper(j));
     if (!accept(q.data())) continue;
     for (Index j = 0; j < q.size(); ++j) out(i, j) = q(j);

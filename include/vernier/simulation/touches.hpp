@@ -54,7 +54,7 @@ Contact touch(const Actual& actual, const VirtualObject& object, std::string nam
   Rng rng(seed);
   MatrixX joints(known.size(), N);
   for (Index i = 0, tries = 0; i < known.size(); ++tries) {
-    require(tries < 2000 * known.size(), "touch: the arm hardly reaches ", name);
+    demand(tries < 2000 * known.size(), "touch: the arm hardly reaches ", name);
     JointVector<N> q;
     for (int j = 0; j < N; ++j) q(j) = rng.uniform(limits.lower(j), limits.upper(j));
     const Vector3 noise = sigma * Vector3(rng.normal(), rng.normal(), rng.normal());

@@ -9,10 +9,10 @@
 namespace vernier::detail {
 
 VERNIER_IMPL void add_geometric_errors(VectorRef parameters, const GeometricErrors& errors, std::uint64_t seed) {
-  require(errors.length_min >= 0 && errors.length_min <= errors.length_max && errors.angle_min >= 0 &&
-              errors.angle_min <= errors.angle_max,
-          "GeometricErrors: lengths [", errors.length_min, ", ", errors.length_max, "] m and angles [",
-          errors.angle_min, ", ", errors.angle_max, "] rad must be ranges of non-negative magnitudes");
+  demand(errors.length_min >= 0 && errors.length_min <= errors.length_max && errors.angle_min >= 0 &&
+             errors.angle_min <= errors.angle_max,
+         "GeometricErrors: lengths [", errors.length_min, ", ", errors.length_max, "] m and angles [", errors.angle_min,
+         ", ", errors.angle_max, "] rad must be ranges of non-negative magnitudes");
   Rng rng(seed);
   const auto error = [&](double min, double max) {
     const double sign = rng.sign();

@@ -84,10 +84,10 @@ class TbbExecutor {
 
  private:
   static int allowed(int threads) {
-    require(threads >= 1, "TbbExecutor: threads is ", threads, ", must be at least 1");
+    demand(threads >= 1, "TbbExecutor: threads is ", threads, ", must be at least 1");
     // Beyond the limit oneTBB would print a warning.
     const auto limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    return static_cast<int>(std::min(static_cast<std::size_t>(threads), limit));
+    return static_cast<int>((std::min)(static_cast<std::size_t>(threads), limit));
   }
 
   mutable tbb::task_arena arena_;  // its first use starts it

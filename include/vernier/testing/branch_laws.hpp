@@ -50,7 +50,7 @@ double largest_of(const JointVector<N>& differences) {
   double out = 0;
   for (int i = 0; i < N; ++i) {
     if (std::isnan(differences(i))) return std::numeric_limits<double>::infinity();
-    out = std::max(out, std::abs(differences(i)));
+    out = (std::max)(out, std::abs(differences(i)));
   }
   return out;
 }
@@ -138,9 +138,9 @@ template <class Solver, KinematicModel M>
 std::vector<std::string> branch_violations(const Solver& solver, const M& model, const JointRows<M::dof>& samples,
                                            const BranchLawOptions<M::dof>& options = {}) {
   constexpr int N = M::dof;
-  require(samples.rows() >= 1, "branch_violations: there are no samples");
-  require(options.held_joint >= -1 && options.held_joint < N, "branch_violations: no joint ", options.held_joint + 1,
-          " to be held");
+  demand(samples.rows() >= 1, "branch_violations: there are no samples");
+  demand(options.held_joint >= -1 && options.held_joint < N, "branch_violations: no joint ", options.held_joint + 1,
+         " to be held");
   detail::BranchLaw position("every branch has the model's tool at the target's position", options.position_tolerance);
   detail::BranchLaw rotation("every branch has the model's tool in the target's orientation",
                              options.rotation_tolerance);

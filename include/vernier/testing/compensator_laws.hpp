@@ -59,7 +59,7 @@ class CompensatorLaw {
 template <Compensator C>
 void check_compensator(const C& compensator, const JointRows<C::dof>& samples, const CompensatorLawOptions& options,
                        std::vector<std::string>& violations) {
-  require(samples.rows() >= 1, "compensator_violations: there are no samples");
+  demand(samples.rows() >= 1, "compensator_violations: there are no samples");
   CompensatorLaw repeatable("a repeated call gives the same bits", 0);
   CompensatorLaw rigid("predict(q) is a rigid motion", options.value_tolerance);
   CompensatorLaw finite("correct(q) is finite, its predicted_error not negative, its gate within [0, 1]", 0);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 #include "vernier/search/minimize.hpp"
 #include "vernier/search/pso.hpp"
@@ -58,7 +59,7 @@ class ExecutorCheck {
         if (begin < 0 || begin >= end || end > n) ++unusable;
         // The last range is slow, which detects an executor that does not wait for it.
         if (end == n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        for (Index i = std::max<Index>(begin, 0); i < std::min(end, n); ++i) ++seen[static_cast<std::size_t>(i)];
+        for (Index i = std::max<Index>(begin, 0); i < (std::min)(end, n); ++i) ++seen[static_cast<std::size_t>(i)];
         --running;
       });
       expect(running == 0, message("returned before all work was done, n = ", n));
@@ -147,7 +148,7 @@ class ExecutorCheck {
     const auto compare = [&](const auto& algorithm, const auto& objective, const char* name) {
       const SearchResult right = minimize(algorithm, objective, box, {}, 4);
       const SearchResult found = minimize(algorithm, objective, box, {}, 4, reference_);
-      expect(same_bits(found.best, right.best) && found.best_fitness == right.best_fitness &&
+      expect(same_bits(found.best, right.best) && same_value(found.best_fitness, right.best_fitness) &&
                  found.evaluations == right.evaluations && found.generations == right.generations,
              message("a search by ", name, " gives other bits than on one thread"));
     };

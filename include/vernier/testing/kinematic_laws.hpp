@@ -44,7 +44,7 @@ class Law {
 
   /// Compares one entry.
   void compare_entry(double a, double b, Index row, Index column, Index sample) {
-    double difference = std::abs(a - b) / std::max(1.0, std::abs(b));
+    double difference = std::abs(a - b) / (std::max)(1.0, std::abs(b));
     if (!std::isfinite(difference)) difference = std::numeric_limits<double>::infinity();
     if (difference <= worst_) return;
     worst_ = difference;
@@ -63,7 +63,7 @@ class Law {
     if (std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0) return;
     compare(a, b, sample);
     if (worst_ <= tolerance_) {  // a zero's sign, or a NaN's payload
-      worst_ = std::numeric_limits<double>::min();
+      worst_ = (std::numeric_limits<double>::min)();
       where_ = message("at sample ", sample);
     }
   }
@@ -99,7 +99,7 @@ inline Vector6 difference_quotient(const Isometry3& after, const Isometry3& befo
 template <KinematicModel M>
 std::vector<std::string> kinematic_model_violations(const M& model, const JointRows<M::dof>& samples,
                                                     const KinematicLawOptions& options = {}) {
-  require(samples.rows() >= 1, "kinematic_model_violations: there are no samples");
+  demand(samples.rows() >= 1, "kinematic_model_violations: there are no samples");
   detail::Law translation("position(q) is the translation of pose(q)", options.value_tolerance);
   detail::Law orthonormal("the rotation of pose(q) is orthonormal and right-handed", options.value_tolerance);
   detail::Law same_pose("pose(q) is the pose of pose_and_jacobian(q)", options.value_tolerance);
@@ -169,7 +169,7 @@ std::vector<std::string> kinematic_model_violations(const M& model, const JointR
 template <ParametricModel M>
 std::vector<std::string> parametric_model_violations(const M& model, const JointRows<M::dof>& samples,
                                                      const KinematicLawOptions& options = {}) {
-  require(samples.rows() >= 1, "parametric_model_violations: there are no samples");
+  demand(samples.rows() >= 1, "parametric_model_violations: there are no samples");
   constexpr int P = M::num_parameters;
   using Parameters = Eigen::Matrix<double, P, 1>;
   std::vector<std::string> violations;

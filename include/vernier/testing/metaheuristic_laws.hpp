@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/search/minimize.hpp"
 #include "vernier/testing/detail/search_record.hpp"
 
@@ -220,7 +221,7 @@ class MetaheuristicCheck {
         minimize(algorithm_, bowl_, bowl_.box, search, pause);
         auto copy = search;
         const SearchResult found = minimize(algorithm_, bowl_, bowl_.box, copy, last);
-        if (same_bits(found.best, right.best) && found.best_fitness == right.best_fitness &&
+        if (same_bits(found.best, right.best) && same_value(found.best_fitness, right.best_fitness) &&
             found.evaluations == right.evaluations && found.generations == right.generations)
           continue;
         return expect(false, "a search that was paused and resumed came to another result");
@@ -245,16 +246,16 @@ class MetaheuristicCheck {
       const SearchResult result =
           minimize(algorithm_, objective, bowl_.box, StoppingCriteria{.max_generations = generations}, seed);
       found = found || finite_seen;
-      sound = sound && (finite_seen ? objective(result.best) == result.best_fitness
-                                    : result.best_fitness == std::numeric_limits<double>::infinity());
+      sound = sound && (finite_seen ? same_value(objective(result.best), result.best_fitness)
+                                    : same_value(result.best_fitness, std::numeric_limits<double>::infinity()));
     }
     expect(sound, "a value that is not finite became the best");
     expect(found, "with values that are not finite in half of the box the other half was never found");
     const auto never = [](const VectorX&) { return std::numeric_limits<double>::quiet_NaN(); };
     const SearchResult none =
         minimize(algorithm_, never, bowl_.box, StoppingCriteria{.max_generations = generations}, 1);
-    expect(none.best_fitness == std::numeric_limits<double>::infinity() && none.best.size() == bowl_.box.dimension() &&
-               none.best.allFinite(),
+    expect(same_value(none.best_fitness, std::numeric_limits<double>::infinity()) &&
+               none.best.size() == bowl_.box.dimension() && none.best.allFinite(),
            "where no value is finite the best is not a point with the value infinity");
   }
 

@@ -61,7 +61,7 @@ double deviation_from_line(const Arm& arm, const JointVector<Arm::dof>& coming, 
     const JointVector<Arm::dof> approach = vernier::detail::approach_on_the_way(coming, a, q);
     const Vector3 off = translation(pose_from(arm, approach, q)) - translation(between(start, end, s));
     if (std::isnan(off.norm())) return std::numeric_limits<double>::infinity();
-    worst = std::max(worst, off.norm());
+    worst = (std::max)(worst, off.norm());
   }
   return worst;
 }
@@ -81,7 +81,7 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
                                          const PathOptions<Arm::dof>& options, const PathLawOptions& laws = {}) {
   constexpr int N = Arm::dof;
   std::vector<std::string> out;
-  const auto check = [&](bool holds, const auto&... text) {
+  const auto expect = [&](bool holds, const auto&... text) {
     if (!holds) out.push_back(message(text...));
   };
   const CorrectedPath<N> path = correct(arm, targets, options);
@@ -89,17 +89,17 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
   bool same = path.points.size() == again.points.size();
   for (std::size_t i = 0; same && i < path.points.size(); ++i)
     same = std::memcmp(path.points[i].command.data(), again.points[i].command.data(), sizeof(double) * N) == 0;
-  check(same, "a repeated call gives other commands");
+  expect(same, "a repeated call gives other commands");
 
   Index next = 0;
   JointVector<N> before = options.start, coming = options.start;  // of the target before
   Index pieces = 0;
   for (const PathPoint<N>& p : path.points) {
-    check(p.target == next, "a point belongs to target ", p.target, " where ", next, " is next");
+    expect(p.target == next, "a point belongs to target ", p.target, " where ", next, " is next");
     if (p.target != next || next >= static_cast<Index>(targets.size())) break;
     const PathTarget<N>& target = targets[static_cast<std::size_t>(next)];
-    check(p.status == PointStatus::met, "target ", next, " is not met");
-    check(options.limits.contains(p.command), "target ", next, ": a command is beyond the limits");
+    expect(p.status == PointStatus::met, "target ", next, " is not met");
+    expect(options.limits.contains(p.command), "target ", next, ": a command is beyond the limits");
     ++pieces;
     if (!p.inserted) {
       // the line as a whole, for its inserted points divide it equally
@@ -113,26 +113,26 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
           const auto k = static_cast<double>(piece - first);
           const Isometry3 s = interpolated(start, target.pose, k / n);
           const Isometry3 e = interpolated(start, target.pose, (k + 1) / n);
-          check((b - a).cwiseAbs().maxCoeff() <= options.max_joint_step, "target ", next, ": a joint leaps");
-          check(detail::deviation_from_line(arm, from, a, b, s, e) <= laws.line_slack * options.tolerance, "target ",
-                next, ": the tool leaves its line");
+          expect((b - a).cwiseAbs().maxCoeff() <= options.max_joint_step, "target ", next, ": a joint leaps");
+          expect(detail::deviation_from_line(arm, from, a, b, s, e) <= laws.line_slack * options.tolerance, "target ",
+                 next, ": the tool leaves its line");
           from = vernier::detail::approach_on_the_way(from, a, b);
         }
         if (pieces > 1) before = from;
       }
       const Isometry3 there = detail::pose_from(arm, before, p.command);
       const Vector3 missed = translation(there) - translation(target.pose);
-      check(missed.norm() <= laws.position_tolerance, "target ", next, " is missed");
+      expect(missed.norm() <= laws.position_tolerance, "target ", next, " is missed");
       if constexpr (N >= 6)
-        check(rotation_difference(rotation(there), rotation(target.pose)).norm() <= laws.rotation_tolerance, "target ",
-              next, ": its orientation is missed");
+        expect(rotation_difference(rotation(there), rotation(target.pose)).norm() <= laws.rotation_tolerance, "target ",
+               next, ": its orientation is missed");
       coming = before;
       pieces = 0;
       ++next;
     }
     before = p.command;
   }
-  check(next == static_cast<Index>(targets.size()), next, " of ", targets.size(), " targets have a point");
+  expect(next == static_cast<Index>(targets.size()), next, " of ", targets.size(), " targets have a point");
   if (!laws.reversible || !out.empty() || path.points.empty()) return out;
 
   std::vector<PathTarget<N>> back;
@@ -146,14 +146,14 @@ std::vector<std::string> path_violations(const Correct& correct, const Arm& arm,
   PathOptions<N> reversed = options;
   reversed.start = path.points.back().command;
   const CorrectedPath<N> returned = correct(arm, back, reversed);
-  check(returned.points.size() == path.points.size(), "the way back has ", returned.points.size(), " points, the way ",
-        path.points.size());
+  expect(returned.points.size() == path.points.size(), "the way back has ", returned.points.size(), " points, the way ",
+         path.points.size());
   if (returned.points.size() != path.points.size()) return out;
   double worst = 0;
   for (std::size_t i = 0; i < path.points.size(); ++i)
-    worst = std::max(
+    worst = (std::max)(
         worst, (path.points[i].command - returned.points[path.points.size() - 1 - i].command).cwiseAbs().maxCoeff());
-  check(worst <= laws.joint_tolerance, "the way back differs from the way by ", worst);
+  expect(worst <= laws.joint_tolerance, "the way back differs from the way by ", worst);
   return out;
 }
 

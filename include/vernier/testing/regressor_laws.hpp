@@ -51,7 +51,7 @@ VERNIER_API void check_regressor(const AnyRecipe& recipe, const RegressorLaws& l
 /// @return one sentence a violation; empty when all laws hold
 template <Regressor R>
 std::vector<std::string> regressor_violations(const R& recipe, const RegressorLaws& laws = {}) {
-  require(laws.samples >= 2, "regressor_violations: samples is ", laws.samples, ", must be at least 2");
+  demand(laws.samples >= 2, "regressor_violations: samples is ", laws.samples, ", must be at least 2");
   std::vector<std::string> violations;
   detail::check_regressor(detail::RecipeOf<R, 3, 2>(recipe), laws, violations);
   detail::check_regressor(detail::RecipeOf<R, 1, 1>(recipe), laws, violations);

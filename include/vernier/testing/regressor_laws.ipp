@@ -24,7 +24,7 @@ inline void set_row(MatrixX& matrix, Index i, const VectorX& values) {
 inline double largest_of(const MatrixX& matrix) {
   if (!all_finite(matrix)) return std::numeric_limits<double>::infinity();
   double out = 0;
-  for (Index k = 0; k < matrix.size(); ++k) out = std::max(out, std::abs(matrix.data()[k]));
+  for (Index k = 0; k < matrix.size(); ++k) out = (std::max)(out, std::abs(matrix.data()[k]));
   return out;
 }
 
@@ -139,8 +139,8 @@ class RegressorCheck {
         x(j) += steps * step;
         return predictor.predict(x);
       };
-      const VectorX near = value(1) - value(-1), far = value(2) - value(-2);
-      for (Index k = 0; k < recipe_.outputs; ++k) out(k, j) = (8 * near(k) - far(k)) / (12 * step);
+      const VectorX inner = value(1) - value(-1), outer = value(2) - value(-2);
+      for (Index k = 0; k < recipe_.outputs; ++k) out(k, j) = (8 * inner(k) - outer(k)) / (12 * step);
     }
     return out;
   }

@@ -4,6 +4,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rigid_motions.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/twists.hpp"
 #include "vernier/kinematics/frame_parameters.hpp"
@@ -27,7 +28,7 @@ VERNIER_IMPL std::vector<std::string> set_violations(MeasuredSet set, std::span<
     if (first.residual != again.residual || first.motion != again.motion) complain("another answer to the same pose");
     for (Index r = 0; r < 6; ++r) {
       const double scale = r < 3 ? set.sigma().length : set.sigma().angle;
-      if (r >= values && first.residual(r) != 0) complain("a residual in a row that it does not measure");
+      if (r >= values && !same_value(first.residual(r), 0)) complain("a residual in a row that it does not measure");
       if (r < values && !(std::abs(first.residual(r)) <= 1e-6 * scale + 1e-9))
         complain("base_from() leaves residuals of exact measurements");
     }

@@ -80,7 +80,7 @@ class UrYaml {
 VERNIER_IMPL UrKinematics UrKinematics::of(const ArmGeometry& geometry, const std::string& hash) {
   bool fits = geometry.joints() == 6 && !geometry.chain().modified();
   for (int i = 0; fits && i < 6; ++i) fits = geometry.chain().revolute(i);
-  require(fits, "UrKinematics: not an arm of six revolute joints in the standard convention");
+  demand(fits, "UrKinematics: not an arm of six revolute joints in the standard convention");
   UrKinematics out;
   out.hash = hash;
   Isometry3 before = geometry.base().isometry();
@@ -95,17 +95,17 @@ VERNIER_IMPL UrKinematics UrKinematics::of(const ArmGeometry& geometry, const st
 
 VERNIER_IMPL UrKinematics UrKinematics::of(const UrdfChain& chain, const ArmGeometry& geometry,
                                            const std::string& hash) {
-  require(chain.moving.size() == 6, "UrKinematics: ", chain.moving.size(), " joints move, must be 6");
+  demand(chain.moving.size() == 6, "UrKinematics: ", chain.moving.size(), " joints move, must be 6");
   const std::vector<Isometry3> origins = joint_origins(chain, geometry);
   UrKinematics out;
   out.hash = hash;
   for (std::size_t i = 0; i < 6; ++i) {
     const auto joint = static_cast<std::size_t>(chain.moving[i]);
     const Vector3 axis = chain.link_in_row[i].linear().row(2).transpose();  // of the joint, in its own frame
-    require(chain.robot.rows[i].joint == JointType::revolute && (axis - Vector3::UnitZ()).norm() < 1e-9 &&
-                (i == 0 || chain.moving[i] == chain.moving[i - 1] + 1),
-            "UrKinematics: joint '", chain.joints[joint],
-            "' does not turn about its z axis next to the joint before, as those of Universal Robots do");
+    demand(chain.robot.rows[i].joint == JointType::revolute && (axis - Vector3::UnitZ()).norm() < 1e-9 &&
+               (i == 0 || chain.moving[i] == chain.moving[i - 1] + 1),
+           "UrKinematics: joint '", chain.joints[joint],
+           "' does not turn about its z axis next to the joint before, as those of Universal Robots do");
     out.origins[i] = origins[joint];
   }
   return out;
@@ -145,7 +145,7 @@ VERNIER_IMPL std::string UrKinematics::text(const ExportNote& note) const {
     }
   }
   if (hash.empty()) return out;
-  require(detail::is_ur_hash(hash), "UrKinematics: the hash must be of up to 64 letters, digits and underscores");
+  demand(detail::is_ur_hash(hash), "UrKinematics: the hash must be of up to 64 letters, digits and underscores");
   return out + "  hash: " + hash + "\n";
 }
 

@@ -20,7 +20,7 @@ namespace detail {
 VERNIER_LOCAL std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t most = 8;
   std::string out;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+  for (std::size_t i = 0; i < (std::min)(names.size(), most); ++i)
     out += (i > 0 ? ", '" : "'") + quotable(names[i]) + "'";
   return names.size() > most ? message(out, ", ... (", names.size(), ")") : out;
 }
@@ -131,8 +131,8 @@ VERNIER_IMPL std::vector<Isometry3> joint_origins(const UrdfChain& chain, const 
   const std::size_t n = chain.robot.rows.size();
   bool same = geometry.joints() == chain.robot.dof() && !geometry.chain().modified();
   for (std::size_t i = 0; same && i < n; ++i) same = geometry.chain().rows()[i].joint == chain.robot.rows[i].joint;
-  require(same, "joint_origins: the geometry is not of the chain to '", chain.tip_link, "', ", chain.robot.dof(),
-          " joints");
+  demand(same, "joint_origins: the geometry is not of the chain to '", chain.tip_link, "', ", chain.robot.dof(),
+         " joints");
   const auto turn = [](const DhRow& row) { return Isometry3(Eigen::AngleAxisd(row.theta, Vector3::UnitZ())); };
   const auto advance = [](const DhRow& row) {
     return Isometry3(Eigen::Translation3d(row.a, 0, row.d) * Eigen::AngleAxisd(row.alpha, Vector3::UnitX()) *
@@ -158,8 +158,8 @@ VERNIER_IMPL std::vector<Isometry3> joint_origins(const UrdfChain& chain, const 
   }
   const Isometry3 tip = from_link * geometry.tool().isometry();
   if ((tip.matrix() - nominal.matrix()).cwiseAbs().maxCoeff() <= 1e-14) return out;
-  require(next < out.size(), "joint_origins: no fixed joint in front of '", chain.tip_link,
-          "' that could hold the tool");
+  demand(next < out.size(), "joint_origins: no fixed joint in front of '", chain.tip_link,
+         "' that could hold the tool");
   out.back() = before_last.inverse() * tip;
   return out;
 }

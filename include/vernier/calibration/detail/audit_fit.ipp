@@ -40,7 +40,7 @@ VERNIER_LOCAL double median_of(std::vector<double> values) {
 
 VERNIER_IMPL double robust_scale(const PointRows& residuals) {
   const VectorX norms = distances_from(residuals, Vector3::Zero());
-  return std::max(median_of({norms.begin(), norms.end()}) / median_norm, 1e-9);
+  return (std::max)(median_of({norms.begin(), norms.end()}) / median_norm, 1e-9);
 }
 
 VERNIER_IMPL double AuditResiduals::score() const { return std::hypot(position_scale, 0.25 * rotation_scale); }
@@ -207,7 +207,7 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
       const Matrix3 kept = rest.inverse();
       const Vector3 r = kept * three(whitened, k);
       const Matrix3 covariance = identity + kept * h, weight = covariance.inverse();
-      const double t = std::sqrt(std::max(0.0, r.dot(weight * r)));
+      const double t = std::sqrt((std::max)(0.0, r.dot(weight * r)));
       factors[part / 3].push_back(t);
       if (part == 0) {
         row.position = r.norm() * fit.residuals.position_scale;
@@ -219,8 +219,8 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
       }
     }
   }
-  const double position = median_norm / std::max(median_of(factors[0]), 1e-9);
-  const double rotation = oriented ? median_norm / std::max(median_of(factors[1]), 1e-9) : 1;
+  const double position = median_norm / (std::max)(median_of(factors[0]), 1e-9);
+  const double rotation = oriented ? median_norm / (std::max)(median_of(factors[1]), 1e-9) : 1;
   for (LeftOut& row : out) {
     row.position_factor *= position;
     row.rotation_factor *= rotation;
@@ -292,7 +292,7 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
     out.scale = median_of(of_positions) / median_norm * fit.residuals.position_scale;
     weights = audit_weights(left / scale);
   }
-  const double dof = static_cast<double>(values * n) / std::max(1.0, static_cast<double>(values * n - all));
+  const double dof = static_cast<double>(values * n) / (std::max)(1.0, static_cast<double>(values * n - all));
   for (Index k = 0; k < 6; ++k) out.motion(k) = solution(k);
   VectorX whitened_motion = out.motion;
   if (!cholesky(covariance)) return {};

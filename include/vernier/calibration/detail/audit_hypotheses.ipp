@@ -69,7 +69,7 @@ VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const A
 }
 
 VERNIER_IMPL std::vector<Index> spread_rows(Index rows, Index count) {
-  const Index n = std::min(rows, count);
+  const Index n = (std::min)(rows, count);
   std::vector<Index> out(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] = i * rows / n;
   return out;
@@ -114,7 +114,7 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
     if (score(fit) < 0.5 * none && weight(fit) * score(fit) < weight(best) * score(best)) best = std::move(fit);
   };
   const double expected = point_scatter(nominal.positions(rows.joints)), measured = point_scatter(rows.positions);
-  const bool gross = none > 0.02 * std::min(expected, measured);
+  const bool gross = none > 0.02 * (std::min)(expected, measured);
   if (gross) {
     for (const double factor : {1000.0, 100.0, 1000 / 25.4, 25.4, 10.0, 0.1, 1 / 25.4, 25.4e-3, 0.01, 0.001})
       if (const double ratio = measured / expected / factor; ratio > 0.3 && ratio < 3)
@@ -151,26 +151,26 @@ VERNIER_IMPL std::optional<RowShift> find_shift(const ArmGeometry& nominal, cons
   std::optional<HypothesisFit> best;
   for (const auto& [first, end] : {std::pair<Index, Index>{0, n}, {0, n / 2}, {n / 2, n}, {n / 4, 3 * n / 4}})
     for (Index shift = -most; shift <= most; ++shift) {
-      const std::vector<Index> block = range(std::max(first, -shift), std::min(end, n - shift));
+      const std::vector<Index> block = range((std::max)(first, -shift), (std::min)(end, n - shift));
       if (block.size() < 8) continue;
       HypothesisFit fit = fit_hypothesis(nominal, rows.rows(block, shift), {});
       if (!best || fit.fit.residuals.score() < best->fit.residuals.score()) best = std::move(fit);
     }
-  if (!best || best->fit.residuals.score() > std::min(0.1 * spread, 1.5 * best_score)) return std::nullopt;
+  if (!best || best->fit.residuals.score() > (std::min)(0.1 * spread, 1.5 * best_score)) return std::nullopt;
 
   // cost of each row under each shift, capped where it does not fit at all
   const double limit = 8 * best->fit.residuals.score();
   MatrixX cost = MatrixX::Ones(n, 2 * most + 1);
   for (Index shift = -most; shift <= most; ++shift) {
     std::vector<Index> all;
-    for (Index i = std::max<Index>(0, -shift); i < std::min(n, n - shift); ++i) all.push_back(i);
+    for (Index i = std::max<Index>(0, -shift); i < (std::min)(n, n - shift); ++i) all.push_back(i);
     if (all.empty()) continue;
     const AuditResiduals residuals = audit_residuals(best->fit.arm, rows.rows(all, shift));
     for (std::size_t k = 0; k < all.size(); ++k) {
       const auto row = static_cast<Index>(k);
       double size = point(residuals.position, row).norm();
-      if (rows.oriented()) size = std::max(size, 0.25 * point(residuals.rotation, row).norm());
-      cost(all[k], shift + most) = std::min(1.0, std::pow(size / limit, 2));
+      if (rows.oriented()) size = (std::max)(size, 0.25 * point(residuals.rotation, row).norm());
+      cost(all[k], shift + most) = (std::min)(1.0, std::pow(size / limit, 2));
     }
   }
   const double unshifted = cost.col(most).sum();

@@ -8,6 +8,7 @@
 
 #include "vernier/calibration/detail/audit_rows.hpp"
 #include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/quantile.hpp"
 
@@ -67,9 +68,9 @@ VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorR
     outliers.rows.push_back(numbers[static_cast<std::size_t>(wrong[k])]);
     if (row.position_factor > factor) {
       by_position = true;
-      outliers.size = std::max(outliers.size, row.position);
+      outliers.size = (std::max)(outliers.size, row.position);
     }
-    if (row.rotation_factor > rotation_limit) turn = std::max(turn, row.rotation);
+    if (row.rotation_factor > rotation_limit) turn = (std::max)(turn, row.rotation);
   }
   if (outliers.rows.empty()) return;
   if (!by_position) outliers.size = turn;
@@ -85,11 +86,12 @@ VERNIER_IMPL void audit_duplicates(const MeasuredSet& data, const PointRows& rot
   const Index n = data.size();
   const auto before = [&](Index a, Index b) {
     for (Index c = 0; c < 3; ++c)
-      if ((*data.positions())(a, c) != (*data.positions())(b, c))
+      if (!same_value((*data.positions())(a, c), (*data.positions())(b, c)))
         return (*data.positions())(a, c) < (*data.positions())(b, c);
     if (rotation_vectors.rows() == n)
       for (Index c = 0; c < 3; ++c)
-        if (rotation_vectors(a, c) != rotation_vectors(b, c)) return rotation_vectors(a, c) < rotation_vectors(b, c);
+        if (!same_value(rotation_vectors(a, c), rotation_vectors(b, c)))
+          return rotation_vectors(a, c) < rotation_vectors(b, c);
     return false;
   };
   std::vector<Index> order(static_cast<std::size_t>(n));
@@ -107,7 +109,7 @@ VERNIER_IMPL void audit_duplicates(const MeasuredSet& data, const PointRows& rot
       bool same = true;
       for (const Index row : finding.rows)
         for (Index j = 0; j < data.joints.cols(); ++j)
-          same = same && data.joints(row, j) == data.joints(finding.rows.front(), j);
+          same = same && same_value(data.joints(row, j), data.joints(finding.rows.front(), j));
       finding.message = data.origin.where(finding.rows) +
                         (same ? ": joints and pose are the same in all digits: leave out all but one"
                               : ": the same pose in all digits at different joints: the sensor was not read again, "
@@ -135,11 +137,11 @@ VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFind
       double width = 0, widest = 0;
       for (const double gap : in_order) {
         width = gap > gaps[k] ? 0 : width + gap;
-        widest = std::max(widest, width);
+        widest = (std::max)(widest, width);
       }
       if (widest > 0.2 * gaps[k + 1] || widest > 0.02) continue;
       read.push_back(j);
-      scatter = std::max(scatter, widest);
+      scatter = (std::max)(scatter, widest);
       break;
     }
   }
@@ -165,7 +167,7 @@ VERNIER_IMPL void audit_approaches(const MeasuredSet& data, std::vector<DataFind
       if (move > 1e-6) ++up;
       if (move < -1e-6) ++down;
     }
-    if (std::min(up, down) > 0 || std::max(up, down) < 25) continue;
+    if ((std::min)(up, down) > 0 || (std::max)(up, down) < 25) continue;
     findings.push_back({FaultKind::approach_never_varies,
                         j,
                         {},

@@ -19,14 +19,14 @@ VERNIER_LOCAL double point_spread(const PointRows& points) {
 VERNIER_IMPL void require_plausible(const ArmGeometry& nominal, const MeasuredSet& poses, double frames_rms,
                                     const std::string& arm) {
   const double expected = point_spread(nominal.positions(poses.joints)), measured = point_spread(*poses.positions());
-  const double limit = std::min(0.05, 0.1 * std::max(expected, measured));
-  if (frames_rms <= std::max(limit, 1e-3)) return;  // an arm that did not move is another matter
+  const double limit = (std::min)(0.05, 0.1 * (std::max)(expected, measured));
+  if (frames_rms <= (std::max)(limit, 1e-3)) return;  // an arm that did not move is another matter
   std::string hint = "wrong robot, units or columns?";
   const double ratio = measured / expected;
   double largest = 0;
   for (int i = 0; i < nominal.joints(); ++i)
     for (Index row = 0; nominal.chain().revolute(i) && row < poses.size(); ++row)
-      largest = std::max(largest, std::abs(poses.joints(row, i)));
+      largest = (std::max)(largest, std::abs(poses.joints(row, i)));
   if (largest > 15)
     hint = "a joint of " + brief(largest) + " rad looks like degrees in a _rad column";
   else if (largest < 0.15)

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <string>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier::detail {
 
 /// A number in three significant digits; from a thousand to a million all before the point.

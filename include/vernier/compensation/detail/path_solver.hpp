@@ -49,7 +49,7 @@ struct PathBranch {
 struct PathArm {
   int joints;
   /// Branches of the arm, whatever the direction of approach, at a target: appended; the reach is returned.
-  FunctionRef<Reach(const Isometry3& target, const PathJoints& near, std::vector<PathBranch>& out)> branches;
+  FunctionRef<Reach(const Isometry3& target, const PathJoints& close_to, std::vector<PathBranch>& out)> branches;
   /// The command that brings the arm to a target, coming from another command; which may be not finite.
   FunctionRef<bool(const Isometry3& target, const PathJoints& from, PathJoints& command, double* errors)> correct;
   /// Where the arm is at joint values, coming from a command.

@@ -24,7 +24,7 @@ inline PathJoints same_joints(int n, double value) noexcept {
 /// Largest difference of a joint.
 inline double largest_difference(const PathJoints& a, const PathJoints& b) noexcept {
   double out = 0;
-  for (Index j = 0; j < a.size(); ++j) out = std::max(out, std::abs(a(j) - b(j)));
+  for (Index j = 0; j < a.size(); ++j) out = (std::max)(out, std::abs(a(j) - b(j)));
   return out;
 }
 
@@ -43,7 +43,7 @@ inline bool nearly_same(const PathJoints& a, const PathJoints& b) noexcept {
     of_a += a(j) * a(j);
     of_b += b(j) * b(j);
   }
-  return off <= 1e-24 * std::min(of_a, of_b);
+  return off <= 1e-24 * (std::min)(of_a, of_b);
 }
 
 VERNIER_IMPL PathJoints approach_on_the_way(const PathJoints& coming, const PathJoints& command, const PathJoints& q) {
@@ -55,7 +55,7 @@ VERNIER_IMPL PathJoints approach_on_the_way(const PathJoints& coming, const Path
     if (before * since >= 0) {
       out(j) = coming(j);
     } else {
-      const double share = std::min(1.0, std::abs(since) / transition);
+      const double share = (std::min)(1.0, std::abs(since) / transition);
       out(j) = q(j) - ((1 - share) * std::clamp(before, -transition, transition) + share * since);
     }
   }
@@ -95,13 +95,13 @@ class PathSearch {
   /// Time of a joint move, in units of the speeds.
   double duration(const PathJoints& a, const PathJoints& b) const {
     double out = 0;
-    for (int j = 0; j < arm_.joints; ++j) out = std::max(out, std::abs(b(j) - a(j)) / settings_.speed(j));
+    for (int j = 0; j < arm_.joints; ++j) out = (std::max)(out, std::abs(b(j) - a(j)) / settings_.speed(j));
     return out;
   }
-  PathJoints turned(const PathJoints& joints, const PathJoints& near) const {
+  PathJoints turned(const PathJoints& joints, const PathJoints& close_to) const {
     PathJoints out = joints;
     for (int j = 0; j < arm_.joints; ++j)
-      out(j) = nearest_turn(joints(j), near(j), settings_.lower(j), settings_.upper(j));
+      out(j) = nearest_turn(joints(j), close_to(j), settings_.lower(j), settings_.upper(j));
     return out;
   }
   bool within(const PathJoints& q) const {
@@ -126,14 +126,15 @@ class PathSearch {
     states.push_back(state);
   }
 
-  VERNIER_LOCAL Reach find_branches(const PathGoal& goal, const PathJoints& near, std::vector<PathBranch>& out) const;
+  VERNIER_LOCAL Reach find_branches(const PathGoal& goal, const PathJoints& close_to,
+                                    std::vector<PathBranch>& out) const;
   VERNIER_LOCAL std::optional<PathJoints> end_of_line(const PathState& from, const PathGoal& start,
                                                       const PathBranch& to, const PathGoal& end) const;
   VERNIER_LOCAL void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
                              const std::vector<PathBranch>& branches, std::vector<PathState>& out) const;
   VERNIER_LOCAL double worst_ratio(const PathJoints& coming, const PathJoints& a, const PathJoints& b,
                                    const Isometry3& from, const Isometry3& to, double& deviation) const;
-  VERNIER_LOCAL bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
+  VERNIER_LOCAL bool fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& close_to,
                                const Isometry3& start, const Isometry3& end, int pieces, std::vector<SolvedPoint>& out,
                                double& worst, double& deviation) const;
   VERNIER_LOCAL void move_to(Index target, const PathState& state, const SolvedPoint* before, SolvedPath& out) const;
@@ -143,10 +144,10 @@ class PathSearch {
   const PathSettings& settings_;
 };
 
-VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& near,
+VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoints& close_to,
                                              std::vector<PathBranch>& out) const {
   if (!is_pose(goal.pose)) return Reach::invalid_target;
-  if (goal.joints.size() == 0) return arm_.branches(goal.pose, near, out);
+  if (goal.joints.size() == 0) return arm_.branches(goal.pose, close_to, out);
   PathJoints command = goal.joints, unknown = same_joints(arm_.joints, std::nan(""));
   double errors[2];
   arm_.correct(goal.pose, unknown, command, errors);  // or the joint values that come nearest
@@ -157,11 +158,11 @@ VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoi
 /// The turns of a branch at which a linear move ends: the nominal arm follows the line where the joints change by much.
 VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& from, const PathGoal& start,
                                                                const PathBranch& to, const PathGoal& end) const {
-  constexpr double small = 0.2, step = 0.1;  // rad
+  constexpr double little = 0.2, step = 0.1;  // rad
   if (from.id != to.id) return std::nullopt;
-  PathJoints near = turned(to.joints, from.joints);
-  const double largest = largest_difference(near, from.joints);
-  if (largest > small) {
+  PathJoints close_to = turned(to.joints, from.joints);
+  const double largest = largest_difference(close_to, from.joints);
+  if (largest > little) {
     const int n = std::clamp(static_cast<int>(std::ceil(largest / step)), 4, 64);
     PathJoints q = from.joints;
     for (int k = 1; k <= n; ++k) {
@@ -170,10 +171,10 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
           largest_difference(q, before) > settings_.max_joint_step || arm_.branch_id(q) != from.id)
         return std::nullopt;
     }
-    near = turned(to.joints, q);
-    if (largest_difference(near, q) > 0.1) return std::nullopt;
+    close_to = turned(to.joints, q);
+    if (largest_difference(close_to, q) > 0.1) return std::nullopt;
   }
-  return within(near) ? std::optional<PathJoints>(near) : std::nullopt;
+  return within(close_to) ? std::optional<PathJoints>(close_to) : std::nullopt;
 }
 
 /// States at a target from those before.
@@ -232,24 +233,25 @@ VERNIER_IMPL double PathSearch::worst_ratio(const PathJoints& coming, const Path
     const Isometry3 there = arm_.pose(q, approach_on_the_way(coming, a, q)), wanted = interpolated(from, to, share);
     const double off = (translation(there) - translation(wanted)).norm();
     const double turned = rotation_difference(rotation(there), rotation(wanted)).norm();
-    deviation = std::max(deviation, off);
-    worst = std::max({worst, off / settings_.tolerance, turned / settings_.rotation_tolerance});
+    deviation = (std::max)(deviation, off);
+    worst = (std::max)({worst, off / settings_.tolerance, turned / settings_.rotation_tolerance});
   }
   return worst;
 }
 
 /// Commands that divide a line into equal pieces, the last one at its end.
 /// @return whether all of them were found next to one another
-VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const PathJoints& from, const PathJoints& near,
-                                        const Isometry3& start, const Isometry3& end, int pieces,
-                                        std::vector<SolvedPoint>& out, double& worst, double& deviation) const {
+VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const PathJoints& from,
+                                        const PathJoints& close_to, const Isometry3& start, const Isometry3& end,
+                                        int pieces, std::vector<SolvedPoint>& out, double& worst,
+                                        double& deviation) const {
   PathJoints before = from, tracked = from, coming = coming_from;
   Isometry3 at = start;
   worst = deviation = 0;
   for (int k = 1; k <= pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
     const Isometry3 wanted = k == pieces ? end : interpolated(start, end, share);
-    SolvedPoint point{k == pieces ? near : tracked, 0, k < pieces, PointStatus::met, 0, 0};
+    SolvedPoint point{k == pieces ? close_to : tracked, 0, k < pieces, PointStatus::met, 0, 0};
     if (k < pieces) {
       if (!arm_.nominal_joints(wanted, point.command)) return false;
       tracked = point.command;
@@ -266,9 +268,9 @@ VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const Pat
     if (!found || largest_difference(point.command, before) > settings_.max_joint_step) return false;
     point.position_error = errors[0];
     point.rotation_error = errors[1];
-    worst = std::max(worst, worst_ratio(coming, before, point.command, at, wanted, point.deviation));
+    worst = (std::max)(worst, worst_ratio(coming, before, point.command, at, wanted, point.deviation));
     coming = point.coming;
-    deviation = std::max(deviation, point.deviation);
+    deviation = (std::max)(deviation, point.deviation);
     before = point.command;
     at = wanted;
     out.push_back(point);
@@ -294,16 +296,16 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
       const Isometry3& start = goals_[static_cast<std::size_t>(target - 1)].pose;
       const double ratio = worst_ratio(before->coming, from, point.command, start, goal.pose, point.deviation);
       point.ends_only = point.deviation;
-      out.before = std::max(out.before, point.deviation);
+      out.before = (std::max)(out.before, point.deviation);
       const double change = largest_difference(point.command, from);
       // what is left grows with the square of a piece's length
-      int pieces = std::isfinite(ratio) ? static_cast<int>(std::ceil(std::sqrt(std::min(ratio, 1e6)))) : 8;
-      pieces = std::max(pieces, static_cast<int>(std::ceil(change / settings_.max_joint_step)));
+      int pieces = std::isfinite(ratio) ? static_cast<int>(std::ceil(std::sqrt((std::min)(ratio, 1e6)))) : 8;
+      pieces = (std::max)(pieces, static_cast<int>(std::ceil(change / settings_.max_joint_step)));
       if (pieces > 1) {
         std::vector<SolvedPoint> line, finer;
         double worst = 0, deviation = 0;
         bool complete = false;
-        for (pieces = std::min(pieces, settings_.max_inserted + 1);;) {
+        for (pieces = (std::min)(pieces, settings_.max_inserted + 1);;) {
           double finer_worst = 0, finer_deviation = 0;
           finer.clear();
           const bool filled = fill_line(before->coming, from, point.command, start, goal.pose, pieces, finer,
@@ -315,19 +317,19 @@ VERNIER_IMPL void PathSearch::move_to(Index target, const PathState& state, cons
             complete = true;
           }
           if ((complete && worst <= 1) || pieces == settings_.max_inserted + 1) break;
-          pieces = std::min(2 * pieces, settings_.max_inserted + 1);
+          pieces = (std::min)(2 * pieces, settings_.max_inserted + 1);
         }
         if (complete) {
           for (SolvedPoint& one : line) one.target = target;
           line.back().ends_only = point.ends_only;
           if (worst > 1) line.back().status = PointStatus::off_path;
-          out.after = std::max(out.after, deviation);
+          out.after = (std::max)(out.after, deviation);
           out.points.insert(out.points.end(), line.begin(), line.end());
           return;
         }
         point.status = PointStatus::jump;
       }
-      out.after = std::max(out.after, point.deviation);
+      out.after = (std::max)(out.after, point.deviation);
     }
   }
   out.points.push_back(point);
@@ -339,14 +341,14 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   std::vector<Reach> reach(n);
   std::vector<PathBranch> branches;
   bool started = true;
-  PathJoints near = same_joints(arm_.joints, 0);
+  PathJoints close_to = same_joints(arm_.joints, 0);
   for (int j = 0; j < arm_.joints; ++j) {
     started = started && std::isfinite(settings_.start(j));
     if (std::isfinite(settings_.lower(j) + settings_.upper(j)))
-      near(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
+      close_to(j) = 0.5 * (settings_.lower(j) + settings_.upper(j));
   }
-  if (started) near = settings_.start;
-  const std::vector<PathState> beginning{{near, 0, 0, -1, false}};
+  if (started) close_to = settings_.start;
+  const std::vector<PathState> beginning{{close_to, 0, 0, -1, false}};
 
   std::size_t last = n;
   for (std::size_t k = 0; k < n; ++k) {

@@ -9,6 +9,12 @@
 
 namespace vernier::detail {
 
+/// Whether a decomposition of Eigen came to its end. X11 has a macro with the name of that state, whose value is 0.
+template <class Decomposition>
+bool succeeded(const Decomposition& decomposition) {
+  return decomposition.info() == Eigen::ComputationInfo{};
+}
+
 /// out += factor a b
 VERNIER_API void add_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b, double factor = 1);
 /// out += factor a' b

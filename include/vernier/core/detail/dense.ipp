@@ -10,6 +10,7 @@
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/detail/dense_kernels.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/simd.hpp"
 
 namespace vernier::detail {
@@ -36,7 +37,7 @@ inline double operations(Index a, Index b, Index c) {
 VERNIER_IMPL void add_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b, double factor) {
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.cols())))
     return wide->add_product(at(out), at(a), at(b), factor);
-  if (factor == 1)
+  if (same_value(factor, 1))
     out.noalias() += a * b;
   else
     out.noalias() += a * ConstMatrixRef(MatrixX(factor * b));
@@ -46,7 +47,7 @@ VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a,
                                          double factor) {
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.rows())))
     return wide->add_transposed_product(at(out), at(a), at(b), factor);
-  if (factor == 1)
+  if (same_value(factor, 1))
     out.noalias() += a.transpose() * b;
   else
     out.noalias() += a.transpose() * ConstMatrixRef(MatrixX(factor * b));
@@ -103,7 +104,7 @@ VERNIER_IMPL MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> row
 }
 
 VERNIER_IMPL VectorX diagonal_of(const ConstMatrixRef& a) {
-  VectorX out(std::min(a.rows(), a.cols()));
+  VectorX out((std::min)(a.rows(), a.cols()));
   for (Index k = 0; k < out.size(); ++k) out(k) = a(k, k);
   return out;
 }
@@ -143,7 +144,7 @@ VERNIER_IMPL double weighted_square(const ConstVectorRef& weights, const ConstVe
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
   if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
     return wide->cholesky(at(matrix));
-  return Eigen::LLT<MatrixRef>(matrix).info() == Eigen::Success;  // in place
+  return succeeded(Eigen::LLT<MatrixRef>(matrix));  // in place
 }
 
 VERNIER_IMPL void solve_lower(const ConstMatrixRef& factor, MatrixRef right) {
@@ -183,7 +184,7 @@ VERNIER_IMPL double solve_general(MatrixRef a, VectorRef b) {
 
 /// R of a decomposition of a matrix of n columns, n x n.
 VERNIER_LOCAL MatrixX triangle_of(const Eigen::HouseholderQR<MatrixX>& qr) {
-  const Index columns = qr.cols(), height = std::min(qr.rows(), columns);
+  const Index columns = qr.cols(), height = (std::min)(qr.rows(), columns);
   MatrixX out = MatrixX::Zero(columns, columns);
   out.topRows(height) = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();
   return out;
@@ -200,7 +201,7 @@ VERNIER_IMPL QrSolution solve_by_qr(const ConstMatrixRef& matrix, const ConstMat
 
 VERNIER_IMPL SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix) {
   const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(matrix);
-  return {eigen.eigenvalues(), eigen.eigenvectors(), eigen.info() == Eigen::Success};
+  return {eigen.eigenvalues(), eigen.eigenvectors(), succeeded(eigen)};
 }
 
 VERNIER_IMPL TridiagonalForm tridiagonal_form(const ConstMatrixRef& matrix) {
@@ -218,7 +219,7 @@ VERNIER_IMPL RightSingular right_singular(const ConstMatrixRef& matrix) {
 
 VERNIER_IMPL ThinSvd thin_svd(const ConstMatrixRef& h) {
   const bool tall = h.rows() >= h.cols();
-  const Index k = std::min(h.rows(), h.cols());
+  const Index k = (std::min)(h.rows(), h.cols());
   const Eigen::HouseholderQR<MatrixX> qr(tall ? MatrixX(h) : MatrixX(h.transpose()));
   const JacobiSvd svd(triangle_of(qr), Eigen::ComputeFullU | Eigen::ComputeFullV);
   MatrixX longer = MatrixX::Zero(qr.rows(), k);

@@ -6,6 +6,8 @@
 
 #include <cstddef>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier::detail {
 
 /// A column-major matrix somewhere in memory.

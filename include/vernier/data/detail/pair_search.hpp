@@ -34,7 +34,7 @@ struct PairSearch {
 
   Index rows() const { return static_cast<Index>(flanges.size()); }
   std::size_t most_pairs() const {
-    return by_order ? static_cast<std::size_t>(std::min(rows(), points.rows())) : given.size();
+    return by_order ? static_cast<std::size_t>((std::min)(rows(), points.rows())) : given.size();
   }
   /// From a point to where the nominal arm was in a row [m].
   VERNIER_API double distance(const Found& found, Index row, Index measured) const;

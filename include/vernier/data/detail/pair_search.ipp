@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "vernier/core/same_value.hpp"
+
 namespace vernier::detail {
 
 /// The median, by choice the upper one.
@@ -38,7 +40,7 @@ VERNIER_IMPL std::vector<PointFrames> PairSearch::starts() const {
   std::vector<PointPair> run;
   for (const std::size_t length :
        {std::clamp(n / 3, min_pairs, std::size_t{12}), std::clamp(n / 2, min_pairs, std::size_t{60})}) {
-    const std::size_t last = (by_order ? flanges.size() : n) - length, count = std::min(last + 1, max_runs);
+    const std::size_t last = (by_order ? flanges.size() : n) - length, count = (std::min)(last + 1, max_runs);
     for (std::size_t r = 0; r < count; ++r) {
       const std::size_t first = count == 1 ? 0 : r * last / (count - 1);
       for (Index shift = by_order ? -reach() : 0; shift <= (by_order ? reach() : 0); ++shift) {
@@ -63,7 +65,7 @@ VERNIER_IMPL Index PairSearch::support(const Found& found, double limit) const {
     return out;
   }
   for (Index i = 0; i < rows(); ++i)
-    for (Index j = std::max<Index>(0, i - reach()); j <= std::min(points.rows() - 1, i + reach()); ++j)
+    for (Index j = std::max<Index>(0, i - reach()); j <= (std::min)(points.rows() - 1, i + reach()); ++j)
       if (distance(found, i, j) <= limit) {
         ++out;
         break;
@@ -97,9 +99,9 @@ VERNIER_IMPL void PairSearch::settle(Found& found, double widest) const {
     found.median = distances[n / 2];
     // what the fit has made of nine unknowns is missing in few residuals
     const double typical = distances[9 * n / 10] * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 3));
-    const double limit = wide ? widest : std::clamp(std::min(3 * typical, 6 * found.median), smallest, 2 * widest);
+    const double limit = wide ? widest : std::clamp((std::min)(3 * typical, 6 * found.median), smallest, 2 * widest);
     std::vector<PointPair> pairs = aligned(found, limit);
-    const bool grown = pairs.size() > found.pairs.size(), same = pairs == found.pairs && limit == found.limit;
+    const bool grown = pairs.size() > found.pairs.size(), same = pairs == found.pairs && same_value(limit, found.limit);
     found.limit = limit;
     found.pairs = std::move(pairs);
     if (same && !wide) break;
@@ -120,7 +122,7 @@ VERNIER_IMPL std::optional<PairSearch::Found> PairSearch::best() const {
   }
   std::sort(order.begin(), order.end());
   std::optional<Found> out;
-  for (std::size_t k = 0; k < std::min(order.size(), settled); ++k) {
+  for (std::size_t k = 0; k < (std::min)(order.size(), settled); ++k) {
     Found one;
     set_frames(one, candidates[order[k].second]);
     settle(one, widest);
@@ -135,7 +137,7 @@ VERNIER_IMPL bool PairSearch::ambiguous(const Found& found) const {
   const auto n = static_cast<Index>(found.pairs.size());
   for (const Index shift : {-3, -2, -1, 1, 2, 3}) {
     std::vector<PointPair> shifted;
-    for (Index k = std::max<Index>(0, -shift); k < std::min(n, n - shift); ++k)
+    for (Index k = std::max<Index>(0, -shift); k < (std::min)(n, n - shift); ++k)
       shifted.push_back(
           {found.pairs[static_cast<std::size_t>(k)].row, found.pairs[static_cast<std::size_t>(k + shift)].point});
     if (shifted.size() < min_pairs) continue;
@@ -193,7 +195,7 @@ VERNIER_IMPL std::pair<PairingProof, std::optional<PairSearch::Found>> prove(con
       proof.scale = factor * changed.scale(*found);
       for (Index i = 1; i < search.rows(); ++i)
         proof.indistinct += (point(found->nominal, i) - point(found->nominal, i - 1)).norm() <= found->limit;
-      proof.status = factor != 1                                    ? PairingStatus::wrong_unit
+      proof.status = !same_value(factor, 1)                         ? PairingStatus::wrong_unit
                      : sign < 0                                     ? PairingStatus::mirrored
                      : search.by_order && changed.ambiguous(*found) ? PairingStatus::ambiguous
                                                                     : PairingStatus::proven;

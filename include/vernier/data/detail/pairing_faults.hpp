@@ -27,7 +27,7 @@ class FaultSearch {
   /// Partner of a point; -1 without one.
   VERNIER_API Index row_of(Index point) const;
   VERNIER_API void join(const PointPair& pair);
-  VERNIER_API bool near(Index row, Index point) const;
+  VERNIER_API bool is_near(Index row, Index point) const;
 
   /// Joins rows and points that fit but are in other places, the nearest first.
   VERNIER_API void find_moved();

@@ -55,7 +55,7 @@ VERNIER_IMPL void FaultSearch::join(const PointPair& pair) {
   row_of_[static_cast<std::size_t>(pair.point)] = pair.row;
 }
 
-VERNIER_IMPL bool FaultSearch::near(Index row, Index point) const {
+VERNIER_IMPL bool FaultSearch::is_near(Index row, Index point) const {
   return search_.distance(found_, row, point) <= found_.limit;
 }
 
@@ -63,7 +63,7 @@ VERNIER_IMPL void FaultSearch::find_moved() {
   std::vector<std::pair<double, PointPair>> close;
   for (Index i = 0; i < search_.rows(); ++i)
     for (Index j = 0; point_of(i) < 0 && j < search_.points.rows(); ++j)
-      if (row_of(j) < 0 && (named_.empty() || named_[static_cast<std::size_t>(j)]) && near(i, j))
+      if (row_of(j) < 0 && (named_.empty() || named_[static_cast<std::size_t>(j)]) && is_near(i, j))
         close.push_back({search_.distance(found_, i, j), {i, j}});
   std::sort(close.begin(), close.end(), [](const auto& a, const auto& b) {
     return std::tuple(a.first, a.second.row, a.second.point) < std::tuple(b.first, b.second.row, b.second.point);
@@ -94,7 +94,7 @@ VERNIER_IMPL void FaultSearch::add_moved(std::vector<PairingFault>& out) const {
     const Index other = place[static_cast<std::size_t>(pair.row)];
     const bool swapped = other != pair.row && place[static_cast<std::size_t>(other)] == pair.row;
     if (swapped) {
-      const Index first = std::min(pair.row, other), last = std::max(pair.row, other);
+      const Index first = (std::min)(pair.row, other), last = (std::max)(pair.row, other);
       out.push_back({PairingFault::Kind::swapped, {first, last}, {point_of(first), point_of(last)}, 2});
       told.push_back(other);
     } else {
@@ -146,7 +146,7 @@ VERNIER_IMPL bool FaultSearch::fits_at(Index from, Index to, bool rows) const {
   const auto end = rows ? search_.rows() : search_.points.rows();
   if (from < 0 || from >= end || to < 0 || to >= end) return false;
   const Index partner = rows ? point_of(from) : row_of(from);
-  return partner >= 0 && (rows ? near(to, partner) : near(partner, to));
+  return partner >= 0 && (rows ? is_near(to, partner) : is_near(partner, to));
 }
 
 }  // namespace vernier::detail

@@ -128,7 +128,7 @@ VERNIER_IMPL std::vector<PointPair> align_with_gaps(Index rows, Index points, Fu
     here[0] = 0.5 * static_cast<double>(i + 1);
     step[0] = skip_row;
     for (std::size_t j = 1; j < width; ++j) {
-      here[j] = std::min(above[j], here[j - 1]) + 0.5;
+      here[j] = (std::min)(above[j], here[j - 1]) + 0.5;
       step[j] = above[j] <= here[j - 1] ? skip_row : skip_point;
       const double one = cost(i, static_cast<Index>(j - 1));
       if (one < 1 && above[j - 1] + one < here[j]) {

@@ -70,7 +70,7 @@ VERNIER_IMPL void assess(const ModelSelection& model, ErrorModelEstimate& estima
   for (Index k = 0; k < at.normal.prior.cols(); ++k)
     explained -= estimate.covariance.col(k).dot(at.normal.prior.col(k));
   const double values = static_cast<double>(problem.measured_values());
-  const double freedom = std::max(1.0, values - explained);
+  const double freedom = (std::max)(1.0, values - explained);
   estimate.residual_variance = estimate.variance_factor = at.normal.cost / freedom;
   estimate.covariance *= estimate.variance_factor;
 

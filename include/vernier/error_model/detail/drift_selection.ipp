@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
@@ -26,7 +27,7 @@ VERNIER_LOCAL BlockChoice choose_drift(const ModelSelection& model, Block block,
   };
   double best = 1, most = evidence(1);
   for (const double step : {4.0, 0.25})
-    for (double factor = step; best == factor / step && factor >= lowest && factor <= 64; factor *= step) {
+    for (double factor = step; same_value(best, factor / step) && factor >= lowest && factor <= 64; factor *= step) {
       const double reached = evidence(factor);
       if (!(reached > most)) break;
       most = reached;

@@ -11,8 +11,8 @@
 namespace vernier::detail {
 
 VERNIER_IMPL std::vector<HarmonicSpectrum> spectra_of(const ErrorModelOptions& options, int joints) {
-  require(options.drives.empty() || options.drives.size() == static_cast<std::size_t>(joints),
-          "fit_error_model: drives of ", options.drives.size(), " joints for an arm of ", joints);
+  demand(options.drives.empty() || options.drives.size() == static_cast<std::size_t>(joints),
+         "fit_error_model: drives of ", options.drives.size(), " joints for an arm of ", joints);
   std::vector<HarmonicSpectrum> out(static_cast<std::size_t>(joints), options.spectrum);
   for (std::size_t j = 0; j < options.drives.size(); ++j)
     for (const HarmonicBand& line : lines_of(options.drives[j])) out[j].push_back(line);
@@ -22,10 +22,10 @@ VERNIER_IMPL std::vector<HarmonicSpectrum> spectra_of(const ErrorModelOptions& o
 VERNIER_IMPL Fourier orders_of_joint(const ErrorModelOptions& options, const std::vector<HarmonicSpectrum>& spectra,
                                      std::size_t joint, Index measurements) {
   constexpr Index enough = 400;
-  const int highest = measurements < enough ? std::min(60, options.harmonics) : options.harmonics;
+  const int highest = measurements < enough ? (std::min)(60, options.harmonics) : options.harmonics;
   Fourier out = orders_of(spectra[joint], highest);
   if (options.drives.empty() || measurements < enough) return out;
-  const Fourier lines = orders_of(lines_of(options.drives[joint]), std::numeric_limits<int>::max());
+  const Fourier lines = orders_of(lines_of(options.drives[joint]), (std::numeric_limits<int>::max)());
   std::vector<int> all;
   std::set_union(out.orders.begin(), out.orders.end(), lines.orders.begin(), lines.orders.end(),
                  std::back_inserter(all));

@@ -12,7 +12,7 @@ namespace vernier::detail {
 VERNIER_IMPL void ErrorModelInput::place() {
   arms.clear();
   for (MeasuredSet& set : sets) {
-    require(set.size() >= 1, "fit_error_model: ", set.name, " has no measurements");
+    demand(set.size() >= 1, "fit_error_model: ", set.name, " has no measurements");
     arms.push_back(sets.size() == 1 ? identified : placed(identified, set));
     require_spread(arms.back(), set);
   }

@@ -18,7 +18,7 @@ VERNIER_LOCAL std::vector<std::vector<int>> lines_beyond(const ModelSelection& m
   const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
   const double explained = static_cast<double>(precisions.size()) - solved.inverse_diagonal().dot(precisions);
   const double values = static_cast<double>(model.problem.measured_values());
-  const double variance = at.normal.cost / std::max(1.0, values - explained);
+  const double variance = at.normal.cost / (std::max)(1.0, values - explained);
   const Index joints = terms.joints;
   MatrixX score = MatrixX::Zero(at.system.blocks, joints), weight = score;
   visit_blocks(at.system, 0, 1, at.system.blocks, [&](Index b, const RowBlock& rows) {

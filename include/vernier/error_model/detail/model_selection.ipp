@@ -79,7 +79,7 @@ VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms, bool
     for (const JointTermBlock& old : before.terms().blocks())
       known = known || (old.kind == now.kind && old.joint == now.joint);
     if (known) continue;
-    first = std::min(first, now.begin);
+    first = (std::min)(first, now.begin);
     count += now.count;
   }
   extend_terms(terms);
@@ -182,7 +182,7 @@ VERNIER_IMPL void ModelSelection::learn_spectrum(int iterations) {
   VectorX precisions = problem.arm.precisions();
   constexpr double clearly = 10;
   if (at.system.validation_blocks < many_poses)
-    precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, std::numeric_limits<int>::max()),
+    precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, (std::numeric_limits<int>::max)()),
                               at.local_steps);
   const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
   if (at.system.validation_blocks >= many_poses || evidence(learned) > evidence(precisions) + clearly)

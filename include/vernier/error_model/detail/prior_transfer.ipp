@@ -24,7 +24,7 @@ VERNIER_IMPL JointPrior TransferredUnknowns::prior(Index size, double geometry, 
   const auto n = static_cast<Index>(unknowns.size());
   JointPrior out{MatrixX::Zero(size, size), VectorX::Zero(size), n};
   MatrixX factor = widened(geometry, joints);
-  require(cholesky(factor), "an earlier calibration: its covariance is not positive definite");
+  demand(cholesky(factor), "an earlier calibration: its covariance is not positive definite");
   const MatrixX precision = inverse_from_cholesky(factor);
   for (Index j = 0; j < n; ++j) {
     const Index column = unknowns[static_cast<std::size_t>(j)];
@@ -77,7 +77,7 @@ VERNIER_IMPL TransferredUnknowns transferred_unknowns(const ArmPrior& prior, con
       units.push_back(unit);
       if (known.thermal) {
         means.push_back(steps(static_cast<Index>(k)) * unit);
-        expected.push_back(unit * unit / std::max(known.precision, 1e-6));
+        expected.push_back(unit * unit / (std::max)(known.precision, 1e-6));
       } else {
         const Index p = known.parameter;
         means.push_back((designed(p) + was(p) - was_designed(p) - start(p)) / now[u].scale);
@@ -93,7 +93,7 @@ VERNIER_IMPL TransferredUnknowns transferred_unknowns(const ArmPrior& prior, con
     source.push_back(from);
     units.push_back(1);
     means.push_back(steps(from));
-    expected.push_back(1 / std::max(precisions(from), 1e-6));
+    expected.push_back(1 / (std::max)(precisions(from), 1e-6));
   }
   const auto n = static_cast<Index>(source.size());
   out.mean = Eigen::Map<const VectorX>(means.data(), n);

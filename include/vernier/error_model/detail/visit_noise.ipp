@@ -53,7 +53,7 @@ VERNIER_IMPL VisitNoise visit_noise(const std::vector<LeftOutVisit>& visits) {
     for (Index k = 0; k < 3; ++k) effect += v.joint_noise(k, k);
   }
   const double whole = square_sum / (3 * static_cast<double>(visits.size()));  // variance of a component
-  const double to_joints = square_sum / std::max(effect, 1e-300);
+  const double to_joints = square_sum / (std::max)(effect, 1e-300);
   VisitNoise out;
   double best = std::numeric_limits<double>::infinity();
   if (!(whole > 0)) return out;

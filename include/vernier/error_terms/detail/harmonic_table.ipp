@@ -65,7 +65,7 @@ VERNIER_IMPL void HarmonicTable::add(const double* q, int n, double* effective, 
   const int* orders = orders_.data();
   const double* table = table_.data();
   for (int first = 0; first < n; first += harmonic_lanes, table += count * 2 * harmonic_lanes) {
-    const int lanes = std::min(harmonic_lanes, n - first);
+    const int lanes = (std::min)(harmonic_lanes, n - first);
     double cosines[harmonic_lanes] = {}, sines[harmonic_lanes] = {};
     double values[harmonic_lanes], slopes[harmonic_lanes];
     for (int j = 0; j < lanes; ++j) {

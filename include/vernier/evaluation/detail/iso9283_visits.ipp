@@ -11,6 +11,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rigid_motions.hpp"
+#include "vernier/core/same_value.hpp"
 
 namespace vernier::detail {
 
@@ -27,7 +28,7 @@ VERNIER_LOCAL VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
   bool timed = true;
   for (const auto* v : visits) timed = timed && std::isfinite(v->time_s);
   std::sort(visits.begin(), visits.end(), [timed](const Iso9283Visit* a, const Iso9283Visit* b) {
-    return timed && a->time_s != b->time_s ? a->time_s < b->time_s : a->cycle < b->cycle;
+    return timed && !same_value(a->time_s, b->time_s) ? a->time_s < b->time_s : a->cycle < b->cycle;
   });
   VisitedPose out{std::move(visits), {}, {}};
   out.positions.resize(static_cast<Index>(out.visits.size()), 3);
@@ -40,20 +41,20 @@ VERNIER_LOCAL VisitedPose in_sequence(std::vector<const Iso9283Visit*> visits) {
 
 VERNIER_IMPL VisitedPoses visited_poses(std::span<const Iso9283Visit> visits, std::span<const Isometry3> commanded,
                                         bool oriented) {
-  require(!visits.empty(), "iso9283: no visits");
+  demand(!visits.empty(), "iso9283: no visits");
   for (std::size_t k = 0; k < commanded.size(); ++k)
     if (const char* fault = fault_of_pose(commanded[k], oriented))
-      require(false, "iso9283: commanded pose ", k + 1, ": ", fault);
+      demand(false, "iso9283: commanded pose ", k + 1, ": ", fault);
   std::map<int, std::map<int, std::map<int, const Iso9283Visit*>>> sorted;
   for (const Iso9283Visit& v : visits) {
-    require(v.pose >= 1 && static_cast<std::size_t>(v.pose) <= commanded.size(), "iso9283: a visit of pose ", v.pose,
-            ", the commanded poses are 1 to ", commanded.size());
-    require(v.direction >= 0, "iso9283: pose ", v.pose, ", cycle ", v.cycle, ": direction ", v.direction,
-            ", must be 0 or more");
+    demand(v.pose >= 1 && static_cast<std::size_t>(v.pose) <= commanded.size(), "iso9283: a visit of pose ", v.pose,
+           ", the commanded poses are 1 to ", commanded.size());
+    demand(v.direction >= 0, "iso9283: pose ", v.pose, ", cycle ", v.cycle, ": direction ", v.direction,
+           ", must be 0 or more");
     if (const char* fault = fault_of_pose(v.measured, oriented))
-      require(false, "iso9283: pose ", v.pose, ", cycle ", v.cycle, ": ", fault);
-    require(sorted[v.pose][v.direction].emplace(v.cycle, &v).second, "iso9283: pose ", v.pose, ", cycle ", v.cycle,
-            ", direction ", v.direction, " is there twice");
+      demand(false, "iso9283: pose ", v.pose, ", cycle ", v.cycle, ": ", fault);
+    demand(sorted[v.pose][v.direction].emplace(v.cycle, &v).second, "iso9283: pose ", v.pose, ", cycle ", v.cycle,
+           ", direction ", v.direction, " is there twice");
   }
   VisitedPoses out;
   for (const auto& [pose, directions] : sorted)
@@ -105,7 +106,7 @@ VERNIER_LOCAL bool on_cube(std::span<const Isometry3> p) {
   };
   const double crossing = 2 * std::atan(std::numbers::sqrt2), between = angle(0, 1);
   return angle(0, 2) > std::numbers::pi - tolerance && angle(1, 3) > std::numbers::pi - tolerance &&
-         std::min(std::abs(between - crossing), std::abs(between - (std::numbers::pi - crossing))) < tolerance;
+         (std::min)(std::abs(between - crossing), std::abs(between - (std::numbers::pi - crossing))) < tolerance;
 }
 
 /// Where times are known: cycles out of order, and poses reached from more than one other pose.
@@ -116,7 +117,7 @@ VERNIER_LOCAL void check_sequence(std::span<const Iso9283Visit> visits, Departur
     sequence.push_back(&v);
   }
   std::sort(sequence.begin(), sequence.end(), [](const Iso9283Visit* a, const Iso9283Visit* b) {
-    return a->time_s < b->time_s || (a->time_s == b->time_s && a < b);
+    return a->time_s < b->time_s || (same_value(a->time_s, b->time_s) && a < b);
   });
   std::map<std::pair<int, int>, const Iso9283Visit*> last;
   std::map<int, std::map<int, int>> before;

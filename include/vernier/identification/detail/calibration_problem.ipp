@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/twists.hpp"
@@ -24,8 +25,8 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
     if (set.locates()) validation_blocks_ += set.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
   for (const MeasuredSet& set : sets_)
-    require(joint_sigma == 0 || set.seen_from.rows() == 0, set.name,
-            ": errors of joint readings are not estimated between two configurations");
+    demand(same_value(joint_sigma, 0) || set.seen_from.rows() == 0, set.name,
+           ": errors of joint readings are not estimated between two configurations");
 }
 
 VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
@@ -154,7 +155,7 @@ VERNIER_IMPL VectorX CalibrationProblem::drift_step_variance(double noise_varian
   VectorX out(drift_scale_.size());
   for (Index k = 0; k < out.size(); ++k)
     out(k) = drift_scale_(k) * drift_scale_(k) *
-             std::max(1.0, noise_variance / (k < 6 ? drift_precision : joint_drift_precision));
+             (std::max)(1.0, noise_variance / (k < 6 ? drift_precision : joint_drift_precision));
   return out;
 }
 
@@ -261,7 +262,7 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
   for (Index done = 0; done < count;) {  // stretches of one set
     const Block& begin = at(first + done);
     const MeasuredSet& set = sets_[static_cast<std::size_t>(begin.station)];
-    const Index stretch = std::min(count - done, set.size() - begin.row);
+    const Index stretch = (std::min)(count - done, set.size() - begin.row);
     VectorX warmer;
     if (set.temperatures.size() > 0) warmer.resize(stretch);
     for (Index i = 0; i < warmer.size(); ++i) warmer(i) = set.temperatures(begin.row + i) - reference_temperature;
@@ -294,7 +295,7 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       bool mixed = false;
       for (Index c = 0; c < 6; ++c)
         for (Index r = 0; r < 6; ++r) {
-          mixed = mixed || ((r < 3) != (c < 3) && sensed.motion(r, c) != 0);
+          mixed = mixed || ((r < 3) != (c < 3) && !same_value(sensed.motion(r, c), 0));
           sensed.motion(r, c) *= r < 3 ? position : orientation;
         }
       rows.unwhiten.setIdentity();

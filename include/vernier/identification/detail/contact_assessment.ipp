@@ -45,7 +45,7 @@ VERNIER_LOCAL VectorX contact_singular_values(const ContactProblem& solved) {
   for (const Index k : solved.plan.candidates) without_effect += k >= solved.plan.chain_end + 3;
   all.set_geometric(unknowns);
   const MatrixX jacobian = solved.touching_jacobian(all);
-  MatrixX padded = MatrixX::Zero(std::max(jacobian.rows(), jacobian.cols()), jacobian.cols());
+  MatrixX padded = MatrixX::Zero((std::max)(jacobian.rows(), jacobian.cols()), jacobian.cols());
   padded.topRows(jacobian.rows()) = jacobian;
   const VectorX values = right_singular(triangular_factor(padded)).values;
   VectorX out = VectorX::Zero(values.size() + without_effect);
@@ -102,12 +102,12 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
   MatrixX stack = rows.jacobian;
   if (problem.prior) {
     const VectorX held = solved.scale_direction(true);
-    append_row(stack, std::sqrt(diagonal_of(problem.prior->precision).sum()) / std::max(held.norm(), 1e-300) * held);
+    append_row(stack, std::sqrt(diagonal_of(problem.prior->precision).sum()) / (std::max)(held.norm(), 1e-300) * held);
   }
   const VectorX precisions = problem.arm.precisions();
   const VectorX ones = VectorX::Ones(stack.rows());
   VectorX variances(precisions.size());
-  for (Index k = 0; k < variances.size(); ++k) variances(k) = 1 / std::max(precisions(k), 1e-300);
+  for (Index k = 0; k < variances.size(); ++k) variances(k) = 1 / (std::max)(precisions(k), 1e-300);
   const EstimateCovariance unit(stack, ones, precisions, variances);
   double explained = static_cast<double>(precisions.size());
   if (unit.inverse.size() > 0) explained -= diagonal_of(unit.inverse).dot(precisions);

@@ -21,11 +21,11 @@ VERNIER_IMPL void require_spread(const ArmGeometry& arm, const MeasuredSet& set)
   const PointRows points = arm.positions(set.joints);
   const MatrixX centred = rows_minus(points, column_means(points)).leftCols(2);
   const VectorX squares = symmetric_eigen(transposed_matrix_product(centred, centred)).values;
-  const double width = std::sqrt(std::max(squares(0), 0.0) / static_cast<double>(points.rows()));
+  const double width = std::sqrt((std::max)(squares(0), 0.0) / static_cast<double>(points.rows()));
   const double length = std::sqrt(squares(1) / static_cast<double>(points.rows()));
-  require(width > std::max(1e-3, 0.02 * length), set.name, ": all touches of the plane are along a line (",
-          std::round(width * 1e4) / 10, " mm across, ", std::round(length * 1e4) / 10,
-          " mm along), which does not determine its normal; spread them over the plane");
+  demand(width > (std::max)(1e-3, 0.02 * length), set.name, ": all touches of the plane are along a line (",
+         std::round(width * 1e4) / 10, " mm across, ", std::round(length * 1e4) / 10,
+         " mm along), which does not determine its normal; spread them over the plane");
 }
 
 VERNIER_IMPL MatrixX touching_joints(const ArmGeometry& arm, const MeasuredSet& set) {

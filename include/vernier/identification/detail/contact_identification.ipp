@@ -56,7 +56,7 @@ VERNIER_LOCAL void size_chain_priors(ContactProblem& contacts) {
   VectorX precisions =
       scale_priors(normal, problem.arm.precisions(), problem.arm.steps(), problem.measured_values(), chain);
   constexpr double widest = 10;  // expected sizes, where there is little evidence
-  for (const Index k : chain) precisions(k) = std::max(precisions(k), 1 / (widest * widest));
+  for (const Index k : chain) precisions(k) = (std::max)(precisions(k), 1 / (widest * widest));
   problem.arm.set_precisions(precisions);
 }
 
@@ -65,14 +65,14 @@ VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry&
                                                               const IdentifyOptions& options,
                                                               const SensorModel& sensors) {
   sensors.validate();
-  require(!contacts.empty(), "identify_by_contacts: no contacts");
+  demand(!contacts.empty(), "identify_by_contacts: no contacts");
   for (const Contact& contact : contacts)
-    require(contact.joints().cols() == nominal.joints(), "contact ", contact.name(), ": ", contact.joints().cols(),
-            " joints, the arm has ", nominal.joints());
+    demand(contact.joints().cols() == nominal.joints(), "contact ", contact.name(), ": ", contact.joints().cols(),
+           " joints, the arm has ", nominal.joints());
   ContactProblem touches(nominal, contacts, options, sensors);
   register_objects(touches);
   const double rms_before = touches.residual_rms();
-  require(std::isfinite(rms_before), "identify_by_contacts: no places of the objects fit the touches");
+  demand(std::isfinite(rms_before), "identify_by_contacts: no places of the objects fit the touches");
   for (int c = 0; c < static_cast<int>(contacts.size()); ++c)
     require_spread(touches.problem.arm.geometry(c), touches.problem.sets()[static_cast<std::size_t>(c)]);
 

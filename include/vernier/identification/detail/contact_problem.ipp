@@ -24,7 +24,7 @@ VERNIER_IMPL ContactProblem::ContactProblem(const ArmGeometry& nominal_arm, std:
 
 VERNIER_IMPL CalibrationProblem ContactProblem::registered(const Vector3& tool_point) const {
   const Isometry3& tool = nominal.tool().isometry();
-  const bool given = (tool_point - translation(tool)).norm() == 0;
+  const bool given = (tool_point - translation(tool)).norm() <= 0;
   const FrameParameters of_tool = given ? nominal.tool() : FrameParameters(rigid_motion(rotation(tool), tool_point));
   std::vector<MeasuredSet> sets;
   std::vector<ArmGeometry> arms;
@@ -79,7 +79,7 @@ VERNIER_IMPL VectorX ContactProblem::scale_direction(bool links_alone) const {
     if (plan.kinds[static_cast<std::size_t>(u.parameter)] != ParameterKind::length || (links_alone && !of_chain))
       continue;
     out(static_cast<Index>(k)) =
-        (links_alone ? nominal : problem.arm.geometry(std::max(0, u.station))).parameters()(u.parameter) / u.scale;
+        (links_alone ? nominal : problem.arm.geometry((std::max)(0, u.station))).parameters()(u.parameter) / u.scale;
   }
   return out;
 }
@@ -110,7 +110,7 @@ VERNIER_IMPL ContactSelection ContactProblem::select(const std::vector<Geometric
   scale_observable = !(effect <= 1e-7 * apart);
   if (!scale_observable) {  // held, so known
     const VectorX held = scale_direction(true);
-    const double size = jacobian.norm() / std::max(held.norm(), 1e-300);
+    const double size = jacobian.norm() / (std::max)(held.norm(), 1e-300);
     append_row(jacobian, size * held);
   }
   const IdentifiableParameters columns(jacobian);
@@ -137,7 +137,7 @@ VERNIER_IMPL double ContactProblem::residual_rms(const CalibrationProblem& of, i
     sum += residual * residual;
     ++count;
   }
-  return std::sqrt(sum / std::max(count, 1.0));
+  return std::sqrt(sum / (std::max)(count, 1.0));
 }
 
 }  // namespace vernier::detail

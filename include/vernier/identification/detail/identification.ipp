@@ -146,7 +146,7 @@ class IdentificationRun {
         ++count;
         squares[static_cast<std::size_t>(rows.block[static_cast<std::size_t>(i)])] += square;
       }
-      if (count == 0) continue;
+      if (count < 1) continue;
       double variance = square_sum / count;
       if (problem_.loss() != Loss::squared) {
         for (double& square : squares) square = std::sqrt(square);
@@ -186,7 +186,7 @@ class IdentificationRun {
       problem_.arm = start;
       std::vector<GeometricUnknown> regularised = unknowns;
       for (std::size_t k = 0; k < unknowns.size(); ++k)
-        if (weak_[k]) regularised[k].precision = std::max(variance(0), 1e-12) / (prior_scale * prior_scale);
+        if (weak_[k]) regularised[k].precision = (std::max)(variance(0), 1e-12) / (prior_scale * prior_scale);
       problem_.arm.set_geometric(std::move(regularised));
       solve();
       if (problem_.loss() != Loss::squared) problem_.reweight();
@@ -299,7 +299,7 @@ VERNIER_IMPL SolverSummary OwnSolver::operator()(CalibrationProblem& problem, in
 VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
                                                   const IdentifyOptions& options, const SensorModel& sensors,
                                                   GeometrySolver solver) {
-  require(data.size() >= 1, "identify: no samples");
+  demand(data.size() >= 1, "identify: no samples");
   sensors.validate();
   return IdentificationRun(nominal, data, options, sensors, solver).run();
 }

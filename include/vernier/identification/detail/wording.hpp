@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier::detail {
 
 /// A number with some digits behind the point.

@@ -13,7 +13,7 @@ namespace vernier::detail {
 inline constexpr std::array<std::string_view, 6> frame_keys{"x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"};
 
 VERNIER_IMPL OrderedJson list_of(const ConstVectorRef& values) {
-  require(all_finite(values), "save: a value is not finite");
+  demand(all_finite(values), "save: a value is not finite");
   OrderedJson out = OrderedJson::array();
   for (Index i = 0; i < values.size(); ++i) out.push_back(values(i));
   return out;
@@ -21,7 +21,7 @@ VERNIER_IMPL OrderedJson list_of(const ConstVectorRef& values) {
 
 VERNIER_IMPL OrderedJson row_to_json(const DhRow& row) {
   for (const double value : {row.a, row.alpha, row.d, row.theta, row.beta})
-    require(std::isfinite(value), "save: a parameter of the chain is not finite");
+    demand(std::isfinite(value), "save: a parameter of the chain is not finite");
   return {{"a_m", row.a}, {"alpha_rad", row.alpha}, {"d_m", row.d}, {"theta_rad", row.theta}, {"beta_rad", row.beta}};
 }
 
@@ -31,7 +31,7 @@ VERNIER_IMPL DhRow row_from_json(const JsonNode& node, JointType type) {
 }
 
 VERNIER_LOCAL OrderedJson frame_to_json(const FrameParameters& frame) {
-  require(all_finite(frame.values()), "save: a frame is not finite");
+  demand(all_finite(frame.values()), "save: a frame is not finite");
   OrderedJson out;
   for (std::size_t k = 0; k < 6; ++k) out[std::string(frame_keys[k])] = frame.values()(static_cast<Index>(k));
   return out;

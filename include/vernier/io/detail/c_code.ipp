@@ -18,9 +18,9 @@ VERNIER_IMPL std::string with_name(std::string_view text, const std::string& nam
   std::string out;
   bool within = false;  // an identifier
   while (!text.empty()) {
-    const bool small = !within && text.starts_with("arm_"), capital = !within && text.starts_with("ARM_");
-    if (small || capital) {
-      out += small ? name : capitals;
+    const bool lower_case = !within && text.starts_with("arm_"), upper_case = !within && text.starts_with("ARM_");
+    if (lower_case || upper_case) {
+      out += lower_case ? name : capitals;
       text.remove_prefix(3);
     }
     const char c = text.front();
@@ -37,7 +37,7 @@ VERNIER_IMPL std::string fill_in(std::string_view text, const std::string& name,
   std::string out;
   std::vector<bool> kept{true};  // of the conditions around a line
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n') + 1, text.size());
+    const std::size_t end = (std::min)(text.find('\n') + 1, text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(end);
     const bool negated = line.starts_with(absent);

@@ -11,7 +11,7 @@
 namespace vernier::detail {
 
 VERNIER_IMPL std::string c_number(double value) {
-  require(std::isfinite(value), "c_source: a value of the model is ", value);
+  demand(std::isfinite(value), "c_source: a value of the model is ", value);
   char digits[40];
   const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 17);
   return std::string(digits, end.ptr);

@@ -35,7 +35,7 @@ VERNIER_IMPL std::string base64_of(const std::vector<float>& values) {
 
 VERNIER_IMPL std::vector<float> floats_of(const std::string& base64) {
   std::vector<std::uint8_t> bytes;
-  const std::size_t end = std::min(base64.find('='), base64.size());
+  const std::size_t end = (std::min)(base64.find('='), base64.size());
   if (base64.size() % 4 != 0 || base64.size() - end > 2) return {};
   std::uint32_t bits = 0;
   int count = 0;
@@ -68,8 +68,8 @@ VERNIER_LOCAL std::vector<Index> unknowns_by_order(const ArmParameterisation& ar
           arm.terms().transmission[static_cast<std::size_t>(block.joint)].order(k);
   std::vector<Index> out(orders.size());
   std::iota(out.begin(), out.end(), Index{0});
-  std::stable_sort(out.begin(), out.end(), [&](Index a, Index b) {
-    return orders[static_cast<std::size_t>(a)] < orders[static_cast<std::size_t>(b)];
+  std::sort(out.begin(), out.end(), [&](Index a, Index b) {
+    return std::pair(orders[static_cast<std::size_t>(a)], a) < std::pair(orders[static_cast<std::size_t>(b)], b);
   });
   return out;
 }
@@ -78,7 +78,7 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
   using Json = nlohmann::ordered_json;
   constexpr Index most = 1700;
   const auto list = [](const VectorX& values) {
-    require(all_finite(values), "save: a value of the estimate is not finite");
+    demand(all_finite(values), "save: a value of the estimate is not finite");
     return Json(std::vector<double>(values.begin(), values.end()));
   };
   const ArmParameterisation& arm = estimate.arm;
@@ -92,9 +92,9 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
     geometric.push_back(std::move(one));
   }
   VectorX stds = diagonal_of(estimate.covariance);
-  for (double& std : stds) std = std::sqrt(std::max(0.0, std));
+  for (double& std : stds) std = std::sqrt((std::max)(0.0, std));
   const std::vector<Index> order = unknowns_by_order(arm);
-  const Index kept = std::min(most, arm.size());
+  const Index kept = (std::min)(most, arm.size());
   MatrixX correlation = MatrixX::Zero(kept, kept);
   for (Index j = 0; j < kept; ++j)
     for (Index i = j; i < kept; ++i) {
@@ -102,7 +102,7 @@ VERNIER_IMPL nlohmann::ordered_json estimate_to_json(const ErrorModelEstimate& e
       if (stds(a) > 0 && stds(b) > 0) correlation(i, j) = estimate.covariance(a, b) / (stds(a) * stds(b));
     }
   correlation.diagonal().setConstant(1 + 1e-9);  // what single precision would round away
-  require(cholesky(correlation), "save: the covariance of the estimate is not positive definite");
+  demand(cholesky(correlation), "save: the covariance of the estimate is not positive definite");
   std::vector<float> factor;
   factor.reserve(static_cast<std::size_t>(kept * (kept + 1) / 2));
   for (Index i = 0; i < kept; ++i)

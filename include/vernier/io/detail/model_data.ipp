@@ -35,7 +35,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
     joints.push_back(std::move(joint));
   }
   const Provenance& from = model.provenance;
-  require(std::isfinite(from.position_sigma), "save: position_sigma is not finite");
+  demand(std::isfinite(from.position_sigma), "save: position_sigma is not finite");
   const bool modified = model.nominal.modified();
   OrderedJson out{{"schema_version", model_schema_version},
                   {"written_by",
@@ -46,7 +46,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
                        {"date", from.date},           {"joints", from.joints},
                        {"measured", from.measured},   {"position_sigma_m", from.position_sigma}};
   const auto add_known = [&](const char* key, double error) {
-    require(std::isfinite(error), "save: ", key, " is not finite");
+    demand(std::isfinite(error), "save: ", key, " is not finite");
     if (error > 0) out["provenance"][key] = error;
   };
   add_known("left_out_error_m", from.left_out_error);

@@ -61,11 +61,11 @@ VERNIER_LOCAL PoseBounds pose_bounds(const ReportInput& input, const PoseView& v
   for (Index c = 0; c < 3; ++c) {
     double lower = input.poses.positions(view.shown.front(), c), upper = lower;
     for (const Index i : view.shown) {
-      lower = std::min(lower, input.poses.positions(i, c));
-      upper = std::max(upper, input.poses.positions(i, c));
+      lower = (std::min)(lower, input.poses.positions(i, c));
+      upper = (std::max)(upper, input.poses.positions(i, c));
     }
     out.centre(c) = (lower + upper) / 2;
-    out.half = std::max(out.half, (upper - lower) / 2);
+    out.half = (std::max)(out.half, (upper - lower) / 2);
   }
   return out;
 }

@@ -26,9 +26,9 @@ VERNIER_LOCAL void append_function(const JointReport& joint, std::size_t from, s
     double lower = 1e300, upper = -1e300, margin = 0;
     for (std::size_t k = first; k < last; ++k) {
       const auto i = static_cast<Index>(k);
-      lower = std::min(lower, joint.transmission(i));
-      upper = std::max(upper, joint.transmission(i));
-      margin = std::max(margin, 1.96 * joint.transmission_std(i));
+      lower = (std::min)(lower, joint.transmission(i));
+      upper = (std::max)(upper, joint.transmission(i));
+      margin = (std::max)(margin, 1.96 * joint.transmission_std(i));
     }
     const double x = (joint.angle[first] + joint.angle[last - 1]) / 2 * unit;
     band.x.push_back(x);
@@ -80,11 +80,11 @@ VERNIER_IMPL std::string joints_section(const ReportInput& input) {
                    .log_y = true,
                    .height = 250};
     double largest = 0;
-    for (const HarmonicEstimate& one : joint.spectrum) largest = std::max(largest, one.amplitude * 1e6);
+    for (const HarmonicEstimate& one : joint.spectrum) largest = (std::max)(largest, one.amplitude * 1e6);
     ChartSeries sticks{.style = ChartStyle::sticks, .colour = 2};
     for (const HarmonicEstimate& one : joint.spectrum) {
       sticks.x.push_back(one.order);
-      sticks.y.push_back(std::max(one.amplitude * 1e6, 1e-3 * largest));
+      sticks.y.push_back((std::max)(one.amplitude * 1e6, 1e-3 * largest));
     }
     HtmlTable lines{.head = {"order", "amplitude [urad]", "+- (95 %)", "chi-square", "probable cause"}};
     for (std::size_t k = 0; k < joint.lines.size() && k < 8; ++k) {

@@ -61,7 +61,7 @@ VERNIER_IMPL std::string errors_section(const ReportInput& input) {
     VectorX sorted = stage.position * 1e3;
     std::sort(sorted.begin(), sorted.end());
     for (int percent = 0; percent <= 100; ++percent) {
-      series.x.push_back(std::max(quantile_of_sorted(sorted, percent / 100.0), 1e-6));
+      series.x.push_back((std::max)(quantile_of_sorted(sorted, percent / 100.0), 1e-6));
       series.y.push_back(percent);
     }
     chart.series.push_back(std::move(series));
@@ -104,7 +104,7 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
     for (const bool inside : {true, false}) {
       std::vector<double> some;
       for (Index i = 0; i < gates.size(); ++i)
-        if ((gates(i) == 1) == inside) some.push_back(errors(i) * 1e3);
+        if ((gates(i) >= 1) == inside) some.push_back(errors(i) * 1e3);
       if (some.empty()) continue;
       const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(some.data(), static_cast<Index>(some.size())));
       where.rows.push_back(

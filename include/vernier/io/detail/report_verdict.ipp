@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
 #include "vernier/evaluation/position_errors.hpp"
@@ -43,9 +44,10 @@ VERNIER_LOCAL std::vector<std::vector<std::string>> suspect_rows(const ReportInp
                 poses.gates.size() > 0 && poses.gates(i) < 1 ? "outside the measured joint ranges" : ""));
   for (const ReportSuspect& one : input.suspects)
     all.emplace_back(one.normalised, cells(one.row, "training", one.error, one.normalised, one.remark));
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  VectorX negative(static_cast<Index>(all.size()));
+  for (Index i = 0; i < negative.size(); ++i) negative(i) = -all[static_cast<std::size_t>(i)].first;
   std::vector<std::vector<std::string>> out;
-  for (auto& one : all) out.push_back(std::move(one.second));
+  for (const Index i : argsort(negative)) out.push_back(std::move(all[static_cast<std::size_t>(i)].second));
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/svg_chart.hpp"
 
@@ -19,15 +20,14 @@ VERNIER_IMPL std::vector<double> chart_ticks(double lower, double upper, bool lo
     for (int power = static_cast<int>(std::floor(std::log10(lower))); power <= std::ceil(std::log10(upper)); ++power)
       for (const double digit : {1.0, 2.0, 5.0}) {
         const double tick = digit * std::pow(10, power);
-        if ((digit == 1 || decades < 2) && tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9))
-          out.push_back(tick);
+        if ((digit < 2 || decades < 2) && tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9)) out.push_back(tick);
       }
     return out;
   }
   const double rough = (upper - lower) / count, power = std::pow(10, std::floor(std::log10(rough)));
   const double step = power * (rough < 1.5 * power ? 1 : rough < 3.5 * power ? 2 : rough < 7.5 * power ? 5 : 10);
   for (double k = std::ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * step; ++k)
-    out.push_back(k == 0 ? 0 : k * step);
+    out.push_back(same_value(k, 0) ? 0 : k * step);
   return out;
 }
 
@@ -47,8 +47,8 @@ struct ChartScale {
   bool shows(double value) const { return std::isfinite(value) && (!logarithmic || value > 0); }
   void include(double value) {
     if (!shows(value)) return;
-    lower = std::min(lower, value);
-    upper = std::max(upper, value);
+    lower = (std::min)(lower, value);
+    upper = (std::max)(upper, value);
   }
   double operator()(double value) const {
     const double v = std::clamp(value, lower, upper);
@@ -65,7 +65,7 @@ VERNIER_LOCAL void widen_scale(ChartScale& scale, double margin) {
     scale.upper *= factor;
   } else {
     const double width = scale.upper - scale.lower,
-                 by = width > 0 ? margin * width : std::max(1.0, std::abs(scale.upper));
+                 by = width > 0 ? margin * width : (std::max)(1.0, std::abs(scale.upper));
     scale.lower -= by;
     scale.upper += by;
   }
@@ -73,7 +73,7 @@ VERNIER_LOCAL void widen_scale(ChartScale& scale, double margin) {
 
 /// The path of one series; a class gives it colour.
 VERNIER_LOCAL std::string series_path(const ChartSeries& series, const ChartScale& x, const ChartScale& y) {
-  const std::size_t n = std::min(series.x.size(), series.y.size());
+  const std::size_t n = (std::min)(series.x.size(), series.y.size());
   const auto point = [&](double a, double b) { return tenths(x(a)) + ' ' + tenths(y(b)); };
   std::string path;
   const auto shown = [&](std::size_t i) { return i < n && x.shows(series.x[i]) && y.shows(series.y[i]); };
@@ -142,7 +142,7 @@ VERNIER_IMPL std::string chart_svg(const Chart& chart) {
     if (x.shows(label.x) && y.shows(label.y))
       out += message("<text class=\"tick ", x(label.x) > 440 ? "end" : "", "\" x=\"",
                      tenths(x(label.x) + (x(label.x) > 440 ? -4 : 4)), "\" y=\"",
-                     tenths(std::max(y(label.y) - 3, top + 9)), "\">", html_escape(label.text), "</text>\n");
+                     tenths((std::max)(y(label.y) - 3, top + 9)), "\">", html_escape(label.text), "</text>\n");
   out += message("<text class=\"tick mid\" x=\"", tenths((x.from + x.to) / 2), "\" y=\"", chart.height - 8, "\">",
                  html_escape(chart.x_label), "</text>\n<text class=\"tick mid\" transform=\"translate(14 ",
                  tenths((y.from + y.to) / 2), ") rotate(-90)\">", html_escape(chart.y_label), "</text>\n</svg>\n");

@@ -32,7 +32,7 @@ struct BranchProblem {
   std::array<int, 6> moving;                                                    ///< those that move
   FunctionRef<void(const double* q, Isometry3& pose, double* jacobian)> model;  ///< jacobian 6 x 6, of those that move
   const Isometry3& target;
-  const double *lower, *upper, *near;
+  const double *lower, *upper, *close_to;
   double rotation_length;
   double lipschitz;  ///< of the Jacobian, see `lipschitz_bound`
 };
@@ -77,8 +77,9 @@ VERNIER_API double lipschitz_bound(double arm_length, double rotation_length) no
 VERNIER_API bool is_pose(const Isometry3& target) noexcept;
 /// A sentence for a target.
 VERNIER_API std::string describe_reach(Reach reach, int branches, double margin);
-/// `angle` plus whole turns: nearest to `near` between the bounds; nearest to the bounds where no turn is between them.
-VERNIER_API double nearest_turn(double angle, double near, double lower, double upper) noexcept;
+/// `angle` plus whole turns: nearest to `close_to` between the bounds; nearest to the bounds where no turn is between
+/// them.
+VERNIER_API double nearest_turn(double angle, double close_to, double lower, double upper) noexcept;
 
 }  // namespace detail
 }  // namespace vernier

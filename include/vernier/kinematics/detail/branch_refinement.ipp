@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
 #include "vernier/kinematics/detail/small_systems.hpp"
@@ -100,10 +101,10 @@ VERNIER_LOCAL void evaluate_iterate(const BranchProblem& problem, const double* 
   }
 }
 
-VERNIER_IMPL double nearest_turn(double angle, double near, double lower, double upper) noexcept {
+VERNIER_IMPL double nearest_turn(double angle, double close_to, double lower, double upper) noexcept {
   constexpr double turn = 2 * std::numbers::pi, slack = 1e-9;
   const double least = std::ceil((lower - slack - angle) / turn), most = std::floor((upper + slack - angle) / turn);
-  double k = std::nearbyint((near - angle) / turn);
+  double k = std::nearbyint((close_to - angle) / turn);
   if (least <= most) {
     k = std::clamp(k, least, most);
   } else if (std::isfinite(lower) && std::isfinite(upper)) {
@@ -142,8 +143,8 @@ VERNIER_LOCAL bool solve_near(const BranchProblem& problem, double* q, BranchIte
     at.moved += share * length;
   };
   const auto finish = [&](double left) {
-    at.position_error = std::min(at.position_error, left);
-    at.rotation_error = std::min(at.rotation_error, left / problem.rotation_length);
+    at.position_error = (std::min)(at.position_error, left);
+    at.rotation_error = (std::min)(at.rotation_error, left / problem.rotation_length);
     return true;
   };
   at.moved = std::numeric_limits<double>::infinity();
@@ -166,9 +167,9 @@ VERNIER_LOCAL bool solve_near(const BranchProblem& problem, double* q, BranchIte
     const Vector6 step = product6(at.inverse, at.error);
     const double length = step.norm();
     double largest = 0;
-    for (int i = 0; i < 6; ++i) largest = std::max(largest, std::abs(step(i)));
+    for (int i = 0; i < 6; ++i) largest = (std::max)(largest, std::abs(step(i)));
     if (!std::isfinite(length) || (!damped && k < 2 && largest > std::numbers::pi)) break;
-    const double share = std::min(1.0, longest_step / largest);
+    const double share = (std::min)(1.0, longest_step / largest);
     advance(step, share, length);
     if (const double left = 0.5 * problem.lipschitz * length * length; left < negligible) return finish(left);
   }
@@ -246,24 +247,24 @@ VERNIER_IMPL void BranchSet::refine(const BranchProblem& problem, const double* 
                                     bool sampled) noexcept {
   double q[most_branch_joints];
   for (int i = 0; i < problem.joints; ++i) q[i] = seed[i];
-  for (const int i : problem.moving) q[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
+  for (const int i : problem.moving) q[i] = nearest_turn(q[i], problem.close_to[i], problem.lower[i], problem.upper[i]);
   BranchIterate at;
   int iterations = 0;
   if (margin > 0) suspicious = true;
   const bool damped = !sampled || margin > sampled_margin;  // beyond a boundary the Jacobian is singular
-  // Newton's method may lead across a limit, or farther than half a turn from `near`
+  // Newton's method may lead across a limit, or farther than half a turn from `close_to`
   const auto turned = [&] {
     bool changed = false;
     for (const int i : problem.moving) {
-      const double value = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
-      changed = changed || value != q[i];
+      const double value = nearest_turn(q[i], problem.close_to[i], problem.lower[i], problem.upper[i]);
+      changed = changed || !same_value(value, q[i]);
       q[i] = value;
     }
     return !changed || solve_near(problem, q, at, iterations, damped);
   };
   if (!solve_near(problem, q, at, iterations, damped) || !turned()) {
     if (sampled) return;  // one of many
-    if (margin == 0) ++seeds_lost;
+    if (same_value(margin, 0)) ++seeds_lost;
     suspicious = true;
     const bool known = std::any_of(stalled, stalled + stalled_count,
                                    [&](const auto& other) { return are_near(problem, q, other.data(), 0.01); });
@@ -325,8 +326,8 @@ VERNIER_LOCAL void cross_folds(BranchSet& set, const BranchProblem& problem, con
       std::copy_n(q, problem.joints, turned);
       bool same = true;
       for (const int i : problem.moving) {
-        turned[i] = nearest_turn(q[i], problem.near[i], problem.lower[i], problem.upper[i]);
-        same = same && turned[i] == q[i];
+        turned[i] = nearest_turn(q[i], problem.close_to[i], problem.lower[i], problem.upper[i]);
+        same = same && same_value(turned[i], q[i]);
       }
       if (same || solve_near(problem, turned, at, iterations)) add_branch(set, problem, turned, at, iterations);
     };

@@ -94,7 +94,7 @@ void evaluate_blocks(const ChainView& c, const ChainFrames& frames, const double
   run_same_bits(
       [&]<int W>() VERNIER_INLINED {
         for (Index next = 0; next < n; next += W)  // the last vector overlaps with the one before
-          evaluate_block<Convention, N, W>(c, frames, joints, n, stride, std::min(next, n - W), results);
+          evaluate_block<Convention, N, W>(c, frames, joints, n, stride, (std::min)(next, n - W), results);
       },
       set);
 }
@@ -109,7 +109,7 @@ VERNIER_LOCAL void evaluate_padded(const ChainView& c, const ChainFrames& frames
   std::vector<Isometry3> poses(padded);
   for (int i = 0; i < c.joints; ++i)
     for (Index k = 0; k < padded; ++k)
-      q[static_cast<std::size_t>(i * padded + k)] = joints[i * stride + std::min(k, n - 1)];
+      q[static_cast<std::size_t>(i * padded + k)] = joints[i * stride + (std::min)(k, n - 1)];
   if (results.joints != nullptr) joint_columns.resize(static_cast<std::size_t>(6 * c.joints * padded));
   if (results.parameters != nullptr) parameter_columns.resize(static_cast<std::size_t>(entries * padded));
   evaluate_chain(c, frames, q.data(), padded, padded,

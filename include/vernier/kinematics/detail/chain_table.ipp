@@ -9,8 +9,8 @@ namespace vernier::detail {
 
 VERNIER_IMPL ChainTable::ChainTable(std::vector<DhRow> rows, bool modified)
     : rows_(std::move(rows)), modified_(modified) {
-  require(!rows_.empty() && rows_.size() <= max_joints, "a chain of ", rows_.size(), " joints, must have 1 to ",
-          max_joints);
+  demand(!rows_.empty() && rows_.size() <= max_joints, "a chain of ", rows_.size(), " joints, must have 1 to ",
+         max_joints);
   for (const DhRow& row : rows_) {
     theta_.push_back(row.theta);
     turning_.push_back(row.joint == JointType::revolute ? 1 : 0);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/kinematics/detail/constexpr_trig.hpp"
 #include "vernier/kinematics/detail/moving_frame.hpp"
@@ -34,7 +35,7 @@ VERNIER_INLINE void walk_row(const DhRow& row, const SinCos& twist, const SinCos
         break;
       case DhParameter::beta:
         record(parameter, frame.y);
-        if (hayati.sin != 0) frame.rotate_y(hayati.cos, hayati.sin);
+        if (!same_value(hayati.sin, 0)) frame.rotate_y(hayati.cos, hayati.sin);
         break;
       case DhParameter::d:
         record(parameter, frame.z);
@@ -95,7 +96,7 @@ VERNIER_INLINE void walk_pose(const ChainView& c, const double* q, PoseFrame<W>&
     VERNIER_UNROLL
     for (int k = 0; k < vectors; ++k) {
       if (joints >= W) {
-        const int first = std::min(next + k * W, joints - W);  // the last vector overlaps with the one before
+        const int first = (std::min)(next + k * W, joints - W);  // the last vector overlaps with the one before
         Double joint, turning;
         load<W>(joint, q + first);
         load<W>(turning, c.turning + first);
@@ -110,7 +111,7 @@ VERNIER_INLINE void walk_pose(const ChainView& c, const double* q, PoseFrame<W>&
     sincos<W>(angle, sine, cosine);
     VERNIER_UNROLL
     for (int k = 0; k < vectors; ++k) {
-      const int first = std::max(0, std::min(next + k * W, joints - W));
+      const int first = (std::max)(0, (std::min)(next + k * W, joints - W));
       store<W>(sines + first, sine[k]);
       store<W>(cosines + first, cosine[k]);
     }

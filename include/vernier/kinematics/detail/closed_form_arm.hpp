@@ -32,10 +32,11 @@ class ClosedFormArm {
 
   /// Roots with a margin of at most 5 %.
   /// @param target base_T_tool, a proper rigid motion
-  /// @param near   six values that joints take whose value makes no difference [rad]
+  /// @param close_to   six values that joints take whose value makes no difference [rad]
   /// @param width  [m, rad] so near to a singularity of shoulder or wrist samples of the joint whose value hardly
   /// matters are added, with a margin
-  VERNIER_API SixAxisRoots solve(const Isometry3& target, const JointVector<6>& near, double width = 0) const noexcept;
+  VERNIER_API SixAxisRoots solve(const Isometry3& target, const JointVector<6>& close_to,
+                                 double width = 0) const noexcept;
 
   /// Distances from the singularities at joint values.
   VERNIER_API SingularityDistances distances(const JointVector<6>& q) const noexcept;

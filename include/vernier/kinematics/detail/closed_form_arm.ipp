@@ -17,7 +17,7 @@ struct AxisLines {
   /// Angle between lines, whatever their directions.
   VERNIER_LOCAL double deviation(int i, int j) const {
     const double a = angle(i, j);
-    return std::min(a, std::numbers::pi - a);
+    return (std::min)(a, std::numbers::pi - a);
   }
   VERNIER_LOCAL double distance(int i, const Vector3& point) const { return h[i].cross(Vector3(point - o[i])).norm(); }
   /// The point nearest to lines i..j, and the largest distance from one of them.
@@ -60,7 +60,7 @@ VERNIER_LOCAL bool classify(AxisLines& lines, double tolerance, ArmKind& kind, s
     return true;
   }
   Vector3 meeting;
-  const double parallel = std::max(lines.deviation(1, 2), lines.deviation(1, 3));
+  const double parallel = (std::max)(lines.deviation(1, 2), lines.deviation(1, 3));
   const double last = lines.meeting(4, 5, meeting);
   if (parallel <= tolerance && last <= tolerance && lines.deviation(0, 1) > apart && lines.deviation(3, 4) > apart &&
       lines.deviation(4, 5) > apart) {
@@ -89,7 +89,7 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   if (!classify(lines, tolerance, kind_, forward)) {
     mirrored_ = true;
     collect();
-    require(classify(lines, tolerance, kind_, backward), "ClosedForm: the arm has no closed form: ", forward, backward);
+    demand(classify(lines, tolerance, kind_, backward), "ClosedForm: the arm has no closed form: ", forward, backward);
   }
   // Along its axis a point may lie anywhere; next to its neighbour, rounding errors are smallest.
   const auto slide = [&](int i, int to) {
@@ -111,11 +111,11 @@ VERNIER_IMPL ClosedFormArm::ClosedFormArm(const SixAxes& axes, double tolerance)
   wrist_ = wrist_of(kind_ == ArmKind::three_parallel ? h_[1] : h_[3], h_[4], h_[5]);
 }
 
-VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const JointVector<6>& near,
+VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const JointVector<6>& close_to,
                                                double width) const noexcept {
   SixAxisRoots out;
-  const auto nearby = [&](int i) { return near(mirrored_ ? 5 - i : i); };
-  const auto emit = [&](const double(&q)[6], double margin, unsigned free, bool sampled) {
+  const auto nearby = [&](int i) { return close_to(mirrored_ ? 5 - i : i); };
+  const auto offer = [&](const double(&q)[6], double margin, unsigned free, bool sampled) {
     if (out.count >= SixAxisRoots::capacity) return;
     SixAxisRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
     root.margin = margin;
@@ -128,7 +128,7 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     }
   };
   const auto missed = [&](double margin) {
-    if (margin > most_margin) out.nearest_margin = std::min(out.nearest_margin, margin);
+    if (margin > most_margin) out.nearest_margin = (std::min)(out.nearest_margin, margin);
   };
 
   // displacement of the arm: rotation, and from the point of the first axis to that of the last
@@ -157,8 +157,8 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
     const WristAngles end = solve_wrist(wrist_, transposed_times3(to_wrist, turn), nearby(3), sampled ? 0 : width);
     missed(end.margin);
     for (int k = 0; k < end.count; ++k)
-      emit({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, std::max(margin, end.margin_of(k)),
-           free | (end.any ? 8u : 0u), sampled || k >= end.exact);
+      offer({q1, q2, q3, end.q4[k], end.q5[k], end.q6[k]}, (std::max)(margin, end.margin_of(k)),
+            free | (end.any ? 8u : 0u), sampled || k >= end.exact);
   };
 
   switch (kind_) {
@@ -182,11 +182,11 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
           const Vector3 bent = p_[1] + rotated(r3, p_[2]);
           const AngleAbout second = angle_between(h_[1], bent, u, negligible_length);
           const double q2 = second.any ? nearby(1) : second.angle,
-                       margin = std::max(firsts.margin_of(i), thirds.margin);
+                       margin = (std::max)(firsts.margin_of(i), thirds.margin);
           const unsigned free = (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u);
           finish(q1, q2, thirds.angles[k], r1, r3, margin, free, i >= firsts.exact);
           // folded, the arm has its wrist next to the second axis
-          if (i < firsts.exact && std::max(h_[1].cross(bent).norm(), h_[1].cross(u).norm()) < width)
+          if (i < firsts.exact && (std::max)(h_[1].cross(bent).norm(), h_[1].cross(u).norm()) < width)
             for (int m = 0; m < angle_samples; ++m)
               finish(q1, q2 + (m + 0.5) * 2 * std::numbers::pi / angle_samples, thirds.angles[k], r1, r3, margin, free,
                      true);
@@ -215,7 +215,7 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
           const AngleAbout q1 = angle_between(h_[0], end, w, negligible_length);
           const double first = q1.any ? nearby(0) : q1.angle;
           finish(first, q2, thirds.angles[i], rotation_about(h_[0], first), r3,
-                 std::max(thirds.margin_of(i), seconds.margin_of(k)),
+                 (std::max)(thirds.margin_of(i), seconds.margin_of(k)),
                  (q1.any ? 1u : 0u) | (seconds.any ? 2u : 0u) | (thirds.any ? 4u : 0u),
                  i >= thirds.exact || k >= seconds.exact);
         }
@@ -250,10 +250,10 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
             const Vector3 bent = p_[1] + rotated(rotation_about(h_[2], q3), p_[2]);
             const AngleAbout second = angle_between(h_[1], bent, u, negligible_length);
             const double q2 = second.any ? nearby(1) : second.angle;
-            emit({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
-                 std::max({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
-                 (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u),
-                 i >= firsts.exact);
+            offer({firsts.angles[i], q2, q3, fourth_ * (end.q4[m] - q2 - third_ * q3), end.q5[m], end.q6[m]},
+                  (std::max)({firsts.margin_of(i), end.margin_of(m), thirds.margin}),
+                  (firsts.any ? 1u : 0u) | (second.any ? 2u : 0u) | (thirds.any ? 4u : 0u) | (end.any ? 8u : 0u),
+                  i >= firsts.exact);
           }
         }
       }

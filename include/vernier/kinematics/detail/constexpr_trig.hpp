@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier::detail {
 
 struct SinCos {

@@ -27,7 +27,7 @@ VERNIER_LOCAL double half_turn_angle(double angle) {
 /// Greatest difference of two joints, modulo turns [rad].
 VERNIER_LOCAL double root_distance(const JointVector<6>& a, const JointVector<6>& b) {
   double out = 0;
-  for (int i = 0; i < 6; ++i) out = std::max(out, std::abs(half_turn_angle(a(i) - b(i))));
+  for (int i = 0; i < 6; ++i) out = (std::max)(out, std::abs(half_turn_angle(a(i) - b(i))));
   return out;
 }
 
@@ -149,7 +149,7 @@ VERNIER_LOCAL JointVector<6> back_substitute(const ClosedLoop& loop, const LoopP
 /// @cite Levenberg 1944; Nakamura and Hanafusa 1986
 VERNIER_LOCAL bool polish_root(const SixAxes& arm, const Isometry3& target, JointVector<6>& q) noexcept {
   constexpr int steps_to_come_near = 15, max_steps = 40;
-  constexpr double longest_step = 0.3, near = 1e-3, enough = 1e-13, accepted = 1e-10;
+  constexpr double longest_step = 0.3, close = 1e-3, enough = 1e-13, accepted = 1e-10;
   double jacobian[6][6], normal[6][6], newton[6];
   for (int step = 0;; ++step) {
     Matrix3 turned = Matrix3::Identity();
@@ -172,7 +172,7 @@ VERNIER_LOCAL bool polish_root(const SixAxes& arm, const Isometry3& target, Join
     const Vector6 error = pose_difference(target, pose);
     const double left = error.norm();
     if (left < enough) return true;
-    if (step == max_steps || (step >= steps_to_come_near && !(left < near)) || !std::isfinite(left))
+    if (step == max_steps || (step >= steps_to_come_near && !(left < close)) || !std::isfinite(left))
       return left < accepted;
     // Damping in proportion to the square of the error: convergence stays quadratic.
     for (int j = 0; j < 6; ++j) {
@@ -182,8 +182,8 @@ VERNIER_LOCAL bool polish_root(const SixAxes& arm, const Isometry3& target, Join
     }
     solve_few(normal[0], newton, 6);
     double largest = 0;
-    for (const double value : newton) largest = std::max(largest, std::abs(value));
-    for (int i = 0; i < 6; ++i) q(i) += newton[i] * std::min(1.0, longest_step / largest);
+    for (const double value : newton) largest = (std::max)(largest, std::abs(value));
+    for (int i = 0; i < 6; ++i) q(i) += newton[i] * (std::min)(1.0, longest_step / largest);
   }
 }
 
@@ -208,7 +208,7 @@ VERNIER_LOCAL bool find_roots_hiding(const SixAxes& arm, const SixAxes& nearby, 
   const ClosedLoop loop = loop_of(nearby, target, first);
   const LoopPencil pencil = eliminate(loop);
   const HiddenJointValues values = hidden_joint_values(pencil);
-  roots.condition = std::min(roots.condition, values.condition);
+  roots.condition = (std::min)(roots.condition, values.condition);
   bool complete = values.count > 0 && values.condition < trusted_condition;
   SixAxisRoots found;
   for (int i = 0; i < values.count; ++i) {
@@ -251,7 +251,7 @@ VERNIER_IMPL SixAxisRoots solve_six_axes(const SixAxes& arm, const Isometry3& ta
 VERNIER_IMPL SingularityDistances unfactored_distance(const SixAxes& arm, const JointVector<6>& q) noexcept {
   double columns[6][6];
   Isometry3 moved = Isometry3::Identity();
-  const double length = std::max(arm_length(arm), 1e-9);
+  const double length = (std::max)(arm_length(arm), 1e-9);
   for (int i = 0; i < 6; ++i) {
     const AxisLine axis = axis_of(arm, i), at = moved * axis;
     const Vector3 moment = at.point.cross(at.direction) / length;

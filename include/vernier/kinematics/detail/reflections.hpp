@@ -9,6 +9,8 @@
 #include <complex>
 #include <limits>
 
+#include "vernier/core/language.hpp"
+
 namespace vernier::detail {
 
 /// Replaces x by the unit vector v with which `x - 2 v (v.x)` keeps only its first component; by zero where it is zero.
@@ -74,7 +76,7 @@ inline bool hessenberg_eigenvalues(double* a, int n, std::complex<double>* out) 
   constexpr int most_steps = 60;  // for one eigenvalue or pair; three are usual
   const auto at = [&](int i, int j) -> double& { return a[j * n + i]; };
   double size = 0;
-  for (int k = 0; k < n * n; ++k) size = std::max(size, std::abs(a[k]));
+  for (int k = 0; k < n * n; ++k) size = (std::max)(size, std::abs(a[k]));
   for (int last = n - 1, steps = 0; last >= 0;) {
     int first = last;  // of the block that is left
     for (; first > 0; --first) {
@@ -118,11 +120,11 @@ inline bool hessenberg_eigenvalues(double* a, int n, std::complex<double>* out) 
         break;
     }
     for (int k = begin; k < last; ++k) {
-      const int rows = std::min(3, last - k + 1);
+      const int rows = (std::min)(3, last - k + 1);
       if (k > begin) std::copy_n(&at(k, k - 1), rows, v);
       to_reflector(v, rows);
-      for (int j = std::max(k - 1, first); j <= last; ++j) reflect(v, &at(k, j), rows);
-      for (int i = first; i <= std::min(k + 3, last); ++i) reflect(v, &at(i, k), rows, n);
+      for (int j = (std::max)(k - 1, first); j <= last; ++j) reflect(v, &at(k, j), rows);
+      for (int i = first; i <= (std::min)(k + 3, last); ++i) reflect(v, &at(i, k), rows, n);
       for (int i = k + 1; k > first && i < k + rows; ++i) at(i, k - 1) = 0;
     }
   }

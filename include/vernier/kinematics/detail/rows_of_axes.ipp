@@ -69,9 +69,9 @@ VERNIER_LOCAL DhRow row_to_axis(const Vector3& direction, const Vector3& point, 
 }
 
 VERNIER_IMPL AxisRows rows_of_axes(std::span<const JointAxis> axes, std::span<const double> thetas) {
-  require(!axes.empty(), "rows_of_axes: no joints");
-  require(thetas.empty() || thetas.size() == axes.size(), "rows_of_axes: ", thetas.size(), " angles for ", axes.size(),
-          " joints");
+  demand(!axes.empty(), "rows_of_axes: no joints");
+  demand(thetas.empty() || thetas.size() == axes.size(), "rows_of_axes: ", thetas.size(), " angles for ", axes.size(),
+         " joints");
   AxisRows out{frame_of_axis(axes.front()), {}, {}};
   Isometry3 at = out.base;
   for (std::size_t i = 0; i + 1 < axes.size(); ++i) {

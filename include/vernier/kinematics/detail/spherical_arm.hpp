@@ -40,9 +40,9 @@ class SphericalArm {
   /// Roots with a margin of at most 5 %.
   /// @param target base_T_tool, a proper rigid motion
   /// @param angle  of the arm [rad]
-  /// @param near   values that joints take whose value makes no difference [rad]
+  /// @param close_to   values that joints take whose value makes no difference [rad]
   /// @param width  [rad] so near to the straight wrist samples of joint 5 are added, with a margin
-  VERNIER_API SphericalArmRoots solve(const Isometry3& target, double angle, const JointVector<7>& near,
+  VERNIER_API SphericalArmRoots solve(const Isometry3& target, double angle, const JointVector<7>& close_to,
                                       double width) const noexcept;
   /// The arm angle at joint values, in (-pi, pi] [rad].
   VERNIER_API double arm_angle(const JointVector<7>& q) const noexcept;

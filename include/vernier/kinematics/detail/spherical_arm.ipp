@@ -11,12 +11,12 @@ VERNIER_IMPL SphericalArm::SphericalArm(const ArmAxes& axes, double tolerance) :
   const Vector3* const h = axes.direction;
   constexpr double apart = 0.05, lever = 1e-3;  // rad, m
   for (const int k : {0, 1, 4, 5})
-    require(h[k].cross(h[k + 1]).norm() > apart, "ArmAngleForm: the axes of joints ", k + 1, " and ", k + 2,
-            " are parallel");
+    demand(h[k].cross(h[k + 1]).norm() > apart, "ArmAngleForm: the axes of joints ", k + 1, " and ", k + 2,
+           " are parallel");
   const auto meeting = [&](int first) {
     const MeetingPoint found = meeting_point(h + first, axes.point + first, 3);
-    require(found.miss <= tolerance, "ArmAngleForm: the axes of joints ", first + 1, " to ", first + 3,
-            " miss a common point by ", found.miss * 1e3, " mm");
+    demand(found.miss <= tolerance, "ArmAngleForm: the axes of joints ", first + 1, " to ", first + 3,
+           " miss a common point by ", found.miss * 1e3, " mm");
     return found.point;
   };
   shoulder_ = meeting(0);
@@ -26,10 +26,10 @@ VERNIER_IMPL SphericalArm::SphericalArm(const ArmAxes& axes, double tolerance) :
   const Vector3 elbow = axes.point[3] + axis4_.dot(to_shoulder) * axis4_;
   upper_ = elbow - shoulder_;
   fore_ = wrist_ - elbow;
-  require(upper_.norm() > lever && axis4_.cross(fore_).norm() > lever,
-          "ArmAngleForm: the axis of joint 4 passes through the centre of shoulder or wrist");
-  require(std::abs(axis4_.dot(fore_)) <= tolerance, "ArmAngleForm: the wrist lies ", std::abs(axis4_.dot(fore_)) * 1e3,
-          " mm beside the plane through the shoulder at right angles to the axis of joint 4");
+  demand(upper_.norm() > lever && axis4_.cross(fore_).norm() > lever,
+         "ArmAngleForm: the axis of joint 4 passes through the centre of shoulder or wrist");
+  demand(std::abs(axis4_.dot(fore_)) <= tolerance, "ArmAngleForm: the wrist lies ", std::abs(axis4_.dot(fore_)) * 1e3,
+         " mm beside the plane through the shoulder at right angles to the axis of joint 4");
   first_ = wrist_of(h[0], h[1], h[2]);
   last_ = wrist_of(h[4], h[5], h[6]);
 }
@@ -53,16 +53,16 @@ inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
   return out;
 }
 
-VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, double angle, const JointVector<7>& near,
-                                                   double width) const noexcept {
+VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, double angle,
+                                                   const JointVector<7>& close_to, double width) const noexcept {
   SphericalArmRoots out;
   const Matrix3 back_at_zero = rotation(axes_.tool).transpose(), turn = times3(rotation(target), back_at_zero);
   const Vector3 lever = wrist_ - translation(axes_.tool);
   const Vector3 wrist_centre = translation(target) + rotated(turn, lever), to_wrist = wrist_centre - shoulder_;
   const auto missed = [&](double margin) {
-    if (margin > most_margin) out.nearest_margin = std::min(out.nearest_margin, margin);
+    if (margin > most_margin) out.nearest_margin = (std::min)(out.nearest_margin, margin);
   };
-  const Candidates elbows(angles_to_distance(axis4_, fore_, -upper_, to_wrist.norm(), negligible_length), near(3));
+  const Candidates elbows(angles_to_distance(axis4_, fore_, -upper_, to_wrist.norm(), negligible_length), close_to(3));
   missed(elbows.margin);
   if (!(to_wrist.norm() > negligible_length)) return out;  // the wrist in the shoulder: no arm angle
   const Vector3 along = to_wrist.normalized();
@@ -75,8 +75,8 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
     // the rotation of the upper arm brings the wrist and axis 4 where they have to be
     const Matrix3 now = frame_of_two(from / from.norm(), axis4_), back = now.transpose();
     const Matrix3 upper_arm = times3(then, back), forearm = times3(upper_arm, r4);
-    const WristAngles begin = solve_wrist(first_, upper_arm, near(0), 0);
-    const WristAngles end = solve_wrist(last_, transposed_times3(forearm, turn), near(4), width);
+    const WristAngles begin = solve_wrist(first_, upper_arm, close_to(0), 0);
+    const WristAngles end = solve_wrist(last_, transposed_times3(forearm, turn), close_to(4), width);
     missed(begin.margin);
     missed(end.margin);
     for (int k = 0; k < begin.count; ++k)
@@ -84,7 +84,7 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
         const double q[] = {begin.q4[k], begin.q5[k], begin.q6[k], q4, end.q4[m], end.q5[m], end.q6[m]};
         SphericalArmRoot& root = out.roots[static_cast<std::size_t>(out.count++)];
         for (int j = 0; j < 7; ++j) root.joints(j) = wrapped_angle(q[j]);
-        root.margin = std::max({elbows.margin, begin.margin, end.margin_of(m)});
+        root.margin = (std::max)({elbows.margin, begin.margin, end.margin_of(m)});
         root.sampled = m >= end.exact;
         root.free = (begin.any ? 1u : 0u) | (elbows.any ? 8u : 0u) | (end.any ? 16u : 0u);
       }

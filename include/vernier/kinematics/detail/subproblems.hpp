@@ -95,7 +95,7 @@ inline AnglePair angles_to_plane(const Vector3& h, const Vector3& k, const Vecto
   const double sine = k.dot(u.cross(v)), cosine = u.dot(v), rest = d - along;
   const double r = std::sqrt(sine * sine + cosine * cosine);
   if (r < negligible) return {0, 0, std::abs(rest) <= negligible ? 0 : std::abs(rest) / negligible, true, r};
-  return {std::atan2(sine, cosine), std::atan2(std::sqrt(std::max((r - rest) * (r + rest), 0.0)), rest),
+  return {std::atan2(sine, cosine), std::atan2(std::sqrt((std::max)((r - rest) * (r + rest), 0.0)), rest),
           beyond(rest, r), false, r};
 }
 
@@ -106,11 +106,11 @@ inline AnglePair angles_to_distance(const Vector3& k, const Vector3& a, const Ve
   const double along = k.dot(a) * k.dot(b), sine = k.dot(u.cross(v)), cosine = u.dot(v);
   const double rest = 0.5 * (a.squaredNorm() + b.squaredNorm() - d * d) - along;
   const double r = std::sqrt(sine * sine + cosine * cosine);
-  if (const double longer = std::max(u.norm(), v.norm()); r < negligible * longer || longer < negligible) {
-    const double scale = negligible * std::max({a.norm(), b.norm(), d});
+  if (const double longer = (std::max)(u.norm(), v.norm()); r < negligible * longer || longer < negligible) {
+    const double scale = negligible * (std::max)({a.norm(), b.norm(), d});
     return {0, 0, std::abs(rest) <= scale ? 0 : std::abs(rest) / scale, true, r};
   }
-  return {std::atan2(sine, cosine), std::atan2(std::sqrt(std::max((r - rest) * (r + rest), 0.0)), rest),
+  return {std::atan2(sine, cosine), std::atan2(std::sqrt((std::max)((r - rest) * (r + rest), 0.0)), rest),
           beyond(rest, r), false, r};
 }
 

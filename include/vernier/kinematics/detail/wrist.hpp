@@ -45,7 +45,7 @@ struct Candidates {
   bool any;
 
   /// @param widest circle that counts as next to a singularity [m]
-  VERNIER_API Candidates(const AnglePair& pair, double near, double widest = 0);
+  VERNIER_API Candidates(const AnglePair& pair, double close_to, double widest = 0);
   double margin_of(int k) const { return k < exact ? margin : std::clamp(margin, sampled_margin, most_margin); }
 };
 
@@ -57,7 +57,7 @@ struct WristAngles {
   double margin;  ///< of the exact ones
   bool any;
 
-  double margin_of(int k) const { return k < exact ? margin : std::max(margin, sampled_margin); }
+  double margin_of(int k) const { return k < exact ? margin : (std::max)(margin, sampled_margin); }
 };
 
 /// The angles of a wrist for a rotation.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 #include "vernier/kinematics/detail/wrist.hpp"
 
@@ -34,22 +35,22 @@ VERNIER_IMPL MeetingPoint meeting_point(const Vector3* directions, const Vector3
   MeetingPoint out{rotated(inverse, right), 0};
   for (int k = 0; k < lines; ++k) {
     const Vector3 lever = out.point - points[k];
-    out.miss = std::max(out.miss, directions[k].cross(lever).norm());
+    out.miss = (std::max)(out.miss, directions[k].cross(lever).norm());
   }
   if (!std::isfinite(out.point.sum())) out.miss = 1e300;
   return out;
 }
 
-VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double near, double widest)
-    : angles{near, near}, count(1), margin(pair.margin), any(pair.any) {
+VERNIER_IMPL Candidates::Candidates(const AnglePair& pair, double close_to, double widest)
+    : angles{close_to, close_to}, count(1), margin(pair.margin), any(pair.any) {
   if (margin > most_margin && !(margin * pair.radius < widest))
     count = 0;
   else
-    margin = std::min(margin, most_margin);
+    margin = (std::min)(margin, most_margin);
   if (!any) {
     angles[0] = pair.centre + pair.half;
     angles[1] = pair.centre - pair.half;
-    if (margin == 0 && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
+    if (same_value(margin, 0) && pair.half > 1e-9 && pair.half < std::numbers::pi - 1e-9) count = 2;
   }
   exact = count;
   if (pair.radius >= widest) return;
@@ -65,10 +66,10 @@ VERNIER_IMPL WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation
   const double a = wrist.alpha, b = wrist.beta;
   const double numerator = std::sin(0.5 * (gamma - a + b)) * std::sin(0.5 * (gamma + a - b));
   const double denominator = std::sin(0.5 * (a + b + gamma)) * std::sin(0.5 * (a + b - gamma));
-  const double half = 2 * std::atan2(std::sqrt(std::max(numerator, 0.0)), std::sqrt(std::max(denominator, 0.0)));
+  const double half = 2 * std::atan2(std::sqrt((std::max)(numerator, 0.0)), std::sqrt((std::max)(denominator, 0.0)));
   WristAngles out;
   out.any = false;
-  out.margin = std::max({-numerator, -denominator, 0.0});
+  out.margin = (std::max)({-numerator, -denominator, 0.0});
   if (out.margin < 1e-15) out.margin = 0;
   out.count = 0;
   const Vector3 turned = rotated(rotation, wrist.e6);
@@ -87,7 +88,7 @@ VERNIER_IMPL WristAngles solve_wrist(const Wrist& wrist, const Matrix3& rotation
     add(q4.any ? near4 : q4.angle, q5, r5);
   }
   out.exact = out.count;
-  if (roots > 0 && std::min(half, std::numbers::pi - half) < widest) {
+  if (roots > 0 && (std::min)(half, std::numbers::pi - half) < widest) {
     const double q5 = wrist.centre + (half < 1 ? 0 : std::numbers::pi), q4 = out.q4[0];
     const Matrix3 r5 = rotation_about(wrist.k5, q5);
     for (int k = 0; k < angle_samples; ++k) add(q4 + (k + 0.5) * 2 * std::numbers::pi / angle_samples, q5, r5);

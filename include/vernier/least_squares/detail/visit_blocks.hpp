@@ -18,7 +18,7 @@ template <class Use>
 void visit_blocks(const BlockSystem& system, Index first, Index stride, Index count, const Use& use) {
   std::vector<RowBlock> rows(static_cast<std::size_t>(stride == 1 ? rows_at_a_time : 1));
   for (Index next = 0; next < count; next += static_cast<Index>(rows.size())) {
-    const Index n = std::min(static_cast<Index>(rows.size()), count - next);
+    const Index n = (std::min)(static_cast<Index>(rows.size()), count - next);
     system.rows(first + next * stride, n, rows.data());
     for (Index b = 0; b < n; ++b) use(next + b, rows[static_cast<std::size_t>(b)]);
   }

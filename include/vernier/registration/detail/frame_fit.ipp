@@ -33,7 +33,7 @@ VERNIER_LOCAL void hold(const FrameFit& fit, const VectorX& total, NormalEquatio
   for (Index k = 0; k < fit.held.cols(); ++k) {
     const VectorX axis = fit.held.col(k);
     double variance = 0;
-    for (Index r = 0; r < axis.size(); ++r) variance += std::pow(axis(r) * std::min(fit.prior_std(r), 1.0), 2);
+    for (Index r = 0; r < axis.size(); ++r) variance += std::pow(axis(r) * (std::min)(fit.prior_std(r), 1.0), 2);
     const double precision = 1e8 / variance, at = axis.dot(total);
     add_product(normal.matrix, axis, axis.transpose(), precision);
     normal.gradient += precision * at * axis;
@@ -110,7 +110,7 @@ VERNIER_IMPL void solve_frames_and_weights(const MovedPoses& evaluate, const Mea
   const double least_position = fit.position_sigma, least_orientation = fit.orientation_sigma;
   const auto improve = [](double& sigma, double least, double squares, double redundancy) {
     // less than a value over tells nothing about its size
-    const double now = redundancy < 1 ? least : std::max(least, sigma * std::sqrt(squares / redundancy));
+    const double now = redundancy < 1 ? least : (std::max)(least, sigma * std::sqrt(squares / redundancy));
     const bool differs = std::abs(now - sigma) > 1e-3 * sigma;
     if (differs) sigma = now;
     return differs;

@@ -17,9 +17,9 @@ VERNIER_IMPL BoundedMinimum minimise_within(FunctionRef<double(const VectorX& x,
   const Index d = x.size();
   VectorX gradient(d), next_gradient(d);
   const auto clamp = [&](VectorX& point) {
-    for (Index j = 0; j < d; ++j) point(j) = std::min(std::max(point(j), lower(j)), upper(j));
+    for (Index j = 0; j < d; ++j) point(j) = (std::min)((std::max)(point(j), lower(j)), upper(j));
   };
-  const auto longest_part = [](const VectorX& v) { return std::max(v.maxCoeff(), -v.minCoeff()); };
+  const auto longest_part = [](const VectorX& v) { return (std::max)(v.maxCoeff(), -v.minCoeff()); };
   clamp(x);
   double value = function(x, gradient);
   MatrixX inverse = MatrixX::Identity(d, d);  // of the Hessian
@@ -33,8 +33,8 @@ VERNIER_IMPL BoundedMinimum minimise_within(FunctionRef<double(const VectorX& x,
     if (!(steepest > tolerance)) break;
     VectorX step = product(inverse, slope);
     for (Index j = 0; j < d; ++j) step(j) *= -free(j);
-    if (fresh) step /= std::max(1.0, steepest);
-    step *= std::min(1.0, longest / longest_part(step));
+    if (fresh) step /= (std::max)(1.0, steepest);
+    step *= (std::min)(1.0, longest / longest_part(step));
 
     VectorX next;
     double next_value = std::numeric_limits<double>::infinity();

@@ -15,7 +15,7 @@ VERNIER_LOCAL MatrixX lower_gram(const MatrixX& a) {
   constexpr Index width = 128;
   MatrixX out = MatrixX::Zero(a.cols(), a.cols());
   for (Index first = 0; first < a.cols(); first += width) {
-    const Index rest = a.cols() - first, count = std::min(width, rest);
+    const Index rest = a.cols() - first, count = (std::min)(width, rest);
     add_transposed_product(out.block(first, first, rest, count), a.middleCols(first, rest), a.middleCols(first, count));
   }
   return out;
@@ -38,7 +38,7 @@ VERNIER_IMPL FeatureRidge::FeatureRidge(const ConstMatrixRef& features, const Co
   const bool dual = features_.rows() < features_.cols();
   SymmetricEigen eigen = symmetric_eigen(dual ? lower_gram(features_.transpose()) : lower_gram(features_));
   const Index k = eigen.values.size();
-  const double top = std::max<double>(eigen.values(k - 1), 0), threshold = std::max(1e-14 * top, 1e-300);
+  const double top = std::max<double>(eigen.values(k - 1), 0), threshold = (std::max)(1e-14 * top, 1e-300);
   Index rank = 0;
   while (rank < k && eigen.values(k - 1 - rank) > threshold) ++rank;
   squares_ = eigen.values.tail(rank);
@@ -92,7 +92,7 @@ VERNIER_IMPL VectorX FeatureRidge::leave_one_out(const VectorX& lambdas) const {
   MatrixX rest = MatrixX::Zero(n, m);
   if (k < n - 1) {
     const VectorX spanned = squared_row_norms(left_);
-    for (Index i = 0; i < n; ++i) spare(i) = std::max(1 - weights_(i) / total_ - spanned(i), 0.0);
+    for (Index i = 0; i < n; ++i) spare(i) = (std::max)(1 - weights_(i) / total_ - spanned(i), 0.0);
     rest = targets_;
     add_product(rest, left_, projected_, -1);
   }
@@ -118,8 +118,8 @@ VERNIER_IMPL double FeatureRidge::left_out_error(const MatrixX& residual, const 
   const VectorX squares = squared_row_norms(residual);
   double sum = 0;
   for (Index i = 0; i < squares.size(); ++i) {
-    const double share = std::min(1.0, 1 / weights_(i)), left = (1 - share) + share * one_minus_leverage(i);
-    sum += squares(i) / std::max(left * left, 1e-300);
+    const double share = (std::min)(1.0, 1 / weights_(i)), left = (1 - share) + share * one_minus_leverage(i);
+    sum += squares(i) / (std::max)(left * left, 1e-300);
   }
   return sum / total_;
 }
@@ -139,7 +139,7 @@ VERNIER_IMPL FeatureRidgeFit FeatureRidge::from_samples(double lambda) const {
 
 VERNIER_IMPL FeatureRidgeFit FeatureRidge::finish(double lambda, const MatrixX& beta, double used,
                                                   const MatrixX& directions, const VectorX& gain, double rest) const {
-  const double freedom = std::max(total_ - 1 - used, 1e-12 * total_);
+  const double freedom = (std::max)(total_ - 1 - used, 1e-12 * total_);
   const VectorX offset = mean_targets_ - transposed_product(beta, mean_features_);
   return {lambda, beta, offset, squared_column_norms(residual_of(beta)) / freedom, directions, gain, rest};
 }

@@ -14,10 +14,10 @@ class ShiftedTridiagonal {
   ShiftedTridiagonal(const TridiagonalForm& form, double lambda)
       : pivots_(form.diagonal.size()), multipliers_(form.subdiagonal.size()) {
     // no pivot is below the smallest eigenvalue, but for rounding
-    pivots_(0) = std::max(form.diagonal(0) + lambda, lambda);
+    pivots_(0) = (std::max)(form.diagonal(0) + lambda, lambda);
     for (Index k = 1; k < pivots_.size(); ++k) {
       multipliers_(k - 1) = form.subdiagonal(k - 1) / pivots_(k - 1);
-      pivots_(k) = std::max(form.diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
+      pivots_(k) = (std::max)(form.diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
     }
   }
 

@@ -24,7 +24,7 @@ struct NormalEquationsBlock {
 template <int W, int Rows, int Vectors>
 VERNIER_INLINE void normal_equations_kernel(const NormalEquationsBlock& b) {
   for (Index begin = 0; begin < b.samples; begin += b.tile_samples) {
-    const Index samples = std::min(b.tile_samples, b.samples - begin);
+    const Index samples = (std::min)(b.tile_samples, b.samples - begin);
     double* tile = b.tile + (b.keep ? begin * b.stride : 0);
     for (Index s = 0; s < samples; ++s) {
       double* row = tile + s * b.stride;

@@ -77,7 +77,7 @@ VERNIER_INLINE void leave_one_out_kernel(const LeaveOneOutBlock& b) {
   const double mean_share = 1 / static_cast<double>(b.samples);
   const Index width = b.outputs * b.lambdas;
   for (Index begin = 0; begin < b.samples; begin += b.tile_samples) {
-    const Index n = std::min(b.tile_samples, b.samples - begin);
+    const Index n = (std::min)(b.tile_samples, b.samples - begin);
     const double* rows = b.hidden + begin * b.stride;
     for (Index s = 0; s < n; ++s) std::copy(b.start, b.start + b.rotated, p + s * b.rotated);
     row_product<W, Rows, Vectors>(rows, b.stride, b.rotation, b.rotated, p, n, b.nodes);
@@ -150,7 +150,7 @@ VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
   for (Index l = 0; l < lambdas; ++l) {
     const double lambda = scale * std::pow(10.0, -0.5 * static_cast<double>(l));
     for (Index k = 0; k < h; ++k) {
-      shares(l, k) = 1 / (std::max(eigen.values(k), 0.0) + lambda);
+      shares(l, k) = 1 / ((std::max)(eigen.values(k), 0.0) + lambda);
       for (Index o = 0; o < outputs_; ++o) weights(o * padded_lambdas + l, k) = rotated_right(k, o) * shares(l, k);
     }
   }
@@ -174,7 +174,7 @@ VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
   const Index at = std::min_element(sums.data(), sums.data() + lambdas) - sums.data();
   const double best = sums(at);
   if (at >= trusted || !(least(at) > 1e-2) || !std::isfinite(best)) return -1;
-  return std::min(best, mean_alone) / n;
+  return (std::min)(best, mean_alone) / n;
 }
 
 }  // namespace vernier::detail

@@ -27,7 +27,7 @@ VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, Vect
       if (!(scale.maxCoeff() > 0)) break;  // every node is saturated or unused
       // Nodes that hardly matter at the moment must not be thrown far away.
       const double least = 1e-3 * scale.mean();
-      for (double& of_weight : scale) of_weight = std::max(of_weight, least);
+      for (double& of_weight : scale) of_weight = (std::max)(of_weight, least);
       moved = false;
     }
     damped = curvature;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/regression/detail/kernel_system.hpp"
 #include "vernier/regression/detail/marginal_likelihood.hpp"
 
@@ -16,7 +17,7 @@ VERNIER_IMPL VectorX varying_outputs(const ConstMatrixRef& targets) {
   VectorX out(targets.cols());
   for (Index o = 0; o < targets.cols(); ++o) {
     const double low = targets.col(o).minCoeff(), high = targets.col(o).maxCoeff();
-    out(o) = high - low > 1e-12 * std::max(std::abs(low), std::abs(high)) ? 1 : 0;
+    out(o) = high - low > 1e-12 * (std::max)(std::abs(low), std::abs(high)) ? 1 : 0;
   }
   return out;
 }
@@ -25,7 +26,7 @@ VERNIER_IMPL double MarginalLikelihood::operator()(const VectorX& logarithms, Ve
   const Index n = features_.rows();
   const double ratio = std::exp(logarithms(inputs_)), total = weights_.sum(), outputs = varying_.sum();
   gradient = VectorX::Zero(inputs_ + 1);
-  if (outputs == 0) return 0;
+  if (same_value(outputs, 0)) return 0;
   MatrixX x = features_;
   for (Index j = 0; j < x.cols(); ++j) x.col(j) *= std::exp(-logarithms(j % inputs_));
   VectorX noise = weights_.cwiseInverse();
@@ -40,7 +41,7 @@ VERNIER_IMPL double MarginalLikelihood::operator()(const VectorX& logarithms, Ve
   // A^-1 outputs - sum of alpha alpha' / s^2, its lower triangle
   MatrixX pull = outputs * inverse_from_cholesky(system.factor);
   for (Index o = 0; o < targets_.cols(); ++o) {
-    if (varying_(o) == 0) continue;
+    if (same_value(varying_(o), 0)) continue;
     const double variance = system.square(o) / total;
     if (!(variance > 0)) return std::numeric_limits<double>::infinity();
     likelihood -= 0.5 * total * std::log(variance);

@@ -68,7 +68,7 @@ VERNIER_IMPL double NetworkError::over_samples(VectorX* gradient) {
   constexpr Index tile = 256;  // stays in the second-level cache
   double value = add_decay(gradient);
   for (Index begin = 0; begin < samples(); begin += tile) {
-    const Index count = std::min(tile, samples() - begin);
+    const Index count = (std::min)(tile, samples() - begin);
     value += add(features_.middleRows(begin, count), targets_.middleRows(begin, count), shares_.segment(begin, count),
                  gradient);
   }
@@ -141,7 +141,7 @@ VERNIER_IMPL void NetworkError::form_products(Index begin, Index end) {
   for (Index task = begin; task < end; ++task)
     products_[static_cast<std::size_t>(task)] = MatrixX::Zero(stride_, stride_);
   for (Index from = 0; from < samples(); from += stage) {
-    const Index count = std::min(stage, samples() - from);
+    const Index count = (std::min)(stage, samples() - from);
     VectorX weights(count);
     const auto shared = [&](Index i, Index j) { return j < d - 1 ? features_(from + i, j) : 1; };
     const auto run = [&](Index task, const MatrixX& left, const MatrixX& right, Index j, Index i) {

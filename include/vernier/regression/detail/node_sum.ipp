@@ -196,7 +196,7 @@ VERNIER_IMPL void NodeSum::evaluate(const double* x, double* y, double* slope, d
     for (Index first = 0; first < packed_.rows(); first += most) {
       const NodeBlock block{function_,      column(0) + first,
                             workspace,      features_,
-                            packed_.rows(), std::min(most, packed_.rows() - first),
+                            packed_.rows(), (std::min)(most, packed_.rows() - first),
                             values,         slopes};
       evaluate_nodes<W>(block);
       for (Index o = 0; o < outputs_; ++o) {
@@ -224,8 +224,8 @@ VERNIER_IMPL void NodeSum::node_values(const double* features, Index first, Inde
   constexpr Index most = 64;
   double slopes[most];
   for (Index begin = 0; begin < count; begin += most) {
-    const NodeBlock block{function_,      column(0) + first + begin,     features,    features_,
-                          packed_.rows(), std::min(most, count - begin), out + begin, slopes};
+    const NodeBlock block{function_,      column(0) + first + begin,       features,    features_,
+                          packed_.rows(), (std::min)(most, count - begin), out + begin, slopes};
     run_widest([&]<int W>() VERNIER_INLINED { evaluate_nodes<W>(block); });
   }
 }

@@ -40,7 +40,7 @@ VERNIER_IMPL double OnlineElm::variance_factor(const double* features) const noe
   const Index size = root_.rows();
   double square = 0;
   for (Index first = 0; first < size; first += tile) {
-    const Index count = std::min(tile, size - first);
+    const Index count = (std::min)(tile, size - first);
     double product[tile] = {};
     for (Index k = 0; k < size; ++k) {
       const double h = node(k, features);

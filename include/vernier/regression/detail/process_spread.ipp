@@ -15,11 +15,11 @@ VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
   tiles_.assign(static_cast<std::size_t>(rows_ * (rows_ + 1) / 2 * size * size), 0.0);
   MatrixX columns;
   for (Index j = 0; j < rows_; ++j) {  // a tile's columns of the inverse are zero above it
-    const Index first = j * size, rest = n - first, width = std::min(size, rest);
+    const Index first = j * size, rest = n - first, width = (std::min)(size, rest);
     columns = MatrixX::Identity(rest, width);
     solve_lower(factor.bottomRightCorner(rest, rest), columns);
     for (Index i = j; i < rows_; ++i) {
-      const Index height = std::min(size, n - i * size);
+      const Index height = (std::min)(size, n - i * size);
       for (Index c = 0; c < width; ++c)
         std::copy_n(&columns(i * size - first, c), height, tiles_.data() + offset(i, j) + c * size);
     }
@@ -28,7 +28,7 @@ VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
 
 /// A tile of values of nodes, zero beyond the last.
 VERNIER_LOCAL void fill_tile(const NodeSum& nodes, const double* features, Index first, double* out) noexcept {
-  const Index padded = (nodes.nodes() + 7) / 8 * 8, count = std::min(LowerInverseTiles::size, padded - first);
+  const Index padded = (nodes.nodes() + 7) / 8 * 8, count = (std::min)(LowerInverseTiles::size, padded - first);
   nodes.node_values(features, first, count, out);
   std::fill(out + count, out + LowerInverseTiles::size, 0.0);
 }
@@ -89,7 +89,7 @@ VERNIER_IMPL void ProcessSpread::standard_deviation(const NodeSum& kernels, cons
   }
   const double explained = inverse_.square_of_product(kernels, workspace);
   const double of_mean = (1 - known) * (1 - known) / precision_;
-  const double factor = std::sqrt(std::max(0.0, 1 - explained) + of_mean);
+  const double factor = std::sqrt((std::max)(0.0, 1 - explained) + of_mean);
   for (Index o = 0; o < signal_deviation_.size(); ++o) out[o] = signal_deviation_(o) * factor;
 }
 

@@ -17,7 +17,7 @@ VERNIER_IMPL RankedNodes rank_nodes(const ConstMatrixRef& h, const ConstMatrixRe
   MatrixX columns = rows_scaled(root, h), residual = rows_scaled(root, targets);
   VectorX basis = root / root.norm(), leverage = VectorX::Zero(n), inverse(n);
   const VectorX norms = squared_column_norms(columns).cwiseSqrt();
-  MatrixX taken(n, std::min(n, h.cols() + 1));
+  MatrixX taken(n, (std::min)(n, h.cols() + 1));
   std::vector<Index> left(static_cast<std::size_t>(h.cols()));
   for (Index k = 0; k < h.cols(); ++k) left[static_cast<std::size_t>(k)] = k;
 

@@ -10,7 +10,7 @@ namespace vernier::detail {
 template <int W, int Rows, int Vectors>
 VERNIER_INLINE void weighted_product_kernel(const WeightedProduct& p) {
   for (Index begin = 0; begin < p.samples; begin += p.tile_samples) {
-    const Index samples = std::min(p.tile_samples, p.samples - begin);
+    const Index samples = (std::min)(p.tile_samples, p.samples - begin);
     for (Index s = 0; s < samples; ++s) {
       const double weight = p.weights[begin + s];
       const double* from = p.left + (begin + s) * p.stride;

@@ -51,8 +51,8 @@ VERNIER_IMPL void VarProTrainingError::operator()(const ConstMatrixRef& populati
 
 VERNIER_IMPL VectorX VarProTrainingError::gradient(const ConstVectorRef& theta) const {
   VariableProjection projection(layer_, features_, targets_, ridge_, weights());
-  require(theta.size() == projection.dimension(), "VarProElm: ", theta.size(), " hidden weights, expected ",
-          projection.dimension());
+  demand(theta.size() == projection.dimension(), "VarProElm: ", theta.size(), " hidden weights, expected ",
+         projection.dimension());
   projection.evaluate(theta);
   return projection.gradient();
 }

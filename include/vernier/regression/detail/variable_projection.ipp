@@ -27,7 +27,7 @@ VERNIER_IMPL VariableProjection::VariableProjection(const HiddenLayer& layer, co
       shared_(samples_, features.cols() + (radial() ? 2 : 1)),
       hidden_(MatrixX::Zero(stride_, samples_)),
       products_(stride_, stride_),
-      ones_(VectorX::Ones(std::max(samples_, nodes_ + 1))) {
+      ones_(VectorX::Ones((std::max)(samples_, nodes_ + 1))) {
   const Index f = features.cols();
   shared_.leftCols(f) = features;
   shared_.col(f).setOnes();
@@ -140,7 +140,7 @@ VERNIER_IMPL void VariableProjection::fill(const VectorX& theta, MatrixX& column
   constexpr Index tile = 256;
   MatrixX block;
   for (Index begin = 0; begin < samples_; begin += tile) {
-    const Index count = std::min(tile, samples_ - begin);
+    const Index count = (std::min)(tile, samples_ - begin);
     layer_.outputs(features_.middleRows(begin, count), theta, block);
     for (Index i = 0; i < count; ++i)
       for (Index k = 0; k < nodes_; ++k) columns(k, begin + i) = roots_(begin + i) * block(i, k);
@@ -197,11 +197,11 @@ VERNIER_IMPL void VariableProjection::products_of_pairs(Index begin, Index end) 
   const Index d = shared_.cols(), pairs = d * (d + 1) / 2;
   constexpr Index stage = 512;  // samples that stay in the second-level cache while all tasks pass over them
   MatrixX tile(stride_, tile_samples());
-  VectorX weights(std::min(stage, samples_));
+  VectorX weights((std::min)(stage, samples_));
   for (Index task = begin; task < end; ++task)
     by_pair_[static_cast<std::size_t>(task)] = MatrixX::Zero(stride_, stride_);
   for (Index from = 0; from < samples_; from += stage) {
-    const Index count = std::min(stage, samples_ - from);
+    const Index count = (std::min)(stage, samples_ - from);
     Index task = 0;
     const auto run = [&](const MatrixX& right, bool symmetric) {
       add_weighted_product({slopes_.col(from).data(), right.col(from).data(), weights.data(), tile.data(),
@@ -214,7 +214,7 @@ VERNIER_IMPL void VariableProjection::products_of_pairs(Index begin, Index end) 
         for (Index s = 0; s < count; ++s) weights(s) = shared_(from + s, j) * shared_(from + s, i);
         run(slopes_, true);
       }
-    for (task = std::max(begin, pairs); task < end; ++task) {
+    for (task = (std::max)(begin, pairs); task < end; ++task) {
       for (Index s = 0; s < count; ++s) weights(s) = shared_(from + s, task - pairs);
       run(hidden_, false);
     }

@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 
 namespace vernier::detail {
@@ -97,7 +98,7 @@ class FanucReader {
       if (key.size() == 2 && key[0] == 'j') joints = true;
       if (key.size() == 2 && key[0] == 'e') {
         const std::optional<double> axis = signed_number(text_, k + 2, next, range);
-        external = external || !axis || *axis != 0;
+        external = external || !axis || !same_value(*axis, 0);
       }
     }
     if (!group) return refuse("no group 1");
@@ -193,7 +194,7 @@ class FanucReader {
       }
       any = true;
       const std::size_t first = i + (position ? 2 : 3), last = text.find_first_of(":]", first);
-      const std::size_t close = std::min(text.find(']', first), text.size());
+      const std::size_t close = (std::min)(text.find(']', first), text.size());
       i = close;  // words of its comment are no options
       if (registers || last == std::string_view::npos) {
         steps_.push_back({{}, {}, {}, kind});
@@ -211,7 +212,7 @@ class FanucReader {
       }
       options = close;
     }
-    const std::string rest = lower_case(text.substr(std::min(options, text.size())));
+    const std::string rest = lower_case(text.substr((std::min)(options, text.size())));
     if (rest.find("offset") != std::string::npos) remark("an offset that a register adds");
     const std::string increment = " inc";  // not the beginning of a longer word
     std::size_t at = rest.find(increment);

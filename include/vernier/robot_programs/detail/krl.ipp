@@ -10,6 +10,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 
 namespace vernier::detail {
@@ -285,7 +286,8 @@ class KrlReader {
     }
     for (int e = 1; e <= 6; ++e) {
       const Component* part = find(parts, message('e', e));
-      if (part != nullptr && (!part->number || *part->number != 0)) return refuse("external axes are in use");
+      if (part != nullptr && (!part->number || !same_value(*part->number, 0)))
+        return refuse("external axes are in use");
     }
     ProgramTarget out;
     place(text_, text_.tokens[first].begin, text_.tokens[first].line, out);
@@ -308,7 +310,7 @@ class KrlReader {
       if (status != nullptr && turn != nullptr) {
         for (const Component* part : {status, turn}) {
           if (!part->number || !(*part->number >= 0 && *part->number < 1024) ||
-              *part->number != std::floor(*part->number))
+              !same_value(*part->number, std::floor(*part->number)))
             return refuse("S or T is no number of bits");
           out.configuration.push_back(static_cast<int>(*part->number));
           out.configuration_numbers.push_back(part->range);

@@ -192,8 +192,8 @@ VERNIER_IMPL BracketValue read_brackets(const ProgramText& text, std::size_t& i,
 }
 
 VERNIER_IMPL std::size_t behind_brackets(const ProgramText& text, std::size_t i, std::size_t stop) {
-  if (!text.is(i, '(') && !text.is(i, '[') && !text.is(i, '{')) return std::min(i, stop);
-  return text.tokens[i].partner == 0 ? stop : std::min(text.tokens[i].partner + 1, stop);
+  if (!text.is(i, '(') && !text.is(i, '[') && !text.is(i, '{')) return (std::min)(i, stop);
+  return text.tokens[i].partner == 0 ? stop : (std::min)(text.tokens[i].partner + 1, stop);
 }
 
 VERNIER_IMPL void place(const ProgramText& text, std::size_t byte, std::size_t line, ProgramTarget& target) {

@@ -55,7 +55,7 @@ class RapidReader {
       std::size_t k = i + 2;
       if (text_.is(k, '(')) k = behind_brackets(text_, k, text_.tokens.size());
       while (k < text_.tokens.size() && !text_.is_line_end(k)) ++k;
-      program_.stamp_at = text_.tokens[std::min(k, text_.tokens.size() - 1)].end;
+      program_.stamp_at = text_.tokens[(std::min)(k, text_.tokens.size() - 1)].end;
       return;
     }
     throw DataError(message(text_.name, ": no MODULE, so this is no RAPID program"));

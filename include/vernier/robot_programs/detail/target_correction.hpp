@@ -18,7 +18,7 @@ struct ProgramArm {
   FunctionRef<Isometry3(const JointVector<6>& joints)> pose;
   /// The joint values to which the controller moves for a pose, see `controller_joints`.
   FunctionRef<ControllerJoints(const Isometry3& pose, const std::vector<int>& configuration,
-                               const JointVector<6>& near)>
+                               const JointVector<6>& close_to)>
       joints;
   /// The command that brings the calibrated arm to a pose, near joint values, coming from a command before.
   FunctionRef<Correction<6>(const Isometry3& pose, const JointVector<6>& joints, const JointVector<6>& previous)>

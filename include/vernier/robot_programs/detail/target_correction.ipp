@@ -25,9 +25,9 @@ VERNIER_LOCAL ProgramFrames known_frames(const std::map<std::string, Isometry3>&
 VERNIER_IMPL ProgramFrames known_frames(const std::map<std::string, Isometry3>& stated, const ProgramFrames& given,
                                         std::string_view kind) {
   ProgramFrames out{stated, given.others};
-  require(!given.others || is_pose(*given.others), "correct_program: a frame of ", kind, "s is no rigid motion");
+  demand(!given.others || is_pose(*given.others), "correct_program: a frame of ", kind, "s is no rigid motion");
   for (const auto& [name, frame] : given.by_name) {
-    require(is_pose(frame), "correct_program: the frame of the ", kind, " ", name, " is no rigid motion");
+    demand(is_pose(frame), "correct_program: the frame of the ", kind, " ", name, " is no rigid motion");
     out.by_name[lower_case(name)] = frame;
   }
   return out;
@@ -82,7 +82,7 @@ class TargetCorrection {
   }
 
   VERNIER_LOCAL bool find_frames(const ProgramTarget& target, Frames& frames);
-  VERNIER_LOCAL JointVector<6> near(std::size_t k) const;
+  VERNIER_LOCAL JointVector<6> joints_near(std::size_t k) const;
   VERNIER_LOCAL void correct(std::size_t k);
 
   const RobotProgram& program_;
@@ -111,7 +111,7 @@ VERNIER_IMPL bool TargetCorrection::find_frames(const ProgramTarget& target, Fra
 }
 
 /// Joint values near those of a target: its own, else those before it.
-VERNIER_IMPL JointVector<6> TargetCorrection::near(std::size_t k) const {
+VERNIER_IMPL JointVector<6> TargetCorrection::joints_near(std::size_t k) const {
   const ProgramTarget& target = program_.targets[k];
   JointVector<6> out = target.joints;
   if (!out.allFinite() && target.previous) out = stands_[*target.previous];
@@ -129,7 +129,7 @@ VERNIER_IMPL void TargetCorrection::correct(std::size_t k) {
   if (pose) {
     if (!find_frames(target, frames)) return;
     meant = options_.robot_base * *frames.object * target.pose * frames.tool->inverse() * options_.flange.inverse();
-    const ControllerJoints found = arm_.joints(meant, target.configuration, near(k));
+    const ControllerJoints found = arm_.joints(meant, target.configuration, joints_near(k));
     if (!found.joints) return refuse(target, found.reason);
     joints = *found.joints;
   } else {
@@ -173,13 +173,13 @@ VERNIER_IMPL CorrectedProgram TargetCorrection::run() {
 
 VERNIER_IMPL CorrectedProgram correct_targets(const RobotProgram& program, const ProgramArm& arm,
                                               const ProgramOptions& options) {
-  require(is_pose(options.robot_base), "correct_program: robot_base is no rigid motion");
-  require(is_pose(options.flange), "correct_program: flange is no rigid motion");
+  demand(is_pose(options.robot_base), "correct_program: robot_base is no rigid motion");
+  demand(is_pose(options.flange), "correct_program: flange is no rigid motion");
   if (program.language == ProgramLanguage::fanuc_tp && !options.arm)
     for (const ProgramTarget& target : program.targets)
-      require(target.kind != TargetKind::pose,
-              "correct_program: a Fanuc program with poses needs ProgramOptions::arm, the sign of J5 at a position "
-              "with N");
+      demand(target.kind != TargetKind::pose,
+             "correct_program: a Fanuc program with poses needs ProgramOptions::arm, the sign of J5 at a position "
+             "with N");
   const ProgramFrames tools = known_frames(program.tools, options.tools, "tool"),
                       objects = known_frames(program.workobjects, options.workobjects, "work object");
   return TargetCorrection(program, arm, options, tools, objects).run();

@@ -54,7 +54,7 @@ class UrscriptReader {
   }
 
   std::size_t line_end(std::size_t i) const {
-    const std::size_t stop = std::min(i + 20, text_.tokens.size());  // enough for a remark
+    const std::size_t stop = (std::min)(i + 20, text_.tokens.size());  // enough for a remark
     while (i < stop && !text_.is_line_end(i)) ++i;
     return i;
   }
@@ -151,7 +151,7 @@ class UrscriptReader {
 
   std::size_t argument_end(std::size_t i, std::size_t stop) const {
     while (i < stop && !text_.is(i, ',')) i = is_open(i) ? behind_brackets(text_, i, stop) : i + 1;
-    return std::min(i, stop);
+    return (std::min)(i, stop);
   }
   bool is_open(std::size_t i) const { return text_.is(i, '(') || text_.is(i, '[') || text_.is(i, '{'); }
 
@@ -171,7 +171,7 @@ class UrscriptReader {
       const std::size_t end = argument_end(first + 2, last - 1), before = steps_.size();
       target(instruction, first + 2, end, step);
       if (steps_.size() == before + 1 && steps_.back().target && end < last - 1)
-        near_[*steps_.back().target] = near(end + 1, last - 1);
+        near_[*steps_.back().target] = joints_near(end + 1, last - 1);
       return;
     }
     if (is_pose(first) || text_.is(first, '[')) {
@@ -198,7 +198,7 @@ class UrscriptReader {
   }
 
   // joints of an argument [qnear=]..; not finite where they are no literal
-  JointVector<6> near(std::size_t first, std::size_t last) const {
+  JointVector<6> joints_near(std::size_t first, std::size_t last) const {
     JointVector<6> out = ProgramTarget{}.joints;
     if (text_.is_word(first) && text_.is(first + 1, '=')) first += 2;
     if (text_.is(first, '[')) {

@@ -17,7 +17,7 @@ namespace vernier::detail {
 template <class Hit>
 void for_each_hit(double count, double probability, Rng& rng, Hit&& hit) {
   if (probability <= 0) return;
-  const double log_miss = std::log1p(-std::min(probability, 1 - 1e-12));
+  const double log_miss = std::log1p(-(std::min)(probability, 1 - 1e-12));
   for (double at = -1;;) {
     at += 1 + std::floor(std::log1p(-rng.uniform()) / log_miss);
     if (!(at < count)) return;

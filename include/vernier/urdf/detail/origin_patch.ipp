@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/urdf/detail/origin_patch.hpp"
 #include "vernier/urdf/detail/roll_pitch_yaw.hpp"
 #include "vernier/urdf/detail/urdf_document.hpp"
@@ -48,7 +49,7 @@ VERNIER_LOCAL void patch_origin(std::string_view text, const XmlTag& joint, cons
 }
 
 VERNIER_IMPL std::string exact_number(double value) {
-  std::string out = message(value == 0 ? 0.0 : value);  // not -0
+  std::string out = message(same_value(value, 0) ? 0.0 : value);  // not -0
   const std::size_t exponent = out.find('e');
   if (exponent != std::string::npos && out.find('.') == std::string::npos) out.insert(exponent, ".0");
   return out;

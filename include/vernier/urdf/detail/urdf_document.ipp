@@ -51,7 +51,7 @@ class UrdfElement {
       const std::size_t first = rest.find_first_not_of(" \t\r\n");
       if (first == std::string_view::npos) break;
       rest.remove_prefix(first);
-      const std::size_t end = std::min(rest.find_first_of(" \t\r\n"), rest.size());
+      const std::size_t end = (std::min)(rest.find_first_of(" \t\r\n"), rest.size());
       const double number = this->number(rest.substr(0, end), attribute, owner);
       if (count < 3) out(count) = number;
       rest.remove_prefix(end);

@@ -1,0 +1,192 @@
+// Names that headers of other software define as macros. Each becomes characters that no compiler accepts, so a header
+// of ours that uses such a name does not compile. <curses.h>, <complex.h> and <math.h> spare C++ programs their macros
+// `move`, `clear`, `complex`, `round`.
+
+// Qt, without QT_NO_KEYWORDS
+#define emit @
+#define forever @
+#define foreach @
+#define signals @
+#define slots @
+#define Q_EMIT @
+#define Q_OBJECT @
+#define Q_SIGNALS @
+#define Q_SLOTS @
+
+// <windows.h>, with what it brings: minwindef.h, rpcndr.h, winuser.h, wingdi.h, wtypes.h
+#define ABSOLUTE @
+#define ALTERNATE @
+#define CALLBACK @
+#define CONST @
+#define CopyFile @
+#define CreateFile @
+#define DELETE @
+#define DIFFERENCE @
+#define DOMAIN @
+#define DeleteFile @
+#define DrawText @
+#define ERROR @
+#define FALSE @
+#define FAR @
+#define GetCurrentTime(...) @
+#define GetMessage @
+#define GetObject @
+#define IGNORE @
+#define IN @
+#define INFINITE @
+#define LoadImage @
+#define MoveFile @
+#define NEAR @
+#define NO_ERROR @
+#define OPAQUE @
+#define OPTIONAL @
+#define OUT @
+#define OVERFLOW @
+#define PASCAL @
+#define RELATIVE @
+#define STRICT @
+#define SendMessage @
+#define THIS @
+#define TRANSPARENT @
+#define TRUE @
+#define UNDERFLOW @
+#define VOID @
+#define Yield(...) @
+#define cdecl @
+#define far @
+#define hyper @
+#define interface @
+#define max(...) @
+#define min(...) @
+#define near @
+#define pascal @
+#define small @
+
+// <dlgs.h>
+#define chx1 @
+#define chx2 @
+#define cmb1 @
+#define cmb2 @
+#define ctl1 @
+#define edt1 @
+#define edt2 @
+#define frm1 @
+#define frm2 @
+#define grp1 @
+#define grp2 @
+#define grp3 @
+#define grp4 @
+#define ico1 @
+#define ico2 @
+#define lst1 @
+#define lst2 @
+#define psh1 @
+#define psh2 @
+#define rad1 @
+#define rad2 @
+#define rad3 @
+#define rct1 @
+#define rct2 @
+#define scr1 @
+#define scr2 @
+#define stc1 @
+#define stc2 @
+
+// macOS: <AssertMacros.h>, <objc/objc.h>, <ConditionalMacros.h>
+#define check(...) @
+#define check_noerr(...) @
+#define check_string(...) @
+#define debug_string(...) @
+#define require(...) @
+#define require_action(...) @
+#define require_noerr(...) @
+#define require_string(...) @
+#define verify(...) @
+#define verify_action(...) @
+#define verify_noerr(...) @
+#define Nil @
+#define NO @
+#define TYPE_BOOL @
+#define YES @
+#define nil @
+
+// Unreal Engine
+#define ensure(...) @
+#define TEXT(...) @
+
+// <X11/Xlib.h>, <X11/X.h>
+#define Above @
+#define Always @
+#define Below @
+#define Bool @
+#define Complex @
+#define Convex @
+#define CurrentTime @
+#define DestroyAll @
+#define Expose @
+#define False @
+#define FocusIn @
+#define GrayScale @
+#define KeyPress @
+#define LockMask @
+#define None @
+#define Nonconvex @
+#define Opposite @
+#define Status @
+#define Success @
+#define True @
+#define Unsorted @
+
+// Arduino.h, binary.h
+#define DEG_TO_RAD @
+#define EULER @
+#define F(...) @
+#define HALF_PI @
+#define HIGH @
+#define INPUT @
+#define LOW @
+#define OUTPUT @
+#define PI @
+#define RAD_TO_DEG @
+#define TWO_PI @
+#define bit(...) @
+#define constrain(...) @
+#define degrees(...) @
+#define radians(...) @
+#define sq(...) @
+
+// POSIX and BSD: <sys/sysmacros.h>, <termios.h>, <complex.h>, newlib's <ctype.h>, <math.h>
+#define B0 @
+#define B1 @
+#define B50 @
+#define B110 @
+#define B9600 @
+#define ECHO @
+#define I @
+#define M_PI @
+#define SING @
+#define TLOSS @
+#define _B @
+#define _C @
+#define _L @
+#define _N @
+#define _P @
+#define _S @
+#define _U @
+#define _X @
+#define major(...) @
+#define makedev(...) @
+#define minor(...) @
+
+// MATLAB's mex.h, GoogleTest and logging libraries
+#define CHECK(...) @
+#define DEBUG @
+#define FAIL(...) @
+#define FATAL @
+#define INFO @
+#define LOG(...) @
+#define REQUIRE(...) @
+#define SUCCEED(...) @
+#define TEST(...) @
+#define WARNING @
+#define printf @

@@ -9,6 +9,7 @@
 #include "dispatch.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/data/same_pose.hpp"
 #include "vernier/data/split.hpp"
 
 namespace support {
@@ -20,13 +21,14 @@ namespace {
 /// Rows of a file to learn from and to hold out.
 /// @param rule becomes the choice in words
 template <int N>
-vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, std::uint64_t seed, std::string& rule) {
+vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, const vn::SamePose& same,
+                      std::uint64_t seed, std::string& rule) {
   using vn::Face;
   const bool far = seed % 2 == 1;
   rule = fmt::format("{:.3g} % of the rows, ", o.test_fraction * 100);
   const auto region = [&](Face face, const char* which) {
     rule += which;
-    return vn::split_region(data, {.test_fraction = o.test_fraction, .face = face});
+    return vn::split_region(data, {.test_fraction = o.test_fraction, .face = face}, same);
   };
   if (o.split == "region-x") return far ? region(Face::x_high, "largest x") : region(Face::x_low, "smallest x");
   if (o.split == "region-z") return far ? region(Face::z_high, "largest z") : region(Face::z_low, "smallest z");
@@ -35,18 +37,18 @@ vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, s
     const auto block =
         static_cast<vn::Index>((seed + static_cast<std::uint64_t>(blocks) - 1) % static_cast<std::uint64_t>(blocks));
     rule = fmt::format("block {} of {} contiguous blocks of the rows", block + 1, blocks);
-    return vn::split_block(data, block, blocks);
+    return vn::split_block(data, block, blocks, same);
   }
   if (o.split == "time") {
     rule += "the last ones";
-    return vn::split_time(data, o.test_fraction);
+    return vn::split_time(data, o.test_fraction, same);
   }
   if (o.split == "random") {
     rule += fmt::format("at random, seed {}", seed);
-    return vn::split(data, {.test_fraction = o.test_fraction, .seed = seed});
+    return vn::split(data, {.test_fraction = o.test_fraction, .seed = seed}, same);
   }
   rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every);
-  return vn::split_every(data, o.test_every);
+  return vn::split_every(data, o.test_every, same);
 }
 
 /// Training and held-out poses of station s, whose file has these poses.
@@ -60,13 +62,48 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
   } else {
     if (out.train.size() < 2)
       throw vn::CalibrationFailure(o.data[s] + ": a single row; a calibration needs many poses, and held-out ones");
-    out = hold_out(vn::Dataset<N>(out.train), o, seed, rule);
+    out = hold_out(vn::Dataset<N>(out.train), o, {.joint_types = types}, seed, rule);
   }
   const vn::Index n = out.train.size();
   if (o.train_rows > n)
     throw vn::CalibrationFailure(
         fmt::format("{}: --train asks for {} rows, there are {} to learn from", o.data[s], o.train_rows, n));
   if (o.train_rows > 0) out.train = vn::random_subset(out.train, o.train_rows, seed);
+  return out;
+}
+
+/// Takes training rows away that visit a held-out pose, of any station.
+/// @return how many
+template <int N>
+vn::Index keep_poses_apart(std::vector<vn::Split<N>>& stations, const CalibrationOptions& o, const vn::SamePose& same) {
+  vn::Index tests = 0, trains = 0, out = 0;
+  for (const auto& station : stations) {
+    tests += station.test.size();
+    trains += station.train.size();
+  }
+  vn::JointRows<N> joints(tests + trains, N);
+  vn::Index at = 0;
+  const auto append = [&](const vn::Dataset<N>& data) {
+    joints.middleRows(at, data.size()) = data.joints();
+    at += data.size();
+  };
+  for (const auto& station : stations) append(station.test);
+  for (const auto& station : stations) append(station.train);
+  const std::vector<vn::Index> poses = vn::pose_numbers(joints, same);
+  const vn::Index held_out = *std::max_element(poses.begin(), poses.begin() + tests) + 1;
+  auto pose = poses.begin() + tests;
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    std::vector<vn::Index> kept;
+    for (vn::Index i = 0; i < stations[s].train.size(); ++i)
+      if (*pose++ >= held_out) kept.push_back(i);
+    out += stations[s].train.size() - static_cast<vn::Index>(kept.size());
+    if (kept.empty())
+      throw vn::CalibrationFailure(o.data[s] +
+                                   ": every pose is also a held-out one, so nothing can be learned from it" +
+                                   (o.test.empty() ? "" : "; --test needs poses that --data has not"));
+    if (static_cast<vn::Index>(kept.size()) < stations[s].train.size())
+      stations[s].train = stations[s].train.rows(kept);
+  }
   return out;
 }
 
@@ -82,11 +119,18 @@ template <int N>
 MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const vn::JointType> types,
                                    std::uint64_t seed) {
   MeasuredFiles<N> out;
+  const vn::SamePose same{.joint_types = types};
+  std::vector<vn::Split<N>> stations;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     out.files.push_back(vn::read_dataset<N>(o.data[s], types));
-    vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
-    out.train.add(std::move(station.train), o.data[s]);
-    out.test.add(std::move(station.test));
+    stations.push_back(split_station<N>(out.files.back(), o, s, types, seed, out.held_out));
+  }
+  if (const vn::Index apart = keep_poses_apart(stations, o, same); apart > 0)
+    out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
+                                apart == 1 ? "is" : "are");
+  for (std::size_t s = 0; s < o.data.size(); ++s) {
+    out.train.add(vn::readings_joined(stations[s].train, same), o.data[s]);
+    out.test.add(std::move(stations[s].test));
   }
   for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types), file);
   if (!o.contacts.empty())

@@ -3,12 +3,15 @@
 /// @file
 /// Learns what the models of a calibration leave, and decides by cross-validation what of it is deployed.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "vernier/calibration/calibration.hpp"
+#include "vernier/data/same_pose.hpp"
 #include "vernier/evaluation/position_errors.hpp"
+#include "vernier/evaluation/sign_flip_test.hpp"
 #include "vernier/identification/in_one_frame.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 #include "vernier/regression/kernel_elm.hpp"
@@ -24,16 +27,25 @@ VectorX visited_errors(const ErrorModel<Chain>& model, const Dataset<Chain::dof>
   return position_errors_of(predicted_visits(model, data, true, {}), data.positions());
 }
 
-/// Learns what a model leaves at some poses in its frame.
+/// The pose of each row.
+template <class Chain>
+std::vector<Index> poses_of(const ErrorModel<Chain>& model, const JointRows<Chain::dof>& joints) {
+  const auto types = model.nominal().model().joint_types();
+  return pose_numbers(joints, {.joint_types = types});
+}
+
+/// Learns what a model leaves at some poses in its frame. Each pose counts once, with the mean of its rows: learners
+/// choose among themselves by left-out rows, which must not be of a pose that they have seen.
 template <class Chain>
 LearnedRemainder<Chain::dof> learn_remainder(bool on_geometry, Learner learner, const ErrorModel<Chain>& model,
                                              const Dataset<Chain::dof>& data, const RemainderOptions& options,
                                              const FitOptions& fit) {
   const RidgeElm elm{.hidden_nodes = options.hidden_nodes};
-  const PointRows error = positions(model, data.joints()) - data.positions();
-  const auto learned = [&](const auto& recipe) -> LearnedError<Chain::dof> {
-    return recipe.fit(data.joints(), error, fit);
-  };
+  const std::vector<Index> poses = poses_of(model, data.joints());
+  const std::vector<Index> first = first_rows(poses);
+  const JointRows<Chain::dof> joints = data.rows(first).joints();
+  const PointRows error = means_of_rows(positions(model, data.joints()) - data.positions(), poses);
+  const auto learned = [&](const auto& recipe) -> LearnedError<Chain::dof> { return recipe.fit(joints, error, fit); };
   return {on_geometry, learner,
           learner == Learner::pso_elm     ? learned(Tuned<RidgeElm, Pso>{elm, Pso{.particles = options.particles,
                                                                                   .iterations = options.iterations,
@@ -43,27 +55,40 @@ LearnedRemainder<Chain::dof> learn_remainder(bool on_geometry, Learner learner, 
           JointCoverage<Chain::dof>::covering(data.joints())};
 }
 
-/// Errors of poses left out in folds of consecutive ones, of which what is learned on the others is taken off.
+/// Errors of poses left out, with all their rows, in folds of consecutive ones, of which what is learned on the others
+/// is taken off.
 template <class Chain>
 VectorX fold_errors(Learner learner, const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data,
                     const RemainderOptions& options, const FitOptions& fit) {
   constexpr Index folds = 5;
+  const std::vector<Index> poses = poses_of(model, data.joints());
+  const Index different = *std::max_element(poses.begin(), poses.end()) + 1;
   VectorX out(data.size());
   for (Index fold = 0; fold < folds; ++fold) {
-    const Index begin = fold * data.size() / folds, end = (fold + 1) * data.size() / folds;
+    const Index begin = fold * different / folds, end = (fold + 1) * different / folds;
     std::vector<Index> inside, left_out;
-    for (Index i = 0; i < data.size(); ++i) (i >= begin && i < end ? left_out : inside).push_back(i);
+    for (Index i = 0; i < data.size(); ++i) {
+      const Index pose = poses[static_cast<std::size_t>(i)];
+      (pose >= begin && pose < end ? left_out : inside).push_back(i);
+    }
     const auto learned = learn_remainder(false, learner, model, data.rows(inside), options,
                                          {.seed = fit.seed, .executor = fit.executor});
-    out.segment(begin, end - begin) =
+    const VectorX errors =
         position_errors(CartesianCorrected(model, learned.predictor, learned.coverage), data.rows(left_out));
+    for (std::size_t k = 0; k < left_out.size(); ++k) out(left_out[k]) = errors(static_cast<Index>(k));
   }
   return out;
 }
 
-/// Whether errors are smaller, by more than a standard error.
-inline bool clearly_better(const VectorX& errors, const VectorX& others) {
-  return errors.mean() < others.mean() && one_standard_error_rule({{0, errors}, {1, others}}) == 0;
+/// Whether errors are smaller, by more than a standard error and more than chance makes them in one of twenty
+/// calibrations.
+/// @param errors,others of the same poses
+/// @param looks         how often a calibration asks this
+/// @cite Fisher 1935
+inline bool clearly_better(const VectorX& errors, const VectorX& others, std::size_t looks) {
+  const VectorX saved = others.cwiseAbs2() - errors.cwiseAbs2();
+  return errors.mean() < others.mean() && one_standard_error_rule({{0, errors}, {1, others}}) == 0 &&
+         sign_flip_test(saved) < 0.05 / static_cast<double>(looks);
 }
 
 /// The best learner on one model.
@@ -91,7 +116,8 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   const Dataset<Chain::dof> data = in_one_frame<Chain::dof>(stations, bases, false);
   const ErrorModel<Chain>& model = models.front();
   out.remainders.push_back(learn_remainder(on_geometry, options.learners.front(), model, data, options, fit));
-  if (data.size() < enough) return {};
+  const std::vector<Index> poses = poses_of(model, data.joints());
+  if (*std::max_element(poses.begin(), poses.end()) + 1 < enough) return {};
   const VectorX without = position_errors(model, data);
   const auto changed = [&](const VectorX& with) {
     VectorX errors = left_out;
@@ -110,7 +136,9 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
   if (errors.empty()) return {};
   const std::size_t best = one_standard_error_rule(errors);
   const VectorX& with = errors[best].errors;
-  return BestLearner{out.trials.size() - 1 - best, clearly_better(with, without), changed(with)};
+  const std::size_t looks = 2 * options.learners.size();
+  return BestLearner{out.trials.size() - 1 - best,
+                     clearly_better(means_of_poses(with, poses), means_of_poses(without, poses), looks), changed(with)};
 }
 
 /// Learns what the stages leave, as `RemainderOptions` says. What is learned on geometry is deployed where it predicts
@@ -130,8 +158,17 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
                             errors.left_out_errors, errors.left_out_rows, options, fit);
   std::optional<std::size_t> chosen;
   if (on_model && on_model->helps) chosen = on_model->trial;
-  if (on_geometry && clearly_better(on_geometry->left_out, chosen ? on_model->left_out : errors.left_out_errors))
-    chosen = on_geometry->trial;
+  if (on_geometry) {
+    std::vector<Isometry3> bases;
+    for (const auto& model : errors.models()) bases.push_back(model.identified().base());
+    const std::vector<Index> all = poses_of(errors.model(), in_one_frame<Chain::dof>(stations, bases, false).joints());
+    std::vector<Index> poses;
+    for (const Index row : errors.left_out_rows) poses.push_back(all[static_cast<std::size_t>(row)]);
+    const VectorX& others = chosen ? on_model->left_out : errors.left_out_errors;
+    if (clearly_better(means_of_poses(on_geometry->left_out, poses), means_of_poses(others, poses),
+                       2 * options.learners.size()))
+      chosen = on_geometry->trial;
+  }
   if (!chosen) return;
   RemainderTrial& trial = out.trials[*chosen];
   trial.supported = true;

@@ -61,6 +61,22 @@ VERNIER_IMPL SplitRows last_rows(Index n, double test_fraction) {
   return split_order(std::move(order), tests);
 }
 
+VERNIER_IMPL SplitRows with_whole_poses(const SplitRows& rows, const ConstMatrixRef& joints, const SamePose& same) {
+  const std::vector<Index> poses = pose_numbers(joints, same);
+  std::vector<bool> held_out(poses.size(), false), seen(poses.size(), false), test(poses.size(), false);
+  for (const Index row : rows.test) test[static_cast<std::size_t>(row)] = true;
+  SplitRows out;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto pose = static_cast<std::size_t>(poses[i]);
+    if (!seen[pose]) held_out[pose] = test[i];
+    seen[pose] = true;
+    (held_out[pose] ? out.test : out.train).push_back(static_cast<Index>(i));
+  }
+  demand(!out.train.empty() && !out.test.empty(), "split: the ", poses.size(),
+         " rows visit too few poses to hold some of them out: all rows of a pose stay together");
+  return out;
+}
+
 VERNIER_IMPL std::vector<Index> first_random_rows(Index size, Index n, std::uint64_t seed) {
   demand(n >= 1 && n <= size, "random_subset: ", n, " rows of ", size);
   std::vector<Index> order = Rng(seed).permutation(size);

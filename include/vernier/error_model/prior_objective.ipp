@@ -51,7 +51,7 @@ VERNIER_IMPL VectorX PriorObjective::precisions(const ConstVectorRef& variables)
 
 VERNIER_IMPL double PriorObjective::error(const VectorX& precisions) const {
   const FactorisedEquations solved(normal_, precisions, steps_);
-  return detail::error_norms(leave_one_out_errors(system_, solved, stride_)).mean();
+  return detail::error_norms(leave_one_out(system_, solved, stride_)).mean();
 }
 
 VERNIER_IMPL void PriorObjective::operator()(const ConstMatrixRef& population, VectorRef fitness) const {

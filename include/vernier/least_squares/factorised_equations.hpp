@@ -52,11 +52,15 @@ class FactorisedEquations {
   VERNIER_API void eliminate_local(const RowBlock& block, Rows6& rows) const;
   /// Covariances of the rows of blocks by local states alone: 6 x 6 of each block, side by side.
   VERNIER_API MatrixX local_gains(const std::vector<RowBlock>& blocks) const;
+  /// Covariance of all rows of blocks by local states alone, with that between blocks: six rows and columns a block.
+  VERNIER_API MatrixX joint_local_gains(const std::vector<RowBlock>& blocks) const;
 
   /// That of the normal equations.
   ExecutorRef executor() const { return normal_->executor; }
 
  private:
+  /// Covariance of local unknowns with the rows of blocks: local unknowns x six a block.
+  VERNIER_API MatrixX local_covariances(const std::vector<RowBlock>& blocks) const;
   /// Normal equations of dense and factored unknowns, local ones eliminated.
   struct Reduced {
     MatrixX matrix;         // lower triangle

@@ -124,20 +124,37 @@ VERNIER_IMPL void FactorisedEquations::eliminate_local(const RowBlock& block, Ro
   }
 }
 
-VERNIER_IMPL MatrixX FactorisedEquations::local_gains(const std::vector<RowBlock>& blocks) const {
-  MatrixX out = MatrixX::Zero(6, 6 * static_cast<Index>(blocks.size()));
-  if (reduced_ == nullptr) return out;
-  MatrixX columns = MatrixX::Zero(reduced_->local.size, out.cols());
+VERNIER_IMPL MatrixX FactorisedEquations::local_covariances(const std::vector<RowBlock>& blocks) const {
+  MatrixX columns = MatrixX::Zero(reduced_->local.size, 6 * static_cast<Index>(blocks.size()));
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (const RowBlock::Local& local : blocks[b].local)
       for (Index j = 0; local.state >= 0 && j < local.columns.cols(); ++j)
         for (Index r = 0; r < 6; ++r)
           columns(local.state * local.columns.cols() + j, 6 * static_cast<Index>(b) + r) = local.columns(r, j);
   solve_(reduced_->local, columns);
+  return columns;
+}
+
+VERNIER_IMPL MatrixX FactorisedEquations::local_gains(const std::vector<RowBlock>& blocks) const {
+  MatrixX out = MatrixX::Zero(6, 6 * static_cast<Index>(blocks.size()));
+  if (reduced_ == nullptr) return out;
+  const MatrixX columns = local_covariances(blocks);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (const RowBlock::Local& local : blocks[b].local)
       for (Index c = 6 * static_cast<Index>(b); local.state >= 0 && c < 6 * static_cast<Index>(b + 1); ++c)
         detail::add_columns(local.columns, &columns(local.state * local.columns.cols(), c), 1, &out(0, c));
+  return out;
+}
+
+VERNIER_IMPL MatrixX FactorisedEquations::joint_local_gains(const std::vector<RowBlock>& blocks) const {
+  MatrixX out = MatrixX::Zero(6 * static_cast<Index>(blocks.size()), 6 * static_cast<Index>(blocks.size()));
+  if (reduced_ == nullptr) return out;
+  const MatrixX columns = local_covariances(blocks);
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (const RowBlock::Local& local : blocks[b].local)
+      for (Index c = 0; local.state >= 0 && c < out.cols(); ++c)
+        detail::add_columns(local.columns, &columns(local.state * local.columns.cols(), c), 1,
+                            &out(6 * static_cast<Index>(b), c));
   return out;
 }
 

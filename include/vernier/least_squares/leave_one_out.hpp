@@ -1,22 +1,24 @@
 #pragma once
 
 /// @file
-/// Blocks of measurements left out one at a time, in closed form.
+/// Measurements left out pose by pose, in closed form.
 
 #include "vernier/least_squares/factorised_equations.hpp"
 
 namespace vernier {
 
-/// Validation blocks left out one at a time.
+/// Validation blocks, each predicted without the blocks of its pose.
 struct LeftOutBlocks {
   Eigen::Matrix3Xd errors;  ///< of positions, a column a block [m]; infinite where there is no solution
   /// Log predictive densities: of each block's measured values, predicted by all others, up to a constant [nat]. The
   /// variance of the whitened noise has its most likely value for these blocks. Not finite where there is no solution.
   VectorX log_densities;
+  std::vector<Index> poses{};  ///< of each column; empty where each block is of a pose of its own
 };
 
-/// Predicts blocks from all others, in closed form, at the solution of the linearised problem with given priors: the
-/// whitened error is `e_b = (I - H_bb)^-1 r_b`, its covariance that of the noise times `(I - H_bb)^-1`.
+/// Predicts blocks from those of all other poses, in closed form, at the solution of the linearised problem with given
+/// priors: the whitened errors of the blocks b of a pose are `e_b = (I - H_bb)^-1 r_b`, their covariance that of the
+/// noise times `(I - H_bb)^-1`.
 /// @param system the problem
 /// @param solved its normal equations with priors
 /// @param stride every stride-th of the validation blocks is left out
@@ -32,6 +34,10 @@ namespace detail {
 
 /// Norm of the position error of each block [m].
 VERNIER_API VectorX error_norms(const Eigen::Matrix3Xd& errors);
+/// Norms of position errors, the mean of each pose [m].
+VERNIER_API VectorX error_norms(const LeftOutBlocks& left_out);
+/// Means of the values of each pose; the values themselves where no poses are given.
+VERNIER_API VectorX means_of_poses(const VectorX& values, const std::vector<Index>& poses);
 
 }  // namespace detail
 

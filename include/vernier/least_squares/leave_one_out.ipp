@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/detail/dense.hpp"
@@ -13,9 +15,68 @@
 
 namespace vernier {
 
+namespace detail {
+
+/// Blocks of a pose that has several.
+struct LeftOutPose {
+  VectorX errors;          ///< whitened, six a block
+  double square;           ///< of the whitened errors
+  double log_determinant;  ///< of I - H
+};
+
+/// Predicts all blocks of a pose from those of other poses.
+VERNIER_LOCAL LeftOutPose leave_out(const BlockSystem& system, const FactorisedEquations& solved,
+                                    const std::vector<Index>& blocks) {
+  const auto size = static_cast<Index>(6 * blocks.size());
+  std::vector<RowBlock> rows(blocks.size());
+  MatrixX columns(system.unknowns(), size), rest = MatrixX::Identity(size, size);
+  VectorX residual(size);
+  Rows6 expanded(6, system.unknowns());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Index at = static_cast<Index>(6 * k);
+    system.rows(blocks[k], 1, &rows[k]);
+    rows[k].expand(system.group_sizes, expanded);
+    Vector6 here = rows[k].residual;
+    add_columns(expanded, solved.step().data(), 1, here.data());
+    if (system.local_states > 0) {
+      for (const RowBlock::Local& part : rows[k].local)
+        if (part.state >= 0)
+          add_columns(part.columns, &solved.local_step()(part.state * system.local_size), 1, here.data());
+      solved.eliminate_local(rows[k], expanded);
+    }
+    for (Index i = 0; i < 6; ++i) {
+      residual(at + i) = here(i);
+      for (Index c = 0; c < expanded.cols(); ++c) columns(c, at + i) = expanded(i, c);
+    }
+  }
+  solved.apply_inverse_factor(columns);
+  add_transposed_product(rest, columns, columns, -1);
+  if (system.local_states > 0) rest -= solved.joint_local_gains(rows);
+  LeftOutPose out{residual, 0, 0};
+  out.log_determinant = solve_general(rest, out.errors);
+  out.square = residual.dot(out.errors);
+  return out;
+}
+
+/// The validation blocks of each pose that has several.
+VERNIER_LOCAL std::vector<std::vector<Index>> repeated_poses(const std::vector<Index>& poses) {
+  std::vector<std::vector<Index>> blocks;
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    const auto pose = static_cast<std::size_t>(poses[b]);
+    if (pose >= blocks.size()) blocks.resize(pose + 1);
+    blocks[pose].push_back(static_cast<Index>(b));
+  }
+  std::erase_if(blocks, [](const std::vector<Index>& of_pose) { return of_pose.size() < 2; });
+  return blocks;
+}
+
+}  // namespace detail
+
 VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const FactorisedEquations& solved, Index stride) {
   const Index size = (system.validation_blocks + stride - 1) / stride;
   LeftOutBlocks out{Eigen::Matrix3Xd(3, size), VectorX::Constant(size, -std::numeric_limits<double>::infinity())};
+  for (Index b = 0; b < size && !system.poses.empty(); ++b)
+    out.poses.push_back(system.poses[static_cast<std::size_t>(b * stride)]);
   std::fill_n(out.errors.data(), 3 * size, std::numeric_limits<double>::infinity());
   if (!solved.usable()) return out;
   VectorX squares(size), log_determinants(size), values(size);  // of whitened errors; of I - H; measured ones
@@ -70,6 +131,27 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
       }
     }
   });
+  const std::vector<std::vector<Index>> repeated = detail::repeated_poses(system.poses);
+  solved.executor().for_ranges(static_cast<Index>(repeated.size()), [&](Index from, Index to) {
+    RowBlock block;
+    for (Index p = from; p < to; ++p) {
+      const std::vector<Index>& blocks = repeated[static_cast<std::size_t>(p)];
+      if (std::none_of(blocks.begin(), blocks.end(), [&](Index b) { return b % stride == 0; })) continue;
+      const detail::LeftOutPose pose = detail::leave_out(system, solved, blocks);
+      const double share = 1 / static_cast<double>(blocks.size());
+      for (std::size_t k = 0; k < blocks.size(); ++k) {
+        if (blocks[k] % stride != 0) continue;
+        const Index b = blocks[k] / stride;
+        squares(b) = share * pose.square;
+        log_determinants(b) = share * pose.log_determinant;
+        system.rows(blocks[k], 1, &block);
+        Vector6 left_out;
+        for (Index r = 0; r < 6; ++r) left_out(r) = pose.errors(static_cast<Index>(6 * k) + r);
+        const Vector6 error = block.unwhiten * left_out;
+        for (Index r = 0; r < 3; ++r) out.errors(r, b) = block.position_sigma * error(r);
+      }
+    }
+  });
   const double variance = squares.sum() / values.sum();
   for (Index b = 0; b < size; ++b)
     out.log_densities(b) = -0.5 * (squares(b) / variance - log_determinants(b) + std::log(variance) * values(b));
@@ -84,6 +166,24 @@ VERNIER_IMPL Eigen::Matrix3Xd leave_one_out_errors(const BlockSystem& system, co
 VERNIER_IMPL VectorX detail::error_norms(const Eigen::Matrix3Xd& errors) {
   VectorX out(errors.cols());
   for (Index b = 0; b < out.size(); ++b) out(b) = Vector3(errors(0, b), errors(1, b), errors(2, b)).norm();
+  return out;
+}
+
+VERNIER_IMPL VectorX detail::error_norms(const LeftOutBlocks& left_out) {
+  return means_of_poses(error_norms(left_out.errors), left_out.poses);
+}
+
+VERNIER_IMPL VectorX detail::means_of_poses(const VectorX& values, const std::vector<Index>& poses) {
+  if (poses.empty()) return values;
+  std::map<Index, std::pair<double, Index>> sums;  // and number of each pose
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    auto& [sum, count] = sums[poses[i]];
+    sum += values(static_cast<Index>(i));
+    ++count;
+  }
+  VectorX out(static_cast<Index>(sums.size()));
+  Index at = 0;
+  for (const auto& [pose, mean] : sums) out(at++) = mean.first / static_cast<double>(mean.second);
   return out;
 }
 

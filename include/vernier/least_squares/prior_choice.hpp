@@ -13,7 +13,7 @@ namespace vernier {
 /// Errors of validation blocks under one of several candidate priors.
 struct PriorTrial {
   double precision;  ///< of the prior, relative to its expected scale; larger is tighter
-  VectorX errors;    ///< one a validation block
+  VectorX errors;    ///< one a pose that was left out
 };
 
 /// The one-standard-error rule: of trials in order of precision, the index of the tightest whose mean error exceeds the

@@ -34,9 +34,9 @@ VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& 
 
 namespace detail {
 
-/// What the position errors of each block are smaller by [m].
+/// By how much the position errors of each pose are smaller [m].
 VERNIER_LOCAL VectorX saved_errors(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  return error_norms(without.errors) - error_norms(with.errors);
+  return error_norms(without) - error_norms(with);
 }
 
 }  // namespace detail
@@ -47,7 +47,7 @@ VERNIER_IMPL bool errors_support(const LeftOutBlocks& with, const LeftOutBlocks&
 }
 
 VERNIER_IMPL bool densities_support(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  const VectorX gained = with.log_densities - without.log_densities;
+  const VectorX gained = detail::means_of_poses(with.log_densities - without.log_densities, with.poses);
   return detail::saved_errors(with, without).mean() > 0 && gained.mean() > detail::standard_error(gained);
 }
 
@@ -57,7 +57,7 @@ VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEqu
   for (const double precision : {0.3, 1.0, 3.0, 10.0, 100.0, 1e4, suppressing_precision}) {
     for (Index k = first; k < first + count; ++k) precisions(k) = precision;
     const FactorisedEquations solved(normal, precisions, steps);
-    trials.push_back({precision, detail::error_norms(leave_one_out_errors(system, solved, stride))});
+    trials.push_back({precision, detail::error_norms(leave_one_out(system, solved, stride))});
   }
   double smallest = trials.front().errors.mean();
   for (const PriorTrial& trial : trials) smallest = (std::min)(smallest, trial.errors.mean());

@@ -62,6 +62,8 @@ struct BlockSystem {
   FunctionRef<void(Index first, Index count, RowBlock* out)> rows;
   Index local_states = 0;  ///< number of local states
   Index local_size = 0;    ///< unknowns of a local state
+  /// Pose of each validation block, from 0: blocks of one pose are left out together. Empty: each is of its own.
+  std::vector<Index> poses{};
 
   /// Number of groups.
   Index groups() const { return static_cast<Index>(group_sizes.size()); }

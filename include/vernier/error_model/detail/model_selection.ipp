@@ -133,13 +133,13 @@ VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
 
 VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, const LeftOutBlocks& with,
                                                         const LeftOutBlocks& without, double precision) const {
-  const bool few = problem.num_validation_blocks() < many_poses;
+  const bool few = problem.num_validation_poses() < many_poses;
   const bool by_errors = errors_support(with, without);
   const bool by_densities = !by_errors && few && densities_support(with, without);
   const bool used = by_errors || by_densities;
   return {block,
-          error_norms(without.errors).mean(),
-          error_norms(with.errors).mean(),
+          error_norms(without).mean(),
+          error_norms(with).mean(),
           used,
           used ? precision : suppressing_precision,
           by_densities ? with.log_densities.mean() - without.log_densities.mean() : 0};
@@ -181,11 +181,11 @@ VERNIER_IMPL void ModelSelection::learn_spectrum(int iterations) {
   };
   VectorX precisions = problem.arm.precisions();
   constexpr double clearly = 10;
-  if (at.system.validation_blocks < many_poses)
+  if (problem.num_validation_poses() < many_poses)
     precisions = scale_priors(at.normal, precisions, at.steps, values, harmonics(1, (std::numeric_limits<int>::max)()),
                               at.local_steps);
   const VectorX learned = learn_priors(at.normal, precisions, at.steps, values, bands, iterations, at.local_steps);
-  if (at.system.validation_blocks >= many_poses || evidence(learned) > evidence(precisions) + clearly)
+  if (problem.num_validation_poses() >= many_poses || evidence(learned) > evidence(precisions) + clearly)
     precisions = learned;
   problem.arm.set_precisions(precisions);
   for (BlockChoice& choice : blocks)

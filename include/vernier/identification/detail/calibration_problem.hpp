@@ -44,6 +44,8 @@ class CalibrationProblem {
   Index num_blocks() const { return static_cast<Index>(blocks_.size()); }
   /// The first blocks, on which models are validated: measured positions where there are any, else all.
   Index num_validation_blocks() const { return validation_blocks_; }
+  /// Number of different poses among them.
+  Index num_validation_poses() const { return validation_poses_; }
   const MeasuredSet& set_of(Index block) const { return sets_[static_cast<std::size_t>(at(block).station)]; }
   const std::vector<MeasuredSet>& sets() const { return sets_; }
   int station_index(Index block) const { return at(block).station; }
@@ -132,7 +134,8 @@ class CalibrationProblem {
   std::vector<MeasuredSet> sets_;
   double joint_sigma_;
   std::vector<Block> blocks_;
-  Index validation_blocks_ = 0;
+  Index validation_blocks_ = 0, validation_poses_ = 0;
+  std::vector<Index> poses_;                // of each validation block; empty where each is of its own
   std::vector<Index> first_state_;          // of each set
   VectorX drift_scale_ = VectorX::Ones(6);  // as the rows of knots
   Loss loss_;

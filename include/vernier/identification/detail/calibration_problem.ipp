@@ -10,6 +10,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/data/same_pose.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/twists.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
@@ -24,6 +25,12 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
   for (const MeasuredSet& set : sets_)
     if (set.locates()) validation_blocks_ += set.size();
   if (validation_blocks_ == 0) validation_blocks_ = num_blocks();
+  std::vector<JointType> types;
+  for (int j = 0; j < arm.geometry(0).joints(); ++j)
+    types.push_back(arm.geometry(0).chain().revolute(j) ? JointType::revolute : JointType::prismatic);
+  poses_ = pose_numbers(joints().topRows(validation_blocks_), {.joint_types = types});
+  for (const Index pose : poses_) validation_poses_ = (std::max)(validation_poses_, pose + 1);
+  if (validation_poses_ == validation_blocks_) poses_.clear();
   for (const MeasuredSet& set : sets_)
     demand(same_value(joint_sigma, 0) || set.seen_from.rows() == 0, set.name,
            ": errors of joint readings are not estimated between two configurations");
@@ -31,6 +38,7 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
 
 VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
   BlockSystem out{num_blocks(), num_validation_blocks(), arm.num_dense(), arm.group_sizes(), *this};
+  out.poses = poses_;
   if (drift.empty()) return out;
   out.local_size = drift_scale_.size();
   for (const SessionDrift& of_station : drift) out.local_states += of_station.knots.cols();

@@ -193,8 +193,7 @@ class IdentificationRun {
       const BlockSystem system = problem_.system();
       const NormalEquations normal(system);
       const FactorisedEquations solved(normal, problem_.arm.precisions(), problem_.arm.steps());
-      trials.push_back(
-          {1 / (prior_scale * prior_scale), squared_column_norms(leave_one_out_errors(system, solved, 1)).cwiseSqrt()});
+      trials.push_back({1 / (prior_scale * prior_scale), error_norms(leave_one_out(system, solved, 1))});
       problem_.reset_weights();
       candidates.push_back({prior_scale, problem_.arm, summary_});
     }

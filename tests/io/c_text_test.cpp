@@ -77,9 +77,10 @@ TEST_F(CText, FilesCompileWithoutAWarning) {
       left_out = compiler;
       continue;
     }
-    for (const char* mode : {"-std=c99 -O2 -c", "-std=c11 -fsyntax-only"})
+    for (const char* mode : {"-std=c99 -O2 -c", "-std=c11 -fsyntax-only", "-x c++ -std=c++11 -fsyntax-only"})
       for (const Features& features : arms) {
-        std::string command = message(compiler, ' ', mode, " -pedantic -Wall -Wextra -Wundef -Werror");
+        std::string command =
+            message(compiler, ' ', mode, " -pedantic -Wall -Wextra -Wundef -Wconversion -Wshadow -Werror");
         for (const std::string& feature : all) command += message(" -DHAS_", feature, '=', features.count(feature));
         const auto done = run(command + " text.c");
         EXPECT_EQ(done.exit_code, 0) << command << '\n' << done.errors;

@@ -31,7 +31,7 @@ using vernier_test::difference;
 using vernier_test::RealMatrix;
 using vernier_test::run_command;
 
-constexpr const char* strict = "-pedantic -Wall -Wextra -Werror -O2";
+constexpr const char* strict = "-pedantic -Wall -Wextra -Wconversion -Wshadow -Werror -O2";
 
 FrameParameters frame(double x, double y, double z, double rx, double ry, double rz) {
   return FrameParameters(Vector6{x, y, z, rx, ry, rz});

@@ -18,9 +18,6 @@
 #elif !defined(__cpp_exceptions)
 #error "Vernier throws exceptions where it is misused: compile without -fno-exceptions"
 #include <exceptions>
-#elif defined(EIGEN_NO_AUTOMATIC_RESIZING)
-#error "Vernier assigns matrices to those of other sizes: compile without EIGEN_NO_AUTOMATIC_RESIZING"
-#include <automatic resizing>
 #endif
 
 static_assert(sizeof(1.0) == 8, "Vernier computes in double precision: compile without -fsingle-precision-constant");

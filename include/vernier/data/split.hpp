@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Splits into training and test rows: random, every k-th, contiguous blocks, by region of space, by time. All rows that
-/// visit one pose (`pose_numbers`) lie on the side of the first of them: a reading repeated tells nothing new.
+/// Splits into training and test rows: random, every k-th, contiguous blocks, by region of space, by time. All rows
+/// that visit one pose (`pose_numbers`) lie on the side of the first of them: a reading repeated tells nothing new.
 
 #include <cstdint>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dispatch.hpp"
+#include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
@@ -85,12 +86,21 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     out.files.push_back(vn::read_dataset<N>(o.data[s], types));
     vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
+    out.inputs.push_back(file_of(out.files.back().origin()));
+    if (!o.test.empty()) out.inputs.push_back(file_of(station.test.origin()));
     out.train.add(std::move(station.train), o.data[s]);
     out.test.add(std::move(station.test));
   }
-  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types), file);
-  if (!o.contacts.empty())
-    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types)) out.train.add(contact);
+  for (const std::string& file : o.distances) {
+    const vn::Distances<N> distances = vn::read_distances<N>(file, types);
+    out.inputs.push_back(file_of(distances.origin()));
+    out.train.add(distances, file);
+  }
+  if (o.contacts.empty()) return out;
+  const std::vector<vn::Contact> contacts = vn::read_contacts(o.contacts, N, types);
+  for (const vn::Contact& contact : contacts) out.train.add(contact);
+  out.inputs.push_back(file_of(contacts.front().origin()));
+  out.inputs.back().rows = 0;  // of several objects
   return out;
 }
 

@@ -101,7 +101,7 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
                                          .rows = touches,
                                          .date = date,
                                          .measured = "contacts"}));
-  fmt::print("Calibrated model: {}; its base frame is the nominal one\n", save);
+  fmt::print("Calibrated model: {}; its base frame is the nominal one\n", shown(save));
   return 0;
 }
 

@@ -244,7 +244,7 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
   if (std::isfinite(radius)) stamp.push_back(fmt::format("errors < {:.3f} mm (95 %)", radius * 1e3));
   if (!outcome.uncorrected.empty()) stamp.push_back(fmt::format("{} not corrected", outcome.uncorrected.size()));
   vn::write_file(input.out, vn::stamped(vn::replace_targets(text, program, outcome.replaced()), program, stamp));
-  fmt::print("Program: {}\n", input.out);
+  fmt::print("Program: {}\n", shown(input.out));
   return 0;
 }
 

@@ -11,6 +11,7 @@
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/io/html_report.hpp"
+#include "vernier/io/robot_file.hpp"
 
 namespace support {
 
@@ -39,11 +40,14 @@ void add_poses(vernier::ReportInput& report, const auto& nominal, const vernier:
 std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& files,
                                                const std::vector<vernier::DataAudit>& audits);
 
-/// A file that was read, with the digest of its bytes.
-vernier::ReportFile file_read(const std::string& path, vernier::Index rows);
+/// The file of some rows, as it was read.
+inline vernier::ReportFile file_of(const vernier::RowOrigin& rows) {
+  return {rows.files.front(), static_cast<vernier::Index>(rows.line.size()), rows.hashes.front()};
+}
 
-/// Writes a report with its provenance, the model among it where there is one.
+/// Writes a report with its provenance.
+/// @param model file of the model that it speaks of, with its hash; without a name where there is none
 void write_report(const Program& program, const std::string& path, vernier::ReportInput& report,
-                  const std::string& date, const std::string& model);
+                  const std::string& date, const vernier::SourceFile& model);
 
 }  // namespace support

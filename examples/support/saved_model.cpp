@@ -114,13 +114,13 @@ void reregister_arm(Program& program, const CalibrationOptions& o, const vn::Rer
   write_results(program, o, robot.name(), data.size(), errors_at(test, oriented, robot, moved, found), found);
   if (o.save.empty()) return;
   vn::save(o.save, moved);
-  fmt::print("Calibrated model: {}\n", o.save);
+  fmt::print("Calibrated model: {}\n", shown(o.save));
 }
 
 }  // namespace
 
-vernier::ArmPrior read_prior(const std::string& file, int joints) {
-  const vn::SavedModel saved = vn::read_model(file);
+vernier::ArmPrior prior_of(const vernier::SavedModel& saved, int joints) {
+  const std::string& file = saved.file();
   if (saved.dof() != joints || saved.modified())
     throw UsageError(fmt::format("{}: is of an arm of {} joints, expected {}", file, saved.dof(), joints));
   return dispatch_dof(joints, [&](auto n) {

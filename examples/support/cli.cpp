@@ -206,7 +206,7 @@ void Program::open_output(const std::string& name, std::string& file) {
       if (writing != vernier::Writing::through && goes_to(stream, to.file))
         throw UsageError(fmt::format("{} {}: standard {} goes to that file", name, file,
                                      stream == STDOUT_FILENO ? "output" : "error"));
-    place = std::filesystem::weakly_canonical(to.file).string();
+    place = std::filesystem::weakly_canonical(std::filesystem::absolute(to.file)).string();
   }
   if (const auto [other, alone] = opened_.try_emplace(place, name);
       !alone && !std::filesystem::is_character_file(to.file.empty() ? "-" : to.file))
@@ -262,12 +262,12 @@ bool has_room_beside(const std::string& output) { return vernier::writing_of(out
 void require_folder(const std::filesystem::path& folder) {
   std::filesystem::path there = folder.empty() ? "." : folder;
   std::error_code error;
-  while (!std::filesystem::exists(there, error) && there != there.root_path())
+  while (!std::filesystem::exists(std::filesystem::symlink_status(there, error)) && there != there.root_path())
     there = there.has_parent_path() ? there.parent_path() : ".";
   if (!std::filesystem::is_directory(there, error)) throw std::runtime_error(there.string() + ": is not a folder");
   if (faccessat(AT_FDCWD, there.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
-    throw std::runtime_error(fmt::format("{}: files cannot be written to the folder {}: {}", folder.string(),
-                                         there.string(), std::strerror(errno)));
+    throw std::runtime_error(
+        fmt::format("{}: this folder takes no new files: {}", there.string(), std::strerror(errno)));
 }
 
 int run_program(const char* name, const char* description, int argc, const char* const* argv,

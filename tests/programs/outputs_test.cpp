@@ -163,6 +163,8 @@ TEST_F(Outputs, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   expect_refused(calibrate + "--json .", 1, ".: is a folder, cannot be written as a file");
   expect_refused(calibrate + "--out taken", 1, "taken: is not a folder");
   expect_refused(calibrate + "--out taken/figures", 1, "taken: is not a folder");
+  fs::create_symlink("nowhere", at("dangling"));
+  expect_refused(calibrate + "--out dangling", 1, "dangling: is not a folder");
   expect_refused(calibrate + "--out -", 2, "--out takes a folder, which cannot be standard output");
   expect_refused("$P/compare --methods none --poses 10 --results -", 2, "--results takes a file that grows");
   expect_refused("$P/iso9283 --data measured.csv --commanded measured.csv --out missing/p", 1, "missing");
@@ -175,7 +177,7 @@ TEST_F(Outputs, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   if (run(other + "ls $P/correct").exit_code != 0) GTEST_SKIP() << "the programs are not for everybody";
   expect_refused(other + calibrate + "--json r.json", 1, "r.json: cannot be written: Permission denied");
   expect_refused(other + "$P/calibrate --robot abb_irb120 --data measured.csv", 1,
-                 "calibrate_out: files cannot be written to the folder .: Permission denied");
+                 ".: this folder takes no new files: Permission denied");
 }
 
 TEST_F(Outputs, AFileThatIsMountedAloneIsWrittenInPlace) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cli.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
 #include "robot_choice.hpp"
@@ -36,8 +37,6 @@ struct Outcome {
   vn::ErrorStatistics designed, full;  ///< errors of held-out poses, as designed and by the chosen stage [m]
 };
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 support::CalibrationOptions calibration_options(const Settings& o, const std::string& arm_name) {
   support::CalibrationOptions out;
   out.data = {o.data};
@@ -61,7 +60,8 @@ Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const s
   const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
   const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
                                                           o.with_tool ? identified.tool() : nominal.tool());
-  vn::ExportNote note{robot.name, file_name(o.data), o.date, report.train_poses, report.chosen.key(), out.full, {}};
+  vn::ExportNote note{robot.name, support::file_name(o.data), o.date, report.train_poses, report.chosen.key(), out.full,
+                      {}};
   if (!o.urdf.empty()) {
     const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
     note.error_exported =

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <utility>
 
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "report_page.hpp"
 
 namespace support {
@@ -13,8 +13,6 @@ namespace support {
 namespace vn = vernier;
 
 namespace {
-
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 /// Poses of a page, with the names of the training rows.
 struct PagePoses {

@@ -1,12 +1,12 @@
 #include "pose_calibration.hpp"
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "calibration_data.hpp"
 #include "calibration_page.hpp"
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
 #include "vernier/calibration/calibrate.hpp"
@@ -32,8 +32,7 @@ vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& bo
 /// Names of files without their folders, joined by commas.
 std::string file_names(const std::vector<std::string>& paths) {
   std::string out;
-  for (const std::string& path : paths)
-    out += (out.empty() ? "" : ",") + std::filesystem::path(path).filename().string();
+  for (const std::string& path : paths) out += (out.empty() ? "" : ",") + file_name(path);
   return out;
 }
 

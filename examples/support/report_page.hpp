@@ -3,11 +3,11 @@
 /// @file
 /// What the programs put into a report beside their results: files, rows, poses.
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "cli.hpp"
+#include "file_name.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/io/html_report.hpp"
@@ -20,8 +20,7 @@ template <int N>
 void add_poses(vernier::ReportInput& report, const auto& nominal, const vernier::Dataset<N>& data) {
   vernier::ReportPoses& poses = report.poses;
   const vernier::Index before = poses.positions.rows(), n = data.size();
-  for (const std::string& file : data.origin().files)
-    poses.files.push_back(std::filesystem::path(file).filename().string());
+  for (const std::string& file : data.origin().files) poses.files.push_back(file_name(file));
   const int first = static_cast<int>(poses.files.size() - data.origin().files.size());
   poses.positions.conservativeResize(before + n, 3);
   poses.joints.conservativeResize(before + n, N);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 
 #include "calibration_data.hpp"
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/evaluation/statistics.hpp"
@@ -20,8 +20,6 @@ namespace support {
 namespace {
 
 namespace vn = vernier;
-
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 /// What `--free` names.
 vn::ReregisterOptions parse_free(const std::string& free) {

@@ -9,6 +9,7 @@
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io/model_file.hpp"
@@ -127,7 +128,7 @@ TEST(Report, HashesAreOfTheBytesThatWereReadAndWritten) {
   const auto poses = read_dataset<6>(folder / "poses.csv");
   for (Index i = 0; i < 20; ++i) {
     for (Index j = 0; j < 6; ++j) wire += message(poses.joints()(i, j), ',');
-    wire += message(1e3 * (poses.positions(i) - Vector3(1, 1, 0)).norm(), '\n');
+    wire += message(1e3 * (point(poses.positions(), i) - Vector3(1, 1, 0)).norm(), '\n');
   }
   write_file(folder / "wire.csv", wire);
   const std::string prior = read_file(folder / "model.json");

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -146,7 +147,11 @@ int run(support::Program& program) {
   if (settings.path.empty() != settings.runs.empty()) throw support::UsageError("--path and --runs belong together");
 
   if (out == "-") throw support::UsageError("--out takes the beginning of names, which cannot be standard output");
-  if (!out.empty()) support::require_folder(std::filesystem::path(out).parent_path());
+  if (!out.empty()) {
+    const std::filesystem::path folder = std::filesystem::absolute(out).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
+    support::require_folder(folder);
+  }
 
   support::Json document;
   if (!settings.data.empty()) {

@@ -75,7 +75,8 @@ std::map<std::string, std::string> texts_of(const Made& made) {
   const TemporaryFolder folder("locale");
   write_dataset(folder / "poses.csv", made.data);
   out["CSV"] = read_file(folder / "poses.csv");
-  out["model"] = save(folder / "model.json", made.arm) + read_file(folder / "model.json");
+  out["hash of the model"] = save(folder / "model.json", made.arm);
+  out["model"] = read_file(folder / "model.json");
   write_dataset(folder / "again.csv", read_dataset<6>(folder / "poses.csv"));
   out["CSV that was read"] = read_file(folder / "again.csv");
   (void)save(folder / "again.json", load<6>(folder / "model.json"));

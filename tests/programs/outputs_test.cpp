@@ -43,7 +43,7 @@ class Outputs : public ::testing::Test {
 
   /// Runs commands of bash in the folder, where $P is the folder of the programs.
   CommandResult run(const std::string& commands) const {
-    write_file(streams_ / "commands.sh", "P='" + std::string(VERNIER_EXAMPLES_DIR) + "'\ncd '" +
+    write_file(streams_ / "commands.sh", "export P='" + std::string(VERNIER_EXAMPLES_DIR) + "'\ncd '" +
                                              folder_.path().string() + "'\n" + commands + "\n");
     return testing_support::run_command("bash '" + (streams_ / "commands.sh").string() + "'", streams_.path());
   }
@@ -167,7 +167,8 @@ TEST_F(Outputs, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   expect_refused(calibrate + "--out dangling", 1, "dangling: is not a folder");
   expect_refused(calibrate + "--out -", 2, "--out takes a folder, which cannot be standard output");
   expect_refused("$P/compare --methods none --poses 10 --results -", 2, "--results takes a file that grows");
-  expect_refused("$P/iso9283 --data measured.csv --commanded measured.csv --out missing/p", 1, "missing");
+  expect_refused("$P/iso9283 --data measured.csv --commanded measured.csv --out missing/p", 1,
+                 "missing: is not a folder");
   expect_refused("$P/export_robot --robot abb_irb120 --data measured.csv --ur-kinematics taken/x", 1,
                  "taken/x: cannot be written: Not a directory");
   if (::geteuid() != 0) return;
@@ -175,7 +176,7 @@ TEST_F(Outputs, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   const std::string other = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
   if (run(other + "true").exit_code != 0) GTEST_SKIP() << "no setpriv";
   if (run(other + "ls $P/correct").exit_code != 0) GTEST_SKIP() << "the programs are not for everybody";
-  expect_refused(other + calibrate + "--json r.json", 1, "r.json: cannot be written: Permission denied");
+  expect_refused(other + calibrate + "--json r.json", 1, "model2.json: cannot be written: Permission denied");
   expect_refused(other + "$P/calibrate --robot abb_irb120 --data measured.csv", 1,
                  ".: this folder takes no new files: Permission denied");
 }

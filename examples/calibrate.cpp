@@ -46,6 +46,7 @@ void print_measurements(const vn::RobotDescription& robot, const support::Calibr
 }
 
 int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o) {
+  program.require_output_folder();
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   support::PoseCalibration found = calibrate_with_progress(program, robot, o);
   const vn::CalibrationReport& report = found.report;
@@ -54,6 +55,11 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   support::Json json = vn::to_json(report, robot.name);
   for (const vn::DataAudit& audit : found.audits) json["audit"].push_back(vn::to_json(audit));
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
+  if (!o.report.empty()) {
+    found.page.rule = found.held_out;
+    found.page.results = json.dump(-1, ' ', false, support::Json::error_handler_t::replace);
+    support::write_report(program, o.report, found.page, o.date, found.model);
+  }
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
   fmt::print(
@@ -61,13 +67,8 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
       "stage with its Jacobian takes {:.2g} us. Figures: {}\n",
       report.fit_seconds - report.leave_one_out_seconds, report.leave_one_out_seconds, report.evaluation_seconds * 1e6,
       folder.string());
-  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
-  if (!o.report.empty()) {
-    found.page.rule = found.held_out;
-    found.page.results = json.dump(-1, ' ', false, support::Json::error_handler_t::replace);
-    support::write_report(program, o.report, found.page, o.date, o.save);
-    fmt::print("Report: {}\n", o.report);
-  }
+  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", support::shown(o.save));
+  if (!o.report.empty()) fmt::print("Report: {}\n", support::shown(o.report));
   return 0;
 }
 

@@ -435,6 +435,8 @@ Request read_command_line(Program& program) {
     problem.name = problem.measured() ? problem.data.stem().string() : problem.robot;
     plan.problems.push_back(problem);
   }
+  if (out.results == "-") throw UsageError("--results takes a file that grows, which cannot be standard output");
+  if (out.planned || out.results.empty()) program.require_output_folder();
   if (out.planned) plan.prepare();
   if (out.results.empty()) out.results = program.output_folder() / "results.jsonl";
   return out;

@@ -243,7 +243,6 @@ int run(support::Program& program) {
   settings.approach = !no_approach;
   settings.radius = !no_radius;
   if (settings.out.empty()) throw support::UsageError("--out is required");
-  support::require_writable(settings.out);
   if (settings.targets.empty() == in_place.program.empty())
     throw support::UsageError("either --targets or --program is required");
   if (!in_place.program.empty())
@@ -257,12 +256,14 @@ int run(support::Program& program) {
 
   const support::CorrectionTotals totals = support::totals(report);
   support::print_correction(report, totals);
-  fmt::print("Commands: {}\n", settings.out);
-  const auto figure = std::filesystem::path(settings.out).replace_extension(".svg");
-  if (support::draw_correction(figure, report)) fmt::print("Figure: {}\n", figure.string());
+  fmt::print("Commands: {}\n", support::shown(settings.out));
   if (!program.common().json.empty())
     support::write_json(program.common().json, support::correction_json(report, totals));
-  if (const std::string failure = support::correction_failure(report, totals, settings.out); !failure.empty())
+  const auto figure = std::filesystem::path(settings.out).replace_extension(".svg");
+  if (figure != settings.out && support::has_room_beside(settings.out) && support::draw_correction(figure, report))
+    fmt::print("Figure: {}\n", figure.string());
+  if (const std::string failure = support::correction_failure(report, totals, support::shown(settings.out));
+      !failure.empty())
     throw std::runtime_error(failure);
   return 0;
 }

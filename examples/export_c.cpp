@@ -41,7 +41,6 @@ int run(support::Program& program) {
   program.parse("", "write the C header to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
-  support::require_writable(out);
 
   const vn::SavedModel saved = vn::read_model(model);
   vn::CExport options{.name = name};
@@ -52,10 +51,11 @@ int run(support::Program& program) {
   vn::write_file(out, source);
   std::string capitals = name;
   for (char& letter : capitals) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  fmt::print("{}: {} kB\nA library of it: cc -O2 -shared -fPIC -D{}_API= -x c {} -o {}.so -lm\n", out,
-             (source.size() + 500) / 1000, capitals, out, name);
+  fmt::print("{}: {} kB\nA library of it: cc -O2 -shared -fPIC -D{}_API= -x c {} -o {}.so -lm\n", support::shown(out),
+             (source.size() + 500) / 1000, capitals, vn::writing_of(out) == vn::Writing::through ? name + ".h" : out,
+             name);
   if (!program.common().json.empty()) {
-    support::Json json{{"file", out}, {"name", name}, {"bytes", source.size()}};
+    support::Json json{{"file", support::shown(out)}, {"name", name}, {"bytes", source.size()}};
     if (options.held_out_error) json["held_out_error_mm"] = *options.held_out_error * 1e3;
     support::write_json(program.common().json, json);
   }

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "cli.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
 #include "robot_choice.hpp"
@@ -35,8 +37,6 @@ struct Outcome {
   vn::ErrorStatistics designed, full;  ///< errors of held-out poses, as designed and by the chosen stage [m]
 };
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 support::CalibrationOptions calibration_options(const Settings& o, const std::string& arm_name) {
   support::CalibrationOptions out;
   out.data = {o.data};
@@ -60,7 +60,8 @@ Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const s
   const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
   const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
                                                           o.with_tool ? identified.tool() : nominal.tool());
-  vn::ExportNote note{robot.name, file_name(o.data), o.date, report.train_poses, report.chosen.key(), out.full, {}};
+  vn::ExportNote note{robot.name, support::file_name(o.data), o.date, report.train_poses, report.chosen.key(), out.full,
+                      {}};
   if (!o.urdf.empty()) {
     const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
     note.error_exported =
@@ -84,7 +85,7 @@ void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& 
     fmt::print("{:<42} {:>8.3f} {:>8.3f} {:>8.3f}\n", name, e.mean * 1e3, e.p95 * 1e3, e.max * 1e3);
   };
   row("as designed", out.designed);
-  for (const ExportedFile& file : out.files) row(file.path, file.error);
+  for (const ExportedFile& file : out.files) row(support::shown(file.path), file.error);
   row(fmt::format("full model ({})", out.report.chosen.key()), out.full);
   const double exported = out.files.front().error.mean;
   if (out.full.mean < 0.9 * exported)
@@ -100,8 +101,8 @@ void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& 
       o.with_tool ? "the fitted one, what was measured" : "as it was");
   if (!o.ur_kinematics.empty())
     fmt::print("{}: hash {}; the controller keeps its own calibration, and computes joint values by that.\n",
-               o.ur_kinematics, o.ur_hash);
-  for (const ExportedFile& file : out.files) fmt::print("Written: {}\n", file.path);
+               support::shown(o.ur_kinematics), o.ur_hash);
+  for (const ExportedFile& file : out.files) fmt::print("Written: {}\n", support::shown(file.path));
 }
 
 support::Json to_json(const vn::ErrorStatistics& e) {
@@ -114,10 +115,10 @@ int run(support::Program& program) {
   o.robot.add_to(program).required();
   program.add_option("--data", o.data, "measured poses, columns as for calibrate", "FILE").required();
   program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
-  program.add_option("--urdf", o.urdf,
-                     "write the file of --robot (URDF) with the calibrated origins of its joints to this file", "FILE");
-  const support::Option kinematics = program.add_option(
-      "--ur-kinematics", o.ur_kinematics, "write the kinematics file of Universal Robots' driver to this file", "FILE");
+  program.add_output("--urdf", o.urdf,
+                     "write the file of --robot (URDF) with the calibrated origins of its joints to this file");
+  const support::Option kinematics = program.add_output(
+      "--ur-kinematics", o.ur_kinematics, "write the kinematics file of Universal Robots' driver to this file");
   program
       .add_setting("--ur-hash", o.ur_hash,
                    "of the controller's kinematics, as in the file that ur_calibration wrote; the driver warns of "
@@ -142,12 +143,11 @@ int run(support::Program& program) {
       o.ur_hash.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
           std::string::npos)
     throw support::UsageError("--ur-hash takes up to 64 letters, digits and underscores, like calib_1234");
-  for (const std::string* file : {&o.urdf, &o.ur_kinematics})
-    if (!file->empty()) support::require_writable(*file);
 
-  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  vn::UrdfChain read;
+  const vn::RobotDescription robot = support::choose_robot(o.robot, &read);
   std::optional<vn::UrdfChain> chain;
-  if (o.robot.is_urdf()) chain = vn::read_urdf(o.robot.robot, o.robot.base_link, o.robot.tip_link);
+  if (o.robot.is_urdf()) chain = std::move(read);
   if (o.with_tool && chain && chain->moving.back() + 1 == static_cast<int>(chain->joints.size()))
     throw support::UsageError("--with-tool: link '" + chain->tip_link +
                               "' is behind no fixed joint, which could hold the tool");
@@ -166,7 +166,7 @@ int run(support::Program& program) {
                        {"files", support::Json::array()}};
     for (const ExportedFile& file : out.files) {
       json["files"].push_back(to_json(file.error));
-      json["files"].back()["file"] = file.path;
+      json["files"].back()["file"] = support::shown(file.path);
     }
     support::write_json(program.common().json, json);
   }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -94,7 +96,7 @@ void print_departures(const char* what, const std::vector<std::string>& departur
 }
 
 /// Writes the five poses of a cube.
-int plan(const Settings& settings, const std::string& out) {
+int plan(support::Program& program, const Settings& settings, std::string out) {
   if (settings.centre.size() != 3) throw support::UsageError("--plan needs --centre-mm X,Y,Z");
   if (settings.rotation.size() != 3) throw support::UsageError("--rotation-rad needs 3 values");
   if (!settings.edge) throw support::UsageError("--plan needs --edge-mm E");
@@ -106,9 +108,9 @@ int plan(const Settings& settings, const std::string& out) {
     text += vn::message(k + 1, ',', p.x(), ',', p.y(), ',', p.z(), ',', rotation.x(), ',', rotation.y(), ',',
                         rotation.z(), '\n');
   }
-  support::require_writable(out);
+  program.open_output("--out", out);
   vn::write_file(out, text);
-  fmt::print("Poses P1 to P5: {}; the norm visits P5, P4, P3, P2, P1, 30 times\n", out);
+  fmt::print("Poses P1 to P5: {}; the norm visits P5, P4, P3, P2, P1, 30 times\n", support::shown(out));
   return 0;
 }
 
@@ -137,12 +139,19 @@ int run(support::Program& program) {
   const std::string& out = program.common().out;
   if (settings.plan) {
     if (out.empty()) throw support::UsageError("--plan needs --out");
-    return plan(settings, out);
+    return plan(program, settings, out);
   }
   if (settings.data.empty() && settings.path.empty()) throw support::UsageError("--data, --path or --plan is required");
   if (settings.data.empty() != settings.commanded.empty())
     throw support::UsageError("--data and --commanded belong together");
   if (settings.path.empty() != settings.runs.empty()) throw support::UsageError("--path and --runs belong together");
+
+  if (out == "-") throw support::UsageError("--out takes the beginning of names, which cannot be standard output");
+  if (!out.empty()) {
+    const std::filesystem::path folder = std::filesystem::absolute(out).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
+    support::require_folder(folder);
+  }
 
   support::Json document;
   if (!settings.data.empty()) {

@@ -184,7 +184,6 @@ int run(support::Program& program) {
   if (o.key.empty() && o.robot.robot.empty())
     throw support::UsageError("--key pairs by name; without it --robot is needed to prove the order");
   const vn::PointTable table = read_points(o);
-  support::require_writable(o.out);
 
   const vn::CsvText commanded = vn::read_csv_text(o.joints);
   vn::Pairing pairing;
@@ -214,7 +213,7 @@ int run(support::Program& program) {
     throw vn::DataError(vn::message(o.points, ": ", pairing.faults.size(), " departures from ", o.joints,
                                     ", listed above; with --leave-out the other rows are written"));
   vn::write_file(o.out, joined(commanded, table, pairing));
-  fmt::print("Measured poses: {}\n", o.out);
+  fmt::print("Measured poses: {}\n", support::shown(o.out));
   return 0;
 }
 

@@ -256,7 +256,7 @@ void write_poses(const vn::Robot<6>& robot, const Settings& settings, std::uint6
   const vn::MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.05e-3};
   vn::write_dataset(settings.poses_file, vn::measure(arm, joints, noise, vn::child_seed(seed, poses_stream + 1)));
   fmt::print("{}: 300 simulated measured poses (0.03 mm, 0.05 mrad), in a tracker's frame, with a tool\n\n",
-             settings.poses_file);
+             support::shown(settings.poses_file));
 }
 
 // --- tables ----------------------------------------------------------------------------------------------------------
@@ -499,7 +499,7 @@ int body(support::Program& program) {
       .within(0, 1000000);
   program.add_setting("--noise-mm", noise_mm, "standard deviation of the measured positions, per component", "S")
       .within(0.0, 100.0);
-  program.add_option("--write-poses", settings.poses_file, "write simulated measured poses, for `calibrate`", "FILE");
+  program.add_output("--write-poses", settings.poses_file, "write simulated measured poses, for `calibrate`");
   program.parse("paper_comparison_out");
   settings.train = train.value_or(settings.quick ? 1000 : 5000);
   settings.test = test.value_or(settings.quick ? 200 : 400);
@@ -508,6 +508,7 @@ int body(support::Program& program) {
   settings.noise = noise_mm / 1e3;
   settings.region = region == "full" ? Region::full : Region::operating;
   settings.positions = positions == "clamped" ? vn::PositionRule::clamped : vn::PositionRule::unbounded;
+  program.require_output_folder();
   const std::filesystem::path folder = program.output_folder();
   const vn::Robot<6> robot = vn::robots::abb_irb120();
   const std::uint64_t seed = program.common().seed;
@@ -551,9 +552,9 @@ int body(support::Program& program) {
                  runs.front().seconds[m]);
     }
   fmt::print("\n");
+  if (!program.common().json.empty()) support::write_json(program.common().json, json(robot, settings, runs));
   const auto files = draw_figures(runs.front(), folder);
   if (!files.empty()) fmt::print("Figures: {}\n", fmt::join(files, ", "));
-  if (!program.common().json.empty()) support::write_json(program.common().json, json(robot, settings, runs));
   return 0;
 }
 

@@ -176,7 +176,7 @@ int run(support::Program& program) {
       program.add_option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
           .within(2, 1000000)
           .needs(from);
-  program.add_option("--held-out", o.held_out, "write those rows to this file", "FILE").needs(every);
+  program.add_output("--held-out", o.held_out, "write those rows to this file").needs(every);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')
       .expected(3)
@@ -214,8 +214,6 @@ int run(support::Program& program) {
   o.out = program.common().out;
   if (o.out.empty()) throw support::UsageError("--out is required");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
-  support::require_writable(o.out);
-  if (!o.held_out.empty()) support::require_writable(o.held_out);
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   const support::PlanOutcome found =
       support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed); });
@@ -244,8 +242,9 @@ int run(support::Program& program) {
   if (o.choose == 0)
     fmt::print("{} visits: the first three register the tracker, the first pose is visited {} times to see drift\n",
                plan.visits.size(), std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));
-  fmt::print("Poses: {}\n", o.out);
+  fmt::print("Poses: {}\n", support::shown(o.out));
   if (!program.common().json.empty()) support::write_json(program.common().json, to_json(o, robot.name, found));
+  if (!support::has_room_beside(o.out)) return 0;
   if (const std::string figures = support::draw_plan(o.out, found); !figures.empty())
     fmt::print("Figures: {}\n", figures);
   return 0;

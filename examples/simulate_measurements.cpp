@@ -71,12 +71,11 @@ int run(support::Program& program) {
   program.parse("", "write the measured poses to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
-  support::require_writable(out);
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   const vn::Index rows =
       support::dispatch_dof(robot.dof(), [&](auto n) { return simulate<n()>(o, robot, out, program.common().seed); });
   fmt::print("{} {}: {} poses of the virtual arm of seed {} measured: {}\n", robot.name,
-             o.positions_only ? "(positions)" : "(poses)", rows, program.common().seed, out);
+             o.positions_only ? "(positions)" : "(poses)", rows, program.common().seed, support::shown(out));
   return 0;
 }
 

@@ -47,9 +47,9 @@ int verify_arm(const support::Program& program, const Options& o, const vn::Save
   if (!o.report.empty()) {
     vn::ReportInput page = vn::report_input(report, robot.name());
     support::add_poses(page, robot.nominal().chain(), data);
-    page.provenance.inputs = {support::file_read(o.data, data.size())};
-    support::write_report(program, o.report, page, o.date, o.model);
-    fmt::print("Report: {}\n", o.report);
+    page.provenance.inputs = {support::file_of(data.origin())};
+    support::write_report(program, o.report, page, o.date, {model.file(), model.hash()});
+    fmt::print("Report: {}\n", support::shown(o.report));
   }
   return report.valid ? 0 : 1;
 }
@@ -77,10 +77,9 @@ int run(support::Program& program) {
   program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   program.add_flag("--no-approach", o.no_approach,
                    "rows are not in the order of measuring: no hysteresis by the direction of approach");
-  program.add_option("--report", o.report, "write the results as one HTML page that needs nothing else", "FILE");
+  program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
   program.add_setting("--date", o.date, "date written into the report", "DATE");
   program.parse("", nullptr);
-  if (!o.report.empty()) support::require_writable(o.report);
   const vn::SavedModel model = vn::read_model(o.model);
   return support::dispatch_dof(model.dof(), [&](auto n) { return verify_arm<n()>(program, o, model); });
 }

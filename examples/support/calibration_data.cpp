@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dispatch.hpp"
+#include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/same_pose.hpp"
@@ -123,18 +124,22 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
   std::vector<vn::Split<N>> stations;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     out.files.push_back(vn::read_dataset<N>(o.data[s], types));
-    stations.push_back(split_station<N>(out.files.back(), o, s, types, seed, out.held_out));
+    vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
+    out.inputs.push_back(file_of(out.files.back().origin()));
+    if (!o.test.empty()) out.inputs.push_back(file_of(station.test.origin()));
+    out.train.add(std::move(station.train), o.data[s]);
+    out.test.add(std::move(station.test));
   }
-  if (const vn::Index apart = keep_poses_apart(stations, o, same); apart > 0)
-    out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
-                                apart == 1 ? "is" : "are");
-  for (std::size_t s = 0; s < o.data.size(); ++s) {
-    out.train.add(vn::readings_joined(stations[s].train, same), o.data[s]);
-    out.test.add(std::move(stations[s].test));
+  for (const std::string& file : o.distances) {
+    const vn::Distances<N> distances = vn::read_distances<N>(file, types);
+    out.inputs.push_back(file_of(distances.origin()));
+    out.train.add(distances, file);
   }
-  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types), file);
-  if (!o.contacts.empty())
-    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types)) out.train.add(contact);
+  if (o.contacts.empty()) return out;
+  const std::vector<vn::Contact> contacts = vn::read_contacts(o.contacts, N, types);
+  for (const vn::Contact& contact : contacts) out.train.add(contact);
+  out.inputs.push_back(file_of(contacts.front().origin()));
+  out.inputs.back().rows = 0;  // of several objects
   return out;
 }
 

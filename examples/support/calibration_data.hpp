@@ -11,6 +11,7 @@
 #include "calibration_options.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/io/report_input.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/measurements/measurements.hpp"
 
@@ -19,10 +20,11 @@ namespace support {
 /// All measurements of an arm, as far as files have them.
 template <int N>
 struct MeasuredFiles {
-  std::vector<vernier::Dataset<N>> files;  ///< poses as the files have them, one set a station
-  vernier::Measurements<N> train;          ///< to learn from: poses, distances and contacts
-  vernier::Measurements<N> test;           ///< held-out poses, stations as in `train`
-  std::string held_out;                    ///< which poses those are, in words
+  std::vector<vernier::Dataset<N>> files;   ///< poses as the files have them, one set a station
+  vernier::Measurements<N> train;           ///< to learn from: poses, distances and contacts
+  vernier::Measurements<N> test;            ///< held-out poses, stations as in `train`
+  std::string held_out;                     ///< which poses those are, in words
+  std::vector<vernier::ReportFile> inputs;  ///< all files that were read
 };
 
 // Defined and compiled in calibration_data.cpp, for all numbers of joints.

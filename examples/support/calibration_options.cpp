@@ -65,9 +65,9 @@ void add_split(Program& program, CalibrationOptions& o) {
 }
 
 void add_results(Program& program, CalibrationOptions& o) {
-  program.add_option("--save", o.save, "write the calibrated model to this file, for correct", "FILE");
+  program.add_output("--save", o.save, "write the calibrated model to this file, for correct");
   const Option report =
-      program.add_option("--report", o.report, "write the results as one HTML page that needs nothing else", "FILE");
+      program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
   program
       .add_option("--accept-mm", o.accept_mm, "with --report: the largest mean held-out error that is accepted [mm]",
                   "MM")
@@ -149,8 +149,6 @@ CalibrationOptions read_calibration_options(Program& program) {
     throw UsageError("--date takes up to 40 plain characters");
   if (!o.test.empty() && o.test.size() != o.data.size())
     throw UsageError(fmt::format("{} files of --test for {} of --data", o.test.size(), o.data.size()));
-  if (!o.save.empty()) require_writable(o.save);
-  if (!o.report.empty()) require_writable(o.report);
   if (program.given("--test-fraction") && o.split.empty()) o.split = "random";
   o.reregister = program.given("--model");
   require_consistent(program, o);

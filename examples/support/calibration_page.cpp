@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <utility>
 
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "report_page.hpp"
 
 namespace support {
@@ -14,24 +14,19 @@ namespace vn = vernier;
 
 namespace {
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 /// Poses of a page, with the names of the training rows.
 struct PagePoses {
-  vn::ReportInput held_out;               ///< poses, their times, and the files of both
+  vn::ReportInput held_out;               ///< poses and their times
   std::vector<std::string> learned_from;  ///< training rows, one station after the other
 };
 
 template <int N>
 PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
   PagePoses out;
-  std::vector<vn::ReportFile>& inputs = out.held_out.provenance.inputs;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     const vn::Dataset<N>&train = measured.train.poses()[s], &test = measured.test.poses()[s];
     for (const vn::Index line : train.origin().line)
       out.learned_from.push_back(fmt::format("line {} of {}", line, file_name(o.data[s])));
-    inputs.push_back(file_read(o.data[s], measured.files[s].size()));
-    if (!o.test.empty()) inputs.push_back(file_read(o.test[s], test.size()));
     add_poses(out.held_out, robot.arm, test);
   }
   return out;
@@ -48,13 +43,7 @@ vn::ReportInput calibration_page(const vn::CalibrationReport& report, const Cali
   poses.held_out.poses.gates = page.poses.gates;
   page.poses = std::move(poses.held_out.poses);
   page.times = std::move(poses.held_out.times);
-  page.provenance = std::move(poses.held_out.provenance);
-  std::vector<vn::ReportFile>& inputs = page.provenance.inputs;
-  for (std::size_t d = 0; d < o.distances.size(); ++d)
-    inputs.push_back(file_read(o.distances[d], measured.train.sets()[o.data.size() + d].size()));
-  for (const std::string& file : {o.contacts, o.prior})
-    if (!file.empty()) inputs.push_back(file_read(file, 0));
-  for (const std::string& file : o.robot.files()) inputs.push_back(file_read(file, 0));
+  page.provenance.inputs = measured.inputs;
   if (o.accept_mm > 0) page.accept = o.accept_mm * 1e-3;
   return page;
 }

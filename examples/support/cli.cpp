@@ -1,6 +1,9 @@
 #include "cli.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,10 +13,13 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
+
+#include "vernier/core/atomic_file.hpp"
+#include "vernier/core/detail/destination.hpp"
 
 namespace support {
 
@@ -29,6 +35,27 @@ int fail(const char* name, const std::string& what, int code) {
   std::fflush(stdout);
   fmt::print(stderr, "{}: {}\n", name, one_line(what));
   return code;
+}
+
+/// Where standard output went before what is for people was sent elsewhere; empty: it still goes there.
+std::string output_stream;  // NOLINT(cert-err58-cpp)
+
+/// Keeps standard output for a result, and sends what is printed to standard error.
+/// @return a path that leads to what was standard output
+std::string standard_output() {
+  std::fflush(stdout);
+  const int kept = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (kept < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+    throw std::runtime_error(fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+  return output_stream = fmt::format("/dev/fd/{}", kept);
+}
+
+/// Whether a stream of this process goes to a regular file.
+bool goes_to(int stream, const std::string& file) {
+  struct stat of_stream {
+  }, of_file{};
+  return fstat(stream, &of_stream) == 0 && stat(file.c_str(), &of_file) == 0 && S_ISREG(of_file.st_mode) &&
+         of_stream.st_dev == of_file.st_dev && of_stream.st_ino == of_file.st_ino;
 }
 
 /// A check of one value that the help does not mention.
@@ -142,6 +169,11 @@ Option Program::add_flag(const char* name, bool& value, const char* help) {
   return Option(app_->add_flag(name, value, help));
 }
 
+Option Program::add_output(const char* name, std::string& file, const std::string& help) {
+  outputs_.emplace_back(name, &file);
+  return add_option(name, file, help, "FILE");
+}
+
 Option Program::option(const char* name) { return Option(app_->get_option(name)); }
 
 bool Program::given(const char* name) const { return app_->count(name) > 0; }
@@ -150,13 +182,45 @@ std::string Program::help() const { return app_->help(); }
 
 void Program::parse(const std::string& default_out, const char* out_description, const char* out_type) {
   common_.out = default_out;
-  add_option("--json", common_.json, "write the results to this file", "FILE");
+  add_output("--json", common_.json, "write the results to this file; -: to standard output");
   if (out_description != nullptr) add_setting("--out", common_.out, out_description, out_type);
+  if (out_description != nullptr && out_type == std::string("FILE")) outputs_.emplace_back("--out", &common_.out);
   add_setting("--seed", common_.seed, "of everything random", "S").not_negative();  // else -1 would wrap around
   add_setting("--threads", common_.threads, "threads that compute; the results do not depend on it", "T")
       .within(1, 1024);
   app_->parse(argc_, argv_);
-  if (!common_.json.empty()) require_writable(common_.json);
+  for (const auto& [name, file] : outputs_) open_output(name, *file);
+}
+
+void Program::open_output(const std::string& name, std::string& file) {
+  if (file.empty()) return;
+  vernier::detail::Destination to{.file = {}, .descriptor = STDOUT_FILENO};
+  vernier::Writing writing = vernier::Writing::through;
+  if (file != "-") {
+    writing = vernier::writing_of(file);
+    to = vernier::detail::destination_of(file);
+  }
+  std::string place = fmt::format("descriptor {}", to.descriptor);
+  if (to.descriptor < 0) {
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+      if (writing != vernier::Writing::through && goes_to(stream, to.file))
+        throw UsageError(fmt::format("{} {}: standard {} goes to that file", name, file,
+                                     stream == STDOUT_FILENO ? "output" : "error"));
+    place = std::filesystem::weakly_canonical(std::filesystem::absolute(to.file)).string();
+  }
+  if (const auto [other, alone] = opened_.try_emplace(place, name);
+      !alone && !std::filesystem::is_character_file(to.file.empty() ? "-" : to.file))
+    throw UsageError(fmt::format("{} and {} cannot both be {}", other->second, name,
+                                 to.descriptor == STDOUT_FILENO ? "standard output" : file));
+  if (writing == vernier::Writing::in_place)
+    fmt::print(stderr, "{}: {} cannot be replaced by a whole new file; it is written in place, at the end\n", name_,
+               file);
+  if (to.descriptor == STDOUT_FILENO) file = standard_output();
+}
+
+void Program::require_output_folder() const {
+  if (common_.out == "-") throw UsageError("--out takes a folder, which cannot be standard output");
+  require_folder(common_.out);
 }
 
 std::string Program::command_line() const {
@@ -191,19 +255,19 @@ std::string today() {
   return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
 }
 
-void require_writable(const std::filesystem::path& path) {
+std::string shown(const std::string& output) { return output == output_stream ? "standard output" : output; }
+
+bool has_room_beside(const std::string& output) { return vernier::writing_of(output) == vernier::Writing::replaced; }
+
+void require_folder(const std::filesystem::path& folder) {
+  std::filesystem::path there = folder.empty() ? "." : folder;
   std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    throw std::runtime_error(path.string() + ": is a folder, cannot be written as a file");
-  std::filesystem::path beside = path;
-  beside += ".partial";
-  errno = 0;
-  const bool opened = std::ofstream(beside, std::ios::app).is_open();
-  const int reason = errno;
-  if (!opened)
-    throw std::runtime_error(path.string() +
-                             ": cannot be written: " + (reason != 0 ? std::strerror(reason) : "unknown reason"));
-  std::filesystem::remove(beside, error);
+  while (!std::filesystem::exists(std::filesystem::symlink_status(there, error)) && there != there.root_path())
+    there = there.has_parent_path() ? there.parent_path() : ".";
+  if (!std::filesystem::is_directory(there, error)) throw std::runtime_error(there.string() + ": is not a folder");
+  if (faccessat(AT_FDCWD, there.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    throw std::runtime_error(
+        fmt::format("{}: this folder takes no new files: {}", there.string(), std::strerror(errno)));
 }
 
 int run_program(const char* name, const char* description, int argc, const char* const* argv,

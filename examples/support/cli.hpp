@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -22,7 +24,7 @@ namespace support {
 /// Options of every program.
 struct CommonOptions {
   std::string json;        ///< file for the results as JSON; empty: none
-  std::string out;         ///< folder for figures
+  std::string out;         ///< folder for figures, or a file
   std::uint64_t seed = 1;  ///< of everything random
   int threads = 1;         ///< that compute at a time
 };
@@ -91,6 +93,8 @@ class Program {
     return add(name, value, help, type, true);
   }
   Option add_flag(const char* name, bool& value, const char* help);
+  /// An option that names a file to be written; `parse` opens it, see `open_output`.
+  Option add_output(const char* name, std::string& file, const std::string& help);
   /// The option of this name, added before.
   Option option(const char* name);
   /// Whether the user gave it.
@@ -103,15 +107,26 @@ class Program {
   /// As it was typed, words with spaces and the like in quotes.
   std::string command_line() const;
 
-  /// Adds the common options, reads the command line, and makes sure that the JSON file can be written before any
-  /// work is done.
+  /// Adds the common options, reads the command line, and opens the outputs.
   /// @param default_out folder for figures where the user names none
-  /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there; null:
-  ///        there is no such option
+  /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there; an
+  ///        output where the type is FILE. Null: there is no such option
   /// @throws an exception of the parser, which `run_program` turns into help or exit code 2
-  /// @throws std::runtime_error where the JSON file cannot be written
+  /// @throws as `open_output`
   void parse(const std::string& default_out, const char* out_description = "folder for the figures",
              const char* out_type = "FOLDER");
+
+  /// Makes sure, before any work, that a file can be written. `-` becomes standard output, and what the program prints
+  /// for people goes to standard error then. A file that cannot be replaced is mentioned on standard error.
+  /// @param name of the option, for messages
+  /// @param file empty: nothing is to be written
+  /// @throws UsageError where another output is the same file, or standard output goes there
+  /// @throws std::runtime_error naming the file and the reason why it cannot be written
+  void open_output(const std::string& name, std::string& file);
+
+  /// Makes sure, before any work, that the folder for figures can be made and takes files.
+  /// @throws std::runtime_error naming the folder and the reason
+  void require_output_folder() const;
 
   /// The folder for figures, made where it is missing.
   /// @throws std::runtime_error naming the folder and the reason
@@ -124,6 +139,8 @@ class Program {
   std::unique_ptr<CLI::App> app_;
   std::string name_;
   CommonOptions common_;
+  std::vector<std::pair<std::string, std::string*>> outputs_;  // options and their files
+  std::map<std::string, std::string> opened_;                  // the option by where it leads
   int argc_;
   const char* const* argv_;
 };
@@ -131,9 +148,15 @@ class Program {
 /// The date, UTC, e.g. "2024-05-01".
 std::string today();
 
-/// Makes sure that a file can be written, before the work whose result it takes.
-/// @throws std::runtime_error naming the file and the reason
-void require_writable(const std::filesystem::path& path);
+/// An output for a message: its name, or "standard output".
+std::string shown(const std::string& output);
+
+/// Whether figures may lie beside an output: it is a file in a folder that takes others.
+bool has_room_beside(const std::string& output);
+
+/// Makes sure, before any work, that files can be written to a folder, which may be missing.
+/// @throws std::runtime_error naming the folder and the reason
+void require_folder(const std::filesystem::path& folder);
 
 /// Runs a program's body and reports a failure in one line on standard error.
 /// @return the body's value; 0 after help; 2 for wrong usage; 1 for any other failure

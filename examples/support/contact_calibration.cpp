@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <vector>
 
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
@@ -96,12 +96,10 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
   if (save.empty()) return 0;
   const auto& arm = found.model.identified();
   const vn::ErrorModel<vn::DhChain<N>> model(robot.arm.model(), arm.around(vn::WithJointErrors(arm.model())));
-  vn::save(save, vn::CalibratedRobot<N>(robot.name, model, robot.limits,
-                                        {.data_file = std::filesystem::path(file).filename().string(),
-                                         .rows = touches,
-                                         .date = date,
-                                         .measured = "contacts"}));
-  fmt::print("Calibrated model: {}; its base frame is the nominal one\n", save);
+  vn::save(save, vn::CalibratedRobot<N>(
+                     robot.name, model, robot.limits,
+                     {.data_file = file_name(file), .rows = touches, .date = date, .measured = "contacts"}));
+  fmt::print("Calibrated model: {}; its base frame is the nominal one\n", shown(save));
   return 0;
 }
 

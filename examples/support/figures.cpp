@@ -1,6 +1,5 @@
 #include "figures.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -17,6 +16,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "vernier/core/atomic_file.hpp"
 #include "vernier/core/check.hpp"
 
 namespace support {
@@ -89,6 +89,15 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
+/// All that was written to a file.
+std::string content_of(std::FILE* file) {
+  std::string out;
+  std::rewind(file);
+  char buffer[1 << 14];
+  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) out.append(buffer, n);
+  return out;
+}
+
 /// Runs gnuplot with its standard streams on files: no shell, no quoting of paths, nothing half-written.
 bool draw(const std::filesystem::path& path, const std::string& script) {
   static bool missing = false;
@@ -96,51 +105,38 @@ bool draw(const std::filesystem::path& path, const std::string& script) {
   const auto fail = [&](const std::string& why) -> void {
     throw std::runtime_error(path.string() + ": the figure cannot be drawn: " + why);
   };
-  const File input(std::tmpfile()), errors(std::tmpfile());
-  if (!input || !errors) fail(std::strerror(errno));
+  const File input(std::tmpfile()), output(std::tmpfile()), errors(std::tmpfile());
+  if (!input || !output || !errors) fail(std::strerror(errno));
   if (std::fwrite(script.data(), 1, script.size(), input.get()) != script.size() || std::fflush(input.get()) != 0)
     fail(std::strerror(errno));
   std::rewind(input.get());
 
-  std::filesystem::path beside = path;
-  beside += ".partial";
-  const int output = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (output < 0) fail(std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, fileno(input.get()), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(output.get()), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(errors.get()), STDERR_FILENO);
   std::string program = "gnuplot", no_start_files = "-d", from_stdin = "-";
   char* const arguments[] = {program.data(), no_start_files.data(), from_stdin.data(), nullptr};
   pid_t child = 0;
   const int spawned = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  close(output);
   int status = 0;
   if (spawned == 0)
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  std::error_code error;
   if (spawned == ENOENT || (spawned == 0 && WIFEXITED(status) && WEXITSTATUS(status) == 127)) {
-    std::filesystem::remove(beside, error);
     missing = true;
     fmt::print(stderr, "gnuplot is not installed: going on without figures\n");
     return false;
   }
   if (spawned != 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    std::filesystem::remove(beside, error);
-    std::string words;
-    std::rewind(errors.get());
-    for (int c = std::fgetc(errors.get()); c != EOF && words.size() < 400; c = std::fgetc(errors.get()))
-      words += c == '\n' ? ' ' : static_cast<char>(c);
+    std::string words = content_of(errors.get()).substr(0, 400);
+    std::replace(words.begin(), words.end(), '\n', ' ');
     fail(spawned != 0 ? std::strerror(spawned) : "gnuplot says: " + words);
   }
-  std::filesystem::rename(beside, path, error);
-  if (error) {
-    const std::string why = error.message();
-    std::filesystem::remove(beside, error);
-    fail(why);
-  }
+  const std::string figure = content_of(output.get());
+  if (figure.find("</svg>") == std::string::npos) fail("gnuplot wrote a part of it");
+  vernier::write_file(path.string(), figure);
   return true;
 }
 

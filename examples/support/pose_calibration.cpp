@@ -1,12 +1,12 @@
 #include "pose_calibration.hpp"
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "calibration_data.hpp"
 #include "calibration_page.hpp"
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
 #include "vernier/calibration/calibrate.hpp"
@@ -32,8 +32,7 @@ vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& bo
 /// Names of files without their folders, joined by commas.
 std::string file_names(const std::vector<std::string>& paths) {
   std::string out;
-  for (const std::string& path : paths)
-    out += (out.empty() ? "" : ",") + std::filesystem::path(path).filename().string();
+  for (const std::string& path : paths) out += (out.empty() ? "" : ",") + file_name(path);
   return out;
 }
 
@@ -51,8 +50,10 @@ template <int N>
 PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& o,
                               const vn::FitOptions& fit) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
+  std::optional<vn::SavedModel> earlier;
+  if (!o.prior.empty()) earlier = vn::read_model(o.prior);
   std::optional<vn::ArmPrior> prior;
-  if (!o.prior.empty()) prior = read_prior(o.prior, N);
+  if (earlier) prior = prior_of(*earlier, N);
   const auto measured =
       std::make_shared<const MeasuredFiles<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
   std::vector<vn::DataAudit> audits = audit_files(o, robot, measured->files);
@@ -73,15 +74,18 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
   if (!o.save.empty())
-    vn::save(o.save, calibration,
-             {.name = robot.name,
-              .limits = robot.limits,
-              .data_file = file_names(o.data),
-              .date = o.date,
-              .held_out_error = out.report.stage(out.report.chosen).position.mean()});
+    out.model = {o.save, vn::save(o.save, calibration,
+                                  {.name = robot.name,
+                                   .limits = robot.limits,
+                                   .data_file = file_names(o.data),
+                                   .date = o.date,
+                                   .held_out_error = out.report.stage(out.report.chosen).position.mean()})};
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);
     out.page.audit = audit_rows(o.data, out.audits);
+    std::vector<vn::ReportFile>& inputs = out.page.provenance.inputs;
+    if (earlier) inputs.push_back({earlier->file(), 0, earlier->hash()});
+    for (const vn::SourceFile& file : description.files) inputs.push_back({file.name, 0, file.hash});
   }
   return out;
 }

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/so3.hpp"
@@ -233,8 +233,7 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
                     options.program, outcome.uncorrected.size(), outcome.uncorrected.size() == 1 ? "is" : "are",
                     outcome.uncorrected.front().line));
 
-  std::vector<std::string> stamp{"do not correct this program twice",
-                                 fmt::format("model {}", std::filesystem::path(input.model).filename().string()),
+  std::vector<std::string> stamp{"do not correct this program twice", fmt::format("model {}", file_name(input.model)),
                                  fmt::format("sha256 {}", model.hash()),
                                  fmt::format("robot {}, {} targets", robot.name(), outcome.targets.size()),
                                  fmt::format("{} by Vernier {}.{}.{}", options.date.empty() ? today() : options.date,
@@ -244,7 +243,7 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
   if (std::isfinite(radius)) stamp.push_back(fmt::format("errors < {:.3f} mm (95 %)", radius * 1e3));
   if (!outcome.uncorrected.empty()) stamp.push_back(fmt::format("{} not corrected", outcome.uncorrected.size()));
   vn::write_file(input.out, vn::stamped(vn::replace_targets(text, program, outcome.replaced()), program, stamp));
-  fmt::print("Program: {}\n", input.out);
+  fmt::print("Program: {}\n", shown(input.out));
   return 0;
 }
 

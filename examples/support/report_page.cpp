@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "vernier/core/atomic_file.hpp"
-#include "vernier/core/sha256.hpp"
 
 namespace support {
 
@@ -24,17 +23,13 @@ std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& f
   return out;
 }
 
-vernier::ReportFile file_read(const std::string& path, vernier::Index rows) {
-  return {path, rows, vernier::sha256(vernier::read_file(path))};
-}
-
 void write_report(const Program& program, const std::string& path, vernier::ReportInput& report,
-                  const std::string& date, const std::string& model) {
+                  const std::string& date, const vernier::SourceFile& model) {
   report.provenance.command = program.command_line();
   report.provenance.date = date;
   report.provenance.seed = program.common().seed;
-  report.provenance.model = model;
-  if (!model.empty()) report.provenance.model_sha256 = vernier::sha256(vernier::read_file(model));
+  report.provenance.model = shown(model.name);
+  report.provenance.model_sha256 = model.hash;
   vernier::write_file(path, vernier::report_html(report));
 }
 

@@ -3,14 +3,15 @@
 /// @file
 /// What the programs put into a report beside their results: files, rows, poses.
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "cli.hpp"
+#include "file_name.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/io/html_report.hpp"
+#include "vernier/io/robot_file.hpp"
 
 namespace support {
 
@@ -19,8 +20,7 @@ template <int N>
 void add_poses(vernier::ReportInput& report, const auto& nominal, const vernier::Dataset<N>& data) {
   vernier::ReportPoses& poses = report.poses;
   const vernier::Index before = poses.positions.rows(), n = data.size();
-  for (const std::string& file : data.origin().files)
-    poses.files.push_back(std::filesystem::path(file).filename().string());
+  for (const std::string& file : data.origin().files) poses.files.push_back(file_name(file));
   const int first = static_cast<int>(poses.files.size() - data.origin().files.size());
   poses.positions.conservativeResize(before + n, 3);
   poses.joints.conservativeResize(before + n, N);
@@ -39,11 +39,14 @@ void add_poses(vernier::ReportInput& report, const auto& nominal, const vernier:
 std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& files,
                                                const std::vector<vernier::DataAudit>& audits);
 
-/// A file that was read, with the digest of its bytes.
-vernier::ReportFile file_read(const std::string& path, vernier::Index rows);
+/// The file of some rows, as it was read.
+inline vernier::ReportFile file_of(const vernier::RowOrigin& rows) {
+  return {rows.files.front(), static_cast<vernier::Index>(rows.line.size()), rows.hashes.front()};
+}
 
-/// Writes a report with its provenance, the model among it where there is one.
+/// Writes a report with its provenance.
+/// @param model file of the model that it speaks of, with its hash; without a name where there is none
 void write_report(const Program& program, const std::string& path, vernier::ReportInput& report,
-                  const std::string& date, const std::string& model);
+                  const std::string& date, const vernier::SourceFile& model);
 
 }  // namespace support

@@ -49,15 +49,7 @@ Option RobotOptions::add_to(Program& program) {
 
 bool RobotOptions::is_urdf() const { return robot.ends_with(".urdf") || robot.ends_with(".xacro"); }
 
-std::vector<std::string> RobotOptions::files() const {
-  std::vector<std::string> out;
-  std::error_code error;
-  for (const std::string* file : {&robot, &ur_calibration})
-    if (std::filesystem::is_regular_file(*file, error)) out.push_back(*file);
-  return out;
-}
-
-vernier::RobotDescription choose_robot(const RobotOptions& options) {
+vernier::RobotDescription choose_robot(const RobotOptions& options, [[maybe_unused]] vernier::UrdfChain* chain) {
   if (!options.is_urdf() && !(options.base_link.empty() && options.tip_link.empty()))
     throw UsageError("--base-link and --tip-link are of a URDF file (.urdf) of --robot");
   const bool yaml = options.robot.ends_with(".yaml") || options.robot.ends_with(".yml");
@@ -69,9 +61,10 @@ vernier::RobotDescription choose_robot(const RobotOptions& options) {
 #ifdef VERNIER_HAS_URDF
     if (yaml)
       return vernier::read_ur_kinematics(options.robot).robot(std::filesystem::path(options.robot).stem().string());
-    const vernier::UrdfChain chain = vernier::read_urdf(options.robot, options.base_link, options.tip_link);
-    for (const std::string& remark : chain.remarks) fmt::print("{}: {}\n", options.robot, remark);
-    return chain.robot;
+    const vernier::UrdfChain read = vernier::read_urdf(options.robot, options.base_link, options.tip_link);
+    for (const std::string& remark : read.remarks) fmt::print("{}: {}\n", options.robot, remark);
+    if (chain != nullptr) *chain = read;
+    return read.robot;
 #else
     throw UsageError(options.robot + ": this build cannot read such files; it was made without tinyxml2 or yaml-cpp");
 #endif

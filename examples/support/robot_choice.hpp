@@ -9,6 +9,10 @@
 #include "cli.hpp"
 #include "vernier/io/robot_file.hpp"
 
+namespace vernier {
+struct UrdfChain;
+}  // namespace vernier
+
 namespace support {
 
 /// The names that `choose_robot` knows.
@@ -26,8 +30,6 @@ struct RobotOptions {
   Option add_to(Program& program);
   /// Whether the arm is in a URDF file.
   bool is_urdf() const;
-  /// The files that it is read from.
-  std::vector<std::string> files() const;
 };
 
 /// An arm of the catalogue by its name, or the one that a file describes: JSON, URDF (.urdf), or the kinematics file of
@@ -36,7 +38,8 @@ struct RobotOptions {
 /// build
 ///         cannot read
 /// @throws vernier::DataError on a file that does not describe an arm
-vernier::RobotDescription choose_robot(const RobotOptions& options);
+/// @param chain where given, becomes the chain of a URDF file
+vernier::RobotDescription choose_robot(const RobotOptions& options, vernier::UrdfChain* chain = nullptr);
 /// The same of a name alone.
 vernier::RobotDescription choose_robot(const std::string& name_or_file);
 

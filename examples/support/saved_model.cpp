@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 
 #include "calibration_data.hpp"
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/evaluation/position_errors.hpp"
@@ -20,8 +20,6 @@ namespace support {
 namespace {
 
 namespace vn = vernier;
-
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 /// What `--free` names.
 vn::ReregisterOptions parse_free(const std::string& free) {
@@ -114,13 +112,13 @@ void reregister_arm(Program& program, const CalibrationOptions& o, const vn::Rer
   write_results(program, o, robot.name(), data.size(), errors_at(test, oriented, robot, moved, found), found);
   if (o.save.empty()) return;
   vn::save(o.save, moved);
-  fmt::print("Calibrated model: {}\n", o.save);
+  fmt::print("Calibrated model: {}\n", shown(o.save));
 }
 
 }  // namespace
 
-vernier::ArmPrior read_prior(const std::string& file, int joints) {
-  const vn::SavedModel saved = vn::read_model(file);
+vernier::ArmPrior prior_of(const vernier::SavedModel& saved, int joints) {
+  const std::string& file = saved.file();
   if (saved.dof() != joints || saved.modified())
     throw UsageError(fmt::format("{}: is of an arm of {} joints, expected {}", file, saved.dof(), joints));
   return dispatch_dof(joints, [&](auto n) {

@@ -8,13 +8,14 @@
 #include "calibration_options.hpp"
 #include "cli.hpp"
 #include "vernier/error_model/arm_prior.hpp"
+#include "vernier/io/model_file.hpp"
 
 namespace support {
 
 /// An earlier calibration, of the same arm or of another of its type.
 /// @param joints number that is expected
-/// @throws vernier::DataError on a malformed file; UsageError for another arm, or a model without its covariance
-vernier::ArmPrior read_prior(const std::string& file, int joints);
+/// @throws UsageError for another arm, or a model without its covariance
+vernier::ArmPrior prior_of(const vernier::SavedModel& model, int joints);
 
 /// `calibrate --model --free`: estimates again how the arm stands, keeps everything else, and prints and saves the
 /// model in its new frames.

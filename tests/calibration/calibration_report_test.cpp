@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 
 namespace vernier::calibration_report_test {

@@ -17,6 +17,7 @@
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -239,7 +240,8 @@ TEST(HtmlReport, NumbersEqualThoseOfTheJson) {
   for (const auto& [key, stage] : json.at("stages").items()) {
     const std::string row = between(table, "<th scope=\"row\">" + key, "</tr>");
     for (const char* what : {"mean_mm", "rms_mm", "max_mm", "min_mm", "p95_mm", "mean_mrad"})
-      EXPECT_TRUE(has(row, "<td>" + detail::fixed(stage.at(what).get<double>(), 4) + "</td>")) << key << ' ' << what;
+      EXPECT_TRUE(has(row, "<td>" + detail::fixed_digits(stage.at(what).get<double>(), 4) + "</td>"))
+          << key << ' ' << what;
   }
   EXPECT_EQ(std::stod(between(page, "data-value=\"", "\"")), json.at("stages").at("jointwise").at("mean_mm"));
   const Json poses = Json::parse(between(page, "id=\"points\">", "</script>"));

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "page_text.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"
 #include "vernier/io/detail/report_functions.hpp"
@@ -84,7 +84,7 @@ TEST(ReportSections, Verdict) {
   EXPECT_TRUE(has(text,
                   "<p class=\"verdict \">Good. Held-out position error <strong data-value=\"10\">10 mm</strong> "
                   "(mean; 95 % interval " +
-                      detail::fixed(10 - half, 2) + " to " + detail::fixed(10 + half, 1) +
+                      detail::fixed_digits(10 - half, 2) + " to " + detail::fixed_digits(10 + half, 1) +
                       " mm), 95 % of the poses within 19 mm, largest 20 mm; before 30 mm.</p>"))
       << text;
   EXPECT_TRUE(has(text, "Of 21 held-out poses (every fifth row), fitted to 84 others.")) << text;
@@ -169,7 +169,8 @@ TEST(ReportSections, ErrorsOverTime) {
     const double m = static_cast<double>(last), rho = 1 - 2 * m * (m * m - 1) / 9240,
                  p = std::erfc(rho * std::sqrt(10.0));
     const std::string text = detail::drift_section(reversed(last));
-    EXPECT_TRUE(has(text, "Spearman&#39;s rank correlation " + detail::fixed(rho, 3) + ", p = " + detail::fixed(p, 4)))
+    EXPECT_TRUE(has(text, "Spearman&#39;s rank correlation " + detail::fixed_digits(rho, 3) +
+                              ", p = " + detail::fixed_digits(p, 4)))
         << text;
     EXPECT_EQ(has(look_at(reversed(last)), "The errors depend on when a pose was measured."), p < 0.001) << p;
   }
@@ -233,7 +234,7 @@ TEST(ReportSections, TableAndDistributionOfErrors) {
   const ReportInput input = input_of();
   const std::string text = detail::errors_section(input);
   EXPECT_EQ(row(text, "joint-wise (deployed)"),
-            "10.0000|" + detail::fixed(std::sqrt(20 * 41 / 6.0), 4) + "|20.0000|0.0000|19.0000");
+            "10.0000|" + detail::fixed_digits(std::sqrt(20 * 41 / 6.0), 4) + "|20.0000|0.0000|19.0000");
   EXPECT_EQ(row(text, "frames alone").substr(0, 7), "30.0000");
   EXPECT_EQ(count(text, "class=\"key "), 3u);  // before, geometry, after
   EXPECT_TRUE(has(text, ">1e-06<"));           // an error of zero on a logarithmic axis

@@ -7,6 +7,7 @@
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/rng.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -48,6 +49,9 @@ TEST_F(RobotFile, ATableInAFileEqualsTheCatalogue) {
   ASSERT_EQ(robot.dof(), 6);
   const DescribedRobot<6> described = robot.arm<6>();
   EXPECT_EQ(described.name, "my irb120");
+  ASSERT_EQ(robot.files.size(), 1u);
+  EXPECT_EQ(robot.files[0].name, path_);
+  EXPECT_EQ(robot.files[0].hash, sha256(irb120));
   EXPECT_TRUE(described.arm.model() ==
               robots::abb_irb120().chain);  // bit for bit: units are converted as the literals do
   EXPECT_NEAR(described.limits.upper(2), 70 * 3.14159265358979 / 180, 1e-12);

@@ -14,6 +14,7 @@
 #include "temporary_folder.hpp"
 #include "ur_published.hpp"
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/sha256.hpp"
 
 namespace vernier::ur_calibration_test {
 namespace {
@@ -43,7 +44,10 @@ class UrCalibration : public ::testing::Test {
 TEST_F(UrCalibration, PosesAreThoseOfTheControllersRows) {
   for (const auto& set : vernier_test::ur_delta_sets()) {
     const RobotDescription nominal = vernier_test::ur_nominal(set);
-    const auto arm = read(set.conf(), nominal).arm<6>();
+    const RobotDescription read_arm = read(set.conf(), nominal);
+    ASSERT_EQ(read_arm.files.size(), 1u);
+    EXPECT_EQ(read_arm.files[0].hash, sha256(set.conf()));
+    const auto arm = read_arm.arm<6>();
     Rng rng(1);
     double worst = 0;
     for (int sample = 0; sample < 1000; ++sample) {

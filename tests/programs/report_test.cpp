@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io/model_file.hpp"
@@ -107,6 +109,54 @@ TEST(Report, SameBitsButForItsName) {
   const std::size_t at = again.find("again.html");
   ASSERT_NE(at, std::string::npos);
   EXPECT_TRUE(again.replace(at, 10, "page.html") == r.page);
+}
+
+/// Runs a program by bash, which gives it pipes: `<(cat poses.csv)`.
+CommandResult run_with_pipes(const TemporaryFolder& folder, const std::string& program, const std::string& arguments) {
+  write_file(folder / "command.sh", "'" + std::string(VERNIER_EXAMPLES_DIR) + "/" + program + "' " + arguments + "\n");
+  return testing_support::run_command("cd '" + folder.path().string() + "'; bash command.sh", folder.path());
+}
+
+// A pipe can be read once; an output may be a pipe, too, and an input may be replaced by an output.
+TEST(Report, HashesAreOfTheBytesThatWereReadAndWritten) {
+  const TemporaryFolder folder("report_pipes");
+  const Reported& r = reported();
+  for (const char* file : {"robot.json", "poses.csv", "model.json"})
+    std::filesystem::copy_file(r.folder / file, folder / file);
+  write_dataset(folder / "fresh.csv", seen(arm(), 30, 2));
+  std::string wire = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,distance_mm\n";
+  const auto poses = read_dataset<6>(folder / "poses.csv");
+  for (Index i = 0; i < 20; ++i) {
+    for (Index j = 0; j < 6; ++j) wire += message(poses.joints()(i, j), ',');
+    wire += message(1e3 * (point(poses.positions(), i) - Vector3(1, 1, 0)).norm(), '\n');
+  }
+  write_file(folder / "wire.csv", wire);
+  const std::string prior = read_file(folder / "model.json");
+  const CommandResult result =
+      run_with_pipes(folder, "calibrate",
+                     "--robot <(cat robot.json) --data <(cat poses.csv) --test <(cat fresh.csv) --distances <(cat "
+                     "wire.csv) --prior model.json --save model.json --report page.html --out figures --harmonics 0");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const std::string page = read_file(folder / "page.html");
+  for (const char* file : {"robot.json", "poses.csv", "fresh.csv", "wire.csv", "model.json"})
+    EXPECT_TRUE(has(page, sha256(read_file(folder / file)))) << file;
+  EXPECT_NE(read_file(folder / "model.json"), prior);
+  EXPECT_TRUE(has(page, sha256(prior))) << "the earlier model, before it was replaced";
+  EXPECT_FALSE(has(page, sha256("")));
+
+  const CommandResult through = run_with_pipes(
+      folder, "calibrate",
+      "--robot robot.json --data <(cat poses.csv) --save - --report page.html --out figures --harmonics 0 >saved.json");
+  ASSERT_EQ(through.exit_code, 0) << through.errors;
+  EXPECT_TRUE(
+      has(read_file(folder / "page.html"), "standard output, SHA-256 " + sha256(read_file(folder / "saved.json"))));
+  EXPECT_TRUE(read_model(folder / "saved.json").provenance().data_file.starts_with("/dev/fd/"));
+
+  const CommandResult check = run_with_pipes(folder, "verify_calibration",
+                                             "--model <(cat model.json) --data <(cat fresh.csv) --report check.html");
+  EXPECT_EQ(check.errors, "");
+  for (const char* file : {"model.json", "fresh.csv"})
+    EXPECT_TRUE(has(read_file(folder / "check.html"), sha256(read_file(folder / file)))) << file;
 }
 
 TEST(Report, RefusesWrongUsage) {

@@ -12,6 +12,7 @@
 #include "ur_published.hpp"
 #include "urdf_samples.hpp"
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/io/ur_calibration.hpp"
 
 namespace vernier::ur_kinematics_test {
@@ -86,7 +87,10 @@ TEST_F(UrKinematicsFile, IsExactForPublishedCalibrations) {
       const Vector3 at = translation(exact.origins[i]), angles = rotation(exact.origins[i]).eulerAngles(0, 1, 2);
       slipped[i] = {at(0), at(1), at(2), angles(0), angles(1), angles(2)};
     }
-    const auto back = read(text).robot("again").arm<6>().arm;
+    const RobotDescription again = read(text).robot("again");
+    ASSERT_EQ(again.files.size(), 1u);
+    EXPECT_EQ(again.files[0].hash, sha256(text));
+    const auto back = again.arm<6>().arm;
     double worst = 0, worst_back = 0, slip = 0;
     for (int sample = 0; sample < 1000; ++sample) {
       const JointVector<6> q = vernier_test::random_joints<6>(rng);

@@ -12,6 +12,7 @@
 #include "temporary_folder.hpp"
 #include "urdf_samples.hpp"
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/urdf/detail/roll_pitch_yaw.hpp"
 
 namespace vernier::urdf_chain_test {
@@ -163,6 +164,8 @@ TEST(UrdfChain, FilesAreRead) {
   const std::string path = (folder / "seven.urdf").string();
   write_file(path, "\xEF\xBB\xBF" + vernier_test::seven_axis_urdf());
   EXPECT_EQ(read_urdf(path).robot.rows, parse_urdf(vernier_test::seven_axis_urdf(), "x").robot.rows);
+  ASSERT_EQ(read_urdf(path).robot.files.size(), 1u);
+  EXPECT_EQ(read_urdf(path).robot.files[0].hash, sha256("\xEF\xBB\xBF" + vernier_test::seven_axis_urdf()));
   EXPECT_NE(vernier_test::complaint([&] { (void)read_urdf(path + "x"); }).find("seven.urdfx"), std::string::npos);
 }
 

@@ -12,6 +12,7 @@
 #include "learners.hpp"
 #include "robot_choice.hpp"
 #include "vernier/ceres.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
@@ -60,8 +61,8 @@ Samples<N> simulate(const Problem& problem, const vn::DescribedRobot<N>& robot, 
 
 /// All measured positions.
 template <int N>
-vn::Dataset<N> read_positions(const Problem& problem, const vn::DescribedRobot<N>& robot) {
-  return vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types()).without_orientations();
+const vn::Dataset<N>& positions(const Problem& problem) {
+  return *std::any_cast<vn::Dataset<N>>(&problem.poses);
 }
 
 /// The fifth of measured poses that a seed holds out, and the others.
@@ -75,7 +76,7 @@ vn::Split<N> split(const Problem& problem, const vn::Dataset<N>& data, std::uint
 
 template <int N>
 Samples<N> measured(const Problem& problem, const vn::DescribedRobot<N>& robot, Index poses, std::uint64_t seed) {
-  vn::Split<N> parts = split<N>(problem, read_positions(problem, robot), seed);
+  vn::Split<N> parts = split<N>(problem, positions<N>(problem), seed);
   if (poses > 0) {
     const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(parts.train.size());
     parts.train = parts.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
@@ -84,14 +85,17 @@ Samples<N> measured(const Problem& problem, const vn::DescribedRobot<N>& robot, 
 }
 
 /// Reads measured poses, and makes sure that every split has as many as the plan asks for.
+/// @return their file
 template <int N>
-void check_poses(const Plan& plan, const Problem& problem, const vn::DescribedRobot<N>& robot) {
-  const vn::Dataset<N> data = read_positions(problem, robot);
+vn::SourceFile read_positions(const Plan& plan, Problem& problem, const vn::DescribedRobot<N>& robot) {
+  const vn::Dataset<N> data = vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types()).without_orientations();
+  problem.poses = data;
   const Index most = *std::max_element(plan.poses.begin(), plan.poses.end());
   for (const std::uint64_t seed : plan.seeds)
     if (const Index there = split<N>(problem, data, seed).train.size(); most > there)
       throw UsageError(
           vn::message(problem.data.string(), ": ", most, " poses are asked for, there are ", there, " to learn from"));
+  return {problem.data.string(), data.origin().hashes.front()};
 }
 
 /// Calls with the arm of a robot.
@@ -100,10 +104,15 @@ decltype(auto) with_arm(const vn::RobotDescription& robot, Work&& work) {
   return dispatch_dof(robot.dof(), [&](auto n) -> decltype(auto) { return work(robot.arm<n()>()); });
 }
 
-/// Sixteen digits that differ between files of different contents: Fowler, Noll and Vo's hash.
-std::string fingerprint(const std::filesystem::path& path) {
+/// Sixteen digits that differ between files of different contents: Fowler, Noll and Vo's hash, as results files have
+/// it; of what cannot be read again, the first ones of its SHA-256.
+/// @throws std::runtime_error where the file is no longer what was read
+std::string fingerprint(const vn::SourceFile& file) {
+  if (!std::filesystem::is_regular_file(file.name)) return file.hash.substr(0, 16);
+  const std::string content = vn::read_file(file.name);
+  if (vn::sha256(content) != file.hash) throw std::runtime_error(file.name + ": changed while it was read");
   std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : vn::read_file(path)) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return fmt::format("{:016x}", hash);
 }
 
@@ -195,8 +204,9 @@ void Plan::prepare() {
   };
   check(!problems.empty() && !methods.empty() && !poses.empty() && !seeds.empty(),
         "a plan needs problems, methods, numbers of poses and seeds");
-  for (const Problem& p : problems) {
-    with_arm(choose_robot(p.robot), [](const auto&) {});
+  for (Problem& p : problems) {
+    p.arm = choose_robot(p.robot);
+    with_arm(p.arm, [](const auto&) {});
     check(p.errors == "geometric" || p.errors == "full", p.name, ": errors are '", p.errors,
           "', must be geometric or full");
     check(p.region == "operating" || p.region == "full", p.name, ": the region is '", p.region,
@@ -219,14 +229,14 @@ void Plan::prepare() {
   check(nodes >= 1 && nodes <= 5000, "nodes is ", nodes, ", must lie in 1..5000");
   for (Problem& p : problems) {
     p.fingerprint.clear();
-    for (const std::filesystem::path& file : {std::filesystem::path(p.robot), p.data})
-      if (std::filesystem::is_regular_file(file)) p.fingerprint += fingerprint(file);
-    if (p.measured()) with_arm(choose_robot(p.robot), [&](const auto& robot) { check_poses(*this, p, robot); });
+    std::vector<vn::SourceFile> files = p.arm.files;
+    if (p.measured()) with_arm(p.arm, [&](const auto& robot) { files.push_back(read_positions(*this, p, robot)); });
+    for (const vn::SourceFile& file : files) p.fingerprint += fingerprint(file);
   }
 }
 
 Outcome compute(const Plan& plan, const Cell& cell, vn::ObserverRef observer) {
-  return with_arm(choose_robot(plan.problems[cell.problem].robot), [&]<int N>(const vn::DescribedRobot<N>& robot) {
+  return with_arm(plan.problems[cell.problem].arm, [&]<int N>(const vn::DescribedRobot<N>& robot) {
     return Computation<N>(plan, cell, robot, observer).run();
   });
 }

@@ -4,6 +4,7 @@
 /// A comparison of methods: problems, methods, numbers of poses and seeds span a grid, whose cells are computed one by
 /// one and kept in a file.
 
+#include <any>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "json_file.hpp"
 #include "vernier/core/fit_options.hpp"
+#include "vernier/io/robot_file.hpp"
 
 namespace support {
 
@@ -26,7 +28,10 @@ struct Problem {
   // measured
   std::filesystem::path data{};  ///< measured poses; empty: simulated
   std::string split = "random";  ///< random, region, time: what is held out, a fifth
-  std::string fingerprint{};     ///< of the files that describe it, whose names alone say too little
+  // from `prepare` on, so that every cell has the same
+  vernier::RobotDescription arm{};  ///< that `robot` names
+  std::any poses{};                 ///< `Dataset<N>` of `data`, positions alone; empty: simulated
+  std::string fingerprint{};        ///< of the files that describe it, whose names alone say too little
 
   bool measured() const { return !data.empty(); }
 };
@@ -58,7 +63,8 @@ struct Plan {
   /// @throws UsageError naming what is wrong
   /// @throws vernier::DataError on what is no JSON, or larger than JSON files may be
   static Plan read(const std::filesystem::path& path);
-  /// Checks everything that can be checked before any work, measured poses too, and takes the files' fingerprints.
+  /// Reads the files of the problems with their fingerprints, and checks everything that can be checked before any
+  /// work.
   /// @throws UsageError where something is missing or not known, or more poses are asked for than there are
   /// @throws vernier::DataError on measured poses that cannot be read
   void prepare();

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "vernier/calibration/calibration_report.hpp"
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 

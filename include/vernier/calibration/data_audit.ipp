@@ -11,7 +11,7 @@
 #include "vernier/calibration/detail/audit_fit.hpp"
 #include "vernier/calibration/detail/audit_hypotheses.hpp"
 #include "vernier/calibration/detail/audit_rows.hpp"
-#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/detail/number_text.hpp"
 
 namespace vernier {
 

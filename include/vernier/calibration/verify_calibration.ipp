@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/core/detail/dense.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/chi_square.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -342,18 +341,20 @@ VERNIER_IMPL std::vector<std::string> VerificationReport::advice() const {
 VERNIER_IMPL std::string VerificationReport::summary() const {
   using detail::brief;
   std::string out = verdict() + "\n\njoint  zero moved by  +- (95 %)         p  p once a turn\n";
-  char line[160];
+  const auto column = [](const std::string& text, std::size_t width) { return detail::at_right(text, width); };
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const JointCheck& joint = joints[j];
+    out += column(message(j + 1), 5);
     if (joint.determined)
-      std::snprintf(line, sizeof line, "%5d%12.4f %s%11.4f%10.2g%15.2g%s\n", static_cast<int>(j + 1),
-                    joint.zero_change * 1e3, joint_types[j] == JointType::revolute ? "mrad" : "mm  ",
-                    1.96 * joint.zero_std * 1e3, joint.zero_p, joint.once_p,
-                    joint.zero_changed || joint.transmission_changed ? "  changed" : "");
+      out += column(detail::fixed_digits(joint.zero_change * 1e3, 4), 12) +
+             (joint_types[j] == JointType::revolute ? " mrad" : " mm  ") +
+             column(detail::fixed_digits(1.96 * joint.zero_std * 1e3, 4), 11) +
+             column(detail::significant_digits(joint.zero_p, 2), 10);
     else
-      std::snprintf(line, sizeof line, "%5d  not determined                   %15.2g%s\n", static_cast<int>(j + 1),
-                    joint.once_p, joint.transmission_changed ? "  changed" : "");
-    out += line;
+      out += detail::at_left("  not determined", 35);
+    out += column(detail::significant_digits(joint.once_p, 2), 15);
+    const bool changed = (joint.determined && joint.zero_changed) || joint.transmission_changed;
+    out += changed ? "  changed\n" : "\n";
   }
   out += "\n";
   for (const std::string& sentence : advice()) out += sentence + "\n";

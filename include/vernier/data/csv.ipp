@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/same_value.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/text_lines.hpp"
 
@@ -55,7 +55,7 @@ class CsvTable {
   RowOrigin origin() const {
     std::vector<Index> lines;
     for (const TextLine& line : lines_) lines.push_back(static_cast<Index>(line.number));
-    return RowOrigin::of(file_, std::move(lines));
+    return RowOrigin::of(file_, std::move(lines), sha256(content_));
   }
   /// Throws a DataError about a value.
   template <class... Parts>

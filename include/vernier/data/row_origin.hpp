@@ -13,14 +13,16 @@ namespace vernier {
 
 /// Files and lines of n rows; empty for rows that are from no file.
 struct RowOrigin {
-  std::vector<std::string> files{};  ///< names of the files
-  std::vector<int> file{};           ///< of each row, which of them
-  std::vector<Index> line{};         ///< of each row, its line in that file, from 1
+  std::vector<std::string> files{};   ///< names of the files
+  std::vector<int> file{};            ///< of each row, which of them
+  std::vector<Index> line{};          ///< of each row, its line in that file, from 1
+  std::vector<std::string> hashes{};  ///< of each file, SHA-256 of the bytes that were read, see `sha256`
 
   /// Rows that follow each other in one file.
   /// @param name  of the file
   /// @param lines of the rows, from 1
-  VERNIER_API static RowOrigin of(std::string name, std::vector<Index> lines);
+  /// @param hash  of the file; empty where it is not known
+  VERNIER_API static RowOrigin of(std::string name, std::vector<Index> lines, std::string hash = {});
 
   /// Whether nothing is known.
   bool empty() const { return line.empty(); }

@@ -7,9 +7,10 @@
 
 namespace vernier {
 
-VERNIER_IMPL RowOrigin RowOrigin::of(std::string name, std::vector<Index> lines) {
+VERNIER_IMPL RowOrigin RowOrigin::of(std::string name, std::vector<Index> lines, std::string hash) {
   RowOrigin out;
   out.files.push_back(std::move(name));
+  out.hashes.push_back(std::move(hash));
   out.file.assign(lines.size(), 0);
   out.line = std::move(lines);
   return out;
@@ -38,6 +39,7 @@ VERNIER_IMPL RowOrigin RowOrigin::rows(std::span<const Index> indices) const {
   if (empty()) return {};
   RowOrigin out;
   out.files = files;
+  out.hashes = hashes;
   for (const Index i : indices) {
     out.file.push_back(file[static_cast<std::size_t>(i)]);
     out.line.push_back(line[static_cast<std::size_t>(i)]);
@@ -51,7 +53,10 @@ VERNIER_IMPL void RowOrigin::append(const RowOrigin& other, Index size) {
     return;
   }
   const auto before = static_cast<int>(files.size());
+  hashes.resize(files.size());  // whoever made the rows may have left them out
   files.insert(files.end(), other.files.begin(), other.files.end());
+  hashes.insert(hashes.end(), other.hashes.begin(), other.hashes.end());
+  hashes.resize(files.size());
   for (const int of : other.file) file.push_back(before + of);
   line.insert(line.end(), other.line.begin(), other.line.end());
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/identification/contact_report.hpp"
 #include "vernier/identification/detail/wording.hpp"
 

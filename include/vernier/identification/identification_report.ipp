@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/identification/detail/wording.hpp"
 #include "vernier/identification/identification_report.hpp"
 
@@ -18,12 +18,10 @@ VERNIER_IMPL std::vector<std::string> IdentificationReport::names(ParameterState
 VERNIER_IMPL std::vector<std::string> IdentificationReport::strongly_correlated(double limit) const {
   std::vector<std::string> out;
   for (const Correlation& c : strong_correlations(covariance, limit)) {
-    char value[16];
-    std::snprintf(value, sizeof value, "%+.2f", c.value);
     const auto name = [&](Index k) {
       return parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].name;
     };
-    out.push_back(name(c.first) + " and " + name(c.second) + " (" + value + ")");
+    out.push_back(name(c.first) + " and " + name(c.second) + " (" + detail::signed_digits(c.value, 2) + ")");
   }
   return out;
 }

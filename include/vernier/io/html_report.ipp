@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
@@ -75,8 +75,8 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
                      {}};
   for (std::size_t j = 0; j < report.joints.size(); ++j) {
     const JointCheck& joint = report.joints[j];
-    joints.rows.push_back({message(j + 1), joint.determined ? detail::fixed(joint.zero_change * 1e3, 4) : "",
-                           joint.determined ? detail::fixed(1.96 * joint.zero_std * 1e3, 4) : "",
+    joints.rows.push_back({message(j + 1), joint.determined ? detail::fixed_digits(joint.zero_change * 1e3, 4) : "",
+                           joint.determined ? detail::fixed_digits(1.96 * joint.zero_std * 1e3, 4) : "",
                            report.joint_types[j] == JointType::revolute ? "mrad" : "mm",
                            joint.determined ? brief(joint.zero_p) : "", brief(joint.once_p),
                            joint.zero_changed           ? "zero changed"

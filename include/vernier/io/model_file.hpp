@@ -25,18 +25,20 @@ Json to_json(const CalibratedRobot<N, Convention>& robot) {
 }
 
 /// Saves a calibrated arm, whole or not at all; `load` returns the same bits.
+/// @return SHA-256 of the bytes that were written, in hexadecimal
 /// @throws std::runtime_error when the file cannot be written
 /// @throws std::invalid_argument on a value that is not finite
 template <int N, class Convention>
-void save(const std::string& path, const CalibratedRobot<N, Convention>& robot) {
-  detail::write_model(path, detail::model_data(robot));
+std::string save(const std::string& path, const CalibratedRobot<N, Convention>& robot) {
+  return detail::write_model(path, detail::model_data(robot));
 }
 
 /// Saves the arm of a calibration, with what was learned on top: as seen from its first station.
+/// @return and throws as for an arm
 template <int N, class Convention>
-void save(const std::string& path, const Calibration<DhChain<N, Convention>>& calibration,
-          const RobotInfo<N>& info = {}) {
-  save(path, calibrated_robot(calibration, info));
+std::string save(const std::string& path, const Calibration<DhChain<N, Convention>>& calibration,
+                 const RobotInfo<N>& info = {}) {
+  return save(path, calibrated_robot(calibration, info));
 }
 
 /// A model file that was read and checked, of an arm of any number of joints.

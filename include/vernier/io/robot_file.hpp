@@ -24,6 +24,12 @@ struct DescribedRobot {
   std::vector<JointDrive> drives{};  ///< gears and encoders, one a joint; may be empty
 };
 
+/// A file that was read.
+struct SourceFile {
+  std::string name;  ///< as it was named
+  std::string hash;  ///< SHA-256 of the bytes that were read, see `sha256`
+};
+
 /// A nominal arm whose number of joints is only known at run time.
 struct RobotDescription {
   std::string name;                                 ///< its name
@@ -35,6 +41,7 @@ struct RobotDescription {
   Isometry3 base = Isometry3::Identity();     ///< frame in which the first row stands
   Isometry3 tool = Isometry3::Identity();     ///< tool frame after the last row
   std::vector<std::string> joint_names = {};  ///< one a joint; may be empty
+  std::vector<SourceFile> files = {};         ///< from which it was read
 
   /// Of an arm of the catalogue.
   template <int N, class Convention>

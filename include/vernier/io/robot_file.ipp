@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vernier/core/rigid_motions.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/robot_file.hpp"
 
@@ -60,10 +61,12 @@ VERNIER_IMPL ArmGeometry RobotDescription::geometry() const {
 }
 
 VERNIER_IMPL RobotDescription load_robot(const std::string& path) {
-  const nlohmann::json document = read_json(path);
+  const std::string content = detail::read_json_text(path);
+  const nlohmann::json document = parse_json(content, path);
   const JsonNode root(document, path);
   root.allow_only({"name", "convention", "joints", "comment"});
   RobotDescription out;
+  out.files.push_back({path, sha256(content)});
   out.name = root.at("name").text();
   const std::string convention = root.at("convention").text();
   if (convention != "standard" && convention != "modified")

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "vernier/core/atomic_file.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/text_lines.hpp"
 #include "vernier/io/json.hpp"
@@ -24,6 +24,7 @@ struct UrDeltas {
   static constexpr std::array<const char*, 4> keys{"delta_theta", "delta_a", "delta_d", "delta_alpha"};
   std::array<std::array<double, 6>, 4> values{};
   std::array<std::size_t, 4> lines{};  ///< where each list is; 0: nowhere
+  std::string hash{};                  ///< SHA-256 of the file
 };
 
 /// `[ x, x, x, x, x, x]`
@@ -57,6 +58,7 @@ VERNIER_LOCAL UrDeltas read_ur_deltas(const std::string& path) {
     throw DataError(e.what());
   }
   UrDeltas out;
+  out.hash = sha256(content);
   std::string_view rest = content;
   std::string section;
   bool mounting = false;
@@ -126,6 +128,7 @@ VERNIER_IMPL RobotDescription read_ur_calibration(const std::string& path, const
   const detail::AxisRows found = detail::rows_of_axes(axes, thetas);
 
   RobotDescription out = nominal;
+  out.files.push_back({path, deltas.hash});
   out.rows = found.rows;
   // What is left behind the last axis keeps a and alpha, and so d of the last row its meaning.
   const Isometry3 left = composed(inverse_of(found.frames.back()), end);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/frames.hpp"
@@ -28,26 +28,25 @@ VERNIER_IMPL void ReregisterOptions::validate() const {
 
 namespace detail {
 
-/// printf into a string.
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  char line[320];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
+/// The components of a vector with some decimals: "(1.00, -0.20, 0.03)".
+VERNIER_LOCAL std::string components(const Vector3& values, int decimals) {
+  std::string out;
+  for (const double value : values) out += (out.empty() ? "(" : ", ") + fixed_digits(value, decimals);
+  return out + ")";
 }
 
 }  // namespace detail
 
 VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
+  using detail::components;
+  using detail::fixed_digits;
   std::vector<std::string> out;
   if (probe_turned)
-    out.push_back(detail::formatted(
-        "Measured orientations are turned by %.2f mrad against the tool, (%.2f, %.2f, %.2f) +- (%.2f, %.2f, %.2f) in "
-        "its frame (statistic %.0f, by chance up to %.1f): was the probe remounted? The rotation is taken off the "
-        "orientations; the model's tool is kept.",
-        1e3 * motion.probe.norm(), 1e3 * motion.probe.x(), 1e3 * motion.probe.y(), 1e3 * motion.probe.z(),
-        1e3 * probe_std.x(), 1e3 * probe_std.y(), 1e3 * probe_std.z(), contradiction,
-        estimated.contradiction_threshold));
+    out.push_back(message(
+        "Measured orientations are turned by ", fixed_digits(1e3 * motion.probe.norm(), 2), " mrad against the tool, ",
+        components(1e3 * motion.probe, 2), " +- ", components(1e3 * probe_std, 2), " in its frame (statistic ",
+        fixed_digits(contradiction, 0), ", by chance up to ", fixed_digits(estimated.contradiction_threshold, 1),
+        "): was the probe remounted? The rotation is taken off the orientations; the model's tool is kept."));
   for (const std::string& what : held) out.push_back("The poses do not determine " + what + ": held where it was.");
   std::string zeros;
   const Index zeros_begin = estimated.base ? 6 : 0, count = change_std.size() > 0 ? motion.offsets.size() : 0;
@@ -57,17 +56,17 @@ VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
     out.push_back("The poses tell little about the zeros of joints" + zeros + ": held near where they were.");
   const auto far_off = [&](const char* how, double moved, double prior, const char* unit) {
     if (moved > 3 * prior)
-      out.push_back(
-          detail::formatted("The tool has %s by %.2f %s, where %.2f are expected of one remounted: if it is "
-                            "another tool, register it as such (with infinite priors).",
-                            how, 1e3 * moved, unit, 1e3 * prior));
+      out.push_back(message("The tool has ", how, " by ", fixed_digits(1e3 * moved, 2), " ", unit, ", where ",
+                            fixed_digits(1e3 * prior, 2),
+                            " are expected of one remounted: if it is another tool, register it as such (with infinite "
+                            "priors)."));
   };
   far_off("moved", translation(motion.tool).norm(), estimated.tool_position_prior_std, "mm");
   far_off("turned", log_so3(rotation(motion.tool)).norm(), estimated.tool_rotation_prior_std, "mrad");
   const auto vague = [&](const char* what, double sigma, double prior, const char* unit) {
     if (std::isinf(prior) && sigma > 1e-3)
-      out.push_back(
-          detail::formatted("The poses determine the %s of the tool to %.1f %s only.", what, 1e3 * sigma, unit));
+      out.push_back(message("The poses determine the ", what, " of the tool to ", fixed_digits(1e3 * sigma, 1), " ",
+                            unit, " only."));
   };
   if (!estimated.tool || change_std.size() == 0) return out;
   const auto largest = [&](Index begin) {
@@ -84,13 +83,13 @@ VERNIER_IMPL std::string ReregistrationReport::summary() const {
   const bool known = change_std.size() > 0;
   const auto frame = [&](const char* name, const Isometry3& by) {
     const Vector6 v = FrameParameters(by).values();
-    const auto thousandfold = [](const auto& values, Index k) {
-      return detail::formatted("(%.3f, %.3f, %.3f)", 1e3 * values(k), 1e3 * values(k + 1), 1e3 * values(k + 2));
+    const auto three = [](const auto& values, Index k) {
+      return detail::components(Vector3(1e3 * values(k), 1e3 * values(k + 1), 1e3 * values(k + 2)), 3);
     };
     for (const Index k : {0, 3}) {
       out += k == 0 ? std::string(name) + " moved by " : ", turned by ";
-      out += thousandfold(v, k);
-      if (known) out += " +- " + thousandfold(change_std, at + k);
+      out += three(v, k);
+      if (known) out += " +- " + three(change_std, at + k);
       out += k == 0 ? " mm" : " mrad\n";
     }
     at += 6;
@@ -98,13 +97,13 @@ VERNIER_IMPL std::string ReregistrationReport::summary() const {
   if (estimated.base) frame("Base", motion.base);
   for (Index i = 0; estimated.offsets && i < motion.offsets.size(); ++i, ++at) {
     const bool revolute = joint_types[static_cast<std::size_t>(i)] == JointType::revolute;
-    out += detail::formatted("Zero of joint %d moved by %+.4f", static_cast<int>(i + 1), motion.offsets(i) * 1e3);
-    if (known) out += detail::formatted(" +- %.4f", change_std(at) * 1e3);
+    out += message("Zero of joint ", i + 1, " moved by ", detail::signed_digits(motion.offsets(i) * 1e3, 4));
+    if (known) out += " +- " + detail::fixed_digits(change_std(at) * 1e3, 4);
     out += revolute ? " mrad\n" : " mm\n";
   }
   if (estimated.tool) frame("Tool", motion.tool);
-  out += detail::formatted("Weighted for residuals of %.3f mm", 1e3 * position_sigma);
-  if (orientation_sigma > 0) out += detail::formatted(" and %.3f mrad", 1e3 * orientation_sigma);
+  out += "Weighted for residuals of " + detail::fixed_digits(1e3 * position_sigma, 3) + " mm";
+  if (orientation_sigma > 0) out += " and " + detail::fixed_digits(1e3 * orientation_sigma, 3) + " mrad";
   out += " a component\n";
   for (const std::string& remark : remarks()) out += remark + "\n";
   return out;
@@ -190,9 +189,7 @@ VERNIER_LOCAL std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
       if (largest < 0) axis *= -1;
       for (double& value : axis)
         if (std::abs(value) < 0.005) value = 0;  // no -0.00
-      if (count < 3)
-        what += formatted("%s (%.2f, %.2f, %.2f)", k == 0 ? (part == 0 ? " along" : " about") : " and", axis.x(),
-                          axis.y(), axis.z());
+      if (count < 3) what += message(k == 0 ? (part == 0 ? " along " : " about ") : " and ", components(axis, 2));
     }
     out.push_back(count < 3 ? what + " of its frame" : what);
   }

@@ -8,6 +8,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/robot_programs/configuration.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
@@ -23,9 +24,7 @@ inline constexpr std::string_view program_stamp = "VERNIER-CORRECTED";
 VERNIER_LOCAL std::string with_decimals(double value, int decimals);
 
 VERNIER_IMPL std::string with_decimals(double value, int decimals) {
-  char text[400];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
-  std::string out(text, end);
+  std::string out = fixed_digits(value, decimals);
   if (out.find_first_not_of("-0.") == std::string::npos && out.front() == '-') out.erase(0, 1);
   return out;
 }

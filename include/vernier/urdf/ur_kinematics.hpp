@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "vernier/urdf/export_note.hpp"
 #include "vernier/urdf/urdf_chain.hpp"
@@ -27,6 +28,8 @@ struct UrKinematics {
   /// Which controller's kinematics they are; the driver compares it, and warns. Up to 64 letters, digits and
   /// underscores; empty: not stated.
   std::string hash;
+  /// From which they were read.
+  std::vector<SourceFile> files{};
 
   /// From rows, their frames where the rows end along the axes, as `ur_calibration` has them. What the last row has
   /// behind its axis is left out: it belongs to the tool.

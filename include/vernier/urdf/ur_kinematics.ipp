@@ -7,6 +7,7 @@
 #include <set>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/kinematics/detail/rows_of_axes.hpp"
 #include "vernier/urdf/detail/origin_patch.hpp"
@@ -121,6 +122,7 @@ VERNIER_IMPL RobotDescription UrKinematics::robot(const std::string& name) const
   const detail::AxisRows found = detail::rows_of_axes(axes);
   RobotDescription out;
   out.name = name;
+  out.files = files;
   out.rows = found.rows;
   out.base = found.base;
   out.tool = found.frames.back().inverse() * at;
@@ -166,6 +168,7 @@ VERNIER_IMPL UrKinematics read_ur_kinematics(const std::string& path) {
   }
   const detail::UrYaml kinematics = detail::UrYaml(document, path, "").at("kinematics");
   UrKinematics out;
+  out.files.push_back({path, sha256(content)});
   for (std::size_t i = 0; i < 6; ++i) {
     const detail::UrYaml link = kinematics.at(detail::ur_links[i]);
     Vector6 values;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/kinematics/detail/rows_of_axes.hpp"
 #include "vernier/urdf/detail/urdf_document.hpp"
@@ -80,7 +81,9 @@ VERNIER_IMPL UrdfChain read_urdf(const std::string& path, const std::string& bas
   } catch (const std::invalid_argument& e) {
     throw DataError(e.what());
   }
-  return parse_urdf(text, path, base_link, tip_link);
+  UrdfChain out = parse_urdf(text, path, base_link, tip_link);
+  out.robot.files.push_back({path, sha256(text)});
+  return out;
 }
 
 VERNIER_IMPL UrdfChain parse_urdf(const std::string& text, const std::string& file, const std::string& base_link,

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "vernier/calibration/detail/audit_rows.hpp"
-#include "vernier/calibration/detail/wording.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/evaluation/quantile.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "vernier/calibration/detail/plausibility.hpp"
-#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/identification/frames.hpp"
 
 namespace vernier::detail {

@@ -1,20 +1,18 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/io/detail/c_tables.hpp"
 
 namespace vernier::detail {
 
 VERNIER_IMPL std::string c_number(double value) {
   demand(std::isfinite(value), "c_source: a value of the model is ", value);
-  char digits[40];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 17);
-  return std::string(digits, end.ptr);
+  return significant_digits(value, 17);
 }
 
 VERNIER_IMPL std::string c_text(std::string_view text) {

@@ -18,8 +18,6 @@ VERNIER_API std::string html_escape(std::string_view text);
 VERNIER_API std::string script_escape(std::string_view json);
 /// A whole number of tenths, without a decimal that is zero.
 VERNIER_API std::string tenths(double value);
-/// A number with some decimals.
-VERNIER_API std::string fixed(double value, int decimals);
 /// The hexadecimal digits of a digest in base 64, as content security policies write it.
 VERNIER_API std::string base64_of_hex(std::string_view hex);
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
 #include "vernier/core/check.hpp"
 #include "vernier/io/detail/html.hpp"
@@ -76,12 +75,6 @@ VERNIER_IMPL std::string tenths(double value) {
     out += static_cast<char>('0' + size % 10);
   }
   return out;
-}
-
-VERNIER_IMPL std::string fixed(double value, int decimals) {
-  char buffer[352];
-  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
-  return buffer;
 }
 
 VERNIER_IMPL std::string base64_of_hex(std::string_view hex) {

@@ -31,7 +31,9 @@ struct ModelData {
 };
 
 VERNIER_API nlohmann::ordered_json model_to_json(const ModelData& model);
-VERNIER_API void write_model(const std::string& path, const ModelData& model);
+/// Writes a model file.
+/// @return SHA-256 of its bytes
+VERNIER_API std::string write_model(const std::string& path, const ModelData& model);
 /// @param content the text of a model file
 /// @param file    its name in messages
 /// @throws DataError naming file and key

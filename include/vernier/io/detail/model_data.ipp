@@ -10,6 +10,7 @@
 
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/core/version.hpp"
 #include "vernier/io/detail/estimate_json.hpp"
 #include "vernier/io/detail/learned_json.hpp"
@@ -66,14 +67,15 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   return out;
 }
 
-VERNIER_IMPL void write_model(const std::string& path, const ModelData& model) {
+VERNIER_IMPL std::string write_model(const std::string& path, const ModelData& model) {
   std::string text;
   try {
-    text = model_to_json(model).dump(1);
+    text = model_to_json(model).dump(1) + "\n";
   } catch (const nlohmann::json::exception&) {  // a name that is not UTF-8
     throw std::invalid_argument("save: a name is not valid text");
   }
-  write_file(path, text + "\n");
+  write_file(path, text);
+  return sha256(text);
 }
 
 /// Checks version and convention, which every model file starts with.

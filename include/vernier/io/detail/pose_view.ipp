@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "vernier/calibration/detail/wording.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/io/detail/html.hpp"
@@ -103,8 +103,8 @@ VERNIER_IMPL std::string poses_json(const ReportInput& input, const PoseView& vi
   return message("{\"centre\":[", std::llround(bounds.centre.x() * 1e3), ',', std::llround(bounds.centre.y() * 1e3),
                  ',', std::llround(bounds.centre.z() * 1e3), "],\"half\":", std::llround(bounds.half * 1e3),
                  ",\"units\":[", units, "],\"files\":[", files, "],\"colours\":[", colours,
-                 "],\n\"clip\":{\"before\":", fixed(view.before_clip * 1e6, 3),
-                 ",\"after\":", fixed(view.after_clip * 1e6, 3),
+                 "],\n\"clip\":{\"before\":", fixed_digits(view.before_clip * 1e6, 3),
+                 ",\"after\":", fixed_digits(view.after_clip * 1e6, 3),
                  "},\n\"file\":", poses.file.empty() ? "[]" : list([&](std::string& out, Index i) {
                    whole(out, poses.file[static_cast<std::size_t>(i)]);
                  }),

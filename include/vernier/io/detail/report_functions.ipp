@@ -7,6 +7,7 @@
 
 #include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/error_terms/drive_lines.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
@@ -89,8 +90,9 @@ VERNIER_IMPL std::string joints_section(const ReportInput& input) {
     HtmlTable lines{.head = {"order", "amplitude [urad]", "+- (95 %)", "chi-square", "probable cause"}};
     for (std::size_t k = 0; k < joint.lines.size() && k < 8; ++k) {
       const HarmonicEstimate& line = joint.lines[k];
-      lines.rows.push_back({message(line.order), fixed(line.amplitude * 1e6, 1), fixed(line.margin() * 1e6, 1),
-                            fixed(line.chi_square, 0), cause_of(line.order, joint.drive)});
+      lines.rows.push_back({message(line.order), fixed_digits(line.amplitude * 1e6, 1),
+                            fixed_digits(line.margin() * 1e6, 1), fixed_digits(line.chi_square, 0),
+                            cause_of(line.order, joint.drive)});
       if (k < 3)
         spectrum.labels.push_back({static_cast<double>(line.order), line.amplitude * 1e6, message(line.order)});
     }
@@ -132,8 +134,9 @@ VERNIER_IMPL std::string drift_section(const ReportInput& input) {
   const VectorX& errors = stage_of(input, input.after).position;
   if (input.times.size() == errors.size() && errors.size() >= 20) {
     const RankCorrelation found = rank_correlation(input.times, errors);
-    out += paragraph(message("Errors against the time of measuring: Spearman's rank correlation ", fixed(found.rho, 3),
-                             found.p_value < 1e-4 ? ", p < 0.0001." : ", p = " + fixed(found.p_value, 4) + "."));
+    out += paragraph(message("Errors against the time of measuring: Spearman's rank correlation ",
+                             fixed_digits(found.rho, 3),
+                             found.p_value < 1e-4 ? ", p < 0.0001." : ", p = " + fixed_digits(found.p_value, 4) + "."));
     const std::vector<Index> order = argsort(input.times);
     const Index n = errors.size(), groups = std::min<Index>(20, n / 10);
     ChartSeries median{.title = "median", .colour = 1}, p95{.title = "95 %", .colour = 2};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/version.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/detail/html.hpp"
@@ -54,8 +55,10 @@ VERNIER_IMPL std::string errors_section(const ReportInput& input) {
   for (const StageErrors& stage : input.stages) {
     const ErrorStatistics e = ErrorStatistics::of(stage.position * 1e3);
     table.rows.push_back({stage.title + (input.held_out && stage.name == input.after ? " (deployed)" : ""),
-                          fixed(e.mean, 4), fixed(e.rms, 4), fixed(e.max, 4), fixed(e.min, 4), fixed(e.p95, 4)});
-    if (oriented) table.rows.back().push_back(stage.rotation.size() > 0 ? fixed(stage.rotation.mean() * 1e3, 4) : "");
+                          fixed_digits(e.mean, 4), fixed_digits(e.rms, 4), fixed_digits(e.max, 4),
+                          fixed_digits(e.min, 4), fixed_digits(e.p95, 4)});
+    if (oriented)
+      table.rows.back().push_back(stage.rotation.size() > 0 ? fixed_digits(stage.rotation.mean() * 1e3, 4) : "");
     if (stage.name != input.before && stage.name != Stage::geometry && stage.name != input.after) continue;
     ChartSeries series{.title = stage.title, .colour = colour++};
     VectorX sorted = stage.position * 1e3;
@@ -95,8 +98,8 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
   if (input.ellipsoid_coverage) {
     const auto n = static_cast<double>(errors.size());
     out += paragraph(message("Within their predicted 95 % ellipsoids: ", std::llround(*input.ellipsoid_coverage * n),
-                             " of ", errors.size(), " poses (", fixed(100 * *input.ellipsoid_coverage, 1),
-                             " %; by chance 95 +- ", fixed(196 * std::sqrt(0.95 * 0.05 / n), 1), " %)."));
+                             " of ", errors.size(), " poses (", fixed_digits(100 * *input.ellipsoid_coverage, 1),
+                             " %; by chance 95 +- ", fixed_digits(196 * std::sqrt(0.95 * 0.05 / n), 1), " %)."));
   }
   if (gates.size() > 0) {
     HtmlTable where{.caption = "Position errors inside and outside the measured joint ranges [mm]",
@@ -107,8 +110,8 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
         if ((gates(i) >= 1) == inside) some.push_back(errors(i) * 1e3);
       if (some.empty()) continue;
       const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(some.data(), static_cast<Index>(some.size())));
-      where.rows.push_back(
-          {inside ? "inside" : "outside", message(e.n), fixed(e.mean, 4), fixed(e.p95, 4), fixed(e.max, 4)});
+      where.rows.push_back({inside ? "inside" : "outside", message(e.n), fixed_digits(e.mean, 4),
+                            fixed_digits(e.p95, 4), fixed_digits(e.max, 4)});
     }
     out += html_table(where);
   }
@@ -120,7 +123,7 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
     const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;
     std::string text;
     for (const auto& [lower, upper] : joint.measured_ranges)
-      text += message(text.empty() ? "" : ", ", fixed(lower * unit, 1), " .. ", fixed(upper * unit, 1));
+      text += message(text.empty() ? "" : ", ", fixed_digits(lower * unit, 1), " .. ", fixed_digits(upper * unit, 1));
     if (!text.empty()) ranges.rows.push_back({message(j + 1), joint.revolute ? "deg" : "mm", text});
   }
   return section("where", "Where it is good", out + html_table(ranges));
@@ -135,10 +138,11 @@ VERNIER_IMPL std::string parameters_section(const ReportInput& input) {
     const bool estimated = p.state == ParameterState::identified || p.state == ParameterState::weak;
     static constexpr const char* states[] = {"fixed", "identified", "weak: held near nominal by its prior",
                                              "not identifiable"};
-    table.rows.push_back(
-        {p.name, p.kind == ParameterKind::length ? "mm" : "mrad", fixed(p.nominal * 1e3, 4),
-         fixed(p.identified * 1e3, 4), estimated ? fixed(change * 1e3, 4) : "", estimated ? fixed(p.std * 1e3, 4) : "",
-         estimated && p.scale > 0 ? fixed(change / p.scale, 2) : "", states[static_cast<int>(p.state)], p.remark});
+    table.rows.push_back({p.name, p.kind == ParameterKind::length ? "mm" : "mrad", fixed_digits(p.nominal * 1e3, 4),
+                          fixed_digits(p.identified * 1e3, 4), estimated ? fixed_digits(change * 1e3, 4) : "",
+                          estimated ? fixed_digits(p.std * 1e3, 4) : "",
+                          estimated && p.scale > 0 ? fixed_digits(change / p.scale, 2) : "",
+                          states[static_cast<int>(p.state)], p.remark});
   }
   std::string out = html_table(table);
   if (!input.correlated.empty())

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "vernier/calibration/detail/wording.hpp"
-#include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
@@ -34,7 +33,7 @@ VERNIER_LOCAL std::vector<std::vector<std::string>> suspect_rows(const ReportInp
   const ReportPoses& poses = input.poses;
   const auto cells = [](const std::string& name, const char* kind, double error, double sigmas,
                         const std::string& why) {
-    return std::vector<std::string>{name, kind, fixed(error * 1e3, 3), fixed(sigmas, 1), why};
+    return std::vector<std::string>{name, kind, fixed_digits(error * 1e3, 3), fixed_digits(sigmas, 1), why};
   };
   for (Index i = 0; i < poses.normalised.size(); ++i)
     if (poses.normalised(i) > suspect_sigmas)

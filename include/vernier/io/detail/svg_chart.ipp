@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/svg_chart.hpp"
 
@@ -29,13 +28,6 @@ VERNIER_IMPL std::vector<double> chart_ticks(double lower, double upper, bool lo
   for (double k = std::ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * step; ++k)
     out.push_back(same_value(k, 0) ? 0 : k * step);
   return out;
-}
-
-/// A tick in up to six digits.
-VERNIER_LOCAL std::string tick_text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
-  return buffer;
 }
 
 /// An axis: what its values are in pixels.
@@ -121,12 +113,12 @@ VERNIER_IMPL std::string chart_svg(const Chart& chart) {
   for (const double tick : chart_ticks(x.lower, x.upper, chart.log_x, 8)) {
     grid += 'M' + tenths(x(tick)) + ' ' + tenths(y.from) + 'V' + tenths(y.to);
     texts += "<text class=\"tick mid\" x=\"" + tenths(x(tick)) + "\" y=\"" + tenths(y.from + 16) + "\">" +
-             tick_text(tick) + "</text>\n";
+             significant_digits(tick, 6) + "</text>\n";
   }
   for (const double tick : chart_ticks(y.lower, y.upper, chart.log_y, 5)) {
     grid += 'M' + tenths(x.from) + ' ' + tenths(y(tick)) + 'H' + tenths(x.to);
     texts += "<text class=\"tick end\" x=\"" + tenths(x.from - 6) + "\" y=\"" + tenths(y(tick) + 4) + "\">" +
-             tick_text(tick) + "</text>\n";
+             significant_digits(tick, 6) + "</text>\n";
   }
   out += "<path class=\"grid\" d=\"" + grid + "\"/>\n" + texts;
   for (const ChartSeries& series : chart.series) out += series_path(series, x, y);

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <numbers>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
 #include "vernier/kinematics/detail/small_systems.hpp"
@@ -354,20 +353,15 @@ VERNIER_IMPL void BranchSet::complete(const BranchProblem& problem) noexcept {
 }
 
 VERNIER_IMPL std::string describe_reach(Reach reach, int branches, double margin) {
-  char digits[32];
-  const auto number = [&](double value) {
-    std::snprintf(digits, sizeof digits, "%.3g", value);
-    return digits;
-  };
   switch (reach) {
     case Reach::met: return counted(branches, "branch", "branches");
     case Reach::beyond_limits: return message("joint limits exclude all ", branches, " branches");
     case Reach::proven_out:
-      return message("out of reach: ", number(margin * 1e3), " mm farther away than the arm is long");
+      return message("out of reach: ", significant_digits(margin * 1e3, 3), " mm farther away than the arm is long");
     case Reach::invalid_target: return "the target is no pose: not finite, or no rotation";
     default: break;
   }
-  return std::isfinite(margin) ? message("no branch found: the target lies ", number(100 * margin),
+  return std::isfinite(margin) ? message("no branch found: the target lies ", significant_digits(100 * margin, 3),
                                          " % beyond a boundary of the nominal arm")
                                : std::string("no branch found");
 }

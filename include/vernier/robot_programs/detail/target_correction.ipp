@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
@@ -44,10 +44,7 @@ VERNIER_IMPL const Isometry3* frame_named(const ProgramFrames& frames, const std
 /// A length [m] in mm, with two significant digits.
 VERNIER_LOCAL std::string rounded_mm(double length);
 
-VERNIER_IMPL std::string rounded_mm(double length) {
-  char text[64];
-  return {text, std::to_chars(text, text + sizeof text, length * 1e3, std::chars_format::general, 2).ptr};
-}
+VERNIER_IMPL std::string rounded_mm(double length) { return significant_digits(length * 1e3, 2); }
 
 /// Corrects the targets of a program one after another.
 class TargetCorrection {

@@ -74,7 +74,7 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
 
 template <int N>
 vn::Dataset<N> read_poses(const std::string& file, const CalibrationOptions& o, std::span<const vn::JointType> types) {
-  const vn::Dataset<N> data = vn::read_dataset<N>(file, types);
+  const vn::Dataset<N> data = vn::read_dataset<N>(file, types, o.csv.format());
   return o.no_approach ? data.without_approach() : data;
 }
 
@@ -83,14 +83,14 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
                                    std::uint64_t seed) {
   MeasuredFiles<N> out;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
-    out.files.push_back(vn::read_dataset<N>(o.data[s], types));
+    out.files.push_back(vn::read_dataset<N>(o.data[s], types, o.csv.format()));
     vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
     out.train.add(std::move(station.train), o.data[s]);
     out.test.add(std::move(station.test));
   }
-  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types), file);
+  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types, o.csv.format()), file);
   if (!o.contacts.empty())
-    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types)) out.train.add(contact);
+    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types, o.csv.format())) out.train.add(contact);
   return out;
 }
 

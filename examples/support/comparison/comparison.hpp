@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "csv_options.hpp"
 #include "json_file.hpp"
 #include "vernier/core/fit_options.hpp"
 
@@ -25,6 +26,7 @@ struct Problem {
   double noise_mm = 0;               ///< of the measured positions, per component
   // measured
   std::filesystem::path data{};  ///< measured poses; empty: simulated
+  CsvOptions csv{};              ///< how that file is written
   std::string split = "random";  ///< random, region, time: what is held out, a fifth
   std::string fingerprint{};     ///< of the files that describe it, whose names alone say too little
 

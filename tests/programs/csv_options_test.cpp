@@ -63,8 +63,7 @@ TEST_F(CsvOptionsOfPrograms, AreNamedAndTaken) {
            {"calibrate' --model model.json --free base --data measured.txt --save moved.json", "measured"},
            {"correct' --model model.json --targets targets.txt --out c.csv", "targets"},
            {"verify_calibration' --model model.json --data measured.txt --accept-mm 5", "measured"},
-           {"iso9283' --data visits.txt --commanded commanded.csv", "visits"},
-           {"iso9283' --data visits.csv --commanded commanded.txt", "commanded"},
+           {"iso9283' --data visits.txt --commanded commanded.txt", "commanded"},
            {"export_robot' --robot ur5 --data measured.txt --ur-kinematics d.yaml", "measured"},
            {"compare' --robot ur5 --data measured.txt --methods none --poses 0 --seeds 1,2 --out table", "measured"}}) {
     SCOPED_TRACE(command);

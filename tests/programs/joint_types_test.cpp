@@ -105,9 +105,10 @@ TEST_P(JointTypes, PlanSimulateCalibrateCorrect) {
   EXPECT_EQ(header("commands.csv").find(names + ",status,"), 0u);
   done("simulate_measurements' --robot arm.json --poses commands.csv --out again.csv --seed 3");
   EXPECT_EQ(header("again.csv"), header("measured.csv"));
-  if (std::string(arm.name) != "scara")  // whose model has no covariance
+  if (std::string(arm.name) != "scara") {  // whose model has no covariance
     EXPECT_NE(run("verify_calibration' --model model.json --data held.csv").output.find("11 poses of held.csv"),
               std::string::npos);
+  }
 
   // the measured ranges are those of the file, in mm and deg
   const std::size_t ranges = calibrated.find("Measured joint ranges [deg, mm]: q1 ");
@@ -126,7 +127,7 @@ TEST_P(JointTypes, PlanSimulateCalibrateCorrect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, JointTypes, ::testing::ValuesIn(arms()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& arm) { return std::string(arm.param.name); });
 
 }  // namespace
 }  // namespace vernier::joint_types_test

@@ -1,0 +1,11 @@
+// Measured poses with semicolons and decimal commas, of two joints, and what is remarked on them.
+#include "reader_fuzz.hpp"
+#include "vernier/data/csv.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return vernier::fuzz::read_as_file(data, size, [](const std::string& path) {
+    const vernier::CsvFormat format{.separator = ';', .decimal = ',', .remark = vernier::fuzz::check_complaint};
+    static_cast<void>(vernier::read_dataset<2>(path, {}, format));
+    static_cast<void>(vernier::read_csv_text(path, format));
+  });
+}

@@ -76,8 +76,8 @@ int run(support::Program& program) {
   support::CalibrationOptions o = support::read_calibration_options(program);
   if (o.reregister) return support::reregister_model(program, o);
   if (o.data.empty())
-    return support::calibrate_by_contacts(program, support::choose_robot(o.robot), o.contacts, o.calibrate.geometry,
-                                          o.calibrate.sensors, o.save, o.date);
+    return support::calibrate_by_contacts(program, support::choose_robot(o.robot), o.contacts, o.csv.format(),
+                                          o.calibrate.geometry, o.calibrate.sensors, o.save, o.date);
   return calibrate_by_poses(program, o);
 }
 

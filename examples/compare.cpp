@@ -411,6 +411,7 @@ Request read_command_line(Program& program) {
   program.add_setting("--region", problem.region, "joints of simulated poses", "operating|full");
   program.add_setting("--noise-mm", problem.noise_mm, "of simulated positions, per component", "S");
   program.add_option("--data", problem.data, "measured poses instead", "FILE");
+  problem.csv.add_to(program, "", "--data");
   program.add_setting("--split", problem.split, "which fifth of the measured poses is held out", "random|region|time");
   program.add_setting("--poses", plan.poses, "to learn from; 0: all measured ones", "N,...").delimiter(',');
   program.add_setting("--seeds", plan.seeds, "of data and fits", "S,...").delimiter(',');

@@ -12,6 +12,7 @@
 
 #include "cli.hpp"
 #include "correction_report.hpp"
+#include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "program_correction.hpp"
@@ -27,6 +28,7 @@ namespace vn = vernier;
 /// What the command line says.
 struct Settings {
   std::string model, targets, out;
+  support::CsvOptions csv;
   bool poses = false;     ///< of a file with joints and poses, the poses are the targets
   bool approach = true;   ///< commands are executed in their order
   bool linear = false;    ///< all moves are linear
@@ -58,7 +60,7 @@ auto list(const Values& values) {
 /// @throws vn::DataError on a malformed file, or one without what the settings ask for
 template <int N>
 std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::CalibratedRobot<N>& robot) {
-  const auto file = vn::read_targets<N>(settings.targets, robot.nominal().chain().joint_types());
+  const auto file = vn::read_targets<N>(settings.targets, robot.nominal().chain().joint_types(), settings.csv.format());
   const bool joints = file.joints.rows() > 0, poses = file.positions.rows() > 0 && (settings.poses || !joints);
   if (settings.poses && file.positions.rows() == 0)
     throw vn::DataError(settings.targets + ": no columns x_mm, y_mm, z_mm");
@@ -213,6 +215,7 @@ int run(support::Program& program) {
       "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
       "there: j (joint move) or l (linear move)",
       "FILE");
+  settings.csv.add_to(program, "", "--targets");
   support::add_program_options(program, in_place);
   program.add_flag("--poses", settings.poses,
                    "of a file with joints and poses, the poses are the targets; the joints choose the branch");

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "cli.hpp"
-#include "file_name.hpp"
+#include "csv_options.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
 #include "robot_choice.hpp"
@@ -20,6 +20,7 @@ namespace vn = vernier;
 
 struct Settings {
   support::RobotOptions robot;
+  support::CsvOptions csv;
   std::string data, urdf, ur_kinematics, ur_hash = "calib_unknown", date;
   vn::Index test_every = 5;
   bool with_base = false, with_tool = false, positions_only = false;
@@ -40,6 +41,7 @@ struct Outcome {
 support::CalibrationOptions calibration_options(const Settings& o, const std::string& arm_name) {
   support::CalibrationOptions out;
   out.data = {o.data};
+  out.csv = o.csv;
   out.test_every = o.test_every;
   out.calibrate.arm_name = arm_name;
   out.calibrate.sensors.use_orientations = !o.positions_only;
@@ -114,6 +116,7 @@ int run(support::Program& program) {
   o.date = support::today();
   o.robot.add_to(program).required();
   program.add_option("--data", o.data, "measured poses, columns as for calibrate", "FILE").required();
+  o.csv.add_to(program);
   program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
   program.add_output("--urdf", o.urdf,
                      "write the file of --robot (URDF) with the calibrated origins of its joints to this file");

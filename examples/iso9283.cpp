@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "csv_options.hpp"
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "vernier/core/so3.hpp"
@@ -27,6 +28,7 @@ namespace vn = vernier;
 
 /// What the command line says.
 struct Settings {
+  support::CsvOptions csv;
   std::string data, commanded, path, runs;
   bool plan = false;
   std::vector<double> centre{}, rotation{0, 0, 0};
@@ -127,6 +129,7 @@ int run(support::Program& program) {
   program.add_option(
       "--runs", settings.runs,
       "measured runs along the path: columns cycle, x_mm .., optionally rx_rad .., in the order of measuring", "FILE");
+  settings.csv.add_to(program);
   program.add_setting("--points", settings.points, "points of the path that are compared", "M").within(1, 100000);
   program.add_flag("--plan", settings.plan, "write the five poses of a test to --out instead");
   program.add_option("--centre-mm", settings.centre, "centre of the cube", "X,Y,Z").delimiter(',');
@@ -146,17 +149,11 @@ int run(support::Program& program) {
     throw support::UsageError("--data and --commanded belong together");
   if (settings.path.empty() != settings.runs.empty()) throw support::UsageError("--path and --runs belong together");
 
-  if (out == "-") throw support::UsageError("--out takes the beginning of names, which cannot be standard output");
-  if (!out.empty()) {
-    const std::filesystem::path folder = std::filesystem::absolute(out).parent_path();
-    if (!std::filesystem::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
-    support::require_folder(folder);
-  }
-
+  const vn::CsvFormat format = settings.csv.format();
   support::Json document;
   if (!settings.data.empty()) {
-    const auto poses = vn::read_labelled_poses(settings.commanded, {"pose"});
-    const auto file = vn::read_labelled_poses(settings.data, {"pose", "cycle"}, {"direction"});
+    const auto poses = vn::read_labelled_poses(settings.commanded, {"pose"}, {}, format);
+    const auto file = vn::read_labelled_poses(settings.data, {"pose", "cycle"}, {"direction"}, format);
     std::vector<vn::Iso9283Visit> visits;
     for (vn::Index i = 0; i < file.times.size(); ++i)
       visits.push_back({file.labels(i, 0), file.labels(i, 1), file.labels(i, 2),
@@ -171,8 +168,8 @@ int run(support::Program& program) {
       if (!out.empty() && pose.n > 1) plot_visits(out, pose, visits);
   }
   if (!settings.path.empty()) {
-    const auto path = vn::read_labelled_poses(settings.path, {});
-    const auto file = vn::read_labelled_poses(settings.runs, {"cycle"});
+    const auto path = vn::read_labelled_poses(settings.path, {}, {}, format);
+    const auto file = vn::read_labelled_poses(settings.runs, {"cycle"}, {}, format);
     std::map<int, std::vector<vn::Isometry3>> cycles;
     for (vn::Index i = 0; i < file.times.size(); ++i)
       cycles[file.labels(i, 0)].push_back(file.poses[static_cast<std::size_t>(i)]);

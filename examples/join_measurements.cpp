@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "robot_choice.hpp"
@@ -21,6 +22,7 @@ namespace vn = vernier;
 /// What the command line says.
 struct Settings {
   support::RobotOptions robot;
+  support::CsvOptions joints_csv;
   std::string joints, points, out, key, preset, unit, separator, decimal, comment;
   std::vector<std::string> columns{};
   vn::Index header_lines = 0;
@@ -28,20 +30,14 @@ struct Settings {
 };
 
 vn::PointTableFormat format_of(const Settings& o) {
-  const auto one = [](const std::string& text, const char* option) {
-    if (text == "tab") return '\t';
-    if (text == "space") return ' ';
-    if (text.size() != 1) throw support::UsageError(std::string(option) + " takes one character, or tab or space");
-    return text.front();
-  };
   const double unit = vn::length_unit(o.unit);
   vn::PointTableFormat format{.unit = unit};
   if (o.preset == "sa") format = vn::PointTableFormat::spatial_analyzer(unit);
   if (o.preset.empty() && (o.columns.empty() || o.separator.empty()))
     throw support::UsageError("the layout of --points is not guessed: --preset, or --columns and --separator");
   if (!o.columns.empty()) format.columns = o.columns;
-  if (!o.separator.empty()) format.separator = one(o.separator, "--separator");
-  if (!o.decimal.empty()) format.decimal = one(o.decimal, "--decimal");
+  if (!o.separator.empty()) format.separator = support::one_character(o.separator, "--separator");
+  if (!o.decimal.empty()) format.decimal = support::one_character(o.decimal, "--decimal");
   if (!o.comment.empty()) format.comment = o.comment;
   format.header_lines = o.header_lines;
   return format;
@@ -59,12 +55,33 @@ vn::PointTable read_points(const Settings& o) {
   }
 }
 
+/// How the file of joints is written; all of its columns are kept, so nothing is remarked on them.
+vn::CsvFormat joints_format(const Settings& o) {
+  vn::CsvFormat out = o.joints_csv.format();
+  out.remark = [](const std::string&) {};
+  return out;
+}
+
+/// What a reader makes of the file of joints, whose options have names of their own here.
+template <class Read>
+auto of_joints(const Read& read) {
+  try {
+    return read();
+  } catch (const vn::DataError& e) {
+    std::string said = e.what();
+    for (const std::string option : {"--separator", "--decimal"})
+      if (const auto at = said.find(option); at != std::string::npos) said.insert(at + 2, "joints-");
+    throw vn::DataError(said);
+  }
+}
+
 /// Poses of the nominal flange at all rows.
 std::vector<vn::Isometry3> flanges_of(const Settings& o) {
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   return support::dispatch_dof(robot.dof(), [&](auto n) {
     const auto arm = robot.arm<n()>().arm;
-    const auto joints = vn::read_joints<n()>(o.joints, arm.model().joint_types());
+    const auto joints =
+        of_joints([&] { return vn::read_joints<n()>(o.joints, arm.model().joint_types(), joints_format(o)); });
     std::vector<vn::Isometry3> out;
     for (vn::Index i = 0; i < joints.rows(); ++i) out.push_back(arm.pose(joints.row(i).transpose()));
     return out;
@@ -79,6 +96,15 @@ std::vector<std::size_t> joint_columns(const std::vector<std::string>& header) {
         header[k].find('_') != std::string::npos)
       out.push_back(k);
   return out;
+}
+
+/// A name or a cell as CSV has it.
+/// @throws vn::DataError on one that it cannot have
+std::string cell_text(const std::string& cell, const vn::CsvText& of) {
+  if (cell.find(',') == std::string::npos) return cell;
+  if (cell.find('"') != std::string::npos)
+    throw vn::DataError(of.file + ": a cell with a comma and a quotation mark cannot be written");
+  return '"' + cell + '"';
 }
 
 /// The rows of the joints' file that have a point, as they are, with the point and the lines of both. Where rows are
@@ -99,18 +125,18 @@ std::string joined(const vn::CsvText& commanded, const vn::PointTable& table, co
   const bool gaps = pairing.pairs.size() < commanded.rows.size();
   bool approached = false;
   for (const std::string& name : commanded.header) approached = approached || name.starts_with("from_q");
-  const bool add_approach = gaps && !approached, add_time = gaps && !has("time_s");
+  const bool add_approach = gaps && !approached, add_time = gaps && !has("time_s") && !has("time_ms");
   const auto segment = static_cast<std::size_t>(has("segment") ? column("segment") : 0);
 
   std::string out;
-  for (const std::string& name : commanded.header) out += name + ',';
+  for (const std::string& name : commanded.header) out += cell_text(name, commanded) + ',';
   for (const std::size_t k : joints)
     if (add_approach) out += "from_" + commanded.header[k] + ',';
   if (add_time) out += "time_s,";
   out += "x_mm,y_mm,z_mm,joints_line,points_line\n";
   for (const vn::PointPair& pair : pairing.pairs) {
     const auto row = static_cast<std::size_t>(pair.row);
-    for (const std::string& cell : commanded.rows[row]) out += cell + ',';
+    for (const std::string& cell : commanded.rows[row]) out += cell_text(cell, commanded) + ',';
     // an approach that is unknown is written as no motion
     const bool known = row > 0 && (!has("segment") || commanded.rows[row][segment] == commanded.rows[row - 1][segment]);
     for (const std::size_t k : joints)
@@ -165,9 +191,10 @@ int run(support::Program& program) {
   program.add_option("--columns", o.columns, "columns of --points: name, x, y, z; other words are skipped", "NAME,...")
       .delimiter(',');
   program.add_option("--separator", o.separator,
-                     "between the columns: a character, tab, or space for any number of blanks", "C");
+                     "between the columns of --points: a character, tab, or space for any number of blanks", "C");
   program.add_option("--decimal", o.decimal, "decimal point of --points; . without it", "C");
   program.add_option("--comment", o.comment, "lines that begin with this text are skipped", "TEXT");
+  o.joints_csv.add_to(program, "joints-", "--joints");
   program.add_setting("--header-lines", o.header_lines, "number of lines to skip at the beginning", "N")
       .within(0, 1000);
   program.add_option("--key", o.key, "column of --joints with the names of the points; without it they pair by order",
@@ -185,7 +212,7 @@ int run(support::Program& program) {
     throw support::UsageError("--key pairs by name; without it --robot is needed to prove the order");
   const vn::PointTable table = read_points(o);
 
-  const vn::CsvText commanded = vn::read_csv_text(o.joints);
+  const vn::CsvText commanded = of_joints([&] { return vn::read_csv_text(o.joints, joints_format(o)); });
   vn::Pairing pairing;
   if (o.key.empty()) {
     pairing = vn::pair_by_order(flanges_of(o), table.points);

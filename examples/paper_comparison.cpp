@@ -254,7 +254,8 @@ void write_poses(const vn::Robot<6>& robot, const Settings& settings, std::uint6
                               vn::FrameParameters(tool));
   const Joints joints = sample(robot, settings.region, 300, vn::child_seed(seed, poses_stream));
   const vn::MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.05e-3};
-  vn::write_dataset(settings.poses_file, vn::measure(arm, joints, noise, vn::child_seed(seed, poses_stream + 1)));
+  vn::write_dataset(settings.poses_file, vn::measure(arm, joints, noise, vn::child_seed(seed, poses_stream + 1)),
+                    robot.chain.joint_types());
   fmt::print("{}: 300 simulated measured poses (0.03 mm, 0.05 mrad), in a tracker's frame, with a tool\n\n",
              support::shown(settings.poses_file));
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "plan_figures.hpp"
@@ -25,6 +26,7 @@ namespace vn = vernier;
 /// What the command line says.
 struct Settings {
   support::RobotOptions robot;
+  support::CsvOptions csv;
   std::string data, model, region, from, held_out, out;
   vn::Index count = 0, add = 0, choose = 0, test_every = 0, candidates = 5000;
   std::vector<double> tracker{}, box{}, region_box{};
@@ -40,7 +42,8 @@ vn::ToolBox tool_box(const std::vector<double>& mm) {
 /// The rows to choose, in the order of the file; joints alone are looked at.
 template <int N>
 support::PlanOutcome choose_rows(const Settings& o, const vn::DescribedRobot<N>& robot, vn::PlanOptions& options) {
-  vn::Dataset<N> data = vn::read_dataset<N>(o.from, robot.arm.model().joint_types()), held_out;
+  const auto types = robot.arm.model().joint_types();
+  vn::Dataset<N> data = vn::read_dataset<N>(o.from, types, o.csv.format()), held_out;
   if (o.test_every > 0) {
     vn::Split<N> parts = vn::split_every(data, o.test_every);
     data = std::move(parts.train);
@@ -50,8 +53,8 @@ support::PlanOutcome choose_rows(const Settings& o, const vn::DescribedRobot<N>&
   const auto plan = vn::plan_measurements(robot.arm, {data.joints(), data.previous(), {}}, options);
   std::vector<vn::Index> rows = plan.chosen;
   std::sort(rows.begin(), rows.end());
-  vn::write_dataset(o.out, data.rows(rows));
-  if (!o.held_out.empty()) vn::write_dataset(o.held_out, held_out);
+  vn::write_dataset(o.out, data.rows(rows), types);
+  if (!o.held_out.empty()) vn::write_dataset(o.held_out, held_out, types);
   return {
       plan, {}, plan.joints, data.joints(), robot.arm.positions(plan.joints), robot.arm.positions(data.joints()), {},
       0,    0};
@@ -71,7 +74,7 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   if (o.link_radius_mm > 0) constraints.link_radii.assign(N, mm * o.link_radius_mm);
   vn::Measurements<N> measured;
   if (!o.data.empty()) {
-    measured.add(vn::read_dataset<N>(o.data, types));
+    measured.add(vn::read_dataset<N>(o.data, types, o.csv.format()));
     options.oriented = options.oriented || measured.poses().front().has_orientations();
   }
   vn::Framed<vn::DhChain<N>> arm = robot.arm;
@@ -84,7 +87,7 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   }
   vn::JointRows<N> region(0, N);
   if (!o.region.empty()) {
-    region = vn::read_joints<N>(o.region, types);
+    region = vn::read_joints<N>(o.region, types, o.csv.format());
   } else if (!o.region_box.empty()) {
     vn::MeasurementConstraints inside;
     inside.tool_box = tool_box(o.region_box);
@@ -176,7 +179,8 @@ int run(support::Program& program) {
       program.add_option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
           .within(2, 1000000)
           .needs(from);
-  program.add_output("--held-out", o.held_out, "write those rows to this file").needs(every);
+  program.add_option("--held-out", o.held_out, "write those rows to this file", "FILE").needs(every);
+  o.csv.add_to(program);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')
       .expected(3)

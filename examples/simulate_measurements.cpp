@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli.hpp"
+#include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "robot_choice.hpp"
 #include "vernier/core/rng.hpp"
@@ -18,6 +19,7 @@ namespace vn = vernier;
 
 struct Settings {
   support::RobotOptions robot;
+  support::CsvOptions csv;
   std::string poses;
   double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02;
   bool positions_only = false;
@@ -36,7 +38,7 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
                    std::uint64_t seed) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const auto types = robot.arm.model().joint_types();
-  const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types);
+  const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types, o.csv.format());
   const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
   const vn::JointErrorSizes sizes{.harmonics = 30, .ripple = 0.01e-3};
   const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
@@ -55,15 +57,19 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
   for (int j = 0; j < N; ++j)
     if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = o.backlash_mrad * 1e-3;
   const vn::MeasurementNoise noise{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, !o.positions_only};
-  vn::write_dataset(out, vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
-                                                   vn::child_seed(seed, digest(joints))));
+  vn::write_dataset(out,
+                    vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
+                                              vn::child_seed(seed, digest(joints))),
+                    types);
   return joints.rows();
 }
 
 int run(support::Program& program) {
   Settings o;
   o.robot.add_to(program).required();
-  program.add_option("--poses", o.poses, "joints q1_rad.., visited in their order", "FILE").required();
+  program.add_option("--poses", o.poses, "joints q1_rad.. (q1_m.. of prismatic ones), visited in their order", "FILE")
+      .required();
+  o.csv.add_to(program);
   program.add_setting("--noise-mm", o.noise_mm, "standard deviation of a position, per component", "MM").not_negative();
   program.add_setting("--noise-mrad", o.noise_mrad, "of an orientation", "MRAD").not_negative();
   program.add_setting("--backlash-mrad", o.backlash_mrad, "half the play of every gear", "MRAD").not_negative();

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cli.hpp"
+#include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "report_page.hpp"
@@ -17,6 +18,7 @@ namespace {
 namespace vn = vernier;
 
 struct Options {
+  support::CsvOptions csv;
   std::string model, data, report, date;
   bool registered = false, tool = false, positions_only = false, no_approach = false;
   double accept_mm = 0, level = 0.05;
@@ -28,7 +30,7 @@ int verify_arm(const support::Program& program, const Options& o, const vn::Save
   if (robot.estimate() == nullptr)
     throw support::UsageError(o.model + ": has no covariance, an older program saved it; calibrate that arm again");
   const auto types = robot.nominal().chain().joint_types();
-  vn::Dataset<N> data = vn::read_dataset<N>(o.data, types);
+  vn::Dataset<N> data = vn::read_dataset<N>(o.data, types, o.csv.format());
   if (o.no_approach) data = data.without_approach();
   vn::PointRows learned(robot.learned() != nullptr ? data.size() : 0, 3);
   for (vn::Index i = 0; i < learned.rows(); ++i) learned.row(i) = robot.learned()->error(data.joints(i)).transpose();
@@ -62,6 +64,7 @@ int run(support::Program& program) {
       .add_option("--data", o.data,
                   "fresh measured poses, columns as for calibrate; 10 to 30 of them, joints moved widely", "FILE")
       .required();
+  o.csv.add_to(program);
   const support::Option registered = program.add_flag(
       "--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
   program.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")

@@ -112,7 +112,7 @@ vn::Index keep_poses_apart(std::vector<vn::Split<N>>& stations, const Calibratio
 
 template <int N>
 vn::Dataset<N> read_poses(const std::string& file, const CalibrationOptions& o, std::span<const vn::JointType> types) {
-  const vn::Dataset<N> data = vn::read_dataset<N>(file, types);
+  const vn::Dataset<N> data = vn::read_dataset<N>(file, types, o.csv.format());
   return o.no_approach ? data.without_approach() : data;
 }
 
@@ -123,23 +123,16 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
   const vn::SamePose same{.joint_types = types};
   std::vector<vn::Split<N>> stations;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
-    out.files.push_back(vn::read_dataset<N>(o.data[s], types));
+    out.files.push_back(vn::read_dataset<N>(o.data[s], types, o.csv.format()));
     vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
     out.inputs.push_back(file_of(out.files.back().origin()));
     if (!o.test.empty()) out.inputs.push_back(file_of(station.test.origin()));
     out.train.add(std::move(station.train), o.data[s]);
     out.test.add(std::move(station.test));
   }
-  for (const std::string& file : o.distances) {
-    const vn::Distances<N> distances = vn::read_distances<N>(file, types);
-    out.inputs.push_back(file_of(distances.origin()));
-    out.train.add(distances, file);
-  }
-  if (o.contacts.empty()) return out;
-  const std::vector<vn::Contact> contacts = vn::read_contacts(o.contacts, N, types);
-  for (const vn::Contact& contact : contacts) out.train.add(contact);
-  out.inputs.push_back(file_of(contacts.front().origin()));
-  out.inputs.back().rows = 0;  // of several objects
+  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types, o.csv.format()), file);
+  if (!o.contacts.empty())
+    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types, o.csv.format())) out.train.add(contact);
   return out;
 }
 

@@ -20,8 +20,9 @@ struct TypedValues {
 
 void add_measurements(Program& program, CalibrationOptions& o, TypedValues& typed) {
   program.add_option("--data", o.data,
-                     "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s, segment "
-                     "(a new number: the approach is unknown) or from_q1_rad.. (where each pose was approached from); "
+                     "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s (or "
+                     "time_ms), temperature_c, segment (a new number: the approach is unknown) or from_q1_rad.. (where "
+                     "each pose was approached from); "
                      "one file a sensor station",
                      "FILE");
   const Option contacts =
@@ -37,6 +38,7 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
                      "measured distances from a fixed point (draw-wire, ball-bar), used beside the poses: "
                      "q1_rad.., distance_mm; one file a fixed point",
                      "FILE");
+  o.csv.add_to(program);
   program
       .add_setting("--distance-sigma", typed.distance_sigma_mm,
                    "standard deviation of a distance [mm]; of positions it is 0.03 mm", "MM")

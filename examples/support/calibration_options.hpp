@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "csv_options.hpp"
 #include "robot_choice.hpp"
 #include "vernier/calibration/calibrate.hpp"
 
@@ -19,6 +20,7 @@ struct CalibrationOptions {
   std::vector<std::string> test;          ///< held-out poses, as many files; empty: rows of `data` are held out
   std::vector<std::string> distances;     ///< files of measured distances, one a fixed point
   std::string contacts;                   ///< file of contacts; empty: none
+  CsvOptions csv;                         ///< how these files are written
   std::string split;                      ///< how a fraction of the rows is held out; empty: every K-th row
   vernier::Index test_every = 5;          ///< that K
   double test_fraction = 0.2;             ///< that fraction

@@ -82,10 +82,10 @@ std::string parameter_table(const vn::ContactReport& report) {
 
 template <int N>
 int calibrate_arm(Program& program, const vn::RobotDescription& description, const std::string& file,
-                  const vn::IdentifyOptions& options, const vn::SensorModel& sensors, const std::string& save,
-                  const std::string& date) {
+                  const vn::CsvFormat& format, const vn::IdentifyOptions& options, const vn::SensorModel& sensors,
+                  const std::string& save, const std::string& date) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
-  const std::vector<vn::Contact> contacts = vn::read_contacts(file, N, robot.arm.chain().joint_types());
+  const std::vector<vn::Contact> contacts = vn::read_contacts(file, N, robot.arm.chain().joint_types(), format);
   const auto found = vn::identify_by_contacts(robot.arm, contacts, options, sensors);
   require_usable(found, file);
   vn::Index touches = 0;
@@ -106,11 +106,12 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
 }  // namespace
 
 int calibrate_by_contacts(Program& program, const vernier::RobotDescription& robot, const std::string& contacts,
-                          vernier::IdentifyOptions options, const vernier::SensorModel& sensors,
-                          const std::string& save, const std::string& date) {
+                          const vernier::CsvFormat& format, vernier::IdentifyOptions options,
+                          const vernier::SensorModel& sensors, const std::string& save, const std::string& date) {
   options.frames = vernier::Frames::tool;
-  return dispatch_dof(
-      robot.dof(), [&](auto n) { return calibrate_arm<n()>(program, robot, contacts, options, sensors, save, date); });
+  return dispatch_dof(robot.dof(), [&](auto n) {
+    return calibrate_arm<n()>(program, robot, contacts, format, options, sensors, save, date);
+  });
 }
 
 }  // namespace support

@@ -107,7 +107,10 @@ TEST_F(Columns, LabelsAreWholeNumbers) {
     EXPECT_EQ(refused([&] { (void)read(wrong); }),
               message("c.csv, line 2, column visit: ", wrong, ", must be a whole number"));
   const std::string two = file("a,x_mm,y_mm,z_mm\n1,1,2,3\n");
-  EXPECT_EQ(refused([&] { (void)read_labelled_poses(two, {"a", "b"}); }), "c.csv: no column b");
+  EXPECT_EQ(refused([&] {
+              (void)read_labelled_poses(two, {"a", "b"});
+            }),
+            "c.csv, line 1: no column b in the header (a, x_mm, y_mm, z_mm)");
   EXPECT_EQ(read_labelled_poses(two, {"a"}, {"b"}).labels(0, 1), 0);
 }
 
@@ -162,9 +165,9 @@ TEST(Lengths, FewestTouches) {
 
 TEST_F(Columns, ALongHeaderIsCutOff) {
   EXPECT_EQ(refused([&] { (void)read_joints<1>(file("a,b,c,d,e,f,g,h,i,j,k,l\n1,1,1,1,1,1,1,1,1,1,1,1\n")); }),
-            "c.csv: no column q1_rad or q1_deg in the header (a, b, c, d, e, f, g, h, i, j, k, l)");
+            "c.csv, line 1: no column q1_rad or q1_deg in the header (a, b, c, d, e, f, g, h, i, j, k, l)");
   EXPECT_EQ(refused([&] { (void)read_joints<1>(file("a,b,c,d,e,f,g,h,i,j,k,l,m\n1,1,1,1,1,1,1,1,1,1,1,1,1\n")); }),
-            "c.csv: no column q1_rad or q1_deg in the header (a, b, c, d, e, f, g, h, i, j, k, l, ...)");
+            "c.csv, line 1: no column q1_rad or q1_deg in the header (a, b, c, d, e, f, g, h, i, j, k, l, ...)");
 }
 
 // Blocks differ by one row at most.

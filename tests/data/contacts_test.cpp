@@ -82,8 +82,10 @@ TEST_F(ReadContacts, ColumnsOfLengthsAreOptional) {
 }
 
 TEST_F(ReadContacts, EachKindOfDamageInOneLine) {
-  EXPECT_EQ(refused("kind,q1_rad,q2_rad,q3_rad\nplane,1,2,3\n"), "c.csv: no column contact_id");
-  EXPECT_EQ(refused("contact_id,q1_rad,q2_rad,q3_rad\nplane,1,2,3\n"), "c.csv: no column kind");
+  EXPECT_EQ(refused("kind,q1_rad,q2_rad,q3_rad\nplane,1,2,3\n"),
+            "c.csv, line 1: no column contact_id in the header (kind, q1_rad, q2_rad, q3_rad)");
+  EXPECT_EQ(refused("contact_id,q1_rad,q2_rad,q3_rad\nplane,1,2,3\n"),
+            "c.csv, line 1: no column kind in the header (contact_id, q1_rad, q2_rad, q3_rad)");
   EXPECT_EQ(refused(header + "p,cube,,,1,2,3\n"), "c.csv, line 2, column kind: 'cube', must be plane, ball or socket");
   EXPECT_EQ(refused(header + ",plane,,,1,2,3\n"), "c.csv, line 2, column contact_id: no name of what is touched");
   EXPECT_EQ(refused(header + plane + "plate,socket,,,1,2,3\n"),
@@ -105,7 +107,7 @@ TEST_F(ReadContacts, EachKindOfDamageInOneLine) {
             "c.csv: contact s: 2 touches of a socket, at least 3 are needed: fewer say where it is, and nothing about "
             "the arm");
   EXPECT_EQ(refused("contact_id,kind,q1_rad,q2_rad\np,plane,1,2\n"),
-            "c.csv: no column q3_rad or q3_deg in the header (contact_id, kind, q1_rad, q2_rad)");
+            "c.csv, line 1: no column q3_rad or q3_deg in the header (contact_id, kind, q1_rad, q2_rad)");
 }
 
 MatrixX touches(Index n) { return MatrixX::Constant(n, 3, 0.25); }

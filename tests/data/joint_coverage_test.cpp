@@ -31,6 +31,24 @@ TEST(JointCoverage, OneInsideUpToTheEdge) {
     }
 }
 
+// What was measured is known beside the wider ranges of the gate, also where others' ranges are added.
+TEST(JointCoverage, KeepsTheMeasuredValues) {
+  JointRows<2> joints(6, 2);
+  joints << 0, 5, 0.1, 5, 0.3, 5, 4, 5, 4.25, 5, 0.2, 5;
+  const auto gate = JointCoverage<2>::covering(joints);
+  using Ranges = std::vector<vernier::JointRange>;
+  EXPECT_EQ(gate.measured[0], (Ranges{{0, 0.3}, {4, 4.25}}));
+  EXPECT_EQ(gate.measured[1], (Ranges{{5, 5}}));
+  ASSERT_EQ(gate.ranges[0].size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_LT(gate.ranges[0][k].lower, gate.measured[0][k].lower);
+    EXPECT_GT(gate.ranges[0][k].upper, gate.measured[0][k].upper);
+  }
+  const auto joined = gate.joined({{{-9, 9}}, {{-9, 9}}}, vernier::VectorX::Ones(2));
+  EXPECT_EQ(joined.measured, gate.measured);
+  EXPECT_EQ(joined.ranges[0], (Ranges{{-9, 9}}));
+}
+
 TEST(JointCoverage, ZeroFromTheMarginOn) {
   const auto gate = example();
   for (const JointVector<2>& q : {JointVector<2>(1.5, 3), {-1.5, 3}, {0, 1.75}, {0, 4.25}, {100, 3}, {0, -1e6}}) {

@@ -54,11 +54,12 @@ TEST_F(ReadLabelledPoses, OptionalColumns) {
 }
 
 TEST_F(ReadLabelledPoses, Refusals) {
-  EXPECT_EQ(refused("pose,x_mm,y_mm,z_mm\n1,2,3,4\n"), "p.csv: no column cycle");
+  EXPECT_EQ(refused("pose,x_mm,y_mm,z_mm\n1,2,3,4\n"),
+            "p.csv, line 1: no column cycle in the header (pose, x_mm, y_mm, z_mm)");
   EXPECT_EQ(refused("pose,cycle,x_mm,y_mm,z_mm\n1,2,3,4,5\n1,2.5,3,4,5\n"),
             "p.csv, line 3, column cycle: 2.5, must be a whole number");
   EXPECT_EQ(refused("pose,cycle,x_mm,y_mm,z_mm,rx_rad\n1,2,3,4,5,6\n"),
-            "p.csv: no column ry_rad or ry_deg in the header (pose, cycle, x_mm, y_mm, z_mm, rx_rad)");
+            "p.csv, line 1: no column ry_rad or ry_deg in the header (pose, cycle, x_mm, y_mm, z_mm, rx_rad)");
   EXPECT_EQ(refused("pose,cycle,x_mm,y_mm,z_mm\n"), "p.csv: a header, but no rows of data");
   EXPECT_EQ(refused("pose,cycle,x_mm,y_mm,z_mm\n1,a,3,4,5\n"), "p.csv, line 2, column cycle: 'a' is not a number");
 }

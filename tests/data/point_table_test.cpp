@@ -65,7 +65,7 @@ TEST_F(PointTables, EachDamageHasItsLine) {
   EXPECT_EQ(refused(good + "p2,-inf,2,3\n"), "points.txt, line 2, column x: '-inf' is not finite");
   EXPECT_EQ(refused(good + "p2,1e999,2,3\n"), "points.txt, line 2, column x: '1e999' is out of range");
   EXPECT_EQ(refused(good + "p2,1e12,2,3\n"),
-            "points.txt, line 2, column x: '1e12' is beyond any joint or length (1e9)");
+            "points.txt, line 2, column x: '1e12' is beyond any coordinate on Earth (1e7 m)");
   EXPECT_EQ(refused(good + "p2,1,,3\n"), "points.txt, line 2, column y: no value");
   EXPECT_EQ(refused(good + ",1,2,3\n"), "points.txt, line 2, column name: no value");
   EXPECT_EQ(refused(good + "p2,1,2\n"),
@@ -73,9 +73,14 @@ TEST_F(PointTables, EachDamageHasItsLine) {
   EXPECT_EQ(refused("p1 1 2 3\n"), "points.txt, line 1: 1 cell, 4 columns are declared, separated by ',': 'p1 1 2 3'");
   EXPECT_EQ(refused("p1,1,5,2,3\n"),
             "points.txt, line 1: 5 cells, 4 columns are declared, separated by ',': 'p1,1,5,2,3'");
-  EXPECT_EQ(refused("p1;1.5;2;3\n", {.separator = ';', .decimal = ','}),
-            "points.txt, line 1, column x: '1.5' is not a number");
-  EXPECT_EQ(refused("p1;1,5;2;3\n", {.separator = ';'}), "points.txt, line 1, column x: '1,5' is not a number");
+  EXPECT_EQ(
+      refused("p1;1.5;2;3\n", {.separator = ';', .decimal = ','}),
+      "points.txt, line 1, column x: '1.5' is not a number; if its point is a decimal one: --decimal . (format.decimal "
+      "in code)");
+  EXPECT_EQ(refused("p1;1,5;2;3\n", {.separator = ';'}),
+            "points.txt, line 1, column x: '1,5' is not a number; if its comma is a decimal one: --decimal ',' "
+            "(format.decimal "
+            "in code)");
   EXPECT_EQ(refused(std::string("p\0", 2)), "points.txt, line 1: binary data, not text");
   EXPECT_EQ(refused(std::string(5000, ',') + "\n"),
             "points.txt, line 1: more than 1000 cells, 4 columns are declared, separated by ',': '" +

@@ -174,6 +174,23 @@ TEST(Drift, OfTheBaseIsFollowed) {
   EXPECT_EQ(RealMatrix(found.geometry_left_out_errors), RealMatrix(found.left_out_errors));
 }
 
+// The clock may count from any time, as Unix time does, in which a double has a quarter of a microsecond.
+TEST(Drift, IsThatOfTimesSinceTheFirst) {
+  const Index n = 300;
+  const JointRows<6> joints = samples(n, 1);
+  const Dataset<6> data =
+      visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, [&](Index i) { return wave(i, n); });
+  constexpr double unix_time = 1714561234.5;
+  const auto of_zero = fitted(data), of_unix = fitted(data.measured_at(data.times() + VectorX::Constant(n, unix_time)));
+  ASSERT_TRUE(used(of_zero, "drift") && used(of_unix, "drift"));
+  EXPECT_EQ(of_unix.drift.front().begin, unix_time);
+  for (Index i = 0; i < n; i += 7) {
+    const auto time = static_cast<double>(i) + 0.3;
+    const RealMatrix expected = of_zero.drift.front().twist(time);
+    EXPECT_LT(vernier_test::difference(of_unix.drift.front().twist(unix_time + time), expected), 1e-10) << i;
+  }
+}
+
 // Two places, whose bases drift, each in its own way.
 TEST(Drift, OfTwoStationsIsTakenOffEach) {
   const Index n = 200;

@@ -190,7 +190,8 @@ TEST_F(BadInputToPrograms, Correct) {
   write_file(folder_ / "new.json", replaced(text, "\"schema_version\": 5", "\"schema_version\": 7"));
   expect_refused("correct --model new.json --targets poses.csv --out c.csv", 1, "version 7 is unknown");
   write_file(folder_ / "targets.csv", "q1_rad,q2_rad\n0,0\n");
-  expect_refused("correct --model model.json --targets targets.csv --out c.csv", 1, "targets.csv: no column q3_rad");
+  expect_refused("correct --model model.json --targets targets.csv --out c.csv", 1,
+                 "targets.csv, line 1: no column q3_rad");
   write_file(folder_ / "lengths.csv", "q1_mm,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad\n0,0,0,0,0,0\n");
   expect_refused("correct --model model.json --targets lengths.csv --out c.csv", 1,
                  "column q1_mm, but joint 1 is revolute: an angle is needed");

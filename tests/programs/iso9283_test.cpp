@@ -140,7 +140,7 @@ TEST_F(Iso9283Program, RefusesWhatCannotBe) {
   refused("--plan --centre-mm 1,2,3 --edge-mm -4 --out p.csv", 2, "--edge-mm");
   refused("--plan --centre-mm 1,2,3 --edge-mm 4 --plane 5 --out p.csv", 2, "--plane");
   refused("--data missing.csv --commanded poses.csv", 1, "missing.csv: No such file or directory");
-  refused("--data poses.csv --commanded poses.csv", 1, "poses.csv: no column cycle");
+  refused("--data poses.csv --commanded poses.csv", 1, "poses.csv, line 1: no column cycle");
   write_file(folder_ / "odd.csv", "pose,x_mm,y_mm,z_mm\n1,0,0,0\n3,0,0,0\n");
   refused("--data visits.csv --commanded odd.csv", 1, "odd.csv: column pose must number its 2 poses 1, 2, ...");
   write_file(folder_ / "twice.csv", "pose,cycle,x_mm,y_mm,z_mm\n1,1,0,0,0\n1,1,0,0,0\n");

@@ -194,7 +194,7 @@ TEST_F(JoinMeasurements, RefusesWhatCannotBe) {
   expect_refused(by_order + "--separator ,", 1,
                  "tracker.txt, line 2: 1 cell, 6 columns are declared, separated by ','");
   write_file(folder_ / "commanded.csv", "q1_rad\n1\n");
-  expect_refused(by_order, 1, "commanded.csv: no column q2_rad");
+  expect_refused(by_order, 1, "commanded.csv, line 1: no column q2_rad");
   write_file(folder_ / "commanded.csv", "target,q1_rad,x_mm\nP1,1,2\n");
   expect_refused("--points tracker.txt --preset sa --unit mm --key target --out measured.csv", 1,
                  "commanded.csv: has a column x_mm already");

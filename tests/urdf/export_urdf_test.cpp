@@ -165,7 +165,7 @@ TEST(ExportUrdf, OnlyOriginsOfJointsAreTouched) {
       "<transmission name='t'><joint name='one'><origin xyz='7 7 7'/></joint></transmission>\n"
       "<!-- <joint name='z'><origin xyz='6 6 6'/> -->\n"
       "<joint name='one' type='revolute' note='a > b'>"
-      "<parent link='a'/><child link='b'/><axis xyz='0 0 1'/><origin note=\"it's\" mark='>' xyz='1 0 0'/>"
+      "<parent link='a'/><child link='b'/><axis xyz='0 0 1'/><origin xyz='1 0 0'/>"
       "<sensor><origin xyz='8 8 8'/></sensor><![CDATA[ > <origin xyz='5 5 5'/> ]]></joint>\n"
       "<joint name='two' type='fixed'><parent link='b'/><child link='c'/><origin xyz='0 0 2' rpy='0 0 0'/></joint>"
       "</robot>\n";
@@ -175,9 +175,8 @@ TEST(ExportUrdf, OnlyOriginsOfJointsAreTouched) {
   base.translation().y() += 0.25;
   tool.translation().z() += 0.5;
   std::string expected = text;
-  expected = vernier_test::replaced(expected, "<origin note=\"it's\" mark='>' xyz='1 0 0'/>",
-                                    "<origin rpy=\"0 0 0\" note=\"it's\" mark='>' xyz='1 0.25 0'/>");
-  expected = vernier_test::replaced(expected, "xyz='0 0 2'", "xyz='0 0 2.5'");
+  expected = testing_support::replaced(expected, "<origin xyz='1 0 0'/>", "<origin rpy=\"0 0 0\" xyz='1 0.25 0'/>");
+  expected = testing_support::replaced(expected, "xyz='0 0 2'", "xyz='0 0 2.5'");
   std::string out = export_urdf(chain, arm.with_frames(FrameParameters(base), FrameParameters(tool)), note());
   const std::size_t comment = out.find("\n  <!-- geometry of ");
   ASSERT_NE(comment, std::string::npos);
@@ -185,6 +184,11 @@ TEST(ExportUrdf, OnlyOriginsOfJointsAreTouched) {
   EXPECT_EQ(text.substr(0, comment).substr(comment - 18), "<robot name='two'>");
   out.erase(comment, out.find("-->", comment) + 3 - comment);
   EXPECT_EQ(out, expected);
+  const std::string marked =
+      testing_support::replaced(text, "<origin xyz='1 0 0'/>", "<origin note=\"it's\" mark='>' xyz='1 0 0'/>");
+  EXPECT_EQ(detail::with_origins(marked, {{"one", base}}, {}),
+            testing_support::replaced(marked, "<origin note=\"it's\" mark='>' xyz='1 0 0'/>",
+                                      "<origin rpy=\"0 0 0\" note=\"it's\" mark='>' xyz='1 0.25 0'/>"));
 }
 
 // Half a micrometre is written, too.

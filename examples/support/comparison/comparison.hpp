@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "csv_options.hpp"
 #include "json_file.hpp"
 #include "vernier/core/fit_options.hpp"
 #include "vernier/io/robot_file.hpp"
@@ -27,6 +28,7 @@ struct Problem {
   double noise_mm = 0;               ///< of the measured positions, per component
   // measured
   std::filesystem::path data{};  ///< measured poses; empty: simulated
+  CsvOptions csv{};              ///< how that file is written
   std::string split = "random";  ///< random, region, time: what is held out, a fifth
   // from `prepare` on, so that every cell has the same
   vernier::RobotDescription arm{};  ///< that `robot` names

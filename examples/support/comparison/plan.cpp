@@ -123,7 +123,7 @@ Plan Plan::read(const std::filesystem::path& path) {
       for (std::size_t k = 0; k < list.size(); ++k) take(list.at(k));
     };
     each(root.at("problems"), [&](const vernier::JsonNode& p) {
-      p.allow_only({"name", "robot", "errors", "region", "noise_mm", "data", "split"});
+      p.allow_only({"name", "robot", "errors", "region", "noise_mm", "data", "split", "separator", "decimal"});
       const auto text = [&](const char* name, const std::string& otherwise) {
         return p.has(name) ? p.at(name).text() : otherwise;
       };
@@ -133,6 +133,8 @@ Plan Plan::read(const std::filesystem::path& path) {
       problem.region = text("region", problem.region);
       if (p.has("noise_mm")) problem.noise_mm = p.at("noise_mm").number();
       if (p.has("data")) problem.data = path.parent_path() / p.at("data").text();
+      problem.csv.separator = text("separator", "");
+      problem.csv.decimal = text("decimal", "");
       problem.split = text("split", problem.split);
       problem.name = text("name", problem.robot);
       plan.problems.push_back(problem);

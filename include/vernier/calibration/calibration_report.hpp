@@ -20,7 +20,7 @@ namespace vernier {
 struct JointReport {
   bool revolute = true;                                      ///< its angles are in rad, else in m
   std::vector<double> held_out{};                            ///< joint values of the held-out poses [rad, m]
-  std::vector<std::pair<double, double>> measured_ranges{};  ///< [rad, m]
+  std::vector<std::pair<double, double>> measured_ranges{};  ///< of the values themselves [rad, m]
   std::vector<double> angle{};                               ///< over the measured ranges [rad, m]
   VectorX transmission;                      ///< what the transmission adds there, mean subtracted [rad]
   VectorX transmission_std;                  ///< its standard deviation [rad]

@@ -187,7 +187,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;
     for (const auto& data : test)
       joint.held_out.insert(joint.held_out.end(), data.joints().col(j).begin(), data.joints().col(j).end());
-    for (const auto& range : calibration.coverage.ranges[static_cast<std::size_t>(j)])
+    for (const auto& range : calibration.coverage.measured[static_cast<std::size_t>(j)])
       joint.measured_ranges.emplace_back(range.lower, range.upper);
     detail::describe_transmission(errors, j, joint);
     out.joints.push_back(std::move(joint));

@@ -13,6 +13,7 @@
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/data/contacts.hpp"
+#include "vernier/data/csv_format.hpp"
 #include "vernier/data/dataset.hpp"
 #include "vernier/data/distances.hpp"
 
@@ -20,7 +21,8 @@ namespace vernier {
 
 namespace detail {
 
-VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types);
+VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types,
+                                       const CsvFormat& format);
 /// The columns of a file of poses.
 struct PoseColumns {
   MatrixX values;        ///< joints, then the positions [m], then the orientations [rad] if the file has them
@@ -29,42 +31,49 @@ struct PoseColumns {
   VectorX temperatures;  ///< [deg C]; none where the file has none
   RowOrigin origin;      ///< lines of the rows
 };
-VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types);
+VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types,
+                                          const CsvFormat& format);
 /// The columns of a file of targets; what it lacks has no rows.
 struct TargetColumns {
   MatrixX joints;            ///< n x joints [rad, m]
   MatrixX poses;             ///< positions [m], then orientations as rotation vectors if the file has them [rad]
   std::vector<bool> linear;  ///< whether the move to each is a linear one
 };
-VERNIER_API TargetColumns read_target_columns(const std::string& path, int joints, std::span<const JointType> types);
+VERNIER_API TargetColumns read_target_columns(const std::string& path, int joints, std::span<const JointType> types,
+                                              const CsvFormat& format);
 /// The columns of a file of distances.
 struct DistanceColumns {
   MatrixX values;    ///< joints, then the distances [m]
   RowOrigin origin;  ///< lines of the rows
 };
-VERNIER_API DistanceColumns read_distance_columns(const std::string& path, int joints,
-                                                  std::span<const JointType> types);
+VERNIER_API DistanceColumns read_distance_columns(const std::string& path, int joints, std::span<const JointType> types,
+                                                  const CsvFormat& format);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
-                                  const VectorX& temperatures);
+                                  const VectorX& temperatures, std::span<const JointType> types);
 
 }  // namespace detail
 
-/// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg; _mm or _m for prismatic joints), x_mm, y_mm, z_mm
-/// (or _m), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg). Any column order; other columns are ignored;
-/// blank lines, CRLF and a byte-order mark are accepted. All CSV files: at most 256 MiB, 1,000 columns, a million
-/// rows.
+/// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg, _mrad; _mm, _m or _um for prismatic joints),
+/// x_mm, y_mm, z_mm (or _m, _um), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg, _mrad). Any column
+/// order; other columns are not read, and `format.remark` is told their names; without it, a name like
+/// `X_mm` or `time_min` is refused. Accepted are blank lines, lines that end
+/// with CRLF or CR, a byte-order mark, and quotation marks around a cell. A column that is there twice, or in two
+/// units, is refused. All CSV files: at most 256 MiB, 1,000 columns, a million rows.
 ///
 /// Rows are taken to be in the order of measuring, each approached from the row before; where a column `segment` (a
-/// number) changes, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint values from which each
-/// pose was approached; `segment` is ignored then. A column `time_s` states the time of measuring, else that is the
-/// row's number, from 0; a column `temperature_c` the temperature of the arm.
+/// number) changes, or the time goes back, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint
+/// values from which each pose was approached; `segment` is ignored then. A column `time_s` or `time_ms` states the
+/// time of measuring [s], Unix time or any other; else that is the row's number, from 0. A column `temperature_c`
+/// states the temperature of the arm.
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
+/// @param format      how the file is written
 /// @throws DataError naming file, line and column
 template <int N>
-Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {}) {
-  const auto [values, previous, times, temperatures, origin] = detail::read_pose_columns(path, N, joint_types);
+Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {},
+                        const CsvFormat& format = {}) {
+  const auto [values, previous, times, temperatures, origin] = detail::read_pose_columns(path, N, joint_types, format);
   return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
                     values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3))
       .approached_from(previous)
@@ -76,16 +85,18 @@ Dataset<N> read_dataset(const std::string& path, std::span<const JointType> join
 /// Measured distances from a CSV file: columns q1 .. qN as in `read_dataset`, and distance_mm (or _m, _um).
 /// @throws DataError naming file, line and column
 template <int N>
-Distances<N> read_distances(const std::string& path, std::span<const JointType> joint_types = {}) {
-  const auto [values, origin] = detail::read_distance_columns(path, N, joint_types);
+Distances<N> read_distances(const std::string& path, std::span<const JointType> joint_types = {},
+                            const CsvFormat& format = {}) {
+  const auto [values, origin] = detail::read_distance_columns(path, N, joint_types, format);
   return Distances<N>(values.leftCols<N>(), values.col(N)).from(origin);
 }
 
 /// Joint rows from a CSV file: the q columns of `read_dataset`.
 /// @throws DataError naming file, line and column
 template <int N>
-JointRows<N> read_joints(const std::string& path, std::span<const JointType> joint_types = {}) {
-  return detail::read_joint_columns(path, N, joint_types);
+JointRows<N> read_joints(const std::string& path, std::span<const JointType> joint_types = {},
+                         const CsvFormat& format = {}) {
+  return detail::read_joint_columns(path, N, joint_types, format);
 }
 
 /// Targets of a path, as a file states them.
@@ -104,8 +115,9 @@ struct TargetRows {
 /// of `read_dataset`; an optional column `move` says how the arm moves there: j joint by joint, l along a line.
 /// @throws DataError naming file, line and column
 template <int N>
-TargetRows<N> read_targets(const std::string& path, std::span<const JointType> joint_types = {}) {
-  auto [joints, poses, linear] = detail::read_target_columns(path, N, joint_types);
+TargetRows<N> read_targets(const std::string& path, std::span<const JointType> joint_types = {},
+                           const CsvFormat& format = {}) {
+  auto [joints, poses, linear] = detail::read_target_columns(path, N, joint_types, format);
   TargetRows<N> out;
   if (joints.rows() > 0) out.joints = joints;
   if (poses.rows() > 0) out.positions = poses.leftCols<3>();
@@ -122,9 +134,10 @@ struct CsvText {
   std::vector<Index> lines{};                    ///< number of the line of each row, from 1
 };
 
-/// Header and cells of a CSV file, blank lines left out.
+/// Header and cells of a CSV file, blank lines left out, without quotation marks; numbers of columns
+/// with a unit have a decimal point.
 /// @throws DataError naming file and line
-VERNIER_API CsvText read_csv_text(const std::string& path);
+VERNIER_API CsvText read_csv_text(const std::string& path, const CsvFormat& format = {});
 
 /// Poses that a file labels by whole numbers, e.g. repeated visits.
 struct LabelledPoses {
@@ -135,10 +148,12 @@ struct LabelledPoses {
 };
 
 /// Poses from a CSV file: columns x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, in the units of `read_dataset`,
-/// whole numbers in the columns `labels` and `optional` (0 where there is no such column), optionally time_s.
+/// whole numbers in the columns `labels` and `optional` (0 where there is no such column), optionally time_s or
+/// time_ms.
 /// @throws DataError naming file, line and column
 VERNIER_API LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
-                                              std::initializer_list<const char*> optional = {});
+                                              std::initializer_list<const char*> optional = {},
+                                              const CsvFormat& format = {});
 
 /// Contacts from a CSV file, a row a touch: columns q1 .. qN as in `read_dataset`; `contact_id`, which of the objects
 /// is touched (any text); `kind`, plane, ball or socket; of balls radius_mm (of the ball and the probe's tip together);
@@ -147,20 +162,25 @@ VERNIER_API LabelledPoses read_labelled_poses(const std::string& path, std::init
 /// @param path        the file
 /// @param joints      number of joints
 /// @param joint_types as in `read_dataset`
+/// @param format      how the file is written
 /// @return            in the order of their first touches
 /// @throws DataError naming file, and line and column or the contact
 VERNIER_API std::vector<Contact> read_contacts(const std::string& path, int joints,
-                                               std::span<const JointType> joint_types = {});
+                                               std::span<const JointType> joint_types = {},
+                                               const CsvFormat& format = {});
 
-/// Writes measured poses as `read_dataset` reads them, joints in rad, positions in mm, in digits that read back exactly
-/// (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written where they
-/// do not follow from the order of the rows; a row whose approach is unknown is then written as one that did not move.
-/// Atomic: the file is whole, or as it was before.
+/// Writes measured poses as `read_dataset` reads them, joints in rad or m, positions in mm, in digits that read back
+/// exactly (positions to the last bit or two, for the change of unit). Columns from_q1_rad .. and time_s are written
+/// where they do not follow from the order of the rows; a row whose approach is unknown is then written as one that did
+/// not move. Atomic: the file is whole, or as it was before.
+/// @param path        the file
+/// @param data        the poses
+/// @param joint_types of the arm: columns of prismatic joints are q1_m ..; none: all joints are revolute
 /// @throws std::runtime_error when the file cannot be written
 template <int N>
-void write_dataset(const std::string& path, const Dataset<N>& data) {
+void write_dataset(const std::string& path, const Dataset<N>& data, std::span<const JointType> joint_types = {}) {
   write_file(path, detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(),
-                                     data.times(), data.temperatures()));
+                                     data.times(), data.temperatures(), joint_types));
 }
 
 }  // namespace vernier

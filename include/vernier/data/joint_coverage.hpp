@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "vernier/core/check.hpp"
@@ -16,8 +17,12 @@ namespace vernier {
 
 namespace detail {
 
-/// Ranges of the measured values of one joint, and the margin.
-VERNIER_API std::vector<JointRange> covered_ranges(const ConstVectorRef& values, double& margin);
+/// Ranges of the measured values of one joint.
+struct CoveredRanges {
+  std::vector<JointRange> widened, measured;  ///< as many of each
+  double margin;
+};
+VERNIER_API CoveredRanges covered_ranges(const ConstVectorRef& values);
 
 /// The union of ranges, those closer than two margins merged.
 VERNIER_API std::vector<JointRange> joined_ranges(std::vector<JointRange> ranges, const std::vector<JointRange>& others,
@@ -42,6 +47,8 @@ struct JointCoverage {
   std::array<std::vector<JointRange>, N> ranges{};      ///< ascending, more than two margins apart
   JointVector<N> margin = JointVector<N>::Constant(1);  ///< width of the transition [rad, m], > 0
   std::array<bool, N> periodic{};                       ///< whether angles that differ by whole turns count as the same
+  std::array<std::vector<JointRange>, N> measured{};  ///< from the least to the greatest measured value in each of the
+                                                      ///< ranges, which are wider; empty where not known
 
   /// The ranges of n measured joints. The margin is a tenth of a joint's total range, at least 0.02; values closer than
   /// two margins belong to one range; every range is widened by 3/n of the total (the extremes of n random values fall
@@ -50,8 +57,12 @@ struct JointCoverage {
   static JointCoverage covering(const JointRows<N>& joints) {
     JointCoverage coverage;
     if (joints.rows() == 0) return coverage;
-    for (int i = 0; i < N; ++i)
-      coverage.ranges[static_cast<std::size_t>(i)] = detail::covered_ranges(joints.col(i), coverage.margin(i));
+    for (int i = 0; i < N; ++i) {
+      detail::CoveredRanges found = detail::covered_ranges(joints.col(i));
+      coverage.ranges[static_cast<std::size_t>(i)] = std::move(found.widened);
+      coverage.measured[static_cast<std::size_t>(i)] = std::move(found.measured);
+      coverage.margin(i) = found.margin;
+    }
     return coverage;
   }
   /// The ranges of measured joints whose number is known at run time.
@@ -61,7 +72,7 @@ struct JointCoverage {
     return covering(detail::joint_rows<N>(joints));
   }
 
-  /// This gate widened to the measured ranges of other measurements.
+  /// The same with the ranges of other measurements; `measured` stays.
   /// @param others  of each joint, ascending; no joints: those measurements were everywhere
   /// @param margins of each joint; the larger of the two counts
   /// @throws std::invalid_argument for ranges or margins of another number of joints

@@ -9,19 +9,21 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL std::vector<JointRange> covered_ranges(const ConstVectorRef& values, double& margin) {
+VERNIER_IMPL CoveredRanges covered_ranges(const ConstVectorRef& values) {
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   const double total = sorted.back() - sorted.front();
-  margin = (std::max)(0.02, 0.1 * total);
-  const double wider = (std::min)(3 * total / static_cast<double>(sorted.size()), 0.5 * margin);
-  std::vector<JointRange> ranges;
+  CoveredRanges out{{}, {}, (std::max)(0.02, 0.1 * total)};
+  const double wider = (std::min)(3 * total / static_cast<double>(sorted.size()), 0.5 * out.margin);
   for (const double value : sorted) {
-    if (ranges.empty() || value - wider - ranges.back().upper > 2 * margin)
-      ranges.push_back({value - wider, value + wider});
-    ranges.back().upper = value + wider;
+    if (out.widened.empty() || value - wider - out.widened.back().upper > 2 * out.margin) {
+      out.widened.push_back({value - wider, value + wider});
+      out.measured.push_back({value, value});
+    }
+    out.widened.back().upper = value + wider;
+    out.measured.back().upper = value;
   }
-  return ranges;
+  return out;
 }
 
 VERNIER_IMPL std::vector<JointRange> joined_ranges(std::vector<JointRange> ranges,

@@ -46,6 +46,8 @@ VERNIER_IMPL Pairing pair_by_name(const CsvText& commanded, const std::string& k
   const auto column = std::find(commanded.header.begin(), commanded.header.end(), key);
   if (column == commanded.header.end())
     throw DataError(message(commanded.file, ": no column ", detail::printable(key), " in the header"));
+  if (std::count(commanded.header.begin(), commanded.header.end(), key) > 1)
+    throw DataError(message(commanded.file, ": column ", detail::printable(key), " is there twice"));
   if (points.names.empty()) throw DataError(message(points.file, ": no column name is declared"));
   const auto at = static_cast<std::size_t>(column - commanded.header.begin());
   std::vector<std::string> names;

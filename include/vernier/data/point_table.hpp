@@ -40,8 +40,8 @@ struct PointTable {
   PointRows points{};                ///< n x 3 [m], in the frame of the file
 };
 
-/// Reads a table of points of at most 256 MiB, 1,000 columns and a million rows. Blank lines, CRLF and a byte-order
-/// mark are accepted.
+/// Reads a table of points of at most 256 MiB, 1,000 columns and a million rows. Blank lines, lines that end
+/// with CRLF or CR, a byte-order mark and quotation marks around a cell are accepted.
 /// @throws DataError naming file, line and column
 /// @throws std::invalid_argument on a format that cannot be: without x, y and z, or ambiguous
 VERNIER_API PointTable read_point_table(const std::string& path, const PointTableFormat& format);

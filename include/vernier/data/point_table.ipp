@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "vernier/core/check.hpp"
+#include "vernier/data/detail/csv_columns.hpp"
 #include "vernier/data/detail/text_lines.hpp"
 
 namespace vernier {
@@ -20,26 +22,6 @@ VERNIER_LOCAL Index column_index(const std::vector<std::string>& columns, std::s
   demand(std::find(found + 1, columns.end(), name) == columns.end(), "PointTableFormat: column ", name,
          " is there twice");
   return found - columns.begin();
-}
-
-/// The cells of a line, between blanks or separators; of a line that has more than `most_columns` one more than these.
-VERNIER_LOCAL std::vector<std::string_view> cells_of(std::string_view line, char separator) {
-  std::vector<std::string_view> out;
-  if (separator == ' ') {
-    for (std::size_t begin = 0;
-         out.size() <= most_columns && (begin = line.find_first_not_of(" \t", begin)) != std::string_view::npos;) {
-      const std::size_t end = (std::min)(line.find_first_of(" \t", begin), line.size());
-      out.push_back(line.substr(begin, end - begin));
-      begin = end;
-    }
-    return out;
-  }
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    out.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos || out.size() > most_columns) return out;
-    line.remove_prefix(end + 1);
-  }
 }
 
 }  // namespace detail
@@ -80,22 +62,21 @@ VERNIER_IMPL PointTable read_point_table(const std::string& path, const PointTab
   for (const detail::TextLine& line : detail::text_lines(path, content)) {
     if (static_cast<Index>(line.number) <= format.header_lines) continue;
     if (!format.comment.empty() && detail::trimmed(line.text).starts_with(format.comment)) continue;
-    const auto cells = detail::cells_of(line.text, format.separator);
+    const auto cells =
+        detail::cells_of(line.text, format.separator, [&] { return message(path, ", line ", line.number, ": "); });
     if (cells.size() != width)
       throw DataError(message(
           path, ", line ", line.number, ": ",
           cells.size() > detail::most_columns ? message("more than ", detail::most_columns) : message(cells.size()),
           cells.size() == 1 ? " cell, " : " cells, ", width, " columns are declared, separated by ",
-          format.separator == ' '    ? std::string("blanks")
-          : format.separator == '\t' ? std::string("tabs")
-                                     : message("'", format.separator, "'"),
-          ": '", detail::printable(detail::trimmed(line.text)), "'"));
+          detail::name_of_separator(format.separator), ": '", detail::printable(detail::trimmed(line.text)), "'"));
     for (const Index axis : axes) {
       const auto at = static_cast<std::size_t>(axis);
-      const double value = detail::number_in(cells[at], format.decimal, [&] {
-        return message(path, ", line ", line.number, ", column ", format.columns[at], ": ");
-      });
-      values.push_back(value * format.unit);
+      const auto where = [&] { return message(path, ", line ", line.number, ", column ", format.columns[at], ": "); };
+      values.push_back(detail::number_in(cells[at], format.decimal, where) * format.unit);
+      if (!(std::abs(values.back()) < detail::quantities::coordinate.largest))
+        throw DataError(
+            message(where(), "'", detail::printable(cells[at]), "' is ", detail::quantities::coordinate.otherwise));
     }
     if (name >= 0) {
       const std::string_view cell = cells[static_cast<std::size_t>(name)];

@@ -67,6 +67,7 @@ VERNIER_LOCAL void require_movable(const UrdfJoint& joint, const std::string& fi
     throw DataError(
         message(file, ", line ", joint.line, ": joint '", quotable(joint.name), "' of the chain ", parts...));
   };
+  if (!joint.unreadable.empty()) throw DataError(joint.unreadable);
   if (joint.type == "floating" || joint.type == "planar")
     fail("is ", joint.type, "; it must be revolute, continuous, prismatic or fixed");
   if (joint.mimics && joint.moves()) fail("mimics another joint, which a serial arm cannot");

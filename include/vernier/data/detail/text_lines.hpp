@@ -25,10 +25,10 @@ VERNIER_API std::string text_of(const std::string& path);
 // What a table may have, so that a file that is none does not fill the memory.
 inline constexpr std::size_t most_columns = 1000, most_rows = 1'000'000;
 
-/// The lines that are not blank, without a byte-order mark; CRLF is accepted.
+/// The lines that are not blank, without a byte-order mark; they end with LF, CRLF or CR.
 /// @param file    its name, for messages
 /// @param content the text, which must outlive the lines
-/// @throws DataError on binary data, and on more lines than `most_rows` below a header
+/// @throws DataError on binary data, on UTF-16, and on more lines than `most_rows` below a header
 VERNIER_API std::vector<TextLine> text_lines(const std::string& file, std::string_view content);
 
 /// A cell without blanks around it.
@@ -37,7 +37,18 @@ VERNIER_API std::string_view trimmed(std::string_view cell);
 /// The text of a cell for a message: shortened, and with printable ASCII characters only.
 VERNIER_API std::string printable(std::string_view cell);
 
-/// The number in a cell, finite and of a size that joints and lengths have.
+/// A separator for a message: 'blanks', 'tabs', or itself in quotation marks.
+VERNIER_API std::string name_of_separator(char separator);
+
+/// The cells of a line, without blanks and quotation marks around them; of a line that has more than `most_columns`,
+/// one more than these. What is between quotation marks is one cell.
+/// @param separator a blank stands for any number of blanks and tabs
+/// @param where     what a message begins with
+/// @throws DataError on quotation marks that do not enclose a cell
+VERNIER_API std::vector<std::string_view> cells_of(std::string_view line, char separator,
+                                                   FunctionRef<std::string()> where);
+
+/// The number in a cell, finite.
 /// @param decimal the decimal point
 /// @param where   what a message begins with
 /// @throws DataError

@@ -115,9 +115,10 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
     }
     out += html_table(where);
   }
-  HtmlTable ranges{.caption = "Measured joint ranges, where the functions of the joints hold; outside they fade out",
-                   .head = {"joint", "unit", "measured ranges"},
-                   .numbers = false};
+  HtmlTable ranges{
+      .caption = "Measured joint ranges, where the functions of the joints hold; beyond them they fade out",
+      .head = {"joint", "unit", "measured ranges"},
+      .numbers = false};
   for (std::size_t j = 0; j < input.joints.size(); ++j) {
     const JointReport& joint = input.joints[j];
     const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;

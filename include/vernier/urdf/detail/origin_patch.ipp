@@ -28,6 +28,8 @@ VERNIER_LOCAL void patch_origin(std::string_view text, const XmlTag& joint, cons
     return exact_number(v.x()) + " " + exact_number(v.y()) + " " + exact_number(v.z());
   };
   const std::string xyz = three(frame.translation()), rpy = three(roll_pitch_yaw(frame.linear()));
+  const Eigen::Quaterniond q(frame.linear());
+  const std::string quat = three({q.x(), q.y(), q.z()}) + " " + exact_number(q.w());
   if (!origin) {
     const std::size_t next = text.find_first_not_of(" \t\r\n", joint.end);
     const std::string space(text.substr(joint.end, next - joint.end));
@@ -36,7 +38,9 @@ VERNIER_LOCAL void patch_origin(std::string_view text, const XmlTag& joint, cons
   }
   std::vector<TextPatch> here;
   std::string missing;
-  for (const auto& [name, value] : {std::pair<const char*, const std::string&>{"xyz", xyz}, {"rpy", rpy}}) {
+  const bool quaternion = attribute_value(text, *origin, "quat_xyzw").has_value();
+  for (const auto& [name, value] : {std::pair<const char*, const std::string&>{"xyz", xyz},
+                                    {quaternion ? "quat_xyzw" : "rpy", quaternion ? quat : rpy}}) {
     if (const auto place = attribute_value(text, *origin, name))
       here.push_back({place->first, place->second, value});
     else

@@ -23,6 +23,7 @@ struct UrdfJoint {
   double lower = 0, upper = 0;         ///< limits [rad, m]
   bool mimics = false;                 ///< whether it follows another joint
   std::vector<std::string> ignored{};  ///< elements that have no effect here
+  std::string unreadable{};            ///< why its frame is not known for sure, a message; empty where it is
 
   bool moves() const { return type != "fixed"; }
 };

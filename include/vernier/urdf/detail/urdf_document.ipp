@@ -3,9 +3,12 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <map>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -41,23 +44,43 @@ class UrdfElement {
     if (value == nullptr || *value == '\0') fail(owner, " has no ", attribute);
     return value;
   }
+  bool has(const char* attribute) const { return element_->Attribute(attribute) != nullptr; }
   /// Three numbers.
   VERNIER_LOCAL Vector3 vector(const char* attribute, const Vector3& otherwise, const std::string& owner) const {
-    const char* value = element_->Attribute(attribute);
-    if (value == nullptr) return otherwise;
-    Vector3 out;
-    Index count = 0;
-    for (std::string_view rest = value;; ++count) {
-      const std::size_t first = rest.find_first_not_of(" \t\r\n");
-      if (first == std::string_view::npos) break;
-      rest.remove_prefix(first);
-      const std::size_t end = (std::min)(rest.find_first_of(" \t\r\n"), rest.size());
-      const double number = this->number(rest.substr(0, end), attribute, owner);
-      if (count < 3) out(count) = number;
-      rest.remove_prefix(end);
-    }
-    if (count != 3) fail(attribute, " of ", owner, " has ", count, " numbers, must have 3");
+    Vector3 out = otherwise;
+    if (has(attribute)) numbers(attribute, owner, {out.data(), 3});
     return out;
+  }
+  /// The rotation of an origin, by either of its attributes.
+  /// @param quaternions whether the file's version has quat_xyzw
+  VERNIER_LOCAL Matrix3 rotation(const std::string& owner, bool quaternions) const {
+    if (!has("quat_xyzw")) return from_roll_pitch_yaw(vector("rpy", Vector3::Zero(), owner));
+    if (has("rpy")) fail("the origin of ", owner, " has both rpy and quat_xyzw");
+    if (!quaternions)
+      fail("quat_xyzw of ", owner, " is of URDF 1.1, which <robot version=\"1.1\"> must say: others ignore it here");
+    std::array<double, 4> q{};
+    numbers("quat_xyzw", owner, q);
+    const Eigen::Quaterniond quaternion(q[3], q[0], q[1], q[2]);
+    constexpr double rounding = 1e-3;  // of three digits
+    if (!(std::abs(quaternion.norm() - 1) < rounding))
+      fail("quat_xyzw of ", owner, " has the length ", quaternion.norm(), ", must be 1");
+    return quaternion.normalized().toRotationMatrix();
+  }
+  /// Why an element that places a frame does not say it all by these attributes; empty where it does.
+  VERNIER_LOCAL std::string surplus(const std::string& owner,
+                                    std::initializer_list<std::string_view> attributes) const {
+    const auto told = [&](const char* kind, std::string_view name) {
+      return message(*file_, ", line ", line(), ": the ", element_->Name(), " of ", owner, " has ", kind,
+                     quotable(name), "', which is not known there");
+    };
+    for (const auto* one = element_->FirstAttribute(); one != nullptr; one = one->Next()) {
+      const std::string_view name = one->Name();
+      if (std::find(attributes.begin(), attributes.end(), name) == attributes.end())
+        return told("an attribute '", name);
+    }
+    for (const auto* inner = element_->FirstChild(); inner != nullptr; inner = inner->NextSibling())
+      if (inner->ToComment() == nullptr) return told("a content '", inner->Value());
+    return {};
   }
   /// A number; 0 where there is none, as URDF has it.
   VERNIER_LOCAL double limit(const char* attribute, const std::string& owner) const {
@@ -66,6 +89,20 @@ class UrdfElement {
   }
 
  private:
+  /// The numbers of an attribute, as many as there is room for.
+  VERNIER_LOCAL void numbers(const char* attribute, const std::string& owner, std::span<double> out) const {
+    std::size_t count = 0;
+    for (std::string_view rest = element_->Attribute(attribute);; ++count) {
+      const std::size_t first = rest.find_first_not_of(" \t\r\n");
+      if (first == std::string_view::npos) break;
+      rest.remove_prefix(first);
+      const std::size_t end = (std::min)(rest.find_first_of(" \t\r\n"), rest.size());
+      const double number = this->number(rest.substr(0, end), attribute, owner);
+      if (count < out.size()) out[count] = number;
+      rest.remove_prefix(end);
+    }
+    if (count != out.size()) fail(attribute, " of ", owner, " has ", count, " numbers, must have ", out.size());
+  }
   VERNIER_LOCAL double number(std::string_view word, const char* attribute, const std::string& owner) const {
     const std::string_view unsigned_word = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
@@ -101,9 +138,48 @@ VERNIER_LOCAL void refuse_foreign(const tinyxml2::XMLNode& node, const std::stri
   }
 }
 
-VERNIER_LOCAL UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const std::string& file) {
+/// Small letters.
+VERNIER_LOCAL std::string in_small_letters(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+/// Elements of a joint that are not known: those that may move its frame make it unreadable, others are ignored.
+VERNIER_LOCAL void judge_unknown(const tinyxml2::XMLElement& xml, const std::string& owner, const std::string& file,
+                                 UrdfJoint& out) {
+  constexpr std::string_view known[] = {
+      "parent", "child", "origin", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"};
+  constexpr std::string_view placing[] = {"pose",     "frame",       "transform",   "position",
+                                          "rotation", "orientation", "translation", "axis2"};
+  constexpr const char* places[] = {"xyz", "rpy", "quat_xyzw", "quat_wxyz", "pose", "position", "rotation"};
+  const auto among = [](const auto& names, std::string_view name) {
+    return std::find(std::begin(names), std::end(names), name) != std::end(names);
+  };
+  for (const auto* child = xml.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    const std::string name = child->Name(), small = in_small_letters(name);
+    if (among(known, name)) continue;
+    const bool has_place = std::any_of(std::begin(places), std::end(places),
+                                       [&](const char* place) { return child->Attribute(place) != nullptr; });
+    if (!among(known, small) && !among(placing, small) && !has_place)
+      out.ignored.push_back("<" + quotable(name) + ">");
+    else if (out.unreadable.empty())
+      out.unreadable = message(file, ", line ", child->GetLineNum(), ": '", quotable(name), "' of ", owner,
+                               among(known, small) ? message(" is not known; is it '", small, "'?")
+                                                   : std::string(" is not known, and may move its frame"));
+  }
+  for (const auto* one = xml.FirstAttribute(); one != nullptr; one = one->Next())
+    if (std::string_view(one->Name()) != "name" && std::string_view(one->Name()) != "type")
+      out.ignored.push_back(message("its attribute '", quotable(one->Name()), "'"));
+}
+
+/// @param quaternions whether the file's version has quat_xyzw
+VERNIER_LOCAL UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const std::string& file, bool quaternions) {
   const UrdfElement element(xml, file);
   UrdfJoint out;
+  const auto judge = [&](std::string surplus) {
+    if (out.unreadable.empty()) out.unreadable = std::move(surplus);
+  };
   out.line = element.line();
   out.name = element.text("name", "a joint");
   const std::string owner = "joint '" + quotable(out.name) + "'";
@@ -114,18 +190,22 @@ VERNIER_LOCAL UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const s
   for (auto [which, link] : {std::pair{"parent", &out.parent}, {"child", &out.child}}) {
     const tinyxml2::XMLElement* found = element.only_child(which, owner);
     if (found == nullptr) element.fail(owner, " has no ", which);
-    *link = UrdfElement(*found, file).text("link", message("the ", which, " of ", owner));
+    const UrdfElement named(*found, file);
+    *link = named.text("link", message("the ", which, " of ", owner));
+    judge(named.surplus(owner, {"link"}));
   }
   if (const auto* found = element.only_child("origin", owner)) {
     const UrdfElement origin(*found, file);
     out.origin.translation() = origin.vector("xyz", Vector3::Zero(), owner);
-    out.origin.linear() = from_roll_pitch_yaw(origin.vector("rpy", Vector3::Zero(), owner));
+    out.origin.linear() = origin.rotation(owner, quaternions);
+    judge(origin.surplus(owner, {"xyz", "rpy", "quat_xyzw"}));
   }
   if (const auto* found = element.only_child("axis", owner); found != nullptr && out.moves()) {
     const UrdfElement axis(*found, file);
     out.axis = axis.vector("xyz", Vector3::UnitX(), owner);
     if (!(out.axis.norm() > 1e-6)) axis.fail("the axis of ", owner, " is zero");
     out.axis.normalize();
+    judge(axis.surplus(owner, {"xyz"}));
   }
   if (const auto* found = element.only_child("limit", owner); found != nullptr && out.type != "continuous") {
     const UrdfElement limit(*found, file);
@@ -137,6 +217,7 @@ VERNIER_LOCAL UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const s
   out.mimics = element.child("mimic") != nullptr;
   for (const char* name : {"safety_controller", "calibration"})
     if (element.child(name) != nullptr) out.ignored.push_back(message("<", name, ">"));
+  judge_unknown(xml, owner, file, out);
   return out;
 }
 
@@ -190,6 +271,16 @@ VERNIER_IMPL UrdfDocument read_urdf_document(const std::string& text, const std:
     UrdfElement(*root->NextSiblingElement(), file).fail("a second root element");
   UrdfDocument out;
   out.name = UrdfElement(*root, file).text("name", "the robot");
+  const std::string version = UrdfElement(*root, file).has("version") ? root->Attribute("version") : "1.0";
+  if (version != "1.0" && version != "1.1")
+    UrdfElement(*root, file).fail("version '", quotable(version), "' of URDF; 1.0 and 1.1 are read");
+  for (const auto* part = root->FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
+    const std::string name = part->Name(), small = in_small_letters(name);
+    if (name != small && (small == "link" || small == "joint"))
+      UrdfElement(*part, file).fail("'", quotable(name), "' is not known; is it '", small, "'?");
+    if (small == "include" || small == "model")
+      UrdfElement(*part, file).fail("'", quotable(name), "': parts of other files or formats are not included");
+  }
   std::map<std::string, int> links, joints;  // line of each name
   const auto once = [&](std::map<std::string, int>& names, const std::string& name, const char* what, int line) {
     const auto [at, fresh] = names.emplace(name, line);
@@ -203,7 +294,7 @@ VERNIER_IMPL UrdfDocument read_urdf_document(const std::string& text, const std:
   }
   for (const auto* joint = root->FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
-    out.joints.push_back(read_urdf_joint(*joint, file));
+    out.joints.push_back(read_urdf_joint(*joint, file, version == "1.1"));
     once(joints, out.joints.back().name, "joint", joint->GetLineNum());
   }
   if (out.links.empty()) throw DataError(file + ": has no links");

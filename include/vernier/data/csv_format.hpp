@@ -1,0 +1,22 @@
+#pragma once
+
+/// @file
+/// How files of comma-separated values are written.
+
+#include <functional>
+#include <string>
+
+namespace vernier {
+
+/// How a CSV file is written. Nothing of it is guessed from the file: another one is refused, and the message names
+/// what to state.
+struct CsvFormat {
+  char separator = ',';  ///< between cells; a blank stands for any number of blanks and tabs
+  char decimal = '.';    ///< the decimal point
+  /// Takes what is said of a file that is read all the same, a line each: columns that are not read, times that go
+  /// back. Empty: nobody is told, and a file with a column that is not read, but differs from a known one by case, by
+  /// blanks and brackets or by its unit alone, is refused.
+  std::function<void(const std::string&)> remark{};
+};
+
+}  // namespace vernier

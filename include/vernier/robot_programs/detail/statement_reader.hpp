@@ -13,6 +13,9 @@
 
 namespace vernier::detail {
 
+/// Whether a state matters to a target of a move.
+VERNIER_API bool matters(ProgramState state, TargetKind kind, TargetMove move);
+
 /// A reader's statements and moves.
 class StatementReader {
  protected:

@@ -32,9 +32,6 @@ VERNIER_IMPL StatementClass StatementReader::apply(std::size_t line, const std::
   return row.kind;
 }
 
-/// Whether a state matters to a target of a move.
-VERNIER_API bool matters(ProgramState state, TargetKind kind, TargetMove move);
-
 VERNIER_IMPL bool matters(ProgramState state, TargetKind kind, TargetMove move) {
   switch (state) {
     case ProgramState::everything:

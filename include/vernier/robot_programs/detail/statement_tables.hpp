@@ -350,7 +350,7 @@ inline constexpr ProgramStatement fanuc_statements[] = {
 /// Words behind the speed of a move that leave its positions as they are.
 inline constexpr std::string_view fanuc_move_options =
     "fine cnt cd cr acc pth break skip skipjump lbl ta tb db ap_ld rt_ld alim pspd ev ind arc weld start end sec msec mm "
-    "cm min inch deg r ar weld_speed max_speed time before after distance point_logic do ro go ao f on off pulse";
+    "cm min inch deg r ar weld_speed max_speed time before after distance point_logic do ro go ao f on off pulse pr";
 
 /// The statements of a language, looked up by name.
 class StatementTable {

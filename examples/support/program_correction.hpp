@@ -21,6 +21,7 @@ struct ProgramCorrection {
   std::string flange{};                    ///< the controller's flange in the last frame of that chain
   std::string noflip{};                    ///< Fanuc: sign of joint 5 where the configuration is N
   std::string date{};                      ///< written into the program
+  std::vector<std::string> assume_harmless{};  ///< statements that change nothing that targets mean
   bool allow_uncorrected = false;          ///< whether the rest may stay as it is
 };
 

@@ -10,7 +10,8 @@ VERNIER_IMPL void StatementReader::lose(ProgramState state, std::size_t line, co
 }
 
 VERNIER_IMPL void StatementReader::unknown(std::size_t line, const std::string& statement) {
-  remark(line, statement, std::string(reason_of(ProgramState::everything)));
+  program_.uncorrected.push_back(
+      {line, statement, std::string(reason_of(ProgramState::everything)), MissingInput::effect});
   lose(ProgramState::everything, line, statement);
   break_order();
 }

@@ -228,7 +228,7 @@ inline constexpr ProgramStatement krl_statements[] = {
 
 /// Routines and functions of the controller that leave targets as they are, and words that begin a harmless statement.
 inline constexpr std::string_view krl_functions =
-    "abs acos asin atan atan2 cos sin sqrt tan forward inverse inv_pos cast_from cast_to cclose ciocontrol cioctl copen "
+    "abs acos asin atan atan2 cos sin sqrt tan eb ek lk forward inverse inv_pos cast_from cast_to cclose ciocontrol cioctl copen "
     "cread cwrite sopen sread swrite sclose err_clear err_raise exists_krldlg exists_krlmsg clear_krlmsg set_krldlg "
     "set_krldlganswer set_krlmsg get_msgbuffer get_sig_inf get_decl_place getcycdef getsysstate get_system_data getvarsize "
     "ioctl ir_stopm ismessageset is_key_pressed m_comment mbx_rec msgdialog msgnotify msgquit msgstate msgwait "

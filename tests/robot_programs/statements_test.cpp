@@ -335,6 +335,32 @@ TEST(StatementDetails, TargetsThatRoutinesGet) {
   EXPECT_NE(remarks(ur_lines("", "a=p[1,2,3,0,0,0]\ndef f(a):\nmovel(a)\nend\n")).find("movel(a): a parameter"), std::string::npos);
 }
 
+// What is given to an instruction or routine may be written there; constants are not.
+TEST(StatementDetails, VariablesThatInstructionsGet) {
+  const std::string frame = "[[1,2,3],[1,0,0,0]]", tool = "[TRUE," + frame + ",[1,[0,0,1],[1,0,0,0],0,0,0]];\n";
+  const auto program = [&](const std::string& lines, const std::string& routines = "") {
+    return rapid_lines(lines, routines + "VAR robtarget v:=" + rapid_value + "PERS tooldata gun:=" + tool);
+  };
+  for (const char* statement : {"GetDataVal \"x\",v;\n", "RMQGetMsgData m,v;\n", "TPReadNum v.trans.x,\"x\";\n"})
+    EXPECT_EQ(corrected(program(statement)), "abcdj") << statement;
+  EXPECT_EQ(corrected(program("TPWrite \"x\"\\Pos:=v.trans;\nGetDataVal \"x\",a;\n")), "abcdjv");
+  EXPECT_EQ(program("GetSysData gun;\n").tools.count("gun"), 0u);
+  EXPECT_EQ(program("SetDO x,1;\n").tools.count("gun"), 1u);
+  EXPECT_EQ(program("bend gun;\n", "PROC bend(INOUT tooldata t)\nt.tframe.trans.z:=1;\nENDPROC\n").tools.count("gun"), 0u);
+  EXPECT_EQ(named(rapid_lines("use w;\n", "PROC use(PERS wobjdata w)\nMoveL a,v1,fine,tool0\\WObj:=w;\nENDPROC\n"), "a").workobject,
+            "?");
+  EXPECT_NE(about(krl_lines("CAST_FROM(x[],0,a)\nPTP b\n"), "a"), "");
+  EXPECT_NE(about(krl_lines("s=STRTOPOS(\"x\",a)\nPTP b\n"), "a"), "");
+  const std::string data = "TOOL_DATA[3]={X 0,Y 0,Z 1,A 0,B 0,C 0}\n";
+  EXPECT_EQ(krl_lines(data + "sub(TOOL_DATA[3])\n", "DEF sub(f:OUT)\nEND\n").tools.count("3"), 0u);
+  EXPECT_EQ(named(krl_lines("BAS(#BASE,2)\nsub($BASE)\nPTP a\n", "DEF sub(f:OUT)\nEND\n"), "a").workobject, "?");
+}
+
+TEST(StatementDetails, FramesThatAreSetAgainAreTheSame) {
+  const RobotProgram program = ur_lines("set_tcp(p[0,0,1,0,0,0])\nwhile True:\nmovel(a)\nset_tcp(p[0,0,1,0,0,0])\nmovel(b)\nend\n");
+  EXPECT_EQ(named(program, "a").tool + named(program, "b").tool, "set_tcp of line 6set_tcp of line 6");
+}
+
 TEST(StatementDetails, InstructionsOverSeveralLines) {
   EXPECT_EQ(corrected(rapid_lines("ConfJ\n\\Off\n;\n" + rapid_move("a"))), "bcdj");
   EXPECT_EQ(remarks(rapid_lines("a.trans\n:=\n[1,2,3];\n")), "8 a.trans := [1,2,3]: the program changes this target\n");

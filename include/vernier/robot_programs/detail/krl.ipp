@@ -180,21 +180,31 @@ class KrlReader final : private StatementReader {
       flow_.call(first);
       break_order();
       arguments(i, end, message("line ", line_of(i), ", ", what, ": the routine may change it"));
-    } else if (apply(line_of(i), first, " ", what) == StatementClass::unknown) {
-      arguments(i, end, message("line ", line_of(i), ", ", what, ": what it does to targets is not known"));
+    } else {
+      const StatementClass kind = apply(line_of(i), first, " ", what);
+      if (kind == StatementClass::unknown)
+        arguments(i, end, message("line ", line_of(i), ", ", what, ": what it does to targets is not known"));
+      else if (text_.is(i + 1, '('))
+        arguments(i, end, message("line ", line_of(i), ", ", what, ": the routine may change it"));
     }
     act_.clear();
   }
 
   // targets that are passed to a routine
   void arguments(std::size_t i, std::size_t end, const std::string& why) {
-    for (std::size_t k = i + 1; k < end; ++k)
-      if (text_.is_word(k)) uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
+    for (std::size_t k = i + 1; k < end; ++k) {
+      const std::string name = word(k);
+      if (name == "tool_data" || name == "base_data") changed_frames_.insert({name == "tool_data", index(k + 1)});
+      if (name == "$tool" || name == "$base")
+        flow_.set(name == "$tool" ? ProgramState::tool : ProgramState::workobject, {"?", {}, line_of(k)});
+      if (!name.empty()) uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
+    }
   }
 
   // calls of functions in an expression
   void calls(std::size_t first, std::size_t last) {
-    static const auto operators = words_of("and or exor not b_and b_or b_exor b_not for then sec when while until to step case prio");
+    static const auto operators = words_of("and or exor not b_and b_or b_exor b_not for then sec when while until to step case prio"),
+                      inputs = words_of(krl_inputs);
     for (std::size_t k = first; k < last; ++k) {
       if (!text_.is_word(k) || !text_.is(k + 1, '(')) continue;
       const std::string name = word(k);
@@ -205,6 +215,8 @@ class KrlReader final : private StatementReader {
         arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
       } else if (statements_.find(name).kind != StatementClass::harmless) {
         unknown(line_of(k), excerpt(text_, k, end));
+      } else if (std::any_of(inputs.begin(), inputs.end(), [&](const auto& begin) { return name.starts_with(begin); })) {
+        arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the function may change it"));
       }
     }
   }
@@ -314,13 +326,11 @@ class KrlReader final : private StatementReader {
   // the name of a frame that is the value at tokens from i to end; ? where it is not known
   std::string frame(bool tool, std::size_t at, std::size_t i, std::size_t end) {
     if (text_.is(i, '{')) {
-      const std::string key = message(text_.at(at), " of line ", line_of(at));
       const std::vector<Component> parts = components(i, end);
       const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
-      if (!frame) return "?";
-      const auto [stated, added] = (tool ? program_.tools : program_.workobjects).try_emplace(key, *frame);
-      if (!added && !stated->second.isApprox(*frame, 0)) changed_frames_.insert({tool, key});
-      return key;
+      return frame ? named_frame(tool ? ProgramState::tool : ProgramState::workobject,
+                                 message(text_.at(at), " of line ", line_of(at)), *frame)
+                   : "?";
     }
     const std::string source = word(i);
     if (source == "$nullframe" && i + 1 == end) return "0";
@@ -399,7 +409,7 @@ class KrlReader final : private StatementReader {
       if (command.starts_with("cp_")) {
         if (kept_orientation_.count(act_["ldat_act"]) != 0)
           set(ProgramState::orientation, {});
-        else
+        else if (statements_.find("bas").kind != StatementClass::harmless)
           lose(ProgramState::orientation, line_of(i), excerpt(text_, i, end));
       }
     } else {

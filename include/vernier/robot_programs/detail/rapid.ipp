@@ -33,6 +33,7 @@ class RapidReader final : private StatementReader {
         remark(line, excerpt(text_, expression.first, expression.second), "the program changes this target");
     }
     for (const std::string& name : assigned_) {  // frames that the program changes are not those that it states
+      if (constants_.count(name) != 0) continue;
       program_.tools.erase(name);
       program_.workobjects.erase(name);
     }
@@ -53,6 +54,7 @@ class RapidReader final : private StatementReader {
     std::string unknown{};   // why its targets are not corrected
     bool parameter = false;  // whether its target is a parameter of the routine
     bool moves = true;       // whether it is a move
+    bool constants = true;   // whether it concerns targets that no statement can change
   };
 
   void break_order() override { moves_.push_back({}); }
@@ -257,6 +259,7 @@ class RapidReader final : private StatementReader {
       flow_.call(name);
       break_order();
       why = message("line ", line(i), ", ", statement, ": what the routine does to it is not known");
+      if (routines_.at(name)) change(i + 1, end);
     } else {
       const std::string option = text_.is(i + 1, '\\') ? word(i + 2) : text_.is(i + 1, ';') ? "" : " ";
       const StatementClass kind = apply(line(i), name, option, statement);
@@ -265,15 +268,27 @@ class RapidReader final : private StatementReader {
       if (kind == StatementClass::own || kind == StatementClass::unknown)
         why = message("line ", line(i), ", ", statement, ": what it does to targets is not known");
       if (kind == StatementClass::own) break_order();
+      static const auto outputs = words_of(rapid_outputs);
+      if (kind == StatementClass::harmless && outputs.count(name) == 0) {
+        change(i + 1, end);
+        arguments(i, end, message("line ", line(i), ", ", statement, ": the instruction may change it"), false);
+      }
     }
     if (!why.empty()) arguments(i, end, why);
   }
 
+  // frames that a statement is given may be changed by it
+  void change(std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      if (text_.is_word(k)) assigned_.insert(word(k));
+  }
+
   // targets in the arguments of what is no move that is corrected
-  void arguments(std::size_t i, std::size_t end, const std::string& why) {
+  void arguments(std::size_t i, std::size_t end, const std::string& why, bool constants = true) {
     Move found;
     found.token = i;
     found.moves = false;
+    found.constants = constants;
     found.unknown = why;
     for (std::size_t k = i + 1; k < end;) {
       const std::size_t first = k;
@@ -293,8 +308,9 @@ class RapidReader final : private StatementReader {
       if (const auto routine = routines_.find(name); routine != routines_.end()) {
         flow_.call(name);
         const std::size_t end = std::min(behind_brackets(text_, k + 1, last), last);
-        if (routine->second)
-          arguments(k, end, message("line ", line(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
+        if (!routine->second) continue;
+        change(k + 2, end);
+        arguments(k, end, message("line ", line(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
       } else if (statements_.find(name).kind != StatementClass::harmless) {
         unknown(line(k), excerpt(text_, k, std::min(behind_brackets(text_, k + 1, last), last)));
       }
@@ -312,6 +328,7 @@ class RapidReader final : private StatementReader {
     const std::string type = word(i + 1);
     if (!text_.is_word(i + 2)) return i + 1;
     const std::string name = word(i + 2);
+    if (word(i) == "const") constants_.insert(name);
     std::size_t k = i + 3;
     if (text_.is(k, '{')) k = behind_brackets(text_, k, text_.tokens.size());
     const bool value = text_.is(k, ':') && text_.is(k + 1, '=');
@@ -478,6 +495,8 @@ class RapidReader final : private StatementReader {
     if (k >= text_.tokens.size()) fail_at(text_, line(i), "an instruction is not ended by ;");
     close();
     found.tool = tool_of(word(i), found.arguments);
+    if (parameters_.count(found.tool) != 0) found.tool.clear();
+    if (parameters_.count(found.workobject) != 0) found.workobject = "?";
     for (std::size_t a = 0; a < std::min(targets_of(word(i)), found.arguments.size()); ++a)
       found.parameter = found.parameter || parameters_.count(word(found.arguments[a].first)) != 0;
     calls(i + 1, k);
@@ -526,7 +545,7 @@ class RapidReader final : private StatementReader {
       const bool element = text_.is(first + 1, '{');
       const std::size_t end = !move.moves ? last : element ? behind_brackets(text_, first + 1, last) : first + 1;
       if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.empty() &&
-          !move.parameter) {
+          !move.parameter && (move.constants || constants_.count(word(first)) == 0)) {
         step.element = declared->second.size() > 1;
         for (const std::size_t k : declared->second) {
           step.target = k;
@@ -551,6 +570,7 @@ class RapidReader final : private StatementReader {
   std::set<std::string> assigned_{};  // variables
   std::vector<Move> moves_{};
   std::vector<std::pair<std::size_t, Span>> changes_{};
+  std::set<std::string> constants_{};
   std::map<std::string, bool> routines_{};  // of this file, and whether they may change their arguments
   std::set<std::string> parameters_{};      // of the present routine
   std::size_t refused_line_ = 0;

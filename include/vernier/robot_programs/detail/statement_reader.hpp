@@ -3,8 +3,10 @@
 /// @file
 /// What the readers of all languages do with statements: those that may change what targets mean are followed.
 
-#include <span>
+#include <array>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vernier/robot_programs/detail/program_flow.hpp"
@@ -42,6 +44,8 @@ class StatementReader {
   /// @param statement as it stands, for messages
   VERNIER_API StatementClass apply(std::size_t line, const std::string& name, const std::string& option,
                                    const std::string& statement);
+  /// The name of a frame that the text states: the one given, or that of an equal frame stated before.
+  VERNIER_API std::string named_frame(ProgramState state, std::string name, const Isometry3& frame);
   /// The order of moves ends: where the arm stands is not known.
   virtual void break_order() { add_step(steps_, {{}, {}, {}, TargetMove::unknown}); }
   /// Gives moves what holds at their points.
@@ -52,6 +56,9 @@ class StatementReader {
   const StatementTable& statements_;
   ProgramFlow flow_{};
   std::vector<ProgramStep> steps_{};
+
+ private:
+  std::map<std::pair<ProgramState, std::array<double, 16>>, std::string> named_{};  // frames by their numbers
 };
 
 }  // namespace vernier::detail

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "vernier/core/check.hpp"
 #include "vernier/robot_programs/detail/statement_reader.hpp"
 
@@ -42,6 +44,16 @@ VERNIER_IMPL bool matters(ProgramState state, TargetKind kind, TargetMove move) 
     case ProgramState::orientation: return kind == TargetKind::pose && move == TargetMove::linear;
     default: return kind == TargetKind::pose;
   }
+}
+
+VERNIER_IMPL std::string StatementReader::named_frame(ProgramState state, std::string name, const Isometry3& frame) {
+  auto& frames = state == ProgramState::tool ? program_.tools : program_.workobjects;
+  std::array<double, 16> numbers;
+  std::copy_n(frame.data(), numbers.size(), numbers.begin());
+  while (frames.count(name) != 0) name += '*';
+  const auto [found, added] = named_.try_emplace({state, numbers}, name);
+  if (added) frames[name] = frame;
+  return found->second;
 }
 
 VERNIER_IMPL void StatementReader::solve() {

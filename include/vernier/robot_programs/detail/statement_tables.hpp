@@ -64,6 +64,9 @@ inline constexpr std::string_view rapid_harmless =
     "camgetresult camloadjob camreqimage camsetexposure camsetparameter camsetprogrammode camsetrunmode "
     "camstartloadjob camwaitloadjob recoverymenu setbrush setbrushfac settmsignal";
 
+/// Of these, those that change none of their arguments; another one may change a variable that it is given.
+inline constexpr std::string_view rapid_outputs = "tpwrite errwrite errlog write uimsgwrite waituntil";
+
 /// Instructions that change what targets mean, or that use them in ways of their own.
 inline constexpr ProgramStatement rapid_statements[] = {
     {"confj", "", StatementClass::ends, ProgramState::joint_moves},
@@ -238,7 +241,10 @@ inline constexpr std::string_view krl_functions =
     "strtoe6axis strtoe6pos strtoframe strtoint strtopos strtoreal strtostring frand "
     "halt wait anin anout digin interrupt confirm import on_error_proceed brake asystop asycancel "
     "bool char int real string frame load inertia fdat ldat pdat signal channel struc enum ext extfct extp extfctp "
-    "const_vel stop time_block error_t";
+    "const_vel stop time_block";
+
+/// Beginnings of functions that may change a variable that they are given.
+inline constexpr std::string_view krl_inputs = "strto cast_ cread sread get_ mbx_";
 
 // ---- URScript: functions ----
 

@@ -218,9 +218,7 @@ class UrscriptReader final : private StatementReader {
       }
     }
     if (!found || found->kind != TargetKind::pose) return {};
-    const std::string name = message("set_tcp of line ", text_.tokens[i].line);
-    program_.tools[name] = found->pose;
-    return name;
+    return named_frame(ProgramState::tool, message("set_tcp of line ", line(i)), found->pose);
   }
 
   void move(std::size_t i) {

@@ -59,7 +59,8 @@ Dialect dialect(ProgramLanguage language) {
     case ProgramLanguage::urscript: fill(detail::urscript_harmless, detail::urscript_statements); break;
     case ProgramLanguage::fanuc_tp: fill(detail::fanuc_harmless, detail::fanuc_statements); break;
   }
-  std::erase_if(out.harmless, [](const std::string& name) { return name == "connect" || name == "end" || name == "abort"; });
+  std::erase_if(out.harmless,
+                [](const std::string& name) { return name == "connect" || name == "end" || name == "abort"; });
   return out;
 }
 
@@ -103,7 +104,8 @@ Item item(const Dialect& dialect, Choices& choices, std::size_t& depth) {
     out.effect = StatementClass::voids;
     out.text = unknown_text(dialect.language, choices);
   } else if (which == 6) {
-    const std::string& name = dialect.harmless[(choices.below(256) * 256 + choices.below(256)) % dialect.harmless.size()];
+    const std::string& name =
+        dialect.harmless[(choices.below(256) * 256 + choices.below(256)) % dialect.harmless.size()];
     out.text = statement_text(dialect.language, name, dialect.language == ProgramLanguage::fanuc_tp ? "" : "*");
   } else {
     const ProgramStatement& row = dialect.others[choices.below(dialect.others.size())];
@@ -155,8 +157,8 @@ std::string program_text(ProgramLanguage language, const std::vector<Item>& item
       ++number;
       out = pick(one.linear ? "MoveL " : "MoveJ ", one.linear ? "LIN " : "PTP ", one.linear ? "movel(" : "movej(",
                  one.linear ? "   1:L P[" : "   1:J P[") +
-            pick("[[1,2,3],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;", "{X 1,Y 2,Z 3,A 0,B 0,C 0,S 2,T 2}",
-                 "p[1,2,3,0,0,0])", "");
+            pick("[[1,2,3],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;",
+                 "{X 1,Y 2,Z 3,A 0,B 0,C 0,S 2,T 2}", "p[1,2,3,0,0,0])", "");
       if (language == ProgramLanguage::fanuc_tp) {
         out += message(number, one.linear ? "] 5mm/sec FINE ;" : "] 5% FINE ;");
         positions += message("P[", number,
@@ -169,7 +171,8 @@ std::string program_text(ProgramLanguage language, const std::vector<Item>& item
       out = one.loop ? pick("WHILE TRUE DO", "LOOP", "while True:", "   1:  FOR R[1]=1 TO 2 ;")
                      : pick("IF x>1 THEN", "IF x>1 THEN", "if x>1:", "   1:  IF (R[1]=1) THEN ;");
     } else if (one.kind == Item::Kind::close) {
-      out = loops.back() ? pick("ENDWHILE", "ENDLOOP", "end", "   1:  ENDFOR ;") : pick("ENDIF", "ENDIF", "end", "   1:  ENDIF ;");
+      out = loops.back() ? pick("ENDWHILE", "ENDLOOP", "end", "   1:  ENDFOR ;")
+                         : pick("ENDIF", "ENDIF", "end", "   1:  ENDIF ;");
       loops.pop_back();
     }
     text += out + "\n";

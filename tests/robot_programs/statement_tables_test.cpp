@@ -65,7 +65,8 @@ Words guide_words(const std::string& title, const std::string& kind) {
 std::string shown(const std::string& title, const ProgramStatement& row) {
   if (row.option.empty() || row.option == "*") return std::string(row.name);
   if (title == "RAPID") return message(row.name, " \\", row.option);
-  if (title == "KRL") return row.name[0] == '$' ? message(row.name, "=", row.option) : message(row.name, "(", row.option, ")");
+  if (title == "KRL")
+    return row.name[0] == '$' ? message(row.name, "=", row.option) : message(row.name, "(", row.option, ")");
   return message(row.name, " ", row.option);
 }
 

@@ -39,8 +39,8 @@ RobotProgram rapid_lines(const std::string& lines, const std::string& routines =
   std::string text = "MODULE m\n";
   for (const char* name : {"a", "b", "c", "d"}) text += message("CONST robtarget ", name, ":=", rapid_value);
   return parse_program(rapid,
-                       text + "CONST jointtarget j:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\n" + lines +
-                           "ENDPROC\n" + routines + "ENDMODULE\n",
+                       text + "CONST jointtarget j:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\n" +
+                           lines + "ENDPROC\n" + routines + "ENDMODULE\n",
                        "m.mod", harmless);
 }
 std::string rapid_move(const std::string& target) { return "MoveJ " + target + ",v1,fine,tool0;\n"; }
@@ -66,9 +66,10 @@ RobotProgram tp_lines(const std::vector<std::string>& lines, const std::vector<s
   for (const std::string& line : lines) text += "   1:" + line + " ;\n";
   text += "/POS\n";
   for (int k = 1; k <= 4; ++k)
-    text += message("P[", k,
-                    "]{\n GP1:\n UF : 1, UT : 2, CONFIG : 'N U T, 0, 0, 0',\n X = 1 mm, Y = 2 mm, Z = 3 mm,\n W = 10 deg, "
-                    "P = 20 deg, R = 30 deg\n};\n");
+    text +=
+        message("P[", k,
+                "]{\n GP1:\n UF : 1, UT : 2, CONFIG : 'N U T, 0, 0, 0',\n X = 1 mm, Y = 2 mm, Z = 3 mm,\n W = 10 deg, "
+                "P = 20 deg, R = 30 deg\n};\n");
   return parse_program(fanuc_tp, text + "/END\n", "m.ls", harmless);
 }
 std::string tp_move(int k) { return message("J P[", k, "] 100% FINE"); }
@@ -76,13 +77,36 @@ std::string tp_move(int k) { return message("J P[", k, "] 100% FINE"); }
 // ---- the class: a statement that can change what targets mean ----
 
 TEST(StatementsRapid, VoidTheTargetsBehindThem) {
-  for (const char* statement :
-       {"ConfJ\\Off;", "ConfJ \\Off;", "confj\n\\off;", "PDispSet d;", "PDispOn\\Rot\\ExeP:=a,b,tool0;", "EOffsSet e;",
-        "EOffsOn \\ExeP:=a,b;", "SoftAct 1,50;", "ActUnit STN_1;", "DeactUnit STN_1;", "SyncMoveOn s,t;",
-        "MToolTCPCalib j,j,j,j,gun,e,f;", "SetSysData gun;", "SetDataVal \"x\",v;", "FCAct gun;", "EGMActPose e,x;",
-        "WaitWObj w;", "DropWObj w;", "SoftElbow;", "IndAMove STN_1,2\\ToAbsNum:=0,20;", "Nobody;", "Nobody x,y;",
-        "n:=nobody(1);", "IF x>1 Nobody;", "IF nobody(1) THEN\nENDIF", "%\"nobody\"%;", "CallByVar \"proc\",n;",
-        "FOR i FROM 1 TO nobody(2) DO\nENDFOR", "TEST nobody(1)\nCASE 1:\nENDTEST", "MoveWeld [1,2,3],v1;"}) {
+  for (const char* statement : {"ConfJ\\Off;",
+                                "ConfJ \\Off;",
+                                "confj\n\\off;",
+                                "PDispSet d;",
+                                "PDispOn\\Rot\\ExeP:=a,b,tool0;",
+                                "EOffsSet e;",
+                                "EOffsOn \\ExeP:=a,b;",
+                                "SoftAct 1,50;",
+                                "ActUnit STN_1;",
+                                "DeactUnit STN_1;",
+                                "SyncMoveOn s,t;",
+                                "MToolTCPCalib j,j,j,j,gun,e,f;",
+                                "SetSysData gun;",
+                                "SetDataVal \"x\",v;",
+                                "FCAct gun;",
+                                "EGMActPose e,x;",
+                                "WaitWObj w;",
+                                "DropWObj w;",
+                                "SoftElbow;",
+                                "IndAMove STN_1,2\\ToAbsNum:=0,20;",
+                                "Nobody;",
+                                "Nobody x,y;",
+                                "n:=nobody(1);",
+                                "IF x>1 Nobody;",
+                                "IF nobody(1) THEN\nENDIF",
+                                "%\"nobody\"%;",
+                                "CallByVar \"proc\",n;",
+                                "FOR i FROM 1 TO nobody(2) DO\nENDFOR",
+                                "TEST nobody(1)\nCASE 1:\nENDTEST",
+                                "MoveWeld [1,2,3],v1;"}) {
     const RobotProgram program = rapid_lines(rapid_move("a") + statement + "\n" + rapid_move("b"));
     EXPECT_EQ(corrected(program).find('a'), 0u) << statement;
     EXPECT_EQ(corrected(program).find('b'), std::string::npos) << statement;
@@ -98,12 +122,31 @@ TEST(StatementsRapid, VoidTheTargetsBehindThem) {
 }
 
 TEST(StatementsRapid, AreHarmless) {
-  for (const char* statement :
-       {"AccSet 50,50;", "VelSet 100,500;", "WorldAccLim\\On:=3;", "WaitTime 1;", "SetDO do1,1;", "TPWrite \"x\";",
-        "Stop;", "GripLoad load1;", "TriggIO t,0\\DOp:=do1,1;", "n:=n+Sin(3)*Distance(a.trans,b.trans);",
-        "IF n>1 AND (m<2) SetDO do1,1;", "WHILE n<3 DO\nIncr n;\nENDWHILE", "TEST n\nCASE 1,2:\nSetDO do1,0;\nDEFAULT:\nENDTEST",
-        "GOTO end;\nend:", "x.y{2}.z:=3;", "VAR num q:=3;", "IDelete i;", "WaitUntil DI1=1 OR (n>2);", "ConfJ\\On;",
-        "PDispOff;", "SingArea\\Off;", "ConfL;", "MotionSup\\Off;", "CorrClear;", "SocketSend s\\Str:=\"x\";"}) {
+  for (const char* statement : {"AccSet 50,50;",
+                                "VelSet 100,500;",
+                                "WorldAccLim\\On:=3;",
+                                "WaitTime 1;",
+                                "SetDO do1,1;",
+                                "TPWrite \"x\";",
+                                "Stop;",
+                                "GripLoad load1;",
+                                "TriggIO t,0\\DOp:=do1,1;",
+                                "n:=n+Sin(3)*Distance(a.trans,b.trans);",
+                                "IF n>1 AND (m<2) SetDO do1,1;",
+                                "WHILE n<3 DO\nIncr n;\nENDWHILE",
+                                "TEST n\nCASE 1,2:\nSetDO do1,0;\nDEFAULT:\nENDTEST",
+                                "GOTO end;\nend:",
+                                "x.y{2}.z:=3;",
+                                "VAR num q:=3;",
+                                "IDelete i;",
+                                "WaitUntil DI1=1 OR (n>2);",
+                                "ConfJ\\On;",
+                                "PDispOff;",
+                                "SingArea\\Off;",
+                                "ConfL;",
+                                "MotionSup\\Off;",
+                                "CorrClear;",
+                                "SocketSend s\\Str:=\"x\";"}) {
     const RobotProgram program = rapid_lines(rapid_move("a") + statement + "\n" + rapid_line("b") + rapid_move("c"));
     EXPECT_EQ(corrected(program), "abcdj") << statement << remarks(program);
     EXPECT_EQ(remarks(program), "") << statement;
@@ -150,14 +193,36 @@ TEST(StatementsKrl, VoidTheTargetsBehindThem) {
 }
 
 TEST(StatementsKrl, AreHarmless) {
-  for (const char* statement :
-       {"$VEL.CP=0.5", "$ACC_AXIS[1]=50", "$OUT[3]=TRUE", "WAIT SEC 1", "WAIT FOR $IN[1] AND ($IN[2])", "HALT",
-        "PULSE($OUT[1],TRUE,0.5)", "n=n+1", "s.x[2]=sin(30)*abs(n)", "IF $IN[1] THEN\nn=2\nELSE\nn=3\nENDIF",
-        "FOR i=1 TO 3 STEP 1\nn=i\nENDFOR", "REPEAT\nn=1\nUNTIL n==1", "SWITCH n\nCASE 1,2\nn=3\nDEFAULT\nENDSWITCH",
-        "GOTO ende\nende:", "INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )", "INTERRUPT ON 3", "BAS(#VEL_PTP,100)",
-        "$LOAD=LOAD_DATA[2]", "TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[5]=TRUE", "CONTINUE", "$IPO_MODE=#BASE",
-        "$ORI_TYPE=#VAR", "PDAT_ACT=PDEFAULT", "$TIMER[1]=0", "$ADVANCE=3", "DECL nobody x", "CWRITE($CMD,stat,#SYNC,\"x\")",
-        "LOOP\nEXIT\nENDLOOP", "WHILE (n<3)\nn=n+1\nENDWHILE", "TIME_BLOCK START"}) {
+  for (const char* statement : {"$VEL.CP=0.5",
+                                "$ACC_AXIS[1]=50",
+                                "$OUT[3]=TRUE",
+                                "WAIT SEC 1",
+                                "WAIT FOR $IN[1] AND ($IN[2])",
+                                "HALT",
+                                "PULSE($OUT[1],TRUE,0.5)",
+                                "n=n+1",
+                                "s.x[2]=sin(30)*abs(n)",
+                                "IF $IN[1] THEN\nn=2\nELSE\nn=3\nENDIF",
+                                "FOR i=1 TO 3 STEP 1\nn=i\nENDFOR",
+                                "REPEAT\nn=1\nUNTIL n==1",
+                                "SWITCH n\nCASE 1,2\nn=3\nDEFAULT\nENDSWITCH",
+                                "GOTO ende\nende:",
+                                "INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
+                                "INTERRUPT ON 3",
+                                "BAS(#VEL_PTP,100)",
+                                "$LOAD=LOAD_DATA[2]",
+                                "TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[5]=TRUE",
+                                "CONTINUE",
+                                "$IPO_MODE=#BASE",
+                                "$ORI_TYPE=#VAR",
+                                "PDAT_ACT=PDEFAULT",
+                                "$TIMER[1]=0",
+                                "$ADVANCE=3",
+                                "DECL nobody x",
+                                "CWRITE($CMD,stat,#SYNC,\"x\")",
+                                "LOOP\nEXIT\nENDLOOP",
+                                "WHILE (n<3)\nn=n+1\nENDWHILE",
+                                "TIME_BLOCK START"}) {
     const RobotProgram program = krl_lines(std::string("PTP a\n") + statement + "\nPTP b\nLIN c\n");
     EXPECT_EQ(corrected(program), "abc") << statement << remarks(program);
     EXPECT_EQ(about(program, "b") + about(program, "c"), "") << statement;
@@ -183,22 +248,40 @@ TEST(StatementsUrscript, VoidTheTargetsBehindThem) {
 TEST(StatementsUrscript, AreHarmless) {
   for (const char* statement :
        {"set_payload(1.5)", "set_target_payload(1,[0,0,0])", "sleep(0.5)", "set_digital_out(1,True)",
-        "x = get_actual_tcp_pose()", "if (x > 1) and not (y):\nsync()\nelif z:\nelse:\nend", "$ 3 \"Waypoint_1\"", "popup(\"x\")",
-        "while True:\nbreak\nend", "textmsg(\"x\",norm(x))", "set_gravity([0,0,9.8])", "x[2]=3", "socket_open(\"h\",1)",
-        "rpc.anything(a)", "global x=3", "local y = [1,2,3,4,5,6]", "stopj(2)", "set_base_acceleration([0,0,0])",
-        "x = pose_trans(a, p[0,0,1,0,0,0])"}) {
+        "x = get_actual_tcp_pose()", "if (x > 1) and not (y):\nsync()\nelif z:\nelse:\nend", "$ 3 \"Waypoint_1\"",
+        "popup(\"x\")", "while True:\nbreak\nend", "textmsg(\"x\",norm(x))", "set_gravity([0,0,9.8])", "x[2]=3",
+        "socket_open(\"h\",1)", "rpc.anything(a)", "global x=3", "local y = [1,2,3,4,5,6]", "stopj(2)",
+        "set_base_acceleration([0,0,0])", "x = pose_trans(a, p[0,0,1,0,0,0])"}) {
     const RobotProgram program = ur_lines(std::string("movej(a)\n") + statement + "\nmovej(b)\nmovel(c)\n");
     EXPECT_EQ(corrected(program), "abc") << statement << remarks(program);
   }
 }
 
 TEST(StatementsFanuc, VoidTheTargetsBehindThem) {
-  for (const char* statement :
-       {"  UFRAME_NUM=2", "  UTOOL_NUM=1", "  UFRAME_NUM=R[1]", "  UTOOL_NUM = AR[1]", "  UFRAME[1]=PR[2]",
-        "  UTOOL[3:gun]=PR[1]", "  $MNUFRAME[1,1]=PR[1]", "  $SCR.$X=1", "  CALL NOBODY", "  CALL NOBODY(1,2)",
-        "  RUN NOBODY", "  Nobody 1", "  IF DI[1]=ON,CALL NOBODY", "  IF (DI[1]),UFRAME_NUM=(2)", "  SELECT R[1]=1,CALL NOBODY",
-        "         =2,CALL NOBODY", "       ELSE,CALL NOBODY", "  TRACK TAST[1]", "  STOP_TRACKING", "  SOFTFLOAT[1]",
-        "  Touch Offset PR[1]", "  (UFRAME_NUM=(3))", "  GROUP X", "J P[4] 100% FINE TB .5sec,CALL NOBODY"}) {
+  for (const char* statement : {"  UFRAME_NUM=2",
+                                "  UTOOL_NUM=1",
+                                "  UFRAME_NUM=R[1]",
+                                "  UTOOL_NUM = AR[1]",
+                                "  UFRAME[1]=PR[2]",
+                                "  UTOOL[3:gun]=PR[1]",
+                                "  $MNUFRAME[1,1]=PR[1]",
+                                "  $SCR.$X=1",
+                                "  CALL NOBODY",
+                                "  CALL NOBODY(1,2)",
+                                "  RUN NOBODY",
+                                "  Nobody 1",
+                                "  IF DI[1]=ON,CALL NOBODY",
+                                "  IF (DI[1]),UFRAME_NUM=(2)",
+                                "  SELECT R[1]=1,CALL NOBODY",
+                                "         =2,CALL NOBODY",
+                                "       ELSE,CALL NOBODY",
+                                "  TRACK TAST[1]",
+                                "  STOP_TRACKING",
+                                "  SOFTFLOAT[1]",
+                                "  Touch Offset PR[1]",
+                                "  (UFRAME_NUM=(3))",
+                                "  GROUP X",
+                                "J P[4] 100% FINE TB .5sec,CALL NOBODY"}) {
     const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
     EXPECT_NE(corrected(program).find("P[1]"), std::string::npos) << statement;
     EXPECT_EQ(corrected(program).find("P[2]"), std::string::npos) << statement;
@@ -213,14 +296,43 @@ TEST(StatementsFanuc, VoidTheTargetsBehindThem) {
 }
 
 TEST(StatementsFanuc, AreHarmless) {
-  for (const char* statement :
-       {"  R[1]=R[1]+1", "  DO[3]=ON", "  RO[1]=PULSE,0.5sec", "  PR[1,3]=50", "  PR[2]=P[3]", "  WAIT   1.00(sec)",
-        "  WAIT DI[1]=ON TIMEOUT,LBL[3]", "  LBL[1:x]", "  JMP LBL[1]", "  IF R[1]=5,JMP LBL[2]", "  IF (DI[1] AND !DI[2]) THEN",
-        "  FOR R[1]=1 TO 10", "  MESSAGE[Part missing]", "  UALM[1]", "  TIMER[1]=START", "  OVERRIDE=50%", "  PAYLOAD[2]",
-        "  SKIP CONDITION DI[5]=ON", "  OFFSET CONDITION PR[3]", "  !L P[2] RTCP", "  // CALL NOBODY", "  --eg:CALL NOBODY", "  PAUSE",
-        "  UFRAME_NUM=1", "  UTOOL_NUM=2", "  COL DETECT ON", "  Arc Start[1]", "  Weave Sine[1]", "  F[1]=(DI[1])",
-        "  $WAITTMOUT=300", "  LOCK PREG", "  (DO[1]=(DI[2]))", "", "L P[4] 100mm/sec CNT50 ACC80 Skip,LBL[5] TA .1sec,DO[1]=ON",
-        "J P[4] R[10]% CNT100 PTH", "L P[4] R[1:speed]mm/sec FINE", "L P[4] WELD_SPEED CNT10"}) {
+  for (const char* statement : {"  R[1]=R[1]+1",
+                                "  DO[3]=ON",
+                                "  RO[1]=PULSE,0.5sec",
+                                "  PR[1,3]=50",
+                                "  PR[2]=P[3]",
+                                "  WAIT   1.00(sec)",
+                                "  WAIT DI[1]=ON TIMEOUT,LBL[3]",
+                                "  LBL[1:x]",
+                                "  JMP LBL[1]",
+                                "  IF R[1]=5,JMP LBL[2]",
+                                "  IF (DI[1] AND !DI[2]) THEN",
+                                "  FOR R[1]=1 TO 10",
+                                "  MESSAGE[Part missing]",
+                                "  UALM[1]",
+                                "  TIMER[1]=START",
+                                "  OVERRIDE=50%",
+                                "  PAYLOAD[2]",
+                                "  SKIP CONDITION DI[5]=ON",
+                                "  OFFSET CONDITION PR[3]",
+                                "  !L P[2] RTCP",
+                                "  // CALL NOBODY",
+                                "  --eg:CALL NOBODY",
+                                "  PAUSE",
+                                "  UFRAME_NUM=1",
+                                "  UTOOL_NUM=2",
+                                "  COL DETECT ON",
+                                "  Arc Start[1]",
+                                "  Weave Sine[1]",
+                                "  F[1]=(DI[1])",
+                                "  $WAITTMOUT=300",
+                                "  LOCK PREG",
+                                "  (DO[1]=(DI[2]))",
+                                "",
+                                "L P[4] 100mm/sec CNT50 ACC80 Skip,LBL[5] TA .1sec,DO[1]=ON",
+                                "J P[4] R[10]% CNT100 PTH",
+                                "L P[4] R[1:speed]mm/sec FINE",
+                                "L P[4] WELD_SPEED CNT10"}) {
     const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
     for (const char* name : {"P[1]", "P[2]", "P[4]"})
       EXPECT_NE(corrected(program).find(name), std::string::npos) << statement << remarks(program);
@@ -254,14 +366,18 @@ TEST(StatementsReach, BeyondConditions) {
 TEST(StatementsReach, BackToTheBeginningOfLoops) {
   EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "WHILE x DO\n" + rapid_move("b") + "ConfJ\\Off;\nENDWHILE\n")),
             "acdj");
-  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "back:\n" + rapid_move("b") + "ConfJ\\Off;\nGOTO back;\n")), "acdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "back:\n" + rapid_move("b") + "ConfJ\\Off;\nGOTO back;\n")),
+            "acdj");
   EXPECT_EQ(corrected(krl_lines("PTP a\nLOOP\nPTP b\nnobody()\nENDLOOP\n")), "a");
   EXPECT_EQ(corrected(ur_lines("movej(a)\nwhile True:\nmovej(b)\nforce_mode(1)\nend\n")), "a");
-  EXPECT_EQ(corrected(ur_lines("movej(a)\nwhile True:\nforce_mode(1)\nif x:\nbreak\nend\nend_force_mode()\nend\nmovej(b)\n")), "a");
+  EXPECT_EQ(
+      corrected(ur_lines("movej(a)\nwhile True:\nforce_mode(1)\nif x:\nbreak\nend\nend_force_mode()\nend\nmovej(b)\n")),
+      "a");
   EXPECT_EQ(corrected(tp_lines({tp_move(1), "  LBL[1]", tp_move(2), "  CALL X", "  JMP LBL[1]"})).find("P[2]"),
             std::string::npos);
-  EXPECT_EQ(corrected(tp_lines({tp_move(1), "  LBL[1]", tp_move(2), "  CALL X", "  IF R[1]=1,JMP LBL[R[2]]"})).find("P[2]"),
-            std::string::npos);
+  EXPECT_EQ(
+      corrected(tp_lines({tp_move(1), "  LBL[1]", tp_move(2), "  CALL X", "  IF R[1]=1,JMP LBL[R[2]]"})).find("P[2]"),
+      std::string::npos);
   EXPECT_EQ(corrected(tp_lines({tp_move(1), "  FOR R[1]=1 TO 3", tp_move(2), "  CALL X", "  ENDFOR"})).find("P[2]"),
             std::string::npos);
 }
@@ -269,12 +385,15 @@ TEST(StatementsReach, BackToTheBeginningOfLoops) {
 TEST(StatementsReach, IntoRoutinesAndOut) {
   EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "off;\n" + rapid_move("b"), "PROC off()\nConfJ\\Off;\nENDPROC\n")),
             "acdj");
-  EXPECT_EQ(corrected(rapid_lines("ConfJ\\Off;\non;\n" + rapid_move("a"), "PROC on()\nConfJ\\On;\nENDPROC\n")), "abcdj");
-  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ConfJ\\Off;\nsub;\n", "PROC sub()\n" + rapid_move("b") + "ENDPROC\n")),
-            "acdj");
+  EXPECT_EQ(corrected(rapid_lines("ConfJ\\Off;\non;\n" + rapid_move("a"), "PROC on()\nConfJ\\On;\nENDPROC\n")),
+            "abcdj");
+  EXPECT_EQ(
+      corrected(rapid_lines(rapid_move("a") + "ConfJ\\Off;\nsub;\n", "PROC sub()\n" + rapid_move("b") + "ENDPROC\n")),
+      "acdj");
   EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "grip;\n" + rapid_move("b"), "PROC grip()\nSetDO x,1;\nENDPROC\n")),
             "abcdj");
-  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "one;\n", "PROC one()\nmain;\nENDPROC\n")).find('a'), std::string::npos);
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "one;\n", "PROC one()\nmain;\nENDPROC\n")).find('a'),
+            std::string::npos);
   // a return in the middle
   EXPECT_EQ(corrected(rapid_lines("sub;\n" + rapid_move("a"),
                                   "PROC sub()\nConfJ\\Off;\nIF x RETURN;\nConfJ\\On;\nENDPROC\n")),
@@ -292,7 +411,8 @@ TEST(StatementsReach, EverywhereFromWhatMayRunAtAnyTime) {
   EXPECT_EQ(corrected(rapid_lines(rapid_move("a"), "TRAP t\nConfJ\\Off;\nENDTRAP\n")), "bcdj");
   EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ERROR\nPDispSet x;\nRETRY;\n")), "bcdj");
   EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ERROR\nTPWrite \"x\";\nRETRY;\n")), "abcdj");
-  EXPECT_EQ(corrected(krl_lines("PTP a\nINTERRUPT DECL 3 WHEN $IN[1] DO sub()\n", "DEF sub()\n$IPO_MODE=#TCP\nEND\n")), "");
+  EXPECT_EQ(corrected(krl_lines("PTP a\nINTERRUPT DECL 3 WHEN $IN[1] DO sub()\n", "DEF sub()\n$IPO_MODE=#TCP\nEND\n")),
+            "");
   EXPECT_EQ(corrected(ur_lines("movel(a)\n", "thread t():\nset_tcp(p[0,0,1,0,0,0])\nend\n")), "");
 }
 
@@ -322,9 +442,10 @@ TEST(AssumedHarmless, StatementsAndRoutinesOfOtherFiles) {
 
 TEST(StatementDetails, TargetsThatRoutinesGet) {
   const RobotProgram program = rapid_lines("pick a;\nn:=change(b);\nn:=look(c);\n",
-                                           "PROC pick(robtarget p)\n" + rapid_move("p") + "ENDPROC\n"
-                                           "FUNC num change(INOUT robtarget p)\nRETURN 1;\nENDFUNC\n"
-                                           "FUNC num look(robtarget p)\nRETURN 1;\nENDFUNC\n");
+                                           "PROC pick(robtarget p)\n" + rapid_move("p") +
+                                               "ENDPROC\n"
+                                               "FUNC num change(INOUT robtarget p)\nRETURN 1;\nENDFUNC\n"
+                                               "FUNC num look(robtarget p)\nRETURN 1;\nENDFUNC\n");
   EXPECT_EQ(corrected(program), "cdj");
   EXPECT_NE(about(program, "a").find("pick a"), std::string::npos);
   // a parameter hides the target of its name
@@ -332,7 +453,8 @@ TEST(StatementDetails, TargetsThatRoutinesGet) {
   EXPECT_NE(remarks(rapid_lines("", "PROC pick(robtarget a)\n" + rapid_move("a") + "ENDPROC\n")).find("a parameter"),
             std::string::npos);
   EXPECT_NE(about(krl_lines("sub(a)\n", "DEF sub(p:OUT)\nEND\n"), "a"), "");
-  EXPECT_NE(remarks(ur_lines("", "a=p[1,2,3,0,0,0]\ndef f(a):\nmovel(a)\nend\n")).find("movel(a): a parameter"), std::string::npos);
+  EXPECT_NE(remarks(ur_lines("", "a=p[1,2,3,0,0,0]\ndef f(a):\nmovel(a)\nend\n")).find("movel(a): a parameter"),
+            std::string::npos);
 }
 
 // What is given to an instruction or routine may be written there; constants are not.
@@ -346,8 +468,10 @@ TEST(StatementDetails, VariablesThatInstructionsGet) {
   EXPECT_EQ(corrected(program("TPWrite \"x\"\\Pos:=v.trans;\nGetDataVal \"x\",a;\n")), "abcdjv");
   EXPECT_EQ(program("GetSysData gun;\n").tools.count("gun"), 0u);
   EXPECT_EQ(program("SetDO x,1;\n").tools.count("gun"), 1u);
-  EXPECT_EQ(program("bend gun;\n", "PROC bend(INOUT tooldata t)\nt.tframe.trans.z:=1;\nENDPROC\n").tools.count("gun"), 0u);
-  EXPECT_EQ(named(rapid_lines("use w;\n", "PROC use(PERS wobjdata w)\nMoveL a,v1,fine,tool0\\WObj:=w;\nENDPROC\n"), "a").workobject,
+  EXPECT_EQ(program("bend gun;\n", "PROC bend(INOUT tooldata t)\nt.tframe.trans.z:=1;\nENDPROC\n").tools.count("gun"),
+            0u);
+  EXPECT_EQ(named(rapid_lines("use w;\n", "PROC use(PERS wobjdata w)\nMoveL a,v1,fine,tool0\\WObj:=w;\nENDPROC\n"), "a")
+                .workobject,
             "?");
   EXPECT_NE(about(krl_lines("CAST_FROM(x[],0,a)\nPTP b\n"), "a"), "");
   EXPECT_NE(about(krl_lines("s=STRTOPOS(\"x\",a)\nPTP b\n"), "a"), "");
@@ -357,14 +481,16 @@ TEST(StatementDetails, VariablesThatInstructionsGet) {
 }
 
 TEST(StatementDetails, FramesThatAreSetAgainAreTheSame) {
-  const RobotProgram program = ur_lines("set_tcp(p[0,0,1,0,0,0])\nwhile True:\nmovel(a)\nset_tcp(p[0,0,1,0,0,0])\nmovel(b)\nend\n");
+  const RobotProgram program =
+      ur_lines("set_tcp(p[0,0,1,0,0,0])\nwhile True:\nmovel(a)\nset_tcp(p[0,0,1,0,0,0])\nmovel(b)\nend\n");
   EXPECT_EQ(named(program, "a").tool + named(program, "b").tool, "set_tcp of line 6set_tcp of line 6");
 }
 
 TEST(StatementDetails, InstructionsOverSeveralLines) {
   EXPECT_EQ(corrected(rapid_lines("ConfJ\n\\Off\n;\n" + rapid_move("a"))), "bcdj");
   EXPECT_EQ(remarks(rapid_lines("a.trans\n:=\n[1,2,3];\n")), "8 a.trans := [1,2,3]: the program changes this target\n");
-  EXPECT_EQ(remarks(rapid_lines("VAR robtarget\nx\n:=\nOffs(a,1,2,3);\n")), "8 robtarget x := Offs(a,1,2,3): computed, not a literal\n");
+  EXPECT_EQ(remarks(rapid_lines("VAR robtarget\nx\n:=\nOffs(a,1,2,3);\n")),
+            "8 robtarget x := Offs(a,1,2,3): computed, not a literal\n");
 }
 
 TEST(StatementDetails, ToolsInFrontOfSignals) {
@@ -373,9 +499,9 @@ TEST(StatementDetails, ToolsInFrontOfSignals) {
 }
 
 TEST(StatementDetails, FramesOfOneMotion) {
-  const RobotProgram program =
-      krl_lines("$TOOL=$NULLFRAME\n$BASE=BASE_DATA[1]\nSLIN a WITH $TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}, $VEL.CP=1 C_SPL\n"
-                "SLIN b WITH $BASE=BASE_DATA[4]\nSLIN c\nSPLINE WITH $BASE=BASE_DATA[5]\nSPL d\nENDSPLINE\n");
+  const RobotProgram program = krl_lines(
+      "$TOOL=$NULLFRAME\n$BASE=BASE_DATA[1]\nSLIN a WITH $TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}, $VEL.CP=1 C_SPL\n"
+      "SLIN b WITH $BASE=BASE_DATA[4]\nSLIN c\nSPLINE WITH $BASE=BASE_DATA[5]\nSPL d\nENDSPLINE\n");
   EXPECT_EQ(remarks(program), "");
   ASSERT_EQ(program.tools.count("$TOOL of line 8"), 1u);
   EXPECT_EQ(program.tools.at("$TOOL of line 8")(2, 3), 0.1);
@@ -390,8 +516,9 @@ TEST(StatementDetails, FramesOfOneMotion) {
 
 TEST(StatementDetails, FramesByFlangeData) {
   const std::string data = "DECL FDAT FP1={TOOL_NO 3,BASE_NO 2,IPO_FRAME #BASE}\nDECL LDAT L1={VEL 2,ORI_TYP #VAR}\n";
-  const RobotProgram program = krl_lines(data + "FDAT_ACT=FP1\nLDAT_ACT=L1\nBAS(#CP_PARAMS,2)\nLIN a\nFDAT_ACT=FP9\n"
-                                                "BAS(#PTP_PARAMS,10)\nPTP b\nBAS(#INITMOV,0)\nPTP c\nPTP d\n");
+  const RobotProgram program = krl_lines(data +
+                                         "FDAT_ACT=FP1\nLDAT_ACT=L1\nBAS(#CP_PARAMS,2)\nLIN a\nFDAT_ACT=FP9\n"
+                                         "BAS(#PTP_PARAMS,10)\nPTP b\nBAS(#INITMOV,0)\nPTP c\nPTP d\n");
   EXPECT_EQ(remarks(program), "");
   EXPECT_EQ(named(program, "a").tool + named(program, "a").workobject, "32");
   EXPECT_EQ(named(program, "b").tool + named(program, "b").workobject, "??");
@@ -413,7 +540,8 @@ TEST(StatementDetails, MovesAndElementsOfUrscript) {
   EXPECT_EQ(program.targets[0].move, TargetMove::joint);
   EXPECT_EQ(program.targets[0].joints(2), 1.5);
   EXPECT_EQ(named(program, "a").move, TargetMove::linear);
-  EXPECT_EQ(remarks(ur_lines("q1=[0,0,0,0,0,0]\nmovej(q1)\nq1[0] = 0.9\nmovej(q1)\nmovej(a)\nmovej(b)\nmovej(c)\nmovej(d)\n")),
+  EXPECT_EQ(remarks(ur_lines(
+                "q1=[0,0,0,0,0,0]\nmovej(q1)\nq1[0] = 0.9\nmovej(q1)\nmovej(a)\nmovej(b)\nmovej(c)\nmovej(d)\n")),
             "8 q1[0] = 0.9: the program changes this target\n");
   EXPECT_EQ(remarks(ur_lines("movej(a)\nmovej(b)\nmovej(c)\nmovej(get_inverse_kin(d,qnear=x,tcp=y))\n")),
             "5 d: no move of this file uses it\n9 movej(get_inverse_kin(d,qnear=x,tcp=y)): a tool of its own\n");

@@ -26,8 +26,8 @@ VERNIER_API ProgramLanguage program_language(const std::string& path);
 /// - Fanuc: the positions `P[n]` of group 1
 ///
 /// What moves use beside them, what the program changes and what has external axes is in `uncorrected`, and so are
-/// targets behind a statement that can change what they mean, or of which nobody knows what it does. The guide lists the
-/// statements. Conditions, loops, jumps and calls within the text are followed.
+/// targets behind a statement that can change what they mean, or of which nobody knows what it does. The guide lists
+/// the statements. Conditions, loops, jumps and calls within the text are followed.
 /// @param language of the text
 /// @param text     at most 16 MiB, in any encoding that extends ASCII; lines of at most 100,000 bytes, brackets nested
 ///                 at most 32 deep

@@ -209,7 +209,7 @@ class FanucReader final : private StatementReader {
 
   void one(std::string_view text, std::size_t line) {
     for (int part = 0; !text.empty() && part < 20; ++part) {  // IF ..,CALL X
-      while (text.starts_with('(')) text.remove_prefix(1);  // (DO[1]=ON) is an assignment, too
+      while (text.starts_with('(')) text.remove_prefix(1);    // (DO[1]=ON) is an assignment, too
       if (text.empty()) break;
       const std::string name = first_word(text);
       std::string_view rest = text.substr(name.size());
@@ -280,7 +280,8 @@ class FanucReader final : private StatementReader {
       else
         flow_.set(state, {std::string(rest), {}, line});
     } else if (name == "p" && rest.starts_with('[')) {
-      if (known_.count("P[" + number_in(text) + "]") != 0 || number_in(text).find_first_not_of("0123456789") != std::string::npos)
+      if (known_.count("P[" + number_in(text) + "]") != 0 ||
+          number_in(text).find_first_not_of("0123456789") != std::string::npos)
         remark(line, what, "the program changes this target");
     } else {
       if (name == "wait") jump(text);
@@ -414,8 +415,8 @@ class FanucReader final : private StatementReader {
   int opened_ = 0;  // conditions in one instruction
 };
 
-VERNIER_IMPL void read_fanuc_tp(std::string_view text, const std::string& name,
-                                const std::vector<std::string>& assumed, RobotProgram& program) {
+VERNIER_IMPL void read_fanuc_tp(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                                RobotProgram& program) {
   const ProgramText tokens = ProgramText::of(text, name, {.comments = "", .quotes = "\"'"});
   FanucReader(tokens, program, StatementTable(fanuc_harmless, fanuc_statements, assumed)).read();
 }

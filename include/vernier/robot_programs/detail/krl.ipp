@@ -197,13 +197,15 @@ class KrlReader final : private StatementReader {
       if (name == "tool_data" || name == "base_data") changed_frames_.insert({name == "tool_data", index(k + 1)});
       if (name == "$tool" || name == "$base")
         flow_.set(name == "$tool" ? ProgramState::tool : ProgramState::workobject, {"?", {}, line_of(k)});
-      if (!name.empty()) uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
+      if (!name.empty())
+        uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
     }
   }
 
   // calls of functions in an expression
   void calls(std::size_t first, std::size_t last) {
-    static const auto operators = words_of("and or exor not b_and b_or b_exor b_not for then sec when while until to step case prio"),
+    static const auto operators = words_of(
+                          "and or exor not b_and b_or b_exor b_not for then sec when while until to step case prio"),
                       inputs = words_of(krl_inputs);
     for (std::size_t k = first; k < last; ++k) {
       if (!text_.is_word(k) || !text_.is(k + 1, '(')) continue;
@@ -215,7 +217,8 @@ class KrlReader final : private StatementReader {
         arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
       } else if (statements_.find(name).kind != StatementClass::harmless) {
         unknown(line_of(k), excerpt(text_, k, end));
-      } else if (std::any_of(inputs.begin(), inputs.end(), [&](const auto& begin) { return name.starts_with(begin); })) {
+      } else if (std::any_of(inputs.begin(), inputs.end(),
+                             [&](const auto& begin) { return name.starts_with(begin); })) {
         arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the function may change it"));
       }
     }

@@ -71,7 +71,19 @@ class ProgramFlow {
   VERNIER_API StateValue at(std::size_t point, ProgramState state) const;
 
  private:
-  enum class Kind : unsigned char { block, loop, branch, close, leave_loop, leave_routine, label, jump, call, set, point };
+  enum class Kind : unsigned char {
+    block,
+    loop,
+    branch,
+    close,
+    leave_loop,
+    leave_routine,
+    label,
+    jump,
+    call,
+    set,
+    point
+  };
   static constexpr int none = -1, several = -2;  // no other value; routines of one name
 
   struct Event {

@@ -157,7 +157,8 @@ VERNIER_IMPL bool ProgramFlow::pass(std::size_t routine, std::size_t depth, std:
         now = blocks.back().before;
         break;
       case Kind::close:
-        if (too_deep > 0) --too_deep;
+        if (too_deep > 0)
+          --too_deep;
         else if (!blocks.empty()) {
           join(blocks.back().after, now);
           if (blocks.back().loop) {

@@ -14,14 +14,14 @@ namespace vernier::detail {
 
 /// The readers of the languages.
 /// @param assumed names of statements that are harmless whatever the tables say
-VERNIER_API void read_rapid(std::string_view text, const std::string& name,
-                             const std::vector<std::string>& assumed, RobotProgram& program);
-VERNIER_API void read_krl(std::string_view text, const std::string& name,
-                             const std::vector<std::string>& assumed, RobotProgram& program);
-VERNIER_API void read_urscript(std::string_view text, const std::string& name,
-                             const std::vector<std::string>& assumed, RobotProgram& program);
-VERNIER_API void read_fanuc_tp(std::string_view text, const std::string& name,
-                             const std::vector<std::string>& assumed, RobotProgram& program);
+VERNIER_API void read_rapid(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                            RobotProgram& program);
+VERNIER_API void read_krl(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                          RobotProgram& program);
+VERNIER_API void read_urscript(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                               RobotProgram& program);
+VERNIER_API void read_fanuc_tp(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                               RobotProgram& program);
 
 }  // namespace vernier::detail
 

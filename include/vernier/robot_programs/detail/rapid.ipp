@@ -527,7 +527,7 @@ class RapidReader final : private StatementReader {
       return;
     }
     const std::string name = word(move.token);
-    const TargetMove kind = !move.moves                      ? TargetMove::unknown
+    const TargetMove kind = !move.moves                    ? TargetMove::unknown
                             : joint_moves.count(name) != 0 ? TargetMove::joint
                                                            : TargetMove::linear;
     const std::size_t targets = move.moves ? targets_of(name) : move.arguments.size();
@@ -558,9 +558,9 @@ class RapidReader final : private StatementReader {
       if (text_.is(first, '[')) continue;  // refused before
       remark(line(first < last ? first : move.token),
              excerpt(text_, move.token, move.token + 1) + " " + excerpt(text_, first, last),
-             !text_.is_word(first) || end != last                 ? "computed, not a literal"
+             !text_.is_word(first) || end != last         ? "computed, not a literal"
              : declared == names_.end() || move.parameter ? "declared in another file, or a parameter"
-                                                                  : "a variable without literal value");
+                                                          : "a variable without literal value");
     }
   }
 

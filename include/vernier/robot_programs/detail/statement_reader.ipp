@@ -18,8 +18,8 @@ VERNIER_IMPL void StatementReader::unknown(std::size_t line, const std::string& 
   break_order();
 }
 
-VERNIER_IMPL StatementClass StatementReader::apply(std::size_t line, const std::string& name,
-                                                   const std::string& option, const std::string& statement) {
+VERNIER_IMPL StatementClass StatementReader::apply(std::size_t line, const std::string& name, const std::string& option,
+                                                   const std::string& statement) {
   const ProgramStatement row = statements_.find(name, option);
   switch (row.kind) {
     case StatementClass::ends: flow_.set(row.state, {{}, {}, line}); break;

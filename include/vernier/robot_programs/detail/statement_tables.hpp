@@ -181,7 +181,8 @@ inline constexpr std::string_view rapid_functions =
     "eulerzyx eventtype exechandler execlevel exp filesize filetime filetimednum fssize getaxisdistance "
     "getaxismovetime getmaxnumberofcyclicbool getmecunitname getmodalpayloadmode getmotortorque getnextcyclicbool "
     "getnextmechunit getnextsym getnumberofcyclicbool getserviceinfo getsignal getsignaldnum getsignalorigin "
-    "getsysinfo gettaskname gettime gettspstatus getuasusername ginput ginputdnum goutput goutputdnum hextodec indinpos "
+    "getsysinfo gettaskname gettime gettspstatus getuasusername ginput ginputdnum goutput goutputdnum hextodec "
+    "indinpos "
     "indspeed iounitstate isbrakecheckactive iscyclicbool isfile isleadthrough ismechunitactive ispers isstopmoveact "
     "isstopstateevent issyncmoveon issysid isvar max maxextlinearspeed maxextreorientspeed maxrobreorientspeed "
     "maxrobspeed min mirpos modexist modtime modtimednum motionplannerno nonmotionmode norient numtodnum numtostr offs "
@@ -198,8 +199,10 @@ inline constexpr std::string_view rapid_functions =
 
 /// System variables whose values mean nothing to targets.
 inline constexpr std::string_view krl_harmless =
-    "$vel $acc $jerk $apo $advance $ov_pro $ov_appl $vel_axis $acc_axis $jerk_axis $vel_extax $acc_extax $vel_ma $acc_ma "
-    "$vel_oric $red_vel $red_vel_c $gear_jerk $load $load_a1 $load_a2 $load_a3 $act_tool $act_base $act_ex_ax $cir_type "
+    "$vel $acc $jerk $apo $advance $ov_pro $ov_appl $vel_axis $acc_axis $jerk_axis $vel_extax $acc_extax $vel_ma "
+    "$acc_ma "
+    "$vel_oric $red_vel $red_vel_c $gear_jerk $load $load_a1 $load_a2 $load_a3 $act_tool $act_base $act_ex_ax "
+    "$cir_type "
     "$circ_type $circ_mode $out $outs $anout $timer $timer_stop $timer_flag $flag $cycflag $h_pos $h_pos_tol $loop_msg "
     "$loop_cont $bwdstart $single_step $pro_mode $pro_name $ipo_wait_for $ipo_wait_for_on $ipo_wait_state $opt_move "
     "$spl_tech $cp_vel_type $cp_statmon $cp_spd_fly $torqmon $torqmon_com $torqmon_def $set_io_size $date $notaus";
@@ -231,9 +234,11 @@ inline constexpr ProgramStatement krl_statements[] = {
 
 /// Routines and functions of the controller that leave targets as they are, and words that begin a harmless statement.
 inline constexpr std::string_view krl_functions =
-    "abs acos asin atan atan2 cos sin sqrt tan eb ek lk forward inverse inv_pos cast_from cast_to cclose ciocontrol cioctl copen "
+    "abs acos asin atan atan2 cos sin sqrt tan eb ek lk forward inverse inv_pos cast_from cast_to cclose ciocontrol "
+    "cioctl copen "
     "cread cwrite sopen sread swrite sclose err_clear err_raise exists_krldlg exists_krlmsg clear_krlmsg set_krldlg "
-    "set_krldlganswer set_krlmsg get_msgbuffer get_sig_inf get_decl_place getcycdef getsysstate get_system_data getvarsize "
+    "set_krldlganswer set_krlmsg get_msgbuffer get_sig_inf get_decl_place getcycdef getsysstate get_system_data "
+    "getvarsize "
     "ioctl ir_stopm ismessageset is_key_pressed m_comment mbx_rec msgdialog msgnotify msgquit msgstate msgwait "
     "pulse remotecmd remoteread "
     "rob_stop rob_stop_release set_brake_delay sync synccmd cancelprogsync timer_limit varstate vartype wspacegive "
@@ -250,7 +255,8 @@ inline constexpr std::string_view krl_inputs = "strto cast_ cread sread get_ mbx
 
 /// Functions that leave targets as they are.
 inline constexpr std::string_view urscript_harmless =
-    "acos asin assert atan atan2 binary_list_to_integer ceil conveyor_pulse_decode convert_pose cos d2r enable_external_ft_sensor "
+    "acos asin assert atan atan2 binary_list_to_integer ceil conveyor_pulse_decode convert_pose cos d2r "
+    "enable_external_ft_sensor "
     "encoder_enable_pulse_decode encoder_enable_set_tick_count encoder_get_tick_count encoder_set_tick_count "
     "encoder_unwind_delta_tick_count end_freedrive_mode end_screw_driving end_teach_mode estimate_payload floor force "
     "force_mode_get_damping force_mode_get_gain_scaling force_mode_set_damping force_mode_set_gain_scaling "
@@ -260,7 +266,8 @@ inline constexpr std::string_view urscript_harmless =
     "get_configurable_digital_in get_configurable_digital_out get_controller_temp get_conveyor_tick_count "
     "get_coriolis_and_centrifugal_torques get_digital_in get_digital_out get_euromap_input get_euromap_output get_flag "
     "get_forward_kin get_frame_parent get_freedrive_status get_gravity get_inverse_kin get_inverse_kin_has_solution "
-    "get_jacobian get_jacobian_time_derivative get_joint_temp get_joint_torques get_list_length get_mass_matrix get_pose "
+    "get_jacobian get_jacobian_time_derivative get_joint_temp get_joint_torques get_list_length get_mass_matrix "
+    "get_pose "
     "get_rtde_value get_standard_analog_in get_standard_analog_out get_standard_digital_in get_standard_digital_out "
     "get_steptime get_target_joint_accelerations get_target_joint_positions get_target_joint_speeds get_target_payload "
     "get_target_payload_cog get_target_payload_inertia get_target_tcp_pose get_target_tcp_pose_along_path "
@@ -273,22 +280,26 @@ inline constexpr std::string_view urscript_harmless =
     "modbus_set_digital_input_action modbus_set_output_register modbus_set_output_signal "
     "modbus_set_runstate_dependent_choice modbus_set_signal_update_frequency modbus_set_signal_watchdog "
     "motion_version_get norm normalize path_offset_get path_offset_set_alpha_filter path_offset_set_max_offset "
-    "pause_on_error_code point_dist popup pose_add pose_dist pose_inv pose_sub pose_trans position_deviation_warning pow "
+    "pause_on_error_code point_dist popup pose_add pose_dist pose_inv pose_sub pose_trans position_deviation_warning "
+    "pow "
     "powerdown protective_stop r2d random read_input_boolean_register read_input_float_register "
     "read_input_integer_register read_output_boolean_register read_output_float_register read_output_integer_register "
     "read_port_bit read_port_register request_boolean_from_primary_client request_float_from_primary_client "
     "request_integer_from_primary_client request_string_from_primary_client rotvec2rpy rpc_factory rpy2rotvec "
-    "rtde_set_watchdog set_analog_inputrange set_analog_out set_analog_outputdomain set_base_acceleration set_baselight_iec "
+    "rtde_set_watchdog set_analog_inputrange set_analog_out set_analog_outputdomain set_base_acceleration "
+    "set_baselight_iec "
     "set_baselight_off set_baselight_solid set_configurable_digital_input_action set_configurable_digital_out "
     "set_conveyor_tick_count set_digital_out set_euromap_output set_euromap_runstate_dependent_choice set_flag "
-    "set_gp_boolean_input_action set_gravity set_input_actions_to_default set_mass_properties set_payload set_payload_cog "
+    "set_gp_boolean_input_action set_gravity set_input_actions_to_default set_mass_properties set_payload "
+    "set_payload_cog "
     "set_payload_from_attached_frames set_payload_mass set_runstate_configurable_digital_output_to_value "
     "set_runstate_gp_boolean_output_to_value set_runstate_standard_analog_output_to_value "
     "set_runstate_standard_digital_output_to_value set_runstate_tool_digital_output_to_value "
     "set_safety_mode_transition_hardness set_standard_analog_input_domain set_standard_analog_out "
     "set_standard_digital_input_action set_standard_digital_out set_target_payload set_tool_analog_input_domain "
     "set_tool_communication set_tool_digital_input_action set_tool_digital_out set_tool_digital_output_mode "
-    "set_tool_output_mode set_tool_voltage sin size sleep socket_close socket_get_var socket_open socket_read_ascii_float "
+    "set_tool_output_mode set_tool_voltage sin size sleep socket_close socket_get_var socket_open "
+    "socket_read_ascii_float "
     "socket_read_binary_integer socket_read_byte_list socket_read_line socket_read_string socket_send_byte "
     "socket_send_int socket_send_line socket_send_string socket_set_var sqrt stopj stopl str_at str_cat str_empty "
     "str_find str_len str_sub struct sync tan textmsg time to_num to_str tool_contact tool_wrench_limit_disable "
@@ -332,7 +343,8 @@ inline constexpr ProgramStatement urscript_statements[] = {
 
 /// First words, of assignments the names of what they change.
 inline constexpr std::string_view fanuc_harmless =
-    "r pr sr ar ai ao di do f fi gi go m plm ri ro si so ui uo wi wo wsi wso timer timer_overflow override ualm message "
+    "r pr sr ar ai ao di do f fi gi go m plm ri ro si so ui uo wi wo wsi wso timer timer_overflow override ualm "
+    "message "
     "wait pause abort end rsr lock unlock joint_max_speed linear_max_speed payload error_prog resume_prog maint_prog "
     "clear_resume_prog return_path_dsbl col arc weld weave vr strlen findstr substr vision $waittmout $waitrelmt "
     "$mcr.$genoverride";
@@ -355,7 +367,8 @@ inline constexpr ProgramStatement fanuc_statements[] = {
 
 /// Words behind the speed of a move that leave its positions as they are.
 inline constexpr std::string_view fanuc_move_options =
-    "fine cnt cd cr acc pth break skip skipjump lbl ta tb db ap_ld rt_ld alim pspd ev ind arc weld start end sec msec mm "
+    "fine cnt cd cr acc pth break skip skipjump lbl ta tb db ap_ld rt_ld alim pspd ev ind arc weld start end sec msec "
+    "mm "
     "cm min inch deg r ar weld_speed max_speed time before after distance point_logic do ro go ao f on off pulse pr";
 
 /// The statements of a language, looked up by name.

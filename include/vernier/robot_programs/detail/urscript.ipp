@@ -55,7 +55,7 @@ class UrscriptReader final : private StatementReader {
 
   // statements in the order of the text
   void follow() {
-    std::size_t depth = 0;  // of brackets
+    std::size_t depth = 0;       // of brackets
     std::vector<bool> routines;  // of the blocks around: whether each is one
     std::vector<std::set<std::string, std::less<>>> parameters{{}};
     for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i) {
@@ -333,12 +333,12 @@ class UrscriptReader final : private StatementReader {
   std::set<std::string> used_{};
   std::set<std::size_t> tools_{};
   std::map<std::size_t, JointVector<6>> near_{};
-  std::set<std::string> routines_{};                                  // of this file
+  std::set<std::string> routines_{};                                // of this file
   const std::set<std::string, std::less<>>* parameters_ = nullptr;  // of the present routine
 };
 
-VERNIER_IMPL void read_urscript(std::string_view text, const std::string& name,
-                                const std::vector<std::string>& assumed, RobotProgram& program) {
+VERNIER_IMPL void read_urscript(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                                RobotProgram& program) {
   const ProgramText tokens = ProgramText::of(text, name, {.comments = "#", .quotes = "\"'"});
   UrscriptReader(tokens, program, StatementTable(urscript_harmless, urscript_statements, assumed)).read();
 }

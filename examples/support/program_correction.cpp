@@ -126,6 +126,7 @@ const char* remedy(vn::MissingInput missing) {
     case vn::MissingInput::controller: return "; name it with --controller";
     case vn::MissingInput::tool: return "; name it with --tool";
     case vn::MissingInput::workobject: return "; name it with --workobject";
+    case vn::MissingInput::effect: return "; if nothing, name it with --assume-harmless";
     default: return "";
   }
 }
@@ -164,6 +165,12 @@ void add_program_options(Program& program, ProgramCorrection& to) {
       .add_option("--noflip", to.noflip, "Fanuc: sign of J5 at a position whose configuration has N",
                   "negative|positive")
       .one_of({"negative", "positive"});
+  program
+      .add_option("--assume-harmless", to.assume_harmless,
+                  "statement, or routine of another file, that changes no tool, work object or configuration; may be "
+                  "given several times",
+                  "NAME")
+      .one_value_each();
   program.add_option("--date", to.date, "date written into the corrected program; by default today's", "DATE");
   program.add_flag("--allow-uncorrected", to.allow_uncorrected,
                    "write the program although some of its targets cannot be corrected and stay as they are");
@@ -177,7 +184,7 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
   } catch (const std::invalid_argument& e) {
     throw vn::DataError(e.what());
   }
-  const vn::RobotProgram program = vn::parse_program(language, text, options.program);
+  const vn::RobotProgram program = vn::parse_program(language, text, options.program, options.assume_harmless);
   const vn::SavedModel model = vn::read_model(input.model);
   if (model.dof() != 6)
     throw std::runtime_error(

@@ -13,15 +13,16 @@ namespace support {
 
 /// What the command line says about the program that is to be corrected.
 struct ProgramCorrection {
-  std::string program{};                   ///< its file; empty: targets are in a table
-  std::string controller{};                ///< kinematics of the controller: nominal, or a file
-  std::vector<std::string> tools{};        ///< frames x,y,z,rx,ry,rz [mm, deg], or NAME=frame
-  std::vector<std::string> workobjects{};  ///< likewise
-  std::string robot_base{};                ///< the controller's base in the frame of the model's chain
-  std::string flange{};                    ///< the controller's flange in the last frame of that chain
-  std::string noflip{};                    ///< Fanuc: sign of joint 5 where the configuration is N
-  std::string date{};                      ///< written into the program
-  bool allow_uncorrected = false;          ///< whether the rest may stay as it is
+  std::string program{};                       ///< its file; empty: targets are in a table
+  std::string controller{};                    ///< kinematics of the controller: nominal, or a file
+  std::vector<std::string> tools{};            ///< frames x,y,z,rx,ry,rz [mm, deg], or NAME=frame
+  std::vector<std::string> workobjects{};      ///< likewise
+  std::string robot_base{};                    ///< the controller's base in the frame of the model's chain
+  std::string flange{};                        ///< the controller's flange in the last frame of that chain
+  std::string noflip{};                        ///< Fanuc: sign of joint 5 where the configuration is N
+  std::string date{};                          ///< written into the program
+  std::vector<std::string> assume_harmless{};  ///< statements that change nothing that targets mean
+  bool allow_uncorrected = false;              ///< whether the rest may stay as it is
 };
 
 /// What `correct` says to all kinds of targets.

@@ -96,13 +96,14 @@ TEST(ReplacedTexts, HoldAllNumbers) {
 
 const std::string no_axes = "[9E9,9E9,9E9,9E9,9E9,9E9]";
 
-/// A module of targets p and q in lines 2 and 3, with declarations from line 4 on and instructions behind PROC.
+/// A module of targets p and q in lines 2 and 3, with declarations from line 4 on and instructions behind PROC. The
+/// routine f of another file is harmless.
 RobotProgram rapid_module(const std::string& declarations, const std::string& instructions) {
   const std::string value = ":=[[1,0,0],[1,0,0,0],[0,0,0,0]," + no_axes + "];\n";
   return parse_program(rapid,
                        "MODULE m\nCONST robtarget p" + value + "CONST robtarget q" + value + declarations +
                            "PROC main()\n" + instructions + "ENDPROC\nENDMODULE\n",
-                       "m.mod");
+                       "m.mod", {"f", "spotl"});
 }
 
 // Variables, functions and parts of records may have the names of moves.
@@ -187,7 +188,9 @@ TEST(RapidDetails, Declarations) {
 
 // ---- KRL ----
 
-RobotProgram krl_lines(const std::string& lines) { return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src"); }
+RobotProgram krl_lines(const std::string& lines) {
+  return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src", {"f", "p"});
+}
 const std::string krl_value = "={X 1,Y 2,Z 3,A 0,B 0,C 0}\n";
 
 TEST(KrlDetails, EveryMoveIsKnown) {
@@ -276,7 +279,7 @@ TEST(KrlDetails, OtherCallsOfBasKeepToolAndBase) {
 // ---- URScript ----
 
 RobotProgram ur_lines(const std::string& lines) {
-  return parse_program(urscript, "def m():\n" + lines + "end\n", "m.script");
+  return parse_program(urscript, "def m():\n" + lines + "end\n", "m.script", {"f"});
 }
 
 TEST(UrscriptDetails, ArgumentsOfMoves) {

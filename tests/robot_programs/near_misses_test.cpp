@@ -55,11 +55,10 @@ TEST(FanucNearMisses, WordsOfPositions) {
 
 TEST(FanucNearMisses, MovesToSeveralPositions) {
   const std::string both = tp_position(1) + tp_position(2) + tp_position(3);
-  const RobotProgram circle = tp("1:C P[1]\n :  P[2] 100mm/sec FINE X P[3] ;\n", both);
+  const RobotProgram circle = tp("1:C P[1]\n :  P[2] 100mm/sec FINE ;\n", both);
   EXPECT_EQ(before(circle, "P[2]"), "P[1]");
-  EXPECT_EQ(named(circle, "P[3]").move, TargetMove::unknown);  // behind the speed nothing is a target
-  const RobotProgram joint = tp("1:J P[1] 100% FINE X P[3] ;\n", both);
-  EXPECT_EQ(named(joint, "P[3]").move, TargetMove::unknown);
+  for (const char* move : {"C P[1]\n :  P[2] 100mm/sec FINE X P[3]", "J P[1] 100% FINE X P[3]"})  // no target there
+    EXPECT_EQ(named(tp("1:" + std::string(move) + " ;\n", both), "P[3]").move, TargetMove::unknown) << move;
   // from where nobody knows: a register, a position that is not read, one of another file
   for (const char* move : {"PR[1]", "P[9]", "P[4]"}) {
     const std::string refused = "P[4]{\n GP1:\n UF : 0, UT : 1,\n J1 = 1 deg\n};\n";
@@ -79,7 +78,9 @@ TEST(FanucNearMisses, StampsHoldPrintableCharacters) {
 
 // ---- KRL ----
 
-RobotProgram krl_lines(const std::string& lines) { return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src"); }
+RobotProgram krl_lines(const std::string& lines) {
+  return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src", {"f"});
+}
 const std::string krl_place = "{X 1,Y 2,Z 3,A 0,B 0,C 0}";
 
 TEST(KrlNearMisses, ToolsOfWhichNothingIsKnown) {
@@ -94,8 +95,9 @@ TEST(KrlNearMisses, ToolsOfWhichNothingIsKnown) {
   for (const char* unknown : {"$TOOL=f()", "$TOOL=mine", "$TOOL=$NULLFRAME:mine", "$TOOL=TOOL_DATA[5]:mine",
                               "$TOOL=TOOL_DATA[n]", "$TOOL=TOOL_DATA[5,1]", "$TOOL=BASE_DATA[5]", "BAS(#TOOL,n)"})
     EXPECT_EQ(tool(unknown), "?") << unknown;
-  for (const char* other : {"BAS(#TOOL)", "BAS(TOOL,5)", "BAS #TOOL,5", "BAS(#BASE,5)", "BAS(#TOOL 5)", "$TOOLS=f()"})
-    EXPECT_EQ(tool(other), "3") << other;
+  for (const char* other : {"BAS(#BASE,5)", "BAS(#VEL_CP,5)", "$LOAD=f()"}) EXPECT_EQ(tool(other), "3") << other;
+  for (const char* wrong : {"BAS(#TOOL)", "BAS(TOOL,5)", "BAS #TOOL,5", "BAS(#TOOL 5)", "$TOOLS=f()"})
+    EXPECT_EQ(tool(wrong), "none") << wrong;
 }
 
 TEST(KrlNearMisses, RoutinesBeginWithoutToolAndOrder) {
@@ -152,13 +154,13 @@ RobotProgram rapid_module(const std::string& declarations, const std::string& in
   return parse_program(rapid,
                        "MODULE m\nCONST robtarget p:=" + rapid_value + ";\nCONST robtarget q:=" + rapid_value + ";\n" +
                            declarations + "PROC main()\n" + instructions + "ENDPROC\nENDMODULE\n",
-                       "m.mod");
+                       "m.mod", {"f"});
 }
 
 TEST(RapidNearMisses, ArgumentsAndPartsAreNoChanges) {
-  for (const char* other : {"f\\p:=5;", "f \\q:=[1,2];", "r.p:=5;", "n:=p.trans.x;", "p{1}=2;"})
+  for (const char* other : {"f\\p:=5;", "f \\q:=[1,2];", "r.p:=5;", "n:=p.trans.x;"})
     EXPECT_EQ(remarks(rapid_module("", "MoveL p,v1,fine,gun;\n" + std::string(other) + "\n")), "") << other;
-  EXPECT_EQ(remarks(rapid_module("", "p\n:=q;\n")), "");  // a statement stands in one line
+  EXPECT_EQ(remarks(rapid_module("", "p\n:=q;\n")), "5 p :=q: the program changes this target\n");
 }
 
 TEST(RapidNearMisses, RoutinesBeginWithoutOrder) {
@@ -225,7 +227,7 @@ TEST(RapidNearMisses, ATargetInSeveralToolsIsListedOnce) {
 // ---- URScript ----
 
 RobotProgram ur_lines(const std::string& lines) {
-  return parse_program(urscript, "def m():\n" + lines + "end\n", "m.script");
+  return parse_program(urscript, "def m():\n" + lines + "end\n", "m.script", {"f"});
 }
 
 TEST(UrscriptNearMisses, Moves) {

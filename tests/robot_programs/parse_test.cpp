@@ -175,6 +175,7 @@ TEST(ParseProgram, FanucTp) {
             "13 L P[2] 100mm/sec FINE Offset,PR[1]: an offset that a register adds\n"
             "14 L P[5] 100mm/sec FINE INC: a relative move\n"
             "15 J P[R[1]] 50% FINE: no position of this file\n"
+            "16 CALL P: what it does to targets is not known\n"
             "31 P[3]: joint values, in which J2 and J3 depend on each other\n"
             "36 P[4]: a component is missing or no number\n"
             "42 P[5]: no move of this file uses it\n");

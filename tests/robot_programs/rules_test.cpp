@@ -299,7 +299,7 @@ TEST(RapidRules, FramesThatTheProgramChangesAreUnknown) {
 // ---- KRL ----
 
 RobotProgram krl_program(const std::string& lines) {
-  return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src");
+  return parse_program(krl, "DEF m()\n" + lines + "END\n", "m.src", {"new"});
 }
 
 TEST(KrlRules, ToolsAndBases) {
@@ -395,7 +395,7 @@ TEST(KrlRules, BitsAndNumbers) {
 // ---- URScript ----
 
 RobotProgram ur_program(const std::string& lines) {
-  return parse_program(urscript, "def m():\n" + lines + "end\n", "m.script");
+  return parse_program(urscript, "def m():\n" + lines + "end\n", "m.script", {"f"});
 }
 
 TEST(UrscriptRules, MovesAndTools) {
@@ -479,7 +479,8 @@ std::string fanuc_position(int number, const std::string& configuration, const s
 const std::string fanuc_values = "X = 1 mm, Y = 2 mm, Z = 3 mm,\n W = 10 deg, P = 20 deg, R = 30 deg";
 
 RobotProgram fanuc_program(const std::string& moves, const std::string& positions) {
-  return parse_program(fanuc_tp, "/PROG A\n/MN\n" + moves + "/POS\n" + positions + "/END\n", "a.ls");
+  return parse_program(fanuc_tp, "/PROG A\n/MN\n" + moves + "/POS\n" + positions + "/END\n", "a.ls",
+                       {"INCOUNT", "INC_A"});
 }
 
 TEST(FanucRules, PositionsThatAreRefused) {

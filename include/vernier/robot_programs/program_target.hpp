@@ -69,6 +69,7 @@ enum class MissingInput {
   controller,  ///< the kinematics of the robot's controller
   tool,        ///< the frame of the target's tool
   workobject,  ///< the frame of the target's work object
+  effect,      ///< whether a statement, or a routine of another file, changes what targets mean
 };
 
 /// What is not corrected, and why.
@@ -76,7 +77,7 @@ struct Uncorrected {
   std::size_t line;                           ///< counted from 1
   std::string text;                           ///< what stands there, shortened to printable characters
   std::string reason;                         ///< why
-  MissingInput missing = MissingInput::none;  ///< the input of `correct_program` that it lacks
+  MissingInput missing = MissingInput::none;  ///< the input of `correct_program` or `parse_program` that it lacks
 };
 
 /// The targets of a program.

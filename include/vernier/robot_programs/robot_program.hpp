@@ -25,14 +25,18 @@ VERNIER_API ProgramLanguage program_language(const std::string& path);
 /// - URScript: `p[..]` and lists of six joints in a move, or in a variable that a move uses, with `set_tcp`
 /// - Fanuc: the positions `P[n]` of group 1
 ///
-/// What moves use beside them, what the program changes and what has external axes is in `uncorrected`.
+/// What moves use beside them, what the program changes and what has external axes is in `uncorrected`, and so are
+/// targets behind a statement that can change what they mean, or of which nobody knows what it does. The guide lists
+/// the statements. Conditions, loops, jumps and calls within the text are followed.
 /// @param language of the text
 /// @param text     at most 16 MiB, in any encoding that extends ASCII; lines of at most 100,000 bytes, brackets nested
 ///                 at most 32 deep
 /// @param name     of the file, for messages
+/// @param assumed_harmless names of statements, and of routines of other files, that change no target's meaning
 /// @throws DataError naming file and line for what is no program, and for one that was corrected before
 /// @complexity O(n log n) in the length of the text
-VERNIER_API RobotProgram parse_program(ProgramLanguage language, std::string_view text, const std::string& name);
+VERNIER_API RobotProgram parse_program(ProgramLanguage language, std::string_view text, const std::string& name,
+                                       const std::vector<std::string>& assumed_harmless = {});
 
 /// New values of a target.
 struct ReplacedTarget {

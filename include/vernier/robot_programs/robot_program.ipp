@@ -11,6 +11,7 @@
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/robot_programs/configuration.hpp"
+#include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
 
@@ -78,7 +79,8 @@ VERNIER_IMPL ProgramLanguage program_language(const std::string& path) {
               "(Fanuc) are"));
 }
 
-VERNIER_IMPL RobotProgram parse_program(ProgramLanguage language, std::string_view text, const std::string& name) {
+VERNIER_IMPL RobotProgram parse_program(ProgramLanguage language, std::string_view text, const std::string& name,
+                                        const std::vector<std::string>& assumed_harmless) {
   if (const std::size_t at = text.find(detail::program_stamp); at != std::string_view::npos)
     throw DataError(message(name, ", line ",
                             std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1,
@@ -86,10 +88,10 @@ VERNIER_IMPL RobotProgram parse_program(ProgramLanguage language, std::string_vi
   RobotProgram out;
   out.language = language;
   switch (language) {
-    case ProgramLanguage::rapid: detail::read_rapid(text, name, out); break;
-    case ProgramLanguage::krl: detail::read_krl(text, name, out); break;
-    case ProgramLanguage::urscript: detail::read_urscript(text, name, out); break;
-    case ProgramLanguage::fanuc_tp: detail::read_fanuc_tp(text, name, out); break;
+    case ProgramLanguage::rapid: detail::read_rapid(text, name, assumed_harmless, out); break;
+    case ProgramLanguage::krl: detail::read_krl(text, name, assumed_harmless, out); break;
+    case ProgramLanguage::urscript: detail::read_urscript(text, name, assumed_harmless, out); break;
+    case ProgramLanguage::fanuc_tp: detail::read_fanuc_tp(text, name, assumed_harmless, out); break;
   }
   return out;
 }

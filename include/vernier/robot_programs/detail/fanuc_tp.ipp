@@ -8,15 +8,17 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
+#include "vernier/robot_programs/detail/statement_reader.hpp"
 
 namespace vernier::detail {
 
 /// Reads the positions of a Fanuc teach pendant program in its text form.
-class FanucReader {
+class FanucReader final : private StatementReader {
  public:
-  FanucReader(const ProgramText& from, RobotProgram& to) : text_(from), program_(to) {}
+  FanucReader(const ProgramText& from, RobotProgram& to, const StatementTable& table)
+      : StatementReader(from, to, table) {}
 
   void read() {
     program_.tools["0"] = program_.workobjects["0"] = Isometry3::Identity();
@@ -33,13 +35,13 @@ class FanucReader {
     for (ProgramStep& step : steps_)
       if (step.target && relative_.count(*step.target) != 0) step.target.reset();
     for (const std::size_t k : relative_) keep[k] = false;
+    solve();
+    for (ProgramStep& step : steps_) compare_frames(step);
     use_targets(text_, steps_, keep, program_);
   }
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-
-  std::string word(std::size_t i) const { return text_.is_word(i) ? lower_case(text_.at(i)) : std::string(); }
 
   // the line end behind /NAME
   std::size_t section(std::string_view name) const {
@@ -164,30 +166,167 @@ class FanucReader {
       }
       const std::size_t at = line;
       for (const char c : instruction) line += c == '\n' ? 1 : 0;
-      const std::size_t colon = instruction.find(':');
-      if (colon == std::string_view::npos || instruction.find_first_not_of("0123456789 \t") != colon) continue;
+      const std::size_t colon = instruction.find_first_not_of("0123456789 \t");
+      if (instruction.empty()) continue;
+      if (colon == std::string_view::npos || instruction[colon] != ':') {
+        if (instruction != ";") unknown(at, excerpt(instruction));
+        continue;
+      }
       instruction.remove_prefix(colon + 1);
-      const std::size_t begin = instruction.find_first_not_of(" \t");
-      if (begin != std::string_view::npos) one(instruction.substr(begin), at);
+      while (!instruction.empty() && (instruction.back() == ';' || is_blank(instruction.back())))
+        instruction.remove_suffix(1);
+      while (!instruction.empty() && is_blank(instruction.front())) instruction.remove_prefix(1);
+      one(instruction, at);
     }
   }
 
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+  // the word at the beginning of a text, with what follows a $ to the end of its name
+  static std::string first_word(std::string_view text) {
+    std::size_t end = 0;
+    while (end < text.size() && (is_word_character(text[end]) || (text[0] == '$' && text[end] == '.'))) ++end;
+    return lower_case(text.substr(0, end));
+  }
+
+  // a text without what stands in its square brackets and quotes
+  static std::string without_brackets(std::string_view text) {
+    std::string out;
+    std::size_t depth = 0;
+    char quote = 0;
+    for (const char c : text) {
+      if (quote == 0 && c == ']' && depth > 0) --depth;
+      if (depth == 0 && quote == 0 && c != '\'' && c != '"') out += c;
+      if (c == quote)
+        quote = 0;
+      else if (quote == 0 && (c == '\'' || c == '"'))
+        quote = c;
+      else if (quote == 0 && c == '[')
+        ++depth;
+    }
+    return out;
+  }
+
   void one(std::string_view text, std::size_t line) {
-    const std::string_view kinds = "JLCA";
-    if (text.size() < 4 || kinds.find(text[0]) == std::string_view::npos || (text[1] != ' ' && text[1] != '\t')) return;
-    if (text.find("P[") == std::string_view::npos && text.find("PR[") == std::string_view::npos) return;
+    for (int part = 0; !text.empty() && part < 20; ++part) {  // IF ..,CALL X
+      while (text.starts_with('(')) text.remove_prefix(1);    // (DO[1]=ON) is an assignment, too
+      if (text.empty()) break;
+      const std::string name = first_word(text);
+      std::string_view rest = text.substr(name.size());
+      while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+      if (text[0] == '!' || text.starts_with("//") || text.starts_with("--")) break;  // a remark
+      const bool conditional = (name == "if" && !lower_case(rest).ends_with("then")) || name == "select" ||
+                               text[0] == '=' || (name == "else" && !rest.empty());
+      if (conditional) {
+        const std::size_t comma = behind_condition(text);
+        text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+        while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+        flow_.open(false);
+        if (part == 0) opened_ = 0;
+        ++opened_;
+        continue;
+      }
+      instruction(text, name, rest, line);
+      text = {};
+    }
+    if (!text.empty() && opened_ > 0) unknown(line, excerpt(text));
+    for (; opened_ > 0; --opened_) flow_.close();
+  }
+
+  // the comma behind the condition of IF and SELECT
+  static std::size_t behind_condition(std::string_view text) {
+    std::size_t depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '[' || text[i] == '(') ++depth;
+      if ((text[i] == ']' || text[i] == ')') && depth > 0) --depth;
+      if (text[i] == ',' && depth == 0) return i;
+    }
+    return std::string_view::npos;
+  }
+
+  // what stands in the first square brackets, without a comment
+  static std::string number_in(std::string_view text) {
+    const std::size_t open = text.find('[');
+    if (open == std::string_view::npos) return {};
+    return std::string(text.substr(open + 1, text.find_first_of(":]", open) - open - 1));
+  }
+
+  void instruction(std::string_view text, const std::string& name, std::string_view rest, std::size_t line) {
+    const std::string what = excerpt(text);
+    if (is_motion(text)) {
+      motion(text, line);
+    } else if (name == "if") {
+      flow_.open(false);
+    } else if (name == "for") {
+      flow_.open(true);
+    } else if (name == "else") {
+      flow_.branch();
+    } else if (name == "endif" || name == "endfor") {
+      flow_.close();
+    } else if (name == "lbl") {
+      flow_.label(number_in(text));
+    } else if (name == "jmp") {
+      jump(text);
+    } else if (name == "end" || name == "abort") {
+      flow_.leave_routine();
+    } else if (name == "call" || name == "run" || name == "monitor") {
+      call(line, first_word(rest), what);
+    } else if ((name == "uframe_num" || name == "utool_num") && rest.starts_with('=')) {
+      rest.remove_prefix(1);
+      while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+      const ProgramState state = name == "uframe_num" ? ProgramState::workobject : ProgramState::tool;
+      if (rest.empty() || rest.find_first_not_of("0123456789") != std::string_view::npos)
+        lose(state, line, what);
+      else
+        flow_.set(state, {std::string(rest), {}, line});
+    } else if (name == "p" && rest.starts_with('[')) {
+      if (known_.count("P[" + number_in(text) + "]") != 0 ||
+          number_in(text).find_first_not_of("0123456789") != std::string::npos)
+        remark(line, what, "the program changes this target");
+    } else {
+      if (name == "wait") jump(text);
+      apply(line, name, first_word(rest), what);
+    }
+  }
+
+  // JMP LBL[n], TIMEOUT,LBL[n], Skip,LBL[n]
+  void jump(std::string_view text) {
+    const std::size_t at = lower_case(text).find("lbl[");
+    if (at == std::string::npos) return;
+    const std::string number = number_in(text.substr(at));
+    flow_.jump(number.find_first_not_of("0123456789") == std::string::npos ? number : std::string());
+  }
+
+  void call(std::size_t line, const std::string& name, const std::string& what) {
+    if (statements_.find(name).kind == StatementClass::harmless)
+      break_order();
+    else
+      unknown(line, what);
+  }
+
+  static bool is_motion(std::string_view text) {
+    const std::string_view kinds = "JLCAS";
+    if (text.size() < 4 || kinds.find(text[0]) == std::string_view::npos || !is_blank(text[1])) return false;
+    return text.find("P[") != std::string_view::npos || text.find("PR[") != std::string_view::npos;
+  }
+
+  void motion(std::string_view text, std::size_t line) {
     const TargetMove kind = text[0] == 'J' ? TargetMove::joint : TargetMove::linear;
-    const auto remark = [&](const char* reason) {
-      program_.uncorrected.push_back({line, excerpt(text.substr(0, text.size() - 1)), reason});
+    const auto listed = [&](const char* reason) { remark(line, excerpt(text), reason); };
+    const std::size_t point = flow_.point(), first_step = steps_.size();
+    const auto stop = [&](std::optional<std::size_t> target) {
+      ProgramStep step{target, {}, {}, kind};
+      step.point = point;
+      add_step(steps_, step);
     };
     bool any = false;
     std::size_t options = text.size();
     for (std::size_t i = 1; i + 2 < text.size() && !(any && kind == TargetMove::joint); ++i) {
-      if (text[i - 1] != ' ' && text[i - 1] != '\t') continue;
+      if (!is_blank(text[i - 1])) continue;
       const bool position = text.substr(i, 2) == "P[", registers = text.substr(i, 3) == "PR[";
       if (!position && !registers) {
-        if (any && text[i] >= '0' && text[i] <= '9') {  // the speed: what follows are options
-          options = i;
+        if (any && (text[i] == 'R' || text[i] == 'A' || text[i] == 'W' || (text[i] >= '0' && text[i] <= '9'))) {
+          options = i;  // the speed: what follows are options
           break;
         }
         continue;
@@ -196,33 +335,72 @@ class FanucReader {
       const std::size_t first = i + (position ? 2 : 3), last = text.find_first_of(":]", first);
       const std::size_t close = (std::min)(text.find(']', first), text.size());
       i = close;  // words of its comment are no options
+      const auto found = last == std::string_view::npos
+                             ? known_.end()
+                             : known_.find("P[" + std::string(text.substr(first, last - first)) + "]");
       if (registers || last == std::string_view::npos) {
-        steps_.push_back({{}, {}, {}, kind});
-        remark("a position register");
-        continue;
-      }
-      const auto found = known_.find("P[" + std::string(text.substr(first, last - first)) + "]");
-      if (found == known_.end()) {
-        steps_.push_back({{}, {}, {}, kind});
-        remark("no position of this file");
-      } else if (found->second == none) {
-        steps_.push_back({{}, {}, {}, kind});
+        stop({});
+        listed("a position register");
+      } else if (found == known_.end()) {
+        stop({});
+        listed("no position of this file");
       } else {
-        steps_.push_back({found->second, {}, {}, kind});
+        stop(found->second == none ? std::nullopt : std::optional(found->second));
       }
       options = close;
     }
     const std::string rest = lower_case(text.substr((std::min)(options, text.size())));
-    if (rest.find("offset") != std::string::npos) remark("an offset that a register adds");
+    if (rest.find("offset") != std::string::npos) listed("an offset that a register adds");
     const std::string increment = " inc";  // not the beginning of a longer word
     std::size_t at = rest.find(increment);
     while (at != std::string::npos && at + increment.size() < rest.size() &&
            is_word_character(rest[at + increment.size()]))
       at = rest.find(increment, at + 1);
     if (at != std::string::npos) {
-      remark("a relative move");
-      incremental(steps_.back());
+      listed("a relative move");
+      if (!steps_.empty()) incremental(steps_.back());
     }
+    further_options(without_brackets(rest), first_step, line, text);
+    jump(text);
+  }
+
+  // Options behind the speed. Of those that are not known nobody knows where the move ends.
+  void further_options(const std::string& rest, std::size_t first_step, std::size_t line, std::string_view text) {
+    static const auto options = words_of(fanuc_move_options);
+    for (std::size_t i = 0; i < rest.size();) {
+      if (!is_word_character(rest[i]) || (rest[i] >= '0' && rest[i] <= '9')) {
+        ++i;
+        continue;
+      }
+      std::size_t end = i;
+      while (end < rest.size() && is_word_character(rest[end])) ++end;
+      std::string option = rest.substr(i, end - i);
+      i = end;
+      if (option == "call") {
+        while (i < rest.size() && is_blank(rest[i])) ++i;
+        const std::string routine = first_word(std::string_view(rest).substr(i));
+        i += routine.size();
+        call(line, routine, excerpt(text));
+        continue;
+      }
+      while (!option.empty() && option.back() >= '0' && option.back() <= '9') option.pop_back();
+      if (options.count(option) != 0 || option == "inc" || option.find("offset") != std::string::npos) continue;
+      for (std::size_t s = first_step; s < steps_.size(); ++s)
+        if (steps_[s].unknown.empty())
+          steps_[s].unknown = message("line ", line, ", ", excerpt(text), ": ", option, " is no option that is known");
+    }
+  }
+
+  // A position states its tool and frame. The controller refuses others, or takes them without a word.
+  void compare_frames(ProgramStep& step) const {
+    if (!step.target) return;
+    const ProgramTarget& target = program_.targets[*step.target];
+    if (step.unknown.empty() && ((!step.tool.empty() && step.tool != target.tool) ||
+                                 (!step.workobject.empty() && step.workobject != target.workobject)))
+      step.unknown = message("a move uses it with UFRAME_NUM ", step.workobject.empty() ? "?" : step.workobject,
+                             " and UTOOL_NUM ", step.tool.empty() ? "?" : step.tool, ", which are not those of it");
+    step.tool.clear();
+    step.workobject.clear();
   }
 
   // a position of which only the difference counts is none
@@ -232,16 +410,15 @@ class FanucReader {
     step.target.reset();
   }
 
-  const ProgramText& text_;
-  RobotProgram& program_;
   std::map<std::string, std::size_t> known_{};  // index of its target
   std::set<std::size_t> relative_{};
-  std::vector<ProgramStep> steps_{};
+  int opened_ = 0;  // conditions in one instruction
 };
 
-VERNIER_IMPL void read_fanuc_tp(std::string_view text, const std::string& name, RobotProgram& program) {
+VERNIER_IMPL void read_fanuc_tp(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                                RobotProgram& program) {
   const ProgramText tokens = ProgramText::of(text, name, {.comments = "", .quotes = "\"'"});
-  FanucReader(tokens, program).read();
+  FanucReader(tokens, program, StatementTable(fanuc_harmless, fanuc_statements, assumed)).read();
 }
 
 }  // namespace vernier::detail

@@ -10,18 +10,21 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
-#include "vernier/core/same_value.hpp"
+#include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
+#include "vernier/robot_programs/detail/statement_reader.hpp"
 
 namespace vernier::detail {
 
 /// Reads the targets of a KRL program or data list.
-class KrlReader {
+class KrlReader final : private StatementReader {
  public:
-  KrlReader(const ProgramText& from, RobotProgram& to) : text_(from), program_(to) {}
+  KrlReader(const ProgramText& from, RobotProgram& to, const StatementTable& table)
+      : StatementReader(from, to, table) {}
 
   void read() {
     find_head();
+    find_routines();
     program_.tools["0"] = program_.workobjects["0"] = Isometry3::Identity();
     for (std::size_t i = 0; i < text_.tokens.size();) {
       std::size_t end = i;
@@ -34,8 +37,8 @@ class KrlReader {
     for (const auto& [tool, number] : changed_frames_) forget(tool ? program_.tools : program_.workobjects, number);
     for (const auto& [name, change] : changes_)
       if (names_.count(name) != 0)
-        program_.uncorrected.push_back({text_.tokens[change.first].line, excerpt(text_, change.first, change.second),
-                                        "the program changes this target"});
+        remark(line_of(change.first), excerpt(text_, change.first, change.second), "the program changes this target");
+    solve();
     std::vector<bool> keep(program_.targets.size());
     for (std::size_t k = 0; k < keep.size(); ++k) keep[k] = typed_.count(program_.targets[k].name) != 0;
     use_targets(text_, steps_, keep, program_);
@@ -45,11 +48,17 @@ class KrlReader {
   struct Span {
     std::size_t first, second;
   };
+  struct Frames {  // of one motion or spline, beside those of the program
+    std::string tool{}, base{};
+    std::string unknown{};
+  };
   struct Use {
-    Span argument{0, 0};  // empty: a routine begins
+    Span argument{0, 0};  // empty: the order of moves ends
     std::size_t instruction = 0;
     TargetMove move = TargetMove::unknown;
-    std::string tool{}, base{};
+    std::size_t point = ProgramStep::no_point;
+    Frames frames{};
+    bool moves = true;  // whether it is a move
   };
   struct Component {
     std::string name{};
@@ -62,7 +71,8 @@ class KrlReader {
     bool external = false;
   };
 
-  std::string word(std::size_t i) const { return text_.is_word(i) ? lower_case(text_.at(i)) : std::string(); }
+  std::size_t line_of(std::size_t i) const { return text_.tokens[i].line; }
+  void break_order() override { uses_.push_back({}); }
 
   void find_head() {
     for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i) {
@@ -75,18 +85,48 @@ class KrlReader {
     throw DataError(message(text_.name, ": neither DEF nor DEFDAT, so this is no KRL program"));
   }
 
+  // the name of a routine is the word in front of its parameters
+  std::string routine_name(std::size_t i) const {
+    while (!text_.is_line_end(i) && !text_.is(i + 1, '(')) ++i;
+    return word(i);
+  }
+
+  void find_routines() {
+    for (std::size_t i = 0; i < text_.tokens.size(); ++i)
+      if (const std::string head = word(i); head == "def" || head == "deffct") routines_.insert(routine_name(i));
+  }
+
   void line(std::size_t i, std::size_t end) {
+    constexpr int deepest = 20;  // instructions in one line
+    if (nesting_ == deepest) return unknown(line_of(i), excerpt(text_, i, end));
+    ++nesting_;
+    instruction(i, end);
+    --nesting_;
+  }
+
+  void instruction(std::size_t i, std::size_t end) {
+    const std::size_t begin = i;
     while (i < end && (word(i) == "decl" || word(i) == "global" || word(i) == "const" || word(i) == "public")) ++i;
     if (i >= end) return;
     const std::string first = word(i);
     if (first == "def" || first == "deffct") {
-      uses_.push_back({});
-      tool_.clear();
-      base_.clear();
+      flow_.begin(routine_name(i), false);
+      break_order();
+      act_.clear();
+      depth_ = 0;
+      data_ = false;
+      return;
+    }
+    if (first == "defdat") {
+      data_ = true;
+      return;
+    }
+    if (first == "end" || first == "endfct" || first == "enddat") {
+      if (first != "enddat") flow_.end();
       return;
     }
     static constexpr std::array<std::string_view, 4> types{"e6pos", "pos", "e6axis", "axis"};
-    if (std::find(types.begin(), types.end(), first) != types.end() && text_.is_word(i + 1) && i + 1 < end) {
+    if (std::find(types.begin(), types.end(), first) != types.end() && (text_.is_word(i + 1) || i + 1 == end)) {
       for (std::size_t k = i + 1; k < end;) {  // names, the last one perhaps with a value
         const std::string name = word(k);
         if (name.empty()) break;
@@ -102,71 +142,235 @@ class KrlReader {
       return;
     }
     if (first == "fdat" && text_.is_word(i + 1) && text_.is(i + 2, '=')) return fdat(word(i + 1), i + 3, end);
-    if (first == "bas") return bas(i, end);
+    if (first == "ldat" && text_.is_word(i + 1) && text_.is(i + 2, '=')) return ldat(i, end);
+    if (first == "interrupt" || first == "trigger") return at_any_time(i, end);
+    if (i > begin || (data_ && text_.is_word(i) && text_.is_word(i + 1))) return calls(i + 1, end);  // a declaration
+    if (structure(i, end, first)) {
+      act_.clear();
+      return;
+    }
+    if (first == "bas" && text_.is(i + 1, '(')) return bas(i, end);
     if (move(i, end)) return;
-    if (!text_.is_word(i)) return;
+    if (!text_.is_word(i)) return unknown(line_of(i), excerpt(text_, i, end));
     std::size_t k = i + 1;  // an assignment
     if (text_.is(k, '[')) k = behind_brackets(text_, k, end);
     const std::size_t behind_name = k;
-    while (text_.is(k, '.') && text_.is_word(k + 1)) k += 2;
-    if (k >= end || !text_.is(k, '=') || text_.is(k + 1, '=')) return;
-    if (k != behind_name)
+    while (k < end && text_.is(k, '.') && text_.is_word(k + 1)) {
+      k += 2;
+      if (text_.is(k, '[')) k = behind_brackets(text_, k, end);
+    }
+    if (k >= end || !text_.is(k, '=') || text_.is(k + 1, '=')) return statement(i, end, first);
+    calls(k + 1, end);
+    if (first[0] == '$' && first != "$tool" && first != "$base")
+      apply(line_of(i), first, option(k + 1), excerpt(text_, i, end));
+    else if (k != behind_name)
       component(first, i, end);
     else
       value(first, i, k + 1, end);
   }
 
+  // the value of a system variable as an option of its statement: #NAME
+  std::string option(std::size_t i) const { return text_.is(i, '#') ? "#" + word(i + 1) : " "; }
+
+  // a call, or another statement
+  void statement(std::size_t i, std::size_t end, const std::string& first) {
+    const std::string what = excerpt(text_, i, end);
+    calls(i + 1, end);
+    if (routines_.count(first) != 0) {
+      flow_.call(first);
+      break_order();
+      arguments(i, end, message("line ", line_of(i), ", ", what, ": the routine may change it"));
+    } else {
+      const StatementClass kind = apply(line_of(i), first, " ", what);
+      if (kind == StatementClass::unknown)
+        arguments(i, end, message("line ", line_of(i), ", ", what, ": what it does to targets is not known"));
+      else if (text_.is(i + 1, '('))
+        arguments(i, end, message("line ", line_of(i), ", ", what, ": the routine may change it"));
+    }
+    act_.clear();
+  }
+
+  // targets that are passed to a routine
+  void arguments(std::size_t i, std::size_t end, const std::string& why) {
+    for (std::size_t k = i + 1; k < end; ++k) {
+      const std::string name = word(k);
+      if (name == "tool_data" || name == "base_data") changed_frames_.insert({name == "tool_data", index(k + 1)});
+      if (name == "$tool" || name == "$base")
+        flow_.set(name == "$tool" ? ProgramState::tool : ProgramState::workobject, {"?", {}, line_of(k)});
+      if (!name.empty())
+        uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
+    }
+  }
+
+  // calls of functions in an expression
+  void calls(std::size_t first, std::size_t last) {
+    static const auto operators = words_of(
+                          "and or exor not b_and b_or b_exor b_not for then sec when while until to step case prio"),
+                      inputs = words_of(krl_inputs);
+    for (std::size_t k = first; k < last; ++k) {
+      if (!text_.is_word(k) || !text_.is(k + 1, '(')) continue;
+      const std::string name = word(k);
+      if (operators.count(name) != 0) continue;
+      const std::size_t end = behind_brackets(text_, k + 1, last);
+      if (routines_.count(name) != 0) {
+        flow_.call(name);
+        arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
+      } else if (statements_.find(name).kind != StatementClass::harmless) {
+        unknown(line_of(k), excerpt(text_, k, end));
+      } else if (std::any_of(inputs.begin(), inputs.end(),
+                             [&](const auto& begin) { return name.starts_with(begin); })) {
+        arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the function may change it"));
+      }
+    }
+  }
+
+  // INTERRUPT DECL 3 WHEN .. DO routine(), TRIGGER WHEN .. DO ..
+  void at_any_time(std::size_t i, std::size_t end) {
+    std::size_t k = i;
+    while (k < end && word(k) != "do") ++k;
+    calls(i + 1, k);
+    std::size_t stop = k;
+    while (stop < end && word(stop) != "prio") ++stop;
+    if (k + 1 >= stop) return;
+    flow_.begin(message("line ", line_of(i)), true);
+    line(k + 1, stop);
+    flow_.end();
+  }
+
+  // blocks and jumps
+  bool structure(std::size_t i, std::size_t end, const std::string& first) {
+    if (text_.is_word(i) && text_.is(i + 1, ':') && i + 2 == end) {
+      flow_.label(first);
+      return true;
+    }
+    if (text_.is(i + 1, '=') && i + 1 < end) return false;
+    static const auto loops = words_of("for while loop repeat"), blocks = words_of("if switch"),
+                      ends = words_of("endif endfor endwhile endloop until endswitch"),
+                      branches = words_of("else case default");
+    const bool opens = loops.count(first) != 0 || blocks.count(first) != 0;
+    if (opens) {
+      flow_.open(loops.count(first) != 0);
+      ++depth_;
+    } else if (branches.count(first) != 0) {
+      flow_.branch();
+    } else if (ends.count(first) != 0) {
+      if (first == "until") calls(i + 1, end);
+      flow_.close();
+      depth_ -= depth_ > 0 ? 1 : 0;
+      return true;
+    } else if (first == "goto") {
+      flow_.jump(word(i + 1));
+    } else if (first == "exit") {
+      flow_.leave_loop();
+    } else if (first == "return" || first == "resume") {
+      flow_.leave_routine();
+    } else if (first == "spline" || first == "ptp_spline") {
+      spline_ = with(i, end);
+    } else if (first == "endspline") {
+      spline_ = {};
+    } else if (first != "continue") {
+      return false;
+    }
+    calls(i + 1, end);
+    std::size_t then = i;
+    while (then < end && word(then) != "then") ++then;
+    if (then + 1 < end) line(then + 1, end);
+    return true;
+  }
+
   // name.X = value, at tokens from i to end
   void component(const std::string& name, std::size_t i, std::size_t end) {
     if (name == "$tool")
-      tool_ = "?";
+      flow_.set(ProgramState::tool, {"?", {}, line_of(i)});
     else if (name == "$base")
-      base_ = "?";
+      flow_.set(ProgramState::workobject, {"?", {}, line_of(i)});
     else if (name == "tool_data" || name == "base_data")
       changed_frames_.insert({name == "tool_data", index(i + 1)});
     else
       changes_.push_back({name, {i, end}});
+    if (name == "fdat_act" || name == "ldat_act") act_.clear();
   }
 
   // name = value, at tokens from i to end
   void value(const std::string& name, std::size_t at, std::size_t i, std::size_t end) {
     const bool tool = name == "$tool" || name == "tool_data", base = name == "$base" || name == "base_data";
-    if (!tool && !base) {
-      if (!text_.is(i, '{')) {
-        changes_.push_back({name, {at, end}});
-        return;
+    if (name == "fdat_act" || name == "ldat_act") {
+      act_[name] = word(i);
+      if (name == "fdat_act" && text_.is(i, '{')) {
+        fdat(name, i, end);
+        act_[name] = name;
       }
+    } else if (name == "$tool" || name == "$base") {
+      flow_.set(tool ? ProgramState::tool : ProgramState::workobject, {frame(tool, at, i, end), {}, line_of(at)});
+    } else if (tool || base) {
+      frame_data(tool, index(at + 1), i, end);
+    } else if (!text_.is(i, '{')) {
+      changes_.push_back({name, {at, end}});
+    } else {
       const std::size_t before = program_.targets.size();
       target(name, i, end);
       for (std::size_t k = before; k < program_.targets.size(); ++k) names_[name].push_back(k);
-      return;
     }
-    std::string number;  // of TOOL_DATA[n]
-    if (name == "tool_data" || name == "base_data") number = index(at + 1);
+  }
+
+  // TOOL_DATA[n] = {..}, at tokens from i to end. One that is used before, or not always set, is not known.
+  void frame_data(bool tool, const std::string& number, std::size_t i, std::size_t end) {
     auto& frames = tool ? program_.tools : program_.workobjects;
-    std::string& current = tool ? tool_ : base_;
+    const auto parts = text_.is(i, '{') ? components(i, end) : std::vector<Component>{};
+    const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
+    const auto stated = frames.find(number);
+    if (!frame || number.empty() || depth_ > 0 || used_frames_.count({tool, number}) != 0 ||
+        (stated != frames.end() && !stated->second.isApprox(*frame, 0)))
+      changed_frames_.insert({tool, number});
+    else
+      frames[number] = *frame;
+  }
+
+  // the name of a frame that is the value at tokens from i to end; ? where it is not known
+  std::string frame(bool tool, std::size_t at, std::size_t i, std::size_t end) {
     if (text_.is(i, '{')) {
-      const std::string key = number.empty() ? message(text_.at(at), " of line ", text_.tokens[at].line) : number;
       const std::vector<Component> parts = components(i, end);
       const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
-      const auto stated = frames.find(key);
-      if (!frame || (stated != frames.end() && !stated->second.isApprox(*frame, 0)))
-        changed_frames_.insert({tool, key});
-      else
-        frames[key] = *frame;
-      if (number.empty()) current = frame ? key : "?";
-      return;
+      return frame ? named_frame(tool ? ProgramState::tool : ProgramState::workobject,
+                                 message(text_.at(at), " of line ", line_of(at)), *frame)
+                   : "?";
     }
-    if (!number.empty()) {
-      changed_frames_.insert({tool, number});
-      return;
-    }
-    current = "?";
     const std::string source = word(i);
-    if (source == "$nullframe" && i + 1 == end) current = "0";
-    if (source == (tool ? "tool_data" : "base_data") && behind_brackets(text_, i + 1, end) == end)
-      current = index(i + 1);
-    if (current.empty()) current = "?";
+    if (source == "$nullframe" && i + 1 == end) return "0";
+    if (source != (tool ? "tool_data" : "base_data") || behind_brackets(text_, i + 1, end) != end) return "?";
+    return numbered(tool, index(i + 1));
+  }
+
+  std::string numbered(bool tool, const std::string& number) {
+    used_frames_.insert({tool, number});
+    return number.empty() ? "?" : number;
+  }
+
+  // .. WITH $TOOL={..}, $VEL.CP=1
+  Frames with(std::size_t i, std::size_t end) {
+    Frames out = spline_;
+    while (i < end && word(i) != "with") ++i;
+    while (i + 1 < end) {
+      const std::size_t name = i + 1;
+      std::size_t k = name + 1;
+      if (text_.is(k, '[')) k = behind_brackets(text_, k, end);
+      const bool part = text_.is(k, '.');
+      while (k < end && !text_.is(k, '=')) ++k;
+      i = k;
+      while (i < end && !text_.is(i, ',') && !is_blending(i))
+        i = text_.is(i, '{') || text_.is(i, '(') || text_.is(i, '[') ? behind_brackets(text_, i, end) : i + 1;
+      const bool tool = word(name) == "$tool";
+      if (tool || word(name) == "$base") {
+        (tool ? out.tool : out.base) = part || k + 1 >= i ? "?" : frame(tool, name, k + 1, i);
+        continue;
+      }
+      const StatementClass kind = statements_.find(word(name), option(k + 1)).kind;
+      if (kind != StatementClass::harmless && kind != StatementClass::ends)
+        out.unknown = message("line ", line_of(name), ", WITH ", excerpt(text_, name, i),
+                              ": what it does to targets is not known");
+      if (i < end && !text_.is(i, ',')) break;
+    }
+    return out;
   }
 
   // Frames that the program changes are not those that it states: of one number, or, without one, of all.
@@ -183,12 +387,52 @@ class KrlReader {
     return std::string(text_.at(i + 1));
   }
 
-  // BAS(#TOOL,n), BAS(#BASE,n)
+  // BAS(#TOOL,n), BAS(#FRAMES), ..
   void bas(std::size_t i, std::size_t end) {
-    if (i + 6 > end || !text_.is(i + 1, '(') || !text_.is(i + 2, '#') || !text_.is(i + 4, ',')) return;
-    const bool number = text_.tokens[i + 5].kind == ProgramToken::Kind::number;
-    if (word(i + 3) == "tool") tool_ = number ? std::string(text_.at(i + 5)) : "?";
-    if (word(i + 3) == "base") base_ = number ? std::string(text_.at(i + 5)) : "?";
+    const std::string command = text_.is(i + 2, '#') ? word(i + 3) : std::string();
+    const auto set = [&](ProgramState state, const std::string& name) { flow_.set(state, {name, {}, line_of(i)}); };
+    const bool argument = text_.is(i + 4, ',');
+    if ((command == "tool" || command == "base") && argument) {
+      const bool tool = command == "tool";
+      const bool number = text_.tokens[i + 5].kind == ProgramToken::Kind::number && text_.is(i + 6, ')');
+      set(tool ? ProgramState::tool : ProgramState::workobject,
+          number ? numbered(tool, std::string(text_.at(i + 5))) : "?");
+    } else if (command == "initmov") {
+      set(ProgramState::tool, {});
+      set(ProgramState::workobject, {});
+    } else if (command == "ex_base") {
+      set(ProgramState::workobject, "?");
+    } else if (command == "frames" || command == "ptp_params" || command == "cp_params" || command == "cp_dat") {
+      const auto data = flange_data_.find(act_["fdat_act"]);
+      const bool known = data != flange_data_.end() && !data->second.external;
+      if (command != "cp_dat") {
+        set(ProgramState::tool, known && !data->second.tool.empty() ? data->second.tool : "?");
+        set(ProgramState::workobject, known && !data->second.base.empty() ? data->second.base : "?");
+      }
+      if (command.starts_with("cp_")) {
+        if (kept_orientation_.count(act_["ldat_act"]) != 0)
+          set(ProgramState::orientation, {});
+        else if (statements_.find("bas").kind != StatementClass::harmless)
+          lose(ProgramState::orientation, line_of(i), excerpt(text_, i, end));
+      }
+    } else {
+      apply(line_of(i), "bas", "#" + command, excerpt(text_, i, end));
+    }
+  }
+
+  // LDAT name={.., ORI_TYP #VAR}: whether linear moves with it reach their orientation
+  void ldat(std::size_t i, std::size_t end) {
+    std::size_t k = i + 3;
+    bool kept = false;
+    if (text_.is(k, '{'))
+      for (const Component& part : components(k, end))
+        if (part.name == "ori_typ") {
+          const std::string type = option(part.value.first);
+          kept = type == "#var" || type == "#joint";
+          if (!kept)
+            remark(line_of(i), excerpt(text_, i, i + 2), "linear moves with it need not reach their orientation");
+        }
+    if (kept) kept_orientation_.insert(word(i + 1));
   }
 
   void fdat(const std::string& name, std::size_t i, std::size_t end) {
@@ -331,39 +575,46 @@ class KrlReader {
     const bool relative = name.ends_with("_rel");
     const TargetMove kind = name.find("ptp") != std::string::npos ? TargetMove::joint : TargetMove::linear;
     const int targets = name.find("circ") != std::string::npos ? 2 : 1;
+    calls(i + 1, end);
+    const Frames frames = with(i, end);
+    const std::size_t point = flow_.point();
     std::size_t first = i + 1;
     for (int a = 0; a < targets && first < end; ++a) {
       std::size_t last = first;
-      while (last < end && !text_.is(last, ',') && !is_option(last))
+      while (last < end && !text_.is(last, ',') && (last == first || !is_option(last)))
         last = text_.is(last, '{') || text_.is(last, '(') || text_.is(last, '[') ? behind_brackets(text_, last, end)
                                                                                  : last + 1;
       if (relative) {
-        uses_.push_back({});
-        program_.uncorrected.push_back({text_.tokens[i].line, excerpt(text_, i, last), "a relative move"});
+        break_order();
+        remark(line_of(i), excerpt(text_, i, last), "a relative move");
       } else {
         if (text_.is(first, '{') && behind_brackets(text_, first, end) == last) target({}, first, end);
-        uses_.push_back({{first, last}, i, kind, tool_, base_});
+        uses_.push_back({{first, last}, i, kind, point, frames});
       }
       first = last + 1;
     }
+    act_.clear();
     return true;
   }
 
-  bool is_option(std::size_t i) const {
-    const std::string name = word(i);
-    return name.find("c_") == 0 || name == "with";
+  bool is_blending(std::size_t i) const {
+    static const auto names = words_of("c_ptp c_dis c_vel c_ori c_spl");
+    return names.count(word(i)) != 0;
   }
+  bool is_option(std::size_t i) const { return is_blending(i) || word(i) == "with"; }
 
   void resolve(const Use& use) {
     const auto [first, last] = use.argument;
-    ProgramStep step{{}, use.tool, use.base, use.move};
+    ProgramStep step{{}, use.frames.tool, use.frames.base, use.move};
+    step.point = use.point;
+    step.unknown = use.frames.unknown;
     if (first >= last) {
-      steps_.push_back({{}, {}, {}, TargetMove::unknown});
+      add_step(steps_, {{}, {}, {}, TargetMove::unknown});
       return;
     }
     if (const auto found = literals_.find(first); found != literals_.end()) {
       step.target = found->second;
-      steps_.push_back(step);
+      add_step(steps_, step);
       return;
     }
     const bool name_alone =
@@ -378,7 +629,8 @@ class KrlReader {
       }
       return;
     }
-    steps_.push_back({{}, {}, {}, use.move});
+    if (!use.moves) return;
+    add_step(steps_, {{}, {}, {}, use.move});
     if (text_.is(first, '{') && behind_brackets(text_, first, last) == last) return;  // refused before
     program_.uncorrected.push_back(
         {text_.tokens[use.instruction].line, excerpt(text_, use.instruction, last),
@@ -394,22 +646,28 @@ class KrlReader {
     target.workobject = found->second.external ? "external" : found->second.base;
   }
 
-  const ProgramText& text_;
-  RobotProgram& program_;
-  std::string tool_{}, base_{};
   std::set<std::string> typed_{};
   std::map<std::string, std::vector<std::size_t>> names_{};
   std::map<std::size_t, std::size_t> literals_{};  // target by its first token
   std::map<std::string, FlangeData> flange_data_{};
   std::vector<std::pair<std::string, Span>> changes_{};
   std::set<std::pair<bool, std::string>> changed_frames_{};  // whether of a tool; number, empty where it is computed
+  std::set<std::pair<bool, std::string>> used_frames_{};     // those that a move may use
+  std::set<std::string> routines_{};                         // of this file
+  std::set<std::string> kept_orientation_{};                 // LDAT with which orientations are reached
+  std::map<std::string, std::string> act_{};                 // what FDAT_ACT and LDAT_ACT are
+  Frames spline_{};                                          // of the present spline
+  std::size_t depth_ = 0;                                    // of blocks
+  bool data_ = false;                                        // in a data list
+  int nesting_ = 0;                                          // of instructions in one line
   std::vector<Use> uses_{};
-  std::vector<ProgramStep> steps_{};
 };
 
-VERNIER_IMPL void read_krl(std::string_view text, const std::string& name, RobotProgram& program) {
+VERNIER_IMPL void read_krl(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                           RobotProgram& program) {
   const ProgramText tokens = ProgramText::of(text, name, {.comments = ";&", .quotes = "\"'"});
-  KrlReader(tokens, program).read();
+  const StatementTable table(std::string(krl_harmless) + ' ' + std::string(krl_functions), krl_statements, assumed);
+  KrlReader(tokens, program, table).read();
 }
 
 }  // namespace vernier::detail

@@ -26,6 +26,7 @@ struct ProgramToken {
 struct ProgramSyntax {
   std::string_view comments;  ///< characters that begin a comment, to the end of the line
   std::string_view quotes;    ///< characters that begin and end a text
+  bool lines = true;          ///< whether the end of a line ends a statement, and is a token
 };
 
 /// Bracketed values, `[[1,2],[x]]`, or a single one.
@@ -52,6 +53,9 @@ struct ProgramStep {
   std::string tool, workobject;       ///< empty where unknown
   TargetMove move;                    ///< its kind
   bool element = false;               ///< one of several literals that it may use: no order is known
+  static constexpr std::size_t no_point = static_cast<std::size_t>(-1);
+  std::size_t point = no_point;  ///< where it is in the program's flow
+  std::string unknown{};         ///< why what its target means is not known; empty where it is
 };
 
 /// Most moves, those that several literals serve counted as many times.
@@ -69,7 +73,7 @@ class ProgramText {
 
   std::string_view text{};             ///< all of it
   std::string name{};                  ///< of the file
-  std::vector<ProgramToken> tokens{};  ///< at the end a line end
+  std::vector<ProgramToken> tokens{};  ///< the last one is a line end
 
   /// The bytes of a token.
   std::string_view at(std::size_t i) const { return text.substr(tokens[i].begin, tokens[i].end - tokens[i].begin); }
@@ -123,17 +127,8 @@ VERNIER_API Vector3 zyx_of_rotation(const Matrix3& rotation);
 /// A frame of a position [mm] and a quaternion, scalar first; none where that is far from a unit quaternion.
 VERNIER_API std::optional<Isometry3> frame_of_quaternion(const Vector3& mm, const Eigen::Vector4d& quaternion);
 
-VERNIER_API void read_rapid(std::string_view text, const std::string& name, RobotProgram& program);
-VERNIER_API void read_krl(std::string_view text, const std::string& name, RobotProgram& program);
-VERNIER_API void read_urscript(std::string_view text, const std::string& name, RobotProgram& program);
-VERNIER_API void read_fanuc_tp(std::string_view text, const std::string& name, RobotProgram& program);
-
 }  // namespace vernier::detail
 
 #if VERNIER_HEADER_ONLY
-#include "vernier/robot_programs/detail/fanuc_tp.ipp"
-#include "vernier/robot_programs/detail/krl.ipp"
 #include "vernier/robot_programs/detail/program_text.ipp"
-#include "vernier/robot_programs/detail/rapid.ipp"
-#include "vernier/robot_programs/detail/urscript.ipp"
 #endif

@@ -57,7 +57,7 @@ VERNIER_IMPL ProgramText ProgramText::of(std::string_view text, const std::strin
     if (c == '\0') fail_at(out, line, "binary data, not text");
     if (c == '\n') {
       line_length(i);
-      out.tokens.push_back({Kind::line_end, i, i + 1, line});
+      if (syntax.lines) out.tokens.push_back({Kind::line_end, i, i + 1, line});
       ++line;
       line_begin = ++i;
     } else if (c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v') {
@@ -214,6 +214,10 @@ VERNIER_IMPL void use_targets(const ProgramText& text, const std::vector<Program
     if (!step.target) continue;
     const std::size_t k = *step.target;
     ProgramTarget& target = targets[k];
+    if (!step.unknown.empty() && !refused[k]) {
+      refused[k] = true;
+      program.uncorrected.push_back({target.line, target.name.empty() ? "target" : target.name, step.unknown});
+    }
     if (uses[k]++ == 0) {
       first_use[k] = s;
       target.move = step.move;

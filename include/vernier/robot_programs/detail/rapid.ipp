@@ -9,31 +9,36 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
+#include "vernier/robot_programs/detail/statement_reader.hpp"
 
 namespace vernier::detail {
 
-/// Reads the targets of a RAPID module.
-class RapidReader {
+/// Reads the targets of a RAPID module. Line ends are no tokens here.
+class RapidReader final : private StatementReader {
  public:
-  RapidReader(const ProgramText& from, RobotProgram& to) : text_(from), program_(to) {}
+  RapidReader(const ProgramText& from, RobotProgram& to, const StatementTable& table)
+      : StatementReader(from, to, table) {}
 
   void read() {
-    find_module();
+    std::size_t i = find_module();
     program_.tools["tool0"] = program_.workobjects["wobj0"] = Isometry3::Identity();
-    for (std::size_t i = 0; i < text_.tokens.size();) i = statement(i);
+    find_routines();
+    while (i < text_.tokens.size()) i = statement(i);
     for (const auto& [line, expression] : changes_) {
       const std::string name = lower_case(text_.at(expression.first));
       assigned_.insert(name);
       if (names_.count(name) != 0)
-        program_.uncorrected.push_back(
-            {line, excerpt(text_, expression.first, expression.second), "the program changes this target"});
+        remark(line, excerpt(text_, expression.first, expression.second), "the program changes this target");
     }
     for (const std::string& name : assigned_) {  // frames that the program changes are not those that it states
+      if (constants_.count(name) != 0) continue;
       program_.tools.erase(name);
       program_.workobjects.erase(name);
     }
     for (const Move& move : moves_) use(move);
+    solve();
     use_targets(text_, steps_, std::vector<bool>(program_.targets.size(), true), program_);
   }
 
@@ -42,64 +47,280 @@ class RapidReader {
     std::size_t first, second;
   };
   struct Move {
-    std::size_t token = 0;  // none: routines begin
+    std::size_t token = 0;  // none: the order of moves ends
     std::vector<Span> arguments{};
     std::string tool{}, workobject = "wobj0";
+    std::size_t point = ProgramStep::no_point;
+    std::string unknown{};   // why its targets are not corrected
+    bool parameter = false;  // whether its target is a parameter of the routine
+    bool moves = true;       // whether it is a move
+    bool constants = true;   // whether it concerns targets that no statement can change
   };
 
-  std::string word(std::size_t i) const { return text_.is_word(i) ? lower_case(text_.at(i)) : std::string(); }
+  void break_order() override { moves_.push_back({}); }
 
-  void find_module() {
+  // the token behind the head of the module
+  std::size_t find_module() {
     for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i) {
       if (word(i) != "module" || !text_.is_word(i + 1)) continue;
-      std::size_t k = i + 2;
-      if (text_.is(k, '(')) k = behind_brackets(text_, k, text_.tokens.size());
-      while (k < text_.tokens.size() && !text_.is_line_end(k)) ++k;
-      program_.stamp_at = text_.tokens[(std::min)(k, text_.tokens.size() - 1)].end;
-      return;
+      const std::size_t k = behind_brackets(text_, i + 2, text_.tokens.size());
+      const std::size_t line_end = text_.text.find('\n', text_.tokens[k - 1].end);
+      program_.stamp_at = line_end == std::string_view::npos ? text_.text.size() : line_end + 1;
+      return k;
     }
     throw DataError(message(text_.name, ": no MODULE, so this is no RAPID program"));
   }
 
+  // names of routines, and whether they may change their arguments
+  void find_routines() {
+    for (std::size_t i = 0; i + 2 < text_.tokens.size(); ++i) {
+      const std::string kind = word(i);
+      if (kind != "proc" && kind != "func" && kind != "trap") continue;
+      const std::size_t name = kind == "func" ? i + 2 : i + 1, end = behind_parameters(name);
+      bool changes = false;
+      for (i = name; i + 1 < end; ++i) changes = changes || word(i) == "inout" || word(i) == "var" || word(i) == "pers";
+      routines_[word(name)] = changes;
+    }
+  }
+
+  // the token behind the name of a routine and its parameters
+  std::size_t behind_parameters(std::size_t name) const {
+    const bool closed = text_.is(name + 1, '(') && text_.tokens[name + 1].partner != 0;
+    return closed ? text_.tokens[name + 1].partner + 1 : (std::min)(name + 1, text_.tokens.size());
+  }
+
+  std::size_t line(std::size_t i) const { return text_.tokens[i].line; }
+
+  // the token of the sign, or of one of the words, at i or behind it; at most the next ;
+  std::size_t until(std::size_t i, char sign, std::initializer_list<std::string_view> words = {}) const {
+    for (; i + 1 < text_.tokens.size() && !text_.is(i, ';'); ++i) {
+      if (text_.is(i, sign) && !text_.is(i + 1, '=')) return i;
+      if (std::find(words.begin(), words.end(), word(i)) != words.end()) return i;
+    }
+    return i;
+  }
+
   std::size_t statement(std::size_t i) {
-    if (text_.is(i, '[')) return literal(i, {});
-    if (!text_.is_word(i)) return i + 1;
+    if (text_.is(i, ';') || i + 1 == text_.tokens.size()) return i + 1;
     const std::string name = word(i);
-    if (name == "proc" || name == "func" || name == "trap") {
-      moves_.push_back({});
-      return i + 1;
+    if (const std::size_t next = structure(i, name); next != i) return next;
+    const std::size_t end = until(i, ';');
+    if (name == "const" || name == "pers" || name == "var" || name == "alias") {
+      declaration(i);
+      calls(i + 3, end);
+      return end;
     }
-    if (name == "const" || name == "pers" || name == "var") return declaration(i);
-    if (is_move(name) && !follows(i, ":=.\\,")) {
-      if (!text_.is(i + 1, ':') && !text_.is(i + 1, '(') && !text_.is(i + 1, '.')) return move(i);
+    if (name.empty()) {  // %"routine"% and what is no statement
+      other(i, end, {});
+      return end;
     }
-    if (i > 0 && (text_.is(i - 1, '\\') || text_.is(i - 1, '.'))) return i + 1;
-    std::size_t k = i + 1;  // a change of a variable or of a part of it
-    if (text_.is(k, '{')) k = behind_brackets(text_, k, text_.tokens.size());
-    while (text_.is(k, '.') && text_.is_word(k + 1)) k += 2;
-    if (!text_.is(k, ':') || !text_.is(k + 1, '=')) return i + 1;
-    if (k == i + 1 && text_.is(k + 2, '[')) {
-      assigned_.insert(name);
-      return literal(k + 2, name);
+    std::size_t k = behind_brace(i + 1);
+    while (text_.is(k, '.') && text_.is_word(k + 1)) k = behind_brace(k + 2);
+    if (text_.is(k, ':') && text_.is(k + 1, '=')) {
+      assignment(i, k, end);
+      return end;
     }
-    std::size_t end = k;
-    while (end < text_.tokens.size() && !text_.is(end, ';') && !text_.is_line_end(end)) ++end;
-    changes_.push_back({text_.tokens[i].line, {i, end}});
+    if (text_.is(i + 1, ':')) {
+      flow_.label(name);
+      return i + 2;
+    }
+    if (is_move(name) && !text_.is(i + 1, '(') && !text_.is(i + 1, '.')) return move(i);
+    other(i, end, name);
     return end;
   }
 
-  bool follows(std::size_t i, std::string_view signs) const {
-    return i > 0 && text_.tokens[i - 1].kind == ProgramToken::Kind::sign &&
-           signs.find(text_.text[text_.tokens[i - 1].begin]) != std::string_view::npos;
+  // routines, blocks and jumps; i itself where it is none of them
+  std::size_t structure(std::size_t i, const std::string& name) {
+    const auto condition = [&](std::size_t end) {
+      calls(i + 1, end);
+      return end + 1;
+    };
+    if (name == "local" || name == "task" || name == "endmodule") return i + 1;
+    if (name == "module") return behind_brackets(text_, i + 2, text_.tokens.size());
+    if (name == "record") {
+      while (i + 1 < text_.tokens.size() && word(i) != "endrecord") ++i;
+      return i + 1;
+    }
+    if (name == "proc" || name == "func" || name == "trap") return routine(i, name);
+    if (name == "endproc" || name == "endfunc" || name == "endtrap") {
+      flow_.end();
+      parameters_.clear();
+      return i + 1;
+    }
+    if (name == "error" || name == "undo" || name == "backward") {  // a handler may run whatever happened before
+      flow_.end();
+      flow_.begin(message(name, " of line ", line(i)), true);
+      break_order();
+      return behind_brackets(text_, i + 1, text_.tokens.size());
+    }
+    if (name == "if") {
+      const std::size_t k = behind_condition(i + 1);
+      flow_.open(false);
+      calls(i + 1, k);
+      if (word(k) == "then") return k + 1;
+      std::size_t end = until(k, ';');
+      if (word(k) == "if")
+        other(k, end, {});
+      else
+        end = statement(k);
+      flow_.close();
+      return end;
+    }
+    if (name == "elseif") {
+      flow_.branch();
+      return condition(until(i, ';', {"then"}));
+    }
+    if (name == "else") {
+      flow_.branch();
+      return i + 1;
+    }
+    if (name == "for" || name == "while") {
+      flow_.open(true);
+      return condition(until(i, ';', {"do"}));
+    }
+    if (name == "test") {
+      flow_.open(false);
+      const std::size_t end = until(i, ';', {"case", "default", "endtest"});
+      calls(i + 1, end);
+      return end;
+    }
+    if (name == "case" || name == "default") {
+      flow_.branch();
+      return condition(until(i, ':'));
+    }
+    if (name == "endif" || name == "endfor" || name == "endwhile" || name == "endtest") {
+      flow_.close();
+      return i + 1;
+    }
+    if (name == "goto") {
+      flow_.jump(word(i + 1));
+      return i + 2;
+    }
+    if (name == "return" || name == "raise" || name == "retry" || name == "trynext" || name == "exit" ||
+        name == "exitcycle" || name == "raisetouser" || name == "errraise") {
+      const std::size_t end = until(i, ';');
+      calls(i + 1, end);
+      flow_.leave_routine();
+      return end;
+    }
+    return i;
+  }
+
+  // PROC name(type parameter, ..)
+  std::size_t routine(std::size_t i, const std::string& kind) {
+    const std::size_t name = (std::min)(kind == "func" ? i + 2 : i + 1, text_.tokens.size() - 1);
+    flow_.begin(word(name), kind == "trap");
+    break_order();
+    parameters_.clear();
+    const std::size_t end = behind_parameters(name);
+    for (std::size_t k = name + 1; k + 1 < end; ++k)
+      if (text_.is_word(k) && !text_.is_word(k + 1)) parameters_.insert(word(k));
+    return end;
+  }
+
+  // the token behind the condition of IF: THEN, or the instruction that it guards
+  std::size_t behind_condition(std::size_t i) const {
+    static const auto operators = words_of("and or xor not div mod");
+    bool operand = false;
+    while (i + 1 < text_.tokens.size() && !text_.is(i, ';')) {
+      const std::string name = word(i);
+      const bool named = !name.empty() && operators.count(name) == 0;
+      if (name == "then" || (operand && (named || text_.is(i, '%')))) return i;
+      const std::size_t next = behind_brackets(text_, i, text_.tokens.size());
+      operand = next > i || named || text_.tokens[i].kind == ProgramToken::Kind::number ||
+                text_.tokens[i].kind == ProgramToken::Kind::text;
+      i = (std::max)(next, i + 1);
+    }
+    return (std::min)(i, text_.tokens.size() - 1);
+  }
+
+  std::size_t behind_brace(std::size_t i) const {
+    return text_.is(i, '{') ? behind_brackets(text_, i, text_.tokens.size()) : i;
+  }
+
+  // name := value, its sign at k
+  void assignment(std::size_t i, std::size_t k, std::size_t end) {
+    const std::string name = word(i);
+    if (k == i + 1 && text_.is(k + 2, '[')) {
+      assigned_.insert(name);
+      literal(k + 2, name);
+    } else {
+      changes_.push_back({line(i), {i, end}});
+    }
+    calls(k + 2, end);
+  }
+
+  // an instruction that is no move, or a call
+  void other(std::size_t i, std::size_t end, const std::string& name) {
+    const std::string statement = excerpt(text_, i, end);
+    std::string why;
+    if (routines_.count(name) != 0) {
+      calls(i + 1, end);
+      flow_.call(name);
+      break_order();
+      why = message("line ", line(i), ", ", statement, ": what the routine does to it is not known");
+      if (routines_.at(name)) change(i + 1, end);
+    } else {
+      const std::string option = text_.is(i + 1, '\\') ? word(i + 2) : text_.is(i + 1, ';') ? "" : " ";
+      const StatementClass kind = apply(line(i), name, option, statement);
+      calls(i + 1, end);
+      if (name == "connect" && routines_.count(word(until(i, ';', {"with"}) + 1)) == 0) unknown(line(i), statement);
+      if (kind == StatementClass::own || kind == StatementClass::unknown)
+        why = message("line ", line(i), ", ", statement, ": what it does to targets is not known");
+      if (kind == StatementClass::own) break_order();
+      static const auto outputs = words_of(rapid_outputs);
+      if (kind == StatementClass::harmless && outputs.count(name) == 0) {
+        change(i + 1, end);
+        arguments(i, end, message("line ", line(i), ", ", statement, ": the instruction may change it"), false);
+      }
+    }
+    if (!why.empty()) arguments(i, end, why);
+  }
+
+  // frames that a statement is given may be changed by it
+  void change(std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      if (text_.is_word(k)) assigned_.insert(word(k));
+  }
+
+  // targets in the arguments of what is no move that is corrected
+  void arguments(std::size_t i, std::size_t end, const std::string& why, bool constants = true) {
+    Move found;
+    found.token = i;
+    found.moves = false;
+    found.constants = constants;
+    found.unknown = why;
+    for (std::size_t k = i + 1; k < end;) {
+      const std::size_t first = k;
+      k = text_.is(k, '[') ? literal(k, {}) : k + 1;
+      found.arguments.push_back({first, k});
+    }
+    moves_.push_back(std::move(found));
+  }
+
+  // calls of functions in an expression
+  void calls(std::size_t first, std::size_t last) {
+    static const auto operators = words_of("and or xor not div mod");
+    for (std::size_t k = first; k < last; ++k) {
+      if (!text_.is_word(k) || !text_.is(k + 1, '(')) continue;
+      const std::string name = word(k);
+      if (operators.count(name) != 0) continue;
+      if (const auto routine = routines_.find(name); routine != routines_.end()) {
+        flow_.call(name);
+        const std::size_t end = (std::min)(behind_brackets(text_, k + 1, last), last);
+        if (!routine->second) continue;
+        change(k + 2, end);
+        arguments(k, end, message("line ", line(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
+      } else if (statements_.find(name).kind != StatementClass::harmless) {
+        unknown(line(k), excerpt(text_, k, (std::min)(behind_brackets(text_, k + 1, last), last)));
+      }
+    }
   }
 
   static bool is_move(std::string_view name) {
-    static constexpr std::array<std::string_view, 28> names{
-        "movej",     "movel",     "movec",     "moveabsj", "movejdo", "moveldo", "movecdo",
-        "movejao",   "movelao",   "movecao",   "movejgo",  "movelgo", "movecgo", "movejsync",
-        "movelsync", "movecsync", "triggj",    "triggl",   "triggc",  "arcl",    "arcc",
-        "arclstart", "arclend",   "arccstart", "arccend",  "spotl",   "displ",   "paintl"};
-    return std::find(names.begin(), names.end(), name) != names.end();
+    static const auto names = words_of(std::string(rapid_joint_moves) + ' ' + std::string(rapid_linear_moves) + ' ' +
+                                       std::string(rapid_circular_moves));
+    return names.count(name) != 0;
   }
 
   // CONST robtarget p10:=[..]; and the like
@@ -107,6 +328,7 @@ class RapidReader {
     const std::string type = word(i + 1);
     if (!text_.is_word(i + 2)) return i + 1;
     const std::string name = word(i + 2);
+    if (word(i) == "const") constants_.insert(name);
     std::size_t k = i + 3;
     if (text_.is(k, '{')) k = behind_brackets(text_, k, text_.tokens.size());
     const bool value = text_.is(k, ':') && text_.is(k + 1, '=');
@@ -124,7 +346,7 @@ class RapidReader {
       }
       if (value) {
         std::size_t end = k;
-        while (end < text_.tokens.size() && !text_.is(end, ';') && !text_.is_line_end(end)) ++end;
+        while (end + 1 < text_.tokens.size() && !text_.is(end, ';')) ++end;
         program_.uncorrected.push_back({line, excerpt(text_, i + 1, end), "computed, not a literal"});
         return end;
       }
@@ -157,14 +379,20 @@ class RapidReader {
   // a tool that the robot holds: [TRUE,[[x,y,z],[q]],load]
   void tool(const std::string& name, const BracketValue& data) {
     if (data.values.size() != 3 || !flag(data.values[0], "true")) return;
-    if (const auto found = frame(data.values[1])) program_.tools[name] = *found;
+    if (const auto found = frame(data.values[1])) state(program_.tools, name, *found);
   }
 
   // a work object that stands still: [FALSE,TRUE,"",uframe,oframe]
   void workobject(const std::string& name, const BracketValue& data) {
     if (data.values.size() != 5 || !flag(data.values[0], "false") || !flag(data.values[1], "true")) return;
     const auto user = frame(data.values[3]), object = frame(data.values[4]);
-    if (user && object) program_.workobjects[name] = *user * *object;
+    if (user && object) state(program_.workobjects, name, *user * *object);
+  }
+
+  // of a name that is declared twice nobody knows which frame is meant
+  void state(std::map<std::string, Isometry3>& frames, const std::string& name, const Isometry3& frame) {
+    const auto [found, added] = frames.try_emplace(name, frame);
+    if (!added && !found->second.isApprox(frame, 0)) assigned_.insert(name);
   }
 
   bool unused(const BracketValue& axes) const {
@@ -234,16 +462,14 @@ class RapidReader {
 
   // MoveL p10,v100,fine,tool0\WObj:=wobj1;
   std::size_t move(std::size_t i) {
+    static const auto options = words_of(rapid_move_options);
     Move found;
     found.token = i;
     std::size_t k = i + 1, begin = k, depth = 0;
     std::size_t main_end = 0;
     const auto close = [&] {
       const std::size_t end = main_end == 0 ? k : main_end;
-      if (end > begin) {
-        found.arguments.push_back({begin, end});
-        found.tool = end == begin + 1 ? word(begin) : std::string();
-      }
+      if (end > begin) found.arguments.push_back({begin, end});
       main_end = 0;
       begin = k + 1;
     };
@@ -256,43 +482,70 @@ class RapidReader {
       if ((text_.is(k, ')') || text_.is(k, ']') || text_.is(k, '}')) && depth > 0) --depth;
       if (depth == 0 && text_.is(k, '\\')) {
         if (main_end == 0) main_end = k;
-        if (word(k + 1) == "wobj")
+        const std::string option = word(k + 1);
+        if (option == "wobj")
           found.workobject = text_.is(k + 2, ':') && text_.is(k + 3, '=') && text_.is_word(k + 4) ? word(k + 4) : "?";
+        if (options.count(option) == 0)
+          found.unknown = message("line ", line(i), ", ", excerpt(text_, i, i + 1), " \\", excerpt(text_, k + 1, k + 2),
+                                  ": an option that is not known");
       }
       if (depth == 0 && text_.is(k, ',')) close();
       ++k;
     }
-    if (k >= text_.tokens.size()) fail_at(text_, text_.tokens[i].line, "an instruction is not ended by ;");
+    if (k >= text_.tokens.size()) fail_at(text_, line(i), "an instruction is not ended by ;");
     close();
+    found.tool = tool_of(word(i), found.arguments);
+    if (parameters_.count(found.tool) != 0) found.tool.clear();
+    if (parameters_.count(found.workobject) != 0) found.workobject = "?";
+    for (std::size_t a = 0; a < (std::min)(targets_of(word(i)), found.arguments.size()); ++a)
+      found.parameter = found.parameter || parameters_.count(word(found.arguments[a].first)) != 0;
+    calls(i + 1, k);
+    found.point = flow_.point();
     moves_.push_back(std::move(found));
     return k;
   }
 
+  static std::size_t targets_of(const std::string& move) {
+    static const auto circular = words_of(rapid_circular_moves);
+    return circular.count(move) != 0 ? 2 : 1;
+  }
+
+  // the tool is the last argument, or stands in front of a signal or routine
+  std::string tool_of(const std::string& move, const std::vector<Span>& arguments) const {
+    const std::size_t targets = targets_of(move);
+    const bool signal = move.starts_with("move") && (move.ends_with("do") || move.ends_with("ao") ||
+                                                     move.ends_with("go") || move.ends_with("sync"));
+    if (arguments.size() <= targets) return {};
+    const Span at = arguments[signal ? (std::min)(targets + 2, arguments.size() - 1) : arguments.size() - 1];
+    return at.second == at.first + 1 ? word(at.first) : std::string();
+  }
+
   void use(const Move& move) {
+    static const auto joint_moves = words_of(rapid_joint_moves);
     if (move.token == 0) {
-      steps_.push_back({{}, {}, {}, TargetMove::unknown});
+      add_step(steps_, {{}, {}, {}, TargetMove::unknown});
       return;
     }
     const std::string name = word(move.token);
-    const std::size_t targets = name.find("movec") == 0 || name == "triggc" || name.find("arcc") == 0 ? 2 : 1;
-    const TargetMove kind =
-        name.find("movej") == 0 || name == "moveabsj" || name == "triggj" ? TargetMove::joint : TargetMove::linear;
-    const std::string tool = move.arguments.size() > targets ? move.tool : std::string();
-    for (std::size_t a = 0; a < targets; ++a) {
-      if (a >= move.arguments.size()) break;
-      std::size_t first = move.arguments[a].first, last = move.arguments[a].second;
-      while (first < last && text_.is_line_end(first)) ++first;
-      while (last > first && text_.is_line_end(last - 1)) --last;
-      ProgramStep step{{}, tool, move.workobject, kind};
+    const TargetMove kind = !move.moves                    ? TargetMove::unknown
+                            : joint_moves.count(name) != 0 ? TargetMove::joint
+                                                           : TargetMove::linear;
+    const std::size_t targets = move.moves ? targets_of(name) : move.arguments.size();
+    for (std::size_t a = 0; a < (std::min)(targets, move.arguments.size()); ++a) {
+      const auto [first, last] = move.arguments[a];
+      ProgramStep step{{}, move.tool, move.moves ? move.workobject : "", kind};
+      step.point = move.point;
+      step.unknown = move.unknown;
       if (const auto found = inline_.find(first); found != inline_.end()) {
         step.target = found->second;
-        steps_.push_back(step);
+        add_step(steps_, step);
         continue;
       }
       const auto declared = names_.find(word(first));
       const bool element = text_.is(first + 1, '{');
-      const std::size_t end = element ? behind_brackets(text_, first + 1, last) : first + 1;
-      if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.empty()) {
+      const std::size_t end = !move.moves ? last : element ? behind_brackets(text_, first + 1, last) : first + 1;
+      if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.empty() &&
+          !move.parameter && (move.constants || constants_.count(word(first)) == 0)) {
         step.element = declared->second.size() > 1;
         for (const std::size_t k : declared->second) {
           step.target = k;
@@ -300,31 +553,35 @@ class RapidReader {
         }
         continue;
       }
-      steps_.push_back({{}, {}, {}, kind});
+      if (!move.moves) continue;
+      add_step(steps_, {{}, {}, {}, kind});
       if (text_.is(first, '[')) continue;  // refused before
-      program_.uncorrected.push_back({text_.tokens[first < last ? first : move.token].line,
-                                      excerpt(text_, move.token, move.token + 1) + " " + excerpt(text_, first, last),
-                                      !text_.is_word(first) || end != last ? "computed, not a literal"
-                                      : declared == names_.end()           ? "declared in another file, or a parameter"
-                                                                           : "a variable without literal value"});
+      remark(line(first < last ? first : move.token),
+             excerpt(text_, move.token, move.token + 1) + " " + excerpt(text_, first, last),
+             !text_.is_word(first) || end != last         ? "computed, not a literal"
+             : declared == names_.end() || move.parameter ? "declared in another file, or a parameter"
+                                                          : "a variable without literal value");
     }
   }
 
-  const ProgramText& text_;
-  RobotProgram& program_;
   std::map<std::string, std::vector<std::size_t>> names_{};  // targets of each variable
   std::map<std::size_t, std::size_t> inline_{};              // target by its first token
   std::set<std::string> unused_axes_{};
   std::set<std::string> assigned_{};  // variables
   std::vector<Move> moves_{};
   std::vector<std::pair<std::size_t, Span>> changes_{};
-  std::vector<ProgramStep> steps_{};
+  std::set<std::string> constants_{};
+  std::map<std::string, bool> routines_{};  // of this file, and whether they may change their arguments
+  std::set<std::string> parameters_{};      // of the present routine
   std::size_t refused_line_ = 0;
 };
 
-VERNIER_IMPL void read_rapid(std::string_view text, const std::string& name, RobotProgram& program) {
-  const ProgramText tokens = ProgramText::of(text, name, {.comments = "!", .quotes = "\""});
-  RapidReader(tokens, program).read();
+VERNIER_IMPL void read_rapid(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
+                             RobotProgram& program) {
+  const ProgramText tokens = ProgramText::of(text, name, {.comments = "!", .quotes = "\"", .lines = false});
+  const StatementTable table(std::string(rapid_harmless) + ' ' + std::string(rapid_functions), rapid_statements,
+                             assumed);
+  RapidReader(tokens, program, table).read();
 }
 
 }  // namespace vernier::detail

@@ -1,0 +1,551 @@
+// Statements between moves: which of them void the targets behind them, how far, and what ends that.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "read_program.hpp"
+#include "vernier/core/check.hpp"
+#include "vernier/robot_programs/robot_program.hpp"
+
+namespace vernier::robot_statements_test {
+namespace {
+
+using namespace vernier_test;
+using enum ProgramLanguage;
+
+/// The names of targets that are corrected, in their order.
+std::string corrected(const RobotProgram& program) {
+  std::string out;
+  for (const ProgramTarget& target : program.targets) out += target.name;
+  return out;
+}
+
+/// The remark about a target; empty where there is none.
+std::string about(const RobotProgram& program, const std::string& name) {
+  for (const Uncorrected& one : program.uncorrected)
+    if (one.text == name) return one.reason;
+  return "";
+}
+
+// ---- programs of targets a, b, c and lines between moves to them ----
+
+const std::string rapid_value = "[[1,0,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n";
+
+/// Line 1: MODULE; a, b, c, d and j in lines 2 to 6; PROC in line 7.
+RobotProgram rapid_lines(const std::string& lines, const std::string& routines = "",
+                         const std::vector<std::string>& harmless = {}) {
+  std::string text = "MODULE m\n";
+  for (const char* name : {"a", "b", "c", "d"}) text += message("CONST robtarget ", name, ":=", rapid_value);
+  return parse_program(rapid,
+                       text + "CONST jointtarget j:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\n" +
+                           lines + "ENDPROC\n" + routines + "ENDMODULE\n",
+                       "m.mod", harmless);
+}
+std::string rapid_move(const std::string& target) { return "MoveJ " + target + ",v1,fine,tool0;\n"; }
+std::string rapid_line(const std::string& target) { return "MoveL " + target + ",v1,fine,tool0;\n"; }
+
+const std::string krl_value = "={X 1,Y 2,Z 3,A 0,B 0,C 0,S 2,T 2}\n";
+RobotProgram krl_lines(const std::string& lines, const std::string& routines = "",
+                       const std::vector<std::string>& harmless = {}) {
+  std::string text = "DEF m()\n";
+  for (const char* name : {"a", "b", "c", "d"}) text += name + krl_value;
+  return parse_program(krl, text + lines + "END\n" + routines, "m.src", harmless);
+}
+
+RobotProgram ur_lines(const std::string& lines, const std::string& routines = "",
+                      const std::vector<std::string>& harmless = {}) {
+  std::string text = routines + "def m():\n";
+  for (const char* name : {"a", "b", "c", "d"}) text += message(name, "=p[1,2,3,0,0,0]\n");
+  return parse_program(urscript, text + lines + "end\n", "m.script", harmless);
+}
+
+RobotProgram tp_lines(const std::vector<std::string>& lines, const std::vector<std::string>& harmless = {}) {
+  std::string text = "/PROG M\n/MN\n";
+  for (const std::string& line : lines) text += "   1:" + line + " ;\n";
+  text += "/POS\n";
+  for (int k = 1; k <= 4; ++k)
+    text +=
+        message("P[", k,
+                "]{\n GP1:\n UF : 1, UT : 2, CONFIG : 'N U T, 0, 0, 0',\n X = 1 mm, Y = 2 mm, Z = 3 mm,\n W = 10 deg, "
+                "P = 20 deg, R = 30 deg\n};\n");
+  return parse_program(fanuc_tp, text + "/END\n", "m.ls", harmless);
+}
+std::string tp_move(int k) { return message("J P[", k, "] 100% FINE"); }
+
+// ---- the class: a statement that can change what targets mean ----
+
+TEST(StatementsRapid, VoidTheTargetsBehindThem) {
+  for (const char* statement : {"ConfJ\\Off;",
+                                "ConfJ \\Off;",
+                                "confj\n\\off;",
+                                "PDispSet d;",
+                                "PDispOn\\Rot\\ExeP:=a,b,tool0;",
+                                "EOffsSet e;",
+                                "EOffsOn \\ExeP:=a,b;",
+                                "SoftAct 1,50;",
+                                "ActUnit STN_1;",
+                                "DeactUnit STN_1;",
+                                "SyncMoveOn s,t;",
+                                "MToolTCPCalib j,j,j,j,gun,e,f;",
+                                "SetSysData gun;",
+                                "SetDataVal \"x\",v;",
+                                "FCAct gun;",
+                                "EGMActPose e,x;",
+                                "WaitWObj w;",
+                                "DropWObj w;",
+                                "SoftElbow;",
+                                "IndAMove STN_1,2\\ToAbsNum:=0,20;",
+                                "Nobody;",
+                                "Nobody x,y;",
+                                "n:=nobody(1);",
+                                "IF x>1 Nobody;",
+                                "IF nobody(1) THEN\nENDIF",
+                                "%\"nobody\"%;",
+                                "CallByVar \"proc\",n;",
+                                "FOR i FROM 1 TO nobody(2) DO\nENDFOR",
+                                "TEST nobody(1)\nCASE 1:\nENDTEST",
+                                "MoveWeld [1,2,3],v1;"}) {
+    const RobotProgram program = rapid_lines(rapid_move("a") + statement + "\n" + rapid_move("b"));
+    EXPECT_EQ(corrected(program).find('a'), 0u) << statement;
+    EXPECT_EQ(corrected(program).find('b'), std::string::npos) << statement;
+    EXPECT_EQ(about(program, "b").find("line 9, "), 0u) << statement << ": " << about(program, "b");
+  }
+  for (const char* statement : {"ConfL\\Off;", "SingArea\\Wrist;", "SingArea \\LockAxis4;"}) {
+    const RobotProgram program = rapid_lines(rapid_line("a") + statement + "\n" + rapid_line("b") + rapid_move("c"));
+    EXPECT_EQ(corrected(program), "acdj") << statement;  // joint moves are as they were
+    EXPECT_EQ(about(program, "b").find("line 9, "), 0u) << statement;
+  }
+  EXPECT_EQ(about(rapid_lines("ConfJ\\Off;\n" + rapid_move("a")), "a"),
+            "line 8, ConfJ\\Off: configurations of joint moves do not count");
+}
+
+TEST(StatementsRapid, AreHarmless) {
+  for (const char* statement : {"AccSet 50,50;",
+                                "VelSet 100,500;",
+                                "WorldAccLim\\On:=3;",
+                                "WaitTime 1;",
+                                "SetDO do1,1;",
+                                "TPWrite \"x\";",
+                                "Stop;",
+                                "GripLoad load1;",
+                                "TriggIO t,0\\DOp:=do1,1;",
+                                "n:=n+Sin(3)*Distance(a.trans,b.trans);",
+                                "IF n>1 AND (m<2) SetDO do1,1;",
+                                "WHILE n<3 DO\nIncr n;\nENDWHILE",
+                                "TEST n\nCASE 1,2:\nSetDO do1,0;\nDEFAULT:\nENDTEST",
+                                "GOTO end;\nend:",
+                                "x.y{2}.z:=3;",
+                                "VAR num q:=3;",
+                                "IDelete i;",
+                                "WaitUntil DI1=1 OR (n>2);",
+                                "ConfJ\\On;",
+                                "PDispOff;",
+                                "SingArea\\Off;",
+                                "ConfL;",
+                                "MotionSup\\Off;",
+                                "CorrClear;",
+                                "SocketSend s\\Str:=\"x\";"}) {
+    const RobotProgram program = rapid_lines(rapid_move("a") + statement + "\n" + rapid_line("b") + rapid_move("c"));
+    EXPECT_EQ(corrected(program), "abcdj") << statement << remarks(program);
+    EXPECT_EQ(remarks(program), "") << statement;
+  }
+}
+
+// Instructions that use targets in ways of their own: those targets stay, the ones behind are corrected.
+TEST(StatementsRapid, UseTargetsInWaysOfTheirOwn) {
+  for (const char* statement :
+       {"SearchL di1,a,b,v1,tool0;", "SearchC di1,a,b,c,v1,tool0;", "MoveExtJ b,v1,fine;", "CapL b,v1,c,w,fine,tool0;",
+        "MoveL b,v1,fine,tool0\\Corr;", "MoveL b\\Nobody,v1,fine,tool0;", "ContactL b,v1,fine,tool0;"}) {
+    const RobotProgram program = rapid_lines(std::string(statement) + "\n" + rapid_move("d"));
+    EXPECT_NE(about(program, "b"), "") << statement;
+    EXPECT_EQ(corrected(program).find('b'), std::string::npos) << statement;
+    EXPECT_NE(corrected(program).find('d'), std::string::npos) << statement;
+  }
+  EXPECT_EQ(remarks(rapid_lines("StepBwdPath 30,1;\n")), "8 StepBwdPath 30,1: a move without a target of its own\n");
+}
+
+TEST(StatementsRapid, MeanNothingToJointValues) {
+  const std::string move = "MoveAbsJ j,v1,fine,tool0;\n";
+  for (const char* statement : {"ConfJ\\Off;\n", "PDispSet d;\n", "ActUnit STN_1;\n"})
+    EXPECT_EQ(corrected(rapid_lines(statement + move)).substr(0, 1), "j") << statement;
+  for (const char* statement : {"SoftAct 1,50;\n", "Nobody;\n"})
+    EXPECT_EQ(corrected(rapid_lines(statement + move)).find('j'), std::string::npos) << statement;
+}
+
+TEST(StatementsKrl, VoidTheTargetsBehindThem) {
+  for (const char* statement :
+       {"$IPO_MODE=#TCP", "$ipo_mode = #tcp", "$ROBROOT={X 1,Y 0,Z 0,A 0,B 0,C 0}", "$WORLD.X=5", "$SOFT=1", "nobody()",
+        "n=nobody(1)", "IF nobody(1) THEN\nENDIF", "WAIT FOR nobody(1)", "ASYPTP {E1 5}", "BAS(#NOBODY,1)",
+        "INTERRUPT DECL 3 WHEN $IN[1] DO nobody()", "GLOBAL INTERRUPT DECL 3 WHEN $IN[1] DO $TOOL=TOOL_DATA[2]",
+        "TRIGGER WHEN DISTANCE=0 DELAY=5 DO nobody() PRIO=-1", "nobody 5", "?x", "$SOFT.A=nobody(2)"}) {
+    const RobotProgram program = krl_lines(std::string("BAS(#TOOL,1)\nPTP a\n") + statement + "\nPTP b\nLIN c\n");
+    EXPECT_EQ(corrected(program).find('b'), std::string::npos) << statement;
+    EXPECT_EQ(corrected(program).find('c'), std::string::npos) << statement;
+    EXPECT_NE(about(program, "b"), "") << statement;
+  }
+  for (const char* statement : {"$ORI_TYPE=#CONSTANT", "$ORI_TYPE=n", "BAS(#CP_PARAMS,2)", "$TARGET_STATUS=#SOURCE"}) {
+    const RobotProgram program = krl_lines(std::string("LIN a\n") + statement + "\nPTP b\nLIN c\n");
+    EXPECT_EQ(corrected(program), "ab") << statement;
+    EXPECT_EQ(about(program, "c").find("line 7, "), 0u) << statement;
+  }
+}
+
+TEST(StatementsKrl, AreHarmless) {
+  for (const char* statement : {"$VEL.CP=0.5",
+                                "$ACC_AXIS[1]=50",
+                                "$OUT[3]=TRUE",
+                                "WAIT SEC 1",
+                                "WAIT FOR $IN[1] AND ($IN[2])",
+                                "HALT",
+                                "PULSE($OUT[1],TRUE,0.5)",
+                                "n=n+1",
+                                "s.x[2]=sin(30)*abs(n)",
+                                "IF $IN[1] THEN\nn=2\nELSE\nn=3\nENDIF",
+                                "FOR i=1 TO 3 STEP 1\nn=i\nENDFOR",
+                                "REPEAT\nn=1\nUNTIL n==1",
+                                "SWITCH n\nCASE 1,2\nn=3\nDEFAULT\nENDSWITCH",
+                                "GOTO ende\nende:",
+                                "INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )",
+                                "INTERRUPT ON 3",
+                                "BAS(#VEL_PTP,100)",
+                                "$LOAD=LOAD_DATA[2]",
+                                "TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[5]=TRUE",
+                                "CONTINUE",
+                                "$IPO_MODE=#BASE",
+                                "$ORI_TYPE=#VAR",
+                                "PDAT_ACT=PDEFAULT",
+                                "$TIMER[1]=0",
+                                "$ADVANCE=3",
+                                "DECL nobody x",
+                                "CWRITE($CMD,stat,#SYNC,\"x\")",
+                                "LOOP\nEXIT\nENDLOOP",
+                                "WHILE (n<3)\nn=n+1\nENDWHILE",
+                                "TIME_BLOCK START"}) {
+    const RobotProgram program = krl_lines(std::string("PTP a\n") + statement + "\nPTP b\nLIN c\n");
+    EXPECT_EQ(corrected(program), "abc") << statement << remarks(program);
+    EXPECT_EQ(about(program, "b") + about(program, "c"), "") << statement;
+  }
+}
+
+TEST(StatementsUrscript, VoidTheTargetsBehindThem) {
+  for (const char* statement :
+       {"force_mode(p[0,0,0,0,0,0],[0,0,1,0,0,0],[0,0,1,0,0,0],2,[1,1,1,1,1,1])", "path_offset_enable()",
+        "path_offset_set(p[0,0,1,0,0,0],1)", "track_conveyor_linear(p[1,0,0,0,0,0],1)", "move_frame(\"x\",a)",
+        "attach_frame(\"x\",\"y\")", "reset_revolution_counter()", "frame_tracking_enable(\"x\")", "nobody()",
+        "x = nobody(1)", "if nobody(1):\nend", "while nobody():\nend", "nobody", "screw_driving(1,2)"}) {
+    const RobotProgram program = ur_lines(std::string("movej(a)\n") + statement + "\nmovej(b)\nmovel(c)\n");
+    EXPECT_EQ(corrected(program), "a") << statement;
+    EXPECT_EQ(about(program, "c").find("line 7, "), 0u) << statement << about(program, "c");
+  }
+  EXPECT_EQ(remarks(ur_lines("speedl([0,0,1,0,0,0],1,1)\n")).substr(0, 4), "2 a:");
+  for (const char* move : {"speedj([0,0,1,0,0,0],1,1)", "speedl([0,0,1,0,0,0],1,1)", "teach_mode()"})
+    EXPECT_NE(remarks(ur_lines(std::string(move) + "\n")).find("a move without a target of its own"), std::string::npos)
+        << move;
+}
+
+TEST(StatementsUrscript, AreHarmless) {
+  for (const char* statement :
+       {"set_payload(1.5)", "set_target_payload(1,[0,0,0])", "sleep(0.5)", "set_digital_out(1,True)",
+        "x = get_actual_tcp_pose()", "if (x > 1) and not (y):\nsync()\nelif z:\nelse:\nend", "$ 3 \"Waypoint_1\"",
+        "popup(\"x\")", "while True:\nbreak\nend", "textmsg(\"x\",norm(x))", "set_gravity([0,0,9.8])", "x[2]=3",
+        "socket_open(\"h\",1)", "rpc.anything(a)", "global x=3", "local y = [1,2,3,4,5,6]", "stopj(2)",
+        "set_base_acceleration([0,0,0])", "x = pose_trans(a, p[0,0,1,0,0,0])"}) {
+    const RobotProgram program = ur_lines(std::string("movej(a)\n") + statement + "\nmovej(b)\nmovel(c)\n");
+    EXPECT_EQ(corrected(program), "abc") << statement << remarks(program);
+  }
+}
+
+TEST(StatementsFanuc, VoidTheTargetsBehindThem) {
+  for (const char* statement : {"  UFRAME_NUM=2",
+                                "  UTOOL_NUM=1",
+                                "  UFRAME_NUM=R[1]",
+                                "  UTOOL_NUM = AR[1]",
+                                "  UFRAME[1]=PR[2]",
+                                "  UTOOL[3:gun]=PR[1]",
+                                "  $MNUFRAME[1,1]=PR[1]",
+                                "  $SCR.$X=1",
+                                "  CALL NOBODY",
+                                "  CALL NOBODY(1,2)",
+                                "  RUN NOBODY",
+                                "  Nobody 1",
+                                "  IF DI[1]=ON,CALL NOBODY",
+                                "  IF (DI[1]),UFRAME_NUM=(2)",
+                                "  SELECT R[1]=1,CALL NOBODY",
+                                "         =2,CALL NOBODY",
+                                "       ELSE,CALL NOBODY",
+                                "  TRACK TAST[1]",
+                                "  STOP_TRACKING",
+                                "  SOFTFLOAT[1]",
+                                "  Touch Offset PR[1]",
+                                "  (UFRAME_NUM=(3))",
+                                "  GROUP X",
+                                "J P[4] 100% FINE TB .5sec,CALL NOBODY"}) {
+    const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
+    EXPECT_NE(corrected(program).find("P[1]"), std::string::npos) << statement;
+    EXPECT_EQ(corrected(program).find("P[2]"), std::string::npos) << statement;
+    EXPECT_NE(about(program, "P[2]"), "") << statement;
+  }
+  for (const char* option : {"RTCP", "COORD", "COORD[R[1]]", "Wjnt", "MROT", "Nobody", "ACC80 RTCP", "Search[1]"}) {
+    const RobotProgram program = tp_lines({std::string("L P[1] 100mm/sec FINE ") + option, tp_move(2)});
+    EXPECT_EQ(corrected(program), "P[2]P[3]P[4]") << option;
+    EXPECT_EQ(about(program, "P[1]").find("line 3, "), 0u) << option;
+  }
+  EXPECT_EQ(remarks(tp_lines({tp_move(1), "  P[1]=PR[2]"})), "4 P[1]=PR[2]: the program changes this target\n");
+}
+
+TEST(StatementsFanuc, AreHarmless) {
+  for (const char* statement : {"  R[1]=R[1]+1",
+                                "  DO[3]=ON",
+                                "  RO[1]=PULSE,0.5sec",
+                                "  PR[1,3]=50",
+                                "  PR[2]=P[3]",
+                                "  WAIT   1.00(sec)",
+                                "  WAIT DI[1]=ON TIMEOUT,LBL[3]",
+                                "  LBL[1:x]",
+                                "  JMP LBL[1]",
+                                "  IF R[1]=5,JMP LBL[2]",
+                                "  IF (DI[1] AND !DI[2]) THEN",
+                                "  FOR R[1]=1 TO 10",
+                                "  MESSAGE[Part missing]",
+                                "  UALM[1]",
+                                "  TIMER[1]=START",
+                                "  OVERRIDE=50%",
+                                "  PAYLOAD[2]",
+                                "  SKIP CONDITION DI[5]=ON",
+                                "  OFFSET CONDITION PR[3]",
+                                "  !L P[2] RTCP",
+                                "  // CALL NOBODY",
+                                "  --eg:CALL NOBODY",
+                                "  PAUSE",
+                                "  UFRAME_NUM=1",
+                                "  UTOOL_NUM=2",
+                                "  COL DETECT ON",
+                                "  Arc Start[1]",
+                                "  Weave Sine[1]",
+                                "  F[1]=(DI[1])",
+                                "  $WAITTMOUT=300",
+                                "  LOCK PREG",
+                                "  (DO[1]=(DI[2]))",
+                                "",
+                                "L P[4] 100mm/sec CNT50 ACC80 Skip,LBL[5] TA .1sec,DO[1]=ON",
+                                "J P[4] R[10]% CNT100 PTH",
+                                "L P[4] R[1:speed]mm/sec FINE",
+                                "L P[4] WELD_SPEED CNT10"}) {
+    const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
+    for (const char* name : {"P[1]", "P[2]", "P[4]"})
+      EXPECT_NE(corrected(program).find(name), std::string::npos) << statement << remarks(program);
+    EXPECT_EQ(about(program, "P[2]"), "") << statement;
+  }
+}
+
+// ---- how far ----
+
+TEST(StatementsReach, UntilOneThatEndsThem) {
+  EXPECT_EQ(corrected(rapid_lines("ConfJ\\Off;\n" + rapid_move("a") + "ConfJ\\On;\n" + rapid_move("b"))), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines("PDispSet x;\n" + rapid_line("a") + "PDispOff;\n" + rapid_line("b"))), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines("PDispSet x;\nConfJ;\n" + rapid_line("a"))), "bcdj");  // another one ends nothing
+  EXPECT_EQ(corrected(krl_lines("$IPO_MODE=#TCP\nPTP a\n$IPO_MODE=#BASE\nPTP b\n")), "b");
+  EXPECT_EQ(corrected(ur_lines("force_mode(1)\nmovej(a)\nend_force_mode()\nmovej(b)\n")), "b");
+  EXPECT_EQ(corrected(tp_lines({"  UFRAME_NUM=3", tp_move(1), "  UFRAME_NUM=1", tp_move(2)})).substr(0, 4), "P[2]");
+  EXPECT_EQ(corrected(rapid_lines("Nobody;\nConfJ\\On;\nPDispOff;\n" + rapid_move("a"))).find('a'), std::string::npos);
+}
+
+TEST(StatementsReach, BeyondConditions) {
+  const std::string off = "ConfJ\\Off;\n", on = "ConfJ\\On;\n";
+  const auto left = [](const std::string& lines) { return corrected(rapid_lines(lines)); };
+  EXPECT_EQ(left("IF x THEN\n" + off + "ENDIF\n" + rapid_move("a")), "bcdj");
+  EXPECT_EQ(left("IF x " + off + rapid_move("a")), "bcdj");
+  EXPECT_EQ(left(off + "IF x " + on + rapid_move("a")), "bcdj");  // not on all ways
+  EXPECT_EQ(left(off + "IF x THEN\n" + on + rapid_move("a") + "ENDIF\n" + rapid_move("b")), "acdj");
+  EXPECT_EQ(left("IF x THEN\n" + off + "ELSE\n" + rapid_move("a") + "ENDIF\n" + on + rapid_move("b")), "abcdj");
+  EXPECT_EQ(left("TEST x\nCASE 1:\n" + off + "CASE 2:\n" + rapid_move("a") + "ENDTEST\n" + rapid_move("b")), "acdj");
+}
+
+TEST(StatementsReach, BackToTheBeginningOfLoops) {
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "WHILE x DO\n" + rapid_move("b") + "ConfJ\\Off;\nENDWHILE\n")),
+            "acdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "back:\n" + rapid_move("b") + "ConfJ\\Off;\nGOTO back;\n")),
+            "acdj");
+  EXPECT_EQ(corrected(krl_lines("PTP a\nLOOP\nPTP b\nnobody()\nENDLOOP\n")), "a");
+  EXPECT_EQ(corrected(ur_lines("movej(a)\nwhile True:\nmovej(b)\nforce_mode(1)\nend\n")), "a");
+  EXPECT_EQ(
+      corrected(ur_lines("movej(a)\nwhile True:\nforce_mode(1)\nif x:\nbreak\nend\nend_force_mode()\nend\nmovej(b)\n")),
+      "a");
+  EXPECT_EQ(corrected(tp_lines({tp_move(1), "  LBL[1]", tp_move(2), "  CALL X", "  JMP LBL[1]"})).find("P[2]"),
+            std::string::npos);
+  EXPECT_EQ(
+      corrected(tp_lines({tp_move(1), "  LBL[1]", tp_move(2), "  CALL X", "  IF R[1]=1,JMP LBL[R[2]]"})).find("P[2]"),
+      std::string::npos);
+  EXPECT_EQ(corrected(tp_lines({tp_move(1), "  FOR R[1]=1 TO 3", tp_move(2), "  CALL X", "  ENDFOR"})).find("P[2]"),
+            std::string::npos);
+}
+
+TEST(StatementsReach, IntoRoutinesAndOut) {
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "off;\n" + rapid_move("b"), "PROC off()\nConfJ\\Off;\nENDPROC\n")),
+            "acdj");
+  EXPECT_EQ(corrected(rapid_lines("ConfJ\\Off;\non;\n" + rapid_move("a"), "PROC on()\nConfJ\\On;\nENDPROC\n")),
+            "abcdj");
+  EXPECT_EQ(
+      corrected(rapid_lines(rapid_move("a") + "ConfJ\\Off;\nsub;\n", "PROC sub()\n" + rapid_move("b") + "ENDPROC\n")),
+      "acdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "grip;\n" + rapid_move("b"), "PROC grip()\nSetDO x,1;\nENDPROC\n")),
+            "abcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "one;\n", "PROC one()\nmain;\nENDPROC\n")).find('a'),
+            std::string::npos);
+  // a return in the middle
+  EXPECT_EQ(corrected(rapid_lines("sub;\n" + rapid_move("a"),
+                                  "PROC sub()\nConfJ\\Off;\nIF x RETURN;\nConfJ\\On;\nENDPROC\n")),
+            "bcdj");
+  // the tool of a routine is that of its calls
+  const std::string sub = "DEF sub()\nPTP b\nEND\n";
+  const RobotProgram once = krl_lines("BAS(#TOOL,4)\nsub()\nPTP a\n", sub);
+  EXPECT_EQ(named(once, "b").tool + named(once, "a").tool, "44");
+  const RobotProgram twice = krl_lines("BAS(#TOOL,4)\nsub()\nBAS(#TOOL,5)\nsub()\nPTP a\n", sub);
+  EXPECT_EQ(corrected(twice), "a");
+  EXPECT_EQ(about(twice, "b"), "line 8 sets the tool or work object, but not on all ways there");
+}
+
+TEST(StatementsReach, EverywhereFromWhatMayRunAtAnyTime) {
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a"), "TRAP t\nConfJ\\Off;\nENDTRAP\n")), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ERROR\nPDispSet x;\nRETRY;\n")), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ERROR\nTPWrite \"x\";\nRETRY;\n")), "abcdj");
+  EXPECT_EQ(corrected(krl_lines("PTP a\nINTERRUPT DECL 3 WHEN $IN[1] DO sub()\n", "DEF sub()\n$IPO_MODE=#TCP\nEND\n")),
+            "");
+  EXPECT_EQ(corrected(ur_lines("movel(a)\n", "thread t():\nset_tcp(p[0,0,1,0,0,0])\nend\n")), "");
+}
+
+TEST(StatementsReach, ToolsThatAreSetOnSomeWays) {
+  const RobotProgram program = krl_lines("$TOOL=TOOL_DATA[1]\nIF x THEN\n$TOOL=TOOL_DATA[2]\nPTP a\nENDIF\nPTP b\n");
+  EXPECT_EQ(named(program, "a").tool, "2");
+  EXPECT_EQ(about(program, "b"), "line 8 sets the tool or work object, but not on all ways there");
+  EXPECT_EQ(corrected(ur_lines("set_tcp(p[0,0,1,0,0,0])\nif x:\nset_tcp(p[0,0,2,0,0,0])\nend\nmovel(a)\n")), "");
+  EXPECT_EQ(corrected(krl_lines("IF x THEN\nTOOL_DATA[3]={X 0,Y 0,Z 1,A 0,B 0,C 0}\nENDIF\n")), "");
+  EXPECT_EQ(krl_lines("IF x THEN\nTOOL_DATA[3]={X 0,Y 0,Z 1,A 0,B 0,C 0}\nENDIF\n").tools.count("3"), 0u);
+  EXPECT_EQ(krl_lines("BAS(#TOOL,3)\nPTP a\nTOOL_DATA[3]={X 0,Y 0,Z 1,A 0,B 0,C 0}\n").tools.count("3"), 0u);
+}
+
+// ---- what users state ----
+
+TEST(AssumedHarmless, StatementsAndRoutinesOfOtherFiles) {
+  EXPECT_EQ(corrected(rapid_lines("Nobody x;\nn:=other(1);\n" + rapid_move("a"), "", {"NOBODY", "Other"})), "abcdj");
+  EXPECT_EQ(corrected(rapid_lines("ConfJ\\Off;\n" + rapid_move("a"), "", {"confj"})), "abcdj");
+  EXPECT_EQ(corrected(krl_lines("nobody(1)\nPTP a\n", "", {"nobody"})), "a");
+  EXPECT_EQ(corrected(ur_lines("nobody(1)\nmovej(a)\n", "", {"nobody"})), "a");
+  const RobotProgram program = tp_lines({"  CALL GRIP(1)", tp_move(1)}, {"Grip"});
+  EXPECT_EQ(corrected(program), "P[1]P[2]P[3]P[4]");
+  EXPECT_EQ(remarks(program), "");
+}
+
+// ---- details ----
+
+TEST(StatementDetails, TargetsThatRoutinesGet) {
+  const RobotProgram program = rapid_lines("pick a;\nn:=change(b);\nn:=look(c);\n",
+                                           "PROC pick(robtarget p)\n" + rapid_move("p") +
+                                               "ENDPROC\n"
+                                               "FUNC num change(INOUT robtarget p)\nRETURN 1;\nENDFUNC\n"
+                                               "FUNC num look(robtarget p)\nRETURN 1;\nENDFUNC\n");
+  EXPECT_EQ(corrected(program), "cdj");
+  EXPECT_NE(about(program, "a").find("pick a"), std::string::npos);
+  // a parameter hides the target of its name
+  EXPECT_EQ(corrected(rapid_lines("", "PROC pick(robtarget a)\n" + rapid_move("a") + "ENDPROC\n")), "abcdj");
+  EXPECT_NE(remarks(rapid_lines("", "PROC pick(robtarget a)\n" + rapid_move("a") + "ENDPROC\n")).find("a parameter"),
+            std::string::npos);
+  EXPECT_NE(about(krl_lines("sub(a)\n", "DEF sub(p:OUT)\nEND\n"), "a"), "");
+  EXPECT_NE(remarks(ur_lines("", "a=p[1,2,3,0,0,0]\ndef f(a):\nmovel(a)\nend\n")).find("movel(a): a parameter"),
+            std::string::npos);
+}
+
+// What is given to an instruction or routine may be written there; constants are not.
+TEST(StatementDetails, VariablesThatInstructionsGet) {
+  const std::string frame = "[[1,2,3],[1,0,0,0]]", tool = "[TRUE," + frame + ",[1,[0,0,1],[1,0,0,0],0,0,0]];\n";
+  const auto program = [&](const std::string& lines, const std::string& routines = "") {
+    return rapid_lines(lines, routines + "VAR robtarget v:=" + rapid_value + "PERS tooldata gun:=" + tool);
+  };
+  for (const char* statement : {"GetDataVal \"x\",v;\n", "RMQGetMsgData m,v;\n", "TPReadNum v.trans.x,\"x\";\n"})
+    EXPECT_EQ(corrected(program(statement)), "abcdj") << statement;
+  EXPECT_EQ(corrected(program("TPWrite \"x\"\\Pos:=v.trans;\nGetDataVal \"x\",a;\n")), "abcdjv");
+  EXPECT_EQ(program("GetSysData gun;\n").tools.count("gun"), 0u);
+  EXPECT_EQ(program("SetDO x,1;\n").tools.count("gun"), 1u);
+  EXPECT_EQ(program("bend gun;\n", "PROC bend(INOUT tooldata t)\nt.tframe.trans.z:=1;\nENDPROC\n").tools.count("gun"),
+            0u);
+  EXPECT_EQ(named(rapid_lines("use w;\n", "PROC use(PERS wobjdata w)\nMoveL a,v1,fine,tool0\\WObj:=w;\nENDPROC\n"), "a")
+                .workobject,
+            "?");
+  EXPECT_NE(about(krl_lines("CAST_FROM(x[],0,a)\nPTP b\n"), "a"), "");
+  EXPECT_NE(about(krl_lines("s=STRTOPOS(\"x\",a)\nPTP b\n"), "a"), "");
+  const std::string data = "TOOL_DATA[3]={X 0,Y 0,Z 1,A 0,B 0,C 0}\n";
+  EXPECT_EQ(krl_lines(data + "sub(TOOL_DATA[3])\n", "DEF sub(f:OUT)\nEND\n").tools.count("3"), 0u);
+  EXPECT_EQ(named(krl_lines("BAS(#BASE,2)\nsub($BASE)\nPTP a\n", "DEF sub(f:OUT)\nEND\n"), "a").workobject, "?");
+}
+
+TEST(StatementDetails, FramesThatAreSetAgainAreTheSame) {
+  const RobotProgram program =
+      ur_lines("set_tcp(p[0,0,1,0,0,0])\nwhile True:\nmovel(a)\nset_tcp(p[0,0,1,0,0,0])\nmovel(b)\nend\n");
+  EXPECT_EQ(named(program, "a").tool + named(program, "b").tool, "set_tcp of line 6set_tcp of line 6");
+}
+
+TEST(StatementDetails, InstructionsOverSeveralLines) {
+  EXPECT_EQ(corrected(rapid_lines("ConfJ\n\\Off\n;\n" + rapid_move("a"))), "bcdj");
+  EXPECT_EQ(remarks(rapid_lines("a.trans\n:=\n[1,2,3];\n")), "8 a.trans := [1,2,3]: the program changes this target\n");
+  EXPECT_EQ(remarks(rapid_lines("VAR robtarget\nx\n:=\nOffs(a,1,2,3);\n")),
+            "8 robtarget x := Offs(a,1,2,3): computed, not a literal\n");
+}
+
+TEST(StatementDetails, ToolsInFrontOfSignals) {
+  const RobotProgram program = rapid_lines("MoveLDO a,v1,fine,gun\\WObj:=w,do1,1;\nMoveJSync b,v1,fine,gun,\"p\";\n");
+  EXPECT_EQ(named(program, "a").tool + named(program, "a").workobject + named(program, "b").tool, "gunwgun");
+}
+
+TEST(StatementDetails, FramesOfOneMotion) {
+  const RobotProgram program = krl_lines(
+      "$TOOL=$NULLFRAME\n$BASE=BASE_DATA[1]\nSLIN a WITH $TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}, $VEL.CP=1 C_SPL\n"
+      "SLIN b WITH $BASE=BASE_DATA[4]\nSLIN c\nSPLINE WITH $BASE=BASE_DATA[5]\nSPL d\nENDSPLINE\n");
+  EXPECT_EQ(remarks(program), "");
+  ASSERT_EQ(program.tools.count("$TOOL of line 8"), 1u);
+  EXPECT_EQ(program.tools.at("$TOOL of line 8")(2, 3), 0.1);
+  EXPECT_EQ(named(program, "a").tool + named(program, "a").workobject, "$TOOL of line 81");
+  EXPECT_EQ(named(program, "b").tool + named(program, "b").workobject, "04");
+  EXPECT_EQ(named(program, "c").tool + named(program, "c").workobject, "01");
+  EXPECT_EQ(named(program, "d").tool + named(program, "d").workobject, "05");
+  EXPECT_NE(about(krl_lines("SLIN a WITH $IPO_MODE=#TCP\nSLIN b\n"), "a"), "");
+  EXPECT_EQ(corrected(krl_lines("SLIN a WITH $IPO_MODE=#TCP\nSLIN b\n")), "b");
+  EXPECT_EQ(named(krl_lines("SLIN a WITH $TOOL=f\n", "", {}), "a").tool, "?");
+}
+
+TEST(StatementDetails, FramesByFlangeData) {
+  const std::string data = "DECL FDAT FP1={TOOL_NO 3,BASE_NO 2,IPO_FRAME #BASE}\nDECL LDAT L1={VEL 2,ORI_TYP #VAR}\n";
+  const RobotProgram program = krl_lines(data +
+                                         "FDAT_ACT=FP1\nLDAT_ACT=L1\nBAS(#CP_PARAMS,2)\nLIN a\nFDAT_ACT=FP9\n"
+                                         "BAS(#PTP_PARAMS,10)\nPTP b\nBAS(#INITMOV,0)\nPTP c\nPTP d\n");
+  EXPECT_EQ(remarks(program), "");
+  EXPECT_EQ(named(program, "a").tool + named(program, "a").workobject, "32");
+  EXPECT_EQ(named(program, "b").tool + named(program, "b").workobject, "??");
+  EXPECT_EQ(named(program, "c").tool + named(program, "c").workobject, "");
+  EXPECT_NE(remarks(krl_lines("DECL LDAT L2={VEL 2,ORI_TYP #CONSTANT}\n")).find("need not reach their orientation"),
+            std::string::npos);
+}
+
+TEST(StatementDetails, NamesThatBeginAsOptionsDo) {
+  EXPECT_EQ(remarks(krl_lines("PTP a\nPTP b\nPTP c\nPTP d\nDECL E6POS C_HOME\nPTP C_HOME\n")),
+            "11 PTP C_HOME: no literal of this file, perhaps of its data list\n");
+  const RobotProgram program = krl_lines("C_HOME" + krl_value + "PTP C_HOME C_PTP\n");
+  EXPECT_EQ(corrected(program), "c_home");
+}
+
+TEST(StatementDetails, MovesAndElementsOfUrscript) {
+  const RobotProgram program = ur_lines("optimovej([0.2,-1.2,1.5,-1.0,-1.2,0.3], a=0.3, v=0.3)\noptimovel(a)\n");
+  ASSERT_EQ(program.targets.size(), 2u);
+  EXPECT_EQ(program.targets[0].move, TargetMove::joint);
+  EXPECT_EQ(program.targets[0].joints(2), 1.5);
+  EXPECT_EQ(named(program, "a").move, TargetMove::linear);
+  EXPECT_EQ(remarks(ur_lines(
+                "q1=[0,0,0,0,0,0]\nmovej(q1)\nq1[0] = 0.9\nmovej(q1)\nmovej(a)\nmovej(b)\nmovej(c)\nmovej(d)\n")),
+            "8 q1[0] = 0.9: the program changes this target\n");
+  EXPECT_EQ(remarks(ur_lines("movej(a)\nmovej(b)\nmovej(c)\nmovej(get_inverse_kin(d,qnear=x,tcp=y))\n")),
+            "5 d: no move of this file uses it\n9 movej(get_inverse_kin(d,qnear=x,tcp=y)): a tool of its own\n");
+}
+
+}  // namespace
+}  // namespace vernier::robot_statements_test

@@ -133,7 +133,7 @@ def test(options, folder, timeout=None):
 def run(options):
     drawn = json.loads(pathlib.Path(options.bugs).read_text())
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(2))  # as an interruption: the file is restored
-    resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))  # of each process: a loop without end may allocate
+    resource.setrlimit(resource.RLIMIT_DATA, (8 << 30, 8 << 30))  # per process: a loop without end may allocate
     results, seconds = [], {}
     for bug, (file, number) in zip(drawn["bugs"], list(map(located, drawn["bugs"]))):
         folder = file.parts[2]

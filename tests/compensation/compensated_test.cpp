@@ -9,37 +9,22 @@
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/core/points.hpp>
 #include <vernier/core/rng.hpp>
-#include <vernier/evaluation/statistics.hpp>
 #include <vernier/identification/calibrated.hpp>
-#include <vernier/kinematics/robots.hpp>
-#include <vernier/simulation/sampling.hpp>
-#include <vernier/simulation/virtual_robot.hpp>
-#include <vernier/testing/compensator_laws.hpp>
-#include <vernier/testing/kinematic_laws.hpp>
 
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
+#include "irb120.hpp"
 #include "larger.hpp"
-#include "laws.hpp"
 
 namespace compensated_test {
 namespace {
 
 using namespace vernier;
-using vernier_test::mentions;
-using vernier_test::no_violations;
-
-const Robot<6> robot = robots::abb_irb120();
-const DhChain<6> nominal = robot.chain;
+using namespace vernier_test;
 
 Vector3 linear_part(const Vector6& twist) { return {twist(0), twist(1), twist(2)}; }
 Vector3 angular_part(const Vector6& twist) { return {twist(3), twist(4), twist(5)}; }
 const double infinity = std::numeric_limits<double>::infinity();
-
-DhChain<6> actual_arm(std::uint64_t seed = 1) { return with_geometric_errors(nominal, {}, seed); }
-JointRows<6> operating_targets(Index n, std::uint64_t seed = 2) {
-  return abb_irb120_operating_region().sample(nominal, n, seed);
-}
 
 using Geometry = Compensated<DhChain<6>, DhChain<6>>;
 static_assert(Compensator<Geometry> && KinematicModel<Geometry>);

@@ -9,36 +9,18 @@
 #include <vernier/compensation/cartesian.hpp>
 #include <vernier/compensation/joint_space.hpp>
 #include <vernier/core/points.hpp>
-#include <vernier/evaluation/statistics.hpp>
-#include <vernier/kinematics/robots.hpp>
-#include <vernier/regression/elm.hpp>
 #include <vernier/regression/ridge_elm.hpp>
-#include <vernier/simulation/sampling.hpp>
-#include <vernier/simulation/virtual_robot.hpp>
-#include <vernier/testing/compensator_laws.hpp>
-#include <vernier/testing/kinematic_laws.hpp>
 
 #include "allocation_counter.hpp"
 #include "complaint.hpp"
-#include "laws.hpp"
+#include "irb120.hpp"
 #include "real_matrix.hpp"
 
 namespace joint_space_test {
 namespace {
 
 using namespace vernier;
-using vernier_test::complaint;
-using vernier_test::no_violations;
-using vernier_test::RealMatrix;
-
-const Robot<6> robot = robots::abb_irb120();
-const DhChain<6> nominal = robot.chain;
-const Elm small_elm{.hidden_nodes = 120, .input_map = InputMap::sines_and_cosines};
-
-DhChain<6> actual_arm(std::uint64_t seed = 1) { return with_geometric_errors(nominal, {}, seed); }
-JointRows<6> operating_targets(Index n, std::uint64_t seed) {
-  return abb_irb120_operating_region().sample(nominal, n, seed);
-}
+using namespace vernier_test;
 
 Dataset<6> training(const DhChain<6>& actual, Index n = 600) {
   return measure(actual, operating_targets(n, 10), {.position = 0.02e-3, .orientation = 0.05e-3}, 1);
@@ -108,23 +90,7 @@ TEST(JointCompensation, ImprovesFreshPoses) {
 }
 
 TEST(JointCompensation, ObeysTheLawsOfModelsAndCompensators) {
-  const auto fitted = JointCompensation{small_elm}.fit(nominal, training(actual_arm()), {.seed = 1});
-  const auto inside = operating_targets(50, 7);
-  EXPECT_TRUE(no_violations(vernier::testing::kinematic_model_violations(fitted, inside)));
-  EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(fitted, inside)));
-  JointLimits<6> wider = abb_irb120_operating_region().limits;
-  const JointVector<6> range = wider.upper - wider.lower;
-  wider.lower -= 0.12 * range;
-  wider.upper += 0.12 * range;
-  const auto around = sample_joints(wider, 300, 9);
-  int falling = 0;
-  for (Index i = 0; i < around.rows(); ++i) {
-    const double gate = fitted.identified().gate(configuration(around, i));
-    falling += gate > 0 && gate < 1;
-  }
-  EXPECT_GT(falling, 100);
-  EXPECT_TRUE(no_violations(vernier::testing::kinematic_model_violations(fitted, around)));
-  EXPECT_TRUE(no_violations(vernier::testing::compensator_violations(fitted, around)));
+  expect_laws_around_the_gate(JointCompensation{small_elm}.fit(nominal, training(actual_arm()), {.seed = 1}));
 }
 
 TEST(JointCompensation, AHybridKeepsTheOriginalReference) {
@@ -135,10 +101,7 @@ TEST(JointCompensation, AHybridKeepsTheOriginalReference) {
   static_assert(std::same_as<std::remove_cvref_t<decltype(hybrid.nominal())>, DhChain<6>>);
   EXPECT_TRUE(hybrid.nominal() == nominal);
   const auto fresh = operating_targets(200, 99);
-  const auto mean = [&](const auto& compensator) {
-    return positioning_errors(actual, nominal, corrected_commands(compensator, fresh), fresh).position.mean();
-  };
-  EXPECT_LT(mean(hybrid), 0.5 * mean(geometry));
+  EXPECT_LT(mean_error(actual, hybrid, fresh), 0.5 * mean_error(actual, geometry, fresh));
 }
 
 TEST(DirectJointCompensator, TheCommandIsTargetMinusLearned) {

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "vernier/core/so3.hpp"
+#include "vernier/core/points.hpp"
 
 namespace vernier::path_solver_test {
 namespace {
@@ -29,16 +29,12 @@ detail::PathJoints joints_of(std::initializer_list<double> values) {
 struct BowedSlides {
   double bow = 0;
   bool other_branch = false;
-  double twist = 0;                            ///< about z, as much there as `bow`
   std::function<double(double)> way = {};      ///< how far it is off at x, in place of an arc
   std::function<int(double)> branch = {};      ///< in which branch it is at x
   std::function<double(double)> cost_at = {};  ///< of being at y
   double reach = 1e3;                          ///< how far from where it begins Newton's method finds the target
   double nominal_reach = 1e3;                  ///< the same of the nominal arm
   double hole = -1e3;                          ///< the x of a target that is not met
-  double leap = -1e3;                          ///< the x at which the nominal arm's first slide is off by 2.5
-  std::vector<double>* asked = nullptr;        ///< takes the x near which branches are asked for
-  double left = 0;                             ///< what remains of errors: positions so much, rotations twice that
   std::vector<double> more = {};               ///< further branches, at x = 0 and these y
   double lag = 0;  ///< how much of the y that it comes from is added to where it is, as hysteresis may do
 
@@ -52,12 +48,10 @@ struct BowedSlides {
       const Vector3 p = translation(target);
       const bool near = std::abs(command(0) - p.x()) <= reach;
       if (!other_branch && near) command = joints_of({p.x(), p.y() - off(p.x()) - lagging(from)});
-      errors[0] = left;
-      errors[1] = 2 * left;
+      errors[0] = errors[1] = 0;
       return near && p.x() != hole;
     };
-    const auto branches = [&](const Isometry3& target, const PathJoints& near, std::vector<detail::PathBranch>& out) {
-      if (asked != nullptr) asked->push_back(near(0));
+    const auto branches = [&](const Isometry3& target, const PathJoints&, std::vector<detail::PathBranch>& out) {
       const Vector3 p = translation(target);
       out.push_back({joints_of({p.x(), p.y() - off(p.x())}), id_at(p.x())});
       if (other_branch) out.push_back({joints_of({0, 2}), 1});
@@ -65,13 +59,12 @@ struct BowedSlides {
       return Reach::met;
     };
     const auto pose = [&](const PathJoints& q, const PathJoints& from) {
-      return rigid_motion(exp_so3(Vector3(0, 0, 4 * twist * q(0) * (1 - q(0)))),
-                          Vector3(q(0), q(1) + off(q(0)) + lagging(from), 0));
+      return at(q(0), q(1) + off(q(0)) + lagging(from));
     };
     const auto nominal_pose = [&](const PathJoints& q) { return at(q(0), q(1)); };
     const auto nominal_joints = [&](const Isometry3& target, PathJoints& q) {
       const bool near = std::abs(q(0) - target(0, 3)) <= nominal_reach;
-      q = joints_of({target(0, 3) + (target(0, 3) == leap ? 2.5 : 0), target(1, 3)});
+      q = joints_of({target(0, 3), target(1, 3)});
       return near;
     };
     const auto cost = [&](const PathJoints& q) { return cost_at ? cost_at(q(1)) : 0.0; };
@@ -99,17 +92,6 @@ TEST(PathSolverWhiteBox, AJointThatTurnedRoundComesFromTheCommandBeyondATransiti
   EXPECT_EQ(from(5), 0);             // has not moved since
 }
 
-TEST(PathSolverWhiteBox, SpeedsChooseTheBranch) {
-  const BowedSlides arm{.other_branch = true};
-  const std::vector<detail::PathGoal> goals{{rigid_motion(Matrix3::Identity(), Vector3(1, 0, 0)), {}, Motion::joint}};
-  // 1 m of the first slide or 2 m of the second
-  const auto second = [&](double speed) {
-    return arm.path(goals, slides_settings(joints_of({1, speed}))).points.front().command(1);
-  };
-  EXPECT_EQ(second(1.9), 0);
-  EXPECT_EQ(second(2.1), 2);
-}
-
 TEST(PathSolverWhiteBox, DeviationsShrinkWithTheSquareOfAPiece) {
   const BowedSlides arm{.bow = 15.5e-3};  // in units of the tolerance of 1 mm: sqrt(15.5) pieces, rounded up
   const detail::SolvedPath path = arm.path({{rigid_motion(Matrix3::Identity(), Vector3(0, 0, 0)), {}, Motion::joint},
@@ -130,40 +112,11 @@ std::vector<detail::PathGoal> line_through(std::initializer_list<double> places)
   return out;
 }
 
-TEST(PathSolverWhiteBox, TheLargestDeviationOfAllLinesIsReported) {
-  // the second line is 0.4 long, so off by 0.16 of the first, and half of it by a quarter of that
-  const detail::SolvedPath path =
-      BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.6}), slides_settings(joints_of({1, 1})));
-  ASSERT_EQ(path.points.size(), 7u);
-  EXPECT_NEAR(path.points[6].deviation, 0.04 * 15.5e-3, 1e-12);
-  EXPECT_NEAR(path.points[6].ends_only, 0.16 * 15.5e-3, 1e-12);
-  EXPECT_NEAR(path.before, 15.5e-3, 1e-12);
-  EXPECT_NEAR(path.after, 15.5e-3 / 16, 1e-12);
-}
-
 TEST(PathSolverWhiteBox, AJointComesFromWhereItTurnedRound) {
   const detail::SolvedPath path =
       BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.6}), slides_settings(joints_of({1, 1})));
   ASSERT_EQ(path.points.size(), 7u);  // in four pieces from 0 to 1, in two from there to 0.6
   for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(path.points[k].coming(0), k < 5 ? 0 : 1, 1e-15) << k;
-}
-
-TEST(PathSolverWhiteBox, NoStepIsLongerThanAllowed) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
-  settings.max_joint_step = 0.35;
-  const detail::SolvedPath path = BowedSlides{}.path(line_through({1}), settings);  // a straight line already
-  ASSERT_EQ(path.points.size(), 4u);
-  for (std::size_t k = 1; k < 4; ++k) EXPECT_NEAR(path.points[k].command(0), static_cast<double>(k) / 3, 1e-15);
-}
-
-TEST(PathSolverWhiteBox, OrientationsHaveATolerance) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
-  settings.max_inserted = 3;  // slides cannot turn the tool, however many there are
-  for (const double tolerance : {1.8e-3, 2.1e-3}) {
-    settings.rotation_tolerance = tolerance;
-    const detail::SolvedPath path = BowedSlides{.twist = 2e-3}.path(line_through({1}), settings);
-    EXPECT_EQ(path.points.back().status, tolerance > 2e-3 ? PointStatus::met : PointStatus::off_path);
-  }
 }
 
 PointStatus last_status(const BowedSlides& arm, double x, Motion motion = Motion::linear) {
@@ -224,16 +177,6 @@ TEST(PathSolverWhiteBox, ALineIsWatchedAtItsQuarters) {
   }
 }
 
-TEST(PathSolverWhiteBox, EveryPointSaysWhatIsLeft) {
-  const BowedSlides arm{.bow = 5e-3, .left = 1e-7};
-  const detail::SolvedPath path = arm.path(line_through({1}), slides_settings(joints_of({1, 1})));
-  ASSERT_EQ(path.points.size(), 4u);
-  for (const detail::SolvedPoint& point : path.points) {
-    EXPECT_EQ(point.position_error, 1e-7);
-    EXPECT_EQ(point.rotation_error, 2e-7);
-  }
-}
-
 TEST(PathSolverWhiteBox, NothingIsAskedOfTheMoveToTheFirstTarget) {
   std::vector<detail::PathGoal> goals = line_through({0.1});
   goals.front().motion = Motion::linear;
@@ -284,17 +227,6 @@ TEST(PathSolverWhiteBox, ALongLineEndsWithTheTurnsThatItTook) {
   const detail::SolvedPath path = BowedSlides{}.path(line_through({5}), settings);
   EXPECT_EQ(path.points.back().status, PointStatus::met);
   EXPECT_NEAR(path.points.back().command(0), 5, 1e-12);  // not 5 - 2 pi, which is nearer to the start
-}
-
-TEST(PathSolverWhiteBox, CostsOfPlacesChooseTheBranch) {
-  std::vector<detail::PathGoal> goals = line_through({});
-  goals.front().pose(0, 3) = 1;
-  const auto branch = [&](double cost) {  // 1 m to the first branch, 2 m to the other
-    const BowedSlides arm{.other_branch = true, .cost_at = [=](double y) { return y == 0 ? cost : 0; }};
-    return arm.path(goals, slides_settings(joints_of({1, 1}))).points.back().command(1);
-  };
-  EXPECT_EQ(branch(0.9), 0);
-  EXPECT_EQ(branch(1.1), 2);
 }
 
 /// Settings of slides that count turns: 10 m either way.
@@ -365,34 +297,6 @@ TEST(PathSolverWhiteBox, FinerPiecesThatAreWorseAreNotTaken) {
   EXPECT_EQ(path.points.back().ends_only, 0);
 }
 
-// Where the deviation from the line is unknown, because the nominal arm jumps on the way, eight pieces are tried first.
-TEST(PathSolverWhiteBox, EightPiecesAreTriedWhereTheNominalArmLeaps) {
-  const detail::SolvedPath path = BowedSlides{.leap = 0.25}.path(line_through({1}), slides_settings(joints_of({1, 1})));
-  ASSERT_EQ(path.points.size(), 9u);
-  for (std::size_t k = 0; k < 9; ++k) {
-    EXPECT_EQ(path.points[k].status, PointStatus::met);
-    EXPECT_NEAR(path.points[k].command(0), 0.125 * static_cast<double>(k), 1e-15);
-  }
-}
-
-TEST(PathSolverWhiteBox, BranchesAreAskedForNearTheTargetBefore) {
-  std::vector<double> asked;
-  BowedSlides arm;
-  arm.asked = &asked;
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
-  settings.start(0) = -0.5;
-  (void)arm.path(line_through({1, 0.6}), settings);
-  EXPECT_EQ(asked, (std::vector<double>{-0.5, 0, 1}));
-}
-
-TEST(PathSolverWhiteBox, ALineThatNeedsNoPointsDeviatesAsItDid) {
-  const detail::SolvedPath path =
-      BowedSlides{.bow = 0.75e-3}.path(line_through({1}), slides_settings(joints_of({1, 1})));
-  ASSERT_EQ(path.points.size(), 2u);
-  for (const double deviation : {path.before, path.after, path.points[1].deviation, path.points[1].ends_only})
-    EXPECT_NEAR(deviation, 0.75e-3, 1e-15);
-}
-
 // Two pieces are too few for the first line; the second line begins where it ends.
 TEST(PathSolverWhiteBox, ALineGoesOnFromOneThatWasLeft) {
   detail::PathSettings settings = slides_settings(joints_of({1, 1}));
@@ -426,19 +330,6 @@ TEST(PathSolverWhiteBox, ATargetOutOfReachOfNewtonsMethodIsNotFound) {
   EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::beyond_limits);
 }
 
-// Past a step in its errors the arm leaves the line by half or three quarters of the step, depending on where in a
-// piece it is: two pieces, four, eight.
-TEST(PathSolverWhiteBox, PiecesAreDividedInTwo) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
-  settings.max_inserted = 7;
-  const BowedSlides arm{.way = [](double x) { return x > 0.6 ? 6e-3 : 0; }};
-  const detail::SolvedPath path = arm.path(line_through({1}), settings);
-  EXPECT_NEAR(path.before, 3e-3, 1e-12);
-  ASSERT_EQ(path.points.size(), 5u);
-  EXPECT_NEAR(path.after, 3e-3, 1e-12);
-  EXPECT_EQ(path.points.back().status, PointStatus::off_path);
-}
-
 // Where the correction turns a joint round, the command is corrected once more for the approach that this makes.
 TEST(PathSolverWhiteBox, CommandsAndApproachesFitOneAnother) {
   detail::PathSettings settings = slides_settings(joints_of({1, 1}));
@@ -453,35 +344,6 @@ TEST(PathSolverWhiteBox, CommandsAndApproachesFitOneAnother) {
     const detail::PathJoints coming = detail::approach_on_the_way(before.coming, before.command, point.command);
     EXPECT_NEAR(point.coming(1), coming(1), 1e-4) << k;
   }
-}
-
-// On the way no more turns are tried than those of the two branches nearest to the cheapest place.
-TEST(PathSolverWhiteBox, OnTheWayTurnsOfTheNearestTwoBranchesAreTried) {
-  std::vector<detail::PathGoal> goals = line_through({0});
-  goals.back().motion = Motion::joint;
-  goals.back().pose(1, 3) = 1;  // by branches at 0.3, 0.6, 1
-  for (const double turned : {0.6, 1.0}) {
-    const auto measured = [&](double y) { return std::abs(y) < 0.1 || std::abs(y - turned - 2 * pi) < 0.1; };
-    const BowedSlides arm{
-        .other_branch = true, .cost_at = [&](double y) { return measured(y) ? 0 : 100; }, .more = {0.3, 0.6}};
-    const detail::SolvedPath path = arm.path(goals, wide_settings());
-    ASSERT_EQ(path.points.size(), 2u);
-    EXPECT_NEAR(path.points.back().command(1), turned == 0.6 ? 0.6 + 2 * pi : 0.3, 1e-12);
-  }
-}
-
-// Of many states at a target the forty cheapest are kept.
-TEST(PathSolverWhiteBox, FortyStatesOfATargetAreKept) {
-  std::vector<detail::PathGoal> goals = line_through({0});
-  goals.back().motion = Motion::joint;
-  goals.back().joints = joints_of({0, 2.9});
-  BowedSlides arm{.other_branch = true, .cost_at = [](double y) { return 10 * (y + 3); }};
-  for (int k = 0; k < 60; ++k) arm.more.push_back(-2.9 + 0.05 * k);
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
-  settings.start(0) = std::nan("");  // so that the way to the first target hardly counts
-  const detail::SolvedPath path = arm.path(goals, settings);
-  ASSERT_EQ(path.points.size(), 2u);
-  EXPECT_NEAR(path.points[0].command(1), -2.9 + 0.05 * 39, 1e-12);  // of them the nearest to the second target
 }
 
 }  // namespace

@@ -40,12 +40,8 @@ TEST(Message, CountsInSingularAndPlural) {
 
 TEST(Require, ThrowsTheMessageWhenTheConditionFails) {
   EXPECT_NO_THROW(vn::require(true, "never seen"));
-  try {
-    vn::require(false, "Elm: hidden_nodes is ", 0, ", must be at least ", 1);
-    FAIL() << "did not throw";
-  } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "Elm: hidden_nodes is 0, must be at least 1");
-  }
+  EXPECT_EQ(complaint([] { vn::require(false, "Elm: hidden_nodes is ", 0, ", must be at least ", 1); }),
+            "Elm: hidden_nodes is 0, must be at least 1");
 }
 
 TEST(Box, ChecksItsBoundsAndNamesThem) {
@@ -70,11 +66,6 @@ TEST(Box, ChecksItsBoundsAndNamesThem) {
   bad.lower(1) = 5;
   EXPECT_EQ(complaint([&] { bad.validate(); }),
             "Box: dimension 1 has bounds [5, 2], must be finite and lower below upper");
-  bad = box;
-  bad.upper(2) = std::numeric_limits<double>::infinity();
-  EXPECT_NE(complaint([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
-  bad.upper(2) = std::nan("");
-  EXPECT_NE(complaint([&] { bad.validate(); }).find("dimension 2"), std::string::npos);
   bad.upper.resize(2);
   EXPECT_EQ(complaint([&] { bad.validate(); }), "Box: 3 lower and 2 upper bounds");
   EXPECT_EQ(complaint([] { vn::Box{}.validate(); }), "Box: 0 lower and 0 upper bounds");
@@ -85,8 +76,10 @@ TEST(Box, MayHaveOneDimensionButNotAnEmptyOrAnEndlessOne) {
   EXPECT_EQ(line.dimension(), 1);
   EXPECT_NO_THROW(line.validate());
   // the width counts, not the bounds: a search computes with it
-  for (const auto& [lower, upper] : {std::pair{1.0, 1.0}, std::pair{2.0, 1.0}, std::pair{-6e299, 6e299},
-                                     std::pair{0.0, 1.2e300}, std::pair{std::nan(""), 1.0}}) {
+  for (const auto& [lower, upper] :
+       {std::pair{1.0, 1.0}, std::pair{2.0, 1.0}, std::pair{-6e299, 6e299}, std::pair{0.0, 1.2e300},
+        std::pair{std::nan(""), 1.0}, std::pair{0.0, std::nan("")},
+        std::pair{0.0, std::numeric_limits<double>::infinity()}}) {
     vn::Box bad = line;
     bad.lower(0) = lower;
     bad.upper(0) = upper;

@@ -15,10 +15,7 @@ namespace vernier::dense_test {
 namespace {
 
 using namespace detail;
-using vernier_test::difference;
-using vernier_test::lower_triangle;
-using vernier_test::RealMatrix;
-using vernier_test::vector;
+using namespace vernier_test;
 
 constexpr Index sizes[] = {1, 2, 5, 33, 200};
 
@@ -75,12 +72,6 @@ TEST(DenseWhiteBox, ProductsScalingsAndSums) {
   EXPECT_EQ(RealMatrix(squared_column_norms(a)), vector({35, 56}));
   EXPECT_EQ(RealMatrix(squared_row_norms(a)), vector({5, 25, 61}));
   EXPECT_EQ(weighted_square(vector({1, 2, -3}), vector({4, 5, 6})), -42);
-  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    MatrixX with_one = a;
-    EXPECT_TRUE(all_finite(with_one));
-    with_one(2, 1) = -bad;
-    EXPECT_FALSE(all_finite(with_one));
-  }
 }
 
 TEST(DenseWhiteBox, WhatIsNotFiniteIsSeenAnywhere) {

@@ -21,9 +21,11 @@ TEST(ExecutorLaws, OurOwn) {
   EXPECT_TRUE(no_violations(executor_violations(sequential)));
   const ExecutorRef none;
   EXPECT_TRUE(no_violations(executor_violations(none)));
-  for (const int threads : {1, 2, 3}) {
+  for (const int threads : {1, 2, 3, 8, 17}) {
     const ThreadExecutor executor(threads);
+    const ExecutorRef reference(executor);
     EXPECT_TRUE(no_violations(executor_violations(executor))) << threads << " threads";
+    EXPECT_TRUE(no_violations(executor_violations(reference))) << threads << " threads";
   }
 }
 

@@ -61,14 +61,10 @@ TEST(FunctionRef, CallsWhatItRefersTo) {
   EXPECT_EQ(Unary(pointer)(4), 8);
 }
 
-TEST(FunctionRef, TakesAPlainFunction) {
-  const Unary reference(twice);
-  EXPECT_EQ(reference(21), 42);
-}
-
 TEST(FunctionRef, IsEmptyUnlessItRefers) {
   EXPECT_FALSE(Unary());
   EXPECT_TRUE(Unary(twice));
+  EXPECT_EQ(Unary(twice)(21), 42);
 }
 
 TEST(FunctionRef, PassesReferencesAndMovesArguments) {
@@ -89,18 +85,10 @@ static_assert(!std::is_constructible_v<vn::ObserverRef, void (*&)(int)>);
 
 TEST(ObserverRef, ReportsAndMayAskToStop) {
   EXPECT_TRUE(vn::ObserverRef()(vn::Progress{})) << "nobody watches: go on";
-  const vn::Progress begin{};
-  EXPECT_EQ(begin.generation, 0);
-  EXPECT_EQ(begin.evaluations, 0);
-  EXPECT_EQ(begin.best, 0);
   vn::Index seen = 0;
   const auto watch = [&](const vn::Progress& progress) { seen = progress.generation; };
   EXPECT_TRUE(vn::ObserverRef(watch)({.generation = 4}));
   EXPECT_EQ(seen, 4);
-  const auto stop_at_two = [](const vn::Progress& progress) { return progress.generation < 2; };
-  const vn::ObserverRef observer(stop_at_two);
-  EXPECT_TRUE(observer({.generation = 1}));
-  EXPECT_FALSE(observer({.generation = 2}));
   struct Stateful {
     int calls = 0;
     bool operator()(const vn::Progress&) { return ++calls < 3; }

@@ -8,7 +8,6 @@
 #include <bit>
 #include <map>
 #include <random>
-#include <set>
 
 namespace vn = vernier;
 
@@ -43,84 +42,21 @@ TEST(Rng, SequenceIsThatOfXoshiro256PlusPlus) {
   for (const std::uint64_t expected : sequence) EXPECT_EQ(rng(), expected);
 }
 
-TEST(Rng, SeedAndSequenceTogether) {
-  constexpr std::uint64_t seed_0[] = {0x53175d61490b23df, 0x61da6f3dc380d507, 0x5c0fdf91ec9a7bfc, 0x02eebf8c3bbe5e1a};
-  constexpr std::uint64_t seed_42[] = {0xd0764d4f4476689f, 0x519e4174576f3791, 0xfbe07cfb0c24ed8c, 0xb37d9f600cd835b8};
-  vn::Rng a(0), b(42);
-  for (const std::uint64_t expected : seed_0) EXPECT_EQ(a(), expected);
-  for (const std::uint64_t expected : seed_42) EXPECT_EQ(b(), expected);
-  // uniform() is the upper 53 bits; also a constant expression.
-  constexpr double first = vn::Rng(0).uniform();
-  static_assert(first == static_cast<double>(0x53175d61490b23dfu >> 11) / 9007199254740992.0);
-}
-
-TEST(Rng, ACopyContinuesAlike) {
-  vn::Rng a(5);
-  a.normal();
-  vn::Rng b = a;
-  EXPECT_EQ(a, b);
-  EXPECT_EQ(a.normal(), b.normal());
-  a();
-  EXPECT_FALSE(a == b);
-}
+// The upper 53 bits of the first number of seed 0.
+constexpr double first = vn::Rng(0).uniform();
+static_assert(first == static_cast<double>(0x53175d61490b23dfu >> 11) / 9007199254740992.0);
 
 // Bounds of five standard deviations of the estimate: a right generator fails one in two million seeds.
 constexpr double five_sigma = 5;
 
-TEST(Rng, UniformHasItsMoments) {
-  constexpr int n = 1'000'000;
-  vn::Rng rng(1);
-  double sum = 0, sum2 = 0, lagged = 0, last = 0, low = 1, high = 0;
-  for (int i = 0; i < n; ++i) {
-    const double u = rng.uniform();
-    sum += u;
-    sum2 += (u - 0.5) * (u - 0.5);
-    lagged += (u - 0.5) * (last - 0.5);
-    last = u;
-    low = std::min(low, u);
-    high = std::max(high, u);
-  }
-  EXPECT_GE(low, 0);
-  EXPECT_LT(high, 1);
-  EXPECT_LT(low, 20.0 / n);
-  EXPECT_GT(high, 1 - 20.0 / n);
-  EXPECT_NEAR(sum / n, 0.5, five_sigma / std::sqrt(12.0 * n));
-  EXPECT_NEAR(sum2 / n, 1.0 / 12, five_sigma / std::sqrt(180.0 * n));  // var((u - 1/2)^2) = 1/80 - 1/144
-  EXPECT_NEAR(lagged / n, 0, five_sigma / 12 / std::sqrt(1.0 * n));
+// Between bounds it is the number between 0 and 1, stretched.
+TEST(Rng, UniformBetweenBounds) {
+  vn::Rng rng(1), unit(1);
   for (int i = 0; i < 1000; ++i) {
     const double u = rng.uniform(-3, 2);
+    EXPECT_NEAR(u, -3 + 5 * unit.uniform(), 1e-15);
     ASSERT_TRUE(u >= -3 && u < 2);
   }
-}
-
-TEST(Rng, NormalHasItsMomentsAndItsShape) {
-  constexpr int n = 1'000'000;
-  vn::Rng rng(2);
-  std::vector<double> x(n);
-  double m1 = 0, m2 = 0, m3 = 0, m4 = 0, lagged = 0;
-  for (int i = 0; i < n; ++i) {
-    const double z = rng.normal();
-    m1 += z;
-    m2 += z * z;
-    m3 += z * z * z;
-    m4 += z * z * z * z;
-    if (i > 0) lagged += z * x[static_cast<std::size_t>(i - 1)];
-    x[static_cast<std::size_t>(i)] = z;
-  }
-  const double root = std::sqrt(1.0 * n);
-  EXPECT_NEAR(m1 / n, 0, five_sigma / root);
-  EXPECT_NEAR(m2 / n, 1, five_sigma * std::sqrt(2.0) / root);   // var(z^2) = 2
-  EXPECT_NEAR(m3 / n, 0, five_sigma * std::sqrt(15.0) / root);  // var(z^3) = 15
-  EXPECT_NEAR(m4 / n, 3, five_sigma * std::sqrt(96.0) / root);  // var(z^4) = 105 - 9
-  EXPECT_NEAR(lagged / n, 0, five_sigma / root);
-  // Kolmogorov and Smirnov: the largest gap of the distribution functions, 1.95 at a level of 0.001.
-  std::sort(x.begin(), x.end());
-  double gap = 0;
-  for (int i = 0; i < n; ++i) {
-    const double cdf = 0.5 * std::erfc(-x[static_cast<std::size_t>(i)] / std::sqrt(2.0));
-    gap = std::max({gap, std::abs(cdf - static_cast<double>(i) / n), std::abs(cdf - static_cast<double>(i + 1) / n)});
-  }
-  EXPECT_LE(gap, 1.95 / root);
 }
 
 // The polar method keeps the direction of a uniform point in the unit disk, s its squared distance from the centre, and
@@ -148,17 +84,8 @@ TEST(Rng, NormalPairsLieInTheDirectionsOfUniformPoints) {
   EXPECT_GT(outside, 20);
 }
 
-TEST(Rng, SignsAreEven) {
-  constexpr int n = 100'000;
-  vn::Rng rng(3);
-  double sum = 0;
-  for (int i = 0; i < n; ++i) {
-    const double s = rng.sign();
-    ASSERT_EQ(std::abs(s), 1);
-    sum += s;
-  }
-  EXPECT_NEAR(sum / n, 0, five_sigma / std::sqrt(1.0 * n));
-  // the first bit of a word, set for +1: as in every release, so that seeded results stay
+// The first bit of a word, set for +1: as in every release, so that seeded results stay.
+TEST(Rng, SignsAreFirstBits) {
   vn::Rng words(4), signs(4);
   for (int i = 0; i < 100; ++i) {
     const bool upper_half = words() >= std::uint64_t{1} << 63;
@@ -178,16 +105,6 @@ TEST(Rng, BelowHasNoModuloBias) {
     low += r < n / 3;
   }
   EXPECT_NEAR(static_cast<double>(low) / draws, 1.0 / 3, five_sigma * std::sqrt(2.0 / 9 / draws));
-}
-
-TEST(Rng, BelowReachesEveryNumberEvenly) {
-  constexpr int n = 7, draws = 70'000;
-  vn::Rng rng(5);
-  int counts[n] = {};
-  for (int i = 0; i < draws; ++i) ++counts[rng.below(n)];
-  for (const int count : counts)
-    EXPECT_NEAR(static_cast<double>(count) / draws, 1.0 / n, five_sigma * std::sqrt(6.0 / 49 / draws));
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(rng.below(1), 0u);
 }
 
 TEST(Rng, PermutationsAreWholeAndEven) {
@@ -214,16 +131,6 @@ TEST(Rng, PermutationsAreWholeAndEven) {
     EXPECT_NEAR(static_cast<double>(count) / draws, 1.0 / 24, five_sigma * std::sqrt(23.0 / 576 / draws));
 }
 
-TEST(Rng, ChildSeedsDiffer) {
-  std::set<std::uint64_t> seeds;
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    seeds.insert(seed);
-    for (std::uint64_t stream = 0; stream < 100; ++stream) seeds.insert(vn::child_seed(seed, stream));
-  }
-  EXPECT_EQ(seeds.size(), 100u + 100u * 100u);
-  static_assert(vn::child_seed(1, 2) == vn::child_seed(1, 2));
-}
-
 // What a stream adds to the seed: the multiples of one odd number, counted from 1. Seeds that undo it leave the stream
 // of seed 0. Another rule would change every seeded result.
 TEST(Rng, ChildSeedsAreThoseOfEveryRelease) {
@@ -231,28 +138,6 @@ TEST(Rng, ChildSeedsAreThoseOfEveryRelease) {
   EXPECT_EQ(vn::child_seed(0, ~std::uint64_t{0}), first_of_seed_0);  // 0 times
   EXPECT_EQ(vn::child_seed(odd, 0), first_of_seed_0);
   EXPECT_EQ(vn::child_seed(odd + odd, 1), first_of_seed_0);
-}
-
-// Streams of one seed share no number, not even shifted, and do not correlate.
-TEST(Rng, ChildStreamsAreIndependent) {
-  constexpr int streams = 20, draws = 500;
-  std::set<std::uint64_t> numbers;
-  std::vector<std::vector<double>> uniforms;
-  for (std::uint64_t stream = 0; stream < streams; ++stream) {
-    vn::Rng rng(vn::child_seed(7, stream)), again = rng;
-    uniforms.emplace_back();
-    for (int k = 0; k < draws; ++k) {
-      numbers.insert(rng());
-      uniforms.back().push_back(again.uniform() - 0.5);
-    }
-  }
-  EXPECT_EQ(numbers.size(), static_cast<std::size_t>(streams * draws));
-  for (std::size_t a = 0; a < streams; ++a)
-    for (std::size_t b = 0; b < a; ++b) {
-      double sum = 0;
-      for (std::size_t k = 0; k < draws; ++k) sum += 12 * uniforms[a][k] * uniforms[b][k];
-      EXPECT_LT(std::abs(sum) / std::sqrt(draws), 5) << a << ", " << b;  // five standard deviations
-    }
 }
 
 }  // namespace

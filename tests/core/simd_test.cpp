@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "vernier/core/rng.hpp"
-#include "vernier/kinematics/detail/constexpr_trig.hpp"
 
 namespace vernier::simd_test {
 namespace {
@@ -100,19 +99,6 @@ TEST(VectorSinCosWhiteBox, AnglesNearZeroAndPiKeepTheirDigits) {
     for (std::size_t i = 0; i < angles.size(); ++i) {
       const double expected = std::sin(angles[i]);
       EXPECT_NEAR(rows.sine[i], expected, 4e-16 * std::abs(expected)) << angles[i];
-    }
-  }
-}
-
-TEST(VectorSinCosWhiteBox, EqualThoseOfConstantExpressions) {
-  Rng rng(2);
-  std::vector<double> angles(12000);
-  for (double& x : angles) x = rng.uniform(-20, 20);
-  for (const SinCosRows& rows : sincos_by_all(angles)) {
-    for (std::size_t i = 0; i < angles.size(); ++i) {
-      const auto [sine, cosine] = detail::constexpr_sincos(angles[i]);
-      ASSERT_NEAR(rows.sine[i], sine, 4e-16);
-      ASSERT_NEAR(rows.cosine[i], cosine, 4e-16);
     }
   }
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -65,44 +64,6 @@ TEST(MeanInterval, IsThatOfStudent) {
   }
   EXPECT_EQ(MeanInterval::of(VectorX::Unit(9, 2)).lower, 0);
   EXPECT_NE(complaint([] { (void)MeanInterval::of(VectorX()); }).find("no errors"), std::string::npos);
-}
-
-/// Student's quantile at 0.975 of an even number of degrees of freedom, whose distribution is a finite sum (Abramowitz
-/// and Stegun 26.7.4).
-double student(int v) {
-  const auto beyond = [v](double t) {
-    const double cosine = v / (v + t * t);  // squared
-    double term = 1, sum = 0;
-    for (int k = 2; k <= v; k += 2) {
-      sum += term;
-      term *= cosine * (k - 1) / k;
-    }
-    return sum * t / std::sqrt(v + t * t) - 0.95;
-  };
-  double t = 2;
-  for (int i = 0; i < 60; ++i) {  // secants
-    const double slope = (beyond(t + 1e-4) - beyond(t - 1e-4)) / 2e-4;
-    t -= beyond(t) / slope;
-  }
-  return t;
-}
-
-// Of the fourth power of the degrees of freedom nothing is left: what is, times that power, goes to zero with their
-// number, by polynomials of its inverse.
-TEST(MeanInterval, IsThatOfStudentToTheFourthPower) {
-  std::array<double, 4> left{}, inverse{};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const int v = 16 << k;
-    VectorX errors(v + 1);  // mean 0, variance 1
-    for (Index i = 0; i <= v; ++i) errors(i) = i == v ? 0 : i % 2 == 0 ? 1 : -1;
-    left[k] = (student(v) - MeanInterval::of(errors).upper * std::sqrt(v + 1.0)) * std::pow(v, 4);
-    inverse[k] = 1.0 / v;
-  }
-  EXPECT_GT(left[0], 0.02);
-  for (std::size_t order = 1; order < 4; ++order)  // Neville
-    for (std::size_t k = 3; k >= order; --k)
-      left[k] = (inverse[k - order] * left[k] - inverse[k] * left[k - 1]) / (inverse[k - order] - inverse[k]);
-  EXPECT_NEAR(left[3], 0, 6e-6);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <string>
 #include <vernier/compensation/compensated.hpp>
 #include <vernier/core/rng.hpp>
 #include <vernier/core/so3.hpp>
@@ -34,16 +32,6 @@ TEST(ErrorStatistics, WorkedByHand) {
   EXPECT_DOUBLE_EQ(e.min, 1);
   EXPECT_DOUBLE_EQ(e.median, 3);
   EXPECT_DOUBLE_EQ(e.p95, 4 + 0.8 * 6);  // at 0.95 * 4 = 3.8
-}
-
-TEST(ErrorStatistics, QuantilesInterpolate) {
-  VectorX errors(4);
-  errors << 8, 2, 4, 6;
-  const auto e = ErrorStatistics::of(errors);
-  EXPECT_DOUBLE_EQ(e.median, 5);
-  EXPECT_DOUBLE_EQ(e.p95, 6 + 0.85 * 2);
-  // 0 .. 100 has its quantiles at their own names
-  EXPECT_NEAR(ErrorStatistics::of(VectorX::LinSpaced(101, 100, 0)).p95, 95, 1e-12);
 }
 
 TEST(Quantile, OfValuesInAnyOrderBothEndsIncluded) {

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "random_blocks.hpp"
 
 namespace vernier::marquardt_damping_test {

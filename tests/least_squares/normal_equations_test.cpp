@@ -16,12 +16,7 @@
 namespace vernier::normal_equations_test {
 namespace {
 
-using vernier_test::fill;
-using vernier_test::left_out_by_force;
-using vernier_test::random_squares;
-using vernier_test::random_vector;
-using vernier_test::RandomBlocks;
-using vernier_test::RealMatrix;
+using namespace vernier_test;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -61,27 +56,6 @@ TEST(NormalEquations, AreThoseOfTheExpandedRows) {
     EXPECT_NEAR(normal.cost, residual.squared_norm(), 1e-12 * residual.squared_norm()) << n;
     EXPECT_EQ(RealMatrix(normal.matrix), RealMatrix(normal.matrix).transpose());
   }
-}
-
-TEST(NormalEquations, WithoutTransmissions) {
-  RandomBlocks blocks(15, 3);
-  blocks.group_sizes = {0, 0, 0};
-  for (RowBlock& p : blocks.rows) p.functions.resize(0);
-  RealMatrix matrix(5, 5);
-  for (const RowBlock& p : blocks.rows) matrix += RealMatrix(p.dense).transpose() * p.dense;
-  EXPECT_LT((blocks.normal().matrix - matrix).norm(), 1e-12 * matrix.norm());
-}
-
-TEST(FactorisedEquations, StepEndsTheRegularisedProblem) {
-  const RandomBlocks blocks(15, 4);
-  Rng rng(5);
-  const VectorX precisions = random_squares(rng, 15), steps = random_vector(rng, 15);
-  const NormalEquations normal = blocks.normal();
-  const FactorisedEquations solved(normal, precisions, steps);
-  ASSERT_TRUE(solved.usable());
-  const RealMatrix step = solved.step();
-  const RealMatrix slope = normal.gradient + normal.matrix * step + RealMatrix::diagonal(precisions) * (steps + step);
-  EXPECT_LT(slope.norm(), 1e-9 * normal.gradient.norm());
 }
 
 // A prior with correlations, as rows of its Cholesky factor would be.
@@ -334,37 +308,27 @@ struct RandomStates {
   }
 };
 
-TEST(LocalStates, AreEliminatedExactly) {
-  for (const Index dense : {5, 300}) {  // in one panel of columns, and in several
-    const RandomStates problem(30, dense);
-    problem.with_system([&](const BlockSystem& system) {
-      const Index unknowns = problem.unknowns;
-      const NormalEquations normal(system, problem.priors);
-      const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
-      ASSERT_TRUE(solved.usable());
-      const auto [matrix, gradient] = problem.dense(-1);
-      const RealMatrix inverse = matrix.inverse(), step = -(inverse * gradient);
-      EXPECT_LT((solved.step() - step.block(0, 0, unknowns, 1)).norm(), 1e-9 * step.norm());
-      EXPECT_LT((solved.local_step() - step.block(unknowns, 0, 8, 1)).norm(), 1e-9 * step.norm());
-      const RealMatrix covariance = inverse.block(0, 0, unknowns, unknowns);
-      EXPECT_LT((solved.inverse() - covariance).norm(), 1e-9 * covariance.norm());
-      EXPECT_LT((solved.inverse_diagonal() - covariance.diagonal()).norm(), 1e-9 * covariance.norm());
-      const double log_determinant = matrix.log_determinant();
-      EXPECT_NEAR(solved.log_determinant(), log_determinant, 1e-9 * std::abs(log_determinant));
-    });
-  }
-}
-
 /// Expects the steps and the inverse that the dense problem has.
 void expect_dense_solution(const RandomStates& problem, const NormalEquations& normal) {
   const Index unknowns = problem.unknowns, local = problem.states * problem.size;
   const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
   ASSERT_TRUE(solved.usable());
   const auto [matrix, gradient] = problem.dense(-1);
-  const RealMatrix inverse = matrix.inverse(), step = -(inverse * gradient);
+  const RealMatrix inverse = matrix.inverse(), step = -(inverse * gradient),
+                   covariance = inverse.block(0, 0, unknowns, unknowns);
   EXPECT_LT((solved.step() - step.block(0, 0, unknowns, 1)).norm(), 1e-9 * step.norm());
   EXPECT_LT((solved.local_step() - step.block(unknowns, 0, local, 1)).norm(), 1e-9 * step.norm());
+  EXPECT_LT((solved.inverse() - covariance).norm(), 1e-9 * covariance.norm());
+  EXPECT_LT((solved.inverse_diagonal() - covariance.diagonal()).norm(), 1e-9 * covariance.norm());
   EXPECT_NEAR(solved.log_determinant(), matrix.log_determinant(), 1e-9 * std::abs(matrix.log_determinant()));
+}
+
+TEST(LocalStates, AreEliminatedExactly) {
+  for (const Index dense : {5, 300}) {  // in one panel of columns, and in several
+    const RandomStates problem(30, dense);
+    problem.with_system(
+        [&](const BlockSystem& system) { expect_dense_solution(problem, NormalEquations(system, problem.priors)); });
+  }
 }
 
 /// Error of a block in the dense problem without it.
@@ -373,6 +337,16 @@ RealMatrix left_out_by_force(const RandomStates& problem, Index b) {
   const RowBlock& rows = problem.blocks.row(b);
   const RealMatrix residual = rows.residual - problem.row(b) * matrix.solve(gradient);
   return (rows.unwhiten * residual).block(0, 0, 3, 1) * rows.position_sigma;
+}
+
+/// Expects the errors that the dense problem has without each block.
+void expect_left_out(const RandomStates& problem, const BlockSystem& system, const NormalEquations& normal) {
+  const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
+  const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
+  for (Index b = 0; b < problem.blocks.size(); ++b) {
+    const RealMatrix wanted = left_out_by_force(problem, b);
+    EXPECT_LT((Vector3(errors.col(b)) - wanted).norm(), 1e-9 * wanted.norm()) << b;
+  }
 }
 
 // A state like any other: the smallest problem with local unknowns.
@@ -386,12 +360,7 @@ TEST(LocalStates, OneStateOfOneUnknown) {
     const double slope = normal.local_gradient(0) + 20 * at;
     EXPECT_NEAR(local_gain(normal, VectorX::Constant(1, 3), problem.local_steps), 3 * slope,
                 1e-12 * (1 + std::abs(slope)));
-    const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
-    const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
-    for (Index b = 0; b < 12; ++b) {
-      const RealMatrix wanted = left_out_by_force(problem, b);
-      EXPECT_LT((Vector3(errors.col(b)) - wanted).norm(), 1e-9 * wanted.norm()) << b;
-    }
+    expect_left_out(problem, system, normal);
   });
 }
 
@@ -464,15 +433,8 @@ TEST(LocalStates, ThreadsChangeNoBit) {
 
 TEST(LocalStates, LeaveOneOutErrorsAreThoseOfSolvingWithoutTheBlock) {
   const RandomStates problem(40);
-  problem.with_system([&](const BlockSystem& system) {
-    const NormalEquations normal(system, problem.priors);
-    const FactorisedEquations solved(normal, problem.precisions, problem.steps, problem.local_steps);
-    const Eigen::Matrix3Xd errors = leave_one_out_errors(system, solved, 1);
-    for (Index b = 0; b < 40; ++b) {
-      const RealMatrix wanted = left_out_by_force(problem, b);
-      EXPECT_LT((Vector3(errors.col(b)) - wanted).norm(), 1e-9 * wanted.norm()) << b;
-    }
-  });
+  problem.with_system(
+      [&](const BlockSystem& system) { expect_left_out(problem, system, NormalEquations(system, problem.priors)); });
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 
-namespace vernier {
+namespace vernier::measurement_constraints_test {
 namespace {
 
 constexpr double half_turn = std::numbers::pi;
@@ -60,24 +60,6 @@ TEST(MeasurementConstraints, LimitsOfOneJointCount) {
   EXPECT_EQ(checked_at({.upper = VectorX::Constant(1, 1)}, -2), Rejection::none);
 }
 
-// Unless something else is said, a tracker stands at the origin of the base, sees along the tool's z and from all
-// sides, and links keep 20 mm from its beam.
-TEST(MeasurementConstraints, OfATrackerOfWhichNothingIsSaid) {
-  EXPECT_EQ(checked({.tracker = Tracker{.min_range = 2.999, .max_range = 3.001}}, {0, 0, 0}), Rejection::none);
-  EXPECT_EQ(checked({.tracker = Tracker{}}, {0, half_turn - 0.5, half_turn / 2}), Rejection::none);  // 0.7 m away
-  EXPECT_EQ(checked({.tracker = Tracker{}}, {0, half_turn, 0}), Rejection::none);                    // and 1 m
-  const Vector3 above(3, 0, 5), towards(3 + 5 * std::tan(0.4), 0, 5);
-  EXPECT_EQ(checked({.tracker = Tracker{.position = above, .acceptance = 1e-6}}, {0, 0, 0}), Rejection::none);
-  EXPECT_EQ(checked({.tracker = Tracker{.position = towards, .acceptance = 0.401}}, {0, 0, 0}), Rejection::none);
-  EXPECT_EQ(checked({.tracker = Tracker{.position = towards, .acceptance = 0.399}}, {0, 0, 0}), Rejection::acceptance);
-  // folded around a square, the tool at (0, 1): the beam passes the end of the first link, at (1, 0), at 1 m
-  for (const double radius : {0.975, 0.985}) {
-    const MeasurementConstraints c{.tracker = Tracker{.position = {0, 6, 0}}, .link_radii = {radius, 0, 0}};
-    EXPECT_EQ(checked(c, {0, half_turn / 2, half_turn / 2}),
-              radius < 0.98 ? Rejection::none : Rejection::line_of_sight);
-  }
-}
-
 TEST(MeasurementConstraints, TheToolStaysInItsBox) {
   const MeasurementConstraints c{.tool_box = ToolBox{{2.5, -1, -0.1}, {3.5, 1, 0.1}}};
   EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
@@ -114,33 +96,6 @@ TEST(MeasurementConstraints, AcceptanceOfTheReflector) {
   c.tracker->acceptance = 0.5;
   c.tracker->reflector_direction = {0, 0, 1};
   EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::acceptance);
-}
-
-TEST(MeasurementConstraints, LinksBlockTheBeam) {
-  MeasurementConstraints c{.tracker = Tracker{.position = {-5, 0, 0}, .beam_radius = 0.05},
-                           .link_radii = {0.1, 0.1, 0.1}};
-  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::line_of_sight);  // along its own links to the base
-  c.tracker->position = {3, 5, 0};
-  EXPECT_EQ(checked(c, {0, 0, 0}), Rejection::none);
-  // folded once around a square: the tool at (0, 1), the tracker behind the first link
-  c.tracker->position = {0.5, -5, 0};
-  const Vector3 square{0, half_turn / 2, half_turn / 2};
-  EXPECT_EQ(checked(c, square), Rejection::line_of_sight);
-  c.tracker->position = {0.5, -5, 40};  // above it
-  EXPECT_EQ(checked(c, square), Rejection::none);
-  c.link_radii.clear();
-  c.tracker->position = {0.5, -5, 0};
-  EXPECT_EQ(checked(c, square), Rejection::none);
-}
-
-TEST(MeasurementConstraints, LinksCollide) {
-  MeasurementConstraints c{.link_radii = {0.1, 0.1, 0.1}};
-  EXPECT_EQ(checked(c, {0, half_turn / 2, half_turn / 2}), Rejection::none);
-  EXPECT_EQ(checked(c, {0, 2.4, 2.4}), Rejection::self_collision);  // the third link crosses the first
-  // next to each other all the time, but neighbours
-  EXPECT_EQ(checked(c, {0, 0, 2.9}), Rejection::none);
-  c.link_radii = {0.55, 0.1, 0.55};  // links whose neighbour in between is shorter than both always overlap
-  EXPECT_EQ(checked(c, {0, 0.1, 0.1}), Rejection::none);
 }
 
 // The beam from the tool at (0, 1) to (1, -1, 1.5) passes the first link, along x, at 0.6 m and the second, along y, at
@@ -235,16 +190,6 @@ TEST(MeasurementConstraints, ALinkEndsBeforeTheTool) {
   EXPECT_EQ(checked_square(0.4, 0.1, 0, {.link_radii = {0.15, 0, 0.2}}), Rejection::none);
 }
 
-TEST(MeasurementConstraints, EachRejectionHasItsWords) {
-  EXPECT_STREQ(name_of(Rejection::none), "possible");
-  EXPECT_STREQ(name_of(Rejection::joint_limits), "out of the joint limits");
-  EXPECT_STREQ(name_of(Rejection::tool_box), "tool out of its box");
-  EXPECT_STREQ(name_of(Rejection::range), "out of the tracker's range");
-  EXPECT_STREQ(name_of(Rejection::acceptance), "reflector turned away");
-  EXPECT_STREQ(name_of(Rejection::line_of_sight), "beam blocked by a link");
-  EXPECT_STREQ(name_of(Rejection::self_collision), "links collide");
-}
-
 // Arm, box and tracker moved together by a base: what is rejected does not change.
 TEST(MeasurementConstraints, HoldInTheFrameOfTheBase) {
   const DhChain<3> chain{{{{.a = 1}, {.a = 1}, {.a = 1}}}};
@@ -303,4 +248,4 @@ TEST(MeasurementConstraints, RefusesWhatIsNotUsable) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::measurement_constraints_test

@@ -11,7 +11,7 @@
 #include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 
-namespace vernier {
+namespace vernier::pose_design_test {
 namespace {
 
 using vernier_test::RealMatrix;
@@ -160,19 +160,6 @@ TEST(PoseDesign, OfEqualCandidatesTakesTheFirst) {
   EXPECT_EQ(design_poses(rows, 3, {.count = 4, .coverage = {}}).chosen, (std::vector<Index>{0, 1, 2, 3}));
 }
 
-TEST(PoseDesign, CoversMissingBinsFirst) {
-  RealMatrix rows = random_rows(30, 6, 6);
-  rows.set_block(27, 0, 1e-3 * rows.block(27, 0, 3, 6));  // the last candidate is of little use, but alone in its bin
-  const Eigen::MatrixXi bins{{0}, {0}, {0}, {0}, {0}, {1}, {1}, {1}, {1}, {2}};
-  const Eigen::VectorXi missing{{1, 2, 1, 1}};
-  const PoseDesign design = design_poses(rows, 3, {.count = 4, .coverage = {bins, missing}});
-  std::vector<int> in(3, 0);
-  for (const Index c : design.chosen) ++in[static_cast<std::size_t>(bins(c, 0))];
-  EXPECT_EQ(in, (std::vector<int>{1, 2, 1}));
-  const std::vector<int> still_missing(design.missing.data(), design.missing.data() + design.missing.size());
-  EXPECT_EQ(still_missing, (std::vector<int>{0, 0, 0, 1}));  // nothing lies in the last bin
-}
-
 // A bin that lacks several measurements counts once, and each chosen row reduces what it lacks by one.
 TEST(PoseDesign, BinsThatLackSeveralCountOnceEach) {
   const RealMatrix equal = vernier_test::vector({1, 1, 1});
@@ -201,12 +188,6 @@ TEST(PoseDesign, WhatHelpsARegionMayGrowByAChoice) {
   EXPECT_NEAR(design.region_variance(3), 1 / (1 / left + 0.09), 1e-12);
 }
 
-TEST(PoseDesign, OneCandidateCoversItsBins) {
-  const PoseDesign one = design_poses(vernier_test::vector({1}), 1,
-                                      {.count = 1, .coverage = {Eigen::MatrixXi{{1, 2}}, Eigen::VectorXi{{1, 1, 2}}}});
-  EXPECT_EQ(std::vector<int>(one.missing.begin(), one.missing.end()), (std::vector<int>{1, 0, 1}));
-}
-
 TEST(PoseDesign, OfNoChoices) {
   const RealMatrix rows = random_rows(12, 4, 1), region = random_rows(6, 4, 2);
   const PoseDesign none = design_poses(rows, 3, {}, MatrixX(), region);
@@ -217,14 +198,6 @@ TEST(PoseDesign, OfNoChoices) {
   EXPECT_NEAR(none.region_variance(0), (region * region.transpose()).trace() / 2, 1e-12);
   EXPECT_EQ(information_bound(rows, 3, 0), 0);
   EXPECT_EQ(information_bound(MatrixX(0, 4), 3, 0), 0);
-}
-
-TEST(PoseDesign, HasAValueBeforeAndAfterEachChoice) {
-  const RealMatrix rows = random_rows(12, 4, 1), region = random_rows(6, 4, 2);
-  const PoseDesign design = design_poses(rows, 3, {.count = 2, .coverage = {}}, MatrixX(), region);
-  EXPECT_EQ(design.log_det.size(), 3);
-  EXPECT_EQ(design.region_variance.size(), 3);
-  EXPECT_EQ(design_poses(rows, 3, {.count = 2, .coverage = {}}).region_variance.size(), 0);
 }
 
 TEST(PoseDesign, RefusesWhatIsNotFinite) {
@@ -276,4 +249,4 @@ TEST(PoseDesign, RefusesWhatDoesNotMatch) {
 }
 
 }  // namespace
-}  // namespace vernier
+}  // namespace vernier::pose_design_test

@@ -8,43 +8,21 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <string>
 #include <vector>
 
-#include "allocation_counter.hpp"
-#include "complaint.hpp"
-#include "laws.hpp"
 #include "regression_samples.hpp"
+#include "regressor_checks.hpp"
 #include "vernier/regression/detail/network_error.hpp"
-#include "vernier/regression/elm.hpp"
-#include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::back_propagation_test {
 namespace {
 
 using detail::NetworkError;
-using testing::regressor_violations;
-using vernier_test::complaint;
-using vernier_test::no_violations;
+using namespace vernier_test;
 
 constexpr Activation activations[] = {Activation::sigmoid, Activation::tanh};
-using vernier_test::input_maps;
 
 static_assert(Regressor<BackPropagation>);
-
-using vernier_test::above;
-using vernier_test::as_targets;
-using vernier_test::elements;
-using vernier_test::Inputs;
-using vernier_test::inputs;
-using vernier_test::lower_triangle;
-using vernier_test::moved;
-using vernier_test::RealMatrix;
-using vernier_test::samples_of;
-using vernier_test::scaled_rows;
-using vernier_test::small_whole_weights;
-using vernier_test::Targets;
-using vernier_test::targets;
 
 double error(const Targets& predicted, const Targets& expected) {
   return (predicted - expected).norm() / centred(RealMatrix::of(expected)).norm();
@@ -91,7 +69,7 @@ VectorX without_biases(const HiddenLayer& layer, Index f, VectorX theta) {
   return theta;
 }
 
-TEST(NetworkError, IsTheWeightedMeanSquareAndTheDecay) {
+TEST(NetworkError, IsTheWeightedMeanSquareAndTheDecayAndItsGradientEqualsDifferences) {
   const Index n = 300;
   const RealMatrix x = inputs(n, 1), t = random_targets(n, 2);
   const VectorX q = small_whole_weights(n, 3);
@@ -104,16 +82,6 @@ TEST(NetworkError, IsTheWeightedMeanSquareAndTheDecay) {
     const double expected =
         (top(squares, n) + bottom(squares, n)).dot(q) / q.sum() + 1e-2 * without_biases(layer, 3, theta).squaredNorm();
     EXPECT_NEAR(problem.evaluate(theta), expected, 1e-13 * expected);
-  }
-}
-
-TEST(NetworkError, GradientEqualsDifferences) {
-  const Index n = 300;
-  const RealMatrix x = inputs(n, 5), t = random_targets(n, 6);
-  for (const Activation activation : activations) {
-    NetworkError problem({.nodes = 5, .activation = activation}, x, t, small_whole_weights(n, 7), 1e-2);
-    const VectorX theta = random_vector(32, 8);
-    problem.evaluate(theta);
     const VectorX gradient = problem.gradient();
     for (Index i = 0; i < 32; ++i) {
       const auto at = [&](double steps) { return problem.evaluate(moved(theta, i, 1e-3 * steps)); };
@@ -181,14 +149,14 @@ TEST(BackPropagation, KeepsTheLaws) {
     for (const InputMap input_map : input_maps) {
       BackPropagation recipe{.hidden_nodes = 6, .activation = activation, .input_map = input_map};
       recipe.training = LevenbergMarquardt{.epochs = 8};
-      EXPECT_TRUE(no_violations(regressor_violations(recipe, taken)));
+      expect_laws(recipe, taken);
       recipe.training = Adam{.epochs = 5, .batch = 16};
-      EXPECT_TRUE(no_violations(regressor_violations(recipe, taken)));
+      expect_laws(recipe, taken);
     }
-  EXPECT_TRUE(no_violations(regressor_violations(
+  expect_laws(
       BackPropagation{
           .hidden_nodes = 6, .training = LevenbergMarquardt{.epochs = 8}, .validation_share = 0.3, .patience = 3},
-      taken)));
+      taken);
 }
 
 /// What the observer is told, against the predictor that comes out.
@@ -370,22 +338,6 @@ TEST(BackPropagation, StartsWithSmallOutputWeights) {
   EXPECT_NEAR(beta.norm(), spread / 100 * std::sqrt(200.0 / 3), 0.1 * beta.norm());  // uniform: variance 1/3
 }
 
-// A rate that overshoots: what the observer is told never rises.
-TEST(BackPropagation, TheObserverIsToldTheLowestObjective) {
-  const Inputs x = inputs(60, 37);
-  const Targets y = targets(x);
-  std::vector<double> seen;
-  const auto observer = [&](const Progress& progress) { seen.push_back(progress.best); };
-  const BackPropagation recipe{.hidden_nodes = 5, .training = Adam{.epochs = 40, .batch = 20, .learning_rate = 0.9}};
-  static_cast<void>(recipe.fit(x, y, {.seed = 1, .observer = observer}));
-  bool level = false;
-  for (std::size_t k = 1; k < seen.size(); ++k) {
-    EXPECT_LE(seen[k], seen[k - 1]);
-    level = level || seen[k] == seen[k - 1];
-  }
-  EXPECT_TRUE(level);
-}
-
 // Training ends where ten steps that lowered the objective lowered it by less than the tolerance together.
 TEST(BackPropagation, TenStepsThatHardlyHelpEndIt) {
   const Inputs x = inputs(150, 38);
@@ -440,16 +392,6 @@ TEST(BackPropagation, RecoversAPlantedNetwork) {
   }
 }
 
-TEST(BackPropagation, TrainingBeatsDrawing) {
-  const Inputs x = inputs(500, 24), fresh = inputs(300, 25);
-  const Targets y = targets(x), expected = targets(fresh);
-  const double drawn = error(Elm{.hidden_nodes = 15}.fit(x, y, {.seed = 1}).predict(fresh), expected);
-  BackPropagation recipe{.hidden_nodes = 15, .input_map = InputMap::raw};
-  EXPECT_LT(error(recipe.fit(x, y, {.seed = 1}).predict(fresh), expected), 0.1 * drawn);
-  recipe.training = Adam{.epochs = 300, .batch = 20};
-  EXPECT_LT(error(recipe.fit(x, y, {.seed = 1}).predict(fresh), expected), 0.5 * drawn);
-}
-
 // Noisy samples and many nodes: what is judged by other samples stops in time.
 TEST(BackPropagation, StopsEarly) {
   const Inputs x = inputs(200, 26), fresh = inputs(300, 27);
@@ -491,24 +433,6 @@ TEST(BackPropagation, ValidationCountsErrorsAlone) {
   EXPECT_LE(kept, 27);
 }
 
-TEST(BackPropagation, AWeightIsSoManySamples) {
-  const Index n = 40;
-  const Inputs x = inputs(n, 29), fresh = inputs(20, 30);
-  const Targets y = targets(x);
-  const VectorX q = small_whole_weights(n, 31);
-  std::vector<Index> rows;
-  for (Index i = 0; i < n; ++i) rows.insert(rows.end(), static_cast<std::size_t>(q(i)), i);
-  const Inputs repeated_x = samples_of(x, rows);
-  const Targets repeated_y = samples_of(y, rows);
-  BackPropagation recipe{.hidden_nodes = 5, .training = LevenbergMarquardt{.epochs = 5}};
-  for (const bool adam : {false, true}) {
-    if (adam) recipe.training = Adam{.epochs = 10, .batch = 1000};  // all samples at once
-    const auto weighted = recipe.fit(x, y, {.seed = 1, .weights = &q}).predict(fresh);
-    EXPECT_LT(error(recipe.fit(repeated_x, repeated_y, {.seed = 1}).predict(fresh), weighted), 1e-9);
-    EXPECT_GT(error(recipe.fit(x, y, {.seed = 1}).predict(fresh), weighted), 1e-4);
-  }
-}
-
 TEST(BackPropagation, AnObserverStopsIt) {
   const Inputs x = inputs(100, 32);
   const Targets y = targets(x);
@@ -531,33 +455,6 @@ TEST(BackPropagation, SmallestProblems) {
     EXPECT_LT((recipe.fit(one, y).predict(one) - y).norm(), 0.1);
     EXPECT_LT((recipe.fit(some, level).predict(some) - level).norm(), 0.1);
   }
-}
-
-TEST(BackPropagation, RefusesMisuseWithTheNumbers) {
-  const Inputs x = inputs(10, 35);
-  const Targets y = targets(x);
-  const auto says = [&](const BackPropagation& recipe) {
-    return complaint([&] { static_cast<void>(recipe.fit(x, y)); });
-  };
-  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  EXPECT_TRUE(has(says({.hidden_nodes = 0}), "hidden_nodes is 0"));
-  EXPECT_TRUE(has(says({.activation = Activation::sine}), "must be sigmoid or tanh"));
-  EXPECT_TRUE(has(says({.activation = Activation::radial_basis}), "must be sigmoid or tanh"));
-  EXPECT_TRUE(has(says({.weight_decay = -1}), "weight_decay is -1"));
-  EXPECT_TRUE(has(says({.validation_share = 1}), "validation_share is 1"));
-  EXPECT_TRUE(has(says({.patience = 0}), "patience is 0"));
-  EXPECT_TRUE(has(says({.training = LevenbergMarquardt{.epochs = -1}}), "epochs is -1"));
-  EXPECT_TRUE(has(says({.training = LevenbergMarquardt{.tolerance = 1}}), "tolerance is 1"));
-  EXPECT_TRUE(has(says({.training = Adam{.epochs = -2}}), "epochs is -2"));
-  EXPECT_TRUE(has(says({.training = Adam{.batch = 0}}), "batch is 0"));
-  EXPECT_TRUE(has(says({.training = Adam{.learning_rate = 0}}), "learning_rate is 0"));
-  EXPECT_TRUE(has(says({.training = Adam{.momentum = 1}}), "momentum is 1"));
-  EXPECT_TRUE(has(says({.training = Adam{.memory = -0.5}}), "memory is -0.5"));
-  const VectorX nine = VectorX::Ones(9), zero = VectorX::Zero(10);
-  EXPECT_TRUE(has(complaint([&] { static_cast<void>(BackPropagation{}.fit(x, y, {.weights = &nine})); }),
-                  "9 weights for 10 samples"));
-  EXPECT_TRUE(has(complaint([&] { static_cast<void>(BackPropagation{}.fit(x, y, {.weights = &zero})); }),
-                  "weights go down to 0"));
 }
 
 }  // namespace

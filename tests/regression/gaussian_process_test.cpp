@@ -5,48 +5,21 @@
 
 #include <gtest/gtest.h>
 
-#include "allocation_counter.hpp"
 #include "complaint.hpp"
-#include "laws.hpp"
+#include "kernel_samples.hpp"
 #include "regression_samples.hpp"
+#include "regressor_checks.hpp"
 #include "vernier/regression/detail/bounded_bfgs.hpp"
 #include "vernier/regression/detail/marginal_likelihood.hpp"
-#include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::gaussian_process_test {
 namespace {
 
-using testing::regressor_violations;
 using testing::same_bits;
 using testing::SampleWeights;
-using vernier_test::complaint;
-using vernier_test::no_violations;
-
-using vernier_test::difference;
-using vernier_test::elements;
-using vernier_test::filled;
-using vernier_test::Inputs;
-using vernier_test::inputs;
-using vernier_test::moved;
-using vernier_test::random_weights;
-using vernier_test::RealMatrix;
-using vernier_test::samples_of;
-using vernier_test::target;
-using vernier_test::Targets;
-using vernier_test::vector;
+using namespace vernier_test;
 
 constexpr Kernel both_kernels[] = {Kernel::squared_exponential, Kernel::matern_5_2};
-
-Targets targets(const Inputs& x, double noise = 0) {
-  Rng rng(99);
-  Targets y(x.rows(), 2);
-  for (Index i = 0; i < x.rows(); ++i) {
-    y(i, 0) = 1e-3 * std::sin(2 * x(i, 0)) * x(i, 1) + 0.5;
-    y(i, 1) = 2e-3 * std::cos(x(i, 1) - x(i, 0));
-  }
-  for (double& value : elements(y)) value += noise * rng.normal();
-  return y;
-}
 
 /// Inputs as they are, or their sines and cosines, divided by the length scales.
 RealMatrix seen(InputMap map, const Inputs& x, const Vector3& lengths) {
@@ -54,16 +27,6 @@ RealMatrix seen(InputMap map, const Inputs& x, const Vector3& lengths) {
   for (Index i = 0; i < out.rows(); ++i)
     for (Index j = 0; j < out.cols(); ++j) out(i, j) /= lengths(j % 3);
   return out;
-}
-
-RealMatrix kernels(Kernel kernel, const RealMatrix& a, const RealMatrix& b) {
-  RealMatrix k(a.rows(), b.rows());
-  for (Index i = 0; i < a.rows(); ++i)
-    for (Index j = 0; j < b.rows(); ++j) {
-      const double r = distance_of_rows(a, i, b, j), s = std::sqrt(5.0) * r;
-      k(i, j) = kernel == Kernel::squared_exponential ? std::exp(-r * r / 2) : (1 + s + s * s / 3) * std::exp(-s);
-    }
-  return k;
 }
 
 /// What the textbook says, by explicit inverses.
@@ -117,23 +80,6 @@ TEST(GaussianProcess, PredictionAndVarianceEqualADenseSolve) {
           }
         }
   }
-}
-
-// Two samples at distance d: everything by hand.
-TEST(GaussianProcess, TwoSamplesByHand) {
-  const VectorX x = vector({0, 1}), y = vector({2, 3});
-  const auto predictor =
-      GaussianProcess{.input_scaling = Scaling::none, .length_scales = VectorX::Constant(1, 0.5), .noise_ratio = 0.25}
-          .fit(x, y);
-  const double k = std::exp(-2.0);
-  // A = [1.25 k; k 1.25]: alpha = -+0.5 / (1.25 - k), s^2 = 0.5 / (1.25 - k) / 2
-  EXPECT_NEAR(predictor.mean()(0), 2.5, 1e-15);
-  EXPECT_NEAR(predictor.signal_variance()(0), 0.25 / (1.25 - k), 1e-15);
-  // half way: both kernels are exp(-1/2), 1'A^-1 k = 2 e / (1.25 + k), k'A^-1 k = 2 e^2 / (1.25 + k)
-  const double e = std::exp(-0.5), known = 2 * e / (1.25 + k);
-  const double unit = 1 - e * known + (1 - known) * (1 - known) * (1.25 + k) / 2;
-  EXPECT_NEAR(predictor.standard_deviation(Eigen::Matrix<double, 1, 1>(0.5))(0),
-              std::sqrt(unit * predictor.signal_variance()(0)), 1e-15);
 }
 
 /// Minus the log likelihood of samples a unit of weight, from determinant and inverse, with mean and variance scanned
@@ -202,25 +148,6 @@ TEST(MarginalLikelihood, GradientEqualsDifferences) {
         }
       }
   }
-}
-
-TEST(MarginalLikelihood, IntegerWeightsCountSamples) {
-  const Inputs x = inputs(20, 5);
-  const Targets y = targets(x, 1e-4);
-  VectorX weights(20);
-  std::vector<Index> rows;
-  for (Index i = 0; i < 20; ++i) {
-    weights(i) = static_cast<double>(1 + i % 3);
-    for (Index copy = 0; copy <= i % 3; ++copy) rows.push_back(i);
-  }
-  const RealMatrix repeated_x = samples_of(x, rows), repeated_y = RealMatrix::of(samples_of(y, rows));
-  const detail::MarginalLikelihood counted(Kernel::matern_5_2, x, 3, y, weights);
-  const detail::MarginalLikelihood repeated(Kernel::matern_5_2, repeated_x, 3, repeated_y,
-                                            VectorX::Ones(repeated_x.rows()));
-  const VectorX at = vector({0.1, -0.2, 0.5, -3});
-  VectorX gradient, expected;
-  EXPECT_NEAR(counted(at, gradient), repeated(at, expected), 1e-11);
-  EXPECT_LT((gradient - expected).norm(), 1e-11);
 }
 
 TEST(BoundedBfgs, FindsRosenbrocksMinimumAndThatAtABound) {
@@ -338,55 +265,6 @@ TEST(GaussianProcess, TheBestOfSeveralStartsIsKept) {
   EXPECT_GT(gained, 1e-3);
 }
 
-// Samples of a known process: what it was is found again, within what so many samples tell.
-TEST(GaussianProcess, FindsWhatTheSamplesWereDrawnFrom) {
-  const Index n = 200;
-  Rng rng(8);
-  const Inputs x = inputs(n, 9);
-  const Vector3 lengths(0.6, 1.5, 40);
-  const RealMatrix features = seen(InputMap::raw, x, lengths);
-  const RealMatrix k = kernels(Kernel::squared_exponential, features, features) + 1e-10 * RealMatrix::identity(n);
-  RealMatrix root(n, n);  // lower: root root' = k, by Cholesky
-  for (Index j = 0; j < n; ++j)
-    for (Index i = j; i < n; ++i) {
-      root(i, j) = k(i, j);
-      for (Index c = 0; c < j; ++c) root(i, j) -= root(i, c) * root(j, c);
-      root(i, j) = i == j ? std::sqrt(root(i, j)) : root(i, j) / root(j, j);
-    }
-  Targets y(n, 2);
-  for (int o = 0; o < 2; ++o) {
-    VectorX z(n);
-    for (auto& value : z) value = rng.normal();
-    const RealMatrix drawn = root * z;
-    for (Index i = 0; i < n; ++i) y(i, o) = (o + 1) * drawn(i) + (o + 1) * 0.1 * rng.normal();
-  }
-  const auto predictor = GaussianProcess{.input_scaling = Scaling::none}.fit(x, y, {.seed = 1});
-  const VectorX factor = predictor.scaling().factor;
-  EXPECT_NEAR(1 / factor(0), 0.6, 0.1);
-  EXPECT_NEAR(1 / factor(1), 1.5, 0.3);
-  EXPECT_GT(1 / factor(2), 8);  // does not matter
-  for (int o = 0; o < 2; ++o) EXPECT_NEAR(std::sqrt(predictor.noise_variance()(o)), 0.1 * (o + 1), 0.03 * (o + 1));
-}
-
-// Of many fresh samples, errors in units of the standard deviation have about unit size.
-TEST(GaussianProcess, ErrorsAreAsLargeAsItSays) {
-  const Inputs x = inputs(120, 10), fresh = inputs(300, 11);
-  const auto predictor = GaussianProcess{}.fit(x, targets(x, 1e-4), {.seed = 1});
-  const Targets truth = targets(fresh);
-  double square = 0;
-  for (Index i = 0; i < 300; ++i) {
-    const Vector3 at = point(fresh, i);
-    const Eigen::Vector2d predicted = predictor.predict(at), deviation = predictor.standard_deviation(at);
-    for (int o = 0; o < 2; ++o) square += std::pow((predicted(o) - truth(i, o)) / deviation(o), 2);
-  }
-  EXPECT_GT(std::sqrt(square / 600), 0.6);
-  EXPECT_LT(std::sqrt(square / 600), 1.5);
-  // far away nothing is known but the spread
-  const Eigen::Vector2d far = predictor.standard_deviation(Vector3(1e3, 1e3, 1e3));
-  for (int o = 0; o < 2; ++o) EXPECT_GE(far(o), std::sqrt(predictor.signal_variance()(o)));
-  EXPECT_LT((predictor.predict(Vector3(1e3, 1e3, 1e3)) - predictor.mean()).norm(), 1e-15);
-}
-
 // A hundred-millionth of an offset is a signal, and as certain as the same signal alone.
 TEST(GaussianProcess, ASmallSignalOnALargeOffset) {
   const Inputs x = inputs(30, 23);
@@ -418,13 +296,11 @@ TEST(GaussianProcess, ConstantOutputsAndSingleSamples) {
 TEST(GaussianProcess, KeepsTheLaws) {
   for (const Kernel kernel : both_kernels)
     for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines}) {
-      EXPECT_TRUE(no_violations(
-          regressor_violations(GaussianProcess{.kernel = kernel, .input_map = map, .noise_ratio = 1e-4, .starts = 1},
-                               {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-5})));
+      expect_laws(GaussianProcess{.kernel = kernel, .input_map = map, .noise_ratio = 1e-4, .starts = 1},
+                  {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-5});
     }
-  EXPECT_TRUE(
-      no_violations(regressor_violations(GaussianProcess{.noise_ratio = 1e-3, .starts = 2, .max_hyper_samples = 30},
-                                         {.weights = SampleWeights::taken, .weight_tolerance = 1e-6})));
+  expect_laws(GaussianProcess{.noise_ratio = 1e-3, .starts = 2, .max_hyper_samples = 30},
+              {.weights = SampleWeights::taken, .weight_tolerance = 1e-6});
 }
 
 TEST(GaussianProcess, ALargeFitIsDecidedByASample) {
@@ -441,14 +317,7 @@ TEST(GaussianProcess, DoesNotAllocate) {
                                .input_map = InputMap::sines_and_cosines,
                                .length_scales = Vector3(1, 2, 3),
                                .noise_ratio = 1e-3};
-  const auto predictor = recipe.fit(x, targets(x));
-  const Vector3 at(0.1, 0.2, 0.3);
-  EXPECT_EQ(vernier_test::allocations([&] {
-              vernier_test::keep(predictor.predict(at));
-              vernier_test::keep(predictor.derivative(at));
-              vernier_test::keep(predictor.standard_deviation(at));
-            }),
-            0);
+  expect_no_allocations(recipe.fit(x, targets(x)));
 }
 
 TEST(GaussianProcess, RefusesWhatItCannotUse) {
@@ -460,10 +329,6 @@ TEST(GaussianProcess, RefusesWhatItCannotUse) {
   };
   told({.length_scales = VectorX::Ones(2)}, "2 length scales for 3 inputs");
   told({.length_scales = Vector3(1, 0, 1)}, "length scales must be positive");
-  told({.noise_ratio = 0.0}, "noise_ratio is 0");
-  told({.starts = 0}, "starts is 0");
-  told({.iterations = 0}, "iterations is 0");
-  told({.max_hyper_samples = 1}, "max_hyper_samples is 1");
   told({.length_scales = Vector3::Constant(1e9), .noise_ratio = 1e-30}, "too small for 10 samples");
 }
 

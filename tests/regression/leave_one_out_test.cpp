@@ -13,13 +13,7 @@
 namespace vernier::leave_one_out_test {
 namespace {
 
-using vernier_test::beside;
-using vernier_test::elements;
-using vernier_test::filled;
-using vernier_test::hidden_outputs;
-using vernier_test::instruction_sets;
-using vernier_test::RealMatrix;
-using vernier_test::zeros;
+using namespace vernier_test;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -117,12 +111,6 @@ TEST(LeaveOneOut, OfTheMeanAlone) {
   EXPECT_NEAR((column_means(t).transpose() - path.offset(path.beta(infinity))).norm(), 0, 1e-15);
 }
 
-TEST(LeaveOneOut, LambdaWithoutBoundTendsToTheMean) {
-  const RidgePath path(random_matrix(15, 4, 7), random_matrix(15, 2, 8));
-  const MatrixX mean = path.leave_one_out_residuals(infinity);
-  EXPECT_LT((path.leave_one_out_residuals(1e9 * path.scale()) - mean).norm(), 1e-8 * mean.norm());
-}
-
 TEST(RidgePath, SolvesTheRidgeProblem) {
   for (const auto& [n, nodes] : {std::pair<Index, Index>{40, 6}, {8, 6}, {6, 15}}) {
     const RealMatrix h = random_matrix(n, nodes, 9, 1), t = random_matrix(n, 2, 10, -4);
@@ -148,30 +136,6 @@ TEST(ChooseLambda, HasTheLeastErrorOfItsGrid) {
     EXPECT_LE(choice.mean_squared_error, refitted_residuals(h, t, lambda).squared_norm() / 20 * (1 + 1e-9));
   }
   EXPECT_LT(choice.mean_squared_error, path.leave_one_out_residuals(infinity).squaredNorm() / 20);
-}
-
-// Noise about a constant has nothing to learn: with many nodes the mean must win in most draws, and wherever a ridge
-// wins all the same it is a heavy one, so that a fit stays near the mean.
-TEST(ChooseLambda, PrefersTheMeanOfPureNoise) {
-  int mean_wins = 0;
-  for (std::uint64_t seed = 0; seed < 25; ++seed) {
-    const RealMatrix t = 1e-3 * random_matrix(40, 1, 100 + seed) + filled(40, 1, 0.25);
-    const LeaveOneOutChoice choice = choose_lambda(RidgePath(random_matrix(40, 60, 200 + seed), t), 40);
-    if (!std::isfinite(choice.lambda)) ++mean_wins;
-  }
-  EXPECT_GE(mean_wins, 13);
-}
-
-// More nodes than samples and next to no ridge: every sample is met exactly, and the leave-one-out error must not say
-// that nothing is left.
-TEST(ChooseLambda, IsNotFooledByInterpolation) {
-  const RealMatrix h = random_matrix(15, 40, 14), t = random_matrix(15, 1, 15);
-  const RidgePath path(h, t);
-  const double lambda = 1e-12 * path.scale();
-  const MatrixX beta = path.beta(lambda);
-  const RealMatrix offset = path.offset(beta);
-  EXPECT_LT((plus_row(h * beta, offset.transpose()) - t).norm(), 1e-9 * t.norm());
-  EXPECT_GT(path.leave_one_out_residuals(lambda).norm(), 0.5 * t.norm());
 }
 
 TEST(ChooseLambda, FewSamplesAndConstantNodes) {

@@ -40,8 +40,8 @@ def case(name, activation, n, theta, rcond, compare_beta, outputs=2):
     def numbers(m):
         return "{" + ", ".join("%.17g" % v for v in m.flatten(order="F")) + "}"
 
-    return "    {\"%s\",\n     Activation::%s,\n     %d,\n     %d,\n     %d,\n     %d,\n     %r,\n     %s,\n     %d,\n" % (
-        name, activation, n, x.shape[1], h.shape[1], outputs, rcond, "true" if compare_beta else "false", rank
+    return "    {\"%s\", Activation::%s, %d, %d, %d, %d, %r, %s,\n" % (
+        name, activation, n, x.shape[1], h.shape[1], outputs, rcond, "true" if compare_beta else "false"
     ) + "".join("     %s,\n" % numbers(m) for m in (x, theta, h, t)) + "     %s},\n" % numbers(beta)
 
 
@@ -80,7 +80,6 @@ struct Case {
   Index samples, inputs, nodes, outputs;
   double rcond;
   bool compare_beta;  // otherwise H beta
-  Index rank;
   std::vector<double> x, theta, h, t, beta;
 };
 

@@ -5,20 +5,12 @@
 #include "instruction_sets.hpp"
 #include "regression_samples.hpp"
 #include "vernier/core/rng.hpp"
-#include "vernier/regression/elm.hpp"
 #include "vernier/regression/least_squares.hpp"
 
 namespace vernier::normal_equations_test {
 namespace {
 
-using vernier_test::above;
-using vernier_test::beside;
-using vernier_test::elements;
-using vernier_test::hidden_outputs;
-using vernier_test::lower_triangle;
-using vernier_test::RealMatrix;
-using vernier_test::vector;
-using vernier_test::zeros;
+using namespace vernier_test;
 
 MatrixX uniform(Index rows, Index columns, double limit, std::uint64_t seed) {
   Rng rng(seed);
@@ -64,34 +56,6 @@ TEST(NormalEquations, EqualThePlainProductsOnEveryInstructionSet) {
   }
 }
 
-/// The objective to 1e-6 against a QR decomposition of the stacked system, at the bounds, with tiny weights and with
-/// equal nodes.
-TEST(ElmFitness, HoldsSixDigitsWhereverTheWeightsLie) {
-  const Index samples = 400, inputs = 6, outputs = 3;
-  const JointRows<6> x = uniform(samples, inputs, 1, 4);
-  PointRows y(samples, outputs);
-  for (Index i = 0; i < samples; ++i)
-    set_point(y, i, {std::sin(x(i, 0) + x(i, 1)), x(i, 2) * x(i, 3), std::cos(2 * x(i, 4)) * x(i, 5)});
-  const Elm elm{.hidden_nodes = 30, .target_scaling = Scaling::none};
-  const auto objective = elm.objective(x, y);
-  const VectorX inside = uniform(elm.dimension(6), 1, 5);
-  VectorX at_the_bounds = inside, equal_nodes = inside;
-  for (double& weight : at_the_bounds) weight = weight > 0 ? 1 : -1;
-  for (Index i = 7; i < equal_nodes.size(); ++i) equal_nodes(i) = equal_nodes(i - 7);
-  const std::vector<VectorX> population{inside,        at_the_bounds, 1e-3 * inside,
-                                        1e-7 * inside, equal_nodes,   1e3 * inside};  // the last saturated
-  VectorX fitness(6);
-  objective(beside(population), fitness);
-  for (Index k = 0; k < 6; ++k) {
-    const HiddenLayer layer = elm.layer();
-    const RealMatrix h = hidden_outputs(layer, layer.scaling(x).apply(x), population[static_cast<std::size_t>(k)]);
-    const double lambda = 1e-10 * h.squared_norm() / 30;
-    const RealMatrix stacked = above(h, std::sqrt(lambda) * RealMatrix::identity(30)), right = above(y, zeros(30, 3));
-    const double expected = (stacked * stacked.solve(right) - right).squared_norm() / static_cast<double>(samples);
-    EXPECT_NEAR(fitness(k), expected, 1e-6 * expected) << k;
-  }
-}
-
 // By the products of the layer's outputs, of which the lower triangle counts; nothing where there is no ridge or the
 // products are not positive definite.
 TEST(RidgeWeights, SolveTheNormalEquations) {
@@ -128,19 +92,6 @@ TEST(ObjectiveFromProducts, IsTheObjectiveAtAnyWeights) {
   const MatrixX one = MatrixX::Ones(1, 1);
   EXPECT_EQ(objective_from_products(one, one, 1 + 0.9e-7, one, 1e-12, 1), -1);
   EXPECT_NEAR(objective_from_products(one, one, 1 + 1.1e-7, one, 1e-12, 1), 1.1e-7, 1e-11);
-}
-
-TEST(ElmFitness, ANearlyPerfectFitKeepsItsDigits) {
-  // targets that the layer can represent: the products alone would lose everything
-  const Eigen::Matrix<double, Eigen::Dynamic, 2> x = uniform(300, 2, 1, 6);
-  const Elm elm{
-      .hidden_nodes = 10, .input_scaling = Scaling::none, .target_scaling = Scaling::none, .fitness_lambda = 1e-14};
-  const VectorX theta = uniform(elm.dimension(2), 1, 7);
-  const VectorX y = hidden_outputs(elm.layer(), x, theta) * RealMatrix(uniform(10, 1, 8));
-  VectorX fitness(1);
-  elm.objective(x, y)(theta, fitness);
-  EXPECT_GE(fitness(0), 0);
-  EXPECT_LT(fitness(0), 1e-13 * y.squaredNorm());
 }
 
 }  // namespace

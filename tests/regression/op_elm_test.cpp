@@ -7,30 +7,15 @@
 #include <algorithm>
 #include <vector>
 
-#include "complaint.hpp"
-#include "laws.hpp"
 #include "regression_samples.hpp"
+#include "regressor_checks.hpp"
 #include "vernier/regression/detail/rank_nodes.hpp"
-#include "vernier/testing/regressor_laws.hpp"
 
 namespace vernier::op_elm_test {
 namespace {
 
-using testing::regressor_violations;
 using testing::SampleWeights;
-using vernier_test::complaint;
-using vernier_test::no_violations;
-
-using vernier_test::difference;
-using vernier_test::elements;
-using vernier_test::hidden_outputs;
-using vernier_test::Inputs;
-using vernier_test::inputs;
-using vernier_test::random_weights;
-using vernier_test::RealMatrix;
-using vernier_test::samples_of;
-using vernier_test::Targets;
-using vernier_test::targets;
+using namespace vernier_test;
 
 /// Columns drawn at random, as no layer gives them: well conditioned.
 RealMatrix random_columns(Index n, Index count) {
@@ -94,21 +79,6 @@ TEST(RankNodes, TakesTheBestNodeEachTime) {
   }
 }
 
-// Targets made of three columns: those come first, and no other is needed.
-TEST(RankNodes, FindsTheColumnsThatMadeTheTargets) {
-  const RealMatrix h = random_columns(60, 20);
-  MatrixX y = beside(3 * h.col(4) + 0.5 * h.col(11), h.col(17) - 2 * h.col(4));
-  Rng rng(8);
-  for (double& value : elements(y)) value += 1 + 1e-3 * rng.normal();
-  const detail::RankedNodes ranked = detail::rank_nodes(h, y, VectorX::Ones(60));
-  std::vector<Index> first(ranked.order.begin(), ranked.order.begin() + 3);
-  EXPECT_EQ(first[0], 4);
-  std::sort(first.begin(), first.end());
-  EXPECT_EQ(first, (std::vector<Index>{4, 11, 17}));
-  EXPECT_LT(ranked.press[3], 3e-6);
-  EXPECT_GT(ranked.press[2], 0.1);
-}
-
 TEST(RankNodes, LeavesOutWhatDependsOnOthersAndWhatReproducesSamples) {
   RealMatrix h = random_columns(30, 6);
   h.set_block(0, 2, h.col(0) + h.col(1));
@@ -147,20 +117,6 @@ TEST(OpElm, KeepsTheLeastPress) {
   }
 }
 
-// Many nodes on few noisy samples: pruned, they predict better than all of them.
-TEST(OpElm, PruningBeatsAllNodes) {
-  const Inputs x = inputs(100, 8), fresh = inputs(300, 9);
-  const Targets y = targets(x, 2e-4), truth = targets(fresh);
-  const OpElm recipe{.hidden_nodes = 80};
-  const VectorX theta = recipe.layer().draw(3, 1);
-  const RealMatrix h = hidden_outputs(recipe.layer(), recipe.layer().map(x), theta),
-                   h_fresh = hidden_outputs(recipe.layer(), recipe.layer().map(fresh), theta);
-  const RealMatrix all = with_ones(h_fresh) * solve(with_ones(h), RealMatrix::of(y), vernier_test::filled(100, 1, 1));
-  const double pruned = (recipe.fit(x, y, {.seed = 1}).predict(fresh) - truth).squaredNorm();
-  EXPECT_LT(pruned, 0.25 * (all - RealMatrix::of(truth)).squared_norm());
-  EXPECT_LT(pruned, 0.25 * centred(RealMatrix::of(truth)).squared_norm());
-}
-
 TEST(OpElm, WithNothingToLearnTheMeanIsLeft) {
   const Inputs x = inputs(40, 10);
   const Targets constant = Targets::Constant(40, 2, 3.25);
@@ -177,19 +133,10 @@ TEST(OpElm, WithNothingToLearnTheMeanIsLeft) {
 }
 
 TEST(OpElm, KeepsTheLaws) {
-  for (const Activation activation :
-       {Activation::sigmoid, Activation::tanh, Activation::sine, Activation::radial_basis})
-    for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines})
-      EXPECT_TRUE(
-          no_violations(regressor_violations(OpElm{.hidden_nodes = 15, .activation = activation, .input_map = map},
-                                             {.weights = SampleWeights::taken, .weight_tolerance = 1e-8})));
-}
-
-TEST(OpElm, RefusesWhatItCannotUse) {
-  const Inputs x = inputs(10, 11);
-  EXPECT_NE(
-      complaint([&] { static_cast<void>(OpElm{.hidden_nodes = 0}.fit(x, targets(x))); }).find("hidden_nodes is 0"),
-      std::string::npos);
+  for (const Activation activation : activations)
+    for (const InputMap map : input_maps)
+      expect_laws(OpElm{.hidden_nodes = 15, .activation = activation, .input_map = map},
+                  {.weights = SampleWeights::taken, .weight_tolerance = 1e-8});
 }
 
 static_assert(Regressor<OpElm>);

@@ -4,36 +4,19 @@
 
 #include <gtest/gtest.h>
 
-#include "allocation_counter.hpp"
-#include "complaint.hpp"
 #include "larger.hpp"
-#include "laws.hpp"
 #include "regression_samples.hpp"
-#include "vernier/testing/regressor_laws.hpp"
+#include "regressor_checks.hpp"
 
 namespace vernier::os_elm_test {
 namespace {
 
-using testing::regressor_violations;
 using testing::same_bits;
 using testing::SampleWeights;
-using vernier_test::complaint;
-using vernier_test::no_violations;
+using namespace vernier_test;
 
 using vernier_test::difference;
-using vernier_test::elements;
-using vernier_test::hidden_outputs;
-using vernier_test::Inputs;
-using vernier_test::inputs;
-using vernier_test::part;
-using vernier_test::random_weights;
-using vernier_test::RealMatrix;
-using vernier_test::target;
-using vernier_test::Targets;
 using Fitted = OsElmPredictor<3, 2>;
-
-using vernier_test::activations;
-using vernier_test::zeros;
 
 Targets targets(const Inputs& x, double noise = 0) {
   Rng rng(99);
@@ -127,28 +110,6 @@ TEST(OsElm, UpdatesFromAnyPrefixEqualTheBatch) {
   }
 }
 
-TEST(OsElm, OneInputAndOneOutput) {
-  const VectorX x = VectorX::LinSpaced(50, -1, 1);
-  VectorX y(50);
-  for (Index i = 0; i < 50; ++i) y(i) = x(i) * x(i) * x(i);
-  const OsElm recipe{.hidden_nodes = 5, .lambda = 1e-3};
-  const auto all = recipe.fit(x, y);
-  auto single = recipe.fit(part(x, 0, 10), part(y, 0, 10)), block = single;
-  for (Index i = 10; i < 50; ++i) single.update(Eigen::Matrix<double, 1, 1>(x(i)), Eigen::Matrix<double, 1, 1>(y(i)));
-  block.update(part(x, 10, 40), part(y, 10, 40));
-  EXPECT_LT((single.predict(x) - all.predict(x)).norm(), 1e-10);
-  EXPECT_LT((block.predict(x) - all.predict(x)).norm(), 1e-10);
-}
-
-TEST(OsElm, AnIntegerWeightCountsAsSoManySamples) {
-  const Inputs x = inputs(100, 6);
-  const Targets y = targets(x, 0.01);
-  Fitted once = OsElm{}.fit(x, y), thrice = once;
-  once.update(Vector3(0.1, 0.2, 0.3), Eigen::Vector2d(1, 2), 3);
-  for (int i = 0; i < 3; ++i) thrice.update(Vector3(0.1, 0.2, 0.3), Eigen::Vector2d(1, 2));
-  EXPECT_LT(difference(once, thrice), 1e-10);
-}
-
 // What lies back k updates counts mu^k; a block is one moment.
 TEST(OsElm, ForgettingEqualsAnExponentiallyWeightedBatch) {
   const double mu = 0.97, lambda = 1e-2;
@@ -173,20 +134,6 @@ TEST(OsElm, ForgettingEqualsAnExponentiallyWeightedBatch) {
   };
   check(single, 1);
   check(block, 25);
-}
-
-// A change of the robot is followed with forgetting, and averaged over without.
-TEST(OsElm, ForgettingFollowsAChange) {
-  const Inputs before = inputs(1000, 10), after = inputs(1000, 11), fresh = inputs(100, 12);
-  const auto error = [&](double mu) {
-    auto predictor = OsElm{.hidden_nodes = 40, .forgetting = mu}.fit(before, targets(before, 0.01));
-    Targets y = targets(after, 0.01);
-    for (double& value : elements(y)) value += 1;
-    for (Index i = 0; i < 1000; ++i) predictor.update(point(after, i), target(y, i));
-    return (RealMatrix::of(targets(fresh)) - RealMatrix::of(predictor.predict(fresh))).mean() + 1;
-  };
-  EXPECT_LT(std::abs(error(0.995)), 0.05);
-  EXPECT_GT(error(1), 0.3);
 }
 
 // Ten thousand updates: still the batch without forgetting, still the window's with it, P still symmetric.
@@ -215,35 +162,19 @@ TEST(OsElm, LongRuns) {
 TEST(OsElm, KeepsTheLaws) {
   for (const Activation activation : activations)
     for (const InputMap map : {InputMap::raw, InputMap::sines_and_cosines})
-      EXPECT_TRUE(no_violations(regressor_violations(
-          OsElm{.hidden_nodes = 9, .activation = activation, .input_map = map}, {.weights = SampleWeights::counted})));
-  EXPECT_TRUE(no_violations(regressor_violations(OsElm{.hidden_nodes = 80}, {.weights = SampleWeights::counted})));
+      expect_laws(OsElm{.hidden_nodes = 9, .activation = activation, .input_map = map},
+                  {.weights = SampleWeights::counted});
+  expect_laws(OsElm{.hidden_nodes = 80}, {.weights = SampleWeights::counted});
 }
 
 TEST(OsElm, PredictionsDoNotAllocate) {
   const Inputs x = inputs(100, 16);
-  const auto predictor = OsElm{}.fit(x, targets(x));
-  const Vector3 at(0.1, 0.2, 0.3);
-  EXPECT_EQ(vernier_test::allocations([&] {
-              vernier_test::keep(predictor.predict(at));
-              vernier_test::keep(predictor.derivative(at));
-              vernier_test::keep(predictor.standard_deviation(at));
-            }),
-            0);
+  expect_no_allocations(OsElm{}.fit(x, targets(x)));
 }
 
 TEST(OsElm, RefusesWhatItCannotUse) {
   const Inputs x = inputs(10, 17);
   const Targets y = targets(x);
-  const auto told = [&](const OsElm& recipe, const char* sentence) {
-    const std::string text = complaint([&] { static_cast<void>(recipe.fit(x, y)); });
-    EXPECT_NE(text.find(sentence), std::string::npos) << text;
-  };
-  told({.hidden_nodes = 0}, "hidden_nodes is 0");
-  told({.lambda = 0}, "lambda is 0");
-  told({.forgetting = 0}, "forgetting is 0");
-  told({.forgetting = 1.01}, "forgetting is 1.01");
-
   Fitted predictor = OsElm{}.fit(x, y);
   const Fitted before = predictor;
   EXPECT_THROW(predictor.update(Vector3(0, 0, std::nan("")), Eigen::Vector2d(0, 0)), std::invalid_argument);

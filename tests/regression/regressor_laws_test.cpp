@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "laws.hpp"
 #include "regression_samples.hpp"
+#include "regressor_checks.hpp"
 #include "vernier/regression/elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"
 #include "vernier/regression/var_pro_elm.hpp"
@@ -19,57 +19,46 @@ namespace {
 using testing::regressor_violations;
 using testing::RegressorLaws;
 using testing::SampleWeights;
-using vernier_test::mentions;
-using vernier_test::no_violations;
-
-using vernier_test::activations;
-using vernier_test::input_maps;
-using vernier_test::RealMatrix;
-using vernier_test::scaled_rows;
+using namespace vernier_test;
 
 constexpr RegressorLaws taken{.weights = SampleWeights::taken}, counted{.weights = SampleWeights::counted};
 
 TEST(RegressorLaws, ElmWithEachActivationAndInputMap) {
   for (const Activation activation : activations)
     for (const InputMap input_map : input_maps)
-      EXPECT_TRUE(no_violations(
-          regressor_violations(Elm{.hidden_nodes = 9, .activation = activation, .input_map = input_map}, counted)));
+      expect_laws(Elm{.hidden_nodes = 9, .activation = activation, .input_map = input_map}, counted);
 }
 
 TEST(RegressorLaws, ElmWithEachScalingAndMoreNodesThanSamples) {
   for (const Scaling scaling : {Scaling::none, Scaling::min_max, Scaling::standard})
-    EXPECT_TRUE(no_violations(
-        regressor_violations(Elm{.hidden_nodes = 9, .input_scaling = scaling, .target_scaling = scaling}, taken)));
-  EXPECT_TRUE(no_violations(regressor_violations(Elm{.hidden_nodes = 80, .rcond = 1e-8}, taken)));
+    expect_laws(Elm{.hidden_nodes = 9, .input_scaling = scaling, .target_scaling = scaling}, taken);
+  expect_laws(Elm{.hidden_nodes = 80, .rcond = 1e-8}, taken);
 }
 
 TEST(RegressorLaws, RidgeElmWithEachActivationAndInputMap) {
   for (const Activation activation : activations)
     for (const InputMap input_map : input_maps)
-      EXPECT_TRUE(no_violations(
-          regressor_violations(RidgeElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map}, taken)));
-  EXPECT_TRUE(no_violations(regressor_violations(RidgeElm{.hidden_nodes = 80}, taken)));
+      expect_laws(RidgeElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map}, taken);
+  expect_laws(RidgeElm{.hidden_nodes = 80}, taken);
 }
 
 TEST(RegressorLaws, VarProElmWithEachActivationAndInputMap) {
   for (const Activation activation : activations)
     for (const InputMap input_map : input_maps)
-      EXPECT_TRUE(no_violations(regressor_violations(
-          VarProElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map, .iterations = 8}, taken)));
-  EXPECT_TRUE(
-      no_violations(regressor_violations(VarProElm{.hidden_nodes = 80, .ridge = 1e-6, .iterations = 3}, taken)));
+      expect_laws(VarProElm{.hidden_nodes = 9, .activation = activation, .input_map = input_map, .iterations = 8},
+                  taken);
+  expect_laws(VarProElm{.hidden_nodes = 80, .ridge = 1e-6, .iterations = 3}, taken);
   const RegressorLaws repeated{.weights = SampleWeights::counted, .weight_tolerance = 1e-6};  // rounding is trained on
-  EXPECT_TRUE(
-      no_violations(regressor_violations(VarProElm{.hidden_nodes = 4, .iterations = 5, .starts = 3}, repeated)));
+  expect_laws(VarProElm{.hidden_nodes = 4, .iterations = 5, .starts = 3}, repeated);
 }
 
 TEST(RegressorLaws, TunedElm) {
   const Pso pso{.particles = 6, .iterations = 4};
   const GeneticAlgorithm ga{.individuals = 6, .generations = 4};
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, pso}, taken)));
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{Elm{.hidden_nodes = 5}, ga}, taken)));
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{RidgeElm{.hidden_nodes = 5}, pso}, taken)));
-  EXPECT_TRUE(no_violations(regressor_violations(Tuned{VarProElm{.hidden_nodes = 5, .iterations = 4}, pso}, taken)));
+  expect_laws(Tuned{Elm{.hidden_nodes = 5}, pso}, taken);
+  expect_laws(Tuned{Elm{.hidden_nodes = 5}, ga}, taken);
+  expect_laws(Tuned{RidgeElm{.hidden_nodes = 5}, pso}, taken);
+  expect_laws(Tuned{VarProElm{.hidden_nodes = 5, .iterations = 4}, pso}, taken);
 }
 
 /// A user's own: y = A x + b by least squares, no randomness; and the base of the faults below.
@@ -251,10 +240,9 @@ static_assert(!Predictor<ThrowingMap> && !Predictor<NoDerivative> && !Predictor<
 static_assert(!Regressor<FitNotConst> && !Regressor<FitGivesNothing> && !Regressor<Pso> && !Regressor<int>);
 
 TEST(RegressorLaws, UsersOwnRegressor) {
-  EXPECT_TRUE(no_violations(regressor_violations(Linear{}, {.uses_seed = false, .weights = SampleWeights::counted})));
-  EXPECT_TRUE(no_violations(regressor_violations(Linear{.uses_seed = true}, counted)));
-  EXPECT_TRUE(no_violations(regressor_violations(
-      Linear{}, {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-12})));
+  expect_laws(Linear{}, {.uses_seed = false, .weights = SampleWeights::counted});
+  expect_laws(Linear{.uses_seed = true}, counted);
+  expect_laws(Linear{}, {.uses_seed = false, .weights = SampleWeights::counted, .weight_tolerance = 1e-12});
 }
 
 void expect_caught(Fault fault, const char* sentence) {
@@ -286,8 +274,7 @@ TEST(RegressorLaws, CatchFaultsOfWeights) {
   expect_caught(Fault::changes_weights, "fit changed its weights");
   expect_caught(Fault::squares_weights, "integer weights differ from repeated samples");
   // Who claims less is not told off for less, who claims to refuse is.
-  EXPECT_TRUE(no_violations(regressor_violations(Linear{.fault = Fault::squares_weights},
-                                                 {.uses_seed = false, .weights = SampleWeights::taken})));
+  expect_laws(Linear{.fault = Fault::squares_weights}, {.uses_seed = false, .weights = SampleWeights::taken});
   EXPECT_TRUE(mentions(regressor_violations(Linear{}, {.uses_seed = false, .weights = SampleWeights::refused}),
                        "claims not to take did not throw"));
 }

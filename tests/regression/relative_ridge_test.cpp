@@ -9,12 +9,7 @@
 namespace vernier::relative_ridge_test {
 namespace {
 
-using vernier_test::beside;
-using vernier_test::elements;
-using vernier_test::filled;
-using vernier_test::hidden_outputs;
-using vernier_test::RealMatrix;
-using vernier_test::zeros;
+using namespace vernier_test;
 
 constexpr double relative_lambda = 1e-10;
 
@@ -63,56 +58,28 @@ void expect_agreement(const RealMatrix& h, const RealMatrix& t, const char* what
   EXPECT_NEAR(of_beta, expected, 1e-6 * expected) << what << ": the weights belong to another objective";
 }
 
-TEST(RelativeRidge, RandomWeights) {
+TEST(RelativeRidge, HoldsSixDigits) {
   const Problem p;
-  for (const Activation activation :
-       {Activation::sigmoid, Activation::tanh, Activation::sine, Activation::radial_basis})
+  for (const Activation activation : activations)
     for (const int nodes : {1, 20, 65})
       expect_agreement(layer(p, random_theta(nodes, 1, 2), nodes, activation), p.t, "random");
-}
-
-// Signs alone: of 65 nodes on 3 inputs many are equal or opposite.
-TEST(RelativeRidge, WeightsAtTheBoundsOfTheBox) {
-  const Problem p;
+  // signs alone: of 65 nodes on 3 inputs many are equal or opposite
   expect_agreement(layer(p, random_theta(65, 1, 3, true), 65), p.t, "at the bounds");
   expect_agreement(layer(p, VectorX::Constant(4 * 65, -1), 65), p.t, "all at one bound");
-}
-
-TEST(RelativeRidge, TinyWeights) {
-  const Problem p;
-  for (const double limit : {1e-2, 1e-4, 1e-6, 1e-9}) {
-    expect_agreement(layer(p, random_theta(30, limit, 4), 30), p.t, "tiny, sigmoid");
-    expect_agreement(layer(p, random_theta(30, limit, 4), 30, Activation::tanh), p.t, "tiny, tanh");
+  for (const Activation activation : {Activation::sigmoid, Activation::tanh}) {
+    for (const double limit : {1e-2, 1e-4, 1e-6, 1e-9})
+      expect_agreement(layer(p, random_theta(30, limit, 4), 30, activation), p.t, "tiny");
+    expect_agreement(layer(p, random_theta(30, 1e3, 6), 30, activation), p.t, "saturated");
   }
-}
-
-TEST(RelativeRidge, EqualNodes) {
-  const Problem p;
-  VectorX theta = random_theta(30, 1, 5);
-  for (Index i = 4; i < 120; ++i) theta(i) = theta(i - 4);
-  expect_agreement(layer(p, theta, 30), p.t, "all equal");
-  theta = random_theta(30, 1, 5);
-  for (Index i = 60; i < 120; ++i) theta(i) = theta(i - 60);
-  expect_agreement(layer(p, theta, 30), p.t, "in pairs");
-}
-
-TEST(RelativeRidge, SaturatedWeights) {
-  const Problem p;
-  expect_agreement(layer(p, random_theta(30, 1e3, 6), 30), p.t, "saturated, sigmoid");
-  expect_agreement(layer(p, random_theta(30, 1e3, 6), 30, Activation::tanh), p.t, "saturated, tanh");
-}
-
-// Targets the nodes can meet exactly: all that is left is the ridge itself, eleven decades below the targets.
-TEST(RelativeRidge, NearlyPerfectFit) {
-  const Problem p;
-  const RealMatrix h = layer(p, random_theta(8, 1, 7), 8);
-  expect_agreement(h, h * filled(8, 2, 1), "perfect");
-}
-
-TEST(RelativeRidge, FewerSamplesThanNodes) {
-  const Problem p;
-  const RealMatrix h = layer(p, random_theta(40, 1, 8), 40);
-  expect_agreement(top(h, 10), top(p.t, 10), "10 samples, 40 nodes");
+  for (const Index apart : {4, 60}) {
+    VectorX theta = random_theta(30, 1, 5);
+    for (Index i = apart; i < 120; ++i) theta(i) = theta(i - apart);
+    expect_agreement(layer(p, theta, 30), p.t, apart == 4 ? "all equal" : "in pairs");
+  }
+  // targets the nodes can meet exactly: all that is left is the ridge itself, eleven decades below the targets
+  const RealMatrix few = layer(p, random_theta(8, 1, 7), 8), many = layer(p, random_theta(40, 1, 8), 40);
+  expect_agreement(few, few * filled(8, 2, 1), "perfect");
+  expect_agreement(top(many, 10), top(p.t, 10), "10 samples, 40 nodes");
 }
 
 TEST(RelativeRidge, ZeroLayerLeavesTheTargets) {

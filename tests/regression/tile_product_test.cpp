@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
 #include "instruction_sets.hpp"
 
 #include "vernier/core/rng.hpp"

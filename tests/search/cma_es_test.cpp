@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "complaint.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/search/minimize.hpp"
@@ -147,58 +146,6 @@ TEST(CmaEs, UpdateByItsFormulas) {
   }
 }
 
-// Ranks alone count: a rising transformation of the objective changes no bit of what is evaluated.
-TEST(CmaEs, OnlyRanksCount) {
-  const auto points = [](auto&& transform) {
-    std::vector<MatrixX> out;
-    const auto evaluate = [&](const MatrixX& population, VectorX& fitness) {
-      out.push_back(population);
-      evaluate_bowl(population, fitness);
-      for (auto& f : fitness) f = transform(f);
-    };
-    const CmaEs cma{.generations = 60};
-    const Box box = Box::cube(5, -1, 2);
-    CmaEs::State s = cma.start(box, 4, evaluate);
-    while (!cma.done(s)) cma.step(s, box, evaluate);
-    return out;
-  };
-  EXPECT_EQ(points([](double f) { return f; }), points([](double f) { return 1e6 * std::sqrt(f) - 3; }));
-}
-
-/// Columns of length one at right angles to each other, by Gram and Schmidt.
-RealMatrix orthonormal(RealMatrix a) {
-  for (Index j = 0; j < a.cols(); ++j) {
-    RealMatrix column = a.col(j);
-    for (Index k = 0; k < j; ++k) column -= a.col(k).dot(column) * a.col(k);
-    a.set_block(0, j, column / column.norm());
-  }
-  return a;
-}
-
-// On an ellipsoid whose axes differ by 1000 the covariance becomes the inverse Hessian, but for a factor.
-TEST(CmaEs, LearnsTheShape) {
-  const Index n = 4;
-  Rng rng(2);
-  const RealMatrix basis = orthonormal(normal_matrix(rng, n, n)), weights = vernier_test::vector({1, 100, 1e4, 1e6}),
-                   hessian = basis * RealMatrix::diagonal(weights) * basis.transpose();
-  const auto evaluate = [&](const MatrixX& population, VectorX& fitness) {
-    fitness.resize(population.cols());
-    RealMatrix off(n, 1);
-    for (Index k = 0; k < population.cols(); ++k) {
-      for (Index d = 0; d < n; ++d) off(d) = population(d, k) - 0.3;
-      fitness(k) = off.dot(hessian * off);
-    }
-  };
-  const CmaEs cma{.generations = 250};
-  const Box box = Box::cube(n, -4, 4);
-  CmaEs::State s = cma.start(box, 4, evaluate);
-  while (!cma.done(s) && s.best_fitness > 1e-8) cma.step(s, box, evaluate);
-  EXPECT_LT(s.best_fitness, 1e-8);
-  const RealMatrix root = RealMatrix::diagonal(weights.sqrt()) * basis.transpose(),
-                   product = (root * s.covariance * root.transpose()).symmetric_eigenvalues();
-  EXPECT_LT(product(3) / product(0), 30);  // 1e6 at the start
-}
-
 // Runs end by their tolerances, and the next has a larger population; without restarts the search is over.
 TEST(CmaEs, ConvergesAndRestarts) {
   const Box box = Box::cube(3, -1, 2);
@@ -223,12 +170,8 @@ TEST(CmaEs, ConvergesAndRestarts) {
   EXPECT_EQ(sizes, (std::vector<Index>{7, 14, 28, 56}));
   EXPECT_EQ(s.run, 3);
   EXPECT_LT(s.generation, 5000);
-  // a flat objective converges, too, and so does one without any finite value
+  // so does an objective without any finite value
   const auto nowhere = [](const VectorX&) { return std::numeric_limits<double>::infinity(); };
-  EXPECT_LT(minimize(
-                once, [](const VectorX&) { return 2.0; }, box, {}, 1)
-                .generations,
-            60);
   EXPECT_LT(minimize(once, nowhere, box, {}, 1).generations, 60);
 }
 
@@ -257,7 +200,8 @@ TEST(CmaEs, EndsBySpread) {
   EXPECT_FALSE(ends(2.5e-6, 1e-10, 1));  // by the path, in either direction; C learns a tenth of its square
   EXPECT_FALSE(ends(2.5e-6, 1e-10, -1));
   EXPECT_TRUE(ends(2.5e-7, 1e-10, 1));
-  EXPECT_TRUE(ends(1e3, 1e16, 0));  // wider than 1e6: it diverges
+  EXPECT_FALSE(ends(1e3, 1e4, 0));  // 1e5
+  EXPECT_TRUE(ends(1e3, 1e8, 0));   // 1e7, wider than 1e6: it diverges
 }
 
 // The optimum in a corner: the mirrors lead there.
@@ -291,19 +235,6 @@ TEST(CmaEs, InconsistentStatesAreSeen) {
   EXPECT_TRUE(s.consistent());
   s.individuals = 1;
   EXPECT_FALSE(s.consistent());
-}
-
-TEST(CmaEs, RefusesUnusableOptions) {
-  const auto said = [](const CmaEs& cma) {
-    return vernier_test::complaint([&] { cma.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });
-  };
-  EXPECT_EQ(said({.individuals = 1}), "CmaEs: individuals is 1, must be 0 or at least 2");
-  EXPECT_NE(said({.generations = -1}), "");
-  EXPECT_NE(said({.sigma = 0}), "");
-  EXPECT_NE(said({.restarts = -1}), "");
-  EXPECT_NE(said({.growth = 0.5}), "");
-  EXPECT_NE(said({.tolerance_x = -1}), "");
-  EXPECT_NE(said({.tolerance_f = std::nan("")}), "");
 }
 
 }  // namespace

@@ -7,13 +7,10 @@
 #include <set>
 #include <vector>
 
-#include "complaint.hpp"
 #include "vernier/search/l_shade.hpp"
 
 namespace vernier::differential_evolution_test {
 namespace {
-
-using vernier_test::complaint;
 
 const auto evaluate_bowl = [](const MatrixX& population, VectorX& fitness) {
   fitness = population.colwise().squaredNorm().transpose();
@@ -74,16 +71,6 @@ TEST(DifferentialEvolution, TrialsByHand) {
     EXPECT_GT(taken, 3);
     EXPECT_GT(kept, 3);
   }
-}
-
-TEST(DifferentialEvolution, RefusesUnusableOptions) {
-  const auto said = [](const DifferentialEvolution& de) {
-    return complaint([&] { de.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });
-  };
-  EXPECT_EQ(said({.individuals = 3}), "DifferentialEvolution: individuals is 3, must be at least 4");
-  EXPECT_NE(said({.generations = -1}), "");
-  EXPECT_NE(said({.weight = 0}), "");
-  EXPECT_NE(said({.crossover_probability = std::nan("")}), "");
 }
 
 // Three trials: gains 2, 0 and 6, so weights 1/4 and 3/4 of F 0.4 and 0.8, CR 0.2 and 1:
@@ -176,33 +163,6 @@ TEST(LShade, ShrinksAndSpendsItsBudget) {
   }
 }
 
-// A trial goes from its target towards one of the best, here the two at 1 and -1; all others are at 0. Only where the
-// difference of two further individuals takes that back, once in twenty draws, it stays at 0.
-TEST(LShade, TrialsGoTowardsTheBest) {
-  const Box box = Box::cube(1, -3, 3);
-  for (const double share : {0.1, 0.0}) {  // of 20, and at least two
-    const LShade shade{.individuals_per_dimension = 20, .best_share = share};
-    int up = 0, down = 0, still = 0;
-    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-      LShade::State s = shade.start(box, seed, evaluate_bowl);
-      s.positions = MatrixX::Zero(1, 20);
-      s.positions(0, 4) = 1;
-      s.positions(0, 11) = -1;
-      s.fitness = VectorX::Ones(20);
-      s.fitness(4) = s.fitness(11) = 0.5;
-      shade.step(s, box, [&](const MatrixX& trials, VectorX& fitness) {
-        for (Index k = 0; k < trials.cols(); ++k)
-          if (k != 4 && k != 11) ++(trials(0, k) > 0 ? up : trials(0, k) < 0 ? down : still);
-        evaluate_bowl(trials, fitness);
-      });
-    }
-    ASSERT_EQ(up + down + still, 50 * 18);
-    EXPECT_GT(up, 350);
-    EXPECT_GT(down, 350);
-    EXPECT_LT(still, 90);
-  }
-}
-
 // On a bowl of steep and flat axes success comes with large CR: what is remembered moves there.
 TEST(LShade, LearnsItsConstants) {
   const auto evaluate = [](const MatrixX& population, VectorX& fitness) {
@@ -247,18 +207,6 @@ TEST(LShade, InconsistentStatesAreSeen) {
                 s.fitness = VectorX::Zero(individuals);
               }),
               individuals == 4);
-}
-
-TEST(LShade, RefusesUnusableOptions) {
-  const auto said = [](const LShade& shade) {
-    return complaint([&] { shade.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });
-  };
-  EXPECT_EQ(said({.max_evaluations = 35}), "LShade: max_evaluations is 35, less than the first population of 36");
-  EXPECT_NE(said({.individuals_per_dimension = 0}), "");
-  EXPECT_NE(said({.final_individuals = 3}), "");
-  EXPECT_NE(said({.memory = 0}), "");
-  EXPECT_NE(said({.archive_rate = -1}), "");
-  EXPECT_NE(said({.best_share = 1.1}), "");
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "real_matrix.hpp"
 #include "vernier/core/argsort.hpp"
 #include "vernier/search/bounds.hpp"
 #include "vernier/search/cma_es.hpp"
@@ -21,16 +21,11 @@
 namespace vernier::draws_test {
 namespace {
 
+using vernier_test::vector;
+
 void evaluate_bowl(const MatrixX& population, VectorX& fitness) {
   fitness.resize(population.cols());
   for (Index k = 0; k < population.cols(); ++k) fitness(k) = population.col(k).squaredNorm();
-}
-
-VectorX list(std::initializer_list<double> values) {
-  VectorX out(static_cast<Index>(values.size()));
-  Index k = 0;
-  for (const double value : values) out(k++) = value;
-  return out;
 }
 
 /// The first population of a run: a mean anywhere in the box, and normal steps around it, mirrored at the bounds.
@@ -52,7 +47,7 @@ void expect_first_population(const MatrixX& asked, const Box& box, double sigma,
 }
 
 TEST(CmaEsDraws, EveryRunBeginsAnywhere) {
-  const Box box{list({-1, 0, 2}), list({1, 5, 4})};
+  const Box box{vector({-1, 0, 2}), vector({1, 5, 4})};
   const CmaEs cma{.sigma = 0.4};
   MatrixX asked;
   const auto watch = [&](const MatrixX& population, VectorX& fitness) {
@@ -95,19 +90,6 @@ TEST(CmaEsEnds, NotWhereTheBestAloneIsFlat) {
     cma.step(s, box, ranks);
     ASSERT_FALSE(s.converged) << step;
   }
-}
-
-TEST(CmaEsEnds, WhereItDiverges) {
-  const CmaEs cma;
-  const Box box = Box::cube(3, -1, 2);
-  const auto diverges = [&](double sigma) {
-    CmaEs::State s = cma.start(box, 1, evaluate_bowl);
-    s.sigma = sigma;
-    cma.step(s, box, evaluate_bowl);
-    return s.converged;
-  };
-  EXPECT_FALSE(diverges(2e4));
-  EXPECT_TRUE(diverges(2e7));
 }
 
 // C takes its path in unless that of sigma is longer than 1.4 + 2 / (n + 1) times expected, by what it has had time to
@@ -153,15 +135,16 @@ TEST(CmaEsSteps, DecomposeNowAndThen) {
 // of the best, and by the difference of two others, the second of whom may be from the archive.
 TEST(LShadeDraws, TrialsByHand) {
   const Box box = Box::cube(3, -1, 1);
-  const LShade shade{.individuals_per_dimension = 8.0 / 3, .best_share = 0.25};
   int archived = 0, repaired = 0, capped = 0, none = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    // a quarter of eight are the best two, and there are two at least
+    const LShade shade{.individuals_per_dimension = 8.0 / 3, .best_share = seed % 2 == 0 ? 0.25 : 0};
     LShade::State s = shade.start(box, seed, evaluate_bowl);
     ASSERT_EQ(s.positions.cols(), 8);
     s.archive = MatrixX::Constant(3, 3, 0.75);
     s.archive.col(1).setConstant(-0.5);
-    s.weights = list({0.3, 0.9});
-    s.crossover_rates = list({0.6, -1});  // -1: none but the certain one
+    s.weights = vector({0.3, 0.9});
+    s.crossover_rates = vector({0.6, -1});  // -1: none but the certain one
     s.oldest = 0;
     const MatrixX x = s.positions, archive = s.archive;
     const std::vector<Index> order = argsort(s.fitness);
@@ -182,7 +165,7 @@ TEST(LShadeDraws, TrialsByHand) {
         capped += drawn > 1;
         f = std::min(1.0, drawn);
       }
-      const Index leader = order[rng.below(2)];  // a quarter of eight
+      const Index leader = order[rng.below(2)];
       const auto drawn_besides = [&](std::uint64_t n, std::vector<Index> others) {
         for (;;) {
           const auto drawn = static_cast<Index>(rng.below(n));
@@ -230,14 +213,6 @@ TEST(SwarmDraws, APlaceAsGoodIsNoBetter) {
   EXPECT_NE(s.positions, first);
 }
 
-// A value equal to the threshold suffices.
-TEST(Targets, AreReachedByEquality) {
-  const auto two = [](const VectorX&) { return 2.0; };
-  const SearchResult found = minimize(Pso{.particles = 4}, two, Box::cube(2, -1, 1), {.target = 2}, 1);
-  EXPECT_EQ(found.status, SearchStatus::target_reached);
-  EXPECT_EQ(found.generations, 0);
-}
-
 // Parents are drawn in proportion to their advantage over the worst finite individual; one that is not finite is never
 // drawn.
 TEST(Roulette, TurnsAlsoWithValuesThatAreNotFinite) {
@@ -249,12 +224,13 @@ TEST(Roulette, TurnsAlsoWithValuesThatAreNotFinite) {
     for (int k = 0; k < 900; ++k) ++out[static_cast<std::size_t>(select(rng))];
     return out;
   };
-  EXPECT_EQ(counts(list({infinity, 1, 4, infinity}), 3), (std::vector<int>{0, 900, 0, 0}));
-  const std::vector<int> two = counts(list({3, infinity, 1, 4}), 3);  // 1 to 3
+  EXPECT_EQ(counts(vector({infinity, 1, 4, infinity}), 3), (std::vector<int>{0, 900, 0, 0}));
+  const std::vector<int> two = counts(vector({3, infinity, 1, 4}), 3);  // 1 to 3
   EXPECT_EQ(two[1] + two[3], 0);
   EXPECT_NEAR(two[0], 225, 4 * 13);
   // where there is nothing to prefer, or it cannot be told, all have the same chance
-  for (const VectorX& level : {list({5, 5, 5}), list({infinity, infinity, infinity}), list({-1e308, -1e308, 1e308})})
+  for (const VectorX level :
+       {vector({5, 5, 5}), vector({infinity, infinity, infinity}), vector({-1e308, -1e308, 1e308})})
     for (const int count : counts(level, 5)) EXPECT_NEAR(count, 300, 4 * 14.2);
 }
 

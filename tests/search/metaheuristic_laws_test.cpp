@@ -22,28 +22,29 @@ namespace vernier::metaheuristic_laws_test {
 namespace {
 
 using testing::metaheuristic_violations;
-using vernier_test::complaint;
-using vernier_test::mentions;
-using vernier_test::no_violations;
+using namespace vernier_test;
+
+template <class Algorithm>
+void expect_laws(const Algorithm& algorithm, bool keeps_box = true) {
+  EXPECT_TRUE(no_violations(metaheuristic_violations(algorithm, keeps_box)));
+}
 
 TEST(MetaheuristicLaws, Pso) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(vernier::Pso{.particles = 10, .iterations = 20}, false)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(
-      vernier::Pso{.particles = 10, .iterations = 20, .positions = PositionRule::clamped}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(
-      vernier::Pso{.particles = 10, .iterations = 20, .velocity_limit = 9, .positions = PositionRule::reflected},
-      true)));
-  for (const Neighbourhood neighbourhood : {Neighbourhood::ring, Neighbourhood::von_neumann}) {
-    vernier::Pso pso = vernier::Pso::constriction();
-    pso.iterations = 20;
-    pso.neighbourhood = neighbourhood;
+  using vernier::Pso;
+  expect_laws(Pso{.particles = 10, .iterations = 20}, false);
+  expect_laws(Pso{.particles = 10, .iterations = 20, .positions = PositionRule::clamped});
+  expect_laws(Pso{.particles = 10, .iterations = 20, .velocity_limit = 9, .positions = PositionRule::reflected});
+  for (const Neighbourhood neighbourhood : {Neighbourhood::ring, Neighbourhood::von_neumann})
     for (const int particles : {1, 2, 7, 12}) {
+      SCOPED_TRACE(particles);
+      Pso pso = Pso::constriction();
+      pso.iterations = 20;
+      pso.neighbourhood = neighbourhood;
       pso.particles = particles;
-      EXPECT_TRUE(no_violations(metaheuristic_violations(pso, true))) << particles;
+      expect_laws(pso);
     }
-  }
-  EXPECT_TRUE(no_violations(metaheuristic_violations(vernier::Pso{.particles = 1, .iterations = 5}, false)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(vernier::Pso{.particles = 3, .iterations = 0}, true)));
+  expect_laws(Pso{.particles = 1, .iterations = 5}, false);
+  expect_laws(Pso{.particles = 3, .iterations = 0});
 }
 
 // The paper's PSO leaves the box, and the suite sees it.
@@ -53,88 +54,67 @@ TEST(MetaheuristicLaws, UnboundedPsoDoesNotKeepTheBox) {
   EXPECT_TRUE(mentions(violations, "a point outside the box was evaluated"));
 }
 
-TEST(MetaheuristicLaws, GeneticAlgorithm) {
+TEST(MetaheuristicLaws, GeneticAlgorithms) {
   using Ga = vernier::GeneticAlgorithm;
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Ga{.individuals = 10, .generations = 20}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Ga{.individuals = 9, .generations = 20, .elites = 3}, true)));
-  EXPECT_TRUE(no_violations(
-      metaheuristic_violations(Ga{.individuals = 10, .generations = 20, .bits = 16, .tournament = 1}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Ga{.individuals = 10, .generations = 20, .elites = 0}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Ga{.individuals = 8, .generations = 20, .bits = 1}, true)));
-}
-
-TEST(MetaheuristicLaws, GeneticAlgorithmsOtherOperators) {
-  using Ga = vernier::GeneticAlgorithm;
+  expect_laws(Ga{.individuals = 10, .generations = 20});
+  expect_laws(Ga{.individuals = 9, .generations = 20, .elites = 3});
+  expect_laws(Ga{.individuals = 10, .generations = 20, .bits = 16, .tournament = 1});
+  expect_laws(Ga{.individuals = 10, .generations = 20, .elites = 0});
+  expect_laws(Ga{.individuals = 8, .generations = 20, .bits = 1});
   using Real = vernier::RealGeneticAlgorithm;
+  expect_laws(Real{.individuals = 9, .generations = 20, .elites = 3, .survival = Survival::elites});
   for (const auto selection : {ParentSelection::tournament, ParentSelection::roulette}) {
-    EXPECT_TRUE(no_violations(metaheuristic_violations(
-        Ga{.individuals = 11, .generations = 20, .crossover = BitCrossover::uniform, .selection = selection}, true)));
+    expect_laws(Ga{.individuals = 11, .generations = 20, .crossover = BitCrossover::uniform, .selection = selection});
     for (const auto crossover :
          {RealCrossover::sbx, RealCrossover::blx, RealCrossover::one_point, RealCrossover::uniform})
       for (const auto mutation : {RealMutation::polynomial, RealMutation::gaussian})
-        EXPECT_TRUE(no_violations(metaheuristic_violations(Real{.individuals = 10,
-                                                                .generations = 20,
-                                                                .mutations = 3,
-                                                                .elites = 2,
-                                                                .crossover = crossover,
-                                                                .mutation = mutation,
-                                                                .selection = selection,
-                                                                .mutation_sigma = 2},
-                                                           true)));
+        expect_laws(Real{.individuals = 10,
+                         .generations = 20,
+                         .mutations = 3,
+                         .elites = 2,
+                         .crossover = crossover,
+                         .mutation = mutation,
+                         .selection = selection,
+                         .mutation_sigma = 2});
   }
 }
 
-TEST(MetaheuristicLaws, GeneticAlgorithmWithElites) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(
-      RealGeneticAlgorithm{.individuals = 9, .generations = 20, .elites = 3, .survival = Survival::elites}, true)));
-}
-
 TEST(MetaheuristicLaws, Spso2011) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 10, .iterations = 20}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Spso2011{.particles = 1, .iterations = 20}, true)));
-}
-
-TEST(MetaheuristicLaws, DifferentialEvolutionRedrawn) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(
-      DifferentialEvolution{.individuals = 9, .generations = 20, .weight = 2, .trials_outside = TrialRule::redrawn},
-      true)));
+  expect_laws(vernier::Spso2011{.particles = 10, .iterations = 20});
+  expect_laws(vernier::Spso2011{.particles = 1, .iterations = 20});
 }
 
 TEST(MetaheuristicLaws, DifferentialEvolution) {
+  using De = vernier::DifferentialEvolution;
   for (const auto base : {DifferentialBase::random, DifferentialBase::best})
     for (const int individuals : {4, 15})
-      EXPECT_TRUE(no_violations(metaheuristic_violations(
-          DifferentialEvolution{.individuals = individuals, .generations = 20, .weight = 0.9, .base = base}, true)));
+      expect_laws(De{.individuals = individuals, .generations = 20, .weight = 0.9, .base = base});
+  expect_laws(De{.individuals = 9, .generations = 20, .weight = 2, .trials_outside = TrialRule::redrawn});
 }
 
 // Budgets that end within the law suite's twelve generations and beyond; populations shrink with every generation.
 TEST(MetaheuristicLaws, LShade) {
-  for (const Index budget : {72, 73, 300, 3000})
-    EXPECT_TRUE(no_violations(metaheuristic_violations(LShade{.max_evaluations = budget}, true))) << budget;
-  EXPECT_TRUE(no_violations(metaheuristic_violations(
-      LShade{.max_evaluations = 120, .individuals_per_dimension = 3, .archive_rate = 0}, true)));
+  for (const Index budget : {72, 73, 300, 3000}) {
+    SCOPED_TRACE(budget);
+    expect_laws(vernier::LShade{.max_evaluations = budget});
+  }
+  expect_laws(vernier::LShade{.max_evaluations = 120, .individuals_per_dimension = 3, .archive_rate = 0});
 }
 
 // With coarse tolerances several runs fit in, each with a larger population.
 TEST(MetaheuristicLaws, CmaEs) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.generations = 20}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.individuals = 2, .generations = 20}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.restarts = 4, .tolerance_x = 0.28}, true)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(CmaEs{.restarts = 1, .growth = 3, .tolerance_x = 0.25}, true)));
+  expect_laws(vernier::CmaEs{.generations = 20});
+  expect_laws(vernier::CmaEs{.individuals = 2, .generations = 20});
+  expect_laws(vernier::CmaEs{.restarts = 4, .tolerance_x = 0.28});
+  expect_laws(vernier::CmaEs{.restarts = 1, .growth = 3, .tolerance_x = 0.25});
 }
 
-TEST(MetaheuristicLaws, RandomSearch) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(RandomSearch{.individuals = 7, .generations = 20}, true)));
-}
-
-TEST(MetaheuristicLaws, Restarted) {
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Restarted{vernier::Pso{.particles = 5, .iterations = 3}}, false)));
-  EXPECT_TRUE(no_violations(metaheuristic_violations(
-      Restarted{vernier::GeneticAlgorithm{.individuals = 9, .generations = 2, .elites = 3}, 3}, true)));
-  EXPECT_TRUE(no_violations(
-      metaheuristic_violations(Restarted{LShade{.max_evaluations = 50, .individuals_per_dimension = 3}, 5}, true)));
-  EXPECT_TRUE(
-      no_violations(metaheuristic_violations(Restarted{RandomSearch{.individuals = 7, .generations = 0}}, true)));
+TEST(MetaheuristicLaws, RandomSearchAndRestarts) {
+  expect_laws(RandomSearch{.individuals = 7, .generations = 20});
+  expect_laws(Restarted{RandomSearch{.individuals = 7, .generations = 0}});
+  expect_laws(Restarted{vernier::Pso{.particles = 5, .iterations = 3}}, false);
+  expect_laws(Restarted{vernier::GeneticAlgorithm{.individuals = 9, .generations = 2, .elites = 3}, 3});
+  expect_laws(Restarted{vernier::LShade{.max_evaluations = 50, .individuals_per_dimension = 3}, 5});
 }
 
 enum class Fault {
@@ -234,7 +214,7 @@ static_assert(ScalarObjective<decltype(scalar_objective)> && !BatchObjective<dec
 static_assert(BatchObjective<decltype(batch_objective)> && !ScalarObjective<decltype(batch_objective)>);
 static_assert(!Objective<decltype(no_objective)> && !Objective<int>);
 
-TEST(MetaheuristicLaws, UsersOwnSearch) { EXPECT_TRUE(no_violations(metaheuristic_violations(PlantedSearch{}, true))); }
+TEST(MetaheuristicLaws, UsersOwnSearch) { expect_laws(PlantedSearch{}); }
 
 void expect_caught(Fault fault, const char* sentence) {
   const auto violations = metaheuristic_violations(PlantedSearch{.fault = fault}, true);
@@ -275,7 +255,7 @@ TEST(Minimize, AnAnnouncementMayBeAnUpperBound) {
   struct Cautious : PlantedSearch {
     Index next_evaluations(const State&) const { return 9; }
   };
-  EXPECT_TRUE(no_violations(metaheuristic_violations(Cautious{}, true)));
+  expect_laws(Cautious{});
   const auto objective = [](const VectorX& x) { return x.sum(); };
   // 6 at first; then 6 + 9 <= 20, 12 + 9 > 20
   EXPECT_EQ(minimize(Cautious{}, objective, Box::cube(2, 0, 1), {.max_evaluations = 20}).evaluations, 12);
@@ -337,8 +317,7 @@ struct BreathingSearch {
 // Populations may grow, by leaps, and shrink, and be evaluated in several calls.
 TEST(MetaheuristicLaws, PopulationsMayChangeSize) {
   for (const Index grow : {1, 50, -4})
-    for (const Index calls : {1, 2})
-      EXPECT_TRUE(no_violations(metaheuristic_violations(BreathingSearch{.grow = grow, .calls = calls}, true))) << grow;
+    for (const Index calls : {1, 2}) expect_laws(BreathingSearch{.grow = grow, .calls = calls});
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "complaint.hpp"
-
 namespace vernier::spso2011_test {
 namespace {
 
@@ -133,17 +131,6 @@ TEST(Spso2011, InconsistentStatesAreSeen) {
   EXPECT_FALSE(s.consistent());
   s.links.resize(0, 0);  // to be drawn
   EXPECT_TRUE(s.consistent());
-}
-
-TEST(Spso2011, RefusesUnusableOptions) {
-  const auto said = [](const Spso2011& pso) {
-    return vernier_test::complaint([&] { pso.start(Box::cube(2, 0, 1), 1, evaluate_bowl); });
-  };
-  EXPECT_EQ(said({.particles = 0}), "Spso2011: particles is 0, must be at least 1");
-  EXPECT_EQ(said({.iterations = -1}), "Spso2011: iterations is -1, must not be negative");
-  EXPECT_EQ(said({.informed = 0}), "Spso2011: informed is 0, must be at least 1");
-  EXPECT_NE(said({.inertia = 1.5}).find("inertia 1.5"), std::string::npos);
-  EXPECT_NE(said({.acceleration = std::nan("")}).find("acceleration nan"), std::string::npos);
 }
 
 }  // namespace

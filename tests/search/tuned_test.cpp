@@ -96,16 +96,6 @@ TEST(Tuned, RidgeElmIsSearchedByItsLeaveOneOutError) {
   expect_search_pays(RidgeElm{.hidden_nodes = 8, .input_map = InputMap::raw}, pso, 0.7);
 }
 
-TEST(Tuned, AUsersRandomSearchLosesToPso) {
-  double by_pso = 0, by_random = 0;
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto objective = elm.objective(train.x, train.y);
-    by_pso += minimize(pso, objective, elm.box(3), {}, seed).best_fitness;
-    by_random += minimize(RandomSearch{.points = 20, .rounds = 40}, objective, elm.box(3), {}, seed).best_fitness;
-  }
-  EXPECT_LT(by_pso, 0.8 * by_random);
-}
-
 // The fit is the one at the weights the search reports, no other.
 TEST(Tuned, FitsAtWhatTheSearchFound) {
   const auto predictor = Tuned{elm, pso}.fit(train.x, train.y, {.seed = 9});
@@ -128,18 +118,6 @@ TEST(Tuned, SameBitsWithTwoThreads) {
   const Tuned ga_elm{elm, ga};
   EXPECT_EQ(ga_elm.fit(train.x, train.y, {.seed = 3}).theta(),
             ga_elm.fit(train.x, train.y, {.seed = 3, .executor = two}).theta());
-}
-
-// The weights of a particle may leave [-1, 1] as the paper states PSO; clamped, and in the GA's encoding, they cannot.
-TEST(Tuned, WhereWeightsMayGo) {
-  const auto largest = [](const auto& tuned) {
-    return tuned.fit(train.x, train.y, {.seed = 4}).theta().cwiseAbs().maxCoeff();
-  };
-  Pso clamped = pso;
-  clamped.positions = PositionRule::clamped;
-  EXPECT_GT(largest(Tuned{elm, pso}), 1);
-  EXPECT_LE(largest(Tuned{elm, clamped}), 1);
-  EXPECT_LE(largest(Tuned{elm, ga}), 1);
 }
 
 // The search sees a part of the samples, always the same for a seed; the fit has all of them.

@@ -88,31 +88,5 @@ TEST(Touch, WhatIsOutOfReachIsSaid) {
             "touch: the arm hardly reaches far socket");
 }
 
-// What a step of joint values moves the point by is what it lacks; no joint moves in vain. In metres as in millimetres.
-TEST(TouchWhiteBox, AStepOfNewtonsMethodIsTheSmallest) {
-  const MatrixX jacobian = vernier_test::RealMatrix(
-      6, 4, {0.3, -0.2, 0.5, 0.1, 0.4, 0.6, -0.1, 0.2, 0.1, 0.3, 0.2, -0.7, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9});
-  const Vector3 at(0.5, 0.2, 0.1), direction = Vector3(2, -1, 2) / 3, point(0.45, 0.25, 0.12);
-  const vernier_test::RealMatrix rows = vernier_test::RealMatrix(jacobian).block(0, 0, 3, 4);
-  for (const double unit : {1.0, 1e-3, 1e3}) {
-    const auto step = [&](ContactKind kind) {
-      return detail::step_towards({kind, unit * at, direction, 0}, unit * point, unit * 0.02, unit * jacobian);
-    };
-    const auto socket = step(ContactKind::socket);
-    const vernier_test::RealMatrix lacks(Vector3(point - at - 0.02 * direction)), gram = rows * rows.transpose();
-    EXPECT_NEAR(socket.left / unit, lacks.norm(), 1e-14);
-    EXPECT_LT((socket.step - rows.transpose() * gram.inverse() * lacks).norm(), 1e-7);
-    for (const ContactKind kind : {ContactKind::plane, ContactKind::ball}) {
-      const vernier_test::RealMatrix normal(kind == ContactKind::plane ? direction
-                                                                       : Vector3((point - at).normalized()));
-      const double gap = normal.dot(Vector3(point - at)) - 0.02;
-      const vernier_test::RealMatrix row = rows.transpose() * normal;
-      const auto one = step(kind);
-      EXPECT_NEAR(one.left / unit, std::abs(gap), 1e-14);
-      EXPECT_LT((one.step - gap / row.squared_norm() * row).norm(), 1e-8);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace vernier::touches_test

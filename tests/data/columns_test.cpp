@@ -32,7 +32,7 @@ class Columns : public ::testing::Test {
     return text.substr(std::min(text.find("c.csv"), text.size()));
   }
 
-  testing_support::TemporaryFolder folder_{"columns"};
+  vernier_test::TemporaryFolder folder_{"columns"};
 };
 
 // Segments may be numbered in any way: what counts is that the number changes.

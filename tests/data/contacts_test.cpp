@@ -31,7 +31,7 @@ class ReadContacts : public ::testing::Test {
     }
     return {};
   }
-  testing_support::TemporaryFolder folder_{"contacts"};
+  vernier_test::TemporaryFolder folder_{"contacts"};
 };
 
 const std::string header = "contact_id,kind,radius_mm,offset_mm,q1_deg,q2_rad,q3_rad\n";

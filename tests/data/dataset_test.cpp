@@ -40,19 +40,6 @@ bool all_nan(const RealMatrix& a) {
   return out;
 }
 
-TEST(Dataset, EmptyByDefault) {
-  const Dataset<6> data;
-  EXPECT_EQ(data.size(), 0);
-  EXPECT_FALSE(data.has_orientations());
-}
-
-TEST(Dataset, GivesRowsAsColumns) {
-  const auto data = five_rows(true);
-  EXPECT_EQ(data.size(), 5);
-  EXPECT_EQ(RealMatrix::of(data.joints(3)), vernier_test::vector({3, -3}));
-  EXPECT_EQ(data.position(2), Vector3(20, 21, 22));
-}
-
 TEST(Dataset, PoseIsPositionAndOrientation) {
   const auto data = five_rows(true);
   const auto pose = data.pose(4);

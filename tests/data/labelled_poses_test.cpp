@@ -30,7 +30,7 @@ class ReadLabelledPoses : public ::testing::Test {
     }
     return {};
   }
-  testing_support::TemporaryFolder folder_{"labelled_poses"};
+  vernier_test::TemporaryFolder folder_{"labelled_poses"};
 };
 
 TEST_F(ReadLabelledPoses, AllColumns) {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <ostream>
 #include <string>
 
@@ -368,77 +367,6 @@ TEST(PairPoints, FaultsInSentences) {
             "points.txt, line 3: 31.4 mm from where the arm was in line 5 of joints.csv");
 }
 
-/// Poses and points scattered in a box of an edge, in the same frame and without order.
-detail::PairSearch scattered(std::vector<Isometry3>& flanges, Index points, bool by_order, Rng& rng) {
-  const auto anywhere = [&] { return Vector3(rng.uniform(), rng.uniform(), rng.uniform()); };
-  for (Isometry3& flange : flanges) flange = rigid_motion(exp_so3(3 * anywhere()), anywhere());
-  detail::PairSearch out{flanges, PointRows(points, 3), by_order, {}};
-  for (Index j = 0; j < points; ++j) set_point(out.points, j, anywhere());
-  return out;
-}
-
-// A pose has support if some point is nearby that is not much earlier or later in order; or its own, by name.
-TEST(PairSearchWhiteBox, SupportCountsPosesWithAPointNearby) {
-  Rng rng(14);
-  for (const double limit : {0.1, 0.2, 0.4}) {
-    std::vector<Isometry3> flanges(70);
-    detail::PairSearch search = scattered(flanges, 40, true, rng);
-    EXPECT_EQ(search.reach(), 40);
-    detail::PairSearch::Found found;
-    search.set_frames(found, {});
-    const auto near = [&](Index i, Index j) {
-      return (translation(flanges[static_cast<std::size_t>(i)]) - point(search.points, j)).norm() <= limit;
-    };
-    Index ordered = 0, named = 0;
-    for (Index i = 0; i < 70; ++i) {
-      int points = 0;
-      for (Index j = 0; j < 40; ++j) points += std::abs(i - j) <= 40 && near(i, j);
-      ordered += points > 0;
-      if (i < 40) named += near(i, 39 - i);
-      if (i < 40) search.given.push_back({i, 39 - i});
-    }
-    EXPECT_EQ(search.support(found, limit), ordered);
-    search.by_order = false;
-    EXPECT_EQ(search.support(found, limit), named);
-    EXPECT_EQ(search.aligned(found, limit).size(), static_cast<std::size_t>(named));
-  }
-}
-
-TEST(PairSearchWhiteBox, RegistrationFindsTheScale) {
-  Rng rng(15);
-  std::vector<Isometry3> flanges(12);
-  detail::PairSearch search = scattered(flanges, 12, true, rng);
-  detail::PairSearch::Found found;
-  search.set_frames(found, {});
-  for (Index i = 0; i < 12; ++i) {
-    found.pairs.push_back({i, 11 - i});
-    set_point(search.points, 11 - i, 1.25 * point(found.nominal, i) + Vector3(3, -1, 2));
-  }
-  EXPECT_NEAR(search.scale(found), 1.25, 1e-12);
-}
-
-// Equal steps along a line are ambiguous, also where the first steps are lacking at either end; others are not.
-TEST(PairSearchWhiteBox, AShiftThatFitsAsWellIsAmbiguous) {
-  std::vector<Isometry3> flanges(20, Isometry3::Identity());
-  detail::PairSearch search{flanges, PointRows::Zero(20, 3), true, {}};
-  detail::PairSearch::Found found;
-  found.limit = 0.01;
-  Rng rng(16);
-  const auto set = [&](Index i, double x, double y) {
-    flanges[static_cast<std::size_t>(i)] = rigid_motion(Matrix3::Identity(), Vector3(x, y, 0));
-    set_point(search.points, i, Vector3(x, y, 0));
-  };
-  for (Index i = 0; i < 20; ++i) {
-    set(i, 0.05 * static_cast<double>(i), 0);
-    found.pairs.push_back({i, i});
-  }
-  EXPECT_TRUE(search.ambiguous(found));
-  set(10, 0.5, 0.015);  // one pose beside the line by more than the limit: two pairs are off
-  EXPECT_FALSE(search.ambiguous(found));
-  for (Index i = 0; i < 20; ++i) set(i, rng.uniform(), rng.uniform());
-  EXPECT_FALSE(search.ambiguous(found));
-}
-
 // Where the frames are, by the alternating estimate that starts an identification.
 TEST(PointAlignment, FramesAgreeWithStartingFrames) {
   const auto chain = robots::ur10().chain;
@@ -546,15 +474,6 @@ TEST(PairPoints, MeasuredUr10) {
 }
 TEST(PairPoints, MeasuredUr5) { expect_found_in_measured<6>("ur5_grid.csv", robots::ur5().chain, 1000, 0.006); }
 TEST(PairPoints, MeasuredWam) { expect_found_in_measured<7>("wam_grid.csv", robots::barrett_wam().chain, 216, 0.03); }
-
-TEST(PairSearchWhiteBox, PairsByNameSupportAFrameWithinTheLimit) {
-  PointRows points = PointRows::Zero(4, 3);
-  detail::PairSearch search{{}, points, false, {{0, 0}, {1, 1}, {2, 2}, {3, 3}}};
-  detail::PairSearch::Found found;
-  found.nominal = points;
-  for (Index i = 0; i < 4; ++i) found.nominal(i, 2) = 0.02 * static_cast<double>(i);
-  EXPECT_EQ(search.support(found, 0.05), 3);  // 0, 20 and 40 mm, but not 60
-}
 
 // Pairs by name prove an arm where points are off by 1 % of their spread, but not by 3 %: so are those of any arm.
 TEST(PairSearchWhiteBox, TooLargeErrorsProveNothing) {

@@ -173,14 +173,14 @@ TEST(PairingProof, AFlangeThatOnlyTurns) {
 }
 
 /// Whether poses along a line, one beside it, would be as good shifted.
-bool ambiguous(const std::vector<double>& steps, double first_beside) {
+bool ambiguous(const std::vector<double>& steps, double beside, Index at = 0) {
   std::vector<Isometry3> flanges;
   PointRows points(20, 3);
   detail::PairSearch::Found found;
   found.limit = 0.01;
   double x = 0;
   for (Index i = 0; i < 20; ++i) {
-    set_point(points, i, Vector3(x, i == 0 ? first_beside : 0, 0));
+    set_point(points, i, Vector3(x, i == at ? beside : 0, 0));
     flanges.push_back(rigid_motion(Matrix3::Identity(), point(points, i)));
     found.pairs.push_back({i, i});
     x += steps[static_cast<std::size_t>(i) % steps.size()];
@@ -194,6 +194,7 @@ TEST(PairSearchWhiteBox, StepsThatRepeatAreAmbiguous) {
   EXPECT_TRUE(ambiguous({0.05, 0.12, 0.2}, 0));
   EXPECT_FALSE(ambiguous({0.05, 0.12, 0.2, 0.3}, 0));  // four rows are not looked at
   EXPECT_TRUE(ambiguous({0.05}, 0.02));                // a single pair that does not fit proves nothing
+  EXPECT_FALSE(ambiguous({0.05}, 0.015, 10));          // in the middle it spoils two pairs
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class PointTables : public ::testing::Test {
   ~PointTables() override { std::filesystem::current_path(before_); }
 
   std::filesystem::path before_ = std::filesystem::current_path();
-  testing_support::TemporaryFolder folder_{"point_table"};
+  vernier_test::TemporaryFolder folder_{"point_table"};
 };
 
 TEST_F(PointTables, SpatialAnalyzer) {

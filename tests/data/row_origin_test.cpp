@@ -34,7 +34,7 @@ TEST(RowOrigin, NamesRowsOfNoFileOneFileAndSeveral) {
 }
 
 TEST(RowOrigin, SurvivesReadingSplittingAndJoining) {
-  const vernier::testing_support::TemporaryFolder folder("row_origin");
+  const vernier_test::TemporaryFolder folder("row_origin");
   const std::string file = (folder.path() / "poses.csv").string();
   write_file(file, "q1_rad,q2_rad,x_mm,y_mm,z_mm\n\n0,0,1,2,3\n1,0,1,2,3\n\n2,0,1,2,3\n");
   const auto data = read_dataset<2>(file);

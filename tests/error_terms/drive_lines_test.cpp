@@ -55,12 +55,6 @@ TEST(DriveLines, OrdersNearALineHaveItsCause) {
     EXPECT_EQ(cause_of(order, drive), "half the period of an encoder of 512 periods a turn") << order;
 }
 
-TEST(DriveLines, TwoOrdersBesideALineHaveAnotherCause) {
-  const JointDrive drive{.gear_ratio = 101, .encoder_periods = 4000};
-  for (const int order : {99, 103, 402, 406, 2422, 2426}) EXPECT_EQ(cause_of(order, drive), "") << order;
-  for (const int order : {100, 102, 2423, 2425}) EXPECT_NE(cause_of(order, drive), "") << order;
-}
-
 // A resolver of one pole pair, a motor without gear; the constant is the joint's zero, which no drive causes.
 TEST(DriveLines, TheCoarsestDrivesHaveCauses) {
   EXPECT_EQ(cause_of(3, {.encoder_periods = 1}), "half the period of an encoder of 1 periods a turn");

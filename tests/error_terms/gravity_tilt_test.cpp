@@ -23,14 +23,9 @@ namespace {
 
 using vernier_test::allocations;
 using vernier_test::keep;
+using vernier_test::normals;
 using vernier_test::RealMatrix;
 using vernier_test::stepped;
-
-VectorX normals(Rng& rng, Index n, double size) {
-  VectorX out(n);
-  for (double& x : out) x = size * rng.normal();
-  return out;
-}
 
 /// A chain whose frames tilt, with or without all other joint errors.
 template <class Chain>
@@ -183,17 +178,6 @@ TEST(GravityTilt, ChainsWithItObeyTheLaws) {
   expect_laws<3, ModifiedDh>();
   expect_laws<6, StandardDh>();
   expect_laws<7, ModifiedDh>();
-}
-
-TEST(GravityTilt, NoneIsNoMotion) {
-  Rng rng(9);
-  const auto arm = vernier_test::random_chain<6>(rng);
-  const JointVector<6> q = vernier_test::random_joints<6>(rng);
-  const WithJointErrors<DhChain<6>> rigid(arm);
-  EXPECT_FALSE(rigid.joint_errors().tilts());
-  Isometry3 pose = arm.pose(q);
-  rigid.joint_errors().tilt(q.data(), pose);
-  EXPECT_EQ(RealMatrix(pose), RealMatrix(arm.pose(q)));
 }
 
 TEST(GravityTilt, NamesAreInOrderAndUnique) {

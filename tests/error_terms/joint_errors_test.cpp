@@ -1,5 +1,5 @@
-// What joints add to their commanded values: functions of an angle, gravity on compliant joints, and their sum, each
-// against another way to the same numbers; the chain with them as a kinematic model.
+// What joints add to their commanded values: functions of an angle, and the sum of all terms, each against another way
+// to the same numbers; the chain with them as a kinematic model.
 
 #include <gtest/gtest.h>
 
@@ -25,6 +25,7 @@ namespace vn = vernier;
 using vernier_test::allocations;
 using vernier_test::difference;
 using vernier_test::keep;
+using vernier_test::normals;
 using vernier_test::RealMatrix;
 using vernier_test::stepped;
 using vernier_test::vector;
@@ -50,13 +51,6 @@ Functions functions(const vn::Fourier& basis, double q) {
     EXPECT_NEAR(basis.sum(q, unit.data()).value, out.value(k), 1e-15);
     out.slope(k) = basis.sum(q, unit.data()).slope;
   }
-  return out;
-}
-
-/// Normal numbers with a standard deviation.
-VectorX normals(vn::Rng& rng, Index n, double size = 1) {
-  VectorX out(n);
-  for (double& x : out) x = size * rng.normal();
   return out;
 }
 
@@ -109,27 +103,6 @@ TEST(HarmonicSpectrum, LaterBandsCountAndOrdersFollow) {
   EXPECT_EQ(vn::orders_of(spectrum, 20).orders, (std::vector<int>{1, 2, 3, 4, 5, 6, 20}));
   EXPECT_TRUE(vn::orders_of(spectrum, 0).orders.empty());
   EXPECT_EQ(vn::orders_of(vn::typical_spectrum(), 500).orders.size(), 140 + 5 + 9);
-}
-
-// Expected sizes fall with the order, but for the lines of encoders of 128 periods and of gears of 101:1.
-TEST(HarmonicSpectrum, TheTypicalOneHasItsSizesInMicroradians) {
-  const vn::HarmonicSpectrum spectrum = vn::typical_spectrum();
-  const auto expect = [&](int first, int last, double size) {
-    for (const int order : {first, last}) EXPECT_NEAR(1e6 * vn::expected_std(spectrum, order), size, 1e-9) << order;
-  };
-  expect(1, 3, 150);
-  expect(4, 6, 50);
-  expect(7, 28, 70);
-  expect(29, 40, 16);
-  expect(41, 60, 8);
-  expect(61, 125, 3.3);
-  expect(126, 130, 10);
-  expect(131, 140, 3.3);
-  expect(141, 253, 0);
-  expect(254, 258, 6);
-  expect(259, 399, 0);
-  expect(400, 408, 12);
-  expect(409, 500, 0);
 }
 
 // Joints side by side are what each is alone, with different orders at each, gaps, and more joints than lanes.
@@ -274,153 +247,6 @@ TEST(ApproachedArm, JacobianIsThatOfItsPoses) {
     EXPECT_LT((jacobian.block(0, j, 3, 1) - linear).norm(), 1e-7) << j;
     EXPECT_LT((jacobian.block(3, j, 3, 1) - angular).norm(), 1e-7) << j;
   }
-}
-
-TEST(Fourier, SumsItsFunctions) {
-  vn::Rng rng(3);
-  for (const vn::Fourier& basis : {vn::Fourier::up_to(60), vn::Fourier::up_to(1), vn::Fourier{}}) {
-    const VectorX beta = normals(rng, basis.size());
-    for (int i = 0; i < 50; ++i) {
-      const double q = rng.uniform(-pi, pi);
-      const Functions f = functions(basis, q);
-      const vn::Fourier::Sum sum = basis.sum(q, beta.data());
-      EXPECT_NEAR(sum.value, beta.dot(f.value), 1e-13);
-      EXPECT_NEAR(sum.slope, beta.dot(f.slope), 1e-11);
-    }
-  }
-}
-
-vn::MatrixX basis_of(const vn::GravityCompliance& gravity, const vn::ConstVectorRef& q) {
-  vn::MatrixX out = vn::MatrixX::Constant(q.size(), gravity.size(), std::nan(""));
-  gravity.basis(q.data(), out);
-  return out;
-}
-
-TEST(GravityCompliance, PlanarArmByHand) {
-  // Two joints about z, gravity along -y: a weight of 1 N turns by minus its horizontal distance from the axis.
-  const double l1 = 0.3, l2 = 0.2;
-  const vn::DhChain<2> arm({{.a = l1}, {.a = l2}});
-  const vn::GravityCompliance gravity(arm, -vn::Vector3::UnitY());
-  vn::Rng rng(4);
-  for (int i = 0; i < 50; ++i) {
-    const vn::JointVector<2> q = vernier_test::random_joints<2>(rng);
-    const double x1 = l1 * std::cos(q(0)), x2 = l2 * std::cos(q(0) + q(1));
-    const RealMatrix by_hand(2, 3,
-                             {-x1, -(x1 + x2), 0,  //
-                              0, 0, -x2});
-    EXPECT_LE(difference(basis_of(gravity, q), by_hand), 1e-15);
-  }
-}
-
-TEST(GravityCompliance, AVerticalAxisCarriesNothing) {
-  const vn::DhChain<2> scara({{.a = 0.3}, {.a = 0.2}});
-  EXPECT_EQ(basis_of(vn::GravityCompliance(scara), vn::JointVector<2>(0.4, 1)).norm(), 0);
-}
-
-TEST(GravityCompliance, ALiftCarriesItsWeights) {
-  const vn::DhChain<2> arm({{.d = 0.1, .joint = vn::JointType::prismatic}, {.a = 0.2}});
-  const RealMatrix by_hand(2, 3, {-1, -1, 0, 0, 0, 0});
-  EXPECT_EQ(RealMatrix(basis_of(vn::GravityCompliance(arm), vn::JointVector<2>(0.4, 1))), by_hand);
-}
-
-/// Height of the end of link j (from 0) against gravity: the same arm with nothing behind it.
-template <class Chain>
-double height(const Chain& arm, int j, const vn::JointVector<Chain::dof>& q, const vn::Vector3& down) {
-  auto rows = arm.rows();
-  for (int k = j + 1; k < Chain::dof; ++k) rows[static_cast<std::size_t>(k)] = {};
-  return -down.dot(Chain::from_rows(rows).position(q));
-}
-
-/// @param slopes of the heights of links, one a column, by each joint
-void expect_torques(const vn::GravityCompliance& gravity, const RealMatrix& torques, const RealMatrix& slopes) {
-  const int n = static_cast<int>(slopes.rows());
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j)
-      EXPECT_NEAR(j < i ? 0 : torques(i, gravity.index(i, j)), -slopes(i, j), 1e-9) << n << ": " << i << ", " << j;
-    for (int other = 0; other < n; ++other)
-      for (int j = other; j < n && other != i; ++j) EXPECT_EQ(torques(i, gravity.index(other, j)), 0);
-  }
-}
-
-template <int N, class Convention>
-void expect_torques_of_potential_energy() {
-  vn::Rng rng(100 + N);
-  for (int trial = 0; trial < 20; ++trial) {
-    const auto arm = vernier_test::random_chain<N, Convention>(rng, {.prismatic = 0.4});
-    const vn::Vector3 down = vernier_test::random_direction(rng);
-    const vn::GravityCompliance gravity(arm, down);
-    const vn::JointVector<N> q = vernier_test::random_joints<N>(rng);
-    const double h = 1e-5;
-    RealMatrix slopes(N, N);
-    for (int i = 0; i < N; ++i) {
-      const vn::JointVector<N> ahead = stepped(q, i, h), behind = stepped(q, i, -h);
-      for (int j = 0; j < N; ++j) slopes(i, j) = (height(arm, j, ahead, down) - height(arm, j, behind, down)) / (2 * h);
-    }
-    expect_torques(gravity, basis_of(gravity, q), slopes);
-  }
-}
-
-void expect_sums_of_products(const vn::GravityCompliance& gravity, Index n, vn::Rng& rng) {
-  const VectorX products = normals(rng, gravity.size());
-  const VectorX q = vernier_test::random_joint_values(rng, n), before = vernier_test::random_joint_values(rng, n);
-  const vn::MatrixX sevens = vn::MatrixX::Constant(n, n, 7);
-  const auto added = [&](const VectorX& at) {
-    VectorX joints = before;
-    vn::MatrixX derivative = sevens;
-    gravity.add(at.data(), products.data(), joints.data(), derivative.data());
-    return std::pair<RealMatrix, RealMatrix>(RealMatrix(joints) - before, RealMatrix(derivative) - sevens);
-  };
-  const auto [joints, derivative] = added(q);
-  EXPECT_LE(difference(joints, RealMatrix(basis_of(gravity, q)) * products), 1e-13);
-  const double h = 1e-5;
-  for (int k = 0; k < n; ++k) {
-    const RealMatrix slopes = (added(stepped(q, k, h)).first - added(stepped(q, k, -h)).first) / (2 * h);
-    EXPECT_LE(difference(derivative.col(k), slopes), 1e-8) << n << ", joint " << k;
-  }
-}
-
-template <int N, class Convention>
-void expect_sums_of_products() {
-  vn::Rng rng(200 + N);
-  for (int trial = 0; trial < 20; ++trial) {
-    const auto arm = vernier_test::random_chain<N, Convention>(rng, {.prismatic = 0.4});
-    const vn::GravityCompliance gravity(arm, vernier_test::random_direction(rng));
-    expect_sums_of_products(gravity, N, rng);
-  }
-}
-
-/// Calls `check<N, Convention>()` for N = 1 .. 7 in both conventions.
-template <class Check>
-void for_all_sizes(Check&& check) {
-  [&]<int... K>(std::integer_sequence<int, K...>) {
-    (check.template operator()<K + 1, vn::StandardDh>(), ...);
-    (check.template operator()<K + 1, vn::ModifiedDh>(), ...);
-  }
-  (std::make_integer_sequence<int, 7>{});
-}
-
-TEST(GravityCompliance, TorquesAreSlopesOfPotentialEnergy) {
-  for_all_sizes([]<int N, class Convention>() { expect_torques_of_potential_energy<N, Convention>(); });
-}
-
-TEST(GravityCompliance, AddsItsProductsWithTheirDerivative) {
-  for_all_sizes([]<int N, class Convention>() { expect_sums_of_products<N, Convention>(); });
-}
-
-TEST(GravityCompliance, CountsItsProductsRowByRow) {
-  Index expected = 0;
-  for (int i = 0; i < 6; ++i)
-    for (int j = i; j < 6; ++j) EXPECT_EQ(vn::GravityCompliance::index(i, j, 6), expected++);
-  EXPECT_EQ(vn::GravityCompliance::size(6), expected);
-}
-
-TEST(GravityCompliance, DownIsADirection) {
-  const vn::DhChain<1> arm({{.a = 1}});
-  for (const vn::Vector3& bad :
-       {vn::Vector3(0, 0, -9.81), vn::Vector3(0, 0, 0), vn::Vector3(0, 0, -1.00001), vn::Vector3(0, 0.99999, 0),
-        vn::Vector3(std::nan(""), 0, 1), vn::Vector3(1 + 1.2e-6, 0, 0)})
-    EXPECT_THROW((void)vn::GravityCompliance(arm, bad), std::invalid_argument);
-  EXPECT_NO_THROW((void)vn::GravityCompliance(arm, vn::Vector3(1 - 0.8e-6, 0, 0)));  // written with six digits
 }
 
 /// All terms at once: harmonics, and joints without functions.

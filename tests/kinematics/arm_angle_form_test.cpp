@@ -97,22 +97,6 @@ TEST(ArmAngleForm, FindsAllJointValuesOfRandomPoses) {
   expect_all_found(Framed(robots::barrett_wam().chain, base, tool), 200);
 }
 
-TEST(ArmAngleForm, TurnsTheElbowThroughAllArmAngles) {
-  const auto arm = robots::barrett_wam().chain;
-  const JointVector<7> q{0.3, 0.8, -0.2, 1.1, 0.4, 0.6, 0.1};
-  const Isometry3 target = arm.pose(q);
-  const ArmAngleForm form(arm, 0);
-  for (int i = 0; i < 24; ++i) {
-    const double angle = -pi + (i + 0.5) * pi / 12;
-    const auto roots = form.at(angle).roots(target);
-    EXPECT_EQ(roots.count, 8);
-    for (const auto& root : roots) {
-      EXPECT_LT(vernier_test::difference(arm.pose(root.joints), target), 1e-12);
-      EXPECT_NEAR(std::remainder(form.arm_angle(root.joints) - angle, 2 * pi), 0, 1e-9);
-    }
-  }
-}
-
 TEST(ArmAngleForm, SingularAndOutOfReach) {
   const auto arm = without_offsets();
   const ArmAngleForm form(arm, 0.3);

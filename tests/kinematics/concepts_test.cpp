@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "random_chains.hpp"
 #include "turntable.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -60,22 +59,6 @@ struct HidesParameterNames : vn::DhChain<2> {
 };
 static_assert(vn::KinematicModel<HidesParameterNames>);
 static_assert(!vn::ParametricModel<HidesParameterNames>);
-
-TEST(KinematicModel, PosesAndPositionsOfRowsAreThoseOfEachRow) {
-  const auto arm = vn::robots::barrett_wam().chain;
-  vn::Rng rng(1);
-  const vn::JointRows<7> joints = vernier_test::random_joint_rows<7>(rng, 13);
-  const vn::PointRows points = vn::positions(arm, joints);
-  const std::vector<vn::Isometry3> all = vn::poses(arm, joints);
-  ASSERT_EQ(points.rows(), 13);
-  ASSERT_EQ(all.size(), 13u);
-  for (vn::Index i = 0; i < 13; ++i) {
-    const vn::JointVector<7> q = joints.row(i).transpose();
-    EXPECT_EQ(points.row(i).transpose(), arm.position(q));
-    EXPECT_EQ(all[static_cast<std::size_t>(i)].matrix(), arm.pose(q).matrix());
-  }
-  EXPECT_EQ(vn::positions(arm, vn::JointRows<7>(0, 7)).rows(), 0);
-}
 
 struct KnowsItsNominal : Turntable {
   vn::DhChain<1> nominal() const { return vn::DhChain<1>::from_rows({vn::DhRow{.a = 2}}); }

@@ -163,33 +163,6 @@ TYPED_TEST(DhConvention, RandomChainsObeyTheLaws) {
   check(std::integral_constant<int, 9>{});
 }
 
-/// Chains where something vanishes: parallel axes, aligned axes, twists of half a turn, all of it zero.
-template <class Convention>
-std::vector<vn::DhChain<4, Convention>> degenerate_chains() {
-  using Chain = vn::DhChain<4, Convention>;
-  constexpr auto prismatic = vn::JointType::prismatic;
-  return {
-      Chain{{{{}, {}, {}, {}}}},
-      Chain{{{{.a = 0.3}, {.a = 0.2}, {.a = 0.1}, {.a = 0.4}}}},
-      Chain{{{{.d = 0.3}, {.d = 0.2}, {.d = 0.1}, {.d = 0.4}}}},
-      Chain{{{{.alpha = pi}, {.alpha = -pi}, {.alpha = pi, .theta = pi}, {.a = 0.1, .theta = -pi}}}},
-      Chain{{{{.a = 0.1, .alpha = pi - 1e-9}, {.alpha = 1e-9}, {.alpha = 1e-300}, {.a = 0.2, .beta = pi}}}},
-      Chain{{{{.alpha = pi / 2, .joint = prismatic}, {.joint = prismatic}, {.a = 1, .joint = prismatic}, {}}}},
-  };
-}
-
-TYPED_TEST(DhConvention, DegenerateChainsObeyTheLaws) {
-  vn::Rng rng(13);
-  vn::JointRows<4> samples = vernier_test::random_joint_rows<4>(rng, 6);
-  vn::set_configuration<4>(samples, 0, {0, 0, 0, 0});
-  vn::set_configuration<4>(samples, 1, {pi, pi, pi, pi});
-  vn::set_configuration<4>(samples, 2, {pi - 1e-9, 0, 0, 0});
-  for (const auto& chain : degenerate_chains<TypeParam>()) {
-    EXPECT_TRUE(no_violations(vn::testing::kinematic_model_violations(chain, samples)));
-    EXPECT_TRUE(no_violations(vn::testing::parametric_model_violations(chain, samples)));
-  }
-}
-
 /// Axes and their points by the columns of the Jacobian; a link's frame is where the chain ends that its row ends.
 template <class Convention>
 void expect_links_of_random_chains() {
@@ -260,13 +233,6 @@ TEST(DhChain, LengthsInMillimetresAndLargeAnglesAreRefused) {
   EXPECT_EQ(refusal({.a = 100, .alpha = 100, .d = -100, .theta = -100}), "");
   // Conversions of nearly parallel axes may give any length.
   EXPECT_EQ(vn::DhChain<1>::from_rows({vn::DhRow{.d = 400}}).row(0).d, 400);
-}
-
-TEST(DhChain, WithParametersKeepsTheJointTypes) {
-  const auto moved = modified.with_parameters(modified.parameters() * 2);
-  EXPECT_EQ(moved.row(0).joint, vn::JointType::prismatic);
-  EXPECT_EQ(moved.row(1).joint, vn::JointType::revolute);
-  EXPECT_EQ(moved.row(1).a, 0.4);
 }
 
 }  // namespace

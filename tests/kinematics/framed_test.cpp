@@ -6,10 +6,8 @@
 
 #include <numbers>
 
-#include "laws.hpp"
 #include "random_chains.hpp"
 #include "real_matrix.hpp"
-#include "vernier/testing/kinematic_laws.hpp"
 
 namespace vn = vernier;
 using vernier_test::difference;
@@ -53,18 +51,6 @@ TEST(Framed, AToolOnATurntableMovesAlongItsTangent) {
   const RealMatrix by_hand = vector({-0.2, 0, 0, 0, 0, 1});
   EXPECT_LE((RealMatrix::of(framed.jacobian(vn::JointVector<1>(0.0))) - by_hand).norm(), 1e-15);
   EXPECT_LE((framed.position(vn::JointVector<1>(0.0)) - vn::Vector3(5, 0.2, 0)).norm(), 1e-15);
-}
-
-TEST(Framed, ObeysTheLaws) {
-  vn::Rng rng(33);
-  const vn::JointRows<4> samples = vernier_test::random_joint_rows<4>(rng, 20);
-  const auto check = [&](const auto& model) {
-    EXPECT_TRUE(vernier_test::no_violations(vn::testing::kinematic_model_violations(model, samples)));
-    EXPECT_TRUE(vernier_test::no_violations(vn::testing::parametric_model_violations(model, samples)));
-  };
-  check(vn::Framed(arm()));
-  check(vn::Framed(arm(), base, tool));
-  check(vn::Framed(vernier_test::random_chain<4, vn::ModifiedDh>(rng), base, tool));
 }
 
 TEST(Framed, ParametersAreBaseModelTool) {

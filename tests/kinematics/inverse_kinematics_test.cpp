@@ -288,17 +288,6 @@ TEST(InverseKinematics, ARedundantArmStaysNearItsSeed) {
   EXPECT_LE(distance(q, start), 1e-3);
 }
 
-TEST(InverseKinematics, WorksOnAnyModel) {
-  const vn::Vector6 base{1, 2, 3, 0.1, -0.2, 3.0}, tool{0.1, 0, 0.2, 0, 1, 0};
-  const vn::Framed model(vn::robots::ur10().chain, vn::FrameParameters(base), vn::FrameParameters(tool));
-  const vn::JointVector<6> q = joints(0.3, -1, 1.2, 0.4, 0.8, -0.6);
-  vn::JointVector<6> seed = q;
-  for (double& x : seed) x += 0.05;
-  const auto result = inverse_kinematics(model, model.pose(q), seed);
-  EXPECT_EQ(result.status, vn::IkStatus::converged);
-  EXPECT_LE((RealMatrix(result.joints) - q).norm(), 1e-7);
-}
-
 // From anywhere: single starts fail now and then, restarts find the pose.
 TEST(InverseKinematics, RestartsReachWhatOneStartMisses) {
   const auto robot = vn::robots::abb_irb120();

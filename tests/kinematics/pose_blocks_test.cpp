@@ -60,23 +60,6 @@ TYPED_TEST(PoseBlocks, AreThePosesOneByOneToTheBit) {
   });
 }
 
-TYPED_TEST(PoseBlocks, AndSinglePosesAreThoseOfTheLibraryFunctions) {
-  vn::Rng rng(2);
-  for_all_sizes([&]<int N>(std::integral_constant<int, N>) {
-    for (int repetition = 0; repetition < 20; ++repetition) {
-      const auto arm = random_chain<N, TypeParam>(rng);
-      const vn::JointRows<N> joints = random_joint_rows<N>(rng, 10);
-      const std::vector<vn::Isometry3> all = vn::poses(arm, joints);
-      for (vn::Index i = 0; i < joints.rows(); ++i) {
-        const vn::JointVector<N> q = vn::configuration<N>(joints, i);
-        const vn::Isometry3 expected = arm.template pose<double>(q, arm.parameters());
-        EXPECT_LE(difference(all[static_cast<std::size_t>(i)], expected), 1e-14);
-        EXPECT_LE(difference(arm.pose(q), expected), 1e-14);
-      }
-    }
-  });
-}
-
 TYPED_TEST(PoseBlocks, PointsOfTheToolAreWhereThePosePutsThem) {
   vn::Rng rng(3);
   const auto arm = random_chain<6, TypeParam>(rng);

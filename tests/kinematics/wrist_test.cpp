@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "random_chains.hpp"
-#include "real_matrix.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/detail/subproblems.hpp"
 
@@ -30,24 +28,6 @@ void expect_spread_about(double centre, const double* angles) {
     seen += std::exp2(static_cast<double>(static_cast<int>(std::floor(parts)) & (angle_samples - 1)));
   }
   EXPECT_EQ(seen, std::exp2(angle_samples) - 1);
-}
-
-TEST(CandidatesWhiteBox, AreBothAnglesOfAPair) {
-  const Candidates two({0.7, 0.3, 0, false, 1}, 5, 0.1);
-  ASSERT_EQ(two.count, 2);
-  EXPECT_EQ(two.exact, 2);
-  EXPECT_FALSE(two.any);
-  EXPECT_EQ(two.angles[0], 1.0);
-  EXPECT_DOUBLE_EQ(two.angles[1], 0.4);
-  EXPECT_EQ(two.margin_of(1), 0);
-  // merged, or half a turn apart from the centre on either side, they are one
-  EXPECT_EQ(Candidates({0.7, 0, 0, false, 1}, 5).count, 1);
-  EXPECT_EQ(Candidates({0.7, pi, 0, false, 1}, 5).count, 1);
-  // where all angles will do, the one asked for
-  const Candidates any({0, 0, 0, true, 0}, 5);
-  ASSERT_EQ(any.count, 1);
-  EXPECT_EQ(any.angles[0], 5);
-  EXPECT_TRUE(any.any);
 }
 
 TEST(CandidatesWhiteBox, BeyondTheBoundaryAreTheNearestUpToFivePercent) {
@@ -109,22 +89,6 @@ TEST(WristWhiteBox, WrappedAnglesIncludeHalfATurn) {
   EXPECT_NEAR(detail::wrapped_angle(7), 7 - 2 * pi, 1e-15);
   EXPECT_NEAR(detail::wrapped_angle(-7), 2 * pi - 7, 1e-15);
   EXPECT_EQ(detail::wrapped_angle(-3), -3);
-}
-
-// Oblique lines through one point, and two that miss each other by 2 cm: half of that from the point between them.
-TEST(WristWhiteBox, LinesMeetWhereTheyAreNearest) {
-  const Vector3 meeting(0.1, -0.2, 0.3);
-  const Vector3 directions[] = {Vector3(1, 0, 0), Vector3(0, 0.6, 0.8), Vector3(0, 0, 1)};
-  const Vector3 points[] = {meeting + 0.5 * directions[0], meeting - 0.7 * directions[1], meeting + 2 * directions[2]};
-  const auto exact = detail::meeting_point(directions, points, 3);
-  EXPECT_LT((exact.point - meeting).norm(), 1e-14);
-  EXPECT_LT(exact.miss, 1e-14);
-  const Vector3 across[] = {Vector3(1, 0, 0), Vector3(0, 1, 0)}, apart[] = {Vector3(3, 0, 0.01), Vector3(0, 5, -0.01)};
-  const auto skew = detail::meeting_point(across, apart, 2);
-  EXPECT_LT(skew.point.norm(), 1e-14);
-  EXPECT_NEAR(skew.miss, 0.01, 1e-15);
-  const Vector3 parallel[] = {Vector3(0, 0, 1), Vector3(0, 0, 1)};
-  EXPECT_EQ(detail::meeting_point(parallel, apart, 2).miss, 1e300);
 }
 
 }  // namespace

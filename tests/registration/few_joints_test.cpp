@@ -57,15 +57,6 @@ TEST(ReregisterOneJoint, IsLeftToItsPriorWhereNothingTells) {
                 remark + "\n");
 }
 
-TEST(ReregisterOneJoint, IsNotDeterminedByNothing) {
-  const auto model = rigid<1>(DhChain<1>({{.d = 0.3}}));
-  const auto found = reregister(model, around({0, 0}), {.base = false, .offsets = true, .offset_prior_std = infinity});
-  EXPECT_FALSE(found.determined);
-  EXPECT_FALSE(found.converged);
-  EXPECT_EQ(found.change_std.size(), 0);
-  EXPECT_TRUE(found.remarks().empty());
-}
-
 // Radii that scatter by e about the arm's: the angle does not follow, so n e^2 are left of 3 n values less one.
 TEST(ReregisterOneJoint, WeightsAreThoseOfWhatItLeaves) {
   const auto model = rigid<1>(DhChain<1>({{.a = 0.5, .d = 0.3}}));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "larger.hpp"
+#include "vernier/core/points.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 
@@ -21,6 +22,33 @@ vernier::DhChain<N, Convention> as_made(const vernier::DhChain<N, Convention>& n
   for (int k = 0; k < 5 * N; ++k) p(k) += factor * deviation[k % 5] * rng.normal();
   return nominal.with_parameters(p);
 }
+
+/// A chain whose joints turn unevenly, as gears make them: no `DhChain` any more.
+template <int N>
+struct UnevenJoints {
+  static constexpr int dof = N;
+  vernier::DhChain<N> chain;
+  double amplitude = 1e-3;  // rad
+
+  vernier::JointVector<N> effective(const vernier::JointVector<N>& q) const noexcept {
+    vernier::JointVector<N> out;
+    for (int i = 0; i < N; ++i) out(i) = q(i) + amplitude * std::sin(2 * q(i) + i);
+    return out;
+  }
+  vernier::Isometry3 pose(const vernier::JointVector<N>& q) const noexcept { return chain.pose(effective(q)); }
+  vernier::Vector3 position(const vernier::JointVector<N>& q) const noexcept { return vernier::translation(pose(q)); }
+  vernier::Jacobian<N> jacobian(const vernier::JointVector<N>& q) const noexcept {
+    return pose_and_jacobian(q).jacobian;
+  }
+  vernier::PoseAndJacobian<N> pose_and_jacobian(const vernier::JointVector<N>& q) const noexcept {
+    vernier::PoseAndJacobian<N> out = chain.pose_and_jacobian(effective(q));
+    for (int i = 0; i < N; ++i) {
+      const double slope = 1 + 2 * amplitude * std::cos(2 * q(i) + i);
+      for (int row = 0; row < 6; ++row) out.jacobian(row, i) *= slope;
+    }
+    return out;
+  }
+};
 
 /// Difference of two angles without whole turns, in [-pi, pi].
 inline double without_turns(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }

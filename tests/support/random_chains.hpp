@@ -55,6 +55,13 @@ inline vernier::VectorX random_joint_values(vernier::Rng& rng, vernier::Index n)
   return q;
 }
 
+/// Normal numbers with a standard deviation.
+inline vernier::VectorX normals(vernier::Rng& rng, vernier::Index n, double size = 1) {
+  vernier::VectorX out(n);
+  for (double& x : out) x = size * rng.normal();
+  return out;
+}
+
 /// Joint values with one of them moved.
 template <int N>
 vernier::JointVector<N> stepped(vernier::JointVector<N> q, int joint, double step) {

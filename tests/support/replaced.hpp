@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vernier::testing_support {
+namespace vernier_test {
 
 /// A text with the first `from`, which must be there, replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -13,4 +13,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-}  // namespace vernier::testing_support
+}  // namespace vernier_test
+
+namespace vernier {
+namespace testing_support = ::vernier_test;
+}

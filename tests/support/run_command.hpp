@@ -9,7 +9,7 @@
 
 #include "vernier/core/atomic_file.hpp"
 
-namespace vernier::testing_support {
+namespace vernier_test {
 
 /// What a command did.
 struct CommandResult {
@@ -28,7 +28,11 @@ inline CommandResult run_command(const std::string& command, const std::filesyst
   const auto output = folder / "stdout.txt", errors = folder / "stderr.txt";
   const int status =
       std::system(("{ " + command + "; } >'" + output.string() + "' 2>'" + errors.string() + "' </dev/null").c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(output), read_file(errors)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, vernier::read_file(output), vernier::read_file(errors)};
 }
 
-}  // namespace vernier::testing_support
+}  // namespace vernier_test
+
+namespace vernier {
+namespace testing_support = ::vernier_test;
+}

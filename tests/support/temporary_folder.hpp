@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace vernier::testing_support {
+namespace vernier_test {
 
 /// A folder of its own for a test, gone with it; safe beside other runs of the same test.
 class TemporaryFolder {
@@ -30,4 +30,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace vernier::testing_support
+}  // namespace vernier_test
+
+namespace vernier {
+namespace testing_support = ::vernier_test;
+}

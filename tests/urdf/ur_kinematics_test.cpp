@@ -31,7 +31,7 @@ class UrKinematicsFile : public testing::Test {
     write_file(conf, set.conf());
     return read_ur_calibration(conf, vernier_test::ur_nominal(set));
   }
-  testing_support::TemporaryFolder folder_{"ur_kinematics"};
+  vernier_test::TemporaryFolder folder_{"ur_kinematics"};
   std::string path_ = (folder_ / "kinematics.yaml").string();
 };
 
@@ -176,7 +176,7 @@ TEST_F(UrKinematicsFile, OtherArmsAreRefused) {
 // Joints of a URDF must turn about their own z, one next to the other.
 TEST_F(UrKinematicsFile, JointsOfAUrdfFollowOneAnotherAboutTheirZ) {
   const auto told = [](const std::string& from, const std::string& to) {
-    const std::string text = testing_support::replaced(vernier_test::ur_like_urdf(), from, to);
+    const std::string text = vernier_test::replaced(vernier_test::ur_like_urdf(), from, to);
     const UrdfChain chain = parse_urdf(text, "in", "base_link", "tool0");
     return vernier_test::complaint([&] { (void)UrKinematics::of(chain, chain.robot.geometry(), ""); });
   };
@@ -237,7 +237,7 @@ TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
   EXPECT_EQ(read(kinematics.text({})).hash, kinematics.hash);
 
   const auto expect = [&](const std::string& from, const std::string& to, const std::string& what) {
-    const std::string told = vernier_test::complaint([&] { read(testing_support::replaced(published, from, to)); });
+    const std::string told = vernier_test::complaint([&] { read(vernier_test::replaced(published, from, to)); });
     EXPECT_NE(told.find(what), std::string::npos) << told;
     EXPECT_NE(told.find("kinematics.yaml"), std::string::npos) << told;
     EXPECT_EQ(told.find('\n'), std::string::npos) << told;
@@ -258,14 +258,14 @@ TEST_F(UrKinematicsFile, WhatTheDriverWritesIsRead) {
     expect("calib_17452164853672886207", hash,
            "line 14: 'kinematics.hash' must be of up to 64 letters, digits and underscores");
   expect("x: -0.612", "x: 1000.5", "'kinematics.forearm.x': 1000.5 is beyond any length or angle");
-  EXPECT_EQ(read(testing_support::replaced(published, "x: -0.612", "x: +1000")).origins[2](0, 3), 1000);
+  EXPECT_EQ(read(vernier_test::replaced(published, "x: -0.612", "x: +1000")).origins[2](0, 3), 1000);
   const std::string longest(64, 'f');
-  EXPECT_EQ(read(testing_support::replaced(published, "calib_17452164853672886207", longest)).hash, longest);
+  EXPECT_EQ(read(vernier_test::replaced(published, "calib_17452164853672886207", longest)).hash, longest);
   expect("calib_17452164853672886207", longest + "f", "must be of up to 64 letters");
   EXPECT_EQ(read(published + "#" + std::string((1 << 16) - 1 - published.size(), ' ')).hash, kinematics.hash);
   const std::string large = "#" + std::string(1 << 16, ' ');
   expect(published, large, "65537 bytes, more than 65536");
-  EXPECT_EQ(read(testing_support::replaced(published, "  hash: calib_17452164853672886207\n", "")).hash, "");
+  EXPECT_EQ(read(vernier_test::replaced(published, "  hash: calib_17452164853672886207\n", "")).hash, "");
   UrKinematics without = kinematics;
   without.hash = "";
   EXPECT_EQ(read(without.text({})).hash, "");

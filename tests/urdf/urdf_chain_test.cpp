@@ -159,7 +159,7 @@ TEST(UrdfChain, PartOfATreeIsAChainToo) {
 }
 
 TEST(UrdfChain, FilesAreRead) {
-  const testing_support::TemporaryFolder folder("urdf");
+  const vernier_test::TemporaryFolder folder("urdf");
   const std::string path = (folder / "seven.urdf").string();
   write_file(path, "\xEF\xBB\xBF" + vernier_test::seven_axis_urdf());
   EXPECT_EQ(read_urdf(path).robot.rows, parse_urdf(vernier_test::seven_axis_urdf(), "x").robot.rows);
@@ -176,7 +176,7 @@ TEST(UrdfChain, DamageIsNamedInOneLine) {
   };
   const std::string& good = vernier_test::seven_axis_urdf();
   const auto with = [&](const std::string& from, const std::string& to) {
-    return testing_support::replaced(good, from, to);
+    return vernier_test::replaced(good, from, to);
   };
   expect("", "empty, not URDF");
   expect("joints", "not valid XML");
@@ -248,8 +248,8 @@ TEST(UrdfChain, DamageIsNamedInOneLine) {
 }
 
 TEST(UrdfChain, LimitsThatAreNoneAreIgnoredWithARemark) {
-  const UrdfChain chain = parse_urdf(
-      testing_support::replaced(vernier_test::seven_axis_urdf(), "lower=\"-2.9\" upper=\"2.9\"", ""), "a.urdf");
+  const UrdfChain chain =
+      parse_urdf(vernier_test::replaced(vernier_test::seven_axis_urdf(), "lower=\"-2.9\" upper=\"2.9\"", ""), "a.urdf");
   EXPECT_EQ(chain.robot.limits[0], (std::pair{-infinity, infinity}));
   EXPECT_EQ(chain.robot.limits[1], (std::pair{-2.9, 2.9}));
   ASSERT_EQ(chain.remarks.size(), 1u);

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "ur10_measured.hpp"
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
@@ -17,35 +18,14 @@
 namespace vernier::calibrate_test {
 namespace {
 
-using Chain = DhChain<6>;
-using Actual = Framed<WithJointErrors<Chain>>;
+using namespace vernier_test::ur10_measured;
 
 Isometry3 frame(double x, double y, double z, double rx, double ry, double rz) {
   return FrameParameters(Vector6{x, y, z, rx, ry, rz}).isometry();
 }
 
-const Robot<6> robot = robots::ur10();
-
-JointLimits<6> measured_ranges() {
-  JointLimits<6> out;
-  out.lower = JointVector<6>(-2.5, -2.6, 0.3, -2.5, -2, -2.5);
-  out.upper = JointVector<6>(2.5, -0.6, 2.4, 2.5, 2, 2.5);
-  return out;
-}
-
 /// Compliance and harmonics alone.
 const JointErrorSizes compliant{.gear_ratio = 0, .coupling = 0};
-
-/// An arm with geometric errors and joint errors.
-Actual actual_arm(const Isometry3& base = frame(2, -1, 0.5, 0.1, -0.2, 1.5), const JointErrorSizes& sizes = compliant) {
-  const Chain off =
-      with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
-  return Actual({off, draw_joint_errors(robot.chain, sizes, 5)}, base, frame(0.02, 0.03, 0.11, 0, 0.1, 0));
-}
-
-JointRows<6> joints(Index n, std::uint64_t seed) { return sample_joints(measured_ranges(), n, seed); }
-
-constexpr MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.1e-3};
 
 /// Nothing is learned on top of geometry and joint errors.
 const CalibrateOptions models_alone{.remainder = {.on_error_model = false}};
@@ -55,7 +35,7 @@ double mean_error(const ErrorModel<Chain>& model, const Actual& actual, std::uin
 }
 
 TEST(Calibrate, FindsEverySourceItContains) {
-  const Actual actual = actual_arm(frame(2, -1, 0.5, 0.1, -0.2, 1.5), {});  // gear ratios and coupling as well
+  const Actual actual = actual_arm(base, {});  // gear ratios and coupling as well
   for (const auto& [poses, limit] : {std::pair<Index, double>{100, 0.06e-3}, {1000, 0.02e-3}}) {
     const auto found = calibrate(robot.chain, measure(actual, joints(poses, 1), noise, 2), models_alone);
     EXPECT_TRUE(found.geometry.converged());
@@ -176,7 +156,7 @@ TEST(Calibrate, UnmodelledSourcesOneByOne) {
   JointErrorSizes rippled = compliant;
   rippled.ripple = 0.02e-3;
   rippled.ripple_harmonic = 101;
-  const Actual actual = actual_arm(), ripple = actual_arm(frame(2, -1, 0.5, 0.1, -0.2, 1.5), rippled);
+  const Actual actual = actual_arm(), ripple = actual_arm(base, rippled);
   const auto q = joints(300, 1);
   const double plain = mean_error(calibrate(robot.chain, measure(actual, q, noise, 2), models_alone).model(), actual);
   const double with_ripple =

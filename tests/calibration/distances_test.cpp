@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "complaint.hpp"
+#include "ur10_measured.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -12,31 +13,16 @@
 namespace vernier::distances_test {
 namespace {
 
+using namespace vernier_test::ur10_measured;
 using vernier_test::complaint;
-using Chain = DhChain<6>;
-using Actual = Framed<WithJointErrors<Chain>>;
 
-const Robot<6> robot = robots::ur10();
-const Isometry3 tool = FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry();
 const Vector3 anchor(0.9, -1.2, 0.3);
-const std::vector<Dataset<6>> no_poses{};
 const RemainderOptions nothing{.on_error_model = false};
 
-JointRows<6> joints(Index n, std::uint64_t seed) {
-  JointLimits<6> ranges;
-  ranges.lower = JointVector<6>(-2.5, -2.6, 0.3, -2.5, -2, -2.5);
-  ranges.upper = JointVector<6>(2.5, -0.6, 2.4, 2.5, 2, 2.5);
-  return sample_joints(ranges, n, seed);
-}
-
-/// Geometric errors, and joint errors of some size; in its own base frame.
+/// In its own base frame.
 Actual actual_arm(double harmonic, double compliance) {
-  const Chain off =
-      with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
-  return Actual(
-      {off, draw_joint_errors(robot.chain,
-                              {.gear_ratio = 0, .coupling = 0, .compliance = compliance, .harmonic = harmonic}, 5)},
-      Isometry3::Identity(), tool);
+  return vernier_test::ur10_measured::actual_arm(
+      Isometry3::Identity(), {.gear_ratio = 0, .coupling = 0, .compliance = compliance, .harmonic = harmonic});
 }
 
 /// The nominal arm, its tool off by millimetres.
@@ -138,18 +124,6 @@ TEST(Distances, EveryWireFindsItsFixedPoint) {
 }
 
 TEST(Distances, MisuseThrows) {
-  EXPECT_NE(complaint([] {
-              (void)Distances<2>(JointRows<2>::Zero(2, 2), VectorX::Ones(3));
-            }).find("2 rows of joints, but 3 distances"),
-            std::string::npos);
-  EXPECT_NE(complaint([] { (void)Distances<2>(JointRows<2>::Zero(2, 2), Eigen::Vector2d(1, 0)); }).find("row 1 has"),
-            std::string::npos);
-  EXPECT_NE(complaint([] {
-              (void)Distances<2>(JointRows<2>::Zero(1, 2), VectorX::Constant(1, std::nan("")));
-            }).find("row 0 has a value that is not finite"),
-            std::string::npos);
-  const Distances<2> one(JointRows<2>::Zero(1, 2), VectorX::Ones(1));
-  EXPECT_NE(complaint([&] { (void)one.rows(std::array<Index, 1>{1}); }).find("row 1 of 1"), std::string::npos);
   EXPECT_NE(complaint([] { (void)identify(robot.chain, Distances<6>()); }).find("no samples"), std::string::npos);
   const std::vector<Distances<6>> empty(1);
   EXPECT_THROW((void)calibrate(robot.chain, empty), std::invalid_argument);

@@ -6,12 +6,12 @@
 
 #include <Eigen/LU>
 #include <array>
-#include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "complaint.hpp"
+#include "ur10_measured.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/evaluation/statistics.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -21,26 +21,8 @@
 namespace vernier::evaluate_test {
 namespace {
 
+using namespace vernier_test::ur10_measured;
 using vernier_test::complaint;
-using Chain = DhChain<6>;
-
-const Robot<6> robot = robots::ur10();
-constexpr MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.1e-3};
-
-JointRows<6> joints(Index n, std::uint64_t seed, double reach = 1) {
-  JointLimits<6> ranges;
-  ranges.lower = JointVector<6>(-2.5 * reach, -2.6, 0.3, -2.5, -2, -2.5);
-  ranges.upper = JointVector<6>(2.5 * reach, -0.6, 2.4, 2.5, 2, 2.5);
-  return sample_joints(ranges, n, seed);
-}
-
-Framed<WithJointErrors<Chain>> actual_arm() {
-  const Chain off =
-      with_geometric_errors(robot.chain, {.length_min = 0.2e-3, .angle_min = 0.3e-3, .angle_max = 1e-3}, 4);
-  return Framed<WithJointErrors<Chain>>({off, draw_joint_errors(robot.chain, {.gear_ratio = 0, .coupling = 0}, 5)},
-                                        FrameParameters(Vector6{2, -1, 0.5, 0.1, -0.2, 1.5}),
-                                        FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}));
-}
 
 /// A small search: what is learned matters little here.
 const CalibrateOptions quick{
@@ -211,63 +193,6 @@ TEST(Calibrate, TheLearnerThatHelpsIsDeployed) {
     EXPECT_EQ(report.stages.size(), others + 5);  // frames, geometry, elastic, joint-wise before
     EXPECT_LT(report.stages.back().position.mean(), 0.95 * report.stage(Stage::jointwise).position.mean());
   }
-}
-
-TEST(Evaluate, TheVerdictStatesAccuracyWhereItWasMeasured) {
-  const auto actual = actual_arm();
-  CalibrateOptions options = quick;
-  options.remainder = {.on_error_model = false};
-  const auto found = calibrate(robot.chain, measure(actual, joints(150, 1), noise, 2), options);
-  const auto fresh = measure(actual, joints(60, 3, 1.15), noise, 4);
-  const CalibrationReport report = evaluate(found, fresh);
-  std::vector<double> inside;
-  for (Index i = 0; i < 60; ++i)
-    if (report.gates(i) == 1) inside.push_back(report.stage(Stage::jointwise).position(i) * 1e3);
-  const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
-  char figures[160];
-  std::snprintf(figures, sizeof figures, "Accurate to %.3g mm mean, %.3g mm (95 %%), %.3g mm maximum", e.mean, e.p95,
-                e.max);
-  const std::vector<std::string> verdict = report.verdict();
-  ASSERT_GE(verdict.size(), 3u);
-  EXPECT_EQ(verdict[0].find(figures), 0u) << verdict[0] << "\n" << figures;
-  EXPECT_NE(verdict[0].find(message(e.n, " of 60 held-out poses")), std::string::npos) << verdict[0];
-  EXPECT_EQ(verdict[1].find(message(60 - e.n, " held-out poses lie outside")), 0u) << verdict[1];
-  EXPECT_EQ(verdict[2].find("Measured joint ranges [deg, mm]: q1 -14"), 0u) << verdict[2];
-
-  CalibrationReport other = report;
-  other.blocks = {{Block::jointwise, 47.52e-6, 47.49e-6, true, 1, 0.1234},
-                  {Block::gears, 47.5e-6, 47.6e-6, false, 1e12, 0}};
-  const std::vector<std::string> decisions = other.verdict();
-  ASSERT_GE(decisions.size(), 5u);
-  EXPECT_EQ(
-      decisions[3],
-      "Joint-wise terms help (leave-one-pose-out error: 0.0475 mm without, 0.0475 mm with; log predictive density "
-      "of a left-out pose greater by 0.123 nat).");
-  EXPECT_EQ(decisions[4],
-            "Gear ratios and coupling do not help (leave-one-pose-out error: 0.0475 mm without, 0.0476 mm with).");
-}
-
-TEST(Evaluate, TiltsAreAStageWhereTheyAreFound) {
-  const auto off = actual_arm();
-  JointTerms terms(6);
-  terms.tilt.emplace(robot.chain);
-  VectorX coefficients(terms.size());
-  Rng rng(7);
-  for (double& c : coefficients) c = 0.5e-3 * rng.normal();
-  const auto actual = off.around(WithJointErrors<Chain>(off.chain(), JointErrors(terms, coefficients)));
-  CalibrateOptions options = quick;
-  options.errors.harmonics = 0;
-  options.remainder = {.on_error_model = false};
-  const auto found = calibrate(robot.chain, measure(actual, joints(150, 1), noise, 2), options);
-  const auto fresh = measure(actual, joints(60, 3), noise, 4);
-  const CalibrationReport report = evaluate(found, fresh);
-  EXPECT_EQ(report.chosen, Stage::tilt);
-  EXPECT_EQ(report.stage(Stage::tilt).position, position_errors(found.model(), fresh));
-  EXPECT_LT(report.stage(Stage::tilt).position.mean(), 0.5 * report.stage(Stage::jointwise).position.mean());
-  bool stated = false;
-  for (const std::string& sentence : report.verdict())
-    stated = stated || sentence.find("Tilts of joint frames under gravity help") == 0;
-  EXPECT_TRUE(stated);
 }
 
 TEST(Evaluate, EveryStationNeedsItsHeldOutPoses) {

@@ -54,18 +54,5 @@ TEST(ErrorModelOptions, NumbersAndDirectionsHaveBounds) {
             "ErrorModelOptions: down has length 0, must be 1");
 }
 
-// The sizes of industrial robots that a fit starts from.
-TEST(ErrorModelOptions, Defaults) {
-  const ErrorModelOptions options;
-  EXPECT_EQ(options.harmonics, 500);
-  EXPECT_EQ(options.compliance_prior_std, 1e-3);
-  EXPECT_EQ(options.gear_ratio_prior_std, 1e-4);
-  EXPECT_EQ(options.coupling_prior_std, 1e-4);
-  EXPECT_EQ(options.hysteresis_prior_std, 60e-6);
-  EXPECT_EQ(options.tilt_prior_std, 2e-3);
-  EXPECT_EQ(options.thermal_prior_std, 1e-4);
-  EXPECT_EQ(options.num_validation_poses, 200);
-}
-
 }  // namespace
 }  // namespace vernier::error_model_options_test

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "complaint.hpp"
-#include "gauss_newton.hpp"
+#include "irb120_fits.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
@@ -23,13 +22,10 @@
 namespace vernier::fit_choices_test {
 namespace {
 
-using vernier_test::identify_by_gauss_newton;
+using namespace vernier_test::irb120_fits;
 using vernier_test::RealMatrix;
-using Chain = DhChain<6>;
 using Actual = Framed<WithJointErrors<Chain>>;
 
-const Robot<6> robot = robots::abb_irb120();
-const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
 const SensorModel sensors{.position_sigma = 0.02e-3, .orientation_sigma = 0.1e-3, .loss = Loss::squared};
 const ErrorModelOptions geometry_alone{
     .compliance = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
@@ -40,15 +36,8 @@ Dataset<6> measured(const Actual& actual, Index poses, std::uint64_t seed) {
       .without_approach();
 }
 
-Identified<Chain> identified(const Dataset<6>& data) {
-  const auto out = identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
-                                            {.frames = Frames::base_and_tool}, sensors);
-  EXPECT_TRUE(out.converged()) << out.message;
-  return out;
-}
-
 FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ErrorModelOptions& options, PriorSearch search = {}) {
-  return fit_error_model(identified(data), data, options, sensors, search);
+  return fit_error_model(identified(data, sensors), data, options, sensors, search);
 }
 
 std::vector<std::string> block_names(const FittedErrorModel<Chain>& found) {
@@ -58,8 +47,7 @@ std::vector<std::string> block_names(const FittedErrorModel<Chain>& found) {
 }
 
 const BlockChoice& block_of(const FittedErrorModel<Chain>& found, const std::string& name) {
-  for (const BlockChoice& block : found.blocks)
-    if (traits_of(block.block).key == name) return block;
+  if (const BlockChoice* choice = choice_of(found, name)) return *choice;
   static const BlockChoice none;
   ADD_FAILURE() << "no block " << name;
   return none;
@@ -86,7 +74,7 @@ TEST(FitStations, SeeOneArmFromTheirPlaces) {
   const Actual in_its_base(WithJointErrors<Chain>(chain), {}, tool);
   const Distances<6> wire =
       measure_distances(in_its_base, Vector3(0.9, -1.2, 0.3), sample_joints(robot.limits, 40, 3), 0.02e-3, 3);
-  const auto start = identified(data);
+  const auto start = identified(data, sensors);
   const auto fit = [&](const Actual& other, bool tools) {
     ErrorModelOptions options = geometry_alone;
     options.tool_per_station = tools;
@@ -125,7 +113,7 @@ TEST(FitStations, SeeOneArmFromTheirPlaces) {
 TEST(FitStations, ChainsHavePriorsOfTheIdentification) {
   const Actual actual(WithJointErrors<Chain>(with_geometric_errors(robot.chain, {}, 4)), base, tool);
   const Dataset<6> data = measured(actual, 30, 5);
-  auto start = identified(data);
+  auto start = identified(data, sensors);
   std::vector<Index> of_chain;
   for (const Index k : start.free)
     if (k >= 6 && k < 36) of_chain.push_back(k);
@@ -320,7 +308,7 @@ TEST(FitOptions, DrivesAndFallbackErrorsAreReported) {
 TEST(FitOptions, WhatCannotBeUsedIsNamed) {
   const Actual actual(WithJointErrors<Chain>(robot.chain), base, tool);
   const Dataset<6> data = measured(actual, 20, 1);
-  const auto start = identified(data);
+  const auto start = identified(data, sensors);
   const auto complaint = [&](const std::vector<Dataset<6>>& stations, const ErrorModelOptions& options,
                              const SensorModel& accuracy) {
     return vernier_test::complaint([&] { (void)fit_error_model(start, stations, options, accuracy); });

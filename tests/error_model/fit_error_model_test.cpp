@@ -12,6 +12,7 @@
 
 #include "complaint.hpp"
 #include "gauss_newton.hpp"
+#include "irb120_fits.hpp"
 #include "real_matrix.hpp"
 #include "set_of.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
@@ -25,17 +26,13 @@
 namespace vernier::fit_error_model_test {
 namespace {
 
+using namespace vernier_test::irb120_fits;
 using vernier_test::difference;
 using vernier_test::identify_by_gauss_newton;
 using vernier_test::RealMatrix;
 using vernier_test::vector;
-using Chain = DhChain<6>;
 using Actual = Framed<WithJointErrors<Chain>>;
 
-const Robot<6> robot = robots::abb_irb120();
-const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
-const SensorModel squared{.loss = Loss::squared};
-const Framed<Chain> nominal(robot.chain, base, tool);
 const ErrorModelOptions few_harmonics{.harmonics = 2, .num_validation_poses = 60};
 
 Actual actual_arm(const JointErrorSizes& sizes) {
@@ -48,9 +45,7 @@ Dataset<6> measured(const Actual& actual, Index poses, std::uint64_t seed) {
 }
 
 FittedErrorModel<Chain> fitted(const Dataset<6>& data, const ErrorModelOptions& options = few_harmonics) {
-  const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
-  EXPECT_TRUE(start.converged()) << start.message;
-  return fit_error_model(start, data, options, squared);
+  return fit_error_model(identified(data), data, options, squared);
 }
 
 /// What a coefficient belongs to, by its name.
@@ -143,12 +138,6 @@ Actual tilting_arm(double size) {
   Rng rng(6);
   for (double& c : coefficients) c = size * rng.normal();
   return Actual({with_geometric_errors(robot.chain, {}, 4), JointErrors(terms, coefficients)}, base, tool);
-}
-
-const BlockChoice* choice_of(const FittedErrorModel<Chain>& found, const std::string& name) {
-  for (const BlockChoice& block : found.blocks)
-    if (traits_of(block.block).key == name) return &block;
-  return nullptr;
 }
 
 // Some coefficients act as others and the geometry do, so what is found is judged by its predictions.
@@ -394,22 +383,6 @@ TEST(FitErrorModel, CovarianceFromDistancesAloneHasNoVisits) {
   EXPECT_LT(found.position_sigma, 0.08e-3);
 }
 
-// Beside poses, a fixed point has three unknowns: a position, but no orientation.
-TEST(FitErrorModel, AFixedPointBesidePosesHasAPosition) {
-  const Actual actual = actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0});
-  const Dataset<6> data = measured(actual, 40, 4);
-  const auto wire = measure_distances(actual, Vector3(0.9, -1.2, 0.3),
-                                      abb_irb120_operating_region().sample(robot.chain, 40, 5), 0.03e-3, 5);
-  const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
-  const auto found =
-      fit_error_model(start, Measurements<6>(data).add(wire), {.compliance = false, .harmonics = 0}, squared);
-  std::vector<std::vector<Index>> of_station(2);
-  for (const GeometricUnknown& unknown : found.arm.geometric())
-    if (unknown.station >= 0) of_station[static_cast<std::size_t>(unknown.station)].push_back(unknown.parameter);
-  EXPECT_EQ(of_station[0], (std::vector<Index>{0, 1, 2, 3, 4, 5}));
-  EXPECT_EQ(of_station[1], (std::vector<Index>{0, 1, 2}));
-}
-
 /// Base x and y in units of 1 and 2 mm, standard deviations 0.1 and 0.2 units, correlation 0.5; joints that do not
 /// repeat.
 TEST(ErrorModelEstimate, CovariancesByHand) {
@@ -433,27 +406,6 @@ TEST(ErrorModelEstimate, CovariancesByHand) {
   const RealMatrix outside = visit(9e-8 + 0.25e-6 * 0.5625, 4e-8);  // three quarters of 0.8 mm / 1.6, squared
   EXPECT_LT((estimate.visit_covariance(q, 0.25) - outside).norm(), 1e-12 * outside.norm());
   EXPECT_LT((estimate.visit_covariance(q, 1) - measured).norm(), 1e-12 * measured.norm());
-}
-
-/// Nothing is uncertain but on which side of their loops the first and the third joint stand; half a loop is 0.2 and
-/// -0.3 mrad.
-TEST(ErrorModelEstimate, UnknownApproachesAreUncertainByHalfTheLoop) {
-  ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
-  JointTerms terms(6);
-  terms.hysteresis = {0.01};
-  estimate.arm.set_terms(terms, VectorX::Constant(6, 1e-4), VectorX::Ones(6));
-  VectorX steps = VectorX::Zero(7);
-  steps(1) = 2;
-  steps(3) = -3;
-  estimate.arm.move(steps);
-  estimate.covariance = MatrixX::Zero(7, 7);
-  estimate.position_sigma = estimate.joint_sigma = estimate.orientation_sigma = 0;
-  const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
-  const RealMatrix jacobian = nominal.jacobian(q), first = 2e-4 * jacobian.col(0), third = 3e-4 * jacobian.col(2);
-  const RealMatrix expected = first * first.transpose() + third * third.transpose();
-  EXPECT_LT((estimate.visit_covariance(q, 1) - expected).norm(), 1e-12 * expected.norm());
-  const JointVector<6> previous(-0.4, -1, -0.2, 0.2, -0.9, 0.5);
-  EXPECT_EQ(estimate.visit_covariance(q, 1, 0, previous).norm(), 0);
 }
 
 // The estimate of the first of two stations has the shared unknowns and its own ones, with their covariances.
@@ -497,23 +449,6 @@ TEST(ErrorModelEstimate, TheFirstStationByHand) {
   EXPECT_LT((coefficients - vector({5e-3, 12e-3})).norm(), 1e-15);
   EXPECT_EQ(RealMatrix(first.arm.precisions()).block(3, 0, 2, 1), vector({3, 5}));
   EXPECT_EQ(RealMatrix(first.arm.scales()).block(3, 0, 2, 1), vector({1e-3, 2e-3}));
-}
-
-/// A base that moves by 1 mm per unit of a thermal unknown and kelvin.
-TEST(ErrorModelEstimate, UnknownTemperaturesAreUncertainByTheirDeviation) {
-  ErrorModelEstimate estimate{
-      .arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}, {0, -1, 1e-6, 0, true}})};
-  estimate.arm.move(vector({0, 10}));  // 10 um/K along x
-  estimate.covariance = RealMatrix::diagonal(vector({0, 4}));
-  estimate.mean_temperature = 20;
-  estimate.temperature_std = 3;
-  const JointVector<6> q(0.1, -0.5, 0.3, 0.7, -0.4, 1);
-  const auto x = [&](double celsius) { return estimate.visit_covariance(q, 1, 0, VectorX(), celsius)(0, 0); };
-  EXPECT_NEAR(x(20), 0, 1e-20);
-  EXPECT_NEAR(x(25), 100e-12, 1e-20);  // five kelvin times two standard units of 1 um/K
-  EXPECT_NEAR(x(std::nan("")), 900e-12, 1e-19);
-  estimate.temperature_std = 0;
-  EXPECT_NEAR(x(std::nan("")), 0, 1e-20);
 }
 
 // A slide between two revolute joints has no harmonics, and every kind of term its own expected size.
@@ -582,23 +517,6 @@ TEST(ExpectedTermsWhiteBox, OrdersByTheNumberOfMeasurements) {
             "fit_error_model: drives of 1 joints for an arm of 2");
 }
 
-TEST(ExpectedTermsWhiteBox, OnlyWhatIsAllowed) {
-  const detail::ChainTable chain(robot.chain.view());
-  ErrorModelOptions options{.harmonics = 2};
-  options.down = Vector3(0, 1, 0);
-  const JointTerms all = detail::allowed_terms(chain, options, 30);
-  EXPECT_EQ(RealMatrix(all.gravity->down()), vector({0, 1, 0}));
-  EXPECT_EQ(RealMatrix(all.tilt->down()), vector({0, 1, 0}));
-  options.gear_ratio = false;
-  EXPECT_TRUE(detail::allowed_terms(chain, options, 30).coupling);
-  EXPECT_FALSE(detail::allowed_terms(chain, options, 30).gear_ratio);
-  options.gear_ratio = true;
-  options.coupling = options.compliance = options.hysteresis = options.tilt = false;
-  const JointTerms some = detail::allowed_terms(chain, options, 30);
-  EXPECT_TRUE(some.gear_ratio);
-  EXPECT_FALSE(some.coupling || some.gravity || some.tilt || !some.hysteresis.empty());
-}
-
 // a cos q + b sin q at 0 and pi: a and -a, mean 0; its variance is that of a.
 TEST(ErrorModelEstimate, TransmissionByHand) {
   ErrorModelEstimate estimate{.arm = ArmParameterisation({ArmGeometry(nominal)}, {{0, -1, 1e-3, 0}})};
@@ -633,23 +551,6 @@ TEST(ErrorModelEstimate, TransmissionOfAJointBehindOneOfMoreOrders) {
   const JointFunction f = estimate.transmission(2, {0, std::numbers::pi / 2});
   EXPECT_LT((f.value - vector({-1.5e-3, 1.5e-3})).norm(), 1e-15);  // 4 and 7 mrad about their mean
   EXPECT_LT((f.std - vector({2.5e-3, 2.5e-3})).norm(), 1e-15);     // half of sqrt(4^2 + 3^2)
-}
-
-// The prior of gravity that leave-one-pose-out errors choose is the one that the fit then has.
-TEST(FitErrorModel, HasThePriorThatWasChosen) {
-  const Dataset<6> data =
-      measured(actual_arm({.gear_ratio = 0, .coupling = 0, .compliance = 1e-3, .harmonic = 0}), 40, 1);
-  const auto found = fitted(
-      data,
-      {.gear_ratio = false, .coupling = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false});
-  const BlockChoice* elastic = choice_of(found, "elastic");
-  ASSERT_NE(elastic, nullptr);
-  ASSERT_TRUE(elastic->used);
-  EXPECT_NE(elastic->precision, 1);
-  const Index gravity = found.arm.terms().gravity->size();
-  EXPECT_EQ(found.arm.terms().size(), gravity);
-  const VectorX precisions = found.arm.precisions().tail(gravity);
-  for (const double precision : precisions) EXPECT_EQ(precision, elastic->precision);
 }
 
 }  // namespace

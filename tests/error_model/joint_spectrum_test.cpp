@@ -162,19 +162,6 @@ TEST(JointSpectrum, ArmsWithoutLinesHaveNone) {
   EXPECT_LE(blocks, 1);
 }
 
-TEST(JointSpectrum, AnOrderByHand) {
-  const auto one = [](int order, double amplitude) {
-    return HarmonicEstimate{order, amplitude, 1, amplitude * amplitude};
-  };
-  const auto lines = lines_in({one(3, 9), one(100, 6), one(101, 7), one(105, 8), one(110, 2), one(400, 5)}, 10);
-  ASSERT_EQ(lines.size(), 4u);  // 101 is a neighbour of 105, 100 one of neither: five away
-  EXPECT_EQ(lines[0].order, 3);
-  EXPECT_EQ(lines[1].order, 105);
-  EXPECT_EQ(lines[2].order, 100);
-  EXPECT_EQ(lines[3].order, 400);
-  EXPECT_NEAR(std::exp(-line_threshold(1000) / 2) * 1000, 0.01, 1e-12);  // the tail of chi-square with 2 degrees
-}
-
 // What the measurements alone say, by hand: the information of the two coefficients of an order is I, their estimate
 // (6, -8) or so; the fit had priors P on them, so it found (I + P)^-1 I (6, -8) with the covariance (I + P)^-1.
 TEST(JointSpectrum, IsTheEstimateWithoutPriors) {
@@ -217,7 +204,8 @@ TEST(JointSpectrum, IsTheEstimateWithoutPriors) {
   EXPECT_TRUE(joint_spectrum(estimate, 1).empty());
 }
 
-// The smaller of two lines is only a neighbour if it is at most a quarter of its order away, and four.
+// The smaller of two lines is only a neighbour if it is at most a quarter of its order away, and four. A threshold is
+// one in a hundred of all orders in the tail of chi-square with two degrees of freedom.
 TEST(JointSpectrum, LinesOfLowOrdersAreCloser) {
   const auto orders = [](const std::vector<HarmonicEstimate>& spectrum) {
     std::vector<int> out;
@@ -229,7 +217,9 @@ TEST(JointSpectrum, LinesOfLowOrdersAreCloser) {
   EXPECT_EQ(orders({one(9, 5), one(12, 4), one(7, 3), one(6, 2)}), (std::vector<int>{9, 7}));
   EXPECT_EQ(orders({one(12, 5), one(9, 4)}), (std::vector<int>{12, 9}));
   EXPECT_EQ(orders({one(20, 3), one(24, 4), one(29, 2)}), (std::vector<int>{24, 29}));
+  EXPECT_EQ(orders({one(100, 6), one(101, 7), one(105, 8)}), (std::vector<int>{105, 100}));
   EXPECT_TRUE(orders({{30, 9, 1, 10}, {40, 8, 1, 9}}).empty());  // not above the threshold
+  EXPECT_NEAR(std::exp(-line_threshold(1000) / 2) * 1000, 0.01, 1e-12);
 }
 
 /// As many angles, all around.

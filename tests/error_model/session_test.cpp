@@ -7,12 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "gauss_newton.hpp"
+#include "irb120_fits.hpp"
 #include "larger.hpp"
 #include "real_matrix.hpp"
 #include "set_of.hpp"
@@ -30,13 +28,9 @@
 namespace vernier::session_test {
 namespace {
 
+using namespace vernier_test::irb120_fits;
 using vernier_test::RealMatrix;
-using Chain = DhChain<6>;
 using Arm = ErrorModel<Chain>::Arm;
-
-const Robot<6> robot = robots::abb_irb120();
-const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
-const SensorModel squared{.loss = Loss::squared};
 
 /// An arm whose joints have loops of hysteresis of some half width [rad].
 ErrorModel<Chain> arm_with_hysteresis(double half_width) {
@@ -77,10 +71,7 @@ JointRows<6> rows_before(const JointRows<6>& joints) {
 const auto still = [](Index) { return Isometry3::Identity(); };
 
 FittedErrorModel<Chain> fitted(const Dataset<6>& data) {
-  const Framed<Chain> nominal(robot.chain, base, tool);
-  const auto start = vernier_test::identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
-  EXPECT_TRUE(start.converged()) << start.message;
-  return fit_error_model(start, data, {.harmonics = 2, .num_validation_poses = 100}, squared);
+  return fit_error_model(identified(data), data, {.harmonics = 2, .num_validation_poses = 100}, squared);
 }
 
 /// All joint values of a configuration, or of several, changed by the same.
@@ -109,14 +100,8 @@ void expect_left_out_as_deployed(const FittedErrorModel<Chain>& found, const std
   EXPECT_GT(largest, 0.08e-3);
 }
 
-const BlockChoice* block_of(const FittedErrorModel<Chain>& found, const char* name) {
-  for (const BlockChoice& block : found.blocks)
-    if (std::string(traits_of(block.block).key) == name) return &block;
-  return nullptr;
-}
-
 bool used(const FittedErrorModel<Chain>& found, const char* name) {
-  const BlockChoice* block = block_of(found, name);
+  const BlockChoice* block = choice_of(found, name);
   return block != nullptr && block->used;
 }
 
@@ -198,9 +183,7 @@ TEST(Drift, OfTwoStationsIsTakenOffEach) {
                                    [&](Index i) { return wave(i, n); }),
                    second = visited(arm_with_hysteresis(0), others, rows_before(others), 4,
                                     [&](Index i) { return composed(wave((i + 70) % n, n), there); });
-  const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), first,
-                                                            {.frames = Frames::base_and_tool}, squared);
-  const auto found = fit_error_model(start, Measurements<6>(first).add(second),
+  const auto found = fit_error_model(identified(first), Measurements<6>(first).add(second),
                                      {.harmonics = 0, .num_validation_poses = 100}, squared);
   ASSERT_TRUE(used(found, "drift"));
   ASSERT_EQ(found.drift.size(), 2u);
@@ -224,11 +207,10 @@ TEST(Drift, StepsHaveTheirSize) {
     // precisions are relative to the noise
     const SensorModel sensor{
         .position_sigma = stated * 0.02e-3, .orientation_sigma = stated * 0.05e-3, .loss = Loss::squared};
-    const auto start = vernier_test::identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
-                                                              {.frames = Frames::base_and_tool}, sensor);
-    const auto found = fit_error_model(start, data, {.harmonics = 0, .num_validation_poses = 100}, sensor);
+    const auto found =
+        fit_error_model(identified(data, sensor), data, {.harmonics = 0, .num_validation_poses = 100}, sensor);
     ASSERT_TRUE(used(found, "drift"));
-    EXPECT_EQ(block_of(found, "drift")->precision, precision);
+    EXPECT_EQ(choice_of(found, "drift")->precision, precision);
     const SessionDrift& drift = found.drift.front();
     EXPECT_EQ(drift.knots.cols(), 11);
     ASSERT_GE(drift.step_variance.size(), 6);
@@ -244,30 +226,13 @@ TEST(Drift, NothingIsFoundInABaseThatRests) {
   EXPECT_FALSE(used(fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still)), "drift"));
 }
 
-/// Joint 2 loses and regains 150 urad.
-// Poses that were measured at once cannot drift.
-TEST(DriftWhiteBox, WithoutDurationThereIsNone) {
-  const JointRows<6> joints = samples(20, 8);
-  const Dataset<6> data =
-      visited(arm_with_hysteresis(0), joints, joints, 8, still).measured_at(VectorX::Constant(20, 7));
-  const ErrorModelOptions options;
-  detail::CalibrationProblem problem(
-      ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))}, {{11, -1, 1e-3, 1}}),
-      {vernier_test::set_of(data, squared)}, Loss::squared);
-  detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
-  EXPECT_FALSE(detail::add_drift(model));
-  EXPECT_TRUE(model.problem.drift.empty());
-  EXPECT_TRUE(model.blocks.empty());
-}
-
 // One solution that failed is remembered, though later ones succeed.
 TEST(ModelSelectionWhiteBox, ConvergedWhereEverySolutionDid) {
   const JointRows<6> joints = samples(20, 8);
   const Dataset<6> data = visited(arm_with_hysteresis(0), joints, joints, 8, still);
   const ErrorModelOptions options;
-  detail::CalibrationProblem problem(
-      ArmParameterisation({ArmGeometry(Framed<Chain>(robot.chain, base, tool))}, {{11, -1, 1e-3, 1}}),
-      {vernier_test::set_of(data, squared)}, Loss::squared);
+  detail::CalibrationProblem problem(ArmParameterisation({ArmGeometry(nominal)}, {{11, -1, 1e-3, 1}}),
+                                     {vernier_test::set_of(data, squared)}, Loss::squared);
   detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
   model.solve();
   EXPECT_TRUE(model.converged);
@@ -303,8 +268,8 @@ TEST(Drift, OfAJointsZeroIsFollowed) {
   const double step = std::sqrt(40.0 / 200) * 10e-6;
   ASSERT_EQ(found.drift.front().step_variance.size(), 12);
   EXPECT_NEAR(found.drift.front().step_variance(7) / (step * step),
-              std::max(1.0, found.residual_variance / block_of(found, "joint_drift")->precision), 1e-9);
-  EXPECT_LT(block_of(found, "joint_drift")->precision, 1);  // half a wave of 150 urad in 300 poses
+              std::max(1.0, found.residual_variance / choice_of(found, "joint_drift")->precision), 1e-9);
+  EXPECT_LT(choice_of(found, "joint_drift")->precision, 1);  // half a wave of 150 urad in 300 poses
 }
 
 TEST(Drift, OfTheBaseAloneMovesNoJoint) {
@@ -314,44 +279,6 @@ TEST(Drift, OfTheBaseAloneMovesNoJoint) {
       fitted(visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, [&](Index i) { return wave(i, n); }));
   EXPECT_FALSE(used(found, "joint_drift"));
   EXPECT_EQ(found.drift.front().knots.rows(), 6);
-}
-
-// The columns of a drift's knots, against finite differences of residuals.
-TEST(DriftWhiteBox, ColumnsAreDerivatives) {
-  const JointRows<6> joints = samples(80, 1);
-  const Dataset<6> data = visited(arm_with_hysteresis(0), joints, rows_before(joints), 2, still);
-  const ArmGeometry arm{Framed<Chain>(robot.chain, base, tool)};
-  for (const bool with_joints : {false, true}) {
-    detail::CalibrationProblem problem(ArmParameterisation({arm}, {}), {vernier_test::set_of(data, squared)},
-                                       Loss::squared);
-    problem.start_drift(40);
-    if (with_joints) problem.start_joint_drift();
-    MatrixX& knots = problem.drift.front().knots;
-    ASSERT_EQ(knots.rows(), with_joints ? 12 : 6);
-    ASSERT_EQ(knots.cols(), 3);
-    knots.setConstant(1e-4);  // not at rest
-    VectorX scales = problem.drift_steps();
-    for (double& x : scales) x = 1e-4 / x;
-    for (const Index pose : {Index{0}, Index{13}, Index{60}}) {
-      RowBlock rows, ahead, behind;
-      problem(pose, 1, &rows);
-      for (const RowBlock::Local& local : rows.local) {
-        if (local.state < 0) continue;
-        const RealMatrix columns = local.columns;
-        ASSERT_EQ(columns.cols(), knots.rows());
-        for (Index k = 0; k < knots.rows(); ++k) {
-          const double scale = scales(local.state * knots.rows() + k), step = 1e-2 * scale;
-          knots(k, local.state) += step;
-          problem(pose, 1, &ahead);
-          knots(k, local.state) -= 2 * step;
-          problem(pose, 1, &behind);
-          knots(k, local.state) += step;
-          const RealMatrix slope = (RealMatrix(ahead.residual) - behind.residual) / (2 * step) * scale;
-          EXPECT_LT((slope - columns.col(k)).norm(), 1e-3 * columns.norm()) << pose << ' ' << k;
-        }
-      }
-    }
-  }
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "real_matrix.hpp"
-#include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 
 namespace vernier::visit_noise_test {
@@ -17,43 +16,6 @@ namespace {
 
 using vernier_test::RealMatrix;
 using vernier_test::vector;
-
-RealMatrix random_matrix(Rng& rng, Index rows, Index cols, double size) {
-  RealMatrix out(rows, cols);
-  for (Index j = 0; j < cols; ++j)
-    for (Index i = 0; i < rows; ++i) out(i, j) = size * rng.normal();
-  return out;
-}
-
-/// Visits whose joints and position are off by normal errors.
-std::vector<detail::LeftOutVisit> visits(double position, double joint, double model, std::uint64_t seed) {
-  Rng rng(seed);
-  std::vector<detail::LeftOutVisit> out;
-  for (int i = 0; i < 2000; ++i) {
-    const RealMatrix jacobian = random_matrix(rng, 3, 6, 0.4), root = random_matrix(rng, 3, 3, model);
-    const RealMatrix by_joints = jacobian * random_matrix(rng, 6, 1, joint),
-                     by_model = root * random_matrix(rng, 3, 1, 1), in_space = random_matrix(rng, 3, 1, position);
-    out.push_back({by_joints + by_model + in_space, root * root.transpose(), jacobian * jacobian.transpose()});
-  }
-  return out;
-}
-
-TEST(VisitNoiseWhiteBox, TellsSpaceFromJoints) {
-  for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    const detail::VisitNoise noise = detail::visit_noise(visits(30e-6, 40e-6, 15e-6, seed));
-    EXPECT_NEAR(noise.position, 30e-6, 3e-6) << seed;
-    EXPECT_NEAR(noise.joint, 40e-6, 4e-6) << seed;
-  }
-}
-
-TEST(VisitNoiseWhiteBox, FindsOneAlone) {
-  const detail::VisitNoise space = detail::visit_noise(visits(30e-6, 0, 0, 4));
-  EXPECT_NEAR(space.position, 30e-6, 3e-6);
-  EXPECT_LT(space.joint, 10e-6);  // in space: below 10 um of 30
-  const detail::VisitNoise joints = detail::visit_noise(visits(0, 40e-6, 0, 5));
-  EXPECT_LT(joints.position, 4e-6);
-  EXPECT_NEAR(joints.joint, 40e-6, 4e-6);
-}
 
 TEST(VisitNoiseWhiteBox, NoneInNothing) {
   const detail::LeftOutVisit exact{Vector3::Zero(), Matrix3::Zero(), Matrix3::Identity()};

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "random_chains.hpp"
 #include "real_matrix.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
@@ -16,16 +17,11 @@ namespace {
 using Chain = DhChain<6>;
 
 using vernier_test::difference;
+using vernier_test::normals;
 using vernier_test::RealMatrix;
 using vernier_test::vector;
 
 const Robot<6> robot = robots::abb_irb120();
-
-VectorX random_vector(Rng& rng, Index n) {
-  VectorX out(n);
-  for (double& x : out) x = rng.normal();
-  return out;
-}
 
 ArmParameterisation example() {
   const FrameParameters base(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), tool(Vector6{0.02, -0.05, 0.11, 0.2, -0.1, 0.5});
@@ -38,25 +34,6 @@ double value(const ArmParameterisation& arm, const std::string& name) {
   const auto names = arm.names();
   const Index k = std::find(names.begin(), names.end(), name) - names.begin();
   return arm.steps()(k) * arm.scales()(k);
-}
-
-// Rates by temperature are those of all stations, or of one; an unknown that is not thermal has none.
-TEST(ArmParameterisation, ThermalRatesByStation) {
-  const FrameParameters here(Vector6{0.4, -0.3, 0.2, 0.3, -0.4, 0.6}), there(Vector6{1, 0.3, 0, 0.3, 0.4, 0.6});
-  ArmParameterisation arm(
-      {ArmGeometry(Framed<Chain>(robot.chain, here)), ArmGeometry(Framed<Chain>(robot.chain, there))},
-      {{9, -1, 1e-3, 0, true}, {0, 0, 1e-3, 0, true}, {0, 1, 1e-3, 0, true}, {2, 0, 1e-3, 0, true}, {11, -1, 1e-3, 0}});
-  EXPECT_EQ(RealMatrix(arm.steps()).norm(), 0);
-  arm.move(vector({1, 2, 3, 4, 5}));
-  RealMatrix first(arm.geometry(0).num_parameters(), 1), second = first;
-  first(9) = second(9) = 1e-3;
-  first(0) = 2e-3;
-  second(0) = 3e-3;
-  first(2) = 4e-3;
-  EXPECT_LT(difference(arm.thermal_rates(0), first), 1e-18);
-  EXPECT_LT(difference(arm.thermal_rates(1), second), 1e-18);
-  EXPECT_LT(difference(arm.steps(), vector({1, 2, 3, 4, 5})), 1e-12);
-  EXPECT_EQ(example().thermal_rates(0).size(), 0);
 }
 
 // Without joint errors there is nothing to multiply by, so nothing is written; without temperatures rates do nothing.
@@ -87,7 +64,7 @@ TEST(ArmParameterisation, CoefficientsKeepTheirValuesWhenTermsAreAdded) {
   few.transmission[1] = Fourier::up_to(2);
   few.transmission[4] = Fourier::up_to(3);
   arm.set_terms(few, VectorX::LinSpaced(few.size(), 1e-4, 2e-4), VectorX::Ones(few.size()));
-  arm.move(random_vector(rng, arm.size()));
+  arm.move(normals(rng, arm.size()));
   const RealMatrix joints(1, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1});
   const Isometry3 before = arm.poses(0, joints).front();
   ArmParameterisation more = arm;
@@ -109,7 +86,7 @@ TEST(ArmParameterisation, StepsAreRelativeToThePriorsMeans) {
   terms.transmission[2] = Fourier::up_to(2);
   arm.set_terms(terms, VectorX::Constant(4, 1e-4), VectorX::Constant(4, 7));
   EXPECT_EQ(RealMatrix(arm.steps()).largest(), 0);
-  const VectorX first = random_vector(rng, 7), second = random_vector(rng, 7);
+  const VectorX first = normals(rng, 7), second = normals(rng, 7);
   arm.move(first);
   arm.move(second);
   EXPECT_LT((arm.steps() - first - second).norm(), 1e-12);
@@ -178,8 +155,8 @@ TEST(FittedArm, TakesTheHysteresisOfAnother) {
   others.transmission[1] = Fourier::up_to(2);
   Rng rng(5);
   const ArmGeometry geometry(in_frames(robot.chain));
-  const FittedArm arm{geometry, JointErrors(terms, random_vector(rng, terms.size()))},
-      other{geometry, JointErrors(others, random_vector(rng, others.size()))},
+  const FittedArm arm{geometry, JointErrors(terms, normals(rng, terms.size()))},
+      other{geometry, JointErrors(others, normals(rng, others.size()))},
       rigid{geometry, JointErrors(JointTerms(6), VectorX())};
   const auto expect_joined = [&](const FittedArm& found, const FittedArm& own) {
     EXPECT_EQ(found.errors.terms().hysteresis, others.hysteresis);
@@ -224,7 +201,7 @@ TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
   terms.tilt.emplace(robot.chain, Vector3(0.6, 0, -0.8));
   terms.transmission[2] = Fourier::up_to(2);
   arm.set_terms(terms, VectorX::LinSpaced(terms.size(), 1e-2, 2e-2), VectorX::Ones(terms.size()));
-  arm.move(random_vector(rng, arm.size()));
+  arm.move(normals(rng, arm.size()));
   const RealMatrix joints(2, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1, -1.2, 0.4, 0.2, -0.7, 1.1, 0.5});
   std::vector<RowBlock> rows(2);
   const auto poses = arm.linearise(0, joints, MatrixX(), rows.data());
@@ -255,7 +232,7 @@ TEST(ArmParameterisation, ColumnsOfHysteresisAndHeatAreDifferences) {
   JointTerms terms(6);
   terms.hysteresis = {0.05, 0.4};
   arm.set_terms(terms, VectorX::LinSpaced(terms.size(), 1e-3, 2e-3), VectorX::Ones(terms.size()));
-  arm.move(random_vector(rng, arm.size()));
+  arm.move(normals(rng, arm.size()));
   const RealMatrix joints(2, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1, -1.2, 0.4, 0.2, -0.7, 1.1, 0.5});
   RealMatrix previous = joints;
   for (Index i = 0; i < 2; ++i)

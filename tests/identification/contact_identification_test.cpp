@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <limits>
 
 #include "complaint.hpp"
 #include "larger.hpp"
@@ -24,6 +23,7 @@ using vernier_test::nominal_arm;
 using vernier_test::RealMatrix;
 using vernier_test::three_planes;
 using vernier_test::touched;
+using vernier_test::variance_of_touches;
 
 const IdentifyOptions exact{.frames = Frames::tool, .priors = false};
 
@@ -138,26 +138,6 @@ TEST(Contacts, SocketsWithoutALengthDoNotDetermineTheScale) {
   EXPECT_EQ(found.missing, 0) << found.summary();
 }
 
-TEST(Contacts, ParallelAxesAreNoMatter) {
-  const DhChain<6> nominal = robots::ur10().chain;
-  const Framed<DhChain<6>> actual(with_geometric_errors(nominal, {}, 9), {},
-                                  FrameParameters(Vector6{0.06, 0.02, 0.1, 0, 0, 0}));
-  JointLimits<6> limits;
-  limits.lower.setConstant(-2.5);
-  limits.upper.setConstant(2.5);
-  const auto of = [&](const VirtualObject& plane, const char* name, const VectorX& known, std::uint64_t seed) {
-    return touch(actual, plane, name, known, limits, 0, seed);
-  };
-  const std::vector contacts{of({ContactKind::plane, {0.7, 0, 0.2}, {0, 0, 1}, 0.6}, "table", lengths(30, 15, 0.2), 1),
-                             of({ContactKind::plane, {0.8, 0, 0.4}, {1, 0, 0}, 0.6}, "front", lengths(30), 2),
-                             of({ContactKind::plane, {0.2, 0.7, 0.4}, {0, 1, 0}, 0.6}, "side", lengths(30), 3)};
-  const auto found = identify_by_contacts(
-      Framed<DhChain<6>>(nominal, {}, FrameParameters(Vector6{0.05, 0.02, 0.1, 0, 0, 0})), contacts);
-  EXPECT_TRUE(found.converged()) << found.summary();
-  EXPECT_EQ(found.missing, 0);
-  EXPECT_EQ(found.free.size(), 21u);
-}
-
 TEST(Contacts, AJointThatSlidesIsALength) {
   std::array<DhRow, 6> rows;
   for (int i = 0; i < 6; ++i) rows[static_cast<std::size_t>(i)] = robots::abb_irb120().chain.row(i);
@@ -171,13 +151,6 @@ TEST(Contacts, AJointThatSlidesIsALength) {
       touch(actual, {ContactKind::socket, actual.position(middle), {0, 0, 1}}, "one", lengths(20), limits, 0, 1),
       touch(actual, {ContactKind::socket, actual.position(aside), {0, 0, 1}}, "two", lengths(20), limits, 0, 2)};
   EXPECT_TRUE(identify_by_contacts(actual, contacts).scale_observable);
-}
-
-TEST(Contacts, AToolThatIsOffByADecimetreIsFound) {
-  const auto contacts = three_planes(true);
-  const vernier_test::IrbArm start(nominal_arm().model(), {}, FrameParameters(Vector6{0.0, 0.03, 0.02, 0, 0, 0}));
-  const auto found = identify_by_contacts(start, contacts, exact);
-  EXPECT_LT(registered_error(found.model), 1e-8) << found.summary();
 }
 
 TEST(Contacts, StandardDeviationsAreThoseOfTheErrors) {
@@ -215,17 +188,6 @@ void expect_consistent_covariance(const ContactReport& found) {
     for (Index j = 0; j < p; ++j)
       EXPECT_LE(covariance(i, j) * covariance(i, j), (1 + 1e-9) * covariance(i, i) * covariance(j, j));
   }
-}
-
-/// The variance of touches in units of the sensor's, by what is left of them and the degrees of freedom: a parameter
-/// with a prior takes away as much of one as the touches add to the prior, places of objects take away one each.
-double variance_of_touches(const ContactReport& found, Index values, Index of_objects, double sigma) {
-  double freedom = static_cast<double>(values - of_objects);
-  for (const Index k : found.free) {
-    const ParameterEstimate& p = found.parameters[static_cast<std::size_t>(k)];
-    freedom -= 1 - std::pow(p.std / p.prior_std, 2);
-  }
-  return std::pow(found.rms_after / sigma, 2) * static_cast<double>(values) / freedom;
 }
 
 // Priors of the chain are as wide as its errors, in units of the expected sizes of 1 mm and 3 mrad: the common width of
@@ -342,20 +304,6 @@ TEST(Contacts, EveryObjectHasItsOwnResiduals) {
 
 TEST(Contacts, RefusesWhatDeterminesNothing) {
   const RealMatrix joints = three_planes(true)[0].joints();
-  EXPECT_EQ(complaint([&] { Contact("table", ContactKind::plane, joints.block(0, 0, 3, 6)); }),
-            "contact table: 3 touches of a plane, at least 4 are needed: fewer say where it is, and nothing about the "
-            "arm");
-  EXPECT_EQ(complaint([&] { Contact("s", ContactKind::socket, joints.block(0, 0, 1, 6)); }),
-            "contact s: 1 touch of a socket, at least 2 are needed: fewer say where it is, and nothing about the arm");
-  EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, joints); }), "contact b: a ball without its radius");
-  EXPECT_EQ(complaint([&] { Contact("b", ContactKind::ball, joints, VectorX::Zero(20)); }),
-            "contact b: touch 0 has a radius of 0 m, must be positive");
-  EXPECT_EQ(complaint([&] { Contact("p", ContactKind::plane, joints, VectorX::Zero(3)); }),
-            "contact p: 20 touches, but 3 known lengths");
-  MatrixX damaged = joints;
-  damaged(2, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(complaint([&] { Contact("p", ContactKind::plane, damaged); }),
-            "contact p: touch 2 has a value that is not finite");
   EXPECT_EQ(complaint([&] { identify_by_contacts(nominal_arm(), std::span<const Contact>()); }),
             "identify_by_contacts: no contacts");
   const std::vector five{Contact("p", ContactKind::plane, joints.block(0, 0, joints.rows(), 5))};

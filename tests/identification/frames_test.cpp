@@ -19,25 +19,6 @@ namespace {
 
 using vernier_test::complaint;
 using vernier_test::difference;
-using vernier_test::RealMatrix;
-
-TEST(RegisterPoints, FindsTheMotionExactly) {
-  Rng rng(1);
-  PointRows from(20, 3);
-  for (Index c = 0; c < 3; ++c)
-    for (Index i = 0; i < 20; ++i) from(i, c) = rng.normal();
-  const Isometry3 motion = rigid_motion(exp_so3(Vector3(2.0, -1.5, 1.0)), Vector3(3, -2, 5));
-  PointRows to(20, 3);
-  for (Index i = 0; i < 20; ++i) set_point(to, i, transformed(motion, point(from, i)));
-  EXPECT_LT((RealMatrix(register_points(from, to)) - motion).norm(), 1e-13 * RealMatrix(motion).norm());
-}
-
-TEST(RegisterPoints, NeverReflects) {
-  PointRows from(4, 3), to(4, 3);
-  from << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  to << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1;  // a mirror image
-  EXPECT_NEAR(RealMatrix(rotation(register_points(from, to))).determinant(), 1, 1e-12);
-}
 
 TEST(Trilaterate, FindsThePoint) {
   Rng rng(1);

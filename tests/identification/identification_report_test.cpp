@@ -97,23 +97,6 @@ TEST(IdentificationReport, FourPairsAreNamed) {
       << text;
 }
 
-// Figures that were not filled in are zero, as for an arm of which nothing was estimated.
-TEST(IdentificationReport, IsEmptyAtFirst) {
-  const ContactReport report;
-  EXPECT_TRUE(report.converged());
-  for (const double figure : {report.rms_before, report.rms_after, report.rotation_rms_after, report.condition,
-                              report.observability.o1, report.observability.o5})
-    EXPECT_EQ(figure, 0);
-  for (const Index number : {report.rank, report.unobservable, report.missing}) EXPECT_EQ(number, 0);
-  EXPECT_EQ(report.iterations, 0);
-  EXPECT_TRUE(report.scale_observable);
-  const TouchedObject object{};
-  EXPECT_EQ(object.touches, 0);
-  EXPECT_EQ(object.rms, 0);
-  EXPECT_EQ(ParameterEstimate{}.scale, 0);
-  EXPECT_EQ(ParameterEstimate{}.prior_std, std::numeric_limits<double>::infinity());
-}
-
 TEST(ContactReport, SummaryByHand) {
   ContactReport report = example<ContactReport>();
   report.parameters.insert(report.parameters.begin(),

@@ -39,24 +39,6 @@ TEST(Observability, IndicesByHand) {
   EXPECT_NEAR(Observability::of(vector({4, 2, 1}), 16).o1, 0.5, 1e-15);  // the only one that counts poses
 }
 
-TEST(Observability, OfOneUnknownAndOnePose) {
-  const auto o = Observability::of(vector({3}), 1);
-  EXPECT_NEAR(o.o1, 3, 1e-15);
-  EXPECT_EQ(o.o2, 1);
-  EXPECT_EQ(o.o3, 3);
-  EXPECT_EQ(o.o4, 3);
-  EXPECT_EQ(o.o5, 3);
-}
-
-TEST(Observability, TellsLengthFromRatio) {
-  const auto o = Observability::of(vector({8, 4, 2}), 4);  // all twice as large
-  EXPECT_NEAR(o.o1, 2, 1e-15);
-  EXPECT_EQ(o.o2, 0.25);
-  EXPECT_EQ(o.o3, 2);
-  EXPECT_EQ(o.o4, 0.5);
-  EXPECT_NEAR(o.o5, 8.0 / 7, 1e-15);
-}
-
 TEST(Observability, NothingSeenGivesZeros) {
   for (const double least : {0.0, -1e-18}) {
     const auto o = Observability::of(vector({4, 2, least}), 4);

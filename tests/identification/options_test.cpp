@@ -36,23 +36,6 @@ TEST(IdentifyOptions, NamesWhatIsUnusable) {
             "IdentifyOptions: no parameter is called 'b2'; they are called like a1 or d1");
 }
 
-// What a calibration uses where nothing is said: sizes of errors of an industrial arm, and sensors of a tracker's kind.
-TEST(IdentifyOptions, Defaults) {
-  const IdentifyOptions options;
-  EXPECT_EQ(options.length_prior_std, 1e-3);
-  EXPECT_EQ(options.angle_prior_std, 1e-3);
-  EXPECT_EQ(options.joint_zero_prior_std, 10e-3);
-  EXPECT_TRUE(options.geometry && options.hayati && options.priors);
-  EXPECT_FALSE(options.base_free() || options.tool_free());
-  const SensorModel sensors;
-  EXPECT_EQ(sensors.position_sigma, 0.03e-3);
-  EXPECT_EQ(sensors.orientation_sigma, 0.1e-3);
-  EXPECT_EQ(sensors.distance_sigma, 0.03e-3);
-  EXPECT_EQ(sensors.contact_sigma, 0.03e-3);
-  EXPECT_EQ(sensors.joint_sigma, 0);
-  EXPECT_TRUE(sensors.use_orientations);
-}
-
 TEST(SensorModel, NamesWhatIsUnusable) {
   const auto said = [](const SensorModel& sensors) { return complaint([&] { sensors.validate(); }); };
   EXPECT_EQ(said({}), "");

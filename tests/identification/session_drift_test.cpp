@@ -75,12 +75,5 @@ TEST(SessionDrift, WalksOnBeyondItsEnds) {
     EXPECT_EQ(difference(drift.covariance_beyond(time, point, jacobian), none), 0) << time;
 }
 
-TEST(SessionDrift, NoneIsNoMotion) {
-  const SessionDrift none;
-  EXPECT_EQ(none.joint_zeros(3).size(), 0);
-  EXPECT_TRUE(none.empty());
-  EXPECT_EQ(RealMatrix(none.motion(3)), RealMatrix::identity(4));
-}
-
 }  // namespace
 }  // namespace vernier::session_drift_test

@@ -18,8 +18,8 @@ namespace vernier::bad_input_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using testing_support::replaced;
-using testing_support::TemporaryFolder;
+using vernier_test::replaced;
+using vernier_test::TemporaryFolder;
 
 /// How a reader answers a file of this content: empty when it takes it, else its complaint.
 class Reader {

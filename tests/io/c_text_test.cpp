@@ -57,11 +57,11 @@ const std::vector<Features> arms{
 
 class CText : public ::testing::Test {
  protected:
-  testing_support::CommandResult run(const std::string& command) {
-    return testing_support::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
+  vernier_test::CommandResult run(const std::string& command) {
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
   }
 
-  testing_support::TemporaryFolder folder_{"c_text"};
+  vernier_test::TemporaryFolder folder_{"c_text"};
 };
 
 // A file without its first and last lines, which are those of a string literal, is what the literal holds. Unknown

@@ -182,7 +182,7 @@ TEST(CalibratedRobots, OfACalibrationAreWhatIsDeployed) {
 }
 
 TEST(CalibratedRobots, OfACalibrationAreSavedAtOnce) {
-  const testing_support::TemporaryFolder folder("calibrated_robot");
+  const vernier_test::TemporaryFolder folder("calibrated_robot");
   const Calibration<Chain> calibration = found_by_hand();
   save((folder / "at_once.json").string(), calibration, info);
   save((folder / "in_two.json").string(), calibrated_robot(calibration, info));

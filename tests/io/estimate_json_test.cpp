@@ -57,7 +57,7 @@ CalibratedRobot<6> example(int orders) {
 }
 
 TEST(EstimateJson, KeepsTheCovarianceInSinglePrecision) {
-  const testing_support::TemporaryFolder folder("estimate");
+  const vernier_test::TemporaryFolder folder("estimate");
   const auto saved = example(5);
   save(folder / "m.json", saved);
   const auto loaded = load<6>(folder / "m.json");
@@ -111,7 +111,7 @@ TEST(EstimateJson, RadiiOfCommandsFollowFromTheCovariance) {
 // The files of arms with thousands of unknowns are below 10 MB; what is left out are correlations of the highest
 // orders.
 TEST(EstimateJson, LargeOnesAreThinned) {
-  const testing_support::TemporaryFolder folder("estimate");
+  const vernier_test::TemporaryFolder folder("estimate");
   const auto saved = example(180);
   save(folder / "m.json", saved);
   EXPECT_LT(std::filesystem::file_size(folder / "m.json"), 10'000'000u);

@@ -27,9 +27,9 @@
 namespace vernier::export_c_test {
 namespace {
 
-using testing_support::run_command;
 using vernier_test::difference;
 using vernier_test::RealMatrix;
+using vernier_test::run_command;
 
 constexpr const char* strict = "-pedantic -Wall -Wextra -Werror -O2";
 
@@ -131,7 +131,7 @@ void arm_rotation_vector(const double *rotation, double *out) { arm_log_(rotatio
 template <int N>
 class Compiled {
  public:
-  Compiled(const testing_support::TemporaryFolder& folder, const std::string& source) {
+  Compiled(const vernier_test::TemporaryFolder& folder, const std::string& source) {
     write_file(folder / "arm.h", source);
     const std::string library = folder / "arm.so";
     const auto done = run_command("gcc -std=c99 " + std::string(strict) + " -shared -fPIC -DARM_API= -x c '" +
@@ -246,7 +246,7 @@ Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<
   return out;
 }
 
-bool have(const char* compiler, const testing_support::TemporaryFolder& folder) {
+bool have(const char* compiler, const vernier_test::TemporaryFolder& folder) {
   return run_command(std::string("command -v ") + compiler, folder.path()).exit_code == 0;
 }
 
@@ -272,7 +272,7 @@ class ExportC : public ::testing::Test {
     }
   }
 
-  testing_support::TemporaryFolder folder_{"export_c"};
+  vernier_test::TemporaryFolder folder_{"export_c"};
 };
 
 TEST_F(ExportC, OfAGeometryEqualsTheLibrary) {
@@ -376,7 +376,7 @@ int main(void) {
     write_file(folder_ / "library.c", "#include \"arm.h\"\n");
   }
 
-  testing_support::CommandResult run(const std::string& command) {
+  vernier_test::CommandResult run(const std::string& command) {
     return run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
   }
 

@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "complaint.hpp"
+#include "page_text.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
@@ -28,9 +29,11 @@ namespace vernier::html_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using testing_support::CommandResult;
-using testing_support::TemporaryFolder;
+using vernier_test::between;
+using vernier_test::CommandResult;
 using vernier_test::complaint;
+using vernier_test::has;
+using vernier_test::TemporaryFolder;
 
 const std::string hostile = "<script>alert(1)</script>";
 
@@ -113,14 +116,6 @@ const std::string& large_page() {
   static const std::string made = report_html(input_of(2773));
   return made;
 }
-
-std::string between(const std::string& text, const std::string& from, const std::string& to, std::size_t start = 0) {
-  const std::size_t a = text.find(from, start);
-  if (a == std::string::npos) return "";
-  const std::size_t begin = a + from.size(), end = text.find(to, begin);
-  return text.substr(begin, end == std::string::npos ? end : end - begin);
-}
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(HtmlReport, HasItsSectionsInOrder) {
   const std::string& page = large_page();
@@ -310,7 +305,8 @@ TEST(HtmlReport, LeavesOutWhatIsEmpty) {
   input.after = Stage::geometry;
   const std::string page = report_html(input);
   for (const char* id : {"audit", "poses", "parameters", "joints", "suspects", "drift", "next"})
-    EXPECT_FALSE(has(page, message("<section id=\"", id, "\">"))) << id;
+    for (const std::string& part : {message("<section id=\"", id, "\">"), message("<a href=\"#", id, "\">")})
+      EXPECT_FALSE(has(page, part)) << part;
 }
 
 TEST(SvgChart, TicksAreRound) {
@@ -319,6 +315,10 @@ TEST(SvgChart, TicksAreRound) {
   EXPECT_EQ(detail::chart_ticks(0.5, 30, true, 5), (std::vector<double>{0.5, 1, 2, 5, 10, 20}));
   EXPECT_EQ(detail::chart_ticks(0.03, 40000, true, 5), (std::vector<double>{0.1, 1, 10, 100, 1000, 10000}));
   EXPECT_TRUE(detail::chart_ticks(1, 1, false, 5).empty());
+  EXPECT_EQ(detail::chart_ticks(0.5, 100, true, 5), (std::vector<double>{1, 10, 100}));
+  EXPECT_EQ(detail::chart_ticks(0, 10, false, 2), (std::vector<double>{0, 5, 10}));
+  EXPECT_EQ(detail::chart_ticks(0, 10, false, 4), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  EXPECT_EQ(detail::chart_ticks(0, 10, false, 12), (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
 }
 
 TEST(SvgChart, PlacesValuesOnItsAxes) {
@@ -340,7 +340,7 @@ TEST(SvgChart, PlacesValuesOnItsAxes) {
 class HtmlReportSeen : public ::testing::Test {
  protected:
   CommandResult run(const std::string& command) {
-    return testing_support::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
   }
   bool missing(const char* program) { return run(message("command -v ", program)).exit_code != 0; }
   CommandResult chromium(const std::string& options, const std::string& fragment = "") {

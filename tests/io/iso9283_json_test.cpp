@@ -6,8 +6,8 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "json_parts.hpp"
 #include "vernier/core/points.hpp"
 #include "vernier/core/so3.hpp"
 
@@ -15,14 +15,9 @@ namespace vernier::iso9283_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using vernier_test::expect_parts;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-void expect_list(const Json& json, std::initializer_list<double> expected) {
-  ASSERT_EQ(json.size(), expected.size());
-  std::size_t k = 0;
-  for (const double value : expected) EXPECT_NEAR(json.at(k++).get<double>(), value, 1e-9);
-}
 
 // Each value is another number of micrometres or microradians, so that no two can be exchanged.
 TEST(Iso9283Json, PosesDistanceVariationsAndDrift) {
@@ -59,54 +54,20 @@ TEST(Iso9283Json, PosesDistanceVariationsAndDrift) {
   result.registration = rigid_motion(exp_so3(Vector3(0, 0, 0.25)), Vector3(1, -2, 3));
   result.departures = {"ten cycles"};
 
-  const Json json = to_json(result);
-  ASSERT_EQ(json.at("poses").size(), 2u);
-  const Json& p = json.at("poses").at(0);
-  EXPECT_EQ(p.at("pose"), 4);
-  EXPECT_EQ(p.at("direction"), 2);
-  EXPECT_EQ(p.at("visits"), 30);
-  EXPECT_NEAR(p.at("ap_mm").get<double>(), 1e-3, 1e-12);
-  EXPECT_NEAR(p.at("ap_debiased_mm").get<double>(), 2e-3, 1e-12);
-  EXPECT_TRUE(p.at("ap_registered_mm").is_null());
-  EXPECT_NEAR(json.at("poses").at(1).at("ap_registered_mm").get<double>(), 18e-3, 1e-12);
-  EXPECT_NEAR(p.at("rp_mm").get<double>(), 3e-3, 1e-12);
-  expect_list(p.at("rp_interval_95_mm"), {4e-3, 5e-3});
-  expect_list(p.at("ap_xyz_mm"), {6e-3, 7e-3, 8e-3});
-  expect_list(p.at("rp_xyz_mm"), {9e-3, 10e-3, 11e-3});
-  expect_list(p.at("ap_abc_mrad"), {12e-3, 13e-3, 14e-3});
-  EXPECT_NEAR(p.at("rp_abc_mrad").at(0).get<double>(), 15e-3, 1e-12);
-  EXPECT_TRUE(p.at("rp_abc_mrad").at(1).is_null());
-  EXPECT_NEAR(p.at("rp_abc_mrad").at(2).get<double>(), 17e-3, 1e-12);
-
-  const Json& d = json.at("distance");
-  EXPECT_EQ(d.at("poses"), (std::vector<int>{3, 5}));
-  EXPECT_EQ(d.at("cycles"), 29);
-  EXPECT_NEAR(d.at("ad_mm").get<double>(), -19e-3, 1e-12);
-  EXPECT_NEAR(d.at("rd_mm").get<double>(), 20e-3, 1e-12);
-  expect_list(d.at("ad_xyz_mm"), {21e-3, 22e-3, 23e-3});
-  expect_list(d.at("rd_xyz_mm"), {24e-3, 25e-3, 26e-3});
-  expect_list(d.at("ad_abc_mrad"), {27e-3, 28e-3, 29e-3});
-  expect_list(d.at("rd_abc_mrad"), {30e-3, 31e-3, 32e-3});
-
-  const Json& v = json.at("variations").at(0);
-  EXPECT_EQ(v.at("pose"), 1);
-  EXPECT_EQ(v.at("directions"), 3);
-  EXPECT_NEAR(v.at("vap_mm").get<double>(), 33e-3, 1e-12);
-  expect_list(v.at("vap_abc_mrad"), {34e-3, 35e-3, 36e-3});
-
-  const Json& drift = json.at("drift").at(0);
-  EXPECT_EQ(drift.at("pose"), 2);
-  EXPECT_NEAR(drift.at("dap_mm").get<double>(), 41e-3, 1e-12);
-  EXPECT_NEAR(drift.at("drp_mm").get<double>(), 42e-3, 1e-12);
-  ASSERT_EQ(drift.at("groups").size(), 2u);
-  EXPECT_EQ(drift.at("groups").at(0).at("time_s"), 37);  // not in thousandths
-  EXPECT_NEAR(drift.at("groups").at(0).at("ap_mm").get<double>(), 38e-3, 1e-12);
-  EXPECT_NEAR(drift.at("groups").at(0).at("rp_mm").get<double>(), 39e-3, 1e-12);
-  EXPECT_TRUE(drift.at("groups").at(1).at("time_s").is_null());
-  EXPECT_TRUE(drift.at("groups").at(1).at("rp_mm").is_null());
-
-  expect_list(json.at("registration_m_rad"), {1, -2, 3, 0, 0, 0.25});
-  EXPECT_EQ(json.at("departures"), std::vector<std::string>{"ten cycles"});
+  expect_parts(to_json(result), R"({
+    "poses": [
+      {"pose": 4, "direction": 2, "visits": 30, "ap_mm": 1e-3, "ap_debiased_mm": 2e-3, "ap_registered_mm": null,
+       "rp_mm": 3e-3, "rp_interval_95_mm": [4e-3, 5e-3], "ap_xyz_mm": [6e-3, 7e-3, 8e-3],
+       "rp_xyz_mm": [9e-3, 10e-3, 11e-3], "ap_abc_mrad": [12e-3, 13e-3, 14e-3], "rp_abc_mrad": [15e-3, null, 17e-3]},
+      {"ap_registered_mm": 18e-3}],
+    "distance": {"poses": [3, 5], "cycles": 29, "ad_mm": -19e-3, "rd_mm": 20e-3,
+                 "ad_xyz_mm": [21e-3, 22e-3, 23e-3], "rd_xyz_mm": [24e-3, 25e-3, 26e-3],
+                 "ad_abc_mrad": [27e-3, 28e-3, 29e-3], "rd_abc_mrad": [30e-3, 31e-3, 32e-3]},
+    "variations": [{"pose": 1, "directions": 3, "vap_mm": 33e-3, "vap_abc_mrad": [34e-3, 35e-3, 36e-3]}],
+    "drift": [{"pose": 2, "dap_mm": 41e-3, "drp_mm": 42e-3,
+               "groups": [{"time_s": 37, "ap_mm": 38e-3, "rp_mm": 39e-3}, {"time_s": null, "rp_mm": null}]}],
+    "registration_m_rad": [1, -2, 3, 0, 0, 0.25],
+    "departures": ["ten cycles"]})");
 }
 
 TEST(Iso9283Json, WhatThereIsNotIsNullOrEmpty) {
@@ -134,20 +95,12 @@ TEST(Iso9283Json, Paths) {
   result.points = {point};
   result.departures = {"one run"};
 
-  const Json json = to_json(result);
-  EXPECT_NEAR(json.at("at_mm").get<double>(), 1e-3, 1e-12);
-  EXPECT_NEAR(json.at("rt_mm").get<double>(), 2e-3, 1e-12);
-  expect_list(json.at("at_abc_mrad"), {3e-3, 4e-3, 5e-3});
-  expect_list(json.at("rt_abc_mrad"), {6e-3, 7e-3, 8e-3});
-  EXPECT_NEAR(json.at("length_mm").get<double>(), 900, 1e-9);
-  EXPECT_EQ(json.at("runs"), 10);
-  const Json& p = json.at("points").at(0);
-  EXPECT_NEAR(p.at("arc_length_mm").get<double>(), 250, 1e-9);
-  EXPECT_NEAR(p.at("at_mm").get<double>(), 11e-3, 1e-12);
-  EXPECT_TRUE(p.at("rt_mm").is_null());
-  expect_list(p.at("at_abc_mrad"), {12e-3, 13e-3, 14e-3});
-  expect_list(p.at("rt_abc_mrad"), {15e-3, 16e-3, 17e-3});
-  EXPECT_EQ(json.at("departures"), std::vector<std::string>{"one run"});
+  expect_parts(to_json(result), R"({
+    "at_mm": 1e-3, "rt_mm": 2e-3, "at_abc_mrad": [3e-3, 4e-3, 5e-3], "rt_abc_mrad": [6e-3, 7e-3, 8e-3],
+    "length_mm": 900, "runs": 10,
+    "points": [{"arc_length_mm": 250, "at_mm": 11e-3, "rt_mm": null, "at_abc_mrad": [12e-3, 13e-3, 14e-3],
+                "rt_abc_mrad": [15e-3, 16e-3, 17e-3]}],
+    "departures": ["one run"]})");
 }
 
 }  // namespace

@@ -7,16 +7,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "json_parts.hpp"
+
 namespace vernier::report_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-void expect_values(const Json& json, std::initializer_list<double> expected, double tolerance = 1e-9) {
-  ASSERT_EQ(json.size(), expected.size()) << json.dump();
-  std::size_t k = 0;
-  for (const double value : expected) EXPECT_NEAR(json.at(k++).get<double>(), value, tolerance) << json.dump();
-}
+using vernier_test::expect_parts;
 
 VectorX list(std::initializer_list<double> values) {
   VectorX out(static_cast<Index>(values.size()));
@@ -37,13 +34,10 @@ CalibrationReport least() {
 // Errors 1, 2, 3 and 6 mm: mean 3, rms sqrt(50 / 4), the 95 % quantile at 0.85 of the way from 3 to 6.
 TEST(ReportJson, StagesInMillimetresAndMilliradians) {
   const Json stages = stages_to_json(least().stages);
-  EXPECT_NEAR(stages.at("frames").at("mean_mm").get<double>(), 3, 1e-12);
-  EXPECT_NEAR(stages.at("frames").at("rms_mm").get<double>(), std::sqrt(12.5), 1e-12);
-  EXPECT_NEAR(stages.at("frames").at("max_mm").get<double>(), 6, 1e-12);
-  EXPECT_NEAR(stages.at("frames").at("min_mm").get<double>(), 1, 1e-12);
-  EXPECT_NEAR(stages.at("frames").at("p95_mm").get<double>(), 5.55, 1e-12);
+  expect_parts(stages, R"({
+    "frames": {"mean_mm": 3, "rms_mm": 3.5355339059327378, "max_mm": 6, "min_mm": 1, "p95_mm": 5.55},
+    "geometry": {"mean_mrad": 2}})");
   EXPECT_FALSE(stages.at("frames").contains("mean_mrad"));
-  EXPECT_NEAR(stages.at("geometry").at("mean_mrad").get<double>(), 2, 1e-12);
 }
 
 TEST(ReportJson, DecisionsParametersAndIdentifiability) {
@@ -66,51 +60,20 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
   id.observability = {1, 2, 3, 4, 5};
 
   const Json json = to_json(report, "arm");
-  EXPECT_EQ(json.at("robot"), "arm");
-  EXPECT_EQ(json.at("train_rows"), 17);
-  EXPECT_EQ(json.at("test_rows"), 4);
-  EXPECT_EQ(json.at("chosen"), "geometry");
-  EXPECT_EQ(json.at("mean_temperature_c"), 31);
-  EXPECT_EQ(json.at("gated_rows"), 2);
-  EXPECT_NEAR(json.at("worst_harm_beside_geometry_mm").get<double>(), 9e-3, 1e-12);
-  EXPECT_EQ(json.at("within_95_percent_ellipsoids"), 0.75);
   EXPECT_EQ(json.at("verdict"), report.verdict());
-
-  const Json& block = json.at("blocks").at(0);
-  EXPECT_EQ(block.at("name"), "elastic");
-  EXPECT_EQ(block.at("used"), true);
-  EXPECT_NEAR(block.at("left_out_without_mm").get<double>(), 1, 1e-12);
-  EXPECT_NEAR(block.at("left_out_with_mm").get<double>(), 2, 1e-12);
-  EXPECT_EQ(block.at("log_density_gain"), 0.25);
-  EXPECT_EQ(block.at("tightness"), 3);
-  EXPECT_TRUE(json.at("blocks").at(1).at("tightness").is_null());  // of a block that is not there
-
-  const Json& learner = json.at("learners").at(0);
-  EXPECT_EQ(learner.at("stage"), "geometry_pso_elm");
-  EXPECT_EQ(learner.at("used"), true);
-  EXPECT_NEAR(learner.at("left_out_without_mm").get<double>(), 7, 1e-12);
-  EXPECT_NEAR(learner.at("left_out_with_mm").get<double>(), 8, 1e-12);
-
-  EXPECT_EQ(json.at("prior").at("name"), "last year");
-  EXPECT_EQ(json.at("prior").at("used"), true);
-  EXPECT_EQ(json.at("prior").at("geometry_kappa"), 0.1);
-  EXPECT_EQ(json.at("prior").at("joints_kappa"), 0.2);
-
-  const Json &length = json.at("parameters").at(0), &angle = json.at("parameters").at(1);
-  EXPECT_EQ(length.at("name"), "a2");
-  EXPECT_EQ(length.at("unit"), "mm");
-  EXPECT_NEAR(length.at("nominal").get<double>(), 100, 1e-9);
-  EXPECT_NEAR(length.at("identified").get<double>(), 200, 1e-9);
-  EXPECT_NEAR(length.at("std").get<double>(), 300, 1e-9);
-  EXPECT_EQ(angle.at("unit"), "mrad");
-  EXPECT_NEAR(angle.at("nominal").get<double>(), 400, 1e-9);
-
-  const Json& known = json.at("identifiability");
-  EXPECT_EQ(known.at("rank"), 3);
-  EXPECT_EQ(known.at("free"), 1);
-  EXPECT_EQ(known.at("condition"), 250);
-  EXPECT_EQ(known.at("weak"), std::vector<std::string>{"theta3"});
-  for (int k = 1; k <= 5; ++k) EXPECT_EQ(known.at("observability").at(message('O', k)), k);
+  // the second block is not there, so its prior has no tightness
+  expect_parts(json, R"({
+    "robot": "arm", "train_rows": 17, "test_rows": 4, "chosen": "geometry", "mean_temperature_c": 31, "gated_rows": 2,
+    "worst_harm_beside_geometry_mm": 9e-3, "within_95_percent_ellipsoids": 0.75,
+    "blocks": [{"name": "elastic", "used": true, "left_out_without_mm": 1, "left_out_with_mm": 2,
+                "log_density_gain": 0.25, "tightness": 3},
+               {"tightness": null}],
+    "learners": [{"stage": "geometry_pso_elm", "used": true, "left_out_without_mm": 7, "left_out_with_mm": 8}],
+    "prior": {"name": "last year", "used": true, "geometry_kappa": 0.1, "joints_kappa": 0.2},
+    "parameters": [{"name": "a2", "unit": "mm", "nominal": 100, "identified": 200, "std": 300},
+                   {"unit": "mrad", "nominal": 400}],
+    "identifiability": {"rank": 3, "free": 1, "condition": 250, "weak": ["theta3"],
+                        "observability": {"O1": 1, "O2": 2, "O3": 3, "O4": 4, "O5": 5}}})");
 }
 
 TEST(ReportJson, WhatThereIsNotIsNull) {
@@ -137,34 +100,19 @@ TEST(ReportJson, DriftAndSpectrumInMicrometresAndMicroradians) {
   report.joints = {JointReport{}, joint};
 
   const Json json = to_json(report, "arm");
-  const Json& first = json.at("drift").at(0);
-  EXPECT_EQ(first.at("station"), 1);
-  EXPECT_EQ(first.at("knots").at(0).at("time"), 10);
-  EXPECT_EQ(first.at("knots").at(1).at("time"), 60);
-  expect_values(first.at("knots").at(0).at("translation_um"), {1, 2, 3});
-  expect_values(first.at("knots").at(0).at("rotation_urad"), {4, 5, 6});
-  expect_values(first.at("knots").at(1).at("translation_um"), {7, 8, 9});
-  EXPECT_FALSE(first.at("knots").at(0).contains("joint_zeros_urad"));
-  const Json& second = json.at("drift").at(1);
-  EXPECT_EQ(second.at("station"), 2);
-  expect_values(second.at("knots").at(1).at("joint_zeros_urad"), {1, 4});
+  expect_parts(json, R"({
+    "drift": [{"station": 1, "knots": [
+                {"time": 10, "translation_um": [1, 2, 3], "rotation_urad": [4, 5, 6]},
+                {"time": 60, "translation_um": [7, 8, 9]}]},
+              {"station": 2, "knots": [{}, {"joint_zeros_urad": [1, 4]}]}],
+    "spectrum": [{"joint": 1, "orders": []},
+                 {"joint": 2, "orders": [1, 5], "amplitudes_urad": [2, 6], "stds_urad": [3, 7],
+                  "lines": [{"order": 1, "amplitude_urad": 9, "margin_urad": 19.6, "chi_square": 11,
+                             "cause": "once a turn: an eccentric encoder or gear"}]}]})");
+  EXPECT_FALSE(json.at("drift").at(0).at("knots").at(0).contains("joint_zeros_urad"));
   report.drift[0].knots.conservativeResize(7, 2);  // one joint
   report.drift[0].knots(6, 0) = report.drift[0].knots(6, 1) = 13e-6;
-  expect_values(to_json(report, "arm").at("drift").at(0).at("knots").at(0).at("joint_zeros_urad"), {13});
-
-  EXPECT_EQ(json.at("spectrum").at(0).at("joint"), 1);
-  EXPECT_TRUE(json.at("spectrum").at(0).at("orders").empty());
-  const Json& spectrum = json.at("spectrum").at(1);
-  EXPECT_EQ(spectrum.at("joint"), 2);
-  EXPECT_EQ(spectrum.at("orders"), (std::vector<int>{1, 5}));
-  expect_values(spectrum.at("amplitudes_urad"), {2, 6});
-  expect_values(spectrum.at("stds_urad"), {3, 7});
-  const Json& line = spectrum.at("lines").at(0);
-  EXPECT_EQ(line.at("order"), 1);
-  EXPECT_NEAR(line.at("amplitude_urad").get<double>(), 9, 1e-9);
-  EXPECT_NEAR(line.at("margin_urad").get<double>(), 19.6, 1e-9);
-  EXPECT_EQ(line.at("chi_square"), 11);
-  EXPECT_EQ(line.at("cause"), "once a turn: an eccentric encoder or gear");
+  expect_parts(to_json(report, "arm").at("drift").at(0), R"({"knots": [{"joint_zeros_urad": [13]}, {}]})");
 }
 
 ReregistrationReport moved() {
@@ -186,16 +134,12 @@ ReregistrationReport moved() {
 
 TEST(ReportJson, Reregistrations) {
   const Json json = to_json(moved());
-  expect_values(json.at("base_change_m_rad"), {1, 2, 3, 0, 0, 0});
-  expect_values(json.at("tool_change_m_rad"), {4, 5, 6, 0, 0, 0});
-  expect_values(json.at("offsets_rad"), {0.01, 0.02});
-  EXPECT_NEAR(json.at("position_sigma_mm").get<double>(), 7e-3, 1e-12);
-  EXPECT_NEAR(json.at("orientation_sigma_mrad").get<double>(), 8e-3, 1e-12);
-  EXPECT_EQ(json.at("probe").at("turned"), true);
-  expect_values(json.at("probe").at("by_mrad"), {1, 2, 3});
-  EXPECT_EQ(json.at("probe").at("contradiction"), 9);
-  EXPECT_EQ(json.at("held"), std::vector<std::string>{"the turn of the tool about its z"});
   EXPECT_EQ(json.at("remarks"), moved().remarks());
+  expect_parts(json, R"({
+    "base_change_m_rad": [1, 2, 3, 0, 0, 0], "tool_change_m_rad": [4, 5, 6, 0, 0, 0], "offsets_rad": [0.01, 0.02],
+    "position_sigma_mm": 7e-3, "orientation_sigma_mrad": 8e-3,
+    "probe": {"turned": true, "by_mrad": [1, 2, 3], "contradiction": 9},
+    "held": ["the turn of the tool about its z"]})");
 }
 
 VerificationReport checked() {
@@ -222,52 +166,25 @@ VerificationReport checked() {
 TEST(ReportJson, Verifications) {
   VerificationReport report = checked();
   Json json = to_json(report, "arm");
-  EXPECT_EQ(json.at("robot"), "arm");
-  EXPECT_EQ(json.at("valid"), true);
-  EXPECT_EQ(json.at("consistent"), false);
   EXPECT_EQ(json.at("verdict"), report.verdict());
-  EXPECT_EQ(json.at("poses"), 3);
-  EXPECT_NEAR(json.at("mean_mm").get<double>(), 1.5, 1e-12);
-  EXPECT_NEAR(json.at("mean_upper_mm").get<double>(), 2.5, 1e-12);
-  EXPECT_TRUE(json.at("accept_mm").is_null());
-  EXPECT_EQ(json.at("level"), 0.01);
-  EXPECT_EQ(json.at("chi_square"), 12);
-  EXPECT_EQ(json.at("dof"), 9);
-  EXPECT_EQ(json.at("p_value"), 0.2);
-  EXPECT_EQ(json.at("aside"), std::vector<int>{2});
-  EXPECT_TRUE(json.at("registration").is_null());
   EXPECT_EQ(json.at("advice"), report.advice());
-  const Json &first = json.at("joints").at(0), &second = json.at("joints").at(1);
-  EXPECT_EQ(first.at("joint"), 1);
-  EXPECT_EQ(first.at("unit"), "mrad");
-  EXPECT_EQ(first.at("determined"), true);
-  EXPECT_NEAR(first.at("zero_change").get<double>(), 1e-3, 1e-12);
-  EXPECT_NEAR(first.at("zero_std").get<double>(), 2e-3, 1e-12);
-  EXPECT_EQ(first.at("zero_p"), 0.3);
-  EXPECT_EQ(first.at("once_p"), 0.4);
-  EXPECT_EQ(first.at("zero_changed"), true);
-  EXPECT_EQ(first.at("transmission_changed"), false);
-  EXPECT_EQ(second.at("unit"), "mm");
-  EXPECT_TRUE(second.at("zero_change").is_null());
-  EXPECT_TRUE(second.at("zero_std").is_null());
-  EXPECT_EQ(second.at("transmission_changed"), true);
-
-  // without a registration there is one stage, the errors themselves
-  EXPECT_EQ(json.at("stages").size(), 1u);
-  EXPECT_NEAR(json.at("stages").at("as_fitted").at("mean_mm").get<double>(), 2, 1e-12);
-  EXPECT_NEAR(json.at("stages").at("as_fitted").at("mean_mrad").get<double>(), 5, 1e-12);
+  EXPECT_EQ(json.at("stages").size(), 1u);  // without a registration the errors themselves
+  expect_parts(json, R"({
+    "robot": "arm", "valid": true, "consistent": false, "poses": 3, "mean_mm": 1.5, "mean_upper_mm": 2.5,
+    "accept_mm": null, "level": 0.01, "chi_square": 12, "dof": 9, "p_value": 0.2, "aside": [2], "registration": null,
+    "joints": [{"joint": 1, "unit": "mrad", "determined": true, "zero_change": 1e-3, "zero_std": 2e-3, "zero_p": 0.3,
+                "once_p": 0.4, "zero_changed": true, "transmission_changed": false},
+               {"unit": "mm", "zero_change": null, "zero_std": null, "transmission_changed": true}],
+    "stages": {"as_fitted": {"mean_mm": 2, "mean_mrad": 5}}})");
   report.registration = moved();
   report.options.accept = 0.5e-3;
   report.mean_upper = std::numeric_limits<double>::infinity();
   json = to_json(report, "arm");
-  ASSERT_EQ(json.at("stages").size(), 2u);
-  EXPECT_NEAR(json.at("stages").at("as_fitted").at("mean_mm").get<double>(), 8, 1e-12);
-  EXPECT_NEAR(json.at("stages").at("as_fitted").at("mean_mrad").get<double>(), 11, 1e-12);
-  EXPECT_NEAR(json.at("stages").at("registered").at("mean_mm").get<double>(), 2, 1e-12);
-  EXPECT_NEAR(json.at("stages").at("registered").at("mean_mrad").get<double>(), 5, 1e-12);
-  EXPECT_NEAR(json.at("accept_mm").get<double>(), 0.5, 1e-12);
-  EXPECT_TRUE(json.at("mean_upper_mm").is_null());
   EXPECT_EQ(json.at("registration"), to_json(*report.registration));
+  ASSERT_EQ(json.at("stages").size(), 2u);
+  expect_parts(json, R"({
+    "accept_mm": 0.5, "mean_upper_mm": null,
+    "stages": {"as_fitted": {"mean_mm": 8, "mean_mrad": 11}, "registered": {"mean_mm": 2, "mean_mrad": 5}}})");
 }
 
 }  // namespace

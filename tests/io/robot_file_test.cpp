@@ -31,7 +31,7 @@ class RobotFile : public ::testing::Test {
     }
     return "none";
   }
-  testing_support::TemporaryFolder folder_{"robot_file"};
+  vernier_test::TemporaryFolder folder_{"robot_file"};
   std::filesystem::path path_ = folder_ / "robot.json";
 };
 

@@ -28,8 +28,8 @@ namespace vernier::search_state_test {
 namespace {
 
 using testing::same_bits;
-using testing_support::TemporaryFolder;
 using vernier_test::complaint;
+using vernier_test::TemporaryFolder;
 
 const TemporaryFolder folder("search_state");
 const Box box{Eigen::Vector4d(-1, 0.5, 10, -1e-3), Eigen::Vector4d(2, 0.75, 30, 1e-3)};

@@ -2,11 +2,13 @@
 
 // Objects around a virtual IRB 120 that it can touch.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "vernier/core/points.hpp"
 #include "vernier/core/register_points.hpp"
+#include "vernier/identification/contact_report.hpp"
 #include "vernier/kinematics/framed.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -66,6 +68,18 @@ inline const vernier::VirtualObject side{vernier::ContactKind::plane, {0.3, 0.3,
 inline std::vector<vernier::Contact> three_planes(bool with_length, vernier::Index each = 20, double sigma = 0) {
   return {touched(table, "table", lengths(each, with_length ? each / 2 : 0, 0.1), sigma, 1),
           touched(front, "front", lengths(each), sigma, 2), touched(side, "side", lengths(each), sigma, 3)};
+}
+
+/// The variance of touches in units of the sensor's, by what is left of them and the degrees of freedom: a parameter
+/// with a prior takes away as much of one as the touches add to the prior, places of objects take away one each.
+inline double variance_of_touches(const vernier::ContactReport& found, vernier::Index values, vernier::Index of_objects,
+                                  double sigma) {
+  double freedom = static_cast<double>(values - of_objects);
+  for (const vernier::Index k : found.free) {
+    const vernier::ParameterEstimate& p = found.parameters[static_cast<std::size_t>(k)];
+    freedom -= 1 - std::pow(p.std / p.prior_std, 2);
+  }
+  return std::pow(found.rms_after / sigma, 2) * static_cast<double>(values) / freedom;
 }
 
 }  // namespace vernier_test

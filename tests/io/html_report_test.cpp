@@ -216,6 +216,7 @@ TEST(HtmlEscape, ReplacesWhatIsNoUtf8) {
   EXPECT_EQ(detail::html_escape("\xff"), mark);
   EXPECT_EQ(detail::html_escape("\xc0\xaf"), mark + mark);             // a slash in too many bytes
   EXPECT_EQ(detail::html_escape("\xe2\x82"), mark + mark);             // cut off
+  EXPECT_EQ(detail::html_escape({"\xe2\x82\xac", 2}), mark + mark);    // cut off, with the rest behind it
   EXPECT_EQ(detail::html_escape("\xed\xa0\x80"), mark + mark + mark);  // half of a pair
   EXPECT_EQ(detail::html_escape("\xf4\x90\x80\x80"), mark + mark + mark + mark);
   // the first and last characters of each length, and of the gap between them, stay

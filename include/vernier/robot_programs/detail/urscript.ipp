@@ -261,7 +261,7 @@ class UrscriptReader final : private StatementReader {
       }
       target(instruction, first + 2, end, step);
       if (steps_.size() == before + 1 && steps_.back().target && end < last - 1)
-        near_[*steps_.back().target] = near(end + 1, argument_end(end + 1, last - 1));
+        seeds_[*steps_.back().target] = joints_near(end + 1, argument_end(end + 1, last - 1));
       return;
     }
     if (is_pose(first) || text_.is(first, '[')) {
@@ -314,7 +314,7 @@ class UrscriptReader final : private StatementReader {
     const std::vector<ProgramTarget> all = program_.targets;
     for (std::size_t k = 0; k < all.size(); ++k) {
       ProgramTarget target = all[k];
-      if (target.kind == TargetKind::pose && near_.count(k) != 0) target.joints = near_.at(k);
+      if (target.kind == TargetKind::pose && seeds_.count(k) != 0) target.joints = seeds_.at(k);
       if (target.kind == TargetKind::pose && !target.joints.allFinite() && target.name.ends_with("_p")) {
         const auto partner = assigned_.find(target.name.substr(0, target.name.size() - 1) + "q");
         if (partner != assigned_.end() && partner->second.targets.size() == 1)
@@ -332,7 +332,7 @@ class UrscriptReader final : private StatementReader {
   std::map<std::string, Assigned> assigned_{};
   std::set<std::string> used_{};
   std::set<std::size_t> tools_{};
-  std::map<std::size_t, JointVector<6>> near_{};
+  std::map<std::size_t, JointVector<6>> seeds_{};
   std::set<std::string> routines_{};                                // of this file
   const std::set<std::string, std::less<>>* parameters_ = nullptr;  // of the present routine
 };

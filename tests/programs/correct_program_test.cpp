@@ -486,6 +486,29 @@ TEST_F(CorrectProgram, WhatIsNotCorrectedIsListed) {
   EXPECT_NE(read_file(folder_ / "b.mod").find("! 4 not corrected\n"), std::string::npos);
 }
 
+// What changes the meaning of a target is named with its line; a routine of another file may be stated to change
+// nothing.
+TEST_F(CorrectProgram, StatementsThatVoidTargetsAreNamed) {
+  make_model(robots::abb_irb120(), 21);
+  const std::string target =
+      "[[374,50,500],[0.5,0,0.866025404,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n";
+  write_file(folder_ / "a.mod", "MODULE a\nPROC main()\nMoveJ " + target + "ConfJ\n\\Off;\nMoveJ " + target + "MoveL " +
+                                    target + "GripOpen;\nMoveL " + target + "ENDPROC\nENDMODULE\n");
+  const CommandResult done = correct("--program a.mod --out b.mod");
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_NE(done.output.find("a.mod: 2 targets corrected"), std::string::npos) << done.output;
+  for (const char* remark :
+       {"line 6: not corrected: target: line 4, ConfJ \\Off: configurations of joint moves do not count\n",
+        "line 8: not corrected: GripOpen: what it does to targets is not known; if nothing, name it with "
+        "--assume-harmless\n",
+        "line 9: not corrected: target: line 8, GripOpen: what it does to targets is not known\n"})
+    EXPECT_NE(done.output.find(remark), std::string::npos) << remark << "\n" << done.output;
+  const CommandResult stated =
+      correct("--program a.mod --out b.mod --assume-harmless gripopen --assume-harmless ConfJ");
+  EXPECT_EQ(stated.exit_code, 0) << stated.errors;
+  EXPECT_NE(stated.output.find("a.mod: 4 targets corrected"), std::string::npos) << stated.output;
+}
+
 TEST_F(CorrectProgram, WrongUseIsRefusedInOneLine) {
   make_model(robots::abb_irb120(), 21);
   write_file(folder_ / "a.mod", "MODULE a\nENDMODULE\n");

@@ -201,7 +201,8 @@ inline constexpr std::string_view rapid_functions =
 inline constexpr std::string_view krl_harmless =
     "$vel $acc $jerk $apo $advance $ov_pro $ov_appl $vel_axis $acc_axis $jerk_axis $vel_extax $acc_extax $vel_ma "
     "$acc_ma "
-    "$vel_oric $red_vel $red_vel_c $gear_jerk $load $load_a1 $load_a2 $load_a3 $act_tool $act_base $act_ex_ax "
+    "$vel_oric $red_vel $red_vel_c $gear_jerk $collmon_tol_pro $load $load_a1 $load_a2 $load_a3 $act_tool $act_base "
+    "$act_ex_ax "
     "$cir_type "
     "$circ_type $circ_mode $out $outs $anout $timer $timer_stop $timer_flag $flag $cycflag $h_pos $h_pos_tol $loop_msg "
     "$loop_cont $bwdstart $single_step $pro_mode $pro_name $ipo_wait_for $ipo_wait_for_on $ipo_wait_state $opt_move "
@@ -234,7 +235,9 @@ inline constexpr ProgramStatement krl_statements[] = {
 
 /// Routines and functions of the controller that leave targets as they are, and words that begin a harmless statement.
 inline constexpr std::string_view krl_functions =
-    "abs acos asin atan atan2 cos sin sqrt tan eb ek lk forward inverse inv_pos cast_from cast_to cclose ciocontrol "
+    "abs acos asin atan atan2 cos sin sqrt tan eb ek lk sacc_cp sacc_joint sapo sapo_ptp sbase sgear_jerk sipo_mode "
+    "sjerk sload sori_typ stool stool2 "
+    "svel_cp svel_joint use_cm_pro_values forward inverse inv_pos cast_from cast_to cclose ciocontrol "
     "cioctl copen "
     "cread cwrite sopen sread swrite sclose err_clear err_raise exists_krldlg exists_krlmsg clear_krlmsg set_krldlg "
     "set_krldlganswer set_krlmsg get_msgbuffer get_sig_inf get_decl_place getcycdef getsysstate get_system_data "

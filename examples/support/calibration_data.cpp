@@ -124,11 +124,16 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
   std::vector<vn::Split<N>> stations;
   for (std::size_t s = 0; s < o.data.size(); ++s) {
     out.files.push_back(vn::read_dataset<N>(o.data[s], types, o.csv.format()));
-    vn::Split<N> station = split_station<N>(out.files.back(), o, s, types, seed, out.held_out);
+    stations.push_back(split_station<N>(out.files.back(), o, s, types, seed, out.held_out));
     out.inputs.push_back(file_of(out.files.back().origin()));
-    if (!o.test.empty()) out.inputs.push_back(file_of(station.test.origin()));
-    out.train.add(std::move(station.train), o.data[s]);
-    out.test.add(std::move(station.test));
+    if (!o.test.empty()) out.inputs.push_back(file_of(stations.back().test.origin()));
+  }
+  if (const vn::Index apart = keep_poses_apart(stations, o, same); apart > 0)
+    out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
+                                apart == 1 ? "is" : "are");
+  for (std::size_t s = 0; s < o.data.size(); ++s) {
+    out.train.add(vn::readings_joined(stations[s].train, same), o.data[s]);
+    out.test.add(std::move(stations[s].test));
   }
   for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types, o.csv.format()), file);
   if (!o.contacts.empty())

@@ -82,7 +82,7 @@ Outcome outcome(const Arm<N>& arm, std::uint64_t seed, bool oriented) {
   const JointRows<N> joints = sample_joints(arm.limits, 60, seed), fresh = sample_joints(arm.limits, 100, 1000 + seed);
   const Dataset<N> data =
       measure(actual, joints, {.position = 0.03e-3, .orientation = 0.05e-3, .with_orientations = oriented}, seed);
-  const auto found = calibrate(arm.chain, data, {.errors = {.harmonics = 0}, .remainder = {.learners = {}}});
+  const auto found = calibrate(arm.chain, data, {.remainder = {.learners = {}}});
   const auto model = compensate(found.model());
   PointRows before(fresh.rows(), 3), after(fresh.rows(), 3);
   double missed = 0, saved = 0;

@@ -224,8 +224,8 @@ TEST(VerificationWhiteBox, NoDegreesOfFreedomAreNoContradiction) {
   const MeasuredSet station = vernier_test::set_of(positions, check.sensors);
   const VerifyOptions options{.tool = true, .sensors = check.sensors};
   const auto found = detail::verified({station, check.estimate, check.poses, check.jacobians, check.as_fitted,
-                                     check.gates, check.types, ReregistrationReport()},
-                                    options);
+                                       check.gates, check.types, ReregistrationReport()},
+                                      options);
   EXPECT_EQ(found.dof, 0);
   EXPECT_LT(found.chi_square, 1e-6);
   EXPECT_EQ(found.p_value, 1);

@@ -57,6 +57,30 @@ TEST(CalibrationReport, DriftByHand) {
   }
 }
 
+TEST(CalibrationReport, RemarksOnWhatRanAway) {
+  CalibrationReport report = report_of_four();
+  const auto length = [](const char* name, double value) {
+    return ParameterEstimate{name, ParameterKind::length, 0, value, 0, ParameterState::identified, {}};
+  };
+  report.identification.parameters = {length("base_x", 5), length("a1", 0.3), length("d1", -0.1), length("tool_x", 0.3),
+                                      length("tool_z", 0.4)};
+  report.joints.resize(1);
+  report.joints[0].revolute = false;
+  report.joints[0].measured_ranges = {{-0.2, 0.1}};
+  report.identification.condition = 1e6;
+  EXPECT_TRUE(report.remarks().empty());  // the tool is 0.5 m long, the reach 0.6 m
+  report.joints[0].revolute = true;
+  report.identification.condition = 2e6;
+  const std::vector<std::string> remarks = report.remarks();
+  ASSERT_EQ(remarks.size(), 2u);
+  EXPECT_EQ(remarks[0],
+            "The poses hardly determine some of the estimated parameters (condition 2e+06): do not trust values with "
+            "large standard deviations.");
+  EXPECT_EQ(remarks[1],
+            "The tool point was found 500 mm from the flange, beyond the arm's reach of 400 mm: wrong robot, or poses "
+            "that do not determine it?");
+}
+
 TEST(CalibrationReport, CountsPosesAndParameters) {
   CalibrationReport report = report_of_four();
   const std::string outside = " outside those ranges; there the learned functions of the joints fade out.";

@@ -250,7 +250,8 @@ TEST(ModelSelectionWhiteBox, ConvergedWhereEverySolutionDid) {
   const ErrorModelOptions options;
   detail::CalibrationProblem problem(ArmParameterisation({ArmGeometry(nominal)}, {{11, -1, 1e-3, 1}}),
                                      {vernier_test::set_of(data, squared)}, Loss::squared);
-  detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6));
+  detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6),
+                               detail::ChainTable(nominal.model().view()));
   model.solve();
   EXPECT_TRUE(model.converged);
   model.problem.arm.set_precisions(VectorX::Constant(1, std::numeric_limits<double>::quiet_NaN()));

@@ -24,10 +24,42 @@ VERNIER_IMPL const StageErrors& CalibrationReport::stage(const StageName& name) 
   throw std::invalid_argument(message("CalibrationReport: there is no stage '", name.key(), "'"));
 }
 
+namespace detail {
+
+/// Lengths of links, and travel of prismatic joints [m].
+VERNIER_LOCAL double reach_of(const CalibrationReport& report) {
+  double out = 0;
+  for (const ParameterEstimate& p : report.identification.parameters)
+    if (p.kind == ParameterKind::length && !p.name.starts_with("base") && !p.name.starts_with("tool"))
+      out += std::abs(p.identified);
+  for (const JointReport& joint : report.joints)
+    if (!joint.revolute && !joint.measured_ranges.empty())
+      out += (std::max)(std::abs(joint.measured_ranges.front().first), std::abs(joint.measured_ranges.back().second));
+  return out;
+}
+
+/// Distance of the tool point from the flange [m].
+VERNIER_LOCAL double tool_length(const CalibrationReport& report) {
+  double square = 0;
+  for (const ParameterEstimate& p : report.identification.parameters)
+    if (p.kind == ParameterKind::length && p.name.starts_with("tool")) square += p.identified * p.identified;
+  return std::sqrt(square);
+}
+
+}  // namespace detail
+
 VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   using detail::brief;
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
+  if (identification.condition > 1e6)
+    out.push_back(message("The poses hardly determine some of the estimated parameters (condition ",
+                          brief(identification.condition), "): do not trust values with large standard deviations."));
+  const double tool = detail::tool_length(*this), reach = detail::reach_of(*this);
+  if (tool > reach)
+    out.push_back(message("The tool point was found ", brief(tool * 1e3),
+                          " mm from the flange, beyond the arm's reach of ", brief(reach * 1e3),
+                          " mm: wrong robot, or poses that do not determine it?"));
   for (const RemainderTrial& trial : trials)
     if (!trial.on_geometry && trial.learner == Learner::pso_elm && chosen.stage != Stage::learned)
       out.push_back("What learners find in what the error model leaves does not help left-out poses: not used.");

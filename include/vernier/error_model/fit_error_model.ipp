@@ -25,7 +25,7 @@ class ErrorModelFit {
         options_(options),
         model_(CalibrationProblem(ArmParameterisation(input.arms, geometric_unknowns(input, options)), input.sets,
                                   sensors.loss, sensors.joint_sigma),
-               options, spectra_of(options, input.nominal.joints())),
+               options, spectra_of(options, input.nominal.joints()), input.nominal),
         problem_(model_.problem) {
     problem_.executor = executor;
   }

@@ -7,6 +7,7 @@
 
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/identification/arm_parameterisation.hpp"
+#include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/measurements/measured_set.hpp"
 
@@ -29,6 +30,13 @@ struct ErrorModelInput {
 /// What is estimated: what the identification estimated, frames per set as far as it determines them.
 VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInput& input,
                                                              const ErrorModelOptions& options);
+
+/// Joint errors that an arm with nominal links does not show apart from its frames, for example what gravity does to an
+/// axis that is always vertical. Found tilts would show them by milliradians, and the frames would run away along them.
+/// @param problem with the joint errors in question
+/// @param nominal the chain as designed
+/// @return        coefficients before the transmission's
+VERNIER_API std::vector<Index> hidden_terms(const CalibrationProblem& problem, const ChainTable& nominal);
 
 }  // namespace vernier::detail
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vernier/core/check.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/frames.hpp"
+#include "vernier/identification/identifiable_parameters.hpp"
 
 namespace vernier::detail {
 
@@ -42,6 +45,31 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
   for (std::size_t s = locating; s < stations && stations > 1; ++s)  // frames of objects and fixed points
     for (const Index k : frame_unknowns(input.sets[s]))
       out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
+  return out;
+}
+
+VERNIER_IMPL std::vector<Index> hidden_terms(const CalibrationProblem& problem, const ChainTable& nominal) {
+  JointTerms terms = problem.arm.terms();
+  terms.transmission.assign(terms.transmission.size(), Fourier{});
+  const Index chain_end = ArmParameters::chain_end(nominal.joints());
+  std::vector<GeometricUnknown> of_frames;
+  for (const GeometricUnknown& u : problem.arm.geometric())
+    if ((u.parameter < ArmParameters::chain_begin || u.parameter >= chain_end) && !u.thermal) of_frames.push_back(u);
+  const auto frames = static_cast<Index>(of_frames.size());
+  std::vector<ArmGeometry> arms;
+  for (int s = 0; s < problem.arm.stations(); ++s)
+    arms.emplace_back(nominal, problem.arm.geometry(s).base(), problem.arm.geometry(s).tool());
+  ArmParameterisation arm(std::move(arms), std::move(of_frames));
+  const Index first = problem.arm.num_dense() - terms.size();
+  arm.set_terms(terms, problem.arm.scales().segment(first, terms.size()), VectorX::Ones(terms.size()));
+
+  const IdentifiableParameters columns(
+      CalibrationProblem(std::move(arm), problem.sets(), Loss::squared).stacked(true).jacobian);
+  const auto of_frame = [&](Index k) { return k < frames; };
+  std::vector<Index> out;
+  for (const auto& [column, absorbed_by] : columns.dependent)
+    if (!of_frame(column) && !absorbed_by.empty() && std::all_of(absorbed_by.begin(), absorbed_by.end(), of_frame))
+      out.push_back(column - frames);
   return out;
 }
 

@@ -18,8 +18,9 @@ namespace vernier::detail {
 /// A calibration problem that grows by blocks of unknowns, as far as its measurements support them.
 class ModelSelection {
  public:
+  /// @param nominal the chain as designed
   VERNIER_API ModelSelection(CalibrationProblem start, const ErrorModelOptions& options,
-                             std::vector<HarmonicSpectrum> spectra_of_joints);
+                             std::vector<HarmonicSpectrum> spectra_of_joints, ChainTable nominal);
 
   CalibrationProblem problem;                ///< call `changed` after a change of its unknowns or their values
   std::vector<HarmonicSpectrum> spectra;     ///< of each joint, with the lines of its drive and those that were found
@@ -84,6 +85,7 @@ class ModelSelection {
   VERNIER_API UnknownGroup unknowns(Index first, Index count) const;
 
   const ErrorModelOptions& options_;
+  ChainTable nominal_;
   mutable std::optional<Linearised> linearised_{};
 };
 

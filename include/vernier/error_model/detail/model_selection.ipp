@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vernier/error_model/detail/expected_terms.hpp"
+#include "vernier/error_model/detail/fit_input.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
@@ -25,11 +26,12 @@ class Stopwatch {
 };
 
 VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const ErrorModelOptions& options,
-                                            std::vector<HarmonicSpectrum> spectra_of_joints)
+                                            std::vector<HarmonicSpectrum> spectra_of_joints, ChainTable nominal)
     : problem(std::move(start)),
       spectra(std::move(spectra_of_joints)),
       stride(std::max<Index>(1, problem.num_validation_blocks() / options.num_validation_poses)),
-      options_(options) {}
+      options_(options),
+      nominal_(std::move(nominal)) {}
 
 VERNIER_IMPL const ModelSelection::Linearised& ModelSelection::linearised() const {
   if (!linearised_)
@@ -67,7 +69,12 @@ VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
   const VectorX old_precisions = problem.arm.precisions().tail(before.size());
   VectorX precisions = VectorX::Ones(terms.size());
   visit_common_terms(before, terms, [&](Index old, Index now) { precisions(now) = old_precisions(old); });
-  problem.arm.set_terms(terms, expected_sizes(terms, options_, spectra), precisions);
+  VectorX sizes = expected_sizes(terms, options_, spectra);
+  problem.arm.set_terms(terms, sizes, precisions);
+  constexpr double held = 1e-9;
+  const std::vector<Index> hidden = hidden_terms(problem, nominal_);
+  for (const Index k : hidden) sizes(k) *= held;
+  if (!hidden.empty()) problem.arm.set_terms(terms, sizes, precisions);
   changed();
 }
 

@@ -60,17 +60,24 @@ class IdentificationRun {
     solve();
     const ArmGeometry registered = problem_.arm.geometry(0);
 
-    // Then all independent parameters. What is dependent exactly at nominal may not be so at the solution.
-    std::vector<Index> order = plan_.candidates;
-    ParameterSelection columns = select(order);
+    // Then all that this arm with nominal links shows. What is dependent there on links alone may not be so at the
+    // solution, where priors hold it. What is dependent on a frame is held: frames have no priors, and would move by
+    // metres along what milliradians of found tilt show.
+    ParameterSelection columns = select(plan_.candidates);
     for (int round = 0; round < 3; ++round) {
       estimate(columns.base);
       solve();
-      order = columns.base;
-      for (const auto& d : columns.dependent) order.push_back(d.parameter);
+      std::vector<Index> order = columns.base;
+      std::vector<ParameterSelection::Dependent> held;
+      for (const auto& d : columns.dependent)
+        if (of_links(d))
+          order.push_back(d.parameter);
+        else
+          held.push_back(d);
       ParameterSelection again = select(order);
       if (again.base.size() <= columns.base.size()) break;
-      columns = again;
+      again.dependent.insert(again.dependent.end(), held.begin(), held.end());
+      columns = std::move(again);
     }
     estimate(columns.base);
     regularise_weak();
@@ -128,6 +135,12 @@ class IdentificationRun {
   VERNIER_LOCAL ParameterSelection select(const std::vector<Index>& candidates) {
     estimate(candidates);
     return ParameterSelection(candidates, problem_.stacked(true).jacobian);
+  }
+
+  /// Whether a parameter and all that it depends on are of links.
+  VERNIER_LOCAL bool of_links(const ParameterSelection::Dependent& d) const {
+    const auto link = [&](Index k) { return plan_.in_chain(k); };
+    return link(d.parameter) && std::all_of(d.absorbed_by.begin(), d.absorbed_by.end(), link);
   }
 
   /// Variance of whitened rows, one factor a sensor, from residuals; the sensors' own where there is no redundancy.

@@ -75,10 +75,28 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   const Calibration& c = calibration();
   ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
   EXPECT_EQ(c.command.errors, "");
-  EXPECT_EQ(keys(c.json), (std::vector<std::string>{
-                              "robot", "train_rows", "test_rows", "stages", "chosen", "mean_temperature_c", "blocks",
-                              "learners", "prior", "parameters", "identifiability", "spectrum", "drift", "gated_rows",
-                              "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict", "audit"}));
+  EXPECT_EQ(keys(c.json), (std::vector<std::string>{"robot",
+                                                    "train_rows",
+                                                    "test_rows",
+                                                    "stages",
+                                                    "chosen",
+                                                    "mean_temperature_c",
+                                                    "blocks",
+                                                    "learners",
+                                                    "prior",
+                                                    "parameters",
+                                                    "identifiability",
+                                                    "spectrum",
+                                                    "drift",
+                                                    "gated_rows",
+                                                    "worst_harm_beside_geometry_mm",
+                                                    "within_95_percent_ellipsoids",
+                                                    "held_out_mean_mm",
+                                                    "verdict",
+                                                    "details",
+                                                    "audit"}));
+  EXPECT_EQ(c.json.at("held_out_mean_mm").at("mean"),
+            c.json.at("stages").at(c.json.at("chosen").get<std::string>()).at("mean_mm"));
   ASSERT_EQ(c.json.at("audit").size(), 1u);  // one file
   EXPECT_TRUE(c.json.at("audit").at(0).at("findings").empty());
   EXPECT_TRUE(c.json.at("prior").is_null());
@@ -136,10 +154,13 @@ TEST(Calibrate, HeldOutErrorsFallToTheNoise) {
 
 TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
   const Calibration& c = calibration();
-  for (const char* words : {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry",
-                            "geometry + PSO-ELM", "joint-wise", "[mrad]", "Converged: ", "Verdict", "Accurate to ",
-                            "Measured joint ranges", "Figures: figures", "model.json"})
+  for (const char* words :
+       {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry", "geometry + PSO-ELM",
+        "joint-wise", "[mrad]", "\nVerdict\n- Position error of all 30 held-out poses: ", " mm mean (95 % interval ",
+        "Details behind the verdict: --verbose", "Figures: figures", "model.json"})
     EXPECT_NE(c.command.output.find(words), std::string::npos) << words << " is not in\n" << c.command.output;
+  const char* details[] = {"Converged: ", "\nDetails\n- ", "Measured joint ranges [deg, mm]: ", "Range of validity"};
+  for (const char* words : details) EXPECT_EQ(c.command.output.find(words), std::string::npos) << c.command.output;
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;  // the figures need it, the rest does not
   for (const char* name :
        {"stages.svg", "distribution.svg", "poses.svg", "errors_along_joint_6.svg", "joint_ranges.svg"}) {

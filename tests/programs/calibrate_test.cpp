@@ -234,8 +234,12 @@ TEST(Calibrate, SameBitsForAnyNumberOfThreads) {
   const Calibration& c = calibration();
   const CommandResult again = run(c.folder, "calibrate",
                                   "--robot abb_irb120 --data poses.csv --save model2.json --json report2.json --out f2 "
-                                  "--threads 3 --date 2024-05-01");  // every fifth row is the default
+                                  "--threads 3 --date 2024-05-01 --verbose");  // every fifth row is the default
   ASSERT_EQ(again.exit_code, 0) << again.errors;
+  for (const char* words : {"\nVerdict\n- ", "Converged: ", "\nDetails\n- ", "Measured joint ranges [deg, mm]: ",
+                            "Range of validity [deg, mm]: ", "Gravity compliance: "})
+    EXPECT_NE(again.output.find(words), std::string::npos) << words << " is not in\n" << again.output;
+  EXPECT_EQ(again.output.find("--verbose"), std::string::npos);
   EXPECT_EQ(read_file(c.folder / "report.json"), read_file(c.folder / "report2.json"));
   EXPECT_EQ(read_file(c.folder / "model.json"), read_file(c.folder / "model2.json"));
 }

@@ -200,6 +200,24 @@ TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
             "urad during the session.");
 }
 
+// Gravity compliance was decided on twice: the second decision holds. Drift is estimated, but not deployed.
+TEST(CalibrationReport, TheVerdictNamesWhatIsDeployed) {
+  CalibrationReport report = five_poses();
+  report.blocks = {{Block::elastic, 1e-3, 0.5e-3, true, 1, 0},
+                   {Block::jointwise, 1e-3, 0.5e-3, true, 1, 0},
+                   {Block::elastic_again, 1e-3, 2e-3, false, 1, 0},
+                   {Block::drift, 1e-3, 0.5e-3, true, 1, 0},
+                   {Block::joint_drift, 1e-3, 2e-3, false, 1, 0}};
+  EXPECT_TRUE(says(report.verdict(),
+                   "Deployed, as left-out poses decide: joint-wise. Included: functions of single joints. Left out, "
+                   "since these poses do not support them: gravity compliance beside functions of single joints, drift "
+                   "of the joints' zeros."))
+      << joined(report.verdict());
+  report.chosen = {Stage::geometry_learned, Learner::pso_elm};
+  report.stages.push_back({report.chosen, "geometry + PSO-ELM", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});
+  EXPECT_TRUE(says(report.verdict(), "Deployed, as left-out poses decide: geometry + PSO-ELM."));
+}
+
 TEST(CalibrationReport, DegradationIsThatOfAnotherStageThanGeometry) {
   CalibrationReport report = five_poses();
   const std::string no_worse = "Inside the range of validity no held-out pose is worse than with geometry alone";
@@ -288,6 +306,10 @@ TEST(CalibrationReport, RemarksByHand) {
   report.converged = true;
   report.identification.condition = 1e6;
   EXPECT_TRUE(report.remarks().empty());
+  report.identification.status = IdentifyStatus::underdetermined;
+  report.identification.message = "2 poses give 6 values";
+  EXPECT_EQ(joined(report.remarks()), "The geometry is underdetermined: 2 poses give 6 values.\n");
+  report.identification.status = IdentifyStatus::converged;
   report.outliers = 3;
   report.median_error = 0.5e-6;  // of exact data nothing is an outlier
   EXPECT_TRUE(report.remarks().empty());

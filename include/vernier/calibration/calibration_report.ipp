@@ -40,7 +40,10 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
   if (!identification.converged())
-    out.push_back("The fit of the geometry did not converge: " + identification.message + ".");
+    out.push_back((identification.status == IdentifyStatus::underdetermined
+                       ? "The geometry is underdetermined: "
+                       : "The fit of the geometry did not converge: ") +
+                  identification.message + ".");
   if (identification.condition > largest_condition)
     out.push_back("The geometry is poorly determined: its condition is " + brief(identification.condition) + ".");
   if (outliers > 0 && median_error > 1e-6)
@@ -96,13 +99,19 @@ VERNIER_LOCAL std::string describe_where(const CalibrationReport& report) {
                  " mm; there the learned functions of the joints fade out.");
 }
 
-/// The deployed stage, and the decisions on blocks by name.
+/// The deployed stage, and by name the last decision on each block that this stage may have.
 VERNIER_LOCAL std::string describe_choice(const CalibrationReport& report) {
   std::string out = message("Deployed, as left-out poses decide: ", report.stage(report.chosen).title);
+  if (report.chosen.stage == Stage::geometry_learned) return out + ".";  // it has no blocks
+  const bool again = std::any_of(report.blocks.begin(), report.blocks.end(),
+                                 [](const BlockChoice& block) { return block.block == Block::elastic_again; });
   for (const bool used : {true, false}) {
     std::string names;
-    for (const BlockChoice& block : report.blocks)
-      if (block.used == used) names += (names.empty() ? "" : ", ") + std::string(traits_of(block.block).title);
+    for (const BlockChoice& block : report.blocks) {
+      const bool drift = block.block == Block::drift || block.block == Block::joint_drift;  // never deployed
+      if (block.used != used || (used && drift) || (again && block.block == Block::elastic)) continue;
+      names += (names.empty() ? "" : ", ") + std::string(traits_of(block.block).title);
+    }
     if (!names.empty()) out += (used ? ". Included: " : ". Left out, since these poses do not support them: ") + names;
   }
   return out + ".";

@@ -210,8 +210,7 @@ TEST(CalibrationReport, TheVerdictNamesWhatIsDeployed) {
                    {Block::joint_drift, 1e-3, 2e-3, false, 1, 0}};
   EXPECT_TRUE(says(report.verdict(),
                    "Deployed, as left-out poses decide: joint-wise. Included: functions of single joints. Left out, "
-                   "since these poses do not support them: gravity compliance beside functions of single joints, drift "
-                   "of the joints' zeros."))
+                   "since these poses do not support them: gravity compliance, drift of the joints' zeros."))
       << joined(report.verdict());
   report.chosen = {Stage::geometry_learned, Learner::pso_elm};
   report.stages.push_back({report.chosen, "geometry + PSO-ELM", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});

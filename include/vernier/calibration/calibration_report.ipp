@@ -110,7 +110,8 @@ VERNIER_LOCAL std::string describe_choice(const CalibrationReport& report) {
     for (const BlockChoice& block : report.blocks) {
       const bool drift = block.block == Block::drift || block.block == Block::joint_drift;  // never deployed
       if (block.used != used || (used && drift) || (again && block.block == Block::elastic)) continue;
-      names += (names.empty() ? "" : ", ") + std::string(traits_of(block.block).title);
+      const Block named = block.block == Block::elastic_again ? Block::elastic : block.block;
+      names += (names.empty() ? "" : ", ") + std::string(traits_of(named).title);
     }
     if (!names.empty()) out += (used ? ". Included: " : ". Left out, since these poses do not support them: ") + names;
   }

@@ -95,8 +95,8 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
                                                     "verdict",
                                                     "details",
                                                     "audit"}));
-  EXPECT_EQ(c.json.at("held_out_mean_mm").at("mean"),
-            c.json.at("stages").at(c.json.at("chosen").get<std::string>()).at("mean_mm"));
+  EXPECT_DOUBLE_EQ(c.json.at("held_out_mean_mm").at("mean").get<double>(),
+                   c.json.at("stages").at(c.json.at("chosen").get<std::string>()).at("mean_mm").get<double>());
   ASSERT_EQ(c.json.at("audit").size(), 1u);  // one file
   EXPECT_TRUE(c.json.at("audit").at(0).at("findings").empty());
   EXPECT_TRUE(c.json.at("prior").is_null());

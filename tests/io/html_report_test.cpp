@@ -16,11 +16,11 @@
 #include "page_text.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/report_page.hpp"
 #include "vernier/io/detail/svg_chart.hpp"
@@ -240,7 +240,8 @@ TEST(HtmlReport, NumbersEqualThoseOfTheJson) {
   for (const auto& [key, stage] : json.at("stages").items()) {
     const std::string row = between(table, "<th scope=\"row\">" + key, "</tr>");
     for (const char* what : {"mean_mm", "rms_mm", "max_mm", "min_mm", "p95_mm", "mean_mrad"})
-      EXPECT_TRUE(has(row, "<td>" + detail::three_digits(stage.at(what).get<double>()) + "</td>")) << key << ' ' << what;
+      EXPECT_TRUE(has(row, "<td>" + detail::three_digits(stage.at(what).get<double>()) + "</td>"))
+          << key << ' ' << what;
   }
   EXPECT_EQ(std::stod(between(page, "data-value=\"", "\"")), json.at("stages").at("jointwise").at("mean_mm"));
   const Json poses = Json::parse(between(page, "id=\"points\">", "</script>"));

@@ -51,7 +51,7 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   support::PoseCalibration found = calibrate_with_progress(program, robot, o);
   const vn::CalibrationReport& report = found.report;
   print_measurements(robot, o, found);
-  fmt::print("\n{}", report.summary());
+  fmt::print("\n{}", o.verbose ? report.full_summary() : report.summary());
   support::Json json = vn::to_json(report, robot.name);
   for (const vn::DataAudit& audit : found.audits) json["audit"].push_back(vn::to_json(audit));
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
@@ -67,8 +67,14 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
       "stage with its Jacobian takes {:.2g} us. Figures: {}\n",
       report.fit_seconds - report.leave_one_out_seconds, report.leave_one_out_seconds, report.evaluation_seconds * 1e6,
       folder.string());
-  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", support::shown(o.save));
-  if (!o.report.empty()) fmt::print("Report: {}\n", support::shown(o.report));
+  if (!o.verbose) fmt::print("Details behind the verdict: --verbose, or --report FILE\n");
+  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
+  if (!o.report.empty()) {
+    found.page.rule = found.held_out;
+    found.page.results = json.dump(-1, ' ', false, support::Json::error_handler_t::replace);
+    support::write_report(program, o.report, found.page, o.date, o.save);
+    fmt::print("Report: {}\n", o.report);
+  }
   return 0;
 }
 

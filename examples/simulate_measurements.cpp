@@ -21,7 +21,7 @@ struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
   std::string poses;
-  double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02;
+  double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02, gears_urad = 200;
   bool positions_only = false;
 };
 
@@ -40,7 +40,8 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
   const auto types = robot.arm.model().joint_types();
   const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types, o.csv.format());
   const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
-  const vn::JointErrorSizes sizes{.harmonics = 30, .ripple = 0.01e-3};
+  const double gears = o.gears_urad * 1e-6;
+  const vn::JointErrorSizes sizes{.harmonic = gears, .harmonics = 30, .ripple = gears / 20};
   const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
   // the sensor stands somewhere, the reflector is somewhere on the flange
   vn::Rng rng(vn::child_seed(seed, 2));
@@ -73,6 +74,12 @@ int run(support::Program& program) {
   program.add_setting("--noise-mm", o.noise_mm, "standard deviation of a position, per component", "MM").not_negative();
   program.add_setting("--noise-mrad", o.noise_mrad, "of an orientation", "MRAD").not_negative();
   program.add_setting("--backlash-mrad", o.backlash_mrad, "half the play of every gear", "MRAD").not_negative();
+  program
+      .add_setting("--gears-urad", o.gears_urad,
+                   "standard deviation of the errors of gears and encoders once a turn, per coefficient; order k up to "
+                   "30 has 1/k of it, the meshing teeth (order 100) a twentieth; 0: none",
+                   "URAD")
+      .not_negative();
   program.add_flag("--positions-only", o.positions_only, "orientations are not measured");
   program.parse("", "write the measured poses to this file", "FILE");
   const std::string out = program.common().out;
@@ -88,5 +95,8 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("simulate_measurements", "Measures a virtual arm with drawn errors.", argc, argv, run);
+  return support::run_program("simulate_measurements",
+                              "Measures a virtual arm. Links, gear ratios, coupling, compliance, gears and backlash "
+                              "have errors, drawn from the seed.",
+                              argc, argv, run);
 }

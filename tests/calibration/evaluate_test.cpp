@@ -32,7 +32,8 @@ const CalibrateOptions quick{
 
 TEST(Evaluate, FiguresAreThoseOfTheModels) {
   const auto actual = actual_arm();
-  const auto found = calibrate(robot.chain, measure(actual, joints(200, 1), noise, 2), quick);
+  const JointRows<6> taught = joints(200, 1);
+  const auto found = calibrate(robot.chain, measure(actual, taught, noise, 2), quick);
   // joint 1 reaches farther than it was measured in some of the held-out poses
   const auto fresh = measure(actual, joints(100, 3, 1.15), noise, 4);
   const CalibrationReport report = evaluate(found, fresh, robot.limits);
@@ -77,6 +78,12 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
   for (int j = 0; j < 6; ++j) {  // at equal distances over each range: 200 a radian, 361 or more
     const JointReport& joint = report.joints[static_cast<std::size_t>(j)];
     ASSERT_FALSE(joint.measured_ranges.empty());
+    EXPECT_EQ(joint.measured_ranges.front().first, taught.col(j).minCoeff());
+    EXPECT_EQ(joint.measured_ranges.back().second, taught.col(j).maxCoeff());
+    EXPECT_EQ(joint.valid_ranges.front().first,
+              std::max(found.coverage.ranges[static_cast<std::size_t>(j)].front().lower, robot.limits.lower(j)));
+    EXPECT_LT(joint.valid_ranges.front().first, joint.measured_ranges.front().first);
+    EXPECT_GT(joint.valid_ranges.back().second, joint.measured_ranges.back().second);
     std::size_t at = 0;
     for (const auto& [lower, upper] : joint.measured_ranges) {
       const int steps = std::max(360, static_cast<int>(200 * (upper - lower)));
@@ -90,6 +97,15 @@ TEST(Evaluate, FiguresAreThoseOfTheModels) {
     EXPECT_EQ(joint.transmission, transmission.value);
     EXPECT_EQ(joint.transmission_std, transmission.std);
   }
+}
+
+// A joint is valid beyond its limits only as far as it was measured there.
+TEST(EvaluateWhiteBox, RangesOfValidityEndAtTheLimits) {
+  using Ranges = std::vector<std::pair<double, double>>;
+  const Ranges measured{{-2.9, -1.1}, {1.1, 2.8}};
+  EXPECT_EQ(detail::within_limits({{-3, -1}, {1, 3}}, measured, -2.95, 2.5), (Ranges{{-2.95, -1}, {1, 2.8}}));
+  EXPECT_EQ(detail::within_limits({{-3, -1}, {1, 3}}, measured, -10, 10), (Ranges{{-3, -1}, {1, 3}}));
+  EXPECT_TRUE(detail::within_limits({}, {}, -1, 1).empty());
 }
 
 // A base that drifts goes on to do so: the ellipsoid of a pose long before the session, or after it, is wider.

@@ -16,6 +16,7 @@
 #include "page_text.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
+#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/rng.hpp"
@@ -241,7 +242,7 @@ TEST(HtmlReport, NumbersEqualThoseOfTheJson) {
   for (const auto& [key, stage] : json.at("stages").items()) {
     const std::string row = between(table, "<th scope=\"row\">" + key, "</tr>");
     for (const char* what : {"mean_mm", "rms_mm", "max_mm", "min_mm", "p95_mm", "mean_mrad"})
-      EXPECT_TRUE(has(row, "<td>" + detail::fixed_digits(stage.at(what).get<double>(), 4) + "</td>"))
+      EXPECT_TRUE(has(row, "<td>" + detail::three_digits(stage.at(what).get<double>()) + "</td>"))
           << key << ' ' << what;
   }
   EXPECT_EQ(std::stod(between(page, "data-value=\"", "\"")), json.at("stages").at("jointwise").at("mean_mm"));

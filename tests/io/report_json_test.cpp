@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -61,10 +62,11 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
 
   const Json json = to_json(report, "arm");
   EXPECT_EQ(json.at("verdict"), report.verdict());
+  EXPECT_EQ(json.at("details"), report.details());
   // the second block is not there, so its prior has no tightness
   expect_parts(json, R"({
     "robot": "arm", "train_rows": 17, "test_rows": 4, "chosen": "geometry", "mean_temperature_c": 31, "gated_rows": 2,
-    "worst_harm_beside_geometry_mm": 9e-3, "within_95_percent_ellipsoids": 0.75,
+    "held_out_mean_mm": {"mean": 0.3, "lower": 0, "upper": null}, "worst_harm_beside_geometry_mm": 9e-3, "within_95_percent_ellipsoids": 0.75,
     "blocks": [{"name": "elastic", "used": true, "left_out_without_mm": 1, "left_out_with_mm": 2,
                 "log_density_gain": 0.25, "tightness": 3},
                {"tightness": null}],
@@ -74,6 +76,18 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
                    {"unit": "mrad", "nominal": 400}],
     "identifiability": {"rank": 3, "free": 1, "condition": 250, "weak": ["theta3"],
                         "observability": {"O1": 1, "O2": 2, "O3": 3, "O4": 4, "O5": 5}}})");
+}
+
+// Errors 1 to 5 mm: mean 3, variance 2.5, Student's t of 4 degrees of freedom 2.776.
+TEST(ReportJson, MeanOfHeldOutPosesWithItsInterval) {
+  CalibrationReport report = least();
+  report.stages[1].position = list({1e-3, 2e-3, 3e-3, 4e-3, 5e-3});
+  report.stages[0].position = report.stages[1].position;
+  report.gates = VectorX::Ones(5);
+  const Json mean = to_json(report, "arm").at("held_out_mean_mm");
+  EXPECT_NEAR(mean.at("mean"), 3, 1e-12);
+  EXPECT_NEAR(mean.at("lower"), 3 - 2.776445 * std::sqrt(0.5), 1e-3);
+  EXPECT_NEAR(mean.at("upper"), 3 + 2.776445 * std::sqrt(0.5), 1e-3);
 }
 
 TEST(ReportJson, WhatThereIsNotIsNull) {

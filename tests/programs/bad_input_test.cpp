@@ -161,9 +161,10 @@ TEST_F(BadInputToPrograms, NumbersOutOfRange) {
   expect_refused(plan + "5 --acceptance-deg nan", 2, "--acceptance-deg: Value nan not in range 1 to 180");
   for (const std::string value : {"0", "-1", "nan", "inf"})
     expect_refused(path + "--tolerance-mm " + value, 2, "Value " + value + " is not a positive number");
-  for (const std::string value : {"-0.1", "nan", "inf"})
-    expect_refused("simulate_measurements --robot ur10 --poses p.csv --out m.csv --noise-mm " + value, 2,
-                   "Value " + value + " is not a number of at least 0");
+  for (const std::string option : {"--noise-mm ", "--gears-urad "})
+    for (const std::string value : {"-0.1", "nan", "inf"})
+      expect_refused("simulate_measurements --robot ur10 --poses p.csv --out m.csv " + option + value, 2,
+                     "Value " + value + " is not a number of at least 0");
 }
 
 TEST_F(BadInputToPrograms, Reregistration) {

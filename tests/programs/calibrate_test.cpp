@@ -75,10 +75,28 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   const Calibration& c = calibration();
   ASSERT_EQ(c.command.exit_code, 0) << c.command.errors;
   EXPECT_EQ(c.command.errors, "");
-  EXPECT_EQ(keys(c.json), (std::vector<std::string>{
-                              "robot", "train_rows", "test_rows", "stages", "chosen", "mean_temperature_c", "blocks",
-                              "learners", "prior", "parameters", "identifiability", "spectrum", "drift", "gated_rows",
-                              "worst_harm_beside_geometry_mm", "within_95_percent_ellipsoids", "verdict", "audit"}));
+  EXPECT_EQ(keys(c.json), (std::vector<std::string>{"robot",
+                                                    "train_rows",
+                                                    "test_rows",
+                                                    "stages",
+                                                    "chosen",
+                                                    "mean_temperature_c",
+                                                    "blocks",
+                                                    "learners",
+                                                    "prior",
+                                                    "parameters",
+                                                    "identifiability",
+                                                    "spectrum",
+                                                    "drift",
+                                                    "gated_rows",
+                                                    "worst_harm_beside_geometry_mm",
+                                                    "within_95_percent_ellipsoids",
+                                                    "held_out_mean_mm",
+                                                    "verdict",
+                                                    "details",
+                                                    "audit"}));
+  EXPECT_DOUBLE_EQ(c.json.at("held_out_mean_mm").at("mean").get<double>(),
+                   c.json.at("stages").at(c.json.at("chosen").get<std::string>()).at("mean_mm").get<double>());
   ASSERT_EQ(c.json.at("audit").size(), 1u);  // one file
   EXPECT_TRUE(c.json.at("audit").at(0).at("findings").empty());
   EXPECT_TRUE(c.json.at("prior").is_null());
@@ -136,10 +154,13 @@ TEST(Calibrate, HeldOutErrorsFallToTheNoise) {
 
 TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
   const Calibration& c = calibration();
-  for (const char* words : {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry",
-                            "geometry + PSO-ELM", "joint-wise", "[mrad]", "Converged: ", "Verdict", "Accurate to ",
-                            "Measured joint ranges", "Figures: figures", "model.json"})
+  for (const char* words :
+       {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry", "geometry + PSO-ELM",
+        "joint-wise", "[mrad]", "\nVerdict\n- Position error of all 30 held-out poses: ", " mm mean (95 % interval ",
+        "Details behind the verdict: --verbose", "Figures: figures", "model.json"})
     EXPECT_NE(c.command.output.find(words), std::string::npos) << words << " is not in\n" << c.command.output;
+  const char* details[] = {"Converged: ", "\nDetails\n- ", "Measured joint ranges [deg, mm]: ", "Range of validity"};
+  for (const char* words : details) EXPECT_EQ(c.command.output.find(words), std::string::npos) << c.command.output;
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;  // the figures need it, the rest does not
   for (const char* name :
        {"stages.svg", "distribution.svg", "poses.svg", "errors_along_joint_6.svg", "joint_ranges.svg"}) {
@@ -213,8 +234,12 @@ TEST(Calibrate, SameBitsForAnyNumberOfThreads) {
   const Calibration& c = calibration();
   const CommandResult again = run(c.folder, "calibrate",
                                   "--robot abb_irb120 --data poses.csv --save model2.json --json report2.json --out f2 "
-                                  "--threads 3 --date 2024-05-01");  // every fifth row is the default
+                                  "--threads 3 --date 2024-05-01 --verbose");  // every fifth row is the default
   ASSERT_EQ(again.exit_code, 0) << again.errors;
+  for (const char* words : {"\nVerdict\n- ", "Converged: ", "\nDetails\n- ", "Measured joint ranges [deg, mm]: ",
+                            "Range of validity [deg, mm]: ", "Gravity compliance: "})
+    EXPECT_NE(again.output.find(words), std::string::npos) << words << " is not in\n" << again.output;
+  EXPECT_EQ(again.output.find("--verbose"), std::string::npos);
   EXPECT_EQ(read_file(c.folder / "report.json"), read_file(c.folder / "report2.json"));
   EXPECT_EQ(read_file(c.folder / "model.json"), read_file(c.folder / "model2.json"));
 }

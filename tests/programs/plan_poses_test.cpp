@@ -133,6 +133,22 @@ TEST_F(PlanPoses, TheSameSeedIsTheSameVirtualArm) {
   EXPECT_FALSE(read_dataset<6>(folder_ / "points.csv").has_orientations());
 }
 
+// The errors of gears, here of one seed, are proportional to their size; everything else stays as it was.
+TEST_F(PlanPoses, GearsOfTheVirtualArmErrByTheirSize) {
+  measure(30, "measured.csv");
+  const auto seen = [&](const std::string& gears) {
+    const std::string arguments = "--robot abb_irb120 --poses joints.csv --noise-mm 0 --noise-mrad 0 --out gears.csv ";
+    EXPECT_EQ(run("simulate_measurements", arguments + gears).exit_code, 0);
+    return read_dataset<6>(folder_ / "gears.csv").positions();
+  };
+  const PointRows none = seen("--gears-urad 0"), half = seen("--gears-urad 100"), whole = seen("--gears-urad 200");
+  EXPECT_EQ(whole, seen(""));
+  const double size = (whole - none).rowwise().norm().mean();
+  EXPECT_GT(size, 0.05e-3);
+  EXPECT_LT(size, 1e-3);
+  EXPECT_LT((whole - 2 * half + none).rowwise().norm().maxCoeff(), 0.01 * size);
+}
+
 TEST_F(PlanPoses, RefusesWhatMakesNoSense) {
   measure(12, "measured.csv");
   const auto refused = [&](const std::string& arguments, int code, const std::string& words) {

@@ -11,6 +11,7 @@
 #include "vernier/calibration/fitted_set.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
+#include "vernier/evaluation/mean_interval.hpp"
 #include "vernier/identification/identification_report.hpp"
 #include "vernier/least_squares/loss.hpp"
 
@@ -20,7 +21,8 @@ namespace vernier {
 struct JointReport {
   bool revolute = true;                                      ///< its angles are in rad, else in m
   std::vector<double> held_out{};                            ///< joint values of the held-out poses [rad, m]
-  std::vector<std::pair<double, double>> measured_ranges{};  ///< of the values themselves [rad, m]
+  std::vector<std::pair<double, double>> measured_ranges{};  ///< as they are [rad, m]
+  std::vector<std::pair<double, double>> valid_ranges{};     ///< these widened a little, within the limits [rad, m]
   std::vector<double> angle{};                               ///< over the measured ranges [rad, m]
   VectorX transmission;                      ///< what the transmission adds there, mean subtracted [rad]
   VectorX transmission_std;                  ///< its standard deviation [rad]
@@ -54,7 +56,7 @@ struct CalibrationReport {
   std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
   double max_degradation = 0;          ///< largest excess of the chosen stage's error over that of geometry, inside the
-                                       ///< measured joint ranges [m]
+                                       ///< range of validity [m]
   double ellipsoid_coverage = 0;       ///< share of held-out poses within their predicted 95 % ellipsoid
   bool oriented = false;               ///< whether orientations are used
   bool converged = true;               ///< whether the error model converged
@@ -70,19 +72,29 @@ struct CalibrationReport {
 
   /// Number of held-out poses.
   Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }
-  /// Number of held-out poses outside the measured joint ranges.
+  /// Number of held-out poses outside the range of validity, the measured joint ranges widened a little.
   VERNIER_API Index extrapolated() const;
   /// The errors of a stage.
   /// @throws std::invalid_argument where it is not there
   VERNIER_API const StageErrors& stage(const StageName& name) const;
-  /// What else a user should know, a sentence each.
+  /// Mean position error of the deployed stage at all held-out poses, with its 95 % interval [m].
+  /// @throws std::invalid_argument without held-out poses
+  VERNIER_API MeanInterval held_out_mean() const;
+  /// That so few poses were held out that errors say little; empty from ten poses on.
+  VERNIER_API std::string few_poses() const;
+  /// What a user must know before the calibration is used, a sentence each.
   VERNIER_API std::vector<std::string> remarks() const;
-  /// What the calibration is good for, where, and what would improve it, a sentence each.
+  /// How accurate the calibration is, and what it rests on: at most seven lines. All held-out poses come first, behind
+  /// `few_poses`.
   VERNIER_API std::vector<std::string> verdict() const;
-  /// What to measure next, a sentence each: part of the verdict.
+  /// What stands behind the verdict, a sentence each: decisions on blocks, ranges, drift, lines, advice.
+  VERNIER_API std::vector<std::string> details() const;
+  /// What to measure next, a sentence each: part of the details.
   VERNIER_API std::vector<std::string> next() const;
-  /// All of it as text: the table of stages, the identification, remarks and verdict.
+  /// Verdict, table of stages and fit of other measurements as text.
   VERNIER_API std::string summary() const;
+  /// The summary, the identification and the details as text.
+  VERNIER_API std::string full_summary() const;
 };
 
 }  // namespace vernier

@@ -24,45 +24,28 @@ VERNIER_IMPL const StageErrors& CalibrationReport::stage(const StageName& name) 
   throw std::invalid_argument(message("CalibrationReport: there is no stage '", name.key(), "'"));
 }
 
-namespace detail {
+VERNIER_IMPL MeanInterval CalibrationReport::held_out_mean() const { return MeanInterval::of(stage(chosen).position); }
 
-/// Lengths of links, and travel of prismatic joints [m].
-VERNIER_LOCAL double reach_of(const CalibrationReport& report) {
-  double out = 0;
-  for (const ParameterEstimate& p : report.identification.parameters)
-    if (p.kind == ParameterKind::length && !p.name.starts_with("base") && !p.name.starts_with("tool"))
-      out += std::abs(p.identified);
-  for (const JointReport& joint : report.joints)
-    if (!joint.revolute && !joint.measured_ranges.empty())
-      out += (std::max)(std::abs(joint.measured_ranges.front().first), std::abs(joint.measured_ranges.back().second));
-  return out;
+VERNIER_IMPL std::string CalibrationReport::few_poses() const {
+  constexpr Index enough = 10;
+  const Index n = test_poses();
+  if (n >= enough) return "";
+  return message("Only ", counted(n, "pose was", "poses were"),
+                 " held out: too few to judge the accuracy; hold out at least ", enough, ".");
 }
-
-/// Distance of the tool point from the flange [m].
-VERNIER_LOCAL double tool_length(const CalibrationReport& report) {
-  double square = 0;
-  for (const ParameterEstimate& p : report.identification.parameters)
-    if (p.kind == ParameterKind::length && p.name.starts_with("tool")) square += p.identified * p.identified;
-  return std::sqrt(square);
-}
-
-}  // namespace detail
 
 VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   using detail::brief;
+  constexpr double largest_condition = 1e6;
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
-  if (identification.condition > 1e6)
-    out.push_back(message("The poses hardly determine some of the estimated parameters (condition ",
-                          brief(identification.condition), "): do not trust values with large standard deviations."));
-  const double tool = detail::tool_length(*this), reach = detail::reach_of(*this);
-  if (tool > reach)
-    out.push_back(message("The tool point was found ", brief(tool * 1e3),
-                          " mm from the flange, beyond the arm's reach of ", brief(reach * 1e3),
-                          " mm: wrong robot, or poses that do not determine it?"));
-  for (const RemainderTrial& trial : trials)
-    if (!trial.on_geometry && trial.learner == Learner::pso_elm && chosen.stage != Stage::learned)
-      out.push_back("What learners find in what the error model leaves does not help left-out poses: not used.");
+  if (!identification.converged())
+    out.push_back((identification.status == IdentifyStatus::underdetermined
+                       ? "The geometry is underdetermined: "
+                       : "The fit of the geometry did not converge: ") +
+                  identification.message + ".");
+  if (identification.condition > largest_condition)
+    out.push_back("The geometry is poorly determined: its condition is " + brief(identification.condition) + ".");
   if (outliers > 0 && median_error > 1e-6)
     out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
                           brief(median_error * 1e3), " mm: outliers?",
@@ -73,46 +56,102 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
 
 namespace detail {
 
-/// Accuracy inside the measured joint ranges.
-VERNIER_LOCAL void describe_accuracy(const CalibrationReport& report, std::vector<std::string>& out) {
-  const VectorX& last = report.stage(report.chosen).position;
-  std::vector<double> inside;
-  for (Index i = 0; i < last.size(); ++i)
-    if (report.gates(i) >= 1) inside.push_back(last(i) * 1e3);
-  if (!inside.empty()) {
-    const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(inside.data(), static_cast<Index>(inside.size())));
-    out.push_back(
-        message("Accurate to ", brief(e.mean), " mm mean, ", brief(e.p95), " mm (95 %), ", brief(e.max),
-                " mm maximum, inside the measured joint ranges: ", e.n, " of ", last.size(),
-                " held-out poses. None of them is worse than with geometry alone",
-                report.max_degradation > 0 ? " by more than " + brief(report.max_degradation * 1e3) + " mm." : "."));
-  }
-  if (const Index outside = report.extrapolated(); outside > 0)
-    out.push_back(counted(outside, "held-out pose lies", "held-out poses lie") +
-                  " outside those ranges; there the learned functions of the joints fade out.");
+/// Errors of those held-out poses that lie inside the range of validity, or outside [mm].
+VERNIER_LOCAL std::vector<double> errors_where(const CalibrationReport& report, bool inside) {
+  const VectorX& errors = report.stage(report.chosen).position;
+  std::vector<double> out;
+  for (Index i = 0; i < errors.size(); ++i)
+    if ((report.gates(i) >= 1) == inside) out.push_back(errors(i) * 1e3);
+  return out;
 }
 
-/// Measured joint ranges, in degrees or millimetres.
-VERNIER_LOCAL std::string describe_ranges(const std::vector<JointReport>& joints) {
+/// Statistics of some errors.
+VERNIER_LOCAL ErrorStatistics statistics_of(const std::vector<double>& errors) {
+  return ErrorStatistics::of(Eigen::Map<const VectorX>(errors.data(), static_cast<Index>(errors.size())));
+}
+
+/// Errors of all held-out poses.
+VERNIER_LOCAL std::string describe_accuracy(const CalibrationReport& report) {
+  const auto e = ErrorStatistics::of(report.stage(report.chosen).position * 1e3);
+  const MeanInterval mean = report.held_out_mean();
+  std::string out = message("Position error of all ", e.n, " held-out poses: ", brief(e.mean), " mm mean (",
+                            std::isfinite(mean.upper) ? message("95 % interval ", brief(mean.lower * 1e3), " to ",
+                                                                brief(mean.upper * 1e3), " mm")
+                                                      : std::string("too few poses for an interval"),
+                            "), ", brief(e.p95), " mm at the 95th percentile, ", brief(e.max), " mm maximum");
+  for (const StageErrors& one : report.stages)
+    if (one.name == Stage::frames)
+      out += message("; links as designed: ", brief(one.position.mean() * 1e3), " mm mean");
+  return out + ".";
+}
+
+/// Errors inside and outside the range of validity; empty where all poses lie inside.
+VERNIER_LOCAL std::string describe_where(const CalibrationReport& report) {
+  const std::vector<double> inside = errors_where(report, true), outside = errors_where(report, false);
+  if (outside.empty()) return "";
+  const std::string beyond = brief(statistics_of(outside).mean);
+  if (inside.empty())
+    return "None of them lies inside the range of validity; outside, the learned functions of the joints fade out.";
+  const auto e = statistics_of(inside);
+  return message(e.n, " of them ", e.n == 1 ? "lies" : "lie", " inside the range of validity: ", brief(e.mean),
+                 " mm mean, ", brief(e.max), " mm maximum. The other ",
+                 outside.size() == 1 ? std::string("has ") : message(outside.size(), " have a mean of "), beyond,
+                 " mm; there the learned functions of the joints fade out.");
+}
+
+/// The deployed stage, and by name the last decision on each block that this stage may have.
+VERNIER_LOCAL std::string describe_choice(const CalibrationReport& report) {
+  std::string out = message("Deployed, as left-out poses decide: ", report.stage(report.chosen).title);
+  if (report.chosen.stage == Stage::geometry_learned) return out + ".";  // it has no blocks
+  const bool again = std::any_of(report.blocks.begin(), report.blocks.end(),
+                                 [](const BlockChoice& block) { return block.block == Block::elastic_again; });
+  for (const bool used : {true, false}) {
+    std::string names;
+    for (const BlockChoice& block : report.blocks) {
+      const bool drift = block.block == Block::drift || block.block == Block::joint_drift;  // never deployed
+      if (block.used != used || (used && drift) || (again && block.block == Block::elastic)) continue;
+      const Block named = block.block == Block::elastic_again ? Block::elastic : block.block;
+      names += (names.empty() ? "" : ", ") + std::string(traits_of(named).title);
+    }
+    if (!names.empty()) out += (used ? ". Included: " : ". Left out, since these poses do not support them: ") + names;
+  }
+  return out + ".";
+}
+
+/// Ranges of each joint, in degrees or millimetres.
+VERNIER_LOCAL std::string describe_ranges(const char* title, const std::vector<JointReport>& joints,
+                                          std::vector<std::pair<double, double>> JointReport::*member) {
   std::string out;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double unit = joints[j].revolute ? 180 / std::numbers::pi : 1e3;
     out += message(j > 0 ? "; " : "", 'q', j + 1);
-    const auto& ranges = joints[j].measured_ranges;
+    const auto& ranges = joints[j].*member;
     for (std::size_t k = 0; k < ranges.size() && k < 4; ++k)
       out += message(k > 0 ? "," : "", ' ', std::llround(ranges[k].first * unit), "..",
                      std::llround(ranges[k].second * unit));
     if (ranges.size() > 4) out += message(", and ", ranges.size() - 4, " more");
   }
-  return "Measured joint ranges [deg, mm]: " + out + ".";
+  return message(title, " [deg, mm]: ", out, '.');
 }
 
-/// A decision on a block of joint errors.
+/// By how much the deployed stage is worse than geometry, where joint-wise terms hold; empty where that says nothing.
+VERNIER_LOCAL std::string describe_degradation(const CalibrationReport& report) {
+  if (report.chosen == Stage::geometry || report.extrapolated() == report.test_poses()) return "";
+  return message("Inside the range of validity no held-out pose is worse than with geometry alone",
+                 report.max_degradation > 0 ? " by more than " + brief(report.max_degradation * 1e3) + " mm." : ".");
+}
+
+/// A text whose first letter is a capital.
+VERNIER_LOCAL std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+/// A decision on a block of unknowns.
 VERNIER_LOCAL std::string describe_block(const BlockChoice& block) {
-  const BlockTraits& traits = traits_of(block.block);
   return message(
-      block.used ? traits.included : traits.left_out, "(leave-one-pose-out error: ", brief(block.without * 1e3),
-      " mm without, ", brief(block.with * 1e3), " mm with",
+      capitalised(traits_of(block.block).title), block.used ? ": included" : ": left out, not supported",
+      " (leave-one-pose-out error: ", brief(block.without * 1e3), " mm without, ", brief(block.with * 1e3), " mm with",
       block.log_density_gain > 0
           ? "; log predictive density of a left-out pose greater by " + brief(block.log_density_gain) + " nat"
           : std::string(),
@@ -142,24 +181,67 @@ VERNIER_LOCAL std::string describe_advice(const PoseAdvice& advice, const std::v
   return out + message("; ", advice.poses.size(), " of them reduce it to ", brief(advice.std_then * 1e3), ".");
 }
 
+/// The largest distance between two positions of a base [m], and between two orientations [rad].
+struct BaseMotion {
+  double translation = 0, rotation = 0;
+};
+
+/// Distance between two knots in three rows from `part` on.
+VERNIER_LOCAL double knot_distance(const SessionDrift& drift, Index a, Index b, Index part) {
+  const auto change = [&](Index k) { return drift.knots(part + k, b) - drift.knots(part + k, a); };
+  return std::hypot(change(0), change(1), change(2));
+}
+
+/// How far a base moved.
+VERNIER_LOCAL BaseMotion motion_of(const SessionDrift& drift) {
+  BaseMotion out;
+  for (Index a = 0; a < drift.knots.cols(); ++a)
+    for (Index b = a + 1; b < drift.knots.cols(); ++b) {
+      out.translation = (std::max)(out.translation, knot_distance(drift, a, b, 0));
+      out.rotation = (std::max)(out.rotation, knot_distance(drift, a, b, 3));
+    }
+  return out;
+}
+
+/// How far the base moved that moved most; empty where none did.
+VERNIER_LOCAL std::string describe_motion(const std::vector<SessionDrift>& drift) {
+  BaseMotion most;
+  std::size_t of = 0;
+  bool any = false;
+  for (std::size_t s = 0; s < drift.size(); ++s) {
+    if (drift[s].empty()) continue;
+    const BaseMotion motion = motion_of(drift[s]);
+    if (!any || motion.translation > most.translation) most = motion, of = s;
+    any = true;
+  }
+  if (!any) return "";
+  return message("Drift was estimated and is not in the saved model: the base",
+                 drift.size() > 1 ? message(" of station ", of + 1) : "", " moved by up to ",
+                 brief(most.translation * 1e3), " mm and ", brief(most.rotation * 1e6), " urad during the session.");
+}
+
+/// Parameters that the poses determine weakly, by name; empty without any.
+VERNIER_LOCAL std::string describe_weak(const IdentificationReport& identification) {
+  constexpr std::size_t most = 4;
+  const std::vector<std::string> weak = identification.names(ParameterState::weak);
+  if (weak.empty()) return "";
+  std::string names;
+  for (std::size_t k = 0; k < weak.size() && k < most; ++k) names += (k > 0 ? ", " : "") + weak[k];
+  if (weak.size() > most) names += message(" and ", weak.size() - most, " more");
+  return message(counted(weak.size(), "parameter is", "parameters are"),
+                 " weakly determined and regularised around nominal: ", names, ".");
+}
+
 /// How far a base moved, and when.
 VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::vector<JointReport>& joints,
                                          const std::string& station) {
   const Index knots = drift.knots.cols();
-  const auto apart = [&](Index a, Index b, Index part) {
-    const auto change = [&](Index k) { return drift.knots(part + k, b) - drift.knots(part + k, a); };
-    return std::hypot(change(0), change(1), change(2));
-  };
-  double translation = 0, rotation = 0, fastest = 0;
+  const auto [translation, rotation] = motion_of(drift);
+  double fastest = 0;
   Index at = 0;
-  for (Index a = 0; a < knots; ++a)
-    for (Index b = a + 1; b < knots; ++b) {
-      translation = (std::max)(translation, apart(a, b, 0));
-      rotation = (std::max)(rotation, apart(a, b, 3));
-    }
   const Index window = std::max<Index>(1, knots / 8);
   for (Index k = 0; k + window < knots; ++k) {
-    const double moved = apart(k, k + window, 0);
+    const double moved = knot_distance(drift, k, k + window, 0);
     if (!(moved > fastest)) continue;
     fastest = moved;
     at = k;
@@ -203,9 +285,26 @@ VERNIER_LOCAL std::string describe_lines(const JointReport& joint, std::size_t n
 }  // namespace detail
 
 VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
+  std::string urgent;
+  for (const std::string& one : remarks()) urgent += (urgent.empty() ? "" : " ") + one;
+  const std::string lines[] = {few_poses(),
+                               detail::describe_accuracy(*this),
+                               detail::describe_where(*this),
+                               detail::describe_choice(*this),
+                               urgent,
+                               detail::describe_motion(drift),
+                               detail::describe_weak(identification)};
   std::vector<std::string> out;
-  detail::describe_accuracy(*this, out);
-  out.push_back(detail::describe_ranges(joints));
+  for (const std::string& line : lines)
+    if (!line.empty()) out.push_back(line);
+  return out;
+}
+
+VERNIER_IMPL std::vector<std::string> CalibrationReport::details() const {
+  std::vector<std::string> out;
+  if (std::string text = detail::describe_degradation(*this); !text.empty()) out.push_back(std::move(text));
+  out.push_back(detail::describe_ranges("Measured joint ranges", joints, &JointReport::measured_ranges));
+  out.push_back(detail::describe_ranges("Range of validity", joints, &JointReport::valid_ranges));
   for (const BlockChoice& block : blocks) out.push_back(detail::describe_block(block));
   if (prior && prior->used)
     out.push_back(message("Of the calibration '", prior->name, "' the geometry has changed by ",
@@ -221,7 +320,9 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
     }
     out.push_back(sentence + ".");
   }
-  out.push_back(message("Chosen by left-out poses: ", stage(chosen).title, "."));
+  if (chosen.stage != Stage::learned &&
+      std::any_of(trials.begin(), trials.end(), [](const RemainderTrial& trial) { return !trial.on_geometry; }))
+    out.push_back("No learned correction was added to the error model: none reduced the left-out error by enough.");
   if (mean_temperature)
     out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),
                           " deg C, the mean of the measurements."));
@@ -231,12 +332,6 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::verdict() const {
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (std::string lines = detail::describe_lines(joints[j], j + 1); !lines.empty()) out.push_back(std::move(lines));
   for (std::string& sentence : next()) out.push_back(std::move(sentence));
-  if (const std::size_t weak = identification.names(ParameterState::weak).size(); weak > advice.size()) {
-    const std::size_t left = weak - advice.size();
-    out.push_back((advice.empty() ? counted(left, "parameter is", "parameters are")
-                                  : counted(left, "more parameter is", "more parameters are")) +
-                  " weakly determined and regularised around nominal.");
-  }
   return out;
 }
 
@@ -247,14 +342,19 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::next() const {
 }
 
 VERNIER_IMPL std::string CalibrationReport::summary() const {
-  std::string out = message("Errors of the ", test_poses(), " held-out poses [mm]\n\n", stage_table(stages), "\n",
-                            identification.summary());
+  std::string out = "Verdict\n";
+  for (const std::string& line : verdict()) out += "- " + line + "\n";
+  out += message("\nErrors of the ", counted(test_poses(), "held-out pose", "held-out poses"), " [mm]\n\n",
+                 stage_table(stages));
   for (const FittedSet& set : others)
     out += message(set.name, ": ", set.measurements, " measurements (", set.kind, "), fitted to ",
                    detail::brief(set.rms * 1e3), " mm (rms)\n");
-  for (const std::string& line : remarks()) out += line + "\n";
-  out += "\nVerdict\n";
-  for (const std::string& line : verdict()) out += "- " + line + "\n";
+  return out;
+}
+
+VERNIER_IMPL std::string CalibrationReport::full_summary() const {
+  std::string out = summary() + "\n" + identification.summary() + "\nDetails\n";
+  for (const std::string& line : details()) out += "- " + line + "\n";
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "vernier/calibration/calibration.hpp"
@@ -24,6 +25,11 @@ namespace detail {
 
 /// An error in standard deviations of a covariance (Mahalanobis' distance).
 VERNIER_API double normalised_error(const Vector3& error, const Matrix3& covariance);
+
+/// Ranges of validity of a joint: no farther than its limits, unless it was measured there.
+VERNIER_API std::vector<std::pair<double, double>> within_limits(const std::vector<JointRange>& ranges,
+                                                                 const std::vector<std::pair<double, double>>& measured,
+                                                                 double lower, double upper);
 
 /// Transmission of a joint: sampled over its measured ranges, and its spectrum.
 VERNIER_API void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out);
@@ -187,8 +193,10 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;
     for (const auto& data : test)
       joint.held_out.insert(joint.held_out.end(), data.joints().col(j).begin(), data.joints().col(j).end());
-    for (const auto& range : calibration.coverage.measured[static_cast<std::size_t>(j)])
-      joint.measured_ranges.emplace_back(range.lower, range.upper);
+    const auto k = static_cast<std::size_t>(j);
+    for (const auto& range : calibration.measured[k]) joint.measured_ranges.emplace_back(range.lower, range.upper);
+    joint.valid_ranges =
+        detail::within_limits(calibration.coverage.ranges[k], joint.measured_ranges, limits.lower(j), limits.upper(j));
     detail::describe_transmission(errors, j, joint);
     out.joints.push_back(std::move(joint));
   }

@@ -13,6 +13,19 @@ VERNIER_IMPL double normalised_error(const Vector3& error, const Matrix3& covari
   return std::sqrt(error.dot(weighted));
 }
 
+VERNIER_IMPL std::vector<std::pair<double, double>> within_limits(
+    const std::vector<JointRange>& ranges, const std::vector<std::pair<double, double>>& measured, double lower,
+    double upper) {
+  if (!measured.empty()) {
+    lower = (std::min)(lower, measured.front().first);
+    upper = (std::max)(upper, measured.back().second);
+  }
+  std::vector<std::pair<double, double>> out;
+  for (const JointRange& range : ranges)
+    out.emplace_back((std::max)(range.lower, lower), (std::min)(range.upper, upper));
+  return out;
+}
+
 VERNIER_IMPL void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out) {
   for (const auto& [lower, upper] : out.measured_ranges) {
     const int samples = (std::max)(360, static_cast<int>(200 * (upper - lower)));  // three a period of order 404

@@ -57,7 +57,8 @@ struct StageErrors {
   std::string key() const { return name.key(); }
 };
 
-/// A table of the position errors [mm] of stages, and of their mean orientation errors [mrad] where used.
+/// A table of the position errors [mm] of stages, and of their mean orientation errors [mrad] where used, in three
+/// significant digits.
 VERNIER_API std::string stage_table(const std::vector<StageErrors>& stages);
 
 }  // namespace vernier

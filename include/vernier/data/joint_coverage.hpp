@@ -28,6 +28,10 @@ VERNIER_API CoveredRanges covered_ranges(const ConstVectorRef& values);
 VERNIER_API std::vector<JointRange> joined_ranges(std::vector<JointRange> ranges, const std::vector<JointRange>& others,
                                                   double margin);
 
+/// The smallest and the largest of some values in each range that has any.
+VERNIER_API std::vector<JointRange> extremes_within(const ConstVectorRef& values,
+                                                    const std::vector<JointRange>& ranges);
+
 /// A gate's value and slope.
 struct GateFactor {
   double value, slope;

@@ -79,34 +79,25 @@ enum class Block {
 
 /// What is known of a block.
 struct BlockTraits {
-  Block block;           ///< itself
-  const char* key;       ///< in files
-  const char* included;  ///< begins the sentence of a decision for it
-  const char* left_out;  ///< begins the sentence of a decision against it
+  Block block;        ///< itself
+  const char* key;    ///< in files
+  const char* title;  ///< in sentences, in lower case
 };
 
 /// All blocks, by their number.
 inline constexpr std::array<BlockTraits, 12> block_rows{{
-    {Block::elastic, "elastic", "Gravity compliance helps ", "Gravity compliance alone does not help "},
-    {Block::jointwise, "jointwise", "Joint-wise terms help ",
-     "Joint-wise terms are left out: this robot's errors are not functions of single joints "},
-    {Block::gears, "gears", "Gear ratios and coupling help ", "Gear ratios and coupling do not help "},
-    {Block::elastic_again, "elastic_with_jointwise", "Beside joint-wise terms gravity compliance is kept ",
-     "Beside joint-wise terms gravity compliance is left out "},
-    {Block::tuned_priors, "tuned_priors", "Optimised priors help ", "Optimised priors are left out: they do not help "},
-    {Block::approach, "approach", "Hysteresis by the direction of approach helps ",
-     "Hysteresis is left out: errors do not depend on the direction of approach "},
-    {Block::tilt, "tilt", "Tilts of joint frames under gravity help ",
-     "Tilts of joint frames under gravity do not help "},
-    {Block::temperature, "temperature", "The geometry changes with temperature: that helps ",
-     "No change of the geometry with temperature is noticeable "},
-    {Block::prior, "prior", "An earlier calibration as the prior helps ",
-     "The earlier calibration is useless here: left out "},
-    {Block::lines, "lines", "Orders that stand out of what the model left help ",
-     "Orders that stand out of what the model left are left out "},
-    {Block::drift, "drift", "The base drifted during the session ", "No drift of the base is noticeable "},
-    {Block::joint_drift, "joint_drift", "The zeros of the joints drifted, too ",
-     "No drift of the joints' zeros is noticeable "},
+    {Block::elastic, "elastic", "gravity compliance"},
+    {Block::jointwise, "jointwise", "functions of single joints"},
+    {Block::gears, "gears", "gear ratios and coupling"},
+    {Block::elastic_again, "elastic_with_jointwise", "gravity compliance beside functions of single joints"},
+    {Block::tuned_priors, "tuned_priors", "optimised priors"},
+    {Block::approach, "approach", "hysteresis by the direction of approach"},
+    {Block::tilt, "tilt", "tilts of joint frames under gravity"},
+    {Block::temperature, "temperature", "change of the geometry with temperature"},
+    {Block::prior, "prior", "earlier calibration as the prior"},
+    {Block::lines, "lines", "further orders of the joints' functions"},
+    {Block::drift, "drift", "drift of the base"},
+    {Block::joint_drift, "joint_drift", "drift of the joints' zeros"},
 }};
 
 /// What is known of a block.

@@ -26,9 +26,10 @@ VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std
   out.stages = report.stages;
   out.after = report.chosen;
   out.train_poses = report.train_poses;
+  out.headline = report.few_poses();
   out.sentences = report.verdict();
-  const std::vector<std::string> remarks = report.remarks();
-  out.sentences.insert(out.sentences.end(), remarks.begin(), remarks.end());
+  const std::vector<std::string> details = report.details();
+  out.sentences.insert(out.sentences.end(), details.begin(), details.end());
   out.ellipsoid_coverage = report.ellipsoid_coverage;
   out.poses.normalised = report.normalised_errors;
   out.poses.gates = report.gates;

@@ -20,6 +20,8 @@ VERNIER_API nlohmann::ordered_json stages_to_json(const std::vector<StageErrors>
 /// An assessment of a calibration: stages, decisions on blocks, parameters [mm, mrad], identifiability, verdict. Under
 /// `spectrum` each joint's amplitudes by order [urad], and its `lines` with margin and probable cause; under `drift`
 /// the motion of each station's base at its knots. `mean_temperature_c` is null where temperature does not matter.
+/// `held_out_mean_mm` is the mean error of all held-out poses by the deployed stage, with its 95 % interval; `upper` is
+/// null for fewer than five poses. `verdict` has at most seven lines, `details` what stands behind them.
 /// Callers include <nlohmann/json.hpp>.
 /// @param report the assessment
 /// @param robot  its name

@@ -78,6 +78,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                         {"stds_urad", std::move(stds)}});
   }
   const Observability& o = identification.observability;
+  const MeanInterval mean = report.held_out_mean();
   return {{"robot", robot},
           {"train_rows", report.train_poses},
           {"test_rows", report.test_poses()},
@@ -104,7 +105,12 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"gated_rows", report.extrapolated()},
           {"worst_harm_beside_geometry_mm", report.max_degradation * 1e3},
           {"within_95_percent_ellipsoids", report.ellipsoid_coverage},
-          {"verdict", report.verdict()}};
+          {"held_out_mean_mm",
+           {{"mean", mean.mean * 1e3},
+            {"lower", mean.lower * 1e3},
+            {"upper", std::isfinite(mean.upper) ? Json(mean.upper * 1e3) : Json()}}},
+          {"verdict", report.verdict()},
+          {"details", report.details()}};
 }
 
 VERNIER_IMPL nlohmann::ordered_json to_json(const ReregistrationReport& report) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/version.hpp"
@@ -55,10 +56,10 @@ VERNIER_IMPL std::string errors_section(const ReportInput& input) {
   for (const StageErrors& stage : input.stages) {
     const ErrorStatistics e = ErrorStatistics::of(stage.position * 1e3);
     table.rows.push_back({stage.title + (input.held_out && stage.name == input.after ? " (deployed)" : ""),
-                          fixed_digits(e.mean, 4), fixed_digits(e.rms, 4), fixed_digits(e.max, 4),
-                          fixed_digits(e.min, 4), fixed_digits(e.p95, 4)});
+                          three_digits(e.mean), three_digits(e.rms), three_digits(e.max), three_digits(e.min),
+                          three_digits(e.p95)});
     if (oriented)
-      table.rows.back().push_back(stage.rotation.size() > 0 ? fixed_digits(stage.rotation.mean() * 1e3, 4) : "");
+      table.rows.back().push_back(stage.rotation.size() > 0 ? three_digits(stage.rotation.mean() * 1e3) : "");
     if (stage.name != input.before && stage.name != Stage::geometry && stage.name != input.after) continue;
     ChartSeries series{.title = stage.title, .colour = colour++};
     VectorX sorted = stage.position * 1e3;
@@ -102,7 +103,7 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
                              " %; by chance 95 +- ", fixed_digits(196 * std::sqrt(0.95 * 0.05 / n), 1), " %)."));
   }
   if (gates.size() > 0) {
-    HtmlTable where{.caption = "Position errors inside and outside the measured joint ranges [mm]",
+    HtmlTable where{.caption = "Position errors inside and outside the range of validity [mm]",
                     .head = {"where", "poses", "mean", "95 %", "max"}};
     for (const bool inside : {true, false}) {
       std::vector<double> some;
@@ -110,22 +111,27 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
         if ((gates(i) >= 1) == inside) some.push_back(errors(i) * 1e3);
       if (some.empty()) continue;
       const auto e = ErrorStatistics::of(Eigen::Map<const VectorX>(some.data(), static_cast<Index>(some.size())));
-      where.rows.push_back({inside ? "inside" : "outside", message(e.n), fixed_digits(e.mean, 4),
-                            fixed_digits(e.p95, 4), fixed_digits(e.max, 4)});
+      where.rows.push_back({inside ? "inside" : "outside", message(e.n), three_digits(e.mean), three_digits(e.p95),
+                            three_digits(e.max)});
     }
     out += html_table(where);
   }
   HtmlTable ranges{
-      .caption = "Measured joint ranges, where the functions of the joints hold; beyond them they fade out",
-      .head = {"joint", "unit", "measured ranges"},
+      .caption = "Measured joint ranges, and the range of validity; outside, functions of the joints fade out",
+      .head = {"joint", "unit", "measured ranges", "range of validity"},
       .numbers = false};
   for (std::size_t j = 0; j < input.joints.size(); ++j) {
     const JointReport& joint = input.joints[j];
     const double unit = joint.revolute ? 180 / std::numbers::pi : 1e3;
-    std::string text;
-    for (const auto& [lower, upper] : joint.measured_ranges)
-      text += message(text.empty() ? "" : ", ", fixed_digits(lower * unit, 1), " .. ", fixed_digits(upper * unit, 1));
-    if (!text.empty()) ranges.rows.push_back({message(j + 1), joint.revolute ? "deg" : "mm", text});
+    const auto text = [&](const std::vector<std::pair<double, double>>& of) {
+      std::string out_of;
+      for (const auto& [lower, upper] : of)
+        out_of += message(out_of.empty() ? "" : ", ", fixed(lower * unit, 1), " .. ", fixed(upper * unit, 1));
+      return out_of;
+    };
+    if (!joint.measured_ranges.empty())
+      ranges.rows.push_back(
+          {message(j + 1), joint.revolute ? "deg" : "mm", text(joint.measured_ranges), text(joint.valid_ranges)});
   }
   return section("where", "Where it is good", out + html_table(ranges));
 }

@@ -40,7 +40,7 @@ VERNIER_LOCAL std::vector<std::vector<std::string>> suspect_rows(const ReportInp
       all.emplace_back(
           poses.normalised(i),
           cells(row_name(poses, i), input.held_out ? "held out" : "checked", errors(i), poses.normalised(i),
-                poses.gates.size() > 0 && poses.gates(i) < 1 ? "outside the measured joint ranges" : ""));
+                poses.gates.size() > 0 && poses.gates(i) < 1 ? "outside the range of validity" : ""));
   for (const ReportSuspect& one : input.suspects)
     all.emplace_back(one.normalised, cells(one.row, "training", one.error, one.normalised, one.remark));
   VectorX negative(static_cast<Index>(all.size()));
@@ -65,7 +65,7 @@ VERNIER_LOCAL std::string look_at(const ReportInput& input) {
   if (const Index outside =
           std::count_if(input.poses.gates.begin(), input.poses.gates.end(), [](double gate) { return gate < 1; });
       outside > 0)
-    all.emplace_back("where", counted(outside, "pose lies", "poses lie") + " outside the measured joint ranges.");
+    all.emplace_back("where", counted(outside, "pose lies", "poses lie") + " outside the range of validity.");
   if (std::any_of(input.drift.begin(), input.drift.end(), [](const SessionDrift& d) { return !d.empty(); }))
     all.emplace_back("drift", "Something moved during the session.");
   else if (input.times.size() > 0 &&

@@ -35,6 +35,8 @@ int verify_arm(const support::Program& program, const Options& o, const vn::Save
   vn::VerifyOptions options{.base = !o.registered, .tool = o.tool, .level = o.level};
   if (o.accept_mm > 0) options.accept = o.accept_mm * 1e-3;
   options.sensors.use_orientations = !o.positions_only;
+  options.expected_error = robot.provenance().expected_error();
+  options.fitted_poses = robot.provenance().fitted_to(support::file_hash(o.data));
   const vn::VerificationReport report =
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
 

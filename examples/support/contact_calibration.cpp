@@ -7,6 +7,7 @@
 
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
@@ -94,13 +95,12 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
              robot.name, N, touches, contacts.size(), found.summary(), parameter_table(found));
   if (!program.common().json.empty()) write_json(program.common().json, to_json(found, robot.name));
   if (save.empty()) return 0;
-  const auto& arm = found.model.identified();
-  const vn::ErrorModel<vn::DhChain<N>> model(robot.arm.model(), arm.around(vn::WithJointErrors(arm.model())));
-  vn::save(save, vn::CalibratedRobot<N>(robot.name, model, robot.limits,
-                                        {.data_file = std::filesystem::path(file).filename().string(),
-                                         .rows = touches,
-                                         .date = date,
-                                         .measured = "contacts"}));
+  vn::save(save,
+           vn::calibrated_robot(found, vn::RobotInfo<N>{.name = robot.name,
+                                                        .limits = robot.limits,
+                                                        .data_file = std::filesystem::path(file).filename().string(),
+                                                        .date = date,
+                                                        .data_sha256 = file_hash(file)}));
   fmt::print("Calibrated model: {}; its base frame is the nominal one\n", save);
   return 0;
 }

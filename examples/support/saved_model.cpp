@@ -9,6 +9,7 @@
 #include "calibration_data.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/model_file.hpp"
@@ -104,10 +105,13 @@ void reregister_arm(Program& program, const CalibrationOptions& o, const vn::Rer
   const std::string& file = o.data.front();
   const vn::Dataset<N> data = read_poses<N>(file, o, types);
   const vn::Dataset<N> test = o.test.empty() ? data : read_poses<N>(o.test.front(), o, types);
-  const auto found = vn::reregister(robot.model(), data, free, o.calibrate.sensors);
+  vn::ReregisterOptions of_arm = free;
+  of_arm.expected_error = robot.provenance().expected_error();
+  const auto found = vn::reregister(robot.model(), data, of_arm, o.calibrate.sensors);
   require_usable(found, robot.name(), file, data.size());
   vn::Provenance from = robot.provenance();
   from.data_file += "," + file_name(file);
+  if (!from.data_sha256.empty()) from.data_sha256 += "," + file_hash(file);
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;

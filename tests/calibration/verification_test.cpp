@@ -75,7 +75,7 @@ struct Check {
 
   VerificationReport verified(const VerifyOptions& options) const {
     const MeasuredSet station = vernier_test::set_of(data, options.sensors);
-    return detail::verify({station, estimate, poses, jacobians, as_fitted, gates, types, {}}, options);
+    return detail::verified({station, estimate, poses, jacobians, as_fitted, gates, types, {}}, options);
   }
 
   /// Columns of changes of all poses, 6 n x 1.
@@ -209,7 +209,7 @@ TEST(VerificationWhiteBox, ATurnedProbeIsTakenOff) {
   registration.motion.probe = probe;
   registration.probe_turned = true;
   const VerifyOptions options{.sensors = check.sensors};
-  const auto found = detail::verify(
+  const auto found = detail::verified(
       {station, check.estimate, check.poses, check.jacobians, check.as_fitted, check.gates, check.types, registration},
       options);
   EXPECT_LT(RealMatrix(found.rotations).largest(), 1e-9);
@@ -223,9 +223,9 @@ TEST(VerificationWhiteBox, NoDegreesOfFreedomAreNoContradiction) {
   const auto positions = check.data.without_orientations().at_temperatures(check.data.temperatures());
   const MeasuredSet station = vernier_test::set_of(positions, check.sensors);
   const VerifyOptions options{.tool = true, .sensors = check.sensors};
-  const auto found = detail::verify({station, check.estimate, check.poses, check.jacobians, check.as_fitted,
-                                     check.gates, check.types, ReregistrationReport()},
-                                    options);
+  const auto found = detail::verified({station, check.estimate, check.poses, check.jacobians, check.as_fitted,
+                                       check.gates, check.types, ReregistrationReport()},
+                                      options);
   EXPECT_EQ(found.dof, 0);
   EXPECT_LT(found.chi_square, 1e-6);
   EXPECT_EQ(found.p_value, 1);

@@ -18,9 +18,14 @@
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
+#include "vernier/error_model/fitted_error_model.hpp"
+#include "vernier/error_model/geometry_estimate.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/fitted_arm.hpp"
+#include "vernier/identification/identified.hpp"
+#include "vernier/identification/identify_by_contacts.hpp"
 #include "vernier/io/provenance.hpp"
+#include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
 namespace vernier {
@@ -288,6 +293,7 @@ struct RobotInfo {
   std::string date{};                ///< of the calibration
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
   double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
+  std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
 };
 
 /// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
@@ -296,6 +302,67 @@ template <int N, class Convention>
 ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
   demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
   return arm_prior(robot.name(), robot.model(), *robot.estimate());
+}
+
+namespace detail {
+
+/// An identified geometry as a model without joint errors, with its covariance where there is one.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Convention>>& arm,
+                                                 const IdentificationReport& report, double position_sigma,
+                                                 double orientation_sigma, const RobotInfo<N>& info,
+                                                 Provenance provenance) {
+  using Chain = DhChain<N, Convention>;
+  const auto& identified = arm.identified();
+  const ErrorModel<Chain> model(arm.nominal().model(), identified.around(WithJointErrors<Chain>(identified.model())));
+  provenance.data_file = info.data_file;
+  provenance.date = info.date;
+  provenance.joints = info.joints;
+  provenance.position_sigma = position_sigma;
+  provenance.held_out_error = info.held_out_error;
+  provenance.data_sha256 = info.data_sha256;
+  CalibratedRobot<N, Convention> out(info.name, model, info.limits, std::move(provenance));
+  if (report.covariance.size() == 0) return out;
+  return out.with_estimate(geometry_estimate(ArmGeometry(identified), report, position_sigma, orientation_sigma));
+}
+
+}  // namespace detail
+
+/// The arm of an identification from measured poses, with its covariance where they determine it.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const Identified<DhChain<N, Convention>>& found, Index poses,
+                                                const RobotInfo<N>& info = {}) {
+  const bool oriented = found.rotation_rms_after > 0;
+  const double component = 1 / std::sqrt(3.0);
+  return detail::geometry_as_robot(found.model, found, component * found.rms_after,
+                                   component * found.rotation_rms_after, info,
+                                   {.rows = poses, .measured = oriented ? "poses" : "positions"});
+}
+
+/// The arm of an identification from contacts, with its covariance; its base frame is that of the nominal arm.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const IdentifiedByContacts<DhChain<N, Convention>>& found,
+                                                const RobotInfo<N>& info = {}) {
+  Provenance from{.measured = "contacts"};
+  for (const TouchedObject& object : found.objects) from.rows += object.touches;
+  return detail::geometry_as_robot(found.model, found, found.rms_after, 0, info, std::move(from));
+}
+
+/// The arm of a fitted error model, with its covariance: as seen from its first station.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const FittedErrorModel<DhChain<N, Convention>>& fitted, Index poses,
+                                                const RobotInfo<N>& info = {}) {
+  const bool oriented = fitted.orientation_sigma > 0;
+  return CalibratedRobot<N, Convention>(info.name, fitted.model(), info.limits,
+                                        {.data_file = info.data_file,
+                                         .rows = poses,
+                                         .date = info.date,
+                                         .joints = info.joints,
+                                         .measured = oriented ? "poses" : "positions",
+                                         .position_sigma = fitted.position_sigma,
+                                         .held_out_error = info.held_out_error,
+                                         .data_sha256 = info.data_sha256})
+      .with_estimate(fitted.first_station());
 }
 
 /// The arm of a calibration, with what was learned on top: as seen from its first station.
@@ -308,9 +375,17 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
       {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
        calibration.errors.position_sigma,
        left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
-       info.held_out_error});
+       info.held_out_error, info.data_sha256});
   const LearnedRemainder<N>* learned = calibration.deployed();
-  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
+  if (learned == nullptr || !learned->on_geometry)
+    robot = robot.with_estimate(calibration.errors.first_station());
+  else if (const auto& geometry = calibration.geometry; geometry.covariance.size() > 0)
+    if (const ArmGeometry arm(geometry.model.identified());
+        static_cast<Index>(geometry.parameters.size()) == arm.num_parameters()) {
+      const double component = 1 / std::sqrt(3.0);
+      robot = robot.with_estimate(
+          geometry_estimate(arm, geometry, component * geometry.rms_after, component * geometry.rotation_rms_after));
+    }
   return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
 }
 

@@ -26,7 +26,9 @@ template <int N>
 int verify_arm(const support::Program& program, const Options& o, const vn::SavedModel& model) {
   const vn::CalibratedRobot<N> robot = model.as<N>();
   if (robot.estimate() == nullptr)
-    throw support::UsageError(o.model + ": has no covariance, an older program saved it; calibrate that arm again");
+    throw support::UsageError(o.model +
+                              ": has no covariance: an older program saved it, or what was learned is on geometry "
+                              "alone; calibrate that arm again");
   const auto types = robot.nominal().chain().joint_types();
   vn::Dataset<N> data = vn::read_dataset<N>(o.data, types);
   if (o.no_approach) data = data.without_approach();

@@ -130,7 +130,9 @@ vernier::ArmPrior read_prior(const std::string& file, int joints) {
   return dispatch_dof(joints, [&](auto n) {
     const auto robot = saved.as<n()>();
     if (robot.estimate() == nullptr)
-      throw UsageError(file + ": has no covariance, an older program saved it; calibrate that arm again");
+      throw UsageError(file +
+                       ": has no covariance: an older program saved it, or what was learned is on geometry alone; "
+                       "calibrate that arm again");
     vn::ArmPrior out = vn::arm_prior(robot);
     out.name = file_name(file);
     return out;

@@ -377,15 +377,7 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
        left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
        info.held_out_error, info.data_sha256});
   const LearnedRemainder<N>* learned = calibration.deployed();
-  if (learned == nullptr || !learned->on_geometry)
-    robot = robot.with_estimate(calibration.errors.first_station());
-  else if (const auto& geometry = calibration.geometry; geometry.covariance.size() > 0)
-    if (const ArmGeometry arm(geometry.model.identified());
-        static_cast<Index>(geometry.parameters.size()) == arm.num_parameters()) {
-      const double component = 1 / std::sqrt(3.0);
-      robot = robot.with_estimate(
-          geometry_estimate(arm, geometry, component * geometry.rms_after, component * geometry.rotation_rms_after));
-    }
+  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
   return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
 }
 

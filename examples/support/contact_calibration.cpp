@@ -11,6 +11,7 @@
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
+#include "vernier/io/identified_robot.hpp"
 #include "vernier/io/model_file.hpp"
 
 namespace support {

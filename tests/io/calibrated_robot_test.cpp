@@ -12,6 +12,7 @@
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/identify.hpp"
+#include "vernier/io/identified_robot.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"

@@ -262,7 +262,8 @@ TEST(Reregister, SaysWhatPosesDoNotDetermine) {
   EXPECT_FALSE(open.determined);
   EXPECT_FALSE(open.probe_turned);
   EXPECT_EQ(open.contradiction, 0);
-  EXPECT_TRUE(open.remarks().empty()) << open.summary();
+  EXPECT_EQ(open.outside, std::vector<Index>{0});  // and nothing else is remarked upon
+  EXPECT_EQ(open.remarks().size(), 1u) << open.summary();
 }
 
 // Positions see the point of another tool; how it is turned they do not see: that is held, and said.

@@ -55,7 +55,10 @@ struct VerificationReport {
   double chi_square = 0;    ///< of all residuals, whitened by their predicted covariance, less what was registered
   Index dof = 0;            ///< its degrees of freedom
   double p_value = 1;       ///< probability of a larger one by chance
-  double explained = 0;     ///< the most of `chi_square` that a change of one joint explains
+  /// Probability that chance leaves changes of all joints together as small, measured by the residuals: nearly 0 for
+  /// the poses of the fit, to which the joints were adapted.
+  double closeness = 1;
+  double explained = 0;                                ///< the most of `chi_square` that a change of one joint explains
   std::vector<JointCheck> joints{};                    ///< one a joint
   std::vector<JointType> joint_types{};                ///< of the arm
   std::optional<ReregistrationReport> registration{};  ///< how base and tool have moved, where they were registered

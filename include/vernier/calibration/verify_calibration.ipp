@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "vernier/calibration/detail/wording.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
@@ -29,8 +30,8 @@ namespace detail {
 
 /// A change is not determined where registration takes more than all but this share of its effect.
 inline constexpr double least_informative = 0.02;
-/// Probability by chance of a chi-square so small that the poses are taken to be those of the fit.
-inline constexpr double too_good = 1e-6;
+/// Probability of changes so small that the poses may be those of the fit, see `VerificationReport::closeness`.
+inline constexpr double too_close = 1e-6;
 
 /// Residuals that are whitened, and what was registered taken off: a test of further columns is a projection.
 struct WhitenedResiduals {
@@ -162,6 +163,14 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
     joint.once_p = chi_square_tail(once.chi_square, static_cast<double>(once.rank));
     out.explained = (std::max)(out.explained, once.chi_square);
   }
+  std::vector<Index> everything(static_cast<std::size_t>(whitened.columns.cols()));
+  std::iota(everything.begin(), everything.end(), Index{0});
+  const ColumnTest together = test_columns(whitened, everything);
+  const auto others = static_cast<double>(out.dof - together.rank);
+  const double scatter = others >= 1 ? (out.chi_square - together.chi_square) / others : 0;
+  out.closeness = scatter > 0 && together.rank > 0
+                      ? 1 - chi_square_tail(together.chi_square / scatter, static_cast<double>(together.rank))
+                      : 1;
   // Forward selection: the most significant change first, the others beside those that were named. Nothing has changed
   // where all residuals together are smaller than predicted.
   std::vector<Index> named;
@@ -331,10 +340,10 @@ VERNIER_IMPL std::vector<std::string> VerificationReport::advice() const {
   std::vector<std::string> out;
   if (options.fitted_poses)
     out.push_back("Check with fresh poses: residuals of poses that a model was fitted to are small by construction.");
-  else if (dof > 0 && 1 - p_value < detail::too_good)
-    out.push_back(message("Residuals are far smaller than predicted (chi-square ", detail::brief(chi_square), " of ",
-                          dof,
-                          " degrees of freedom): if these poses are those of the calibration, check with fresh ones."));
+  else if (closeness < detail::too_close)
+    out.push_back(
+        "The joints agree with the calibration more closely than fresh poses would: if these poses are those of the "
+        "calibration, check with fresh ones.");
   if (std::string excess = detail::excess_remark(mean_error, options.expected_error); !excess.empty())
     out.push_back(std::move(excess));
   if (!aside.empty()) out.push_back("Measure the rows again that were set aside: they contradict all others.");

@@ -49,8 +49,9 @@ VERNIER_IMPL std::string excess_remark(double left, double expected) {
 
 VERNIER_IMPL std::string outside_remark(const std::vector<Index>& outside, const RowOrigin& origin, Index poses) {
   if (outside.empty()) return {};
-  return message(outside.size(), " of ", poses, " poses (", origin.where(outside),
-                 ") lie outside the measured joint ranges, where the model knows less: register by poses inside.");
+  return message(outside.size(), " of ", poses, " poses (", origin.where(outside), ")",
+                 outside.size() == 1 ? " lies" : " lie",
+                 " outside the measured joint ranges, where the model knows less: register by poses inside.");
 }
 
 }  // namespace detail

@@ -286,8 +286,8 @@ TEST(VerifyCalibration, SaysThatPosesOfTheFitConfirmNothing) {
   double sum = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const auto fresh = measure(actual(), poses_of(25, 500 + seed), noise, 600 + seed);
-    const VerificationReport report =
-        verify_calibration(calibration().model(), seed % 2 == 0 ? modest : calibration().errors, fresh);
+    const VerificationReport report = verify_calibration(
+        calibration().model(), seed % 2 == 0 ? modest : ErrorModelEstimate(calibration().errors), fresh);
     EXPECT_GT(report.closeness, 1e-4);
     sum += report.closeness / 20;
   }

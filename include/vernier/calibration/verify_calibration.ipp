@@ -165,12 +165,12 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
   }
   std::vector<Index> everything(static_cast<std::size_t>(whitened.columns.cols()));
   std::iota(everything.begin(), everything.end(), Index{0});
-  const ColumnTest together = test_columns(whitened, everything);
-  const auto others = static_cast<double>(out.dof - together.rank);
-  const double scatter = others >= 1 ? (out.chi_square - together.chi_square) / others : 0;
-  out.closeness = scatter > 0 && together.rank > 0
-                      ? 1 - chi_square_tail(together.chi_square / scatter, static_cast<double>(together.rank))
-                      : 1;
+  const ColumnTest changes_of_all = test_columns(whitened, everything);
+  const auto others = static_cast<double>(out.dof - changes_of_all.rank);
+  const double scatter = others >= 1 ? (out.chi_square - changes_of_all.chi_square) / others : 0;
+  out.closeness = scatter > 0 && changes_of_all.rank > 0 ? 1 - chi_square_tail(changes_of_all.chi_square / scatter,
+                                                                               static_cast<double>(changes_of_all.rank))
+                                                         : 1;
   // Forward selection: the most significant change first, the others beside those that were named. Nothing has changed
   // where all residuals together are smaller than predicted.
   std::vector<Index> named;

@@ -27,11 +27,11 @@ using vn::FaultKind, vn::Index;
 
 namespace {
 
-constexpr FaultKind kinds[] = {FaultKind::length_unit,  FaultKind::joint_unit,     FaultKind::joint_sign,
-                               FaultKind::joint_zero,   FaultKind::mirrored_frame, FaultKind::orientation_convention,
-                               FaultKind::shifted_rows, FaultKind::swapped_rows,   FaultKind::duplicate_rows,
-                               FaultKind::outlier,      FaultKind::joints_read,    FaultKind::approach_never_varies,
-                               FaultKind::session_drift};
+constexpr FaultKind kinds[] = {FaultKind::length_unit,   FaultKind::joint_unit,     FaultKind::joint_sign,
+                               FaultKind::joint_zero,    FaultKind::mirrored_frame, FaultKind::orientation_convention,
+                               FaultKind::shifted_rows,  FaultKind::swapped_rows,   FaultKind::duplicate_rows,
+                               FaultKind::outlier,       FaultKind::joints_read,    FaultKind::approach_never_varies,
+                               FaultKind::session_drift, FaultKind::joint_coupling};
 
 struct Count {
   int files = 0, named = 0, alone = 0;

@@ -28,7 +28,9 @@ template <int N>
 int verify_arm(const support::Program& program, const Options& o, const vn::SavedModel& model) {
   const vn::CalibratedRobot<N> robot = model.as<N>();
   if (robot.estimate() == nullptr)
-    throw support::UsageError(o.model + ": has no covariance, an older program saved it; calibrate that arm again");
+    throw support::UsageError(o.model +
+                              ": has no covariance: an older program saved it, or what was learned is on geometry "
+                              "alone; calibrate that arm again");
   const auto types = robot.nominal().chain().joint_types();
   vn::Dataset<N> data = vn::read_dataset<N>(o.data, types, o.csv.format());
   if (o.no_approach) data = data.without_approach();
@@ -37,6 +39,8 @@ int verify_arm(const support::Program& program, const Options& o, const vn::Save
   vn::VerifyOptions options{.base = !o.registered, .tool = o.tool, .level = o.level};
   if (o.accept_mm > 0) options.accept = o.accept_mm * 1e-3;
   options.sensors.use_orientations = !o.positions_only;
+  options.expected_error = robot.provenance().expected_error();
+  options.fitted_poses = robot.provenance().fitted_to(support::file_hash(o.data));
   const vn::VerificationReport report =
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
 

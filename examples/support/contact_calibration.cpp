@@ -7,9 +7,11 @@
 #include "dispatch.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
+#include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
+#include "vernier/io/identified_robot.hpp"
 #include "vernier/io/model_file.hpp"
 
 namespace support {
@@ -94,12 +96,13 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
              robot.name, N, touches, contacts.size(), found.summary(), parameter_table(found));
   if (!program.common().json.empty()) write_json(program.common().json, to_json(found, robot.name));
   if (save.empty()) return 0;
-  const auto& arm = found.model.identified();
-  const vn::ErrorModel<vn::DhChain<N>> model(robot.arm.model(), arm.around(vn::WithJointErrors(arm.model())));
-  vn::save(save, vn::CalibratedRobot<N>(
-                     robot.name, model, robot.limits,
-                     {.data_file = file_name(file), .rows = touches, .date = date, .measured = "contacts"}));
-  fmt::print("Calibrated model: {}; its base frame is the nominal one\n", shown(save));
+  vn::save(save,
+           vn::calibrated_robot(found, vn::RobotInfo<N>{.name = robot.name,
+                                                        .limits = robot.limits,
+                                                        .data_file = std::filesystem::path(file).filename().string(),
+                                                        .date = date,
+                                                        .data_sha256 = file_hash(file)}));
+  fmt::print("Calibrated model: {}; its base frame is the nominal one\n", save);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "dispatch.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
+#include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/io/model_file.hpp"
@@ -102,10 +103,13 @@ void reregister_arm(Program& program, const CalibrationOptions& o, const vn::Rer
   const std::string& file = o.data.front();
   const vn::Dataset<N> data = read_poses<N>(file, o, types);
   const vn::Dataset<N> test = o.test.empty() ? data : read_poses<N>(o.test.front(), o, types);
-  const auto found = vn::reregister(robot.model(), data, free, o.calibrate.sensors);
+  vn::ReregisterOptions of_arm = free;
+  of_arm.expected_error = robot.provenance().expected_error();
+  const auto found = vn::reregister(robot.model(), data, of_arm, o.calibrate.sensors);
   require_usable(found, robot.name(), file, data.size());
   vn::Provenance from = robot.provenance();
   from.data_file += "," + file_name(file);
+  if (!from.data_sha256.empty()) from.data_sha256 += "," + file_hash(file);
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;
@@ -124,7 +128,9 @@ vernier::ArmPrior prior_of(const vernier::SavedModel& saved, int joints) {
   return dispatch_dof(joints, [&](auto n) {
     const auto robot = saved.as<n()>();
     if (robot.estimate() == nullptr)
-      throw UsageError(file + ": has no covariance, an older program saved it; calibrate that arm again");
+      throw UsageError(file +
+                       ": has no covariance: an older program saved it, or what was learned is on geometry alone; "
+                       "calibrate that arm again");
     vn::ArmPrior out = vn::arm_prior(robot);
     out.name = file_name(file);
     return out;

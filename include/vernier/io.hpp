@@ -5,6 +5,7 @@
 
 #include "vernier/io/audit_json.hpp"
 #include "vernier/io/export_c.hpp"
+#include "vernier/io/identified_robot.hpp"
 #include "vernier/io/iso9283_json.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/report_json.hpp"

@@ -18,6 +18,7 @@
 #include "vernier/calibration/detail/audit_rows.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/kinematics/inverse_kinematics.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -29,11 +30,11 @@ using Chain = DhChain<6>;
 const Chain ur5 = robots::ur5().chain;
 
 constexpr FaultKind every_kind[] = {
-    FaultKind::length_unit,  FaultKind::joint_unit,     FaultKind::joint_sign,
-    FaultKind::joint_zero,   FaultKind::mirrored_frame, FaultKind::orientation_convention,
-    FaultKind::shifted_rows, FaultKind::swapped_rows,   FaultKind::duplicate_rows,
-    FaultKind::outlier,      FaultKind::joints_read,    FaultKind::approach_never_varies,
-    FaultKind::session_drift};
+    FaultKind::length_unit,   FaultKind::joint_unit,     FaultKind::joint_sign,
+    FaultKind::joint_zero,    FaultKind::mirrored_frame, FaultKind::orientation_convention,
+    FaultKind::shifted_rows,  FaultKind::swapped_rows,   FaultKind::duplicate_rows,
+    FaultKind::outlier,       FaultKind::joints_read,    FaultKind::approach_never_varies,
+    FaultKind::session_drift, FaultKind::joint_coupling};
 
 /// An arm with geometric and joint errors, measured with noise.
 Dataset<6> clean_file(Index n, std::uint64_t seed, bool oriented = true) {
@@ -232,6 +233,124 @@ DataFinding only(const DataAudit& audit) {
   return audit.findings.empty() ? DataFinding{FaultKind::outlier} : audit.findings[0];
 }
 
+/// The data with other joint values.
+Dataset<6> at_joints(const Dataset<6>& data, const JointRows<6>& joints) {
+  return data.has_orientations() ? Dataset<6>(joints, data.positions(), data.orientations())
+                                 : Dataset<6>(joints, data.positions());
+}
+
+// Every pattern of the signs of six joints is told from all others.
+TEST(DataAudit, NamesAllJointsThatAreReversed) {
+  const std::vector<int> patterns[] = {{1, 2}, {0, 4}, {3, 5}, {1, 2, 4}, {0, 2, 3}, {2, 3, 4, 5}, {0, 1, 2, 3, 4, 5}};
+  for (const bool oriented : {true, false}) {
+    const Dataset<6> data = clean_file(80, 31, oriented);
+    for (const std::vector<int>& reversed : patterns) {
+      JointRows<6> joints = data.joints();
+      for (const int j : reversed) joints.col(j) *= -1;
+      const DataAudit audit = audit_data(ur5, at_joints(data, joints));
+      std::vector<int> named;
+      for (const DataFinding& finding : audit.findings) {
+        EXPECT_EQ(finding.kind, FaultKind::joint_sign) << words(audit);
+        named.push_back(finding.joint);
+      }
+      EXPECT_EQ(named, reversed) << words(audit);
+      EXPECT_LT(audit.registered.median, 6e-3);
+    }
+  }
+}
+
+// A third joint that counts from the horizontal contains the second one; its sign may be reversed as well.
+TEST(DataAudit, NamesAJointThatContainsTheOneBefore) {
+  const Chain irb120 = robots::abb_irb120().chain;
+  for (const bool oriented : {true, false})
+    for (const double factor : {1.0, -1.0})
+      for (const bool reversed : {false, true}) {
+        const Dataset<6> data = clean_file(80, 33, oriented);
+        const Dataset<6> small =
+            measure(irb120, data.joints(), {.position = 0.03e-3, .with_orientations = oriented}, 1);
+        JointRows<6> joints = data.joints();
+        if (reversed) joints.col(2) *= -1;
+        joints.col(2) += factor * joints.col(1);
+        for (const DataAudit& audit :
+             {audit_data(ur5, at_joints(data, joints)), audit_data(irb120, at_joints(small, joints))}) {
+          ASSERT_EQ(audit.findings.size(), reversed ? 2u : 1u) << words(audit);
+          EXPECT_EQ(audit.findings[0].kind, FaultKind::joint_coupling) << words(audit);
+          EXPECT_EQ(audit.findings[0].joint, 2) << words(audit);
+          EXPECT_EQ(audit.findings[0].size, factor) << words(audit);
+          if (reversed) {
+            EXPECT_EQ(audit.findings[1].kind, FaultKind::joint_sign) << words(audit);
+            EXPECT_EQ(audit.findings[1].joint, 2) << words(audit);
+          }
+          EXPECT_LT(audit.registered.median, 6e-3);
+        }
+      }
+}
+
+// Where nothing helps, that is said, and nothing is advised: joints of other poses, two columns exchanged, two faults.
+TEST(DataAudit, SaysThatNothingMakesTheDataPlausible) {
+  for (const bool oriented : {true, false}) {
+    const Dataset<6> data = clean_file(80, 35, oriented);
+    JointRows<6> exchanged = data.joints(), twice = data.joints();
+    exchanged.col(1) = data.joints().col(2);
+    exchanged.col(2) = data.joints().col(1);
+    twice.col(1).array() += 0.6;
+    twice.col(3) *= -1;
+    twice.col(4) *= 0.5;
+    for (const JointRows<6>& joints : {clean_file(80, 36).joints(), exchanged, twice}) {
+      const DataAudit audit = audit_data(ur5, at_joints(data, joints));
+      const DataFinding found = only(audit);
+      EXPECT_EQ(found.kind, FaultKind::unexplained) << words(audit);
+      EXPECT_NEAR(found.size, audit.registered.median, 1e-12);
+      EXPECT_GT(found.size, 0.03);
+      EXPECT_EQ(found.message.rfind("all rows: nothing makes the data plausible, the nominal arm misses them by ", 0),
+                0u)
+          << found.message;
+    }
+  }
+}
+
+TEST(DataAudit, OrientationsOfNoKnownConventionLeaveThePositions) {
+  const Dataset<6> data = clean_file(80, 37);
+  PointRows orientations = data.orientations();
+  Rng rng(3);
+  for (double& value : orientations.reshaped()) value = 2 * rng.uniform();
+  const DataAudit audit = audit_data(ur5, Dataset<6>(data.joints(), data.positions(), orientations));
+  EXPECT_EQ(only(audit).kind, FaultKind::orientation_convention) << words(audit);
+  EXPECT_NE(only(audit).message.find("positions are: convert the orientations, or leave them out"), std::string::npos);
+  EXPECT_LT(audit.registered.median, 6e-3);
+}
+
+// Poses of nearly one orientation hardly tell the wrist's zeros and signs; a correct arm has no fault.
+TEST(DataAudit, FindsNothingInPosesOfNearlyOneOrientation) {
+  const JointVector<6> home{0.3, -1.2, 1.4, -1.1, -1.5, 0.4};
+  const Isometry3 at = ur5.pose(home);
+  for (const double tilt : {0.0, 0.01, 0.05})
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      Rng rng(seed);
+      JointRows<6> joints(80, 6);
+      for (Index i = 0; i < 80;) {
+        Vector3 position = at.translation(), turn;
+        for (Index k = 0; k < 3; ++k) {
+          position(k) += 0.25 * (2 * rng.uniform() - 1);
+          turn(k) = tilt * rng.normal();
+        }
+        const Matrix3 turned = at.linear() * exp_so3(turn);
+        const auto found = inverse_kinematics(ur5, rigid_motion(turned, position), home);
+        if (found.status == IkStatus::converged) set_configuration(joints, i++, found.joints);
+      }
+      const Chain off = with_geometric_errors(ur5, {.length_max = 1e-3, .angle_max = 2e-3}, 10 * seed);
+      const Framed actual(WithJointErrors<Chain>(off, draw_joint_errors(ur5, {}, 10 * seed + 1)),
+                          FrameParameters(Vector6{2, -1, 0.5, 0.3, -0.2, 1.5}).isometry(),
+                          FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}).isometry());
+      for (const bool oriented : {true, false}) {
+        const DataAudit audit = audit_data(
+            ur5, measure(actual, joints, {.position = 0.03e-3, .orientation = 0.1e-3, .with_orientations = oriented},
+                         10 * seed + 3));
+        EXPECT_TRUE(audit.findings.empty()) << tilt << ' ' << seed << oriented << words(audit);
+      }
+    }
+}
+
 // Metres, decimetres, centimetres, millimetres and inches, one taken for another.
 TEST(DataAudit, UnitsOfLength) {
   const Dataset<6> data = clean_file(40, 21);
@@ -357,6 +476,8 @@ TEST(DataAudit, FindsASmallZeroOfAnArmWhoseGeometryIsKnown) {
 TEST(DataAudit, EveryKindHasAName) {
   for (const FaultKind kind : every_kind) EXPECT_FALSE(fault_name(kind).empty());
   EXPECT_EQ(fault_name(FaultKind::joint_sign), "joint_sign");
+  EXPECT_EQ(fault_name(FaultKind::joint_coupling), "joint_coupling");
+  EXPECT_EQ(fault_name(FaultKind::unexplained), "unexplained");
 }
 
 TEST(DataAudit, RefusesWhatItCannotAssess) {

@@ -312,8 +312,14 @@ TEST(VerificationReport, VerdictByHand) {
             "The calibration is no longer valid: mean error 0.25 mm, at most 0.375 mm, accepted up to 0.5 mm; errors "
             "are larger than predicted, of no single joint (chi-square 51.2 of 54 degrees of freedom, p = below "
             "0.0001), rows 4 and 7 set aside.");
-  report.options.accept.reset();
+  report.consistent = true;
+  report.p_value = 1;
   report.aside.clear();
+  EXPECT_EQ(report.verdict(),
+            "The calibration does not reach the accepted error: mean error 0.25 mm, at most 0.375 mm, accepted up to "
+            "0.5 mm; errors are as predicted (chi-square 51.2 of 54 degrees of freedom, p = 1).");
+  report.consistent = false;
+  report.options.accept.reset();
   report.p_value = 2e-4;
   report.joint_types = {JointType::revolute, JointType::prismatic};
   report.joints = {{.determined = true}, {.determined = true, .zero_change = 0.5e-3, .zero_std = 0.1e-3}};
@@ -329,6 +335,7 @@ TEST(VerifyOptions, NamesWhatIsUnusable) {
   vernier_test::expect_limits(validate, VerifyOptions{}, &VerifyOptions::level,
                               {vernier_test::above(0), vernier_test::below(1)}, {0.0, 1.0});
   EXPECT_THROW(VerifyOptions{.accept = 0.0}.validate(), std::invalid_argument);
+  EXPECT_THROW(VerifyOptions{.expected_error = -1e-3}.validate(), std::invalid_argument);
   VerifyOptions sensors;
   sensors.sensors.position_sigma = -1;
   EXPECT_THROW(sensors.validate(), std::invalid_argument);

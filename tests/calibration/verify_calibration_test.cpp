@@ -12,6 +12,7 @@
 
 #include "complaint.hpp"
 #include "vernier/calibration/calibrate.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/evaluation/chi_square.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -190,6 +191,118 @@ TEST(VerifyCalibration, WithALimitTheErrorDecides) {
   EXPECT_FALSE(check(arm, 25, 1, {.accept = 0.5 * (loose.mean_error + loose.mean_upper)}).valid);
   EXPECT_TRUE(check(arm, 25, 1, {.accept = 1.001 * loose.mean_upper}).valid);
   EXPECT_NE(loose.verdict().find("accepted up to 0.5 mm"), std::string::npos) << loose.verdict();
+}
+
+/// The data as a probe sees them that is turned on its tool.
+Dataset<6> seen_by_turned(const Dataset<6>& data, const Vector3& probe) {
+  PointRows orientations(data.size(), 3);
+  for (Index i = 0; i < data.size(); ++i) {
+    const Matrix3 turned = data.orientation(i) * exp_so3(probe);
+    set_point(orientations, i, log_so3(turned));
+  }
+  return Dataset<6>(data.joints(), data.positions(), orientations);
+}
+
+// A probe that was mounted another way round, or by a few milliradians, is no change of the arm.
+TEST(VerifyCalibration, ATurnedProbeIsTakenOff) {
+  for (const Vector3& probe : {Vector3(0, 0, 3.1), Vector3(0.4, -1.1, 2), Vector3(0, 0, 0.05), Vector3(1.5e-3, 0, 2e-3),
+                               Vector3(0, -2e-3, 1e-3)}) {
+    int valid = 0;
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const auto seen =
+          measure(changed(JointVector<6>::Zero(), elsewhere), poses_of(25, 300 + seed), noise, 400 + seed);
+      const VerificationReport report =
+          verify_calibration(calibration().model(), calibration().errors, seen_by_turned(seen, probe));
+      ASSERT_TRUE(report.registration);
+      EXPECT_TRUE(report.registration->probe_turned) << probe.transpose();
+      EXPECT_LT((report.registration->motion.probe - probe).norm(), 0.3e-3) << probe.transpose();
+      EXPECT_FALSE(report.joints[5].zero_changed) << report.summary();
+      EXPECT_EQ(report.dof, 6 * 25 - 6 - 3);
+      valid += report.valid;
+    }
+    EXPECT_GE(valid, 9) << probe.transpose();
+  }
+}
+
+// The zero of another joint is found behind a turned probe.
+TEST(VerifyCalibration, AZeroIsFoundBesideATurnedProbe) {
+  const auto seen = measure(changed(0.4e-3 * JointVector<6>::Unit(2), elsewhere), poses_of(30, 310), noise, 410);
+  const VerificationReport report =
+      verify_calibration(calibration().model(), calibration().errors, seen_by_turned(seen, Vector3(0, 0, 3.1)));
+  EXPECT_FALSE(report.valid);
+  EXPECT_TRUE(report.joints[2].zero_changed) << report.summary();
+  EXPECT_NEAR(report.joints[2].zero_change, 0.4e-3, 0.15e-3);
+}
+
+// A calibration that states three times the errors that it has: a change is significant by itself, but all errors
+// together are smaller than predicted.
+TEST(VerifyCalibration, NoChangeIsNamedWhereErrorsAreSmallerThanPredicted) {
+  ErrorModelEstimate modest = calibration().errors;
+  modest.position_sigma *= 3;
+  modest.orientation_sigma *= 3;
+  modest.joint_sigma *= 3;
+  const auto data = measure(changed(0.3e-3 * JointVector<6>::Unit(2), elsewhere), poses_of(25, 320), noise, 420);
+  const VerificationReport report = verify_calibration(calibration().model(), modest, data);
+  EXPECT_LT(report.joints[2].zero_p, 1e-3) << report.summary();
+  EXPECT_GT(report.p_value, 0.9);
+  EXPECT_TRUE(report.valid) << report.summary();
+  EXPECT_FALSE(report.joints[2].zero_changed);
+  EXPECT_NE(report.verdict().find("still valid: errors are as predicted"), std::string::npos) << report.verdict();
+}
+
+// A residual ten times as large as the calibration's own error at held-out poses.
+TEST(VerifyCalibration, RemarksOnAResidualTenTimesTheHeldOutError) {
+  const auto advice_of = [&](double factor) {
+    VerifyOptions options;
+    const double left = check(actual(), 20, 3, options).mean_error;
+    options.expected_error = left / factor;
+    int said = 0;
+    for (const std::string& sentence : check(actual(), 20, 3, options).advice())
+      said += sentence.find("times the error of the calibration at held-out poses") != std::string::npos ? 1 : 0;
+    return said;
+  };
+  EXPECT_EQ(advice_of(10.1), 1);
+  EXPECT_EQ(advice_of(9.9), 0);
+}
+
+// The poses of the fit tell nothing; that is said where it is known, and asked where residuals are too small.
+TEST(VerifyCalibration, SaysThatPosesOfTheFitConfirmNothing) {
+  const auto data = measure(actual(), poses_of(250, 1), noise, 2);
+  VerifyOptions options;
+  options.fitted_poses = true;
+  const VerificationReport known = verify_calibration(calibration().model(), calibration().errors, data, options);
+  EXPECT_NE(known.verdict().find("it was fitted to, so that this confirms nothing."), std::string::npos);
+  EXPECT_EQ(known.advice().front().rfind("Check with fresh poses: ", 0), 0u);
+  const VerificationReport unknown = verify_calibration(calibration().model(), calibration().errors, data);
+  EXPECT_LT(unknown.closeness, 1e-6);
+  EXPECT_EQ(unknown.advice().front().rfind("The joints agree with the calibration more closely than fresh poses", 0),
+            0u)
+      << unknown.summary();
+  // fresh poses do so at random, also where the calibration states three times the errors that it has
+  ErrorModelEstimate modest = calibration().errors;
+  modest.position_sigma *= 3;
+  modest.orientation_sigma *= 3;
+  modest.joint_sigma *= 3;
+  double sum = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto fresh = measure(actual(), poses_of(25, 500 + seed), noise, 600 + seed);
+    const VerificationReport report = verify_calibration(
+        calibration().model(), seed % 2 == 0 ? modest : ErrorModelEstimate(calibration().errors), fresh);
+    EXPECT_GT(report.closeness, 1e-4);
+    sum += report.closeness / 20;
+  }
+  EXPECT_GT(sum, 0.25);
+}
+
+TEST(VerifyCalibration, SaysThatPosesAreOutsideTheMeasuredRanges) {
+  JointRows<6> joints = poses_of(20, 9);
+  for (const Index row : {3, 8}) joints(row, 3) += 2.5;
+  const auto data = measure(actual(), joints, noise, 10);
+  const VerificationReport report = verify_calibration(calibration().model(), calibration().errors, data);
+  EXPECT_EQ(report.registration->outside, (std::vector<Index>{3, 8}));
+  EXPECT_NE(report.registration->summary().find("2 of 20 poses (rows 3 and 8) lie outside the measured joint ranges"),
+            std::string::npos)
+      << report.registration->summary();
 }
 
 // What is reported equals its definition: errors of the registered model.

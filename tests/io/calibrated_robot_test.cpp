@@ -11,6 +11,8 @@
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/identification/identify.hpp"
+#include "vernier/io/identified_robot.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
@@ -187,6 +189,36 @@ TEST(CalibratedRobots, OfACalibrationAreSavedAtOnce) {
   save((folder / "at_once.json").string(), calibration, info);
   save((folder / "in_two.json").string(), calibrated_robot(calibration, info));
   EXPECT_EQ(read_file(folder / "at_once.json"), read_file(folder / "in_two.json"));
+}
+
+// An arm identified in code keeps its covariance, in the units of its report, also in a file.
+TEST(CalibratedRobots, OfAnIdentificationHaveItsCovariance) {
+  const Framed<Chain> nominal(irb120.chain);
+  const auto seen = measure(with_geometric_errors(irb120.chain, {}, 3), measured_joints(),
+                            {.position = 0.03e-3, .orientation = 0.1e-3}, 7);
+  const auto found = identify(nominal, seen, {}, {.loss = Loss::squared}, own_solver);
+  ASSERT_GT(found.covariance.rows(), 20);
+  const Arm arm = calibrated_robot(found, seen.size(), info);
+  const vernier_test::TemporaryFolder folder("identified_robot");
+  save((folder / "model.json").string(), arm);
+  for (const Arm& robot : {arm, load<6>((folder / "model.json").string())}) {
+    ASSERT_NE(robot.estimate(), nullptr);
+    EXPECT_EQ(robot.provenance().measured, "poses");
+    EXPECT_EQ(robot.provenance().rows, 30);
+    const VectorX scales = robot.estimate()->arm.scales();
+    for (Index k = 0; k < found.covariance.rows(); ++k) {
+      EXPECT_EQ(robot.estimate()->arm.geometric()[static_cast<std::size_t>(k)].parameter,
+                found.free[static_cast<std::size_t>(k)]);
+      EXPECT_NEAR(robot.estimate()->covariance(k, k) * scales(k) * scales(k), found.covariance(k, k),
+                  1e-6 * found.covariance(k, k));
+    }
+    EXPECT_NEAR(robot.estimate()->position_sigma, found.rms_after / std::sqrt(3.0), 1e-15);
+    EXPECT_TRUE(std::isfinite(robot.radii_95(measured_joints()).front()));
+  }
+  const auto fitted = calibrated_robot(found_by_hand().errors, 120, info);
+  ASSERT_NE(fitted.estimate(), nullptr);
+  EXPECT_EQ(fitted.estimate()->covariance, found_by_hand().errors.covariance);
+  EXPECT_EQ(fitted.provenance().measured, "positions");
 }
 
 TEST(CalibratedRobots, ArePriorsWhereTheirCovarianceWasKept) {

@@ -9,6 +9,7 @@
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "touched_objects.hpp"
+#include "vernier/core/sha256.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/io/model_file.hpp"
@@ -66,6 +67,9 @@ TEST_F(CalibrateContacts, WithoutPosesNamesWhatIsNotObservableAndSavesTheArm) {
   EXPECT_EQ(robot.provenance().rows, 60);
   EXPECT_EQ(robot.identified().base().matrix(), Isometry3::Identity().matrix());
   EXPECT_LT(registered_mean(robot), 0.25e-3);
+  ASSERT_NE(robot.estimate(), nullptr);
+  EXPECT_EQ(robot.estimate()->covariance.rows(), 21);
+  EXPECT_TRUE(robot.provenance().fitted_to(sha256(read_file(folder_ / "contacts.csv"))));
   EXPECT_GT(registered_mean(robot.nominal()), 1e-3);
   const auto json = nlohmann::json::parse(read_file(folder_ / "out.json"));
   EXPECT_EQ(json.at("unobservable_directions"), 15);

@@ -197,6 +197,16 @@ TEST(VerifyCalibrationProgram, AnUnchangedArmIsValidWhereverItStands) {
   EXPECT_TRUE(has(held.output, "The calibration is no longer valid"));
 }
 
+TEST(VerifyCalibrationProgram, TheFileOfTheCalibrationConfirmsNothing) {
+  const Reported& r = reported();
+  const CommandResult checked = run(r.folder, "verify_calibration", "--model model.json --data poses.csv");
+  EXPECT_TRUE(has(checked.output, "The poses are those that it was fitted to, so that this confirms nothing."))
+      << checked.output << checked.errors;
+  write_dataset(r.folder / "fresh.csv", seen(arm(), 25, 34));
+  const CommandResult fresh = run(r.folder, "verify_calibration", "--model model.json --data fresh.csv");
+  EXPECT_FALSE(has(fresh.output, "confirms nothing")) << fresh.output;
+}
+
 TEST(VerifyCalibrationProgram, NamesTheJointWhoseZeroMoved) {
   const Reported& r = reported();
   write_dataset(r.folder / "moved.csv", seen(arm(0.3e-3 * JointVector<6>::Unit(2)), 25, 32));

@@ -254,8 +254,7 @@ TEST(Reregister, SaysWhatPosesDoNotDetermine) {
   EXPECT_FALSE(collinear.converged);
   EXPECT_TRUE(reregister(model, measure(model, line)).determined);
 
-  // positions do not see how a tool is turned; one pose cannot tell base from tool
-  EXPECT_FALSE(reregister(model, positions_at(samples(20, 14)), another_tool({.base = false})).determined);
+  // one pose cannot tell base from tool
   EXPECT_FALSE(reregister(model, measure(model, samples(1, 15)), another_tool()).determined);
   // nor the base from zeros of which nothing is known, or from how a probe is turned
   const auto open = reregister(model, measure(model, samples(1, 15)),
@@ -263,7 +262,28 @@ TEST(Reregister, SaysWhatPosesDoNotDetermine) {
   EXPECT_FALSE(open.determined);
   EXPECT_FALSE(open.probe_turned);
   EXPECT_EQ(open.contradiction, 0);
-  EXPECT_TRUE(open.remarks().empty()) << open.summary();
+  EXPECT_EQ(open.outside, std::vector<Index>{0});  // and nothing else is remarked upon
+  EXPECT_EQ(open.remarks().size(), 1u) << open.summary();
+}
+
+// Positions see the point of another tool; how it is turned they do not see: that is held, and said.
+TEST(Reregister, FindsThePointOfAnotherToolFromPositions) {
+  const Model model = fitted();
+  const Isometry3 tool = frame(Vector6{0.08, -0.15, 0.2, 0.4, -0.3, 1});
+  for (const bool base : {true, false}) {
+    const Model truth = model.moved(base ? elsewhere : still, Joints::Zero(), tool);
+    const auto found =
+        reregister(model, measure(truth, samples(12, 16), {.with_orientations = false}), another_tool({.base = base}));
+    EXPECT_TRUE(found.determined);
+    EXPECT_TRUE(found.converged);
+    EXPECT_LT(found.rms_after, 1e-9);
+    EXPECT_EQ(found.held, std::vector<std::string>{"the rotation of the tool"});
+    const JointRows<6> fresh = samples(20, 17);
+    for (Index i = 0; i < 20; ++i)
+      EXPECT_LT((found.model.position(configuration(fresh, i)) - truth.position(configuration(fresh, i))).norm(), 1e-8);
+    const Matrix3 turned = rotation(found.model.identified().tool()) - rotation(model.identified().tool());
+    EXPECT_LT(turned.norm(), 1e-9);
+  }
 }
 
 TEST(Reregister, KeepsTheBitsOfWhatMayNotMove) {

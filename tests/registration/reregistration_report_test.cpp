@@ -27,6 +27,32 @@ TEST(ReregistrationReport, AToolIsFarBeyondThreeOfItsExpectedSizes) {
   EXPECT_TRUE(mentions(report.remarks()[1], "The tool has turned by 15.10 mrad, where 5.00 are expected"));
 }
 
+TEST(ReregistrationReport, AResidualTenTimesTheHeldOutErrorIsSaid) {
+  ReregistrationReport report;
+  report.estimated.expected_error = 0.1e-3;
+  report.rms_after = 0.99e-3;
+  EXPECT_TRUE(report.remarks().empty());
+  report.rms_after = 2.5e-3;
+  EXPECT_EQ(report.remarks(),
+            std::vector<std::string>{
+                "After registration 2.500 mm are left, 25 times the error of the calibration at held-out poses (0.100 "
+                "mm): are these poses of this arm, with joints in its order and units?"});
+  report.estimated.expected_error = 0;  // unknown
+  EXPECT_TRUE(report.remarks().empty());
+  ReregisterOptions wrong;
+  wrong.expected_error = -1;
+  EXPECT_THROW(wrong.validate(), std::invalid_argument);
+}
+
+TEST(ReregistrationReport, PosesOutsideTheMeasuredRangesAreSaid) {
+  ReregistrationReport report;
+  report.poses = 12;
+  report.outside = {2, 5};
+  EXPECT_EQ(report.remarks(), std::vector<std::string>{
+                                  "2 of 12 poses (rows 2 and 5) lie outside the measured joint ranges, where the model "
+                                  "knows less: register by poses inside."});
+}
+
 TEST(ReregistrationReport, TheLeastCertainDirectionOfAToolIsSaid) {
   for (Index axis = 0; axis < 3; ++axis) {
     ReregistrationReport report;

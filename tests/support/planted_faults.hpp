@@ -45,6 +45,7 @@ struct Planted {
       return finding.size == size && !finding.rows.empty() && std::abs(finding.rows.front() - rows.front()) <= 3;
     if (kind == FaultKind::length_unit || kind == FaultKind::joint_unit)
       return std::abs(finding.size / size - 1) < 1e-6;
+    if (kind == FaultKind::joint_coupling) return finding.size == size;
     if (kind == FaultKind::joint_zero) return std::abs(finding.size - size) < 0.25 * std::abs(size) + 0.01;
     return std::includes(finding.rows.begin(), finding.rows.end(), rows.begin(), rows.end());
   }
@@ -130,6 +131,19 @@ std::optional<Planted<Chain::dof>> plant(const Chain& chain, const Dataset<Chain
         return changed();
       }
       return std::nullopt;
+    case FaultKind::joint_coupling:  // of two joints whose axes are parallel
+      for (int j = 1; j < N; ++j) {
+        if (std::abs(std::sin(chain.row(j - 1).alpha)) > 1e-9 || chain.row(j - 1).joint != JointType::revolute ||
+            chain.row(j).joint != JointType::revolute)
+          continue;
+        out.joint = j;
+        out.size = rng.sign();
+        joints.col(j) += out.size * joints.col(j - 1);
+        previous.col(j) += out.size * previous.col(j - 1);
+        return changed();
+      }
+      return std::nullopt;
+    case FaultKind::unexplained: return std::nullopt;
     case FaultKind::mirrored_frame: positions.col(below(3)) *= -1; return changed();
     case FaultKind::orientation_convention: {
       if (!oriented) return std::nullopt;

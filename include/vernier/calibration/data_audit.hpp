@@ -49,11 +49,12 @@ VERNIER_API DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& 
 
 /// Looks for faults in measured poses before anything is fitted to them. Base and tool are registered robustly under
 /// each hypothesis on all rows (another unit, a reversed joint, ...), and the one with the smallest robust residuals
-/// holds where it halves them. Rows are then assessed by leave-one-out residuals of a robust fit of the geometry, kept
-/// near its nominal values.
+/// is taken where it halves them. Rows are then assessed by leave-one-out residuals of a robust fit of the geometry,
+/// kept near its nominal values.
 ///
 /// What frames absorb is not reported: the zero of the first joint, the zero of the last one and, where positions alone
-/// were measured by a tool on the last axis, its sign. Faults of one kind at a time are told apart, not combinations.
+/// were measured by a tool on the last axis, its sign. Signs of several joints and one coupled joint are found
+/// together; other faults one at a time. A repair is advised only if the data become plausible by it.
 /// @param nominal the arm as designed; its frames are where the search starts, and may be wrong
 /// @param data    10 or more poses in the order of measuring
 /// @param options sizes of what is reported

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vernier/calibration/data_audit.hpp"
+#include "vernier/calibration/detail/audit_deviations.hpp"
 #include "vernier/calibration/detail/audit_fit.hpp"
 #include "vernier/calibration/detail/audit_hypotheses.hpp"
 #include "vernier/calibration/detail/audit_rows.hpp"
@@ -21,6 +22,8 @@ VERNIER_IMPL std::string_view fault_name(FaultKind kind) {
     case FaultKind::joint_unit: return "joint_unit";
     case FaultKind::joint_sign: return "joint_sign";
     case FaultKind::joint_zero: return "joint_zero";
+    case FaultKind::joint_coupling: return "joint_coupling";
+    case FaultKind::unexplained: return "unexplained";
     case FaultKind::mirrored_frame: return "mirrored_frame";
     case FaultKind::orientation_convention: return "orientation_convention";
     case FaultKind::shifted_rows: return "shifted_rows";
@@ -49,36 +52,60 @@ VERNIER_IMPL std::string DataAudit::summary() const {
 
 namespace detail {
 
-/// The finding of a fault of all rows.
-VERNIER_LOCAL DataFinding global_finding(const HypothesisFit& found) {
+/// The findings of a fault of all rows, of signs and couplings one a joint.
+VERNIER_LOCAL std::vector<DataFinding> global_findings(const HypothesisFit& found) {
   const AuditHypothesis& h = found.hypothesis;
-  DataFinding out{*h.kind, h.joint};
-  const std::string joint = message("joint ", h.joint + 1);
+  std::vector<DataFinding> out;
+  const auto add = [&](FaultKind kind, int joint, double size, std::string words) {
+    out.push_back({kind, joint, {}, size, "all rows: " + std::move(words)});
+  };
   switch (*h.kind) {
     case FaultKind::length_unit:
-      out.size = h.factor;
-      out.message = "all rows: measured positions are " + brief(h.factor) +
-                    " times as large as the arm's: correct the unit of x, y, z";
+      add(*h.kind, -1, h.factor,
+          "measured positions are " + brief(h.factor) + " times as large as the arm's: correct the unit of x, y, z");
       break;
     case FaultKind::joint_unit:
-      out.size = h.factor;
-      out.message = h.factor > 1 ? "all rows: joint angles look like degrees taken as radians: correct their unit"
-                                 : "all rows: joint angles look like radians taken as degrees: correct their unit";
+      add(*h.kind, -1, h.factor,
+          h.factor > 1 ? "joint angles look like degrees taken as radians: correct their unit"
+                       : "joint angles look like radians taken as degrees: correct their unit");
       break;
     case FaultKind::joint_sign:
-      out.message = "all rows: " + joint + " counts in the other direction: reverse the sign of its column";
+    case FaultKind::joint_coupling:
+      if (h.coupled >= 0)
+        add(FaultKind::joint_coupling, h.coupled, h.factor,
+            message("joint ", h.coupled + 1, h.factor > 0 ? " counts joint " : " counts against joint ", h.coupled,
+                    " as well: ", h.factor > 0 ? "subtract the column of joint " : "add the column of joint ",
+                    h.coupled, h.factor > 0 ? " from its own" : " to its own",
+                    h.reversed.empty() ? "" : " before any sign is reversed"));
+      for (const int joint : h.reversed)
+        add(FaultKind::joint_sign, joint, 0,
+            message("joint ", joint + 1, " counts in the other direction: reverse the sign of its column"));
       break;
     case FaultKind::mirrored_frame:
-      out.message = "all rows: measured coordinates are left-handed: reverse one axis or exchange two";
+      add(*h.kind, -1, 0, "measured coordinates are left-handed: reverse one axis or exchange two");
       break;
     case FaultKind::orientation_convention:
-      out.size = h.convention;
-      out.message = "all rows: orientations look like " + convention_name(h.convention) +
-                    ": convert them to rotation vectors in radians";
+      add(*h.kind, -1, h.convention,
+          "orientations look like " + convention_name(h.convention) + ": convert them to rotation vectors in radians");
       break;
     default: break;
   }
   return out;
+}
+
+/// The finding that nothing makes the data plausible.
+VERNIER_LOCAL DataFinding unexplained_finding(const ErrorStatistics& registered, bool oriented) {
+  return {FaultKind::unexplained,
+          -1,
+          {},
+          registered.median,
+          message("all rows: nothing makes the data plausible, the nominal arm misses them by ",
+                  brief(registered.median * 1e3),
+                  " mm (median) in any frames, whichever units, signs of all joints, coupled or shifted joints, "
+                  "mirrored frames ",
+                  oriented ? "or conventions of orientations " : "",
+                  "are assumed: look for another arm, exchanged columns, poses of other joints, or several faults at "
+                  "once")};
 }
 
 VERNIER_LOCAL DataFinding zero_finding(const ArmGeometry& arm, int joint, double zero) {
@@ -88,52 +115,6 @@ VERNIER_LOCAL DataFinding zero_finding(const ArmGeometry& arm, int joint, double
                         revolute ? brief(zero * 180 / std::numbers::pi) + " deg" : brief(zero * 1e3) + " mm",
                         ": add that to its column, or correct the nominal ", revolute ? "theta" : "d");
   return out;
-}
-
-/// A zero so small that other parameters of the chain hide it, or none: of the joint whose zero explains more than all
-/// expected deviations of the geometry.
-VERNIER_LOCAL std::pair<int, double> small_zero(const ArmGeometry& nominal, const AuditFit& frames,
-                                                const AuditRows& rows, const VectorX& stds, double smallest_zero) {
-  const VectorX centre = nominal.parameters();
-  const AuditFit plain = audit_fit(frames.arm, centre, stds, rows, 12);
-  std::vector<AuditFit> fits;
-  std::vector<int> joints;
-  for (int j = 1; j + 1 < nominal.joints(); ++j) {
-    VectorX freed = stds;
-    freed(zero_parameter(nominal, j)) = std::numeric_limits<double>::infinity();
-    fits.push_back(audit_fit(plain.arm, centre, freed, rows, 12));
-    joints.push_back(j);
-  }
-  double sigma = plain.residuals.position_scale, turn = plain.residuals.rotation_scale;
-  for (const AuditFit& fit : fits) {
-    sigma = (std::min)(sigma, fit.residuals.position_scale);
-    turn = (std::min)(turn, fit.residuals.rotation_scale);
-  }
-  const auto cost = [&](const AuditFit& fit, int joint) {
-    double sum = 0;
-    const VectorX values = fit.arm.parameters();
-    const Index freed = joint < 0 ? -1 : zero_parameter(nominal, joint);
-    for (Index k = 6; k < values.size() - 6; ++k)
-      if (k != freed && stds(k) > 0) sum += std::pow((values(k) - centre(k)) / stds(k), 2);
-    for (Index i = 0; i < fit.residuals.position.rows(); ++i) {
-      sum += 16 * std::log1p(point(fit.residuals.position, i).squaredNorm() / (16 * sigma * sigma));
-      if (rows.oriented()) sum += 16 * std::log1p(point(fit.residuals.rotation, i).squaredNorm() / (16 * turn * turn));
-    }
-    return sum;
-  };
-  const double none = cost(plain, -1);
-  double best = std::numeric_limits<double>::infinity(), zero = 0;
-  int joint = -1;
-  for (std::size_t k = 0; k < fits.size(); ++k)
-    if (const double now = cost(fits[k], joints[k]); now < best) {
-      best = now;
-      joint = joints[k];
-      const Index parameter = zero_parameter(nominal, joint);
-      zero = fits[k].arm.parameters()(parameter) - centre(parameter);
-    }
-  if (joint < 0 || none - best < 15 || !nominal.chain().revolute(joint) || std::abs(zero) < smallest_zero)
-    return {-1, 0};
-  return {joint, zero};
 }
 
 VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet& data,
@@ -153,6 +134,15 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet&
 
   const AuditRows few = rows.rows(spread_rows(rows.size(), 200));
   HypothesisFit found = best_hypothesis(nominal, few, options.smallest_zero);
+  const auto as_they_are = [&] {
+    HypothesisFit fit = fit_hypothesis(nominal, rows.rows(spread_rows(rows.size(), 200)), {});
+    fit.plausible = true;
+    return fit;
+  };
+  if (found.hypothesis.kind && found.plausible_as_is &&
+      !repair_needed(found, nominal, few,
+                     audit_geometry_std(nominal, few.oriented(), options.length_std, options.angle_std)))
+    found = as_they_are();
   const AuditResiduals all = audit_residuals(found.fit.arm, found.hypothesis.corrected(rows, nominal));
   Index wrong = 0;
   for (Index i = 0; i < rows.size(); ++i)
@@ -187,12 +177,36 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet&
     out.findings.push_back(std::move(finding));
     rows = std::move(paired);
     numbers = shift->fitting;
-    found = fit_hypothesis(nominal, rows.rows(spread_rows(rows.size(), 200)), {});
-  } else if (found.hypothesis.kind == FaultKind::joint_zero) {
+    found = as_they_are();
+  } else if (!found.plausible && rows.oriented()) {  // its positions may be
+    AuditRows alone{rows.joints, rows.positions};
+    HypothesisFit by_positions =
+        best_hypothesis(nominal, alone.rows(spread_rows(rows.size(), 200)), options.smallest_zero);
+    if (by_positions.plausible) {
+      out.findings.push_back({FaultKind::orientation_convention,
+                              -1,
+                              {},
+                              0,
+                              "all rows: orientations are not those of the arm by any convention that is known, "
+                              "positions are: convert the orientations, or leave them out"});
+      rows = std::move(alone);
+      found = std::move(by_positions);
+    }
+  }
+  if (!found.plausible) {
+    const HypothesisFit none = fit_hypothesis(nominal, rows, {});
+    out.registered = ErrorStatistics::of(distances_from(none.fit.residuals.position, Vector3::Zero()));
+    out.findings.push_back(unexplained_finding(out.registered, rows.oriented()));
+    audit_duplicates(data, rotation_vectors, out.findings);
+    audit_joint_values(rows.joints, out.findings);
+    audit_approaches(data, out.findings);
+    return out;
+  }
+  if (found.hypothesis.kind == FaultKind::joint_zero) {
     out.findings.push_back(zero_finding(nominal, found.hypothesis.joint, found.zero));
     correct_zero(zero_parameter(nominal, found.hypothesis.joint), found.zero);
   } else if (found.hypothesis.kind) {
-    out.findings.push_back(global_finding(found));
+    for (DataFinding& finding : global_findings(found)) out.findings.push_back(std::move(finding));
     rows = found.hypothesis.corrected(rows, nominal);
   }
 

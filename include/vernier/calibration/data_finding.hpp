@@ -16,6 +16,8 @@ enum class FaultKind {
   joint_unit,              ///< joint angles are in degrees where radians are expected, or the other way round
   joint_sign,              ///< a joint counts in the other direction
   joint_zero,              ///< a joint counts from another zero
+  joint_coupling,          ///< a joint's values contain those of the joint before it
+  unexplained,             ///< no fault that is known makes the data plausible
   mirrored_frame,          ///< measured coordinates are left-handed
   orientation_convention,  ///< orientations are no rotation vectors, or those of the inverse rotation
   shifted_rows,            ///< joints and poses of some rows are off by one or more rows against each other
@@ -32,7 +34,8 @@ struct DataFinding {
   FaultKind kind;             ///< what it is
   int joint = -1;             ///< the joint, from 0; -1 where no single joint is concerned
   std::vector<Index> rows{};  ///< rows concerned, ascending, from 0; empty: all
-  /// How large it is: the factor of a unit, the zero [rad, m], the number of rows of a shift, the displacement of an
+  /// How large it is: the factor of a unit, the zero [rad, m], the factor of the joint before in a coupled one, the
+  /// median position error that nothing explains [m], the number of rows of a shift, the displacement of an
   /// outlier or a drift [m; rad where orientations alone show it], the scatter of a reading [rad, m]; else 0.
   double size = 0;
   std::string message{};  ///< a sentence: what it is, where, and what to do

@@ -20,12 +20,16 @@ namespace vernier {
 /// How a calibration is checked.
 struct VerifyOptions {
   bool base = true;     ///< the sensor was set up anew, or the arm moved: the base is registered first
-  bool tool = false;    ///< the tool was remounted: it is registered, too; else a turned probe is a change of the arm
+  bool tool = false;    ///< the tool was remounted: it is registered, too
   double level = 0.05;  ///< probability of a false alarm about an arm that has not changed, in (0, 1)
   /// Largest mean position error that is accepted [m]. Without one a calibration is valid as long as no change is
   /// significant; with one, as long as the upper end of the 95 % interval of the mean error does not exceed it.
   std::optional<double> accept{};
   SensorModel sensors{};  ///< of the check; a sensor worse than that of the calibration adds its noise
+  /// Position error that the calibration states for poses it was not fitted to [m]; 0: unknown. Ten times as much left
+  /// after registration is remarked upon.
+  double expected_error = 0;
+  bool fitted_poses = false;  ///< the poses are known to be those that the calibration was fitted to
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;
@@ -45,11 +49,16 @@ struct JointCheck {
 /// The outcome of a check.
 struct VerificationReport {
   bool valid = false;       ///< whether the calibration still holds, see `VerifyOptions::accept`
-  bool consistent = false;  ///< whether no change is significant
+  bool consistent = false;  ///< whether no change is significant; all residuals together must be larger than their
+                            ///< predicted median for a change to be named
   Index poses = 0;          ///< number of poses
   double chi_square = 0;    ///< of all residuals, whitened by their predicted covariance, less what was registered
   Index dof = 0;            ///< its degrees of freedom
   double p_value = 1;       ///< probability of a larger one by chance
+  /// Probability that chance leaves changes of all joints together as small, measured by the residuals: nearly 0 for
+  /// the poses of the fit, to which the joints were adapted.
+  double closeness = 1;
+  double explained = 0;                                ///< the most of `chi_square` that a change of one joint explains
   std::vector<JointCheck> joints{};                    ///< one a joint
   std::vector<JointType> joint_types{};                ///< of the arm
   std::optional<ReregistrationReport> registration{};  ///< how base and tool have moved, where they were registered
@@ -87,6 +96,10 @@ struct VerificationInput {
   std::optional<ReregistrationReport> registration;  ///< where base or tool was registered
 };
 VERNIER_API VerificationReport verified(const VerificationInput& input, const VerifyOptions& options);
+/// Of two readings of turned orientations, a turned probe and a change of a joint, the one that explains them.
+/// @param probe with the rotation of the probe taken off
+/// @param arm   without
+VERNIER_API VerificationReport better_reading(VerificationReport probe, VerificationReport arm);
 
 }  // namespace detail
 
@@ -94,7 +107,9 @@ VERNIER_API VerificationReport verified(const VerificationInput& input, const Ve
 /// compared with the covariance that the calibration itself predicts: of its parameters, which all poses share, and of
 /// each visit. A chi-square of everything, and one of each joint's zero and of each joint's transmission once a turn,
 /// are tested at the given level together (Bonferroni). Of several joints the one that explains most is named first,
-/// and the others are tested again beside it.
+/// and the others are tested again beside it. Where the base is registered, orientations that are turned against the
+/// tool are taken to be those of a turned probe, as `reregister` does, unless a change of one joint explains them as
+/// well.
 ///
 /// The zero of a first joint that the base follows cannot be told from it and is not determined.
 /// @param model    as calibrated
@@ -121,41 +136,45 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   demand(learned.rows() == 0 || learned.rows() == data.size(), "verify_calibration: ", learned.rows(),
          " learned errors of ", data.size(), " poses");
   const auto types = model.nominal().chain().joint_types();
-  std::optional<ReregistrationReport> registration;
-  ErrorModel<Chain> now = model;
-  if (options.base || options.tool) {
-    ReregisterOptions free{.base = options.base, .tool = options.tool};
-    // orientations that are turned may be the zero of the last joint: no probe is taken to be remounted unasked
-    if (!options.tool) free.contradiction_threshold = std::numeric_limits<double>::infinity();
-    auto found = reregister(model, data, free, options.sensors);
-    demand(found.determined, "verify_calibration: the poses do not determine where the arm stands; measure more");
-    now = found.model;
-    registration = std::move(static_cast<ReregistrationReport&>(found));
-  }
   const MeasuredSet set = measured.sets().front().with(options.sensors);
-  const ErrorModelEstimate here = estimate.of_arm(FittedArm::of(now.identified()));
-  detail::VerificationInput input{set, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
-  input.jacobians.resize(6, N * data.size());
-  input.gates.resize(data.size());
-  const Matrix3 before_turn = rotation(model.identified().base()), back = before_turn.transpose(),
-                turn = rotation(now.identified().base()) * back;
-  for (Index i = 0; i < data.size(); ++i) {
-    const JointVector<N> q = data.joints(i), previous = configuration(data.previous(), i);
-    const Vector3 error = learned.rows() > 0 ? point(learned, i) : Vector3(Vector3::Zero());
-    const auto warm = [&](const ErrorModel<Chain>& arm) {
-      return data.temperatures().size() > 0 ? arm.at_temperature(data.temperatures()(i)) : arm;
-    };
-    const ErrorModel<Chain> arm = warm(now), before = warm(model);
-    PoseAndJacobian<N> at = arm.approached_from(previous).pose_and_jacobian(q);
-    Isometry3 then = before.approached_from(previous).pose(q);
-    at.pose.translation() -= turn * error;
-    then.translation() -= error;
-    input.poses.push_back(at.pose);
-    input.poses_as_fitted.push_back(then);
-    std::copy_n(at.jacobian.data(), 6 * N, input.jacobians.data() + 6 * N * i);
-    input.gates(i) = model.gate(q);
-  }
-  return detail::verified(input, options);
+  const auto check = [&](const ErrorModel<Chain>& now, std::optional<ReregistrationReport> registration) {
+    const ErrorModelEstimate here = estimate.of_arm(FittedArm::of(now.identified()));
+    detail::VerificationInput input{set, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
+    input.jacobians.resize(6, N * data.size());
+    input.gates.resize(data.size());
+    const Matrix3 before_turn = rotation(model.identified().base()), back = before_turn.transpose(),
+                  turn = rotation(now.identified().base()) * back;
+    for (Index i = 0; i < data.size(); ++i) {
+      const JointVector<N> q = data.joints(i), previous = configuration(data.previous(), i);
+      const Vector3 error = learned.rows() > 0 ? point(learned, i) : Vector3(Vector3::Zero());
+      const auto warm = [&](const ErrorModel<Chain>& arm) {
+        return data.temperatures().size() > 0 ? arm.at_temperature(data.temperatures()(i)) : arm;
+      };
+      const ErrorModel<Chain> arm = warm(now), before = warm(model);
+      PoseAndJacobian<N> at = arm.approached_from(previous).pose_and_jacobian(q);
+      Isometry3 then = before.approached_from(previous).pose(q);
+      at.pose.translation() -= turn * error;
+      then.translation() -= error;
+      input.poses.push_back(at.pose);
+      input.poses_as_fitted.push_back(then);
+      std::copy_n(at.jacobian.data(), 6 * N, input.jacobians.data() + 6 * N * i);
+      input.gates(i) = model.gate(q);
+    }
+    return detail::verified(input, options);
+  };
+  if (!options.base && !options.tool) return check(model, {});
+  ReregisterOptions free{.base = options.base, .tool = options.tool};
+  const auto register_again = [&] {
+    const auto found = reregister(model, data, free, options.sensors);
+    demand(found.determined, "verify_calibration: the poses do not determine where the arm stands; measure more");
+    return check(found.model, static_cast<const ReregistrationReport&>(found));
+  };
+  VerificationReport out = register_again();
+  if (!out.registration->probe_turned) return out;
+  constexpr double largest_zero = 0.02;  // [rad]; more is no change of a joint
+  if (out.registration->motion.probe.norm() > largest_zero) return out;
+  free.contradiction_threshold = std::numeric_limits<double>::infinity();
+  return detail::better_reading(std::move(out), register_again());
 }
 
 }  // namespace vernier

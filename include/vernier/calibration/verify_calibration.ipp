@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/core/detail/dense.hpp"
@@ -19,6 +20,8 @@ VERNIER_IMPL void VerifyOptions::validate() const {
   demand(level > 0 && level < 1, "VerifyOptions: level ", level, " must lie in (0, 1)");
   demand(!accept || (*accept > 0 && std::isfinite(*accept)), "VerifyOptions: accept ", accept.value_or(0),
          " must be positive");
+  demand(expected_error >= 0 && std::isfinite(expected_error), "VerifyOptions: expected_error ", expected_error,
+         " must be finite and not negative");
   sensors.validate();
 }
 
@@ -26,6 +29,8 @@ namespace detail {
 
 /// A change is not determined where registration takes more than all but this share of its effect.
 inline constexpr double least_informative = 0.02;
+/// Probability of changes so small that the poses may be those of the fit, see `VerificationReport::closeness`.
+inline constexpr double too_close = 1e-6;
 
 /// Residuals that are whitened, and what was registered taken off: a test of further columns is a projection.
 struct WhitenedResiduals {
@@ -135,6 +140,7 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
     return once ? std::vector<Index>{joints + 2 * j, joints + 2 * j + 1} : std::vector<Index>{j};
   };
   Index tests = 0;
+  out.explained = 0;
   for (Index j = 0; j < joints; ++j) {
     JointCheck& joint = out.joints[static_cast<std::size_t>(j)];
     joint.determined = whitened.informative(j) > least_informative;
@@ -145,18 +151,30 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
       const double information = column.squaredNorm();
       joint.zero_change = -column.dot(whitened.residual) / information;
       joint.zero_std = 1 / std::sqrt(information);
-      joint.zero_p = chi_square_tail(std::pow(joint.zero_change / joint.zero_std, 2), 1);
+      const double explained = std::pow(joint.zero_change / joint.zero_std, 2);
+      joint.zero_p = chi_square_tail(explained, 1);
+      out.explained = (std::max)(out.explained, explained);
     }
     if (!revolute) continue;
     const ColumnTest once = test_columns(whitened, columns_of(j, true));
     if (once.rank == 0) continue;
     ++tests;
     joint.once_p = chi_square_tail(once.chi_square, static_cast<double>(once.rank));
+    out.explained = (std::max)(out.explained, once.chi_square);
   }
-  // Forward selection: the most significant change first, the others beside those that were named.
+  std::vector<Index> everything(static_cast<std::size_t>(whitened.columns.cols()));
+  std::iota(everything.begin(), everything.end(), Index{0});
+  const ColumnTest changes_of_all = test_columns(whitened, everything);
+  const auto others = static_cast<double>(out.dof - changes_of_all.rank);
+  const double scatter = others >= 1 ? (out.chi_square - changes_of_all.chi_square) / others : 0;
+  out.closeness = scatter > 0 && changes_of_all.rank > 0 ? 1 - chi_square_tail(changes_of_all.chi_square / scatter,
+                                                                               static_cast<double>(changes_of_all.rank))
+                                                         : 1;
+  // Forward selection: the most significant change first, the others beside those that were named. Nothing has changed
+  // where all residuals together are smaller than predicted.
   std::vector<Index> named;
   const double limit = 0.5 * out.options.level / static_cast<double>(std::max<Index>(tests, 1));
-  for (Index round = 0; round < joints; ++round) {
+  for (Index round = 0; round < joints && out.p_value < 0.5; ++round) {
     const ColumnTest before = test_columns(whitened, named);
     double best = limit;
     Index joint = -1;
@@ -266,6 +284,12 @@ VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const V
   return out;
 }
 
+VERNIER_IMPL VerificationReport better_reading(VerificationReport probe, VerificationReport arm) {
+  // the probe has three values, a change of a joint one or two: it must explain more than chance would
+  const bool turned = probe.chi_square + ReregisterOptions().contradiction_threshold < arm.chi_square - arm.explained;
+  return turned ? probe : arm;
+}
+
 /// The joints that are named, and how far their zeros moved.
 VERNIER_LOCAL std::string named_changes(const VerificationReport& report) {
   std::string out;
@@ -290,7 +314,9 @@ VERNIER_IMPL std::string VerificationReport::verdict() const {
   const std::string changes = detail::named_changes(*this),
                     chi = message("chi-square ", brief(chi_square), " of ", dof, " degrees of freedom, p = ",
                                   p_value < 1e-4 ? std::string("below 0.0001") : brief(p_value));
-  std::string out = valid ? "The calibration is still valid" : "The calibration is no longer valid";
+  std::string out = valid        ? "The calibration is still valid"
+                    : consistent ? "The calibration does not reach the accepted error"
+                                 : "The calibration is no longer valid";
   if (options.accept)
     out += message(": mean error ", brief(mean_error * 1e3), " mm, at most ", brief(mean_upper * 1e3),
                    " mm, accepted up to ", brief(*options.accept * 1e3), " mm");
@@ -304,11 +330,21 @@ VERNIER_IMPL std::string VerificationReport::verdict() const {
   if (!aside.empty()) {
     out += ", " + origin.where(aside) + " set aside";
   }
-  return out + ".";
+  out += ".";
+  if (options.fitted_poses) out += " The poses are those that it was fitted to, so that this confirms nothing.";
+  return out;
 }
 
 VERNIER_IMPL std::vector<std::string> VerificationReport::advice() const {
   std::vector<std::string> out;
+  if (options.fitted_poses)
+    out.push_back("Check with fresh poses: residuals of poses that a model was fitted to are small by construction.");
+  else if (closeness < detail::too_close)
+    out.push_back(
+        "The joints agree with the calibration more closely than fresh poses would: if these poses are those of the "
+        "calibration, check with fresh ones.");
+  if (std::string excess = detail::excess_remark(mean_error, options.expected_error); !excess.empty())
+    out.push_back(std::move(excess));
   if (!aside.empty()) out.push_back("Measure the rows again that were set aside: they contradict all others.");
   if (valid && registration && options.base)
     out.push_back(

@@ -288,6 +288,7 @@ struct RobotInfo {
   std::string date{};                ///< of the calibration
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
   double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
+  std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
 };
 
 /// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
@@ -308,7 +309,7 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
       {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
        calibration.errors.position_sigma,
        left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
-       info.held_out_error});
+       info.held_out_error, info.data_sha256});
   const LearnedRemainder<N>* learned = calibration.deployed();
   if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
   return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);

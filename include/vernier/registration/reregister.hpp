@@ -22,15 +22,33 @@ struct ReregisterOptions {
   bool offsets = false;            ///< joint zeros
   double offset_prior_std = 1e-3;  ///< expected change of a joint zero [rad, m]: a prior, so that few poses suffice
   double tool_position_prior_std = 3e-3;  ///< expected motion of the tool point, where the tool is freed [m], a prior
-                                          ///< as well; infinite: another tool, of which nothing is known
+                                          ///< as well; infinite: another tool, of which nothing is known. Its
+                                          ///< rotation is then held where only positions were measured
   double tool_rotation_prior_std = 5e-3;  ///< expected rotation of the tool, likewise [rad]
   /// Measured orientations are taken to be turned against the tool where that explains more than chance does: a
   /// chi-squared of three values, which chance exceeds once in a thousand times. Infinite: never.
   double contradiction_threshold = 16.3;
+  /// Position error that the calibration states for poses it was not fitted to [m]; 0: unknown. Ten times as much left
+  /// after registration gets a remark.
+  double expected_error = 0;
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;
 };
+
+namespace detail {
+
+/// A residual after registration that no error of the calibration explains, in a sentence; empty for none.
+/// @param left     position error after registration [m]
+/// @param expected that of the calibration at poses it was not fitted to [m]; 0: unknown
+VERNIER_API std::string excess_remark(double left, double expected);
+/// Poses outside the measured joint ranges, in a sentence; empty for none.
+/// @param outside which of them
+/// @param origin  where they stand in files
+/// @param poses   number of all poses
+VERNIER_API std::string outside_remark(const std::vector<Index>& outside, const RowOrigin& origin, Index poses);
+
+}  // namespace detail
 
 /// Outcome of a re-registration, whatever the arm.
 struct ReregistrationReport {
@@ -53,11 +71,14 @@ struct ReregistrationReport {
   std::vector<std::string> held{};
   /// Whether orientations contradict positions and were taken to be turned by `motion.probe`.
   bool probe_turned = false;
+  Index poses = 0;                      ///< number of poses
+  std::vector<Index> outside{};         ///< those outside the measured joint ranges of the model
+  RowOrigin origin{};                   ///< where the poses stand in files
   double contradiction = 0;             ///< the statistic behind, to be compared with `contradiction_threshold`
   Vector3 probe_std = Vector3::Zero();  ///< standard deviations of `motion.probe` [rad]
 
   /// What is to be known before the result is used, a sentence each: contradictions, what was held, a tool that moved
-  /// further than expected.
+  /// further than expected, poses outside the measured joint ranges, a residual far above the expected error.
   VERNIER_API std::vector<std::string> remarks() const;
   /// What was estimated and how it changed, a line each [mm, mrad]; then the remarks.
   VERNIER_API std::string summary() const;
@@ -115,6 +136,9 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Measurement
   const FrameMotion found =
       detail::reregister(evaluate, measured.sets().front().with(sensors), options, sensors, report);
   report.joint_types = {types.begin(), types.end()};
+  report.origin = data.origin();
+  for (Index i = 0; i < data.size(); ++i)
+    if (model.gate(data.joints(i)) < 1) report.outside.push_back(i);
   return {std::move(report), moved(found)};
 }
 

@@ -24,6 +24,8 @@ VERNIER_IMPL void ReregisterOptions::validate() const {
   positive("tool_position_prior_std", tool_position_prior_std);
   positive("tool_rotation_prior_std", tool_rotation_prior_std);
   positive("contradiction_threshold", contradiction_threshold);
+  demand(expected_error >= 0 && std::isfinite(expected_error), "ReregisterOptions: expected_error ", expected_error,
+         " must be finite and not negative");
 }
 
 namespace detail {
@@ -35,12 +37,31 @@ VERNIER_LOCAL std::string components(const Vector3& values, int decimals) {
   return out + ")";
 }
 
+VERNIER_IMPL std::string excess_remark(double left, double expected) {
+  constexpr double factor = 10;
+  if (!(expected > 0) || left < factor * expected) return {};
+  return formatted(
+      "After registration %.3f mm are left, %.0f times the error of the calibration at held-out poses (%.3f mm): are "
+      "these poses of this arm, with joints in its order and units?",
+      1e3 * left, left / expected, 1e3 * expected);
+}
+
+VERNIER_IMPL std::string outside_remark(const std::vector<Index>& outside, const RowOrigin& origin, Index poses) {
+  if (outside.empty()) return {};
+  return message(outside.size(), " of ", poses, " poses (", origin.where(outside), ")",
+                 outside.size() == 1 ? " lies" : " lie",
+                 " outside the measured joint ranges, where the model knows less: register by poses inside.");
+}
+
 }  // namespace detail
 
 VERNIER_IMPL std::vector<std::string> ReregistrationReport::remarks() const {
   using detail::components;
   using detail::fixed_digits;
   std::vector<std::string> out;
+  for (const std::string& remark :
+       {detail::excess_remark(rms_after, estimated.expected_error), detail::outside_remark(outside, origin, poses)})
+    if (!remark.empty()) out.push_back(remark);
   if (probe_turned)
     out.push_back(message(
         "Measured orientations are turned by ", fixed_digits(1e3 * motion.probe.norm(), 2), " mrad against the tool, ",
@@ -147,6 +168,25 @@ VERNIER_LOCAL Isometry3 base_motion(const std::vector<Isometry3>& modelled, cons
   return rigid_motion(turn, centroid(*data.positions()) - turned);
 }
 
+/// Base and the point of a tool of which nothing is known, from positions: the base in closed form with the tool as it
+/// is, the tool's point as a mean in its frame, alternating.
+VERNIER_LOCAL void start_of_another_tool(const MovedPoses& evaluate, const MeasuredSet& data, FrameFit& fit,
+                                         MatrixX& jacobians) {
+  for (int round = 0; round < 50; ++round) {
+    fit.motion.base = Isometry3::Identity();
+    evaluate(fit.motion, fit.poses, jacobians);
+    fit.motion.base = base_motion(fit.poses, data, false);
+    evaluate(fit.motion, fit.poses, jacobians);
+    Vector3 sum = Vector3::Zero();
+    for (Index i = 0; i < data.size(); ++i)
+      sum += transformed(inverse_of(fit.poses[static_cast<std::size_t>(i)]), data.position(i));
+    const Vector3 shift = sum / static_cast<double>(data.size());
+    fit.motion.tool = composed(fit.motion.tool, rigid_motion(Matrix3::Identity(), shift));
+    if (shift.norm() < 1e-6) break;
+  }
+  evaluate(fit.motion, fit.poses, jacobians);
+}
+
 /// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
 VERNIER_LOCAL Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
   Matrix3 sum = Matrix3::Zero();
@@ -238,8 +278,11 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSe
   const FrameUpdate update{options.base, options.offsets, options.tool, joints, data.oriented() && !options.tool};
   // The probe may be mounted any way round; a prior this wide keeps one pose from asking for both base and probe.
   constexpr double any_rotation = 1;
+  ReregisterOptions priors = options;
+  if (!data.oriented())  // positions do not see how a tool is turned: it is held where it was
+    priors.tool_rotation_prior_std = (std::min)(options.tool_rotation_prior_std, any_rotation);
   FrameFit fit{.update = update,
-               .prior_std = prior_std_of(update, options, any_rotation),
+               .prior_std = prior_std_of(update, priors, any_rotation),
                .motion = {.offsets = VectorX::Zero(joints)},
                .position_sigma = sensors.position_sigma,
                .orientation_sigma = sensors.orientation_sigma,
@@ -268,6 +311,8 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSe
         fit.total.tail(3) = fit.motion.probe;
       }
     }
+    if (!data.oriented() && options.tool && std::isinf(options.tool_position_prior_std))
+      start_of_another_tool(evaluate, data, fit, jacobians);
   }
   solve_frames_and_weights(evaluate, data, fit);
   if (update.probe && fit.covariance.size() > 0) judge_probe(evaluate, data, options, sensors, fit, report);
@@ -276,6 +321,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSe
     report.change_std = diagonal_of(fit.covariance_of(0, update.probe_begin())).cwiseSqrt();
   if (options.tool && fit.covariance.size() > 0) report.held = hold_undetermined_tool(fit);
   if (!report.held.empty()) solve_frames(evaluate, data, fit);
+  report.poses = data.size();
   report.determined = fit.determined;
   report.converged = fit.converged;
   report.rms_after = rms();

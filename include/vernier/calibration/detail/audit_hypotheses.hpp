@@ -13,12 +13,14 @@ namespace vernier::detail {
 /// A fault of all rows.
 struct AuditHypothesis {
   std::optional<FaultKind> kind{};  ///< none: nothing is wrong
-  int joint = -1;                   ///< of a sign or a zero
-  double factor = 1;                ///< of measured lengths or joint angles, to be divided out
+  int joint = -1;                   ///< of a zero
+  std::vector<int> reversed{};      ///< joints that count in the other direction, ascending
+  int coupled = -1;                 ///< the joint whose values contain those of the joint before it; or none
+  double factor = 1;                ///< of measured lengths or joint angles, to be divided out; of the joint before
   double zero = 0;                  ///< where the search for a joint's zero starts [rad, m]
   int convention = 0;               ///< of orientations, see `convention_name`
 
-  /// The rows without the fault.
+  /// The rows without the fault; a coupled joint is taken apart before signs are reversed.
   VERNIER_API AuditRows corrected(const AuditRows& rows, const ArmGeometry& arm) const;
 };
 
@@ -29,14 +31,22 @@ VERNIER_API std::string convention_name(int convention);
 struct HypothesisFit {
   AuditHypothesis hypothesis;
   AuditFit fit;
-  double zero = 0;  ///< of its joint [rad, m]
+  double zero = 0;               ///< of its joint [rad, m]
+  bool plausible = false;        ///< whether the rows, corrected, may be those of the arm
+  bool plausible_as_is = false;  ///< whether the rows may be as they are
 };
 
 /// Registers frames, and a joint's zero where the hypothesis says so.
 VERNIER_API HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const AuditRows& rows,
                                          const AuditHypothesis& hypothesis);
 
-/// The hypothesis that halves the robust residuals and makes them smallest, or that nothing is wrong.
+/// Whether a nominal arm may leave such residuals: a twentieth of the scatter of the positions, or 10 mm.
+VERNIER_API bool plausible_residuals(const ArmGeometry& nominal, const AuditRows& rows,
+                                     const AuditResiduals& residuals);
+
+/// The hypothesis that halves the robust residuals and makes them smallest, or that nothing is wrong. Where rows as
+/// they are cannot be those of the arm, every pattern of the joints' signs is registered in closed form, also with a
+/// joint that contains the one before it where their axes are parallel; the best patterns are fitted robustly.
 VERNIER_API HypothesisFit best_hypothesis(const ArmGeometry& nominal, const AuditRows& rows, double smallest_zero);
 
 /// Joints and poses that are off by some rows against each other: the pose of row i lies in row i + shift.

@@ -47,7 +47,11 @@ VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const A
       for (int j = 0; j < arm.joints(); ++j)
         if (arm.chain().revolute(j)) out.joints.col(j) /= factor;
       break;
-    case FaultKind::joint_sign: out.joints.col(joint) *= -1; break;
+    case FaultKind::joint_sign:
+    case FaultKind::joint_coupling:
+      if (coupled >= 0) out.joints.col(coupled) -= factor * out.joints.col(coupled - 1);
+      for (const int j : reversed) out.joints.col(j) *= -1;
+      break;
     case FaultKind::mirrored_frame: {
       const bool turned = convention == 3;  // the orientations are mirrored, too
       for (Index i = 0; i < out.size(); ++i) out.positions(i, turned ? 0 : convention) *= -1;
@@ -96,17 +100,66 @@ VERNIER_IMPL double point_scatter(const PointRows& points) {
   return robust_scale(rows_minus(points, centroid(points)));
 }
 
+VERNIER_IMPL bool plausible_residuals(const ArmGeometry& nominal, const AuditRows& rows,
+                                      const AuditResiduals& residuals) {
+  const double scatter = (std::min)(point_scatter(nominal.positions(rows.joints)), point_scatter(rows.positions));
+  return residuals.score() <= (std::max)(0.05 * scatter, 0.01);
+}
+
+/// Joints whose values may contain those of the joint before: both turn, about parallel axes.
+VERNIER_LOCAL std::vector<int> coupled_candidates(const ArmGeometry& arm) {
+  std::vector<int> out;
+  for (int j = 1; j < arm.joints(); ++j) {
+    const double alpha = arm.parameters()(ArmParameters::of_row(j - 1, DhParameter::alpha));
+    if (arm.chain().revolute(j - 1) && arm.chain().revolute(j) && std::abs(std::sin(alpha)) < 1e-6) out.push_back(j);
+  }
+  return out;
+}
+
+/// The patterns of signs and couplings that fit best after registration in closed form, best first.
+VERNIER_LOCAL std::vector<AuditHypothesis> best_patterns(const ArmGeometry& nominal, const AuditRows& rows) {
+  constexpr std::size_t kept = 8;
+  if (nominal.joints() > 10) return {};  // too many patterns
+  const std::vector<Index> few = spread_rows(rows.size(), 60);
+  const AuditRows sample = rows.rows(few);
+  std::vector<std::pair<double, AuditHypothesis>> all;
+  const auto assess = [&](int coupled, double factor) {
+    for (unsigned signs = 0; signs < 1u << nominal.joints(); ++signs) {
+      AuditHypothesis pattern{.coupled = coupled, .factor = factor};
+      for (int j = 0; j < nominal.joints(); ++j)
+        if ((signs >> j & 1u) != 0) pattern.reversed.push_back(j);
+      if (coupled < 0 && pattern.reversed.empty()) continue;
+      pattern.kind = coupled >= 0 ? FaultKind::joint_coupling : FaultKind::joint_sign;
+      const AuditRows corrected = pattern.corrected(sample, nominal);
+      const ArmGeometry arm = starting_frames(nominal, corrected.measured(), true, true);
+      all.emplace_back(audit_residuals(arm, corrected).score(), std::move(pattern));
+    }
+  };
+  assess(-1, 1);
+  for (const int joint : coupled_candidates(nominal))
+    for (const double factor : {1.0, -1.0}) assess(joint, factor);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<AuditHypothesis> out;
+  for (std::size_t k = 0; k < all.size() && k < kept; ++k) out.push_back(std::move(all[k].second));
+  return out;
+}
+
 VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const AuditRows& rows, double smallest_zero) {
   HypothesisFit best = fit_hypothesis(nominal, rows, {});
   const double none = best.fit.residuals.score();
+  const bool plausible_as_is = plausible_residuals(nominal, rows, best.fit.residuals);
   const auto attempt = [&](const AuditHypothesis& hypothesis) {
     HypothesisFit fit = fit_hypothesis(nominal, rows, hypothesis);
     if (hypothesis.kind == FaultKind::joint_zero && nominal.chain().revolute(hypothesis.joint)) {
       fit.zero = std::remainder(fit.zero, 2 * std::numbers::pi);
       if (std::abs(fit.zero) < smallest_zero) return;
     }
-    // half a turn of a joint's zero may be the same as another joint's sign, which is simpler
-    const auto weight = [](const HypothesisFit& of) { return std::abs(of.zero) > 0.5 ? 2.5 : 1.0; };
+    // half a turn of a joint's zero may be the same as another joint's sign, which is simpler; so is one fault than two
+    const auto weight = [](const HypothesisFit& of) {
+      const double faults =
+          static_cast<double>(of.hypothesis.reversed.size()) + (of.hypothesis.coupled >= 0 ? 1.0 : 0.0);
+      return std::abs(of.zero) > 0.5 ? 2.5 : 1 + 0.25 * (std::max)(0.0, faults - 1);
+    };
     // in the unit of the measured positions: dividing lengths makes residuals small, too
     const auto score = [](const HypothesisFit& of) {
       return of.fit.residuals.score() * (of.hypothesis.kind == FaultKind::length_unit ? of.hypothesis.factor : 1.0);
@@ -123,7 +176,7 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
       attempt({.kind = FaultKind::joint_unit, .factor = factor});
   }
   for (int j = 0; j < nominal.joints(); ++j) {
-    attempt({.kind = FaultKind::joint_sign, .joint = j});
+    attempt({.kind = FaultKind::joint_sign, .reversed = {j}});
     if (j == 0 || j + 1 == nominal.joints()) continue;  // the frames absorb these zeros
     attempt({.kind = FaultKind::joint_zero, .joint = j});
     if (gross && nominal.chain().revolute(j))
@@ -136,6 +189,10 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
     for (int convention = 1; convention <= 6; ++convention)
       attempt({.kind = FaultKind::orientation_convention, .convention = convention});
   }
+  if (gross)
+    for (const AuditHypothesis& pattern : best_patterns(nominal, rows)) attempt(pattern);
+  best.plausible = plausible_residuals(nominal, best.hypothesis.corrected(rows, nominal), best.fit.residuals);
+  best.plausible_as_is = plausible_as_is;
   return best;
 }
 

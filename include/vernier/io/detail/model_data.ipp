@@ -52,6 +52,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   };
   add_known("left_out_error_m", from.left_out_error);
   add_known("held_out_error_m", from.held_out_error);
+  if (!from.data_sha256.empty()) out["provenance"]["data_sha256"] = from.data_sha256;
   out["joints"] = std::move(joints);
   out["arm"] = arm_to_json(model.identified);
   if (model.fallback) {
@@ -124,10 +125,15 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
     return std::string(names[static_cast<std::size_t>(named(from.at(key), names))]);
   };
   const auto known = [&](const char* key) { return from.has(key) ? from.at(key).number() : 0; };
-  Provenance provenance{any_text(from.at("data_file")),     static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
-                        any_text(from.at("date")),          one_of("joints", joint_readings),
-                        one_of("measured", measured_names), from.at("position_sigma_m").number(),
-                        known("left_out_error_m"),          known("held_out_error_m")};
+  Provenance provenance{any_text(from.at("data_file")),
+                        static_cast<Index>(from.at("rows").integer(0, INT32_MAX)),
+                        any_text(from.at("date")),
+                        one_of("joints", joint_readings),
+                        one_of("measured", measured_names),
+                        from.at("position_sigma_m").number(),
+                        known("left_out_error_m"),
+                        known("held_out_error_m"),
+                        from.has("data_sha256") ? any_text(from.at("data_sha256")) : std::string()};
   const ChainTable nominal(std::move(rows), modified);
   ModelData out{root.at("name").text(),
                 nominal,

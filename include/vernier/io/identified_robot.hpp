@@ -1,0 +1,79 @@
+#pragma once
+
+/// @file
+/// Calibrated robots of what `identify`, `identify_by_contacts` and `fit_error_model` found, with their covariance.
+
+#include <cmath>
+#include <utility>
+
+#include "vernier/error_model/fitted_error_model.hpp"
+#include "vernier/error_model/geometry_estimate.hpp"
+#include "vernier/identification/contact_report.hpp"
+#include "vernier/identification/identified.hpp"
+#include "vernier/io/calibrated_robot.hpp"
+#include "vernier/kinematics/arm_geometry.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// An identified geometry as a model without joint errors, with its covariance where there is one.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Convention>>& arm,
+                                                 const IdentificationReport& report, double position_sigma,
+                                                 double orientation_sigma, const RobotInfo<N>& info,
+                                                 Provenance provenance) {
+  using Chain = DhChain<N, Convention>;
+  const auto& identified = arm.identified();
+  const ErrorModel<Chain> model(arm.nominal().model(), identified.around(WithJointErrors<Chain>(identified.model())));
+  provenance.data_file = info.data_file;
+  provenance.date = info.date;
+  provenance.joints = info.joints;
+  provenance.position_sigma = position_sigma;
+  provenance.held_out_error = info.held_out_error;
+  provenance.data_sha256 = info.data_sha256;
+  CalibratedRobot<N, Convention> out(info.name, model, info.limits, std::move(provenance));
+  if (report.covariance.size() == 0) return out;
+  return out.with_estimate(geometry_estimate(ArmGeometry(identified), report, position_sigma, orientation_sigma));
+}
+
+}  // namespace detail
+
+/// The arm of an identification from measured poses, with its covariance where they determine it.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const Identified<DhChain<N, Convention>>& found, Index poses,
+                                                const RobotInfo<N>& info = {}) {
+  const bool oriented = found.rotation_rms_after > 0;
+  const double component = 1 / std::sqrt(3.0);
+  return detail::geometry_as_robot(found.model, found, component * found.rms_after,
+                                   component * found.rotation_rms_after, info,
+                                   {.rows = poses, .measured = oriented ? "poses" : "positions"});
+}
+
+/// The arm of an identification from contacts, with its covariance; its base frame is that of the nominal arm.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const IdentifiedByContacts<DhChain<N, Convention>>& found,
+                                                const RobotInfo<N>& info = {}) {
+  Provenance from{.measured = "contacts"};
+  for (const TouchedObject& object : found.objects) from.rows += object.touches;
+  return detail::geometry_as_robot(found.model, found, found.rms_after, 0, info, std::move(from));
+}
+
+/// The arm of a fitted error model, with its covariance: as seen from its first station.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const FittedErrorModel<DhChain<N, Convention>>& fitted, Index poses,
+                                                const RobotInfo<N>& info = {}) {
+  const bool oriented = fitted.orientation_sigma > 0;
+  return CalibratedRobot<N, Convention>(info.name, fitted.model(), info.limits,
+                                        {.data_file = info.data_file,
+                                         .rows = poses,
+                                         .date = info.date,
+                                         .joints = info.joints,
+                                         .measured = oriented ? "poses" : "positions",
+                                         .position_sigma = fitted.position_sigma,
+                                         .held_out_error = info.held_out_error,
+                                         .data_sha256 = info.data_sha256})
+      .with_estimate(fitted.first_station());
+}
+
+}  // namespace vernier

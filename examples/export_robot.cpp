@@ -8,6 +8,7 @@
 
 #include "cli.hpp"
 #include "csv_options.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
 #include "robot_choice.hpp"

@@ -16,7 +16,6 @@
 #include "page_text.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/rng.hpp"

@@ -60,12 +60,9 @@ Samples<N> simulate(const Problem& problem, const vn::DescribedRobot<N>& robot, 
 }
 
 /// All measured positions.
-/// @param said whether remarks on the file are printed
 template <int N>
-vn::Dataset<N> read_positions(const Problem& problem, const vn::DescribedRobot<N>& robot, bool said) {
-  vn::CsvFormat format = problem.csv.format();
-  if (!said) format.remark = [](const std::string&) {};
-  return vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types(), format).without_orientations();
+const vn::Dataset<N>& positions(const Problem& problem) {
+  return *std::any_cast<vn::Dataset<N>>(&problem.poses);
 }
 
 /// The fifth of measured poses that a seed holds out, and the others.
@@ -79,7 +76,7 @@ vn::Split<N> split(const Problem& problem, const vn::Dataset<N>& data, std::uint
 
 template <int N>
 Samples<N> measured(const Problem& problem, const vn::DescribedRobot<N>& robot, Index poses, std::uint64_t seed) {
-  vn::Split<N> parts = split<N>(problem, read_positions(problem, robot, false), seed);
+  vn::Split<N> parts = split<N>(problem, positions<N>(problem), seed);
   if (poses > 0) {
     const auto order = vn::Rng(vn::child_seed(seed, subset_stream)).permutation(parts.train.size());
     parts.train = parts.train.rows(std::span<const Index>(order).first(static_cast<std::size_t>(poses)));
@@ -90,8 +87,10 @@ Samples<N> measured(const Problem& problem, const vn::DescribedRobot<N>& robot, 
 /// Reads measured poses, and makes sure that every split has as many as the plan asks for.
 /// @return their file
 template <int N>
-void check_poses(const Plan& plan, const Problem& problem, const vn::DescribedRobot<N>& robot) {
-  const vn::Dataset<N> data = read_positions(problem, robot, true);
+vn::SourceFile read_positions(const Plan& plan, Problem& problem, const vn::DescribedRobot<N>& robot) {
+  const vn::Dataset<N> data =
+      vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types(), problem.csv.format()).without_orientations();
+  problem.poses = data;
   const Index most = *std::max_element(plan.poses.begin(), plan.poses.end());
   for (const std::uint64_t seed : plan.seeds)
     if (const Index there = split<N>(problem, data, seed).train.size(); most > there)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/evaluation/position_errors.hpp"

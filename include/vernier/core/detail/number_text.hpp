@@ -22,6 +22,10 @@ VERNIER_API std::string significant_digits(double value, int digits);
 /// A number in three significant digits; from a thousand to a million all before the point.
 VERNIER_API std::string brief(double value);
 
+/// A number in three significant digits for tables, with zeros at its end: 0.0500, 0.912, 12.0, 1234. Below 1e-5 and
+/// from a million on with an exponent.
+VERNIER_API std::string three_digits(double value);
+
 /// A text at the right of a column of at least `width` characters.
 VERNIER_API std::string at_right(const std::string& text, std::size_t width);
 

@@ -30,6 +30,16 @@ VERNIER_IMPL std::string brief(double value) {
   return size >= 999.5 && size < 999999.5 ? fixed_digits(value, 0) : significant_digits(value, 3);
 }
 
+VERNIER_IMPL std::string three_digits(double value) {
+  const std::string text = rounded_text(value, std::chars_format::scientific, 2);  // as 1.23e-04
+  if (!std::isfinite(value)) return text;
+  const std::size_t e = text.find('e');
+  if (text.find_first_of("123456789") > e) return "0";
+  int exponent = 0;
+  std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), text.data() + text.size(), exponent);
+  return exponent < -5 || exponent > 5 ? text : fixed_digits(value, exponent < 2 ? 2 - exponent : 0);
+}
+
 VERNIER_IMPL std::string at_right(const std::string& text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
 }

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "vernier/calibration/detail/wording.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/version.hpp"

@@ -68,13 +68,8 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
       report.fit_seconds - report.leave_one_out_seconds, report.leave_one_out_seconds, report.evaluation_seconds * 1e6,
       folder.string());
   if (!o.verbose) fmt::print("Details behind the verdict: --verbose, or --report FILE\n");
-  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", o.save);
-  if (!o.report.empty()) {
-    found.page.rule = found.held_out;
-    found.page.results = json.dump(-1, ' ', false, support::Json::error_handler_t::replace);
-    support::write_report(program, o.report, found.page, o.date, o.save);
-    fmt::print("Report: {}\n", o.report);
-  }
+  if (!o.save.empty()) fmt::print("Calibrated model: {}\n", support::shown(o.save));
+  if (!o.report.empty()) fmt::print("Report: {}\n", support::shown(o.report));
   return 0;
 }
 

@@ -40,7 +40,7 @@ int verify_arm(const support::Program& program, const Options& o, const vn::Save
   if (o.accept_mm > 0) options.accept = o.accept_mm * 1e-3;
   options.sensors.use_orientations = !o.positions_only;
   options.expected_error = robot.provenance().expected_error();
-  options.fitted_poses = robot.provenance().fitted_to(support::file_hash(o.data));
+  options.fitted_poses = robot.provenance().fitted_to(data.origin().hashes.front());
   const vn::VerificationReport report =
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
 

@@ -135,9 +135,16 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
     out.train.add(vn::readings_joined(stations[s].train, same), o.data[s]);
     out.test.add(std::move(stations[s].test));
   }
-  for (const std::string& file : o.distances) out.train.add(vn::read_distances<N>(file, types, o.csv.format()), file);
-  if (!o.contacts.empty())
-    for (const vn::Contact& contact : vn::read_contacts(o.contacts, N, types, o.csv.format())) out.train.add(contact);
+  for (const std::string& file : o.distances) {
+    const vn::Distances<N> distances = vn::read_distances<N>(file, types, o.csv.format());
+    out.inputs.push_back(file_of(distances.origin()));
+    out.train.add(distances, file);
+  }
+  if (o.contacts.empty()) return out;
+  const std::vector<vn::Contact> contacts = vn::read_contacts(o.contacts, N, types, o.csv.format());
+  for (const vn::Contact& contact : contacts) out.train.add(contact);
+  out.inputs.push_back(file_of(contacts.front().origin()));
+  out.inputs.back().rows = 0;  // of several objects
   return out;
 }
 

@@ -36,10 +36,11 @@ std::string file_names(const std::vector<std::string>& paths) {
   return out;
 }
 
-/// Digests of files, joined by commas.
-std::string file_hashes(const std::vector<std::string>& paths) {
+/// Digests of the files of some sets, joined by commas.
+template <int N>
+std::string file_hashes(const std::vector<vn::Dataset<N>>& sets) {
   std::string out;
-  for (const std::string& path : paths) out += (out.empty() ? "" : ",") + file_hash(path);
+  for (const auto& set : sets) out += (out.empty() ? "" : ",") + set.origin().hashes.front();
   return out;
 }
 
@@ -81,13 +82,13 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
   if (!o.save.empty())
-    vn::save(o.save, calibration,
-             {.name = robot.name,
-              .limits = robot.limits,
-              .data_file = file_names(o.data),
-              .date = o.date,
-              .held_out_error = out.report.stage(out.report.chosen).position.mean(),
-              .data_sha256 = file_hashes(o.data)});
+    out.model = {o.save, vn::save(o.save, calibration,
+                                  {.name = robot.name,
+                                   .limits = robot.limits,
+                                   .data_file = file_names(o.data),
+                                   .date = o.date,
+                                   .held_out_error = out.report.stage(out.report.chosen).position.mean(),
+                                   .data_sha256 = file_hashes<N>(measured->files)})};
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);
     out.page.audit = audit_rows(o.data, out.audits);

@@ -1,7 +1,6 @@
 #include "report_page.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "vernier/core/atomic_file.hpp"
 
@@ -22,14 +21,6 @@ std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& f
                      audits.size() > 1 ? vernier::message(rows, " of ", files[k]) : rows, finding.message});
     }
   return out;
-}
-
-std::string file_hash(const std::string& path) {
-  return std::filesystem::is_regular_file(path) ? vernier::sha256(vernier::read_file(path)) : std::string();
-}
-
-vernier::ReportFile file_read(const std::string& path, vernier::Index rows) {
-  return {path, rows, vernier::sha256(vernier::read_file(path))};
 }
 
 void write_report(const Program& program, const std::string& path, vernier::ReportInput& report,

@@ -39,11 +39,10 @@ void add_poses(vernier::ReportInput& report, const auto& nominal, const vernier:
 std::vector<vernier::ReportFinding> audit_rows(const std::vector<std::string>& files,
                                                const std::vector<vernier::DataAudit>& audits);
 
-/// SHA-256 of the bytes of a file; empty for a pipe, which can be read only once.
-std::string file_hash(const std::string& path);
-
-/// A file that was read, with the digest of its bytes.
-vernier::ReportFile file_read(const std::string& path, vernier::Index rows);
+/// The file of some rows, as it was read.
+inline vernier::ReportFile file_of(const vernier::RowOrigin& rows) {
+  return {rows.files.front(), static_cast<vernier::Index>(rows.line.size()), rows.hashes.front()};
+}
 
 /// Writes a report with its provenance.
 /// @param model file of the model that it speaks of, with its hash; without a name where there is none

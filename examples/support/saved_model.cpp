@@ -109,7 +109,7 @@ void reregister_arm(Program& program, const CalibrationOptions& o, const vn::Rer
   require_usable(found, robot.name(), file, data.size());
   vn::Provenance from = robot.provenance();
   from.data_file += "," + file_name(file);
-  if (!from.data_sha256.empty()) from.data_sha256 += "," + file_hash(file);
+  if (!from.data_sha256.empty()) from.data_sha256 += "," + data.origin().hashes.front();
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;

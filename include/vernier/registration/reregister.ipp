@@ -40,10 +40,9 @@ VERNIER_LOCAL std::string components(const Vector3& values, int decimals) {
 VERNIER_IMPL std::string excess_remark(double left, double expected) {
   constexpr double factor = 10;
   if (!(expected > 0) || left < factor * expected) return {};
-  return formatted(
-      "After registration %.3f mm are left, %.0f times the error of the calibration at held-out poses (%.3f mm): are "
-      "these poses of this arm, with joints in its order and units?",
-      1e3 * left, left / expected, 1e3 * expected);
+  return message("After registration ", fixed_digits(1e3 * left, 3), " mm are left, ", fixed_digits(left / expected, 0),
+                 " times the error of the calibration at held-out poses (", fixed_digits(1e3 * expected, 3),
+                 " mm): are these poses of this arm, with joints in its order and units?");
 }
 
 VERNIER_IMPL std::string outside_remark(const std::vector<Index>& outside, const RowOrigin& origin, Index poses) {

@@ -125,7 +125,8 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
     const auto text = [&](const std::vector<std::pair<double, double>>& of) {
       std::string out_of;
       for (const auto& [lower, upper] : of)
-        out_of += message(out_of.empty() ? "" : ", ", fixed(lower * unit, 1), " .. ", fixed(upper * unit, 1));
+        out_of +=
+            message(out_of.empty() ? "" : ", ", fixed_digits(lower * unit, 1), " .. ", fixed_digits(upper * unit, 1));
       return out_of;
     };
     if (!joint.measured_ranges.empty())

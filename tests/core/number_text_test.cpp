@@ -16,7 +16,7 @@
 namespace vernier::number_text_test {
 namespace {
 
-using testing_support::ForeignLocale;
+using vernier_test::ForeignLocale;
 
 std::string printed(const char* format, int precision, double value) {
   char text[400];

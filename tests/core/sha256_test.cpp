@@ -28,7 +28,7 @@ TEST(Sha256, EqualsThePublishedExamples) {
 // Every length up to three blocks, where padding may need one more block; all 256 values of a byte.
 TEST(Sha256, EqualsThatOfSha256sum) {
   if (std::system("sha256sum --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "sha256sum is not there";
-  const testing_support::TemporaryFolder folder("sha256");
+  const vernier_test::TemporaryFolder folder("sha256");
   Rng rng(1);
   std::string expected, names;
   for (int n = 0; n <= 192; ++n) {
@@ -38,8 +38,7 @@ TEST(Sha256, EqualsThatOfSha256sum) {
     expected += sha256(bytes) + "  " + std::to_string(n) + "\n";
     names += " " + std::to_string(n);
   }
-  const auto sums =
-      testing_support::run_command("cd '" + folder.path().string() + "'; sha256sum" + names, folder.path());
+  const auto sums = vernier_test::run_command("cd '" + folder.path().string() + "'; sha256sum" + names, folder.path());
   EXPECT_EQ(sums.exit_code, 0) << sums.errors;
   EXPECT_EQ(sums.output, expected);
 }

@@ -51,7 +51,7 @@ class CsvForms : public ::testing::Test {
 
  private:
   std::filesystem::path before_ = std::filesystem::current_path();
-  testing_support::TemporaryFolder folder_{"csv_forms"};
+  vernier_test::TemporaryFolder folder_{"csv_forms"};
 };
 
 const std::string head = "q1_rad,q2_rad,x_mm,y_mm,z_mm";

@@ -62,7 +62,7 @@ TEST(RowOrigin, HashesStandBesideTheirFiles) {
 
 // Whatever reads rows knows the bytes that it read, also of a pipe, which nobody can read again.
 TEST(RowOrigin, HashesAreOfWhatCameThroughAPipe) {
-  const vernier::testing_support::TemporaryFolder folder("row_origin_pipe");
+  const vernier_test::TemporaryFolder folder("row_origin_pipe");
   const std::string pipe = (folder.path() / "pipe").string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const auto origin_of = [&](const std::string& text, const auto& read) {

@@ -28,12 +28,12 @@ TEST(Readme, ProgramCalibratesAndCorrects) {
   const auto errors = draw_joint_errors(robot.chain, {.gear_ratio = 0, .coupling = 0}, 5);
   const Framed real(WithJointErrors<DhChain<6>>(off, errors), FrameParameters(Vector6{2, -1, 0.5, 0.1, -0.2, 1.5}),
                     FrameParameters(Vector6{0.02, 0.03, 0.11, 0, 0.1, 0}));
-  const testing_support::TemporaryFolder folder("readme");
+  const vernier_test::TemporaryFolder folder("readme");
   write_dataset<6>((folder / "poses.csv").string(),
                    measure(real, sample_joints(range, 250, 1), {.position = 0.03e-3, .with_orientations = false}, 2));
 
-  const auto run = testing_support::run_command(
-      "cd '" + folder.path().string() + "' && '" + VERNIER_README_PROGRAM + "'", folder.path());
+  const auto run = vernier_test::run_command("cd '" + folder.path().string() + "' && '" + VERNIER_README_PROGRAM + "'",
+                                             folder.path());
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   const auto held_out = run.output.find("held out: "), command = run.output.find("send joint 1 to ");
   ASSERT_NE(held_out, std::string::npos) << run.output;

@@ -84,7 +84,7 @@ class Guide : public ::testing::Test {
 
  private:
   std::filesystem::path before_ = std::filesystem::current_path();
-  testing_support::TemporaryFolder folder_{"guide"};
+  vernier_test::TemporaryFolder folder_{"guide"};
 };
 
 TEST_F(Guide, CalibratesSavesAndCorrects) {

@@ -29,8 +29,8 @@
 namespace vernier::locale_test {
 namespace {
 
-using testing_support::ForeignLocale;
-using testing_support::TemporaryFolder;
+using vernier_test::ForeignLocale;
+using vernier_test::TemporaryFolder;
 using Chain = DhChain<6>;
 
 const Robot<6> robot = robots::abb_irb120();

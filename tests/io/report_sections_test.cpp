@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "page_text.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/pose_view.hpp"
@@ -233,7 +234,8 @@ TEST(ReportSections, DriftOfABase) {
 TEST(ReportSections, TableAndDistributionOfErrors) {
   const ReportInput input = input_of();
   const std::string text = detail::errors_section(input);
-  EXPECT_EQ(row(text, "joint-wise (deployed)"), "10.0|" + detail::fixed(std::sqrt(20 * 41 / 6.0), 1) + "|20.0|0|19.0");
+  EXPECT_EQ(row(text, "joint-wise (deployed)"),
+            "10.0|" + detail::fixed_digits(std::sqrt(20 * 41 / 6.0), 1) + "|20.0|0|19.0");
   EXPECT_EQ(row(text, "frames alone").substr(0, 4), "30.0");
   EXPECT_EQ(count(text, "class=\"key "), 3u);  // before, geometry, after
   EXPECT_TRUE(has(text, ">1e-06<"));           // an error of zero on a logarithmic axis

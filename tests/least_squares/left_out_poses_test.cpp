@@ -65,7 +65,8 @@ TEST(LeftOutPoses, AreThoseOfSolvingWithoutAllBlocksOfThePose) {
     ASSERT_EQ(found.errors.cols(), (LocalStates::blocks + stride - 1) / stride);
     for (Index k = 0; k < found.errors.cols(); ++k) {
       const RealMatrix wanted = by_force(problem, k * stride).block(0, 0, 3, 1);
-      EXPECT_LT((RealMatrix(found.errors.col(k)) - wanted).norm(), 1e-9 * wanted.norm()) << stride << ", " << k;
+      const vernier::Vector3 error = found.errors.col(k);
+      EXPECT_LT((error - wanted).norm(), 1e-9 * wanted.norm()) << stride << ", " << k;
       EXPECT_EQ(found.poses[static_cast<std::size_t>(k)], poses()[static_cast<std::size_t>(k * stride)]);
     }
   }

@@ -17,9 +17,9 @@
 namespace vernier::bad_input_test {
 namespace {
 
-using testing_support::CommandResult;
-using testing_support::replaced;
-using testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::replaced;
+using vernier_test::TemporaryFolder;
 
 CalibratedRobot<6> model() {
   const auto robot = robots::abb_irb120();
@@ -52,7 +52,7 @@ class BadInputToPrograms : public ::testing::Test {
   void expect_refused(const std::string& arguments, int exit_code, const std::string& words) {
     const auto before = files();
     const TemporaryFolder streams("bad_input_streams");
-    const CommandResult result = testing_support::run_command(
+    const CommandResult result = vernier_test::run_command(
         "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "'/" + arguments, streams.path());
     EXPECT_EQ(result.exit_code, exit_code) << arguments << "\n" << result.errors;
     EXPECT_TRUE(result.one_line_of_errors()) << arguments << "\n" << result.errors;

@@ -17,10 +17,10 @@
 namespace vernier::calibrate_contacts_test {
 namespace {
 
-using testing_support::CommandResult;
-using testing_support::TemporaryFolder;
 using vernier_test::actual_arm;
+using vernier_test::CommandResult;
 using vernier_test::registered_mean;
+using vernier_test::TemporaryFolder;
 using vernier_test::three_planes;
 
 /// Contacts as a file.
@@ -38,10 +38,9 @@ std::string text_of(const std::vector<Contact>& contacts) {
 class CalibrateContacts : public ::testing::Test {
  protected:
   CommandResult calibrate(const std::string& arguments) {
-    return testing_support::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +
-                                            "/calibrate' --robot abb_irb120 --date 2024-05-01 --out figures " +
-                                            arguments,
-                                        folder_.path());
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +
+                                         "/calibrate' --robot abb_irb120 --date 2024-05-01 --out figures " + arguments,
+                                     folder_.path());
   }
   void refused(const std::string& arguments, int code, const std::string& reason) {
     const CommandResult result = calibrate(arguments);

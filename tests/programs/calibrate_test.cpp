@@ -21,11 +21,11 @@ namespace vernier::calibrate_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using testing_support::CommandResult;
-using testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
 
 CommandResult run(const TemporaryFolder& folder, const std::string& program, const std::string& arguments) {
-  return testing_support::run_command(
+  return vernier_test::run_command(
       "cd '" + folder.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + program + "' " + arguments,
       folder.path());
 }
@@ -428,7 +428,7 @@ TEST(Calibrate, DistancesBesidePosesAndTunedPriors) {
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(refused.one_line_of_errors()) << refused.errors;
   EXPECT_NE(refused.errors.find("no column distance_mm"), std::string::npos) << refused.errors;
-  write_file(folder / "metres.csv", testing_support::replaced(text, "distance_mm", "distance_m"));
+  write_file(folder / "metres.csv", vernier_test::replaced(text, "distance_mm", "distance_m"));
   const CommandResult metres = run(folder, "calibrate", "--robot abb_irb120 --data poses.csv --distances metres.csv");
   EXPECT_EQ(metres.exit_code, 1);
   EXPECT_TRUE(metres.one_line_of_errors()) << metres.errors;

@@ -18,13 +18,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using vernier::read_file;
-using vernier::testing_support::CommandResult;
-using vernier::testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
 
 const std::string program = std::string(VERNIER_EXAMPLES_DIR) + "/compare";
 
 CommandResult shell(const TemporaryFolder& folder, const std::string& command) {
-  return vernier::testing_support::run_command("cd '" + folder.path().string() + "'; " + command, folder.path());
+  return vernier_test::run_command("cd '" + folder.path().string() + "'; " + command, folder.path());
 }
 
 CommandResult alone(const TemporaryFolder& folder, const std::string& arguments) {

@@ -17,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using vernier::read_file;
-using vernier::testing_support::CommandResult;
-using vernier::testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
 
 CommandResult run(const TemporaryFolder& folder, const std::string& arguments) {
   const std::string program = std::string(VERNIER_EXAMPLES_DIR) + "/compare";
-  return vernier::testing_support::run_command("cd '" + folder.path().string() + "'; '" + program + "' " + arguments,
-                                               folder.path());
+  return vernier_test::run_command("cd '" + folder.path().string() + "'; '" + program + "' " + arguments,
+                                   folder.path());
 }
 
 const std::string grid =
@@ -117,7 +117,7 @@ TEST(Compare, FailuresAreTriedAgain) {
                               "/compare' --methods elm,kernel_elm --poses 6000 --seeds 1,2 --results r.jsonl "
                               "--json r.json";
   for (const char* words : {"4 cells, 4 of them", "4 cells, 2 of them"}) {
-    const CommandResult result = vernier::testing_support::run_command(command, folder.path());
+    const CommandResult result = vernier_test::run_command(command, folder.path());
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_NE(result.output.find(words), std::string::npos) << result.output;
     EXPECT_NE(result.output.find("(2 failed: out of memory)"), std::string::npos) << result.output;

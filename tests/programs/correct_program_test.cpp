@@ -26,7 +26,7 @@
 namespace vernier::correct_program_test {
 namespace {
 
-using testing_support::CommandResult;
+using vernier_test::CommandResult;
 using Joints = JointVector<6>;
 using Model = CalibratedRobot<6>::Model;
 
@@ -91,7 +91,7 @@ class CorrectProgram : public ::testing::Test {
   }
 
   CommandResult correct(const std::string& arguments) {
-    return testing_support::run_command(
+    return vernier_test::run_command(
         "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/correct' --model model.json " + arguments,
         folder_.path());
   }
@@ -141,7 +141,7 @@ class CorrectProgram : public ::testing::Test {
     EXPECT_LT(left.tail<3>().norm(), 10e-6);
   }
 
-  testing_support::TemporaryFolder folder_{"correct_program"};
+  vernier_test::TemporaryFolder folder_{"correct_program"};
   DhChain<6> nominal_ = robots::abb_irb120().chain;
   JointLimits<6> limits_{};
   std::optional<CalibratedRobot<6>> robot_{};

@@ -22,7 +22,7 @@
 namespace vernier::correct_test {
 namespace {
 
-using testing_support::CommandResult;
+using vernier_test::CommandResult;
 
 class Correct : public ::testing::Test {
  protected:
@@ -32,7 +32,7 @@ class Correct : public ::testing::Test {
   }
 
   CommandResult correct(const std::string& arguments) {
-    return testing_support::run_command(
+    return vernier_test::run_command(
         "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/correct' --model model.json " + arguments,
         folder_.path());
   }
@@ -44,7 +44,7 @@ class Correct : public ::testing::Test {
     return out;
   }
 
-  testing_support::TemporaryFolder folder_{"correct"};
+  vernier_test::TemporaryFolder folder_{"correct"};
   Robot<6> catalogue_ = robots::abb_irb120();
   using Model = CalibratedRobot<6>::Model;
   Model::Arm actual_{with_geometric_errors(catalogue_.chain, {}, 21), FrameParameters(Vector6{1, 2, 0.5, 0, 0, 1}),
@@ -74,9 +74,9 @@ TEST_F(Correct, ReadsTheModelThroughAPipe) {
              "MODULE a\nPROC main()\nMoveAbsJ [[10,20,-30,40,50,60],[9E9,9E9,9E9,9E9,9E9,9E9]],v1,fine,tool0;\n"
              "ENDPROC\nENDMODULE\n");
   const auto through_pipe = [&](const std::string& arguments) {
-    return testing_support::run_command("cd '" + folder_.path().string() + "'; mkfifo p; cat model.json >p & '" +
-                                            VERNIER_EXAMPLES_DIR + "/correct' --model p " + arguments + " && rm p",
-                                        folder_.path());
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; mkfifo p; cat model.json >p & '" +
+                                         VERNIER_EXAMPLES_DIR + "/correct' --model p " + arguments + " && rm p",
+                                     folder_.path());
   };
   ASSERT_EQ(correct("--targets targets.csv --out a.csv").exit_code, 0);
   const CommandResult commands = through_pipe("--targets targets.csv --out b.csv");

@@ -14,9 +14,9 @@ namespace {
 
 class CsvOptionsOfPrograms : public ::testing::Test {
  protected:
-  testing_support::CommandResult run(const std::string& command) const {
-    return testing_support::run_command(
-        "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command, folder_.path());
+  vernier_test::CommandResult run(const std::string& command) const {
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command,
+                                     folder_.path());
   }
   std::string done(const std::string& command) const {
     const auto result = run(command);
@@ -34,7 +34,7 @@ class CsvOptionsOfPrograms : public ::testing::Test {
     }
     write_file(folder_ / to, "\xEF\xBB\xBF" + out);
   }
-  testing_support::TemporaryFolder folder_{"csv_options"};
+  vernier_test::TemporaryFolder folder_{"csv_options"};
 };
 
 TEST_F(CsvOptionsOfPrograms, AreNamedAndTaken) {

@@ -15,14 +15,14 @@
 namespace vernier::export_c_program_test {
 namespace {
 
-using testing_support::CommandResult;
+using vernier_test::CommandResult;
 
 class ExportCProgram : public ::testing::Test {
  protected:
   ExportCProgram() { save(folder_ / "model.json", robot_); }
 
   CommandResult run(const std::string& command) {
-    return testing_support::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; " + command, folder_.path());
   }
   CommandResult export_c(const std::string& arguments) {
     return run("'" VERNIER_EXAMPLES_DIR "/export_c' --model model.json " + arguments);
@@ -35,7 +35,7 @@ class ExportCProgram : public ::testing::Test {
     write_file(folder_ / "results.json", results.dump());
   }
 
-  testing_support::TemporaryFolder folder_{"export_c"};
+  vernier_test::TemporaryFolder folder_{"export_c"};
   Robot<6> catalogue_ = robots::abb_irb120();
   using Model = CalibratedRobot<6>::Model;
   Model::Arm actual_{with_geometric_errors(catalogue_.chain, {}, 21), FrameParameters(Vector6{1, 2, 0.5, 0, 0, 1}),

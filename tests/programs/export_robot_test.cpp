@@ -26,7 +26,7 @@ const std::string from_urdf = "--robot arm.urdf --base-link base_link --tip-link
 class ExportRobot : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new testing_support::TemporaryFolder("export_robot");
+    folder_ = new vernier_test::TemporaryFolder("export_robot");
     write_file(*folder_ / "arm.urdf", vernier_test::ur_like_urdf());
     write_file(*folder_ / "calibration.conf", vernier_test::ur_delta_sets()[0].conf());
     Rng rng(1);
@@ -41,19 +41,19 @@ class ExportRobot : public ::testing::Test {
   static void TearDownTestSuite() { delete folder_; }
   void SetUp() override { ASSERT_EQ(measured_.exit_code, 0) << measured_.errors; }
 
-  static testing_support::CommandResult run(const std::string& program, const std::string& arguments) {
-    return testing_support::run_command(
+  static vernier_test::CommandResult run(const std::string& program, const std::string& arguments) {
+    return vernier_test::run_command(
         "cd '" + folder_->path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + program + "' " + arguments,
         folder_->path());
   }
   static nlohmann::json results() { return nlohmann::json::parse(read_file(*folder_ / "out.json")); }
   static std::string path(const std::string& name) { return (*folder_ / name).string(); }
 
-  static testing_support::TemporaryFolder* folder_;
-  static testing_support::CommandResult measured_;
+  static vernier_test::TemporaryFolder* folder_;
+  static vernier_test::CommandResult measured_;
 };
-testing_support::TemporaryFolder* ExportRobot::folder_ = nullptr;
-testing_support::CommandResult ExportRobot::measured_{};
+vernier_test::TemporaryFolder* ExportRobot::folder_ = nullptr;
+vernier_test::CommandResult ExportRobot::measured_{};
 
 // With base and tool in it, the file alone says where the tracker saw the arm.
 TEST_F(ExportRobot, AUrdfWithItsFramesPredictsHeldOutPoses) {

@@ -18,12 +18,12 @@
 namespace vernier::iso9283_program_test {
 namespace {
 
-using testing_support::CommandResult;
+using vernier_test::CommandResult;
 
 class Iso9283Program : public ::testing::Test {
  protected:
   CommandResult iso(const std::string& arguments) {
-    return testing_support::run_command(
+    return vernier_test::run_command(
         "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/iso9283' " + arguments, folder_.path());
   }
 
@@ -49,7 +49,7 @@ class Iso9283Program : public ::testing::Test {
     write_file(folder_ / "visits.csv", visits);
   }
 
-  testing_support::TemporaryFolder folder_{"iso9283"};
+  vernier_test::TemporaryFolder folder_{"iso9283"};
 };
 
 TEST_F(Iso9283Program, Poses) {

@@ -21,7 +21,7 @@
 namespace vernier::join_measurements_test {
 namespace {
 
-using testing_support::CommandResult;
+using vernier_test::CommandResult;
 
 class JoinMeasurements : public ::testing::Test {
  protected:
@@ -61,9 +61,9 @@ class JoinMeasurements : public ::testing::Test {
   }
 
   CommandResult join(const std::string& arguments) {
-    return testing_support::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +
-                                            "/join_measurements' --joints commanded.csv " + arguments,
-                                        folder_.path());
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +
+                                         "/join_measurements' --joints commanded.csv " + arguments,
+                                     folder_.path());
   }
   void expect_refused(const std::string& arguments, int exit_code, const std::string& words) {
     const CommandResult done = join(arguments);
@@ -73,7 +73,7 @@ class JoinMeasurements : public ::testing::Test {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "measured.csv")) << arguments;
   }
 
-  testing_support::TemporaryFolder folder_{"join_measurements"};
+  vernier_test::TemporaryFolder folder_{"join_measurements"};
   JointRows<6> joints_;
   PointRows points_;
 };

@@ -58,9 +58,9 @@ std::vector<Arm> arms() {
 
 class JointTypes : public ::testing::TestWithParam<Arm> {
  protected:
-  testing_support::CommandResult run(const std::string& command) const {
-    return testing_support::run_command(
-        "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command, folder_.path());
+  vernier_test::CommandResult run(const std::string& command) const {
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command,
+                                     folder_.path());
   }
   std::string done(const std::string& command) const {
     const auto result = run(command);
@@ -72,7 +72,7 @@ class JointTypes : public ::testing::TestWithParam<Arm> {
     const std::string text = read_file(folder_ / name);
     return text.substr(0, text.find('\n'));
   }
-  testing_support::TemporaryFolder folder_{"joint_types"};
+  vernier_test::TemporaryFolder folder_{"joint_types"};
 };
 
 TEST_P(JointTypes, PlanSimulateCalibrateCorrect) {

@@ -21,8 +21,8 @@ namespace vernier::outputs_test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing_support::CommandResult;
-using testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
 
 class Outputs : public ::testing::Test {
  protected:
@@ -45,7 +45,7 @@ class Outputs : public ::testing::Test {
   CommandResult run(const std::string& commands) const {
     write_file(streams_ / "commands.sh", "export P='" + std::string(VERNIER_EXAMPLES_DIR) + "'\ncd '" +
                                              folder_.path().string() + "'\n" + commands + "\n");
-    return testing_support::run_command("bash '" + (streams_ / "commands.sh").string() + "'", streams_.path());
+    return vernier_test::run_command("bash '" + (streams_ / "commands.sh").string() + "'", streams_.path());
   }
 
   /// That the commands are refused before any work: the exit code, one line with some words, and nothing written.

@@ -15,8 +15,8 @@ namespace paper_comparison_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using vernier::testing_support::CommandResult;
-using vernier::testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
 
 const std::vector<std::string> names{"uncompensated",    "joint_ga_elm",      "joint_pso_elm",
                                      "cartesian_ga_elm", "cartesian_pso_elm", "identification"};
@@ -24,7 +24,7 @@ const std::string few = " --train 300 --test 60 --scale-budget 0.02 --seed 3 ", 
 
 CommandResult run(const TemporaryFolder& folder, const std::string& arguments, const std::string& environment = "") {
   const std::string program = std::string(VERNIER_EXAMPLES_DIR) + "/paper_comparison";
-  return vernier::testing_support::run_command(
+  return vernier_test::run_command(
       "cd '" + folder.path().string() + "'; " + environment + " '" + program + "' " + arguments, folder.path());
 }
 

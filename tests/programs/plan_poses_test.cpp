@@ -17,12 +17,12 @@
 namespace vernier::plan_poses_test {
 namespace {
 
-using testing_support::CommandResult;
+using vernier_test::CommandResult;
 
 class PlanPoses : public ::testing::Test {
  protected:
   CommandResult run(const std::string& program, const std::string& arguments) {
-    return testing_support::run_command(
+    return vernier_test::run_command(
         "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + program + "' " + arguments,
         folder_.path());
   }
@@ -39,7 +39,7 @@ class PlanPoses : public ::testing::Test {
     ASSERT_EQ(done.exit_code, 0) << done.errors;
   }
 
-  testing_support::TemporaryFolder folder_{"plan_poses"};
+  vernier_test::TemporaryFolder folder_{"plan_poses"};
 };
 
 TEST_F(PlanPoses, NewPosesWithinTheirConstraints) {

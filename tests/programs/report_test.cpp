@@ -21,11 +21,11 @@ namespace vernier::report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using testing_support::CommandResult;
-using testing_support::TemporaryFolder;
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
 
 CommandResult run(const TemporaryFolder& folder, const std::string& program, const std::string& arguments) {
-  return testing_support::run_command(
+  return vernier_test::run_command(
       "cd '" + folder.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + program + "' " + arguments,
       folder.path());
 }
@@ -114,7 +114,7 @@ TEST(Report, SameBitsButForItsName) {
 /// Runs a program by bash, which gives it pipes: `<(cat poses.csv)`.
 CommandResult run_with_pipes(const TemporaryFolder& folder, const std::string& program, const std::string& arguments) {
   write_file(folder / "command.sh", "'" + std::string(VERNIER_EXAMPLES_DIR) + "/" + program + "' " + arguments + "\n");
-  return testing_support::run_command("cd '" + folder.path().string() + "'; bash command.sh", folder.path());
+  return vernier_test::run_command("cd '" + folder.path().string() + "'; bash command.sh", folder.path());
 }
 
 // A pipe can be read once; an output may be a pipe, too, and an input may be replaced by an output.

@@ -15,9 +15,9 @@ namespace vernier::workflow_test {
 namespace {
 
 TEST(Workflow, FromATableToAReportInFiveCommands) {
-  const testing_support::TemporaryFolder folder("workflow");
+  const vernier_test::TemporaryFolder folder("workflow");
   const auto run = [&](const std::string& command) {
-    const auto done = testing_support::run_command(
+    const auto done = vernier_test::run_command(
         "cd '" + folder.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command, folder.path());
     EXPECT_EQ(done.exit_code, 0) << command << ": " << done.errors;
     return done.output;

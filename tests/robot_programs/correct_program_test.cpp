@@ -245,7 +245,7 @@ std::string target(const Joints& q, const Isometry3& tool = Isometry3::Identity(
 TEST(CorrectProgram, SaysWhatItRefusesAndWhy) {
   const std::string good = target(samples()[0]);
   const auto from = [&](const std::string& part, const std::string& to) {
-    return testing_support::replaced(good, part, to);
+    return vernier_test::replaced(good, part, to);
   };
   const std::string x = good.substr(2, good.find(',') - 2);
   const Corrected done = corrected_rapid(

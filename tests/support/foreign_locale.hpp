@@ -4,7 +4,7 @@
 #include <locale>
 #include <string>
 
-namespace vernier::testing_support {
+namespace vernier_test {
 
 /// A host program that writes 1234.5 as 1.234,5, as long as this exists: in C++ always; in C where the system has such
 /// a locale.
@@ -36,4 +36,4 @@ class ForeignLocale {
   std::locale in_cpp_;
 };
 
-}  // namespace vernier::testing_support
+}  // namespace vernier_test

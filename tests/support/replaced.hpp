@@ -14,7 +14,3 @@ inline std::string replaced(std::string text, const std::string& from, const std
 }
 
 }  // namespace vernier_test
-
-namespace vernier {
-namespace testing_support = ::vernier_test;
-}

@@ -32,7 +32,3 @@ inline CommandResult run_command(const std::string& command, const std::filesyst
 }
 
 }  // namespace vernier_test
-
-namespace vernier {
-namespace testing_support = ::vernier_test;
-}

@@ -31,7 +31,3 @@ class TemporaryFolder {
 };
 
 }  // namespace vernier_test
-
-namespace vernier {
-namespace testing_support = ::vernier_test;
-}

@@ -175,8 +175,8 @@ TEST(ExportUrdf, OnlyOriginsOfJointsAreTouched) {
   base.translation().y() += 0.25;
   tool.translation().z() += 0.5;
   std::string expected = text;
-  expected = testing_support::replaced(expected, "<origin xyz='1 0 0'/>", "<origin rpy=\"0 0 0\" xyz='1 0.25 0'/>");
-  expected = testing_support::replaced(expected, "xyz='0 0 2'", "xyz='0 0 2.5'");
+  expected = vernier_test::replaced(expected, "<origin xyz='1 0 0'/>", "<origin rpy=\"0 0 0\" xyz='1 0.25 0'/>");
+  expected = vernier_test::replaced(expected, "xyz='0 0 2'", "xyz='0 0 2.5'");
   std::string out = export_urdf(chain, arm.with_frames(FrameParameters(base), FrameParameters(tool)), note());
   const std::size_t comment = out.find("\n  <!-- geometry of ");
   ASSERT_NE(comment, std::string::npos);
@@ -185,10 +185,10 @@ TEST(ExportUrdf, OnlyOriginsOfJointsAreTouched) {
   out.erase(comment, out.find("-->", comment) + 3 - comment);
   EXPECT_EQ(out, expected);
   const std::string marked =
-      testing_support::replaced(text, "<origin xyz='1 0 0'/>", "<origin note=\"it's\" mark='>' xyz='1 0 0'/>");
+      vernier_test::replaced(text, "<origin xyz='1 0 0'/>", "<origin note=\"it's\" mark='>' xyz='1 0 0'/>");
   EXPECT_EQ(detail::with_origins(marked, {{"one", base}}, {}),
-            testing_support::replaced(marked, "<origin note=\"it's\" mark='>' xyz='1 0 0'/>",
-                                      "<origin rpy=\"0 0 0\" note=\"it's\" mark='>' xyz='1 0.25 0'/>"));
+            vernier_test::replaced(marked, "<origin note=\"it's\" mark='>' xyz='1 0 0'/>",
+                                   "<origin rpy=\"0 0 0\" note=\"it's\" mark='>' xyz='1 0.25 0'/>"));
 }
 
 // Half a micrometre is written, too.

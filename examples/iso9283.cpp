@@ -149,6 +149,13 @@ int run(support::Program& program) {
     throw support::UsageError("--data and --commanded belong together");
   if (settings.path.empty() != settings.runs.empty()) throw support::UsageError("--path and --runs belong together");
 
+  if (out == "-") throw support::UsageError("--out takes the beginning of names, which cannot be standard output");
+  if (!out.empty()) {
+    const std::filesystem::path folder = std::filesystem::absolute(out).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw std::runtime_error(folder.string() + ": is not a folder");
+    support::require_folder(folder);
+  }
+
   const vn::CsvFormat format = settings.csv.format();
   support::Json document;
   if (!settings.data.empty()) {

@@ -179,7 +179,7 @@ int run(support::Program& program) {
       program.add_option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
           .within(2, 1000000)
           .needs(from);
-  program.add_option("--held-out", o.held_out, "write those rows to this file", "FILE").needs(every);
+  program.add_output("--held-out", o.held_out, "write those rows to this file").needs(every);
   o.csv.add_to(program);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')

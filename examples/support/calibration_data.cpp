@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "dispatch.hpp"
@@ -63,7 +64,11 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
   } else {
     if (out.train.size() < 2)
       throw vn::CalibrationFailure(o.data[s] + ": a single row; a calibration needs many poses, and held-out ones");
-    out = hold_out(vn::Dataset<N>(out.train), o, {.joint_types = types}, seed, rule);
+    try {
+      out = hold_out(vn::Dataset<N>(out.train), o, {.joint_types = types}, seed, rule);
+    } catch (const std::invalid_argument& error) {
+      throw vn::CalibrationFailure(o.data[s] + ": " + error.what());
+    }
   }
   const vn::Index n = out.train.size();
   if (o.train_rows > n)

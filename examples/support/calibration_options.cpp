@@ -67,7 +67,7 @@ void add_split(Program& program, CalibrationOptions& o) {
 }
 
 void add_results(Program& program, CalibrationOptions& o) {
-  program.add_option("--save", o.save, "write the calibrated model to this file, for correct", "FILE");
+  program.add_output("--save", o.save, "write the calibrated model to this file, for correct");
   program.add_flag("--verbose", o.verbose,
                    "print the details behind the verdict: identification, decisions, ranges, drift, lines, advice");
   const Option report =

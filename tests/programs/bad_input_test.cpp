@@ -123,7 +123,7 @@ TEST_F(BadInputToPrograms, CalibrateDataThatCannotBeRight) {
   JointRows<6> still = data.joints();
   still.rowwise() = still.row(0).eval();
   write_dataset(folder_ / "still.csv", Dataset<6>(still, data.positions().row(0).replicate(60, 1)));
-  expect_refused(calibrate + "--data still.csv", 1, "underdetermined");
+  expect_refused(calibrate + "--data still.csv", 1, "still.csv: split: the 60 rows visit too few poses");
 }
 
 TEST_F(BadInputToPrograms, WrongUsage) {

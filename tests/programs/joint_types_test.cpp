@@ -99,7 +99,7 @@ TEST_P(JointTypes, PlanSimulateCalibrateCorrect) {
   done("plan_poses' --robot arm.json --data some.csv --add 5 --candidates 200 --out more.csv");
   const std::string calibrated = done(
       "calibrate' --robot arm.json --data measured.csv --test held.csv --save model.json --out figures "
-      "--harmonics 0 --no-approach" +
+      "--harmonics 0 --no-approach --verbose" +
       arm.options);
   done("correct' --model model.json --targets targets.csv --out commands.csv --no-radius");
   EXPECT_EQ(header("commands.csv").find(names + ",status,"), 0u);

@@ -137,7 +137,7 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
          " learned errors of ", data.size(), " poses");
   const auto types = model.nominal().chain().joint_types();
   const MeasuredSet set = measured.sets().front().with(options.sensors);
-  const auto check = [&](const ErrorModel<Chain>& now, std::optional<ReregistrationReport> registration) {
+  const auto checked = [&](const ErrorModel<Chain>& now, std::optional<ReregistrationReport> registration) {
     const ErrorModelEstimate here = estimate.of_arm(FittedArm::of(now.identified()));
     detail::VerificationInput input{set, here, {}, {}, {}, {}, {types.begin(), types.end()}, std::move(registration)};
     input.jacobians.resize(6, N * data.size());
@@ -162,12 +162,12 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     }
     return detail::verified(input, options);
   };
-  if (!options.base && !options.tool) return check(model, {});
+  if (!options.base && !options.tool) return checked(model, {});
   ReregisterOptions free{.base = options.base, .tool = options.tool};
   const auto register_again = [&] {
     const auto found = reregister(model, data, free, options.sensors);
     demand(found.determined, "verify_calibration: the poses do not determine where the arm stands; measure more");
-    return check(found.model, static_cast<const ReregistrationReport&>(found));
+    return checked(found.model, static_cast<const ReregistrationReport&>(found));
   };
   VerificationReport out = register_again();
   if (!out.registration->probe_turned) return out;

@@ -2,7 +2,8 @@
 
 /// @file
 /// Splits into training and test rows: random, every k-th, contiguous blocks, by region of space, by time. All rows
-/// that visit one pose (`pose_numbers`) lie on the side of the first of them: a reading repeated tells nothing new.
+/// that visit one pose (`pose_numbers`) lie on the side of the first of them: a reading repeated tells nothing new. If
+/// no pose would be held out so, those with a held-out row are.
 
 #include <cstdint>
 #include <vector>

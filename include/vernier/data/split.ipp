@@ -65,12 +65,22 @@ VERNIER_IMPL SplitRows with_whole_poses(const SplitRows& rows, const ConstMatrix
   const std::vector<Index> poses = pose_numbers(joints, same);
   std::vector<bool> held_out(poses.size(), false), seen(poses.size(), false), test(poses.size(), false);
   for (const Index row : rows.test) test[static_cast<std::size_t>(row)] = true;
-  SplitRows out;
+  const auto sides = [&] {
+    SplitRows out;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      (held_out[static_cast<std::size_t>(poses[i])] ? out.test : out.train).push_back(static_cast<Index>(i));
+    return out;
+  };
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto pose = static_cast<std::size_t>(poses[i]);
     if (!seen[pose]) held_out[pose] = test[i];
     seen[pose] = true;
-    (held_out[pose] ? out.test : out.train).push_back(static_cast<Index>(i));
+  }
+  SplitRows out = sides();
+  if (out.test.empty()) {  // every held-out row repeats an earlier pose
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (test[i]) held_out[static_cast<std::size_t>(poses[i])] = true;
+    out = sides();
   }
   demand(!out.train.empty() && !out.test.empty(), "split: the ", poses.size(),
          " rows visit too few poses to hold some of them out: all rows of a pose stay together");

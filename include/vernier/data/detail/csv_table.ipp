@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "vernier/core/sha256.hpp"
 #include "vernier/data/detail/csv_table.hpp"
 
 namespace vernier::detail {
@@ -71,7 +72,7 @@ VERNIER_IMPL void CsvTable::require_separated(std::string_view header) const {
 VERNIER_IMPL RowOrigin CsvTable::origin() const {
   std::vector<Index> lines;
   for (const TextLine& line : lines_) lines.push_back(static_cast<Index>(line.number));
-  return RowOrigin::of(file_, std::move(lines));
+  return RowOrigin::of(file_, std::move(lines), sha256(content_));
 }
 
 VERNIER_IMPL std::vector<std::string_view> CsvTable::cells(const TextLine& line) const {
@@ -105,16 +106,16 @@ VERNIER_IMPL std::optional<CsvColumn> CsvTable::find(std::string_view stem, cons
 
 VERNIER_IMPL CsvColumn CsvTable::require_column(std::string_view stem, const Quantity& quantity) const {
   if (auto column = find(stem, quantity)) return *column;
-  std::string present, near;
+  std::string present, hint;
   for (std::size_t i = 0; i < header_.size() && i < 12; ++i) present += (i ? ", " : "") + printable(header_[i]);
   if (header_.size() > 12) present += ", ...";
   for (const std::string_view name : header_)
-    if (const std::string known = nearest_column(name); known.starts_with(stem) && near.empty())
-      near = message("; is '", printable(name), "' ", known, "?");
+    if (const std::string known = nearest_column(name); known.starts_with(stem) && hint.empty())
+      hint = message("; is '", printable(name), "' ", known, "?");
   const auto name = [&](std::size_t unit) { return message(stem, quantity.units[unit].first); };
   throw DataError(message(file_, ", line ", header_line_, ": no column ", name(0),
                           quantity.units.size() > 1 ? " or " + name(1) : std::string(), " in the header (", present,
-                          ")", near));
+                          ")", hint));
 }
 
 VERNIER_IMPL std::vector<std::string> CsvTable::texts(const CsvColumn& column) const {

@@ -174,12 +174,12 @@ VERNIER_IMPL void CsvTable::remark_unread() const {
   std::string names;
   for (std::size_t i = 0; i < header_.size(); ++i) {
     if (read_[i] || header_[i].empty() || needs_no_reader(header_[i])) continue;
-    const std::string near = nearest_column(header_[i]);
-    if (!format_.remark && !near.empty())
-      fail_in_header("column '", printable(header_[i]), "' is not known; is it ", near,
+    const std::string known = nearest_column(header_[i]);
+    if (!format_.remark && !known.empty())
+      fail_in_header("column '", printable(header_[i]), "' is not known; is it ", known,
                      "? Rename it, or take CsvFormat::remark, and it is not read");
     if (++count <= most)
-      names += (count > 1 ? ", " : "") + printable(header_[i]) + (near.empty() ? "" : " (" + near + "?)");
+      names += (count > 1 ? ", " : "") + printable(header_[i]) + (known.empty() ? "" : " (" + known + "?)");
   }
   if (count == 0) return;
   remark(message(": columns that are not read: ", names, count > most ? message(", and ", count - most, " more") : ""));

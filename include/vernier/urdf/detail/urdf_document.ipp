@@ -157,16 +157,16 @@ VERNIER_LOCAL void judge_unknown(const tinyxml2::XMLElement& xml, const std::str
     return std::find(std::begin(names), std::end(names), name) != std::end(names);
   };
   for (const auto* child = xml.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-    const std::string name = child->Name(), small = in_small_letters(name);
+    const std::string name = child->Name(), lower_case_name = in_small_letters(name);
     if (among(known, name)) continue;
     const bool has_place = std::any_of(std::begin(places), std::end(places),
                                        [&](const char* place) { return child->Attribute(place) != nullptr; });
-    if (!among(known, small) && !among(placing, small) && !has_place)
+    if (!among(known, lower_case_name) && !among(placing, lower_case_name) && !has_place)
       out.ignored.push_back("<" + quotable(name) + ">");
     else if (out.unreadable.empty())
       out.unreadable = message(file, ", line ", child->GetLineNum(), ": '", quotable(name), "' of ", owner,
-                               among(known, small) ? message(" is not known; is it '", small, "'?")
-                                                   : std::string(" is not known, and may move its frame"));
+                               among(known, lower_case_name) ? message(" is not known; is it '", lower_case_name, "'?")
+                                                             : std::string(" is not known, and may move its frame"));
   }
   for (const auto* one = xml.FirstAttribute(); one != nullptr; one = one->Next())
     if (std::string_view(one->Name()) != "name" && std::string_view(one->Name()) != "type")
@@ -275,10 +275,10 @@ VERNIER_IMPL UrdfDocument read_urdf_document(const std::string& text, const std:
   if (version != "1.0" && version != "1.1")
     UrdfElement(*root, file).fail("version '", quotable(version), "' of URDF; 1.0 and 1.1 are read");
   for (const auto* part = root->FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
-    const std::string name = part->Name(), small = in_small_letters(name);
-    if (name != small && (small == "link" || small == "joint"))
-      UrdfElement(*part, file).fail("'", quotable(name), "' is not known; is it '", small, "'?");
-    if (small == "include" || small == "model")
+    const std::string name = part->Name(), lower_case_name = in_small_letters(name);
+    if (name != lower_case_name && (lower_case_name == "link" || lower_case_name == "joint"))
+      UrdfElement(*part, file).fail("'", quotable(name), "' is not known; is it '", lower_case_name, "'?");
+    if (lower_case_name == "include" || lower_case_name == "model")
       UrdfElement(*part, file).fail("'", quotable(name), "': parts of other files or formats are not included");
   }
   std::map<std::string, int> links, joints;  // line of each name

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/csv_table.hpp"
@@ -74,7 +75,7 @@ VERNIER_LOCAL MatrixX approach_by_order(const CsvTable& table, const MatrixX& jo
   MatrixX out = MatrixX::Constant(joints.rows(), joints.cols(), std::numeric_limits<double>::quiet_NaN());
   std::vector<Index> back;
   for (Index i = 1; i < joints.rows(); ++i) {
-    if (segment && (*segment)(i) != (*segment)(i - 1)) continue;
+    if (segment && !same_value((*segment)(i), (*segment)(i - 1))) continue;
     if (times.size() > 0 && times(i) < times(i - 1))
       back.push_back(i);
     else

@@ -6,6 +6,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/number_text.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/io/detail/html.hpp"
 #include "vernier/io/detail/svg_chart.hpp"
 

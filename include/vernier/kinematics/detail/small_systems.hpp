@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/simd.hpp"
 
 namespace vernier::detail {
@@ -86,7 +87,7 @@ double determinant_few(double (&a)[N][N]) noexcept {
     int pivot = k;
     for (int i = k + 1; i < N; ++i)
       if (std::abs(a[k][i]) > std::abs(a[k][pivot])) pivot = i;
-    if (a[k][pivot] == 0) return 0;
+    if (same_value(a[k][pivot], 0)) return 0;
     out *= pivot == k ? a[k][k] : -a[k][pivot];
     for (int j = k; j < N; ++j) std::swap(a[j][k], a[j][pivot]);
     for (int i = k + 1; i < N; ++i) a[k][i] /= a[k][k];

@@ -23,6 +23,7 @@ struct SamePose {
 /// The pose of each row, numbered from 0 in the order of their first rows. A row visits the first pose whose first row
 /// it agrees with, so chains of small differences make no pose.
 /// @param joints n x joints [rad, m]
+/// @param same   within which values rows are one pose
 /// @throws std::invalid_argument for another number of joint types
 /// @complexity O(n log n) where poses are spread over the joint ranges
 VERNIER_API std::vector<Index> pose_numbers(const ConstMatrixRef& joints, const SamePose& same = {});

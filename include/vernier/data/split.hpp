@@ -79,6 +79,7 @@ Split<N> split_every(const Dataset<N>& data, Index k, const SamePose& same = {})
 /// @param data   to split
 /// @param block  which of the blocks, from 0
 /// @param blocks their number
+/// @param same   within which joint values rows are one pose
 /// @throws std::invalid_argument unless blocks is in [2, data.size()] and block in [0, blocks)
 template <int N>
 Split<N> split_block(const Dataset<N>& data, Index block, Index blocks = 5, const SamePose& same = {}) {

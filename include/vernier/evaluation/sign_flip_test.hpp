@@ -13,6 +13,7 @@ namespace vernier {
 /// mean of these. All arrangements of signs are counted for up to 12 values, else a sample of them.
 /// @param differences at least one, finite; independent of each other
 /// @param draws       number of sampled arrangements
+/// @param seed        of these
 /// @return            p in (0, 1]; never below 1 / (draws + 1)
 /// @throws std::invalid_argument without values, or for one that is not finite
 /// @complexity O(draws n)

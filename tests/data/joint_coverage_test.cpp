@@ -192,18 +192,6 @@ TEST(JointCoverage, JoinedRangesAreTheUnion) {
   EXPECT_TRUE(everywhere.ranges[0].empty() && everywhere.ranges[1].empty());
 }
 
-TEST(JointCoverageWhiteBox, ExtremesAreThoseOfTheValuesInEachRange) {
-  using Ranges = std::vector<vernier::JointRange>;
-  const vernier::VectorX values{{5.5, -0.5, 1, 0.2, 5.25}};
-  EXPECT_EQ(vernier::detail::extremes_within(values, {{-1, 1}, {2, 4}, {5, 6}}), (Ranges{{-0.5, 1}, {5.25, 5.5}}));
-  EXPECT_TRUE(vernier::detail::extremes_within(values, {}).empty());
-  vernier::JointRows<1> joints(100, 1);
-  for (vernier::Index i = 0; i < 100; ++i) joints(i, 0) = -2 + 0.04 * static_cast<double>(i);  // to 1.96
-  const auto ranges = JointCoverage<1>::covering(joints).ranges[0];
-  EXPECT_LT(ranges[0].lower, -2);
-  EXPECT_EQ(vernier::detail::extremes_within(joints.col(0), ranges), (Ranges{{-2, joints(99, 0)}}));
-}
-
 TEST(JointCoverage, AJointWithoutRangesIsNotLookedAt) { EXPECT_EQ(JointCoverage<2>{}({1e6, -1e6}), 1); }
 
 TEST(JointCoverage, InfinitelyFarIsZero) {

@@ -7,7 +7,11 @@
 
 #include "reader_fuzz.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/robot_programs/detail/fanuc_tp_statements.hpp"
+#include "vernier/robot_programs/detail/krl_statements.hpp"
+#include "vernier/robot_programs/detail/rapid_statements.hpp"
 #include "vernier/robot_programs/detail/statement_reader.hpp"
+#include "vernier/robot_programs/detail/urscript_statements.hpp"
 #include "vernier/robot_programs/robot_program.hpp"
 
 namespace {

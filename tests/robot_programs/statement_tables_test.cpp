@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/robot_programs/detail/fanuc_tp_statements.hpp"
+#include "vernier/robot_programs/detail/krl_statements.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
-#include "vernier/robot_programs/detail/statement_tables.hpp"
+#include "vernier/robot_programs/detail/rapid_statements.hpp"
+#include "vernier/robot_programs/detail/urscript_statements.hpp"
 
 namespace vernier::robot_statement_tables_test {
 namespace {

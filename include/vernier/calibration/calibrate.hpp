@@ -118,11 +118,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   for (std::size_t s = poses.size(); s < sets.size(); ++s)
     out.others.push_back(detail::fitted_set(out.errors.models()[s], sets[s]));
   out.coverage = JointCoverage<N>::covering(joints);
-  for (int i = 0; i < N; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    out.coverage.periodic[k] = nominal.model().row(i).joint == JointType::revolute;
-    out.measured[k] = detail::extremes_within(joints.col(i), out.coverage.ranges[k]);
-  }
+  for (int i = 0; i < N; ++i)
+    out.coverage.periodic[static_cast<std::size_t>(i)] = nominal.model().row(i).joint == JointType::revolute;
   if (!residuals.empty()) {
     const Eigen::Map<const VectorX> e(residuals.data(), static_cast<Index>(residuals.size()));
     out.median_error = ErrorStatistics::of(e).median;

@@ -69,15 +69,14 @@ struct Calibration {
   std::vector<LearnedRemainder<dof>> remainders{};  ///< those of them that were learned from all poses
   std::optional<std::size_t> deployed_remainder{};  ///< which of them is deployed; none where cross-validation
                                                     ///< supports none
-  JointCoverage<dof> coverage{};                    ///< measured joint ranges, widened a little: the range of validity
-  std::array<std::vector<JointRange>, dof> measured{};  ///< measured ranges of each joint, as they are [rad, m]
-  Index poses = 0;                                      ///< number of poses it was fitted to
-  std::vector<FittedSet> others{};                      ///< sets of measurements beside the poses
-  bool oriented = false;                                ///< whether orientations were used
-  SensorModel sensors{};                                ///< as given
-  Index outliers = 0;                                   ///< poses whose error exceeds eight times the median
-  double median_error = 0;                              ///< median position error of the poses it was fitted to [m]
-  double fit_seconds = 0;                               ///< time from poses to error model
+  JointCoverage<dof> coverage{};    ///< measured joint ranges, and the range of validity: these widened a little
+  Index poses = 0;                  ///< number of poses it was fitted to
+  std::vector<FittedSet> others{};  ///< sets of measurements beside the poses
+  bool oriented = false;            ///< whether orientations were used
+  SensorModel sensors{};            ///< as given
+  Index outliers = 0;               ///< poses whose error exceeds eight times the median
+  double median_error = 0;          ///< median position error of the poses it was fitted to [m]
+  double fit_seconds = 0;           ///< time from poses to error model
 
   /// What was learned and is deployed; null for nothing.
   const LearnedRemainder<dof>* deployed() const {

@@ -194,7 +194,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     for (const auto& data : test)
       joint.held_out.insert(joint.held_out.end(), data.joints().col(j).begin(), data.joints().col(j).end());
     const auto k = static_cast<std::size_t>(j);
-    for (const auto& range : calibration.measured[k]) joint.measured_ranges.emplace_back(range.lower, range.upper);
+    for (const auto& range : calibration.coverage.measured[k])
+      joint.measured_ranges.emplace_back(range.lower, range.upper);
     joint.valid_ranges =
         detail::within_limits(calibration.coverage.ranges[k], joint.measured_ranges, limits.lower(j), limits.upper(j));
     detail::describe_transmission(errors, j, joint);

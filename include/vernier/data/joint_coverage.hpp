@@ -28,10 +28,6 @@ VERNIER_API CoveredRanges covered_ranges(const ConstVectorRef& values);
 VERNIER_API std::vector<JointRange> joined_ranges(std::vector<JointRange> ranges, const std::vector<JointRange>& others,
                                                   double margin);
 
-/// The smallest and the largest of some values in each range that has any.
-VERNIER_API std::vector<JointRange> extremes_within(const ConstVectorRef& values,
-                                                    const std::vector<JointRange>& ranges);
-
 /// A gate's value and slope.
 struct GateFactor {
   double value, slope;
@@ -76,7 +72,7 @@ struct JointCoverage {
     return covering(detail::joint_rows<N>(joints));
   }
 
-  /// The same with the ranges of other measurements; `measured` stays.
+  /// This gate widened to the ranges of other measurements; `measured` stays.
   /// @param others  of each joint, ascending; no joints: those measurements were everywhere
   /// @param margins of each joint; the larger of the two counts
   /// @throws std::invalid_argument for ranges or margins of another number of joints

@@ -39,21 +39,6 @@ VERNIER_IMPL std::vector<JointRange> joined_ranges(std::vector<JointRange> range
   return out;
 }
 
-VERNIER_IMPL std::vector<JointRange> extremes_within(const ConstVectorRef& values,
-                                                     const std::vector<JointRange>& ranges) {
-  std::vector<JointRange> out;
-  for (const JointRange& range : ranges) {
-    JointRange found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const double value : values) {
-      if (value < range.lower || value > range.upper) continue;
-      found.lower = (std::min)(found.lower, value);
-      found.upper = (std::max)(found.upper, value);
-    }
-    if (found.lower <= found.upper) out.push_back(found);
-  }
-  return out;
-}
-
 VERNIER_IMPL GateFactor gate_factor(const std::vector<JointRange>& ranges, double margin, bool periodic,
                                     double q) noexcept {
   if (ranges.empty()) return {1, 0};

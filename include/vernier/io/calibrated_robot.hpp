@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "vernier/calibration/calibration.hpp"
 #include "vernier/compensation/cartesian.hpp"
+#include "vernier/compensation/compensated.hpp"
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/core/checked_joints.hpp"
 #include "vernier/core/rigid_motions.hpp"
@@ -279,40 +279,12 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   std::shared_ptr<const ErrorModelEstimate> estimate_{};  // shared, for it is large and never changes
 };
 
-/// What a saved calibration is described by beside its model.
-template <int N>
-struct RobotInfo {
-  std::string name = "robot";        ///< of the arm
-  JointLimits<N> limits{};           ///< of the commands
-  std::string data_file{};           ///< name of the file of measured poses
-  std::string date{};                ///< of the calibration
-  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
-  double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
-  std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
-};
-
 /// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
 /// @throws std::invalid_argument where its covariance was not kept
 template <int N, class Convention>
 ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
   demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
   return arm_prior(robot.name(), robot.model(), *robot.estimate());
-}
-
-/// The arm of a calibration, with what was learned on top: as seen from its first station.
-template <int N, class Convention>
-CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
-                                                const RobotInfo<N>& info = {}) {
-  const VectorX& left_out = calibration.errors.left_out_errors;
-  auto robot = CalibratedRobot<N, Convention>(
-      info.name, calibration.model(), info.limits,
-      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
-       calibration.errors.position_sigma,
-       left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
-       info.held_out_error, info.data_sha256});
-  const LearnedRemainder<N>* learned = calibration.deployed();
-  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
-  return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
 }
 
 }  // namespace vernier

@@ -1,11 +1,14 @@
 #pragma once
 
 /// @file
-/// Calibrated robots of what `identify`, `identify_by_contacts` and `fit_error_model` found, with their covariance.
+/// Calibrated robots of what `calibrate`, `identify`, `identify_by_contacts` and `fit_error_model` found, with their
+/// covariance.
 
 #include <cmath>
+#include <string>
 #include <utility>
 
+#include "vernier/calibration/calibration.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/error_model/geometry_estimate.hpp"
 #include "vernier/identification/contact_report.hpp"
@@ -14,6 +17,18 @@
 #include "vernier/kinematics/arm_geometry.hpp"
 
 namespace vernier {
+
+/// What a saved calibration is described by beside its model.
+template <int N>
+struct RobotInfo {
+  std::string name = "robot";        ///< of the arm
+  JointLimits<N> limits{};           ///< of the commands
+  std::string data_file{};           ///< name of the file of measured poses
+  std::string date{};                ///< of the calibration
+  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
+  double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
+  std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
+};
 
 namespace detail {
 
@@ -38,6 +53,22 @@ CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Con
 }
 
 }  // namespace detail
+
+/// The arm of a calibration, with what was learned on top: as seen from its first station.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
+                                                const RobotInfo<N>& info = {}) {
+  const VectorX& left_out = calibration.errors.left_out_errors;
+  auto robot = CalibratedRobot<N, Convention>(
+      info.name, calibration.model(), info.limits,
+      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
+       calibration.errors.position_sigma,
+       left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
+       info.held_out_error, info.data_sha256});
+  const LearnedRemainder<N>* learned = calibration.deployed();
+  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
+  return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
+}
 
 /// The arm of an identification from measured poses, with its covariance where they determine it.
 template <int N, class Convention>

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "vernier/io/calibrated_robot.hpp"
 #include "vernier/io/detail/model_data.hpp"
+#include "vernier/io/identified_robot.hpp"
 #include "vernier/io/json.hpp"
 
 namespace vernier {

@@ -16,7 +16,8 @@ VERNIER_API std::string fixed_digits(double value, int decimals);
 /// A number with some decimals and its sign in any case: "+0.050".
 VERNIER_API std::string signed_digits(double value, int decimals);
 
-/// A number in so many significant digits at most, with an exponent where it is very large or small: "0.05", "1.2e-07".
+/// A number rounded to some significant digits, without zeros at its end: "0.05". Very large and very small numbers
+/// have an exponent: "1.2e-07".
 VERNIER_API std::string significant_digits(double value, int digits);
 
 /// A number in three significant digits; from a thousand to a million all before the point.

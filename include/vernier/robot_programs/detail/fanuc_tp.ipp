@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/robot_programs/detail/fanuc_tp_statements.hpp"
 #include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 #include "vernier/robot_programs/detail/statement_reader.hpp"

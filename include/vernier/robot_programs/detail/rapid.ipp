@@ -11,6 +11,7 @@
 #include "vernier/core/data_error.hpp"
 #include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
+#include "vernier/robot_programs/detail/rapid_statements.hpp"
 #include "vernier/robot_programs/detail/statement_reader.hpp"
 
 namespace vernier::detail {

@@ -11,6 +11,7 @@
 #include "vernier/robot_programs/detail/program_readers.hpp"
 #include "vernier/robot_programs/detail/program_text.hpp"
 #include "vernier/robot_programs/detail/statement_reader.hpp"
+#include "vernier/robot_programs/detail/urscript_statements.hpp"
 
 namespace vernier::detail {
 

@@ -5,24 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "run_command.hpp"
-#include "temporary_folder.hpp"
+#include "program_runs.hpp"
 #include "vernier/data/csv.hpp"
 
 namespace vernier::csv_options_test {
 namespace {
 
-class CsvOptionsOfPrograms : public ::testing::Test {
+class CsvOptionsOfPrograms : public ::testing::Test, protected vernier_test::ProgramRuns {
  protected:
-  vernier_test::CommandResult run(const std::string& command) const {
-    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command,
-                                     folder_.path());
-  }
-  std::string done(const std::string& command) const {
-    const auto result = run(command);
-    EXPECT_EQ(result.exit_code, 0) << command << ": " << result.errors;
-    return result.output;
-  }
+  CsvOptionsOfPrograms() : ProgramRuns("csv_options") {}
   /// The same file with semicolons and decimal commas, and a column that means nothing.
   void as_a_spreadsheet(const std::string& from, const std::string& to) const {
     std::string out;
@@ -34,7 +25,6 @@ class CsvOptionsOfPrograms : public ::testing::Test {
     }
     write_file(folder_ / to, "\xEF\xBB\xBF" + out);
   }
-  vernier_test::TemporaryFolder folder_{"csv_options"};
 };
 
 TEST_F(CsvOptionsOfPrograms, AreNamedAndTaken) {

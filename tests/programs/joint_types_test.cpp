@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "run_command.hpp"
-#include "temporary_folder.hpp"
+#include "program_runs.hpp"
 #include "vernier/data/csv.hpp"
 
 namespace vernier::joint_types_test {
@@ -56,23 +55,14 @@ std::vector<Arm> arms() {
            "q1_m,q2_mm,q3_um,q4_mrad,q5_deg\n1,700,400000,300,20\n0.5,900,300000,-500,-35\n"}};
 }
 
-class JointTypes : public ::testing::TestWithParam<Arm> {
+class JointTypes : public ::testing::TestWithParam<Arm>, protected vernier_test::ProgramRuns {
  protected:
-  vernier_test::CommandResult run(const std::string& command) const {
-    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + command,
-                                     folder_.path());
-  }
-  std::string done(const std::string& command) const {
-    const auto result = run(command);
-    EXPECT_EQ(result.exit_code, 0) << command << ": " << result.errors;
-    return result.output;
-  }
+  JointTypes() : ProgramRuns("joint_types") {}
   /// The first columns of a file.
   std::string header(const std::string& name) const {
     const std::string text = read_file(folder_ / name);
     return text.substr(0, text.find('\n'));
   }
-  vernier_test::TemporaryFolder folder_{"joint_types"};
 };
 
 TEST_P(JointTypes, PlanSimulateCalibrateCorrect) {

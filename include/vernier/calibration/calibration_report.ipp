@@ -105,16 +105,28 @@ VERNIER_LOCAL std::string describe_choice(const CalibrationReport& report) {
   if (report.chosen.stage == Stage::geometry_learned) return out + ".";  // it has no blocks
   const bool again = std::any_of(report.blocks.begin(), report.blocks.end(),
                                  [](const BlockChoice& block) { return block.block == Block::elastic_again; });
-  for (const bool used : {true, false}) {
+  const auto list = [&](const char* title, const auto& belongs) {
     std::string names;
     for (const BlockChoice& block : report.blocks) {
-      const bool drift = block.block == Block::drift || block.block == Block::joint_drift;  // never deployed
-      if (block.used != used || (used && drift) || (again && block.block == Block::elastic)) continue;
+      if (!belongs(block) || (again && block.block == Block::elastic)) continue;
       const Block named = block.block == Block::elastic_again ? Block::elastic : block.block;
       names += (names.empty() ? "" : ", ") + std::string(traits_of(named).title);
     }
-    if (!names.empty()) out += (used ? ". Included: " : ". Left out, since these poses do not support them: ") + names;
-  }
+    if (!names.empty()) out += title + names;
+  };
+  const auto answered = [](Answer answer) {
+    return [answer](const BlockChoice& block) { return block.existence.answer == answer && !block.used; };
+  };
+  // the drift of a session is part of no model
+  list(". Included: ", [](const BlockChoice& block) {
+    return block.used && block.block != Block::drift && block.block != Block::joint_drift;
+  });
+  list(". Found, but not deployed, because they predict left-out poses worse: ", answered(Answer::found));
+  list(". Ruled out, as too small to matter: ", answered(Answer::ruled_out));
+  list(". Undecided, for which these poses are too few: ", answered(Answer::undecided));
+  list(". Not tested, because time cannot be told apart: ", [](const BlockChoice& block) {
+    return block.block == Block::temperature && block.existence.answer == Answer::untested;
+  });
   return out + ".";
 }
 
@@ -147,15 +159,33 @@ VERNIER_LOCAL std::string capitalised(std::string text) {
   return text;
 }
 
-/// A decision on a block of unknowns.
+/// The answer on a block of unknowns, with its figures.
 VERNIER_LOCAL std::string describe_block(const BlockChoice& block) {
-  return message(
-      capitalised(traits_of(block.block).title), block.used ? ": included" : ": left out, not supported",
-      " (leave-one-pose-out error: ", brief(block.without * 1e3), " mm without, ", brief(block.with * 1e3), " mm with",
-      block.log_density_gain > 0
-          ? "; log predictive density of a left-out pose greater by " + brief(block.log_density_gain) + " nat"
-          : std::string(),
-      ").");
+  const Existence& effect = block.existence;
+  const auto mm = [](double metres) { return brief(metres * 1e3); };
+  std::string out = message(capitalised(traits_of(block.block).title), ": ");
+  switch (effect.answer) {
+    case Answer::found:
+      out += message("found (p = ", brief(effect.p), "), ", mm(effect.size), " mm at the tool, ", mm(effect.interval[0]),
+                     " to ", mm(effect.interval[1]), " with 95 %");
+      if (!block.used) out += "; not deployed, because it predicts left-out poses worse";
+      break;
+    case Answer::ruled_out:
+      out += message("ruled out above ", mm(effect.interval[1]), " mm at the tool");
+      break;
+    case Answer::undecided:
+      out += message("undecided (p = ", brief(effect.p), "): below ", mm(effect.interval[1]), " mm at the tool, ",
+                     mm(effect.relevance), " mm would matter; ",
+                     effect.poses > 0 ? message("about ", effect.poses, " poses would decide")
+                                      : std::string("more poses of this kind would not decide"));
+      break;
+    case Answer::untested:
+      out += block.block == Block::temperature ? "not tested, because temperature and time cannot be told apart"
+             : block.used                      ? "included"
+                                               : "left out";
+      break;
+  }
+  return out + message(". Left-out error: ", mm(block.without), " mm without, ", mm(block.with), " mm with.");
 }
 
 /// Poses that would determine a parameter.

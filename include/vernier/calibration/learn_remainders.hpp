@@ -13,6 +13,7 @@
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/sign_flip_test.hpp"
 #include "vernier/identification/in_one_frame.hpp"
+#include "vernier/least_squares/leave_one_out.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 #include "vernier/regression/kernel_elm.hpp"
 #include "vernier/regression/ridge_elm.hpp"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/error_model/existence.hpp"
 #include "vernier/error_model/stage.hpp"
 #include "vernier/identification/arm_parameterisation.hpp"
 #include "vernier/identification/fitted_arm.hpp"
@@ -17,7 +18,8 @@
 
 namespace vernier {
 
-/// Decision on a block of unknowns by leave-one-pose-out errors, of few poses also by log predictive densities.
+/// Decision on a block of unknowns. It is in the model if it exists, and if left-out poses are not predicted worse with
+/// it by more than a standard error.
 struct BlockChoice {
   Block block{};         ///< which unknowns
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
@@ -25,9 +27,7 @@ struct BlockChoice {
   bool used = false;     ///< whether it is in the model
   double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
                          ///< terms that of the lowest band of orders, of drift that of its random walk
-  /// Where log predictive densities included it and errors alone would not have: mean gain of a left-out pose [nat];
-  /// else 0
-  double log_density_gain = 0;
+  Existence existence{};  ///< whether it exists; untested where that is no question about the arm
 };
 
 /// What a transmission adds over some angles beyond its mean, which is the joint's zero; one value an angle [rad].

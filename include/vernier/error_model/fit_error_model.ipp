@@ -12,6 +12,7 @@
 #include "vernier/error_model/detail/line_search.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
+#include "vernier/error_model/detail/temperature_selection.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 
 namespace vernier::detail {
@@ -39,7 +40,7 @@ class ErrorModelFit {
 
     JointTerms elastic(input_.nominal.joints());
     if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
-    const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic, false);
+    const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic);
     if (deflects) model_.solve();
     out.stages.push_back({Stage::elastic, deflects, arms()});
 
@@ -48,19 +49,46 @@ class ErrorModelFit {
       if (input_.nominal.revolute(j))
         all.transmission[static_cast<std::size_t>(j)] =
             orders_of_joint(options_, model_.spectra, static_cast<std::size_t>(j), problem_.num_blocks());
-    const bool jointwise = all.size() > elastic.size() && model_.add(Block::jointwise, all, true);
-    if (jointwise) {
+    // linear in the joints, so beyond the measured ranges they stay as at their ends
+    JointTerms linear = elastic;
+    linear.gear_ratio = options_.gear_ratio;
+    linear.coupling = options_.coupling;
+    const MatrixX joints = problem_.joints();
+    for (Index j = 0; j < joints.cols(); ++j)
+      linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
+    const bool geared = linear.gear_ratio || linear.coupling, periodic = all.size() > elastic.size();
+    // what grows with the joint value looks like a function that repeats, and the other way round: the better one first
+    const CalibrationProblem before = problem_;
+    bool harmonics = periodic && model_.add(Block::jointwise, all);
+    if (geared) {
+      const CalibrationProblem with_harmonics = problem_;
+      const std::vector<BlockChoice> choices = model_.blocks;
+      problem_ = before;
+      model_.changed();
+      if (periodic) model_.blocks.pop_back();
+      if (model_.add(Block::gears, linear) && (!harmonics || model_.blocks.back().with < choices.back().with)) {
+        model_.solve();
+        linear.transmission = all.transmission;
+        harmonics = periodic && model_.add(Block::jointwise, linear);
+      } else if (periodic) {
+        problem_ = with_harmonics;
+        model_.changed();
+        const BlockChoice alone = model_.blocks.back();
+        model_.blocks = choices;
+        if (!harmonics) model_.blocks.push_back(alone);
+      }
+    }
+    const bool jointwise = harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
+    if (harmonics) {
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
       model_.learn_spectrum(6);
-      // linear in the joints, so beyond the measured ranges they stay as at their ends
-      all.gear_ratio = options_.gear_ratio;
-      all.coupling = options_.coupling;
-      all.linear_ranges.clear();
-      const MatrixX joints = problem_.joints();
-      for (Index j = 0; j < joints.cols(); ++j)
-        all.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
-      if ((all.gear_ratio || all.coupling) && model_.add(Block::gears, all, true)) model_.learn_spectrum(4);
+      linear.transmission = all.transmission;
+      if (geared && !problem_.arm.terms().gear_ratio && !problem_.arm.terms().coupling &&
+          model_.add(Block::gears, linear))
+        model_.learn_spectrum(4);
+    }
+    if (jointwise) {
       if (elastic.size() > 0)  // deflection is clearer once all else is modelled
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
       model_.solve();
@@ -73,20 +101,25 @@ class ErrorModelFit {
 
     JointTerms approached = problem_.arm.terms();
     approached.hysteresis = hysteresis_widths();
-    const bool hysteresis = options_.hysteresis && model_.add(Block::approach, approached, true);
+    const bool hysteresis = options_.hysteresis && model_.add(Block::approach, approached);
     if (hysteresis) model_.steps(2);
     std::vector<FittedArm> without_tilt = arms();
     JointTerms tilted = problem_.arm.terms();
     if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
-    const bool tilt = options_.tilt && model_.add(Block::tilt, tilted, true);
+    const bool tilt = options_.tilt && model_.add(Block::tilt, tilted);
     if (tilt) {
       if (!jointwise) estimate.fallback_error = model_.blocks.back().without;
       model_.steps(2);
       model_.size_by_evidence(model_.gravity());  // the third axis, that of the joint
       model_.solve();
     }
-    bool thermal = options_.temperature && add_temperature(estimate);
-    if (thermal) out.temperatures = problem_.temperatures().range;
+    bool thermal = options_.temperature && add_temperature(model_, options_.thermal_prior_std);
+    if (thermal) {
+      const auto temperatures = problem_.temperatures();
+      out.temperatures = temperatures.range;
+      estimate.mean_temperature = temperatures.mean;
+      estimate.temperature_std = temperatures.std;
+    }
     const bool inherited = options_.prior != nullptr && inherit(out);
     if (inherited) thermal = problem_.arm.thermal_rates(0).size() > 0;
     const bool drift = options_.drift && add_drift(model_);
@@ -143,31 +176,6 @@ class ErrorModelFit {
     for (int s = 0; s < problem_.arm.stations(); ++s)
       out.push_back({problem_.arm.geometry(s), problem_.arm.joint_errors()});
     return out;
-  }
-
-  /// Lets the geometry change with temperature, if leave-one-pose-out errors support that.
-  VERNIER_LOCAL bool add_temperature(ErrorModelEstimate& estimate) {
-    const double mean = problem_.temperatures().mean, std = problem_.temperatures().std;
-    if (!(std > 0.02)) return false;  // not measured, or it did not vary
-    const ArmParameterisation before = problem_.arm;
-    std::vector<GeometricUnknown> unknowns = before.geometric();
-    UnknownGroup added;
-    for (const GeometricUnknown& u : before.geometric()) {
-      added.push_back(static_cast<Index>(unknowns.size()));
-      unknowns.push_back({u.parameter, u.station, options_.thermal_prior_std, 1, true});
-    }
-    problem_.reference_temperature = mean;
-    problem_.arm.set_geometric(std::move(unknowns));
-    model_.changed();
-    if (!model_.choose_by_evidence(Block::temperature, added)) {
-      problem_.arm = before;
-      model_.changed();
-      return false;
-    }
-    estimate.mean_temperature = mean;
-    estimate.temperature_std = std;
-    model_.steps(1);
-    return true;
   }
 
   /// Fits again with what an earlier calibration knows as the prior, and keeps that where left-out poses are predicted

@@ -29,7 +29,12 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                       {"used", block.used},
                       {"left_out_without_mm", block.without * 1e3},
                       {"left_out_with_mm", block.with * 1e3},
-                      {"log_density_gain", block.log_density_gain},
+                      {"answer", name_of(block.existence.answer)},
+                      {"p", block.existence.p},
+                      {"size_mm", block.existence.size * 1e3},
+                      {"interval_mm", {block.existence.interval[0] * 1e3, block.existence.interval[1] * 1e3}},
+                      {"relevant_mm", block.existence.relevance * 1e3},
+                      {"poses_to_decide", block.existence.poses},
                       {"tightness", block.used ? Json(block.precision) : Json()}});
   for (const ParameterEstimate& p : identification.parameters)
     parameters.push_back({{"name", p.name},

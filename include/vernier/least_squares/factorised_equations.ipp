@@ -97,6 +97,13 @@ VERNIER_IMPL double FactorisedEquations::log_determinant() const {
   return detail::cholesky_log_determinant(factor_) + (reduced_ == nullptr ? 0 : reduced_->log_determinant);
 }
 
+VERNIER_IMPL MatrixX FactorisedEquations::reduced() const {
+  MatrixX out = reduced_ == nullptr ? normal_->matrix : reduced_->matrix;
+  for (Index j = 0; j < out.cols(); ++j)
+    for (Index i = j + 1; i < out.rows(); ++i) out(j, i) = out(i, j);
+  return out;
+}
+
 VERNIER_IMPL MatrixX FactorisedEquations::inverse() const { return detail::inverse_from_cholesky(factor_); }
 
 VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal() const {

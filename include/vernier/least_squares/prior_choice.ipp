@@ -32,37 +32,9 @@ VERNIER_IMPL std::size_t one_standard_error_rule(const std::vector<PriorTrial>& 
   return trials.size() - 1;  // errors that are not finite compare with nothing
 }
 
-namespace detail {
-
-/// By how much the position errors of each pose are smaller [m].
-VERNIER_LOCAL VectorX saved_errors(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  return error_norms(without) - error_norms(with);
-}
-
-}  // namespace detail
-
-VERNIER_IMPL bool errors_support(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  const VectorX saved = detail::saved_errors(with, without);
-  return saved.mean() > detail::standard_error(saved);
-}
-
-VERNIER_IMPL bool densities_support(const LeftOutBlocks& with, const LeftOutBlocks& without) {
-  const VectorX gained = detail::means_of_poses(with.log_densities - without.log_densities, with.poses);
-  return detail::saved_errors(with, without).mean() > 0 && gained.mean() > detail::standard_error(gained);
-}
-
-VERNIER_IMPL PriorChoice choose_prior(const BlockSystem& system, const NormalEquations& normal, VectorX precisions,
-                                      const VectorX& steps, Index first, Index count, Index stride) {
-  std::vector<PriorTrial> trials;
-  for (const double precision : {0.3, 1.0, 3.0, 10.0, 100.0, 1e4, suppressing_precision}) {
-    for (Index k = first; k < first + count; ++k) precisions(k) = precision;
-    const FactorisedEquations solved(normal, precisions, steps);
-    trials.push_back({precision, detail::error_norms(leave_one_out(system, solved, stride))});
-  }
-  double smallest = trials.front().errors.mean();
-  for (const PriorTrial& trial : trials) smallest = (std::min)(smallest, trial.errors.mean());
-  const PriorTrial& chosen = trials[one_standard_error_rule(trials)];
-  return {chosen.precision, chosen.errors.mean(), smallest, trials.back().errors.mean()};
+VERNIER_IMPL bool predicts_worse(const VectorX& with, const VectorX& without) {
+  const VectorX excess = with - without;
+  return !(excess.mean() <= detail::standard_error(excess));
 }
 
 }  // namespace vernier

@@ -7,7 +7,7 @@
 
 namespace vernier::detail {
 
-/// Lets the bases drift, if leave-one-pose-out errors support that; then the joints' zeros beside them, likewise.
+/// Lets the bases drift, if they do; then the joints' zeros beside them, likewise.
 /// @return whether the bases drift
 VERNIER_API bool add_drift(ModelSelection& model);
 

@@ -2,14 +2,16 @@
 
 #include "vernier/core/same_value.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
+#include "vernier/error_model/detail/session_columns.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier::detail {
 
 /// Chooses the precisions of random walks, of unknowns first .. end - 1 of each state: their factor by evidence, in
-/// steps of four from 1 down to `lowest` or up to 64, and whether there is such a drift by leave-one-pose-out errors.
+/// steps of four from 1 down to `lowest` or up to 64, and whether there is such a drift.
 VERNIER_LOCAL BlockChoice choose_drift(const ModelSelection& model, Block block, Index first, Index end,
                                        double lowest) {
+  const ScoreTest score = SessionColumns(model).of_drift(first, end);
   ModelSelection::Linearised at = model.linearised();  // the precisions of the random walks are all that changes
   SparseSymmetric& prior = at.normal.local_prior;
   const std::vector<double> expected = prior.values;
@@ -34,12 +36,12 @@ VERNIER_LOCAL BlockChoice choose_drift(const ModelSelection& model, Block block,
       best = factor;
     }
   scale(suppressing_precision);
-  const LeftOutBlocks without = model.left_out(at, precisions);
+  const VectorX without = error_norms(model.left_out(at, precisions));
   scale(best);
-  return model.choice_between(block, model.left_out(at, precisions), without, best);
+  return model.choice_between(block, score, error_norms(model.left_out(at, precisions)), without, best);
 }
 
-/// Lets the joints' zeros drift beside the bases, if leave-one-pose-out errors support that.
+/// Lets the joints' zeros drift beside the bases, if they do.
 VERNIER_LOCAL void add_joint_drift(ModelSelection& model) {
   CalibrationProblem& problem = model.problem;
   problem.start_joint_drift();

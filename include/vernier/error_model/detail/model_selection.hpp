@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Which blocks of unknowns a calibration has: sizes of their priors by evidence, inclusion by leave-one-pose-out
-/// errors.
+/// Which blocks of unknowns a calibration has: whether they exist by a score test, sizes of their priors by evidence,
+/// inclusion by left-out errors.
 
 #include <optional>
 #include <vector>
@@ -12,6 +12,7 @@
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/least_squares/evidence.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
+#include "vernier/least_squares/score_test.hpp"
 
 namespace vernier::detail {
 
@@ -29,8 +30,7 @@ class ModelSelection {
   bool converged = true;                     ///< whether every `solve` converged
   mutable double leave_one_out_seconds = 0;  ///< time that leave-one-pose-out errors took
 
-  /// Number of poses from which every band of orders has a prior size of its own, and leave-one-pose-out errors alone
-  /// decide on blocks.
+  /// Number of poses from which every band of orders has a prior size of its own.
   static constexpr Index many_poses = 500;
 
   /// The problem, linearised at its present values.
@@ -48,26 +48,29 @@ class ModelSelection {
   /// Steps towards the solution: enough where the unknowns change again soon.
   VERNIER_API void steps(int count);
 
-  /// Poses left out one at a time, under some priors.
+  /// Poses left out one at a time, under some priors; ten blocks of neighbouring poses, if the poses are ordered.
   VERNIER_API LeftOutBlocks left_out(const Linearised& at, const VectorX& precisions) const;
   /// Norms of their position errors as the problem is [m].
   VERNIER_API VectorX left_out_errors() const;
   /// The position errors [m], 3 x poses, from equations that are factorised.
   VERNIER_API Eigen::Matrix3Xd left_out_errors(const FactorisedEquations& solved) const;
 
-  /// Replaces the terms by more, if leave-one-pose-out errors support the additional ones.
-  /// @param by_evidence whether the sizes of their priors follow from evidence, or from these errors
-  /// @return            whether they do
-  VERNIER_API bool add(Block block, const JointTerms& terms, bool by_evidence);
+  /// Replaces the terms by more, if the additional ones exist and do not predict worse.
+  /// @return whether they are in the model
+  VERNIER_API bool add(Block block, const JointTerms& terms);
   /// The terms of the problem and more orders of transmissions, whose expected sizes are in `spectra`; other priors
   /// stay.
   VERNIER_API void extend_terms(const JointTerms& terms);
-  /// Includes some unknowns with sizes by evidence, if leave-one-pose-out errors support them; else suppresses them.
-  /// @return whether they do
-  VERNIER_API bool choose_by_evidence(Block block, const UnknownGroup& group);
-  /// A block of unknowns, by the errors with it and without; of few poses also by log predictive densities.
-  VERNIER_API BlockChoice choice_between(Block block, const LeftOutBlocks& with, const LeftOutBlocks& without,
+  /// Includes some unknowns with sizes by evidence, if they exist and do not predict worse; else suppresses them.
+  /// @param score of a test of them; none: they are tested beside the unknowns that there are
+  /// @return      whether they are in the model
+  VERNIER_API bool choose_by_evidence(Block block, const UnknownGroup& group, std::optional<ScoreTest> score = {});
+  /// A block of unknowns, by its scores and by the left-out errors with it and without.
+  VERNIER_API BlockChoice choice_between(Block block, ScoreTest score, const VectorX& with, const VectorX& without,
                                          double precision) const;
+  /// Each block's cluster: its pose, or neighbouring poses if the poses are ordered. Errors of the model are alike within
+  /// a cluster, and independent between them.
+  const std::vector<Index>& clusters() const { return clusters_; }
 
   /// Sizes of some coefficients by evidence, unless they are suppressed.
   VERNIER_API void size_by_evidence(const UnknownGroup& group);
@@ -81,11 +84,12 @@ class ModelSelection {
   VERNIER_API UnknownGroup harmonics(int first, int last) const;
 
  private:
-  VERNIER_API BlockChoice choose_by_errors(Block block, Index first, Index count);
   VERNIER_API UnknownGroup unknowns(Index first, Index count) const;
 
   const ErrorModelOptions& options_;
   ChainTable nominal_;
+  std::vector<Index> clusters_;      // of each block
+  std::vector<Index> left_together_; // of each validation block, if poses are ordered; else empty
   mutable std::optional<Linearised> linearised_{};
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "vernier/data/ordered_rows.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
@@ -31,7 +32,19 @@ VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const Erro
       spectra(std::move(spectra_of_joints)),
       stride(std::max<Index>(1, problem.num_validation_blocks() / options.num_validation_poses)),
       options_(options),
-      nominal_(std::move(nominal)) {}
+      nominal_(std::move(nominal)) {
+  const std::vector<Index> poses = problem.system().poses;
+  const Index validated = problem.num_validation_blocks();
+  const bool ordered = rows_are_ordered(problem.joints().topRows(validated));
+  for (Index b = 0; b < problem.num_blocks(); ++b)
+    clusters_.push_back(b < validated && !poses.empty() ? poses[static_cast<std::size_t>(b)] : b);
+  if (!ordered) return;
+  constexpr Index independent = 40, folds = 10, most = 100;  // clusters; blocks left out, and their poses
+  for (Index b = 0; b < validated; ++b) {
+    clusters_[static_cast<std::size_t>(b)] = b * independent / validated;
+    left_together_.push_back(b * std::max(folds, validated / most) / validated);
+  }
+}
 
 VERNIER_IMPL const ModelSelection::Linearised& ModelSelection::linearised() const {
   if (!linearised_)
@@ -52,7 +65,11 @@ VERNIER_IMPL void ModelSelection::steps(int count) {
 
 VERNIER_IMPL LeftOutBlocks ModelSelection::left_out(const Linearised& at, const VectorX& precisions) const {
   const Stopwatch watch(leave_one_out_seconds);
-  return leave_one_out(at.system, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), stride);
+  const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
+  if (left_together_.empty()) return leave_one_out(at.system, solved, stride);
+  BlockSystem system = at.system;
+  system.poses = left_together_;
+  return leave_one_out(system, solved, stride);
 }
 
 VERNIER_IMPL VectorX ModelSelection::left_out_errors() const {
@@ -78,7 +95,7 @@ VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
   changed();
 }
 
-VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms, bool by_evidence) {
+VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms) {
   const ArmParameterisation before = problem.arm;
   Index first = terms.size(), count = 0;  // of the additional coefficients, which are contiguous
   for (const JointTermBlock& now : terms.blocks()) {
@@ -90,27 +107,10 @@ VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms, bool
     count += now.count;
   }
   extend_terms(terms);
-  if (by_evidence)
-    choose_by_evidence(block, unknowns(first, count));
-  else
-    blocks.push_back(choose_by_errors(block, first, count));
-  if (blocks.back().used) return true;
+  if (choose_by_evidence(block, unknowns(first, count))) return true;
   problem.arm = before;
   changed();
   return false;
-}
-
-/// Chooses the prior of coefficients first .. first + count - 1 by leave-one-pose-out errors.
-VERNIER_IMPL BlockChoice ModelSelection::choose_by_errors(Block block, Index first, Index count) {
-  VectorX precisions = problem.arm.precisions();
-  const Index at = static_cast<Index>(problem.arm.geometric().size()) + first;
-  const Linearised& now = linearised();
-  const Stopwatch watch(leave_one_out_seconds);
-  const PriorChoice choice = choose_prior(now.system, now.normal, precisions, now.steps, at, count, stride);
-  for (Index k = at; k < at + count; ++k) precisions(k) = choice.precision;
-  problem.arm.set_precisions(precisions);
-  const bool used = choice.precision < suppressing_precision;
-  return {block, choice.suppressed_error, used ? choice.chosen_error : choice.smallest_error, used, choice.precision};
 }
 
 /// Unknowns of coefficients first .. first + count - 1.
@@ -138,27 +138,31 @@ VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
   return {};
 }
 
-VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, const LeftOutBlocks& with,
-                                                        const LeftOutBlocks& without, double precision) const {
-  const bool few = problem.num_validation_poses() < many_poses;
-  const bool by_errors = errors_support(with, without);
-  const bool by_densities = !by_errors && few && densities_support(with, without);
-  const bool used = by_errors || by_densities;
-  return {block,
-          error_norms(without).mean(),
-          error_norms(with).mean(),
-          used,
-          used ? precision : suppressing_precision,
-          by_densities ? with.log_densities.mean() - without.log_densities.mean() : 0};
+VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest score, const VectorX& with,
+                                                        const VectorX& without, double precision) const {
+  constexpr double looks = 12, level = 0.05 / looks;  // at one arm
+  const double sigma = problem.set_of(0).sigma().length;
+  const double relevance = options_.relevant_size > 0 ? options_.relevant_size
+                                                      : (std::max)(0.1 * without.mean(), sigma);
+  if (score.p <= level)  // what the effect adds to the residuals is no noise
+    score.noise *= (std::min)(1.0, with.squaredNorm() / without.squaredNorm());
+  BlockChoice out{block, without.mean(), with.mean(), false, suppressing_precision,
+                  existence(score, level, relevance, problem.num_validation_poses())};
+  out.used = out.existence.answer == Answer::found && !predicts_worse(with, without);
+  if (out.used) out.precision = precision;
+  return out;
 }
 
-VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownGroup& group) {
+VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownGroup& group,
+                                                     std::optional<ScoreTest> score) {
   const Linearised& at = linearised();
   const VectorX before = problem.arm.precisions();
   const VectorX sized = scale_priors(at.normal, before, at.steps, problem.measured_values(), group, at.local_steps);
   VectorX suppressed = sized;
   for (const Index k : group) suppressed(k) = suppressing_precision;
-  blocks.push_back(choice_between(block, left_out(at, sized), left_out(at, suppressed), sized(group.front())));
+  if (!score) score = score_test(at.system, at.normal, sized, at.steps, group, clusters_, at.local_steps);
+  blocks.push_back(choice_between(block, *score, error_norms(left_out(at, sized)),
+                                  error_norms(left_out(at, suppressed)), sized(group.front())));
   const bool used = blocks.back().used;
   problem.arm.set_precisions(used ? sized : suppressed);
   return used;
@@ -186,6 +190,7 @@ VERNIER_IMPL void ModelSelection::learn_spectrum(int iterations) {
     return log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
                         at.steps, values, at.local_steps);
   };
+  if (bands.empty()) return;
   VectorX precisions = problem.arm.precisions();
   constexpr double clearly = 10;
   if (problem.num_validation_poses() < many_poses)

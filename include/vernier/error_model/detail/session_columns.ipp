@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "vernier/error_model/detail/session_columns.hpp"
+
+namespace vernier::detail {
+
+VERNIER_IMPL SessionColumns::SessionColumns(const ModelSelection& model)
+    : model_(model),
+      dense_(model.linearised().system.dense),
+      added_(0),
+      size_(model.linearised().system.local_size),
+      phase_(VectorX::Zero(model.problem.num_blocks())) {
+  const CalibrationProblem& problem = model.problem;
+  std::vector<Index> number;  // of each set
+  Index sets = 0;
+  for (const SessionDrift& drift : problem.drift) number.push_back(drift.empty() ? -1 : sets++);
+  added_ = sets * size_ * half_periods;
+  for (Index b = 0; b < problem.num_blocks(); ++b) {
+    const auto s = static_cast<std::size_t>(problem.station_index(b));
+    set_.push_back(number[s]);
+    if (number[s] < 0) continue;
+    const SessionDrift& drift = problem.drift[s];
+    const double length = drift.spacing * static_cast<double>(drift.knots.cols() - 1);
+    phase_(b) = (problem.set_of(b).times(problem.row_of(b)) - drift.begin) / length;
+  }
+}
+
+VERNIER_IMPL void SessionColumns::operator()(Index first, Index count, RowBlock* out) const {
+  model_.linearised().system.rows(first, count, out);
+  for (Index i = 0; i < count; ++i) {
+    RowBlock& rows = out[i];
+    const auto b = static_cast<std::size_t>(first + i);
+    Rows6 dense = Rows6::Zero(6, dense_ + added_), knots = Rows6::Zero(6, size_);
+    dense.leftCols(dense_) = rows.dense;
+    for (RowBlock::Local& part : rows.local) {
+      if (part.state >= 0) knots += part.columns;  // their shares add up to one
+      part = {};
+    }
+    for (Index k = 0; k < half_periods && set_[b] >= 0; ++k) {
+      const auto order = static_cast<double>(k + 1);
+      const Index at = dense_ + (set_[b] * half_periods + k) * size_;
+      dense.middleCols(at, size_) = knots * (std::cos(order * std::numbers::pi * phase_(first + i)) / order);
+    }
+    rows.dense = std::move(dense);
+  }
+}
+
+VERNIER_IMPL ScoreTest SessionColumns::beside_drift(const UnknownGroup& group) const {
+  UnknownGroup moved;
+  for (const Index unknown : group) moved.push_back(place(unknown));
+  return test(moved, size_);
+}
+
+VERNIER_IMPL ScoreTest SessionColumns::of_drift(Index first, Index end) const {
+  UnknownGroup group;
+  for (Index k = 0; k < added_; ++k)
+    if (k % size_ >= first && k % size_ < end) group.push_back(dense_ + k);
+  return test(group, end);
+}
+
+/// @param components of knots that there are; the others are held at zero
+VERNIER_IMPL ScoreTest SessionColumns::test(const UnknownGroup& group, Index components) const {
+  const ModelSelection::Linearised& at = model_.linearised();
+  BlockSystem system = at.system;
+  system.dense += added_;
+  system.rows = *this;
+  system.local_states = system.local_size = 0;
+  const VectorX precisions = model_.problem.arm.precisions();
+  VectorX all_precisions = VectorX::Ones(precisions.size() + added_), steps = VectorX::Zero(all_precisions.size());
+  for (Index k = 0; k < precisions.size(); ++k) {
+    all_precisions(place(k)) = precisions(k);
+    steps(place(k)) = at.steps(k);
+  }
+  for (Index k = 0; k < added_; ++k)
+    if (k % size_ >= components) all_precisions(dense_ + k) = suppressing_precision;
+  const NormalEquations normal(system, {}, model_.problem.executor);
+  return score_test(system, normal, all_precisions, steps, group, model_.clusters());
+}
+
+}  // namespace vernier::detail

@@ -1,0 +1,229 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "vernier/core/detail/dense.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/least_squares/detail/visit_blocks.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
+#include "vernier/least_squares/score_test.hpp"
+
+namespace vernier {
+
+namespace detail {
+
+/// Some columns of a matrix.
+VERNIER_LOCAL MatrixX columns_of(const MatrixX& a, const std::vector<Index>& columns) {
+  MatrixX out(a.rows(), static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = a.col(columns[k]);
+  return out;
+}
+
+/// The problem without a group of unknowns, solved, and the group's columns less what the others take over.
+struct WithoutGroup {
+  FactorisedEquations solved;       ///< with the group held at zero
+  std::vector<Index> others;        ///< unknowns that are not of the group
+  std::vector<Index> tested;        ///< of the group, those of which the data tell most
+  MatrixX taken_over{};             ///< others x tested: what they change by for one of the tested
+  MatrixX factor{}, information{};  ///< Cholesky factor of the others; of the tested ones
+};
+
+/// Solves without the group.
+VERNIER_LOCAL WithoutGroup without_group(const NormalEquations& normal, const VectorX& precisions,
+                                         const VectorX& steps, const UnknownGroup& group, const VectorX& local_steps) {
+  VectorX held = precisions;
+  std::vector<bool> of_group(static_cast<std::size_t>(precisions.size()), false);
+  for (const Index k : group) {
+    held(k) = suppressing_precision;
+    of_group[static_cast<std::size_t>(k)] = true;
+  }
+  WithoutGroup out{FactorisedEquations(normal, held, steps, local_steps), {}, {}};
+  for (Index k = 0; k < precisions.size(); ++k)
+    if (!of_group[static_cast<std::size_t>(k)]) out.others.push_back(k);
+  if (!out.solved.usable()) return out;
+  const MatrixX whole = out.solved.reduced();
+  const MatrixX of_others = columns_of(whole, out.others);
+  out.factor = rows_of(of_others, out.others);
+  for (std::size_t k = 0; k < out.others.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    out.factor(at, at) += precisions(out.others[k]) + 1e-12 * whole(out.others[k], out.others[k]);
+  }
+  if (!cholesky(out.factor)) return out;
+  MatrixX coupling = rows_of(columns_of(whole, group), out.others);
+  MatrixX half = coupling;
+  solve_lower(out.factor, half);
+  VectorX told(static_cast<Index>(group.size()));  // by the data of each
+  const VectorX explained = squared_column_norms(half);
+  for (Index k = 0; k < told.size(); ++k) {
+    const Index unknown = group[static_cast<std::size_t>(k)];
+    told(k) = whole(unknown, unknown) - explained(k);
+  }
+  std::vector<Index> order(group.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<Index>(k);
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return told(a) > told(b); });
+  constexpr std::size_t most = 400;
+  order.resize((std::min)(order.size(), most));
+  std::sort(order.begin(), order.end());
+  for (const Index k : order) out.tested.push_back(group[static_cast<std::size_t>(k)]);
+  half = columns_of(half, order);
+  out.information = rows_of(columns_of(whole, out.tested), out.tested);
+  add_transposed_product(out.information, half, half, -1);
+  solve_lower_transposed(out.factor, half);
+  out.taken_over = std::move(half);
+  return out;
+}
+
+/// Scores of the tested unknowns, a column a cluster, and one for each prior of the others.
+struct Scores {
+  MatrixX flipped;           ///< with residuals of the model with the group: those whose signs are flipped
+  VectorX sum;            ///< of the scores as they are
+  MatrixX displacements;  ///< sum of squared displacements of all positions, a quadratic form of the columns [m^2]
+  Index positions = 0;    ///< blocks with positions
+};
+
+/// The residual of a block under a model that was fitted without it.
+/// @param factor   of the equations that were solved
+/// @param columns  of all unknowns
+VERNIER_LOCAL Vector6 left_out_residual(const FactorisedEquations& solved, const Rows6& columns,
+                                        const Vector6& residual) {
+  MatrixX half = columns.transpose(), rest = MatrixX::Identity(6, 6);
+  solved.apply_inverse_factor(half);
+  add_transposed_product(rest, half, half, -1);
+  for (Index k = 0; k < 6; ++k) rest(k, k) = (std::max)(rest(k, k), 0.0) + 1e-3;  // a residual that is all taken over
+  VectorX out = residual;
+  solve_general(rest, out);
+  Vector6 left_out;
+  for (Index k = 0; k < 6; ++k) left_out(k) = out(k);
+  return left_out;
+}
+
+/// Share of the measured values that the model explains.
+VERNIER_LOCAL double mean_leverage(const BlockSystem& system, const FactorisedEquations& solved,
+                                   const VectorX& precisions) {
+  const VectorX variance = solved.inverse_diagonal();
+  const double explained = static_cast<double>(precisions.size()) - variance.dot(precisions);
+  RowBlock block;
+  system.rows(0, 1, &block);
+  Index rows = 0;
+  for (Index r = 0; r < 6; ++r) rows += block.dense.row(r).squaredNorm() > 0;
+  return (std::min)(0.9, explained / static_cast<double>((std::max)(Index{1}, rows) * system.blocks));
+}
+
+/// @param with the equations solved with the group
+VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at, const FactorisedEquations& with,
+                               const VectorX& precisions, const VectorX& steps, const std::vector<Index>& clusters) {
+  const auto m = static_cast<Index>(at.tested.size()), rest = static_cast<Index>(at.others.size());
+  const auto cluster_of = [&](Index b) { return clusters.empty() ? b : clusters[static_cast<std::size_t>(b)]; };
+  std::map<Index, Index> columns;  // of each cluster
+  for (Index b = 0; b < system.blocks; ++b) columns.emplace(cluster_of(b), static_cast<Index>(columns.size()));
+  std::vector<Index> informed;  // others with a prior
+  for (std::size_t k = 0; k < at.others.size(); ++k)
+    if (precisions(at.others[k]) > 0) informed.push_back(static_cast<Index>(k));
+  const auto of_data = static_cast<Index>(columns.size());
+  Scores out{MatrixX::Zero(m, of_data + static_cast<Index>(informed.size())), VectorX::Zero(m), MatrixX::Zero(m, m)};
+
+  constexpr Index many = 500;  // exact where there are few poses; among many the mean leverage is that of each
+  const bool exact = system.blocks < many;
+  const double mean = exact ? 1 : 1 / (1 - mean_leverage(system, with, precisions));
+  const auto residual_of = [&](const RowBlock& rows, const Rows6& all, const FactorisedEquations& solved) {
+    Vector6 residual = rows.residual;
+    add_columns(all, solved.step().data(), 1, residual.data());
+    for (const RowBlock::Local& part : rows.local)
+      if (system.local_states > 0 && part.state >= 0)
+        add_columns(part.columns, &solved.local_step()(part.state * system.local_size), 1, residual.data());
+    return residual;
+  };
+  Rows6 all(6, system.unknowns()), others(6, rest), tested(6, m);
+  constexpr Index batch = 64;
+  MatrixX waiting(3 * batch, m);  // displacements of positions
+  visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
+    rows.expand(system.group_sizes, all);
+    const Vector6 residual = residual_of(rows, all, at.solved), noise = residual_of(rows, all, with);
+    if (system.local_states > 0) at.solved.eliminate_local(rows, all);
+    for (Index k = 0; k < rest; ++k) others.col(k) = all.col(at.others[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < m; ++k) tested.col(k) = all.col(at.tested[static_cast<std::size_t>(k)]);
+    add_product(tested, others, at.taken_over, -1);
+    out.flipped.col(columns.at(cluster_of(b))) +=
+        transposed_product(tested, exact ? left_out_residual(with, all, noise) : Vector6(mean * noise));
+    out.sum += transposed_product(tested, residual);
+    if (b >= system.validation_blocks) return;
+    const Rows6 rows_moved = rows.unwhiten * tested;
+    const MatrixX moved = rows.position_sigma * rows_moved.topRows(3);
+    waiting.middleRows(3 * (out.positions % batch), 3) = moved;
+    if (++out.positions % batch == 0) add_transposed_product(out.displacements, waiting, waiting);
+  });
+  const MatrixX left = waiting.topRows(3 * (out.positions % batch));
+  add_transposed_product(out.displacements, left, left);
+  for (std::size_t i = 0; i < informed.size(); ++i) {  // a prior is a measurement of zero
+    const Index k = informed[i], unknown = at.others[static_cast<std::size_t>(k)];
+    const auto pulled = [&](const FactorisedEquations& solved) -> VectorX {
+      return row_of(at.taken_over, k) * (-precisions(unknown) * (steps(unknown) + solved.step()(unknown)));
+    };
+    out.flipped.col(of_data + static_cast<Index>(i)) = pulled(with);
+    out.sum += pulled(at.solved);
+  }
+  return out;
+}
+
+/// Share of arrangements of signs with a weighted square of the sum as large as that of the scores.
+VERNIER_LOCAL double share_as_large(const Scores& scores, Index draws) {
+  const double reached = scores.sum.squaredNorm() * (1 - 1e-9);
+  Rng rng(0x5c07e5);
+  constexpr Index batch = 100;
+  Index as_large = 0, drawn = 0;
+  MatrixX signs(scores.flipped.cols(), batch);
+  while (drawn < draws) {
+    std::uint64_t bits = 0;
+    for (Index i = 0; i < signs.size(); ++i) {
+      if (i % 64 == 0) bits = rng();
+      signs.data()[i] = (bits >> (i % 64)) % 2 == 0 ? 1 : -1;
+    }
+    const VectorX squares = squared_column_norms(matrix_product(scores.flipped, signs));
+    for (Index i = 0; i < batch && drawn < draws; ++i, ++drawn) as_large += squares(i) >= reached;
+    constexpr Index plenty = 20;
+    if (as_large >= plenty) break;
+  }
+  return static_cast<double>(as_large + 1) / static_cast<double>(drawn + 1);
+}
+
+}  // namespace detail
+
+VERNIER_IMPL ScoreTest score_test(const BlockSystem& system, const NormalEquations& normal, const VectorX& precisions,
+                                  const VectorX& steps, const UnknownGroup& group, const std::vector<Index>& clusters,
+                                  const VectorX& local_steps, Index draws) {
+  const detail::WithoutGroup at = detail::without_group(normal, precisions, steps, group, local_steps);
+  const FactorisedEquations with(normal, precisions, steps, local_steps);
+  if (at.taken_over.size() == 0 || !with.usable()) return {};
+  const detail::SymmetricEigen directions = detail::symmetric_eigen(at.information);
+  const Index m = directions.values.size();
+  const double most = m > 0 ? directions.values(m - 1) : 0;
+  if (!directions.converged || !(most > 0)) return {};
+  detail::Scores scores = detail::scores_of(system, at, with, precisions, steps, clusters);
+  const double information = detail::diagonal_of(at.information).sum();
+  ScoreTest out{};
+  out.noise = detail::squared_column_norms(scores.flipped).sum() / information;
+  const VectorX along = detail::transposed_product(directions.vectors, scores.sum);
+  Index first = 0;
+  while (directions.values(first) <= 1e-9 * most) ++first;
+  out.information.resize(m - first);
+  out.estimates.resize(m - first);
+  for (Index k = 0; k < m - first; ++k) {
+    out.information(k) = directions.values(m - 1 - k);
+    out.estimates(k) = -along(m - 1 - k) / out.information(k);
+  }
+  const MatrixX determined = directions.vectors.rightCols(m - first).rowwise().reverse();
+  out.displacement = detail::transposed_matrix_product(determined, detail::matrix_product(scores.displacements, determined)) /
+                     static_cast<double>((std::max)(Index{1}, scores.positions));
+  VectorX weights(m);
+  for (Index k = 0; k < m; ++k) weights(k) = 1 / std::sqrt((std::max)(directions.values(k), 0.0) + score_precision);
+  const MatrixX along_directions = detail::rows_scaled(weights, directions.vectors.transpose());
+  scores.flipped = detail::matrix_product(along_directions, scores.flipped);
+  scores.sum = detail::product(along_directions, scores.sum);
+  out.p = detail::share_as_large(scores, draws);
+  return out;
+}
+
+}  // namespace vernier

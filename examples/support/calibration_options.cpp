@@ -15,7 +15,8 @@ namespace vn = vernier;
 struct TypedValues {
   std::string loss = "huber";
   double distance_sigma_mm = 0.03, contact_sigma_mm = 0.03;
-  bool positions_only = false;
+  double relevant_mm = 0;
+  bool positions_only = false, no_tilt = false, no_temperature = false, no_drift = false;
 };
 
 void add_measurements(Program& program, CalibrationOptions& o, TypedValues& typed) {
@@ -86,6 +87,15 @@ void add_estimation(Program& program, CalibrationOptions& o, TypedValues& typed)
                      "parameters that stay nominal, by name (d1, theta6, tool_z, ...)", "NAME");
   program.add_flag("--no-approach", o.no_approach,
                    "rows are not in the order of measuring: no hysteresis by the direction of approach");
+  program.add_flag("--no-tilt", typed.no_tilt, "no tilts of the joints' frames under gravity");
+  program.add_flag("--no-temperature", typed.no_temperature, "no change of the geometry with temperature");
+  program.add_flag("--no-drift", typed.no_drift, "no drift of base and joints during the session");
+  program
+      .add_option("--relevant-mm", typed.relevant_mm,
+                  "from which size on an effect matters, as displacement of the tool point [mm]; by default a tenth of "
+                  "the left-out error, at least the sensor's standard deviation",
+                  "MM")
+      .within(1e-6, 1e3);
   program
       .add_setting("--harmonics", o.calibrate.errors.harmonics,
                    "highest order of the joint-wise harmonics, at most 60 below 400 measurements; 0: none", "K")
@@ -165,6 +175,10 @@ CalibrationOptions read_calibration_options(Program& program) {
   sensors.contact_sigma = typed.contact_sigma_mm * 1e-3;
   sensors.use_orientations = !typed.positions_only;
   o.calibrate.errors.hysteresis = !o.no_approach;
+  o.calibrate.errors.tilt = !typed.no_tilt;
+  o.calibrate.errors.temperature = !typed.no_temperature;
+  o.calibrate.errors.drift = !typed.no_drift;
+  o.calibrate.errors.relevant_size = typed.relevant_mm * 1e-3;
   return o;
 }
 

@@ -166,10 +166,10 @@ TEST(CalibrationReport, TenPosesAreEnough) {
 // Everything at once has seven lines.
 TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
   CalibrationReport report = five_poses();
-  report.blocks = {{Block::elastic, 1e-3, 0.5e-3, true, 1, 0},
-                   {Block::jointwise, 1e-3, 0.5e-3, true, 1, 0},
-                   {Block::approach, 1e-3, 2e-3, false, 1, 0},
-                   {Block::tilt, 1e-3, 2e-3, false, 1, 0}};
+  report.blocks = {{Block::elastic, 1e-3, 0.5e-3, true},
+                   {Block::jointwise, 1e-3, 0.5e-3, true},
+                   {Block::approach, 1e-3, 2e-3, false, 1, {Answer::ruled_out}},
+                   {Block::tilt, 1e-3, 2e-3, false, 1, {Answer::undecided}}};
   report.converged = false;
   report.outliers = 2;
   report.median_error = 0.04e-3;
@@ -188,8 +188,8 @@ TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
   ASSERT_EQ(said.size(), 7u) << joined(said);
   EXPECT_EQ(said[3],
             "Deployed, as left-out poses decide: joint-wise. Included: gravity compliance, functions of single joints. "
-            "Left out, since these poses do not support them: hysteresis by the direction of approach, tilts of joint "
-            "frames under gravity.");
+            "Ruled out, as too small to matter: hysteresis by the direction of approach. Undecided, for which these "
+            "poses are too few: tilts of joint frames under gravity.");
   EXPECT_EQ(said[4],
             "The fit of the joint errors stopped before it converged. The fit of the geometry did not converge: 100 "
             "iterations. The geometry is poorly determined: its condition is 2.6e+06. 2 of the training rows have "
@@ -203,14 +203,18 @@ TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
 // Gravity compliance was decided on twice: the second decision holds. Drift is estimated, but not deployed.
 TEST(CalibrationReport, TheVerdictNamesWhatIsDeployed) {
   CalibrationReport report = five_poses();
-  report.blocks = {{Block::elastic, 1e-3, 0.5e-3, true, 1, 0},
-                   {Block::jointwise, 1e-3, 0.5e-3, true, 1, 0},
-                   {Block::elastic_again, 1e-3, 2e-3, false, 1, 0},
-                   {Block::drift, 1e-3, 0.5e-3, true, 1, 0},
-                   {Block::joint_drift, 1e-3, 2e-3, false, 1, 0}};
+  report.blocks = {{Block::elastic, 1e-3, 0.5e-3, true},
+                   {Block::jointwise, 1e-3, 0.5e-3, true},
+                   {Block::elastic_again, 1e-3, 2e-3, false, 1, {Answer::ruled_out}},
+                   {Block::gears, 1e-3, 2e-3, false, 1, {Answer::found}},
+                   {Block::temperature, 1e-3, 1e-3, false},
+                   {Block::drift, 1e-3, 0.5e-3, true, 1, {Answer::found}},
+                   {Block::joint_drift, 1e-3, 2e-3, false, 1, {Answer::ruled_out}}};
   EXPECT_TRUE(says(report.verdict(),
-                   "Deployed, as left-out poses decide: joint-wise. Included: functions of single joints. Left out, "
-                   "since these poses do not support them: gravity compliance, drift of the joints' zeros."))
+                   "Deployed, as left-out poses decide: joint-wise. Included: functions of single joints. Found, but not "
+                   "deployed, because they predict left-out poses worse: gear ratios and coupling. Ruled out, as too "
+                   "small to matter: gravity compliance, drift of the joints' zeros. Not tested, because time cannot be "
+                   "told apart: change of the geometry with temperature."))
       << joined(report.verdict());
   report.chosen = {Stage::geometry_learned, Learner::pso_elm};
   report.stages.push_back({report.chosen, "geometry + PSO-ELM", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});
@@ -248,25 +252,32 @@ TEST(CalibrationReport, RangesInDegreesAndMillimetres) {
   EXPECT_TRUE(says(report.details(), "Range of validity [deg, mm]: q1 -63..34; q2."));
 }
 
-// A block has a sentence for either decision, with errors in millimetres and the gain of density where that decided.
-TEST(CalibrationReport, DecisionsByHand) {
-  const std::pair<Block, const char*> titles[] = {
-      {Block::elastic, "Gravity compliance"},
-      {Block::gears, "Gear ratios and coupling"},
-      {Block::tuned_priors, "Optimised priors"},
-      {Block::joint_drift, "Drift of the joints' zeros"},
+// A block has a sentence for each answer, with sizes and errors in millimetres.
+TEST(CalibrationReport, AnswersByHand) {
+  const auto said = [](Block block, bool used, const Existence& existence) {
+    CalibrationReport report = five_poses();
+    report.blocks = {{block, 0.25e-3, 0.125e-3, used, 1, existence}};
+    return report.details();
   };
-  for (const auto& [block, title] : titles)
-    for (const bool used : {true, false}) {
-      CalibrationReport report = five_poses();
-      report.blocks = {{block, 0.25e-3, 0.125e-3, used, 1, used ? 0.5 : 0}};
-      EXPECT_TRUE(says(report.details(),
-                       std::string(title) + (used ? ": included" : ": left out, not supported") +
-                           " (leave-one-pose-out error: 0.25 mm without, 0.125 mm with" +
-                           (used ? "; log predictive density of a left-out pose greater by 0.5 nat)." : ").")))
-          << title << '\n'
-          << joined(report.details());
-    }
+  const std::string errors = " Left-out error: 0.25 mm without, 0.125 mm with.";
+  const Existence found{Answer::found, 0.001, 0.5e-3, {0.25e-3, 0.75e-3}, 0.1e-3, 20};
+  const std::string size = "Gear ratios and coupling: found (p = 0.001), 0.5 mm at the tool, 0.25 to 0.75 with 95 %";
+  EXPECT_TRUE(says(said(Block::gears, true, found), size + "." + errors));
+  EXPECT_TRUE(says(said(Block::gears, false, found),
+                   size + "; not deployed, because it predicts left-out poses worse." + errors));
+  EXPECT_TRUE(says(said(Block::drift, false, {Answer::ruled_out, 0.5, 0, {0, 0.05e-3}, 0.1e-3, 20}),
+                   "Drift of the base: ruled out above 0.05 mm at the tool." + errors));
+  const std::string few = "Gravity compliance: undecided (p = 0.5): below 0.25 mm at the tool, 0.1 mm would matter; ";
+  EXPECT_TRUE(says(said(Block::elastic, false, {Answer::undecided, 0.5, 0, {0, 0.25e-3}, 0.1e-3, 120}),
+                   few + "about 120 poses would decide." + errors));
+  EXPECT_TRUE(says(said(Block::elastic, false, {Answer::undecided, 0.5, 0, {0, 0.25e-3}, 0.1e-3, 0}),
+                   few + "more poses of this kind would not decide." + errors));
+  EXPECT_TRUE(says(said(Block::tuned_priors, true, {}), "Optimised priors: included." + errors));
+  EXPECT_TRUE(says(said(Block::tuned_priors, false, {}), "Optimised priors: left out." + errors));
+  EXPECT_TRUE(says(said(Block::temperature, false, {}),
+                   "Change of the geometry with temperature: not tested, because temperature and time cannot be told "
+                   "apart." +
+                       errors));
 }
 
 TEST(CalibrationReport, WhatWasLearnedAndKnownBefore) {

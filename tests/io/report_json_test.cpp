@@ -45,7 +45,8 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
   CalibrationReport report = least();
   report.train_poses = 17;
   report.chosen = Stage::geometry;
-  report.blocks = {{Block::elastic, 1e-3, 2e-3, true, 3, 0.25}, {Block::jointwise, 4e-3, 5e-3, false, 6, 0}};
+  report.blocks = {{Block::elastic, 1e-3, 2e-3, true, 3, {Answer::found, 0.25, 3e-3, {2e-3, 5e-3}, 1e-3, 70}},
+                   {Block::jointwise, 4e-3, 5e-3, false, 6}};
   report.trials = {{true, Learner::pso_elm, 7e-3, 8e-3, true}};
   report.mean_temperature = 31;
   report.prior = PriorTransfer{"last year", 0.1, 0.2, true};
@@ -68,7 +69,8 @@ TEST(ReportJson, DecisionsParametersAndIdentifiability) {
     "robot": "arm", "train_rows": 17, "test_rows": 4, "chosen": "geometry", "mean_temperature_c": 31, "gated_rows": 2,
     "held_out_mean_mm": {"mean": 0.3, "lower": 0, "upper": null}, "worst_harm_beside_geometry_mm": 9e-3, "within_95_percent_ellipsoids": 0.75,
     "blocks": [{"name": "elastic", "used": true, "left_out_without_mm": 1, "left_out_with_mm": 2,
-                "log_density_gain": 0.25, "tightness": 3},
+                "answer": "found", "p": 0.25, "size_mm": 3, "interval_mm": [2, 5], "relevant_mm": 1,
+                "poses_to_decide": 70, "tightness": 3},
                {"tightness": null}],
     "learners": [{"stage": "geometry_pso_elm", "used": true, "left_out_without_mm": 7, "left_out_with_mm": 8}],
     "prior": {"name": "last year", "used": true, "geometry_kappa": 0.1, "joints_kappa": 0.2},

@@ -7,7 +7,6 @@
 
 #include "local_states.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
-#include "vernier/least_squares/prior_choice.hpp"
 
 namespace left_out_poses_test {
 namespace {
@@ -73,28 +72,13 @@ TEST(LeftOutPoses, AreThoseOfSolvingWithoutAllBlocksOfThePose) {
 }
 
 TEST(LeftOutPoses, CountOnceEach) {
-  LeftOutBlocks some{Eigen::Matrix3Xd::Zero(3, 5), VectorX::Zero(5), {0, 1, 0, 2, 1}};
+  LeftOutBlocks some{Eigen::Matrix3Xd::Zero(3, 5), {0, 1, 0, 2, 1}};
   for (Index k = 0; k < 5; ++k) some.errors(0, k) = static_cast<double>(k + 1);
   const VectorX norms = vernier::detail::error_norms(some);
   ASSERT_EQ(norms.size(), 3);
   EXPECT_EQ(norms(0), 2);
   EXPECT_EQ(norms(1), 3.5);
   EXPECT_EQ(norms(2), 4);
-}
-
-// Ten readings of each of three poses: what helps two of three poses is no support, however often it was read.
-TEST(LeftOutPoses, ReadingsAddNoSupport) {
-  LeftOutBlocks with{Eigen::Matrix3Xd::Zero(3, 30), VectorX::Zero(30), {}}, without = with;
-  for (Index k = 0; k < 30; ++k) {
-    with.poses.push_back(k % 3);
-    with.errors(0, k) = 1;
-    without.errors(0, k) = k % 3 == 0 ? 0.8 : 1.2;
-  }
-  without.poses = with.poses;
-  EXPECT_FALSE(errors_support(with, without));
-  with.poses.clear();
-  without.poses.clear();
-  EXPECT_TRUE(errors_support(with, without));
 }
 
 }  // namespace

@@ -122,77 +122,6 @@ TEST(LeaveOneOutErrors, AreThoseOfSolvingWithoutThePose) {
     }
 }
 
-// The density of a block's values under N(their prediction, variance (I + A S A')), with S the inverse of the equations
-// of all other blocks, and the variance of the noise at which the sum over all blocks is largest.
-TEST(LeaveOneOut, LogDensitiesAreThoseOfThePredictiveDistributions) {
-  RandomBlocks blocks(12, 7, false);
-  for (const Index b : {3, 8}) {  // positions alone
-    RowBlock& p = blocks.rows[static_cast<std::size_t>(b)];
-    for (Index r = 3; r < 6; ++r) {
-      p.residual(r) = 0;
-      for (Index k = 0; k < p.dense.cols(); ++k) p.dense(r, k) = 0;
-      for (Index k = 0; k < p.factor.cols(); ++k) p.factor(r, k) = 0;
-    }
-  }
-  Rng rng(8);
-  VectorX precisions = random_vector(rng, 15);
-  for (double& x : precisions) x = std::abs(x);
-  const VectorX steps = random_vector(rng, 15, 0.3);
-  const NormalEquations normal = blocks.normal();
-  const FactorisedEquations solved(normal, precisions, steps);
-  const VectorX found =
-      blocks.with_system([&](const BlockSystem& s) { return leave_one_out(s, solved, 1); }).log_densities;
-  const auto wanted = [&](double variance) {
-    VectorX out(12);
-    for (Index b = 0; b < 12; ++b) {
-      RealMatrix matrix = RealMatrix::diagonal(precisions), gradient = matrix * steps;
-      for (Index other = 0; other < 12; ++other) {
-        if (other == b) continue;
-        const RealMatrix rows = blocks.expanded(other);
-        matrix += rows.transpose() * rows;
-        gradient += rows.transpose() * blocks.row(other).residual;
-      }
-      const Index values = b == 3 || b == 8 ? 3 : 6;
-      const RealMatrix inverse = matrix.inverse();
-      const RealMatrix rows = RealMatrix(blocks.expanded(b)).block(0, 0, values, 15);
-      const RealMatrix error = RealMatrix(blocks.row(b).residual).block(0, 0, values, 1) - rows * inverse * gradient;
-      const RealMatrix covariance = variance * (RealMatrix::identity(values) + rows * inverse * rows.transpose());
-      out(b) = -0.5 * (error.dot(covariance.inverse() * error) + std::log(covariance.determinant()));
-    }
-    return out;
-  };
-  double best = 1;
-  for (const double step : {2.0, 1.1, 1.01, 1.001, 1.0001})
-    for (const double towards : {step, 1 / step})
-      while (wanted(best * towards).sum() > wanted(best).sum()) best *= towards;
-  EXPECT_LT((found - wanted(best)).norm(), 1e-3 * found.norm());
-  EXPECT_GT((found - wanted(1.1 * best)).norm(), 1e-2 * found.norm());
-  EXPECT_NEAR(found.sum(), wanted(best).sum(), 1e-6 * std::abs(found.sum()));
-}
-
-// A value counts as measured where it has a residual or depends on something. Two blocks off by three values and by
-// one, and one that is met: five values, whose mean square is 18 / 5.
-TEST(LeaveOneOut, DensitiesCountTheMeasuredValues) {
-  RandomBlocks blocks(3, 1, true, 1);
-  blocks.group_sizes = {0, 0, 0};
-  for (RowBlock& rows : blocks.rows) {
-    rows.functions.resize(0);
-    rows.residual.setZero();
-    rows.dense.setZero();
-  }
-  for (Index r = 0; r < 3; ++r) blocks.rows[0].residual(r) = r == 0 ? 1 : 2;
-  blocks.rows[1].residual(5) = 3;
-  blocks.rows[2].dense(1, 0) = 1;
-  const NormalEquations normal = blocks.normal();
-  const FactorisedEquations solved(normal, VectorX::Constant(1, 1e9), VectorX::Zero(1));
-  const VectorX found =
-      blocks.with_system([&](const BlockSystem& s) { return leave_one_out(s, solved, 1); }).log_densities;
-  const double variance = 18.0 / 5;
-  EXPECT_NEAR(found(0), -0.5 * (9 / variance + 3 * std::log(variance)), 1e-8);
-  EXPECT_NEAR(found(1), -0.5 * (9 / variance + std::log(variance)), 1e-8);
-  EXPECT_NEAR(found(2), -0.5 * std::log(variance), 1e-8);
-}
-
 // A prior with correlations, however tight, leaves the unknowns that it does not contain to the data.
 TEST(FactorisedEquations, ATightJointPriorHoldsItsOwnUnknownsAlone) {
   const RandomBlocks blocks(15, 19);
@@ -218,9 +147,6 @@ TEST(LeaveOneOutErrors, AreInfiniteWhereNothingCouldBeSolved) {
       blocks.with_system([&](const BlockSystem& s) { return leave_one_out_errors(s, broken, 2); });
   EXPECT_EQ(errors.cols(), 8);
   EXPECT_EQ(std::count(errors.data(), errors.data() + errors.size(), infinity), errors.size());
-  const VectorX densities =
-      blocks.with_system([&](const BlockSystem& s) { return leave_one_out(s, broken, 2); }).log_densities;
-  EXPECT_EQ(std::count(densities.begin(), densities.end(), -infinity), densities.size());
 }
 
 TEST(LeaveOneOutErrors, OfValidationBlocksAlone) {

@@ -58,96 +58,22 @@ TEST(OneStandardErrorRule, WhatIsNotFiniteIsSuppressed) {
   EXPECT_THROW((void)one_standard_error_rule({}), std::invalid_argument);
 }
 
-/// Blocks with given errors along x, and log predictive densities.
-LeftOutBlocks left_out(const std::vector<double>& errors, const std::vector<double>& log_densities) {
-  const auto n = static_cast<Index>(errors.size());
-  LeftOutBlocks out{Eigen::Matrix3Xd::Zero(3, n), Eigen::Map<const VectorX>(log_densities.data(), n)};
-  for (Index b = 0; b < n; ++b) out.errors(0, b) = -errors[static_cast<std::size_t>(b)];
-  return out;
+VectorX errors(const std::vector<double>& values) {
+  return Eigen::Map<const VectorX>(values.data(), static_cast<Index>(values.size()));
 }
 
-// Saved: (0.5, 0), mean 0.25, standard error 0.25; (0.5625, 0), mean 0.28125, standard error 0.28125; (0.5, 0.0625):
-// mean 0.28125, standard error 0.21875.
-TEST(ErrorsSupport, WhatMakesThemSmallerByMoreThanAStandardError) {
-  const std::vector<double> same{0, 0};
-  EXPECT_FALSE(errors_support(left_out({1, 1}, same), left_out({1.5, 1}, same)));
-  EXPECT_FALSE(errors_support(left_out({1, 1}, same), left_out({1.5625, 1}, same)));
-  EXPECT_TRUE(errors_support(left_out({1, 1}, same), left_out({1.5, 1.0625}, same)));
-  EXPECT_FALSE(errors_support(left_out({1.5, 1.0625}, same), left_out({1, 1}, same)));
-  EXPECT_TRUE(errors_support(left_out({1, 1}, {-9, -9}), left_out({1.5, 1.0625}, same)));  // whatever the densities
+// Excess: (0.5, 0), mean 0.25, standard error 0.25; (0.5, 0.0625), mean 0.28125, standard error 0.21875.
+TEST(PredictsWorse, WhatMakesErrorsLargerByMoreThanAStandardError) {
+  EXPECT_FALSE(predicts_worse(errors({1.5, 1}), errors({1, 1})));
+  EXPECT_TRUE(predicts_worse(errors({1.5, 1.0625}), errors({1, 1})));
+  EXPECT_FALSE(predicts_worse(errors({1, 1}), errors({1.5, 1.0625})));
+  EXPECT_FALSE(predicts_worse(errors({1, 1}), errors({1, 1})));
 }
 
-// Errors smaller by 0.125, standard error 0.375.
-TEST(DensitiesSupport, WhatMakesThemGreaterByMoreThanAStandardErrorAndErrorsSmaller) {
-  const std::vector<double> with{1, 1}, without{1.5, 0.75}, zero{0, 0};
-  EXPECT_FALSE(errors_support(left_out(with, {9, 9}), left_out(without, zero)));
-  EXPECT_FALSE(densities_support(left_out(with, zero), left_out(without, zero)));
-  EXPECT_FALSE(densities_support(left_out(with, {0.5, 0}), left_out(without, zero)));
-  EXPECT_TRUE(densities_support(left_out(with, {0.5, 0.0625}), left_out(without, zero)));
-  EXPECT_FALSE(densities_support(left_out(with, zero), left_out(without, {0.5, 0.0625})));
-  EXPECT_FALSE(densities_support(left_out(without, {9, 9}), left_out(with, zero)));  // errors greater by 0.125
-  EXPECT_FALSE(densities_support(left_out(with, {9, 9}), left_out(with, zero)));     // the same errors
-}
-
-TEST(ErrorsSupport, NothingThatIsNotFinite) {
-  const std::vector<double> zero{0, 0}, none{-infinity, -infinity};
-  const auto both = [](const LeftOutBlocks& a, const LeftOutBlocks& b) {
-    return errors_support(a, b) || densities_support(a, b);
-  };
-  EXPECT_FALSE(both(left_out({nan, 1}, zero), left_out({2, 2.1}, zero)));
-  EXPECT_FALSE(both(left_out({infinity, infinity}, none), left_out({2, 2.1}, zero)));
-  EXPECT_FALSE(both(left_out({1, 1}, zero), left_out({infinity, infinity}, none)));
-  EXPECT_FALSE(both(left_out({1, 1}, {nan, nan}), left_out({1.5, 0.75}, zero)));
-}
-
-PriorChoice chosen(const RandomBlocks& poses) {
-  return poses.with_system([&](const BlockSystem& s) {
-    return choose_prior(s, NormalEquations(s), VectorX::Constant(15, 1e-3), VectorX::Zero(15), 5, 10, 1);
-  });
-}
-
-// Unknowns from ten expected sizes down to a hundredth: the error under each prior that is tried, by solving without
-// each block in turn.
-TEST(ChoosePrior, TriesPriorsOfAllSizes) {
-  for (const double size : {10.0, 1.0, 0.1, 0.01})
-    for (const std::uint64_t seed : {1u, 2u, 3u, 7u}) {  // the last is best under 1e4 where unknowns are the smallest
-      RandomBlocks poses(24, seed);
-      Rng rng(seed + 10);
-      const VectorX truth = random_vector(rng, 15, size);
-      for (Index b = 0; b < 24; ++b) poses.rows[static_cast<std::size_t>(b)].residual -= poses.expanded(b) * truth;
-      const VectorX steps = VectorX::Constant(15, 0.02);
-      std::vector<PriorTrial> wanted;
-      double smallest = infinity;
-      for (const double precision : {0.3, 1.0, 3.0, 10.0, 100.0, 1e4, 1e12}) {
-        VectorX precisions = VectorX::Constant(15, 1e-3);
-        for (Index k = 5; k < 15; ++k) precisions(k) = precision;
-        VectorX errors(12);
-        for (Index b = 0; b < 12; ++b) errors(b) = left_out_by_force(poses, precisions, steps, 2 * b).norm();
-        smallest = std::min(smallest, errors.mean());
-        wanted.push_back({precision, errors});
-      }
-      const PriorChoice choice = poses.with_system([&](const BlockSystem& s) {
-        return choose_prior(s, NormalEquations(s), VectorX::Constant(15, 1e-3), steps, 5, 10, 2);
-      });
-      const PriorTrial& best = wanted[one_standard_error_rule(wanted)];
-      EXPECT_EQ(choice.precision, best.precision) << size;
-      EXPECT_NEAR(choice.chosen_error, best.errors.mean(), 1e-6 * smallest) << size;
-      EXPECT_NEAR(choice.smallest_error, smallest, 1e-6 * smallest) << size;
-      EXPECT_NEAR(choice.suppressed_error, wanted.back().errors.mean(), 1e-6 * smallest) << size;
-    }
-}
-
-TEST(ChoosePrior, SurvivesRowsThatAreNotFinite) {
-  for (const double bad : {nan, infinity, -infinity})
-    for (const int part : {0, 1, 2, 3}) {
-      RandomBlocks poses(15, 10);
-      RowBlock& p = poses.rows[6];
-      if (part == 0) p.residual(1) = bad;
-      if (part == 1) p.dense(2, 3) = bad;
-      if (part == 2) p.factor(0, 2) = bad;
-      if (part == 3) p.functions(0) = bad;
-      EXPECT_EQ(chosen(poses).precision, suppressing_precision) << bad << " in part " << part;
-    }
+TEST(PredictsWorse, WhatIsNotFinite) {
+  EXPECT_TRUE(predicts_worse(errors({nan, 1}), errors({2, 2.1})));
+  EXPECT_TRUE(predicts_worse(errors({infinity, 1}), errors({2, 2.1})));
+  EXPECT_TRUE(predicts_worse(errors({1, 1}), errors({infinity, infinity})));
 }
 
 }  // namespace

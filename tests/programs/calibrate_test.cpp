@@ -107,7 +107,8 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   ASSERT_FALSE(c.json.at("blocks").empty());
   for (const Json& block : c.json.at("blocks"))
     EXPECT_EQ(keys(block), (std::vector<std::string>{"name", "used", "left_out_without_mm", "left_out_with_mm",
-                                                     "log_density_gain", "tightness"}));
+                                                     "answer", "p", "size_mm", "interval_mm", "relevant_mm",
+                                                     "poses_to_decide", "tightness"}));
   ASSERT_EQ(c.json.at("spectrum").size(), 6u);
   for (const Json& joint : c.json.at("spectrum")) {
     EXPECT_EQ(joint.at("orders").size(), joint.at("amplitudes_urad").size());

@@ -23,7 +23,7 @@ namespace vernier {
 struct BlockChoice {
   Block block{};         ///< which unknowns
   double without = 0;    ///< mean leave-one-pose-out error without the block [m]
-  double with = 0;       ///< with it, as it was fitted [m]; where it was not used, under the best prior tried
+  double with = 0;       ///< with it, sized by evidence [m]
   bool used = false;     ///< whether it is in the model
   double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
                          ///< terms that of the lowest band of orders, of drift that of its random walk

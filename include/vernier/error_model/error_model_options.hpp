@@ -15,7 +15,7 @@ struct ArmPrior;
 /// leave-one-pose-out errors decide which blocks of joint errors the data support.
 struct ErrorModelOptions {
   bool compliance = true;  ///< elastic deflection of joints under gravity
-  bool gear_ratio = true;  ///< joint errors proportional to the joint value; only beside joint-wise terms
+  bool gear_ratio = true;  ///< joint errors proportional to the joint value; beside harmonics, or in their place
   bool coupling = true;    ///< joint errors proportional to the value of the joint before; likewise
   int harmonics = 500;     ///< highest order of the harmonics of each joint, at most 60 below 400 measurements; 0: none
   HarmonicSpectrum spectrum = typical_spectrum();  ///< orders of the Fourier terms, and their expected sizes

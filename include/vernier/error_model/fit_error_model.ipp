@@ -56,7 +56,7 @@ class ErrorModelFit {
     const MatrixX joints = problem_.joints();
     for (Index j = 0; j < joints.cols(); ++j)
       linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
-    const bool geared = linear.gear_ratio || linear.coupling, periodic = all.size() > elastic.size();
+    const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
     // what grows with the joint value looks like a function that repeats, and the other way round: the better one first
     const CalibrationProblem before = problem_;
     bool harmonics = periodic && model_.add(Block::jointwise, all);
@@ -65,12 +65,12 @@ class ErrorModelFit {
       const std::vector<BlockChoice> choices = model_.blocks;
       problem_ = before;
       model_.changed();
-      if (periodic) model_.blocks.pop_back();
+      model_.blocks.pop_back();
       if (model_.add(Block::gears, linear) && (!harmonics || model_.blocks.back().with < choices.back().with)) {
         model_.solve();
         linear.transmission = all.transmission;
-        harmonics = periodic && model_.add(Block::jointwise, linear);
-      } else if (periodic) {
+        harmonics = model_.add(Block::jointwise, linear);
+      } else {
         problem_ = with_harmonics;
         model_.changed();
         const BlockChoice alone = model_.blocks.back();
@@ -108,7 +108,7 @@ class ErrorModelFit {
     if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
     const bool tilt = options_.tilt && model_.add(Block::tilt, tilted);
     if (tilt) {
-      if (!jointwise) estimate.fallback_error = model_.blocks.back().without;
+      if (!harmonics) estimate.fallback_error = model_.blocks.back().without;
       model_.steps(2);
       model_.size_by_evidence(model_.gravity());  // the third axis, that of the joint
       model_.solve();
@@ -226,9 +226,9 @@ class ErrorModelFit {
     if (same_value(estimate.fallback_error, 0)) estimate.fallback_error = error_without;
     expected_ = before.arm.precisions().tail(terms.size());
     if (before.temperature_std > 0) {
-      out.temperatures = estimate.temperature_std > 0
-                             ? std::array{(std::min)(out.temperatures[0], prior.temperatures[0]),
-                                          (std::max)(out.temperatures[1], prior.temperatures[1])}
+      out.temperatures = problem_.temperatures().std > 0
+                             ? std::array{(std::min)(problem_.temperatures().range[0], prior.temperatures[0]),
+                                          (std::max)(problem_.temperatures().range[1], prior.temperatures[1])}
                              : prior.temperatures;
       estimate.mean_temperature = before.mean_temperature;
       estimate.temperature_std = before.temperature_std;

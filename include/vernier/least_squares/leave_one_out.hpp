@@ -9,21 +9,17 @@ namespace vernier {
 
 /// Validation blocks, each predicted without the blocks of its pose.
 struct LeftOutBlocks {
-  Eigen::Matrix3Xd errors;  ///< of positions, a column a block [m]; infinite where there is no solution
-  /// Log predictive densities: of each block's measured values, predicted by all others, up to a constant [nat]. The
-  /// variance of the whitened noise has its most likely value for these blocks. Not finite where there is no solution.
-  VectorX log_densities;
+  Eigen::Matrix3Xd errors;     ///< of positions, a column a block [m]; infinite where there is no solution
   std::vector<Index> poses{};  ///< of each column; empty where each block is of a pose of its own
 };
 
 /// Predicts blocks from those of all other poses, in closed form, at the solution of the linearised problem with given
-/// priors: the whitened errors of the blocks b of a pose are `e_b = (I - H_bb)^-1 r_b`, their covariance that of the
-/// noise times `(I - H_bb)^-1`.
+/// priors: the whitened errors of the blocks b of a pose are `e_b = (I - H_bb)^-1 r_b`.
 /// @param system the problem
 /// @param solved its normal equations with priors
 /// @param stride every stride-th of the validation blocks is left out
 /// @return       ceil(validation_blocks / stride) blocks
-/// @cite Allen 1974; Vehtari 2017 (log predictive densities)
+/// @cite Allen 1974
 VERNIER_API LeftOutBlocks leave_one_out(const BlockSystem& system, const FactorisedEquations& solved, Index stride);
 
 /// Position errors of `leave_one_out`, 3 x ceil(validation_blocks / stride) [m].

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "vernier/core/detail/dense.hpp"
-#include "vernier/core/same_value.hpp"
 #include "vernier/least_squares/detail/visit_blocks.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
 
@@ -17,15 +15,9 @@ namespace vernier {
 
 namespace detail {
 
-/// Blocks of a pose that has several.
-struct LeftOutPose {
-  VectorX errors;          ///< whitened, six a block
-  double square;           ///< of the whitened errors
-  double log_determinant;  ///< of I - H
-};
-
 /// Predicts all blocks of a pose from those of other poses.
-VERNIER_LOCAL LeftOutPose leave_out(const BlockSystem& system, const FactorisedEquations& solved,
+/// @return whitened errors, six a block
+VERNIER_LOCAL VectorX leave_out(const BlockSystem& system, const FactorisedEquations& solved,
                                     const std::vector<Index>& blocks) {
   const auto size = static_cast<Index>(6 * blocks.size());
   std::vector<RowBlock> rows(blocks.size());
@@ -52,10 +44,8 @@ VERNIER_LOCAL LeftOutPose leave_out(const BlockSystem& system, const FactorisedE
   solved.apply_inverse_factor(columns);
   add_transposed_product(rest, columns, columns, -1);
   if (system.local_states > 0) rest -= solved.joint_local_gains(rows);
-  LeftOutPose out{residual, 0, 0};
-  out.log_determinant = solve_general(rest, out.errors);
-  out.square = residual.dot(out.errors);
-  return out;
+  solve_general(rest, residual);
+  return residual;
 }
 
 /// The validation blocks of each pose that has several.
@@ -74,12 +64,11 @@ VERNIER_LOCAL std::vector<std::vector<Index>> repeated_poses(const std::vector<I
 
 VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const FactorisedEquations& solved, Index stride) {
   const Index size = (system.validation_blocks + stride - 1) / stride;
-  LeftOutBlocks out{Eigen::Matrix3Xd(3, size), VectorX::Constant(size, -std::numeric_limits<double>::infinity())};
+  LeftOutBlocks out{Eigen::Matrix3Xd(3, size)};
   for (Index b = 0; b < size && !system.poses.empty(); ++b)
     out.poses.push_back(system.poses[static_cast<std::size_t>(b * stride)]);
   std::fill_n(out.errors.data(), 3 * size, std::numeric_limits<double>::infinity());
   if (!solved.usable()) return out;
-  VectorX squares(size), log_determinants(size), values(size);  // of whitened errors; of I - H; measured ones
   constexpr Index batch = 32;
   const bool local = system.local_states > 0;
   solved.executor().for_ranges((size + batch - 1) / batch, [&](Index from, Index to) {
@@ -107,13 +96,8 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
         }
         unwhiten[k] = rows.unwhiten;
         sigmas(b) = rows.position_sigma;
-        values(first + b) = 0;
-        for (Index i = 0; i < 6; ++i) {
+        for (Index i = 0; i < 6; ++i)
           for (Index c = 0; c < expanded.cols(); ++c) columns(c, 6 * b + i) = expanded(i, c);
-          bool measured = !same_value(rows.residual(i), 0);
-          for (Index c = 0; c < rows.dense.cols() && !measured; ++c) measured = !same_value(rows.dense(i, c), 0);
-          if (measured) values(first + b) += 1;
-        }
       });
       solved.apply_inverse_factor(columns.leftCols(6 * n));
       if (local) gains = solved.local_gains(kept);
@@ -124,8 +108,7 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
         if (local) rest -= gains.middleCols(6 * b, 6);
         const auto k = static_cast<std::size_t>(b);
         Vector6 left_out = residuals[k];
-        log_determinants(first + b) = detail::solve_general(rest, left_out);
-        squares(first + b) = residuals[k].dot(left_out);
+        detail::solve_general(rest, left_out);
         const Vector6 error = unwhiten[k] * left_out;
         for (Index r = 0; r < 3; ++r) out.errors(r, first + b) = sigmas(b) * error(r);
       }
@@ -137,24 +120,18 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
     for (Index p = from; p < to; ++p) {
       const std::vector<Index>& blocks = repeated[static_cast<std::size_t>(p)];
       if (std::none_of(blocks.begin(), blocks.end(), [&](Index b) { return b % stride == 0; })) continue;
-      const detail::LeftOutPose pose = detail::leave_out(system, solved, blocks);
-      const double share = 1 / static_cast<double>(blocks.size());
+      const VectorX errors = detail::leave_out(system, solved, blocks);
       for (std::size_t k = 0; k < blocks.size(); ++k) {
         if (blocks[k] % stride != 0) continue;
         const Index b = blocks[k] / stride;
-        squares(b) = share * pose.square;
-        log_determinants(b) = share * pose.log_determinant;
         system.rows(blocks[k], 1, &block);
         Vector6 left_out;
-        for (Index r = 0; r < 6; ++r) left_out(r) = pose.errors(static_cast<Index>(6 * k) + r);
+        for (Index r = 0; r < 6; ++r) left_out(r) = errors(static_cast<Index>(6 * k) + r);
         const Vector6 error = block.unwhiten * left_out;
         for (Index r = 0; r < 3; ++r) out.errors(r, b) = block.position_sigma * error(r);
       }
     }
   });
-  const double variance = squares.sum() / values.sum();
-  for (Index b = 0; b < size; ++b)
-    out.log_densities(b) = -0.5 * (squares(b) / variance - log_determinants(b) + std::log(variance) * values(b));
   return out;
 }
 

@@ -1,0 +1,126 @@
+// The score test: its figures by dense formulas, its error rates by simulation.
+
+#include "vernier/least_squares/score_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "random_blocks.hpp"
+#include "vernier/core/rng.hpp"
+
+namespace score_test_test {
+namespace {
+
+using vernier::BlockSystem;
+using vernier::Index;
+using vernier::NormalEquations;
+using vernier::Rng;
+using vernier::ScoreTest;
+using vernier::UnknownGroup;
+using vernier::VectorX;
+using vernier_test::RandomBlocks;
+using vernier_test::RealMatrix;
+
+const UnknownGroup group{5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
+
+ScoreTest tested(const RandomBlocks& blocks, double precision = 1, const std::vector<Index>& clusters = {}) {
+  VectorX precisions = VectorX::Constant(15, 1e-3);
+  for (const Index k : group) precisions(k) = precision;
+  return blocks.with_system([&](const BlockSystem& system) {
+    return score_test(system, NormalEquations(system), precisions, VectorX::Zero(15), group, clusters);
+  });
+}
+
+/// Blocks whose residuals are noise, of another size for each block, and unknowns.
+RandomBlocks noisy(Index n, std::uint64_t seed, double spread, double truth) {
+  RandomBlocks out(n, 3);
+  Rng rng(seed);
+  VectorX unknowns = VectorX::Zero(15);
+  for (const Index k : group) unknowns(k) = truth * rng.normal();
+  for (Index b = 0; b < n; ++b) {
+    const double size = std::exp(spread * rng.normal());
+    auto& residual = out.rows[static_cast<std::size_t>(b)].residual;
+    for (double& value : residual) value = size * rng.normal();
+    residual -= out.expanded(b) * unknowns;
+  }
+  return out;
+}
+
+// Schur complement of the group in the dense normal equations, and the estimates of its unknowns by all rows.
+TEST(ScoreTest, HasTheInformationAndTheEstimatesOfTheDenseProblem) {
+  const RandomBlocks blocks = noisy(30, 1, 0, 0.3);
+  RealMatrix matrix(15, 15), gradient(15, 1);
+  for (Index b = 0; b < 30; ++b) {
+    const RealMatrix rows = blocks.expanded(b);
+    matrix += rows.transpose() * rows;
+    gradient += rows.transpose() * blocks.row(b).residual;
+  }
+  for (Index k = 0; k < 5; ++k) matrix(k, k) += 1e-3;
+  const RealMatrix others = matrix.block(0, 0, 5, 5), coupling = matrix.block(0, 5, 5, 10);
+  const RealMatrix information = matrix.block(5, 5, 10, 10) - coupling.transpose() * others.inverse() * coupling;
+  const RealMatrix all = matrix.inverse() * gradient;
+  const ScoreTest found = tested(blocks);
+  ASSERT_EQ(found.information.size(), 10);
+  EXPECT_TRUE(std::is_sorted(found.information.begin(), found.information.end(), std::greater<>()));
+  double trace = 0, squares = 0, wanted = 0;
+  for (Index k = 0; k < 10; ++k) {
+    trace += information(k, k);
+    squares += found.information(k) * found.estimates(k) * found.estimates(k);
+    for (Index j = 0; j < 10; ++j) wanted += all(5 + k, 0) * information(k, j) * all(5 + j, 0);
+  }
+  EXPECT_NEAR(found.information.sum(), trace, 1e-9 * trace);
+  EXPECT_NEAR(squares, wanted, 1e-8 * wanted);
+}
+
+// The rate of p <= level in 400 draws: a binomial number.
+double rate(double level, Index n, double spread, double truth, const std::vector<Index>& clusters = {}) {
+  int below = 0;
+  constexpr int draws = 400;
+  for (int seed = 0; seed < draws; ++seed)
+    below += tested(noisy(n, static_cast<std::uint64_t>(seed) + 10, spread, truth), 10, clusters).p <= level;
+  return static_cast<double>(below) / draws;
+}
+
+// Three standard deviations above the level: 0.05 + 3 sqrt(0.05 0.95 / 400).
+TEST(ScoreTest, FindsNothingWhereThereIsNothing) {
+  EXPECT_LE(rate(0.05, 20, 0, 0), 0.083);
+  EXPECT_LE(rate(0.05, 60, 0, 0), 0.083);
+  EXPECT_GE(rate(0.05, 60, 0, 0), 0.017);
+}
+
+TEST(ScoreTest, FindsNothingInNoiseWhoseSizeVaries) { EXPECT_LE(rate(0.05, 60, 1, 0), 0.083); }
+
+TEST(ScoreTest, FindsWhatIsThere) {
+  EXPECT_GE(rate(0.005, 60, 0, 0.2), 0.95);
+  EXPECT_GE(rate(0.005, 20, 0, 2), 0.9);  // a large effect is no noise
+}
+
+// Ten equal readings of each of six poses are six pieces of evidence.
+TEST(ScoreTest, ReadingsOfAPoseAreNoEvidenceOfTheirOwn) {
+  std::vector<Index> clusters;
+  for (Index b = 0; b < 60; ++b) clusters.push_back(b / 10);
+  int alone = 0, together = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    RandomBlocks blocks = noisy(60, seed, 0, 0);
+    for (Index b = 0; b < 60; ++b)
+      blocks.rows[static_cast<std::size_t>(b)] = blocks.rows[static_cast<std::size_t>(b / 10 * 10)];
+    alone += tested(blocks, 10).p <= 0.05;
+    together += tested(blocks, 10, clusters).p <= 0.05;
+  }
+  EXPECT_GT(alone, 50);
+  EXPECT_LE(together, 12);
+}
+
+TEST(ScoreTest, SaysNothingWithoutASolution) {
+  RandomBlocks blocks = noisy(20, 1, 0, 0);
+  blocks.rows[3].residual(1) = std::nan("");
+  EXPECT_EQ(tested(blocks).p, 1);
+  EXPECT_EQ(tested(blocks).information.size(), 0);
+}
+
+}  // namespace
+}  // namespace score_test_test

@@ -8,7 +8,8 @@
 namespace vernier::detail {
 
 /// Lets the geometry change with temperature, if it does beside a drift of the session. If the temperature follows the
-/// time of the sessions, nothing can tell the two apart: the choice says "untested", and there is no such change.
+/// time of the session, nothing can tell the two apart: the choice says "untested", and there is no such change. With
+/// several sessions every one must be predicted from the others no worse with the change.
 /// @param expansion expected relative change of a length [1/K], and change of an angle [rad/K]
 /// @return          whether the geometry changes
 VERNIER_API bool add_temperature(ModelSelection& model, double expansion);

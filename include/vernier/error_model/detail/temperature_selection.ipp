@@ -6,32 +6,38 @@
 #include <optional>
 #include <utility>
 
+#include "vernier/error_model/detail/left_out_sessions.hpp"
 #include "vernier/error_model/detail/session_columns.hpp"
 #include "vernier/error_model/detail/temperature_selection.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier::detail {
 
-/// Share of the variance of the temperature that the time of the sessions explains: 20 bins of time each.
+/// Share of the variance of the temperature that the time within sessions explains, 20 bins of time each: the rest varies
+/// at one time, or from session to session.
 VERNIER_LOCAL double explained_by_time(const CalibrationProblem& problem) {
-  double within = 0, all = 0;
+  double otherwise = 0, all = 0;
   const double mean = problem.temperatures().mean;
   for (const MeasuredSet& set : problem.sets()) {
     if (!set.locates() || set.times.size() == 0) continue;
     const double begin = set.times.minCoeff(), length = set.times.maxCoeff() - begin;
     constexpr int bins = 20;
     std::array<double, bins> sums{}, squares{}, counts{};
+    double sum = 0;
     for (Index i = 0; i < set.size(); ++i) {
       const double at = length > 0 ? (set.times(i) - begin) / length : 0, celsius = set.temperatures(i) - mean;
       const auto bin = static_cast<std::size_t>(std::clamp(static_cast<int>(bins * at), 0, bins - 1));
+      sum += celsius;
       sums[bin] += celsius;
       squares[bin] += celsius * celsius;
       counts[bin] += 1;
       all += celsius * celsius;
     }
+    otherwise += sum * sum / static_cast<double>(set.size());
     for (std::size_t k = 0; k < bins; ++k)
-      if (counts[k] > 1) within += (squares[k] - sums[k] * sums[k] / counts[k]) * counts[k] / (counts[k] - 1);
+      if (counts[k] > 1) otherwise += (squares[k] - sums[k] * sums[k] / counts[k]) * counts[k] / (counts[k] - 1);
   }
-  return all > 0 ? 1 - within / all : 0;
+  return all > 0 ? 1 - otherwise / all : 0;
 }
 
 /// Whether a parameter is a length, not an angle.
@@ -77,10 +83,21 @@ VERNIER_IMPL bool add_temperature(ModelSelection& model, double expansion) {
     problem.stop_drift();
   }
   model.changed();
-  if (model.choose_by_evidence(Block::temperature, added, score)) {
+  bool used = model.choose_by_evidence(Block::temperature, added, score);
+  if (used) {
+    const VectorX with = problem.arm.precisions();
+    VectorX without = with;
+    for (const Index k : added) without(k) = suppressing_precision;
+    const VectorX errors = errors_of_left_out_sessions(model, with),
+                  others = errors_of_left_out_sessions(model, without);
+    for (Index s = 0; s < errors.size(); ++s) used = used && errors(s) <= others(s);
+  }
+  if (used) {
     model.steps(1);
     return true;
   }
+  model.blocks.back().used = false;
+  model.blocks.back().precision = suppressing_precision;
   problem.arm = before;
   model.changed();
   return false;

@@ -20,7 +20,7 @@ VERNIER_IMPL Contact::Contact(std::string name, ContactKind kind, MatrixX joints
   demand(known_.size() == joints_.rows(), "contact ", name_, ": ", joints_.rows(), " touches, but ", known_.size(),
          " known lengths");
   for (Index i = 0; i < size(); ++i) {
-    demand(detail::all_finite(joints_.middleRows(i, 1)) && std::isfinite(known_(i)), "contact ", name_, ": touch ", i,
+    demand(detail::all_finite(VERNIER_LATER(joints_).middleRows(i, 1)) && std::isfinite(known_(i)), "contact ", name_, ": touch ", i,
            " has a value that is not finite");
     demand(kind_ != ContactKind::ball || known_(i) > 0, "contact ", name_, ": touch ", i, " has a radius of ",
            known_(i), " m, must be positive");

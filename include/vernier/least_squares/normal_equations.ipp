@@ -16,7 +16,7 @@ class PairBlocks {
  public:
   using Pair = std::pair<Index, Index>;  // (column state, row state), row at or below column
 
-  PairBlocks(std::vector<Pair> pairs, Index block_size) : pairs_(std::move(pairs)), size_(block_size) {
+  VERNIER_LOCAL PairBlocks(std::vector<Pair> pairs, Index block_size) : pairs_(std::move(pairs)), size_(block_size) {
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     values_.assign(pairs_.size() * static_cast<std::size_t>(size_ * size_), 0.0);
@@ -25,13 +25,13 @@ class PairBlocks {
   static Pair pair(Index a, Index b) { return {(std::min)(a, b), (std::max)(a, b)}; }
 
   /// The block of rows of the later state and columns of the earlier one, by columns.
-  double* block(const Pair& pair) {
+  VERNIER_LOCAL double* block(const Pair& pair) {
     const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), pair) - pairs_.begin();
     return values_.data() + at * size_ * size_;
   }
 
   /// By columns, the same entries for any values.
-  SparseSymmetric compressed(Index states) const {
+  VERNIER_LOCAL SparseSymmetric compressed(Index states) const {
     SparseSymmetric out;
     out.size = states * size_;
     std::size_t next = 0;
@@ -160,7 +160,7 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
         const Index i = pairs[static_cast<std::size_t>(pair)][0], j = pairs[static_cast<std::size_t>(pair)][1];
         const auto h_i = functions(i), h_j = functions(j);
         const Index row = d + begin[static_cast<std::size_t>(i)], column = d + begin[static_cast<std::size_t>(j)];
-        const MatrixX scaled = detail::rows_scaled(factor_product.col(i + groups * j).head(n), h_j);
+        const MatrixX scaled = detail::rows_scaled(VERNIER_LATER(factor_product).col(i + groups * j).head(n), h_j);
         if (i != j) {
           detail::add_transposed_product(matrix.block(row, column, h_i.cols(), h_j.cols()), h_i, scaled);
           continue;

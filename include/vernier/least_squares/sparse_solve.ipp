@@ -10,9 +10,9 @@ namespace vernier {
 
 VERNIER_IMPL SparseOutcome EigenSparseSolver::operator()(const SparseSymmetric& matrix, MatrixRef right) const {
   using Sparse = Eigen::SparseMatrix<double>;
-  const Eigen::Map<const Sparse> view(matrix.size, matrix.size, static_cast<Index>(matrix.values.size()),
+  const VERNIER_LATER_TYPE(Eigen::Map<const Sparse>) view(matrix.size, matrix.size, static_cast<Index>(matrix.values.size()),
                                       matrix.starts.data(), matrix.rows.data(), matrix.values.data());
-  const Eigen::SimplicialLDLT<Sparse> factor{Sparse(view)};
+  const VERNIER_LATER_TYPE(Eigen::SimplicialLDLT<Sparse>) factor{Sparse(view)};
   if (!detail::succeeded(factor)) return {};
   const VectorX diagonal = factor.vectorD();
   if (!(diagonal.minCoeff() > 0)) return {};

@@ -97,7 +97,7 @@ class GrowingDesign {
     region_variance_ -= squared_column_norms(tail);
   }
   /// Mean variance of the region's points, three rows each.
-  double region_variance() const { return 3 * region_variance_.sum() / static_cast<double>(region_.cols()); }
+  VERNIER_LOCAL double region_variance() const { return 3 * region_variance_.sum() / static_cast<double>(region_.cols()); }
 
  private:
   /// Products of a candidate's columns with each other; zero beyond them.
@@ -108,7 +108,7 @@ class GrowingDesign {
         out(a, b) = out(b, a) = columns.col(c * block_ + a).dot(columns.col(c * block_ + b));
     return out;
   }
-  void add_to_variance(Index c, const Matrix6& change, double sign) {
+  VERNIER_LOCAL void add_to_variance(Index c, const Matrix6& change, double sign) {
     for (Index b = 0; b < block_; ++b)
       for (Index a = 0; a < block_; ++a) variance_(a, c * block_ + b) += sign * change(a, b);
   }

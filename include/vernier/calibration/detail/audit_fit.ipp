@@ -134,7 +134,7 @@ VERNIER_LOCAL VectorX audit_whitened(const AuditResiduals& residuals) {
 }
 
 /// Three values from the k-th on.
-inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
+VERNIER_LOCAL inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
 
 /// Weights of Cauchy's loss, positions and orientations apart.
 VERNIER_LOCAL VectorX audit_weights(const VectorX& whitened) {
@@ -190,7 +190,7 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
   const bool oriented = rows.oriented();
   const MatrixX jacobian = audit_jacobian(at, columns, oriented, fit.residuals);
   const VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened);
-  MatrixX factor = normal_matrix(jacobian, weights, columns.precision), whitening = jacobian.transpose();
+  MatrixX factor = normal_matrix(jacobian, weights, columns.precision), whitening = VERNIER_LATER(jacobian).transpose();
   cholesky(factor);
   solve_lower(factor, whitening);
   std::vector<LeftOut> out(static_cast<std::size_t>(rows.size()));
@@ -202,11 +202,11 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
       const Index k = values * i + part;
       Matrix3 h;
       for (Index a = 0; a < 3; ++a)
-        for (Index b = 0; b < 3; ++b) h(a, b) = whitening.col(k + a).dot(whitening.col(k + b));
-      const Matrix3 identity = Matrix3::Identity(), rest = (1 + 1e-9) * identity - weights(k) * h;
-      const Matrix3 kept = rest.inverse();
-      const Vector3 r = kept * three(whitened, k);
-      const Matrix3 covariance = identity + kept * h, weight = covariance.inverse();
+        for (Index b = 0; b < 3; ++b) h(a, b) = VERNIER_LATER(whitening).col(k + a).dot(whitening.col(k + b));
+      const VERNIER_LATER_TYPE(Matrix3) identity = Matrix3::Identity(), rest = (1 + 1e-9) * identity - weights(k) * h;
+      const VERNIER_LATER_TYPE(Matrix3) kept = rest.inverse();
+      const VERNIER_LATER_TYPE(Vector3) r = kept * three(whitened, k);
+      const VERNIER_LATER_TYPE(Matrix3) covariance = identity + kept * h, weight = covariance.inverse();
       const double t = std::sqrt((std::max)(0.0, r.dot(weight * r)));
       factors[part / 3].push_back(t);
       if (part == 0) {

@@ -41,7 +41,7 @@ class ModelSelection {
   };
   /// Computed again only after a change.
   VERNIER_API const Linearised& linearised() const;
-  void changed() { linearised_.reset(); }
+  VERNIER_API void changed() { linearised_.reset(); }
 
   /// Solves the problem as it is.
   VERNIER_API void solve();

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <utility>
 
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
+#include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
@@ -18,11 +18,11 @@ class Stopwatch {
   explicit Stopwatch(double& sum) : sum_(sum) {}
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  ~Stopwatch() { sum_ += steady_seconds() - began_; }
 
  private:
   double& sum_;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  double began_ = steady_seconds();  // [s]
 };
 
 VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const ErrorModelOptions& options,

@@ -22,7 +22,7 @@ VERNIER_LOCAL Waves waves(const VectorX& angles, int order) {
 }
 
 /// Cosines and sines of sums of two angles each, in place.
-inline void turn_waves(Index n, const double* by_cosine, const double* by_sine, double* cosine, double* sine) {
+VERNIER_LOCAL inline void turn_waves(Index n, const double* by_cosine, const double* by_sine, double* cosine, double* sine) {
   for (Index i = 0; i < n; ++i) {
     const double c = cosine[i], s = sine[i];
     cosine[i] = c * by_cosine[i] - s * by_sine[i];

@@ -11,7 +11,7 @@
 namespace vernier::detail {
 
 /// Texts joined by commas.
-inline std::string comma_list(const std::vector<std::string>& texts) {
+VERNIER_API inline std::string comma_list(const std::vector<std::string>& texts) {
   std::string out;
   for (const auto& text : texts) out += (out.empty() ? "" : ", ") + text;
   return out;

@@ -42,7 +42,7 @@ VERNIER_IMPL Vector3 SphericalArm::reference(const Vector3& to_wrist) const noex
 }
 
 /// The matrix of columns `a`, `b` and `a x b`.
-inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
+VERNIER_LOCAL inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
   const Vector3 c = a.cross(b);
   Matrix3 out;
   for (int r = 0; r < 3; ++r) {

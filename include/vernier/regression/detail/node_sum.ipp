@@ -65,7 +65,7 @@ VERNIER_INLINE void distance_function(NodeFunction function, const typename Simd
   }
 }
 
-inline bool is_projection(NodeFunction function) { return function <= NodeFunction::sine; }
+VERNIER_LOCAL inline bool is_projection(NodeFunction function) { return function <= NodeFunction::sine; }
 
 /// Values and slopes of all nodes of a block.
 template <int W>

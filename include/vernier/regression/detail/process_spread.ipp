@@ -34,7 +34,7 @@ VERNIER_LOCAL void fill_tile(const NodeSum& nodes, const double* features, Index
 }
 
 /// product += tile k.
-inline void add_tile_product(const double* tile, const double* k, double* product) noexcept {
+VERNIER_LOCAL inline void add_tile_product(const double* tile, const double* k, double* product) noexcept {
   run_widest([&]<int W>() VERNIER_INLINED {
     constexpr int vectors = 4;
     typename Simd<W>::Double sum[vectors], part;

@@ -253,7 +253,7 @@ VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::v
     double largest = -1;
     for (Index j = 0; j + 6 < drift.knots.rows(); ++j) {
       const VectorX zero = row_of(drift.knots, 6 + j);
-      const double range = zero.maxCoeff() - zero.minCoeff();
+      const double range = VERNIER_LATER(zero).maxCoeff() - VERNIER_LATER(zero).minCoeff();
       if (range > largest) largest = range, joint = j;
     }
     const auto j = static_cast<std::size_t>(joint);

@@ -26,7 +26,9 @@ struct StageName {
   friend bool operator==(const StageName&, const StageName&) = default;
 
   /// Its key in files: `jointwise`, `jointwise_pso_elm`.
-  VERNIER_API std::string key() const { return std::string(traits_of(stage).key) + (learner ? learner_key(*learner) : ""); }
+  VERNIER_API std::string key() const {
+    return std::string(traits_of(stage).key) + (learner ? learner_key(*learner) : "");
+  }
 };
 
 /// The stage of a learner on geometry alone, or on the error model.

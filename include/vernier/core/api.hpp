@@ -66,7 +66,7 @@ constexpr T&& later(T&& value) noexcept {
 
 /// @endcond
 
-/// Calls `macro(argument, N)` for the numbers of joints of which the library has instances.
+/// Calls `macro(argument, N)` for the numbers of joints of which the library has instances: 1 to `max_arm_joints`.
 #define VERNIER_FOR_JOINTS(macro, argument)                                                                         \
   macro(argument, 1) macro(argument, 2) macro(argument, 3) macro(argument, 4) macro(argument, 5) macro(argument, 6) \
       macro(argument, 7) macro(argument, 8) macro(argument, 9)

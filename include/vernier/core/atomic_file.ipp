@@ -123,7 +123,7 @@ VERNIER_IMPL void Output::open_stream(int descriptor) {
 VERNIER_IMPL bool Output::open_beside(const struct stat* replaced) {
   static std::atomic<unsigned> count{0};
   const std::string folder = target_.substr(0, target_.rfind('/') + 1);  // empty without a slash
-  const mode_t mode = replaced != nullptr ? 0600 : 0666;  // what is private stays so
+  const mode_t mode = replaced != nullptr ? 0600 : 0666;                 // what is private stays so
   do {
     beside_ = message(folder, ".vernier.", ::getpid(), '.', count++, ".partial");
     file_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);

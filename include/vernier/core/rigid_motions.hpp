@@ -9,7 +9,9 @@
 namespace vernier {
 
 /// The i-th point.
-VERNIER_API inline Vector3 point(const PointRows& points, Index i) { return {points(i, 0), points(i, 1), points(i, 2)}; }
+VERNIER_API inline Vector3 point(const PointRows& points, Index i) {
+  return {points(i, 0), points(i, 1), points(i, 2)};
+}
 
 /// Sets the i-th point.
 VERNIER_API inline void set_point(PointRows& points, Index i, const Vector3& value) {

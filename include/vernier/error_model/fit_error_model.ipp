@@ -59,7 +59,7 @@ class ErrorModelFit {
       all.linear_ranges.clear();
       const MatrixX joints = problem_.joints();
       for (Index j = 0; j < joints.cols(); ++j)
-        all.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
+        all.linear_ranges.push_back({VERNIER_LATER(joints).col(j).minCoeff(), VERNIER_LATER(joints).col(j).maxCoeff()});
       if ((all.gear_ratio || all.coupling) && model_.add(Block::gears, all, true)) model_.learn_spectrum(4);
       if (elastic.size() > 0)  // deflection is clearer once all else is modelled
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
@@ -184,7 +184,7 @@ class ErrorModelFit {
     const ErrorModelEstimate& before = prior.estimate;
     const JointTerms& terms = before.arm.terms();
     problem_.arm = ArmParameterisation(input_.arms, with_unknowns_of(prior, geometric_unknowns(input_, options_)));
-    problem_.arm.set_terms(terms, before.arm.scales().tail(terms.size()), VectorX::Zero(terms.size()));
+    problem_.arm.set_terms(terms, VERNIER_LATER(before.arm.scales()).tail(terms.size()), VectorX::Zero(terms.size()));
     problem_.reference_temperature = before.mean_temperature;
     const TransferredUnknowns known = transferred_unknowns(prior, problem_.arm, input_.nominal);
     VectorX to_mean = VectorX::Zero(problem_.arm.size());
@@ -216,7 +216,7 @@ class ErrorModelFit {
     }
     model_.converged = true;
     if (same_value(estimate.fallback_error, 0)) estimate.fallback_error = error_without;
-    expected_ = before.arm.precisions().tail(terms.size());
+    expected_ = VERNIER_LATER(before.arm.precisions()).tail(terms.size());
     if (before.temperature_std > 0) {
       out.temperatures = estimate.temperature_std > 0
                              ? std::array{(std::min)(out.temperatures[0], prior.temperatures[0]),

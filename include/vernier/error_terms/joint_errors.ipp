@@ -193,7 +193,7 @@ VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* ja
   double rates[6 * max_joints];
   const Vector6 motion =
       terms_.tilt->motion(q, coefficients_.data() + terms_.tilt_begin(), jacobian != nullptr ? rates : nullptr);
-  const Vector3 shift = motion.head<3>(), turn = motion.tail<3>();
+  const Vector3 shift = VERNIER_LATER(motion).template head<3>(), turn = VERNIER_LATER(motion).template tail<3>();
   const Matrix3 rotation = exp_so3(turn);
   const Vector3 turned = rotation * translation(pose);
   pose = composed(rigid_motion(rotation, shift), pose);

@@ -55,7 +55,7 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
   /// All joint values with which the nominal arm is at a pose; see `ClosedForm::roots`. None where the wrist is in the
   /// shoulder.
   VERNIER_API InverseRoots<7> roots(const Isometry3& target, const JointVector<7>& close_to = JointVector<7>::Zero(),
-                        double width = 0) const noexcept {
+                                    double width = 0) const noexcept {
     const detail::SphericalArmRoots from = arm_.solve(target, angle_, close_to, width);
     InverseRoots<7> out;
     out.count = from.count;

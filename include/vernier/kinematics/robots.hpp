@@ -54,7 +54,7 @@ using namespace vernier::literals;
 
 /// ABB IRB 120-3/0.6: the small six-axis arm of the paper's experiment.
 VERNIER_API inline Robot<6> abb_irb120() {
-  constexpr DhChain<6> chain{{{
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = -90_deg, .d = 290_mm, .theta = 0_deg},
       {.a = 270_mm, .alpha = 0_deg, .d = 0_mm, .theta = -90_deg},
       {.a = 70_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
@@ -68,7 +68,7 @@ VERNIER_API inline Robot<6> abb_irb120() {
 
 /// Universal Robots UR10 (CB series).
 VERNIER_API inline Robot<6> ur10() {
-  constexpr DhChain<6> chain{{{
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = 90_deg, .d = 127.3_mm},
       {.a = -612_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = -572.3_mm, .alpha = 0_deg, .d = 0_mm},
@@ -81,7 +81,7 @@ VERNIER_API inline Robot<6> ur10() {
 
 /// Universal Robots UR5 (CB series).
 VERNIER_API inline Robot<6> ur5() {
-  constexpr DhChain<6> chain{{{
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = 90_deg, .d = 89.159_mm},
       {.a = -425_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = -392.25_mm, .alpha = 0_deg, .d = 0_mm},
@@ -94,7 +94,7 @@ VERNIER_API inline Robot<6> ur5() {
 
 /// Barrett WAM, seven joints, cable-driven.
 VERNIER_API inline Robot<7> barrett_wam() {
-  constexpr DhChain<7> chain{{{
+  constexpr VERNIER_LATER_TYPE(DhChain<7>) chain{{{
       {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 45_mm, .alpha = -90_deg, .d = 550_mm},
@@ -120,7 +120,7 @@ VERNIER_API inline JointLimits<6> puma560_limits() {
 /// Unimation PUMA 560, standard convention.
 /// @cite Corke 2011
 VERNIER_API inline Robot<6> puma560() {
-  constexpr DhChain<6> chain{{{
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 431.8_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = 20.3_mm, .alpha = -90_deg, .d = 150.05_mm},
@@ -133,7 +133,7 @@ VERNIER_API inline Robot<6> puma560() {
 
 /// The PUMA 560 in the modified convention: every pose equals that of `puma560()`.
 VERNIER_API inline Robot<6, ModifiedDh> puma560_modified() {
-  constexpr DhChain<6, ModifiedDh> chain{{{
+  constexpr VERNIER_LATER_TYPE(DhChain<6, ModifiedDh>) chain{{{
       {.a = 0_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 431.8_mm, .alpha = 0_deg, .d = 150.05_mm},

@@ -115,13 +115,13 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
           if (measured) values(first + b) += 1;
         }
       });
-      solved.apply_inverse_factor(columns.leftCols(6 * n));
+      solved.apply_inverse_factor(VERNIER_LATER(columns).leftCols(6 * n));
       if (local) gains = solved.local_gains(kept);
       for (Index b = 0; b < n; ++b) {
-        const auto z = columns.middleCols(6 * b, 6);
+        const auto z = VERNIER_LATER(columns).middleCols(6 * b, 6);
         rest.setIdentity(6, 6);
         detail::add_transposed_product(rest, z, z, -1);
-        if (local) rest -= gains.middleCols(6 * b, 6);
+        if (local) rest -= VERNIER_LATER(gains).middleCols(6 * b, 6);
         const auto k = static_cast<std::size_t>(b);
         Vector6 left_out = residuals[k];
         log_determinants(first + b) = detail::solve_general(rest, left_out);

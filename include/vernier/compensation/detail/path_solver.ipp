@@ -71,7 +71,7 @@ struct PathState {
   bool jump;  ///< whether the move to it is not the one asked for
 };
 
-VERNIER_LOCAL inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
+inline bool cheaper(const PathState& a, const PathState& b) { return a.cost < b.cost; }
 
 /// The cheapest first; of equals in their order.
 VERNIER_LOCAL std::vector<PathState> by_cost(const std::vector<PathState>& states) {
@@ -92,10 +92,10 @@ class PathSearch {
   VERNIER_LOCAL SolvedPath run();
 
  private:
-  /// Time of a joint move, in units of the speeds.
+  /// Time of a joint move whose joints are equally fast.
   VERNIER_LOCAL double duration(const PathJoints& a, const PathJoints& b) const {
     double out = 0;
-    for (int j = 0; j < arm_.joints; ++j) out = (std::max)(out, std::abs(b(j) - a(j)) / settings_.speed(j));
+    for (int j = 0; j < arm_.joints; ++j) out = (std::max)(out, std::abs(b(j) - a(j)));
     return out;
   }
   VERNIER_LOCAL PathJoints turned(const PathJoints& joints, const PathJoints& close_to) const {

@@ -28,7 +28,9 @@ VERNIER_LOCAL inline const DenseKernels* wide_kernels([[maybe_unused]] double op
 }
 
 VERNIER_LOCAL inline MatrixAt<double> at(MatrixRef m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
-VERNIER_LOCAL inline MatrixAt<const double> at(const ConstMatrixRef& m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
+VERNIER_LOCAL inline MatrixAt<const double> at(const ConstMatrixRef& m) {
+  return {m.data(), m.outerStride(), m.rows(), m.cols()};
+}
 /// Number of operations on some matrices.
 VERNIER_LOCAL inline double operations(Index a, Index b, Index c) {
   return static_cast<double>(a) * static_cast<double>(b) * static_cast<double>(c);
@@ -209,7 +211,7 @@ VERNIER_IMPL SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix) {
 
 VERNIER_IMPL TridiagonalForm tridiagonal_form(const ConstMatrixRef& matrix) {
   const VERNIER_LATER_TYPE(Eigen::Tridiagonalization<MatrixX>) form(matrix);
-  return {form.matrixQ(), form.diagonal(), form.subDiagonal()};
+  return {form.matrixQ(), VERNIER_LATER(form).diagonal(), form.subDiagonal()};
 }
 
 using JacobiSvd = Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner>;
@@ -226,7 +228,7 @@ VERNIER_IMPL ThinSvd thin_svd(const ConstMatrixRef& h) {
   const VERNIER_LATER_TYPE(Eigen::HouseholderQR<MatrixX>) qr(tall ? MatrixX(h) : MatrixX(VERNIER_LATER(h).transpose()));
   const VERNIER_LATER_TYPE(JacobiSvd) svd(triangle_of(qr), Eigen::ComputeFullU | Eigen::ComputeFullV);
   VERNIER_LATER_TYPE(MatrixX) longer = MatrixX::Zero(qr.rows(), k);
-  longer.topRows(k) = svd.matrixU();
+  VERNIER_LATER(longer).topRows(k) = svd.matrixU();
   longer.applyOnTheLeft(qr.householderQ());
   return {tall ? longer : svd.matrixV(), svd.singularValues(), tall ? svd.matrixV() : longer};
 }

@@ -4,9 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
-#include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
@@ -66,7 +66,7 @@ VERNIER_IMPL Eigen::Matrix3Xd ModelSelection::left_out_errors(const FactorisedEq
 
 VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
   const JointTerms before = problem.arm.terms();
-  const VectorX old_precisions = problem.arm.precisions().tail(before.size());
+  const VectorX old_precisions = VERNIER_LATER(problem.arm.precisions()).tail(before.size());
   VectorX precisions = VectorX::Ones(terms.size());
   visit_common_terms(before, terms, [&](Index old, Index now) { precisions(now) = old_precisions(old); });
   VectorX sizes = expected_sizes(terms, options_, spectra);

@@ -19,7 +19,7 @@ VERNIER_IMPL const char* fault_of_pose(const Isometry3& pose, bool oriented) {
   if (!all_finite(VERNIER_LATER(translation(pose)))) return "the position is not finite";
   if (!oriented) return nullptr;
   const auto r = VERNIER_LATER(rotation(pose));
-  const Matrix3 product = r * r.transpose(), fault = VERNIER_LATER(product) - Matrix3::Identity();
+  const Matrix3 product = r * VERNIER_LATER(r).transpose(), fault = VERNIER_LATER(product) - Matrix3::Identity();
   const bool turns = VERNIER_LATER(fault).squaredNorm() < 1e-12 && r.determinant() > 0;
   return turns ? nullptr : "the orientation is not a rotation";
 }

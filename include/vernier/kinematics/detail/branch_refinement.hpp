@@ -23,7 +23,7 @@ enum class Reach {
 
 namespace detail {
 
-/// Most joints of an arm that moves six.
+/// Most joints of an arm whose branches are found: six that move, and one that is held.
 inline constexpr int most_branch_joints = 7;
 
 /// A target and a model of run-time size.

@@ -66,7 +66,8 @@ struct AngleAbout {
 
 /// Subproblem 1: the angle with `R(k, angle) a = b`; in the least-squares sense where a and b differ.
 /// @param negligible distance from the axis at which a or b counts as on it
-VERNIER_API inline AngleAbout angle_between(const Vector3& k, const Vector3& a, const Vector3& b, double negligible) noexcept {
+VERNIER_API inline AngleAbout angle_between(const Vector3& k, const Vector3& a, const Vector3& b,
+                                            double negligible) noexcept {
   // from the parts at right angles to the axis: differences of larger numbers would leave nothing of them next to it
   const Vector3 u = k.cross(a), v = k.cross(b);
   return {std::atan2(k.dot(u.cross(v)), u.dot(v)), u.norm() < negligible || v.norm() < negligible};
@@ -89,7 +90,7 @@ struct AnglePair {
 /// Subproblem 4: the angles with `h . R(k, angle) p = d`.
 /// @param negligible length of p's part at right angles to k, seen along h, that counts as zero
 VERNIER_API inline AnglePair angles_to_plane(const Vector3& h, const Vector3& k, const Vector3& p, double d,
-                                 double negligible) noexcept {
+                                             double negligible) noexcept {
   const double along = k.dot(p) * h.dot(k);
   const Vector3 u = k.cross(p), v = k.cross(h);
   const double sine = k.dot(u.cross(v)), cosine = u.dot(v), rest = d - along;
@@ -101,7 +102,7 @@ VERNIER_API inline AnglePair angles_to_plane(const Vector3& h, const Vector3& k,
 
 /// Subproblem 3: the angles with `|R(k, angle) a - b| = d`.
 VERNIER_API inline AnglePair angles_to_distance(const Vector3& k, const Vector3& a, const Vector3& b, double d,
-                                    double negligible) noexcept {
+                                                double negligible) noexcept {
   const Vector3 u = k.cross(a), v = k.cross(b);
   const double along = k.dot(a) * k.dot(b), sine = k.dot(u.cross(v)), cosine = u.dot(v);
   const double rest = 0.5 * (a.squaredNorm() + b.squaredNorm() - d * d) - along;

@@ -14,10 +14,11 @@ class ShiftedTridiagonal {
   VERNIER_LOCAL ShiftedTridiagonal(const TridiagonalForm& form, double lambda)
       : pivots_(form.diagonal.size()), multipliers_(form.subdiagonal.size()) {
     // no pivot is below the smallest eigenvalue, but for rounding
-    pivots_(0) = (std::max)(form.diagonal(0) + lambda, lambda);
+    pivots_(0) = (std::max)(VERNIER_LATER(form).diagonal(0) + lambda, lambda);
     for (Index k = 1; k < pivots_.size(); ++k) {
       multipliers_(k - 1) = form.subdiagonal(k - 1) / pivots_(k - 1);
-      pivots_(k) = (std::max)(form.diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
+      pivots_(k) =
+          (std::max)(VERNIER_LATER(form).diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
     }
   }
 
@@ -33,10 +34,12 @@ class ShiftedTridiagonal {
 
   /// Diagonal of Q (T + lambda)^-1 Q'.
   VERNIER_LOCAL VectorX inverse_diagonal(const MatrixX& q) const {
-    VERNIER_LATER_TYPE(VectorX) row = q.col(0), sum = row.cwiseAbs2() / pivots_(0);  // rows of L^-1 Q'
+    VERNIER_LATER_TYPE(VectorX)
+    row = VERNIER_LATER(q).col(0),
+    sum = VERNIER_LATER(row).cwiseAbs2() / pivots_(0);  // rows of L^-1 Q'
     for (Index k = 1; k < pivots_.size(); ++k) {
-      row = q.col(k) - multipliers_(k - 1) * row;
-      sum += row.cwiseAbs2() / pivots_(k);
+      row = VERNIER_LATER(q).col(k) - multipliers_(k - 1) * row;
+      sum += VERNIER_LATER(row).cwiseAbs2() / pivots_(k);
     }
     return sum;
   }
@@ -70,10 +73,11 @@ VERNIER_IMPL MatrixX KernelRidgePath::leave_one_out_residuals(double lambda) con
   MatrixX alpha = projected_;
   shifted.solve(alpha);
   const VectorX ones = VERNIER_LATER(alpha).col(0);
-  const double precision = VERNIER_LATER(ones).dot(projected_.col(0));
-  const VERNIER_LATER_TYPE(VectorX) mean = transposed_product(projected_.rightCols(targets.cols()), ones) / precision;
+  const double precision = VERNIER_LATER(ones).dot(VERNIER_LATER(projected_).col(0));
+  const VERNIER_LATER_TYPE(VectorX) mean =
+      transposed_product(VERNIER_LATER(projected_).rightCols(targets.cols()), ones) / precision;
   alpha = VERNIER_LATER(alpha).rightCols(targets.cols()).eval();
-  add_product(alpha, ones, mean.transpose(), -1);
+  add_product(alpha, ones, VERNIER_LATER(mean).transpose(), -1);
   // of (K + lambda / W)^-1 with the mean projected out
   const VectorX diagonal = shifted.inverse_diagonal(form_.basis), along = product(form_.basis, ones);
   for (Index i = 0; i < n; ++i) factor(i) = root_(i) / (weights(i) * (diagonal(i) - along(i) * along(i) / precision));

@@ -28,8 +28,8 @@ class NetworkError {
   /// @param weights  q, n; only their ratios matter
   /// @param decay    of all weights but biases, 0 or more
   /// @param set      instructions to use; must be there
-  VERNIER_API NetworkError(const HiddenLayer& layer, MatrixX features, MatrixX targets, const VectorX& weights, double decay,
-               InstructionSet set = widest_instruction_set())
+  VERNIER_API NetworkError(const HiddenLayer& layer, MatrixX features, MatrixX targets, const VectorX& weights,
+                           double decay, InstructionSet set = widest_instruction_set())
       : layer_(layer),
         features_(std::move(features)),
         targets_(std::move(targets)),

@@ -316,7 +316,8 @@ TEST(PathSolverWhiteBox, ALineMayNotEndBeyondALimit) {
 }
 
 TEST(PathSolverWhiteBox, ATargetOutOfReachOfNewtonsMethodIsNotFound) {
-  BowedSlides arm{.other_branch = true, .reach = 0.5};  // the other branch begins at 0, the target is at 1
+  // the other branch, which costs less, begins at 0; the target is at 1
+  BowedSlides arm{.other_branch = true, .cost_at = [](double y) { return y > 1 ? 0 : 100; }, .reach = 0.5};
   std::vector<detail::PathGoal> goals = line_through({});
   goals.front().pose(0, 3) = 1;
   detail::PathSettings settings = slides_settings();

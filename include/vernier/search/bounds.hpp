@@ -11,7 +11,7 @@
 namespace vernier {
 
 /// x reflected at the bounds, as often as needed, into [lower, upper]; x itself where it lies between them.
-VERNIER_API inline double reflected(double x, double lower, double upper) {
+inline double reflected(double x, double lower, double upper) {
   if (x >= lower && x <= upper) return x;
   const double width = upper - lower;
   const double at = std::fmod(std::abs(x - lower), 2 * width);
@@ -20,7 +20,7 @@ VERNIER_API inline double reflected(double x, double lower, double upper) {
 
 /// x, or where it left [lower, upper] the midpoint between the bound it violates and `inside`.
 /// @cite Zhang and Sanderson 2009
-VERNIER_API inline double halfway(double x, double inside, double lower, double upper) {
+inline double halfway(double x, double inside, double lower, double upper) {
   return x < lower ? lower + (inside - lower) / 2 : x > upper ? upper + (inside - upper) / 2 : x;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/api.hpp"
+
 #include "vernier/core/language.hpp"
 
 namespace vernier::detail {

@@ -14,7 +14,7 @@
 namespace vernier::detail {
 
 /// Replaces x by the unit vector v with which `x - 2 v (v.x)` keeps only its first component; by zero where it is zero.
-VERNIER_API inline void to_reflector(double* x, int n) noexcept {
+inline void to_reflector(double* x, int n) noexcept {
   double square = 0;
   for (int i = 0; i < n; ++i) square += x[i] * x[i];
   x[0] += std::copysign(std::sqrt(square), x[0]);
@@ -25,7 +25,7 @@ VERNIER_API inline void to_reflector(double* x, int n) noexcept {
 }
 
 /// Reflects x, whose entries are `stride` apart.
-VERNIER_API inline void reflect(const double* v, double* x, int n, int stride = 1) noexcept {
+inline void reflect(const double* v, double* x, int n, int stride = 1) noexcept {
   double along = 0;
   for (int i = 0; i < n; ++i) along += v[i] * x[i * stride];
   for (int i = 0; i < n; ++i) x[i * stride] -= 2 * along * v[i];
@@ -33,7 +33,7 @@ VERNIER_API inline void reflect(const double* v, double* x, int n, int stride = 
 
 /// Orthonormal columns, `rows` x (`rows` - `rank`), orthogonal to those `rank` columns of `a` that pivoting finds most
 /// independent. Overwrites `a`.
-VERNIER_API inline void orthogonal_complement(double* a, int rows, int columns, int rank, double* complement) noexcept {
+inline void orthogonal_complement(double* a, int rows, int columns, int rank, double* complement) noexcept {
   const auto square = [&](int column, int from) {
     double sum = 0;
     for (int i = from; i < rows; ++i) sum += a[column * rows + i] * a[column * rows + i];
@@ -57,7 +57,7 @@ VERNIER_API inline void orthogonal_complement(double* a, int rows, int columns, 
 
 /// An upper Hessenberg matrix with the same eigenvalues, in place of an n x n matrix.
 /// @param work n numbers
-VERNIER_API inline void to_hessenberg(double* a, int n, double* work) noexcept {
+inline void to_hessenberg(double* a, int n, double* work) noexcept {
   for (int j = 0; j + 2 < n; ++j) {
     const int below = n - j - 1;
     std::copy_n(a + j * n + j + 1, below, work);
@@ -71,7 +71,7 @@ VERNIER_API inline void to_hessenberg(double* a, int n, double* work) noexcept {
 /// Eigenvalues of an upper n x n Hessenberg matrix, which is overwritten, by QR steps with double shifts.
 /// @return whether they converged
 /// @cite Golub and Van Loan 2013
-VERNIER_API inline bool hessenberg_eigenvalues(double* a, int n, std::complex<double>* out) noexcept {
+inline bool hessenberg_eigenvalues(double* a, int n, std::complex<double>* out) noexcept {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   constexpr int most_steps = 60;  // for one eigenvalue or pair; three are usual
   const auto at = [&](int i, int j) -> double& { return a[j * n + i]; };

@@ -15,12 +15,12 @@
 namespace vernier::detail {
 
 /// Whether n numbers are finite.
-VERNIER_API inline bool are_finite(const double* values, int n) noexcept {
+inline bool are_finite(const double* values, int n) noexcept {
   return std::all_of(values, values + n, [](double value) { return std::isfinite(value); });
 }
 
 /// Scalar product of six numbers.
-VERNIER_API inline double dot6(const double* a, const double* b) noexcept {
+inline double dot6(const double* a, const double* b) noexcept {
   return ((a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])) + (a[4] * b[4] + a[5] * b[5]);
 }
 
@@ -59,7 +59,7 @@ VERNIER_INLINE void multiply_few(const double* a, const double* x, double* out) 
 }
 
 /// Solves `a x = b` for a symmetric positive definite matrix, its lower triangle; LDL' in place, then b is x.
-VERNIER_API inline void solve_few(double* a, double* b, int n) noexcept {
+inline void solve_few(double* a, double* b, int n) noexcept {
   for (int j = 0; j < n; ++j) {
     double* const column = a + j * n;
     for (int k = 0; k < j; ++k) {

@@ -21,8 +21,7 @@ struct VirtualObject {
   ContactKind kind = ContactKind::plane;  ///< what it is
   Vector3 point = Vector3::Zero();        ///< of the first face, centre of a ball, first socket [m]
   Vector3 direction = Vector3::UnitZ();   ///< normal of faces, direction of a bar; a unit vector
-
-  static constexpr double extent = 0.15;  ///< of a face: touches lie within this distance from `point` along it [m]
+  double extent = 0.15;                   ///< of a face: touches lie within this distance from `point` along it [m]
 };
 
 namespace detail {

@@ -1,17 +1,17 @@
-// Which effects a calibration claims on simulated arms: false claims on arms that have none, and the power, intervals and
-// limits of arms that have one.
+// Which effects a calibration claims on simulated arms: false claims on arms that have none, and the power, intervals
+// and limits of arms that have one.
 //
 //   effects_study [ARMS [EFFECT [SIZE [POSES...]]]]
 //
-// EFFECT is none (the default), compliance, gears, coupling, harmonics or all; SIZE (1) multiplies its usual size. Each of
-// ARMS (20) UR10 and as many IRB 120 has other geometric errors. POSES are 60 120 300. The sensor's noise is 0.03 mm and
-// 0.05 mrad.
+// EFFECT is none (the default), compliance, gears, coupling, harmonics or all; SIZE (1) multiplies its usual size. Each
+// of ARMS (20) UR10 and as many IRB 120 has other geometric errors. POSES are 60 120 300. The sensor's noise is 0.03 mm
+// and 0.05 mrad.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -45,7 +45,8 @@ vn::JointErrorSizes sizes_of(const std::string& effect, double size) {
   if (effect == "compliance") out.compliance = 0.2e-3 * size;
   if (effect == "harmonics") out.harmonic = 0.02e-3 * size;
   if (effect == "all")
-    out = {.gear_ratio = 1e-5 * size, .coupling = 1e-5 * size, .compliance = 0.05e-3 * size, .harmonic = 0.02e-3 * size};
+    out = {
+        .gear_ratio = 1e-5 * size, .coupling = 1e-5 * size, .compliance = 0.05e-3 * size, .harmonic = 0.02e-3 * size};
   return out;
 }
 
@@ -88,9 +89,8 @@ void run_arm(const vn::Robot<6>& robot, const std::string& effect, double size, 
   ++cell.arms;
   cell.ratios.push_back(error_of(found.model(), actual, fresh) / of_geometry);
   bool false_claim = false;
-  const bool again = std::any_of(found.blocks.begin(), found.blocks.end(), [](const vn::BlockChoice& block) {
-    return block.block == vn::Block::elastic_again;
-  });
+  const bool again = std::any_of(found.blocks.begin(), found.blocks.end(),
+                                 [](const vn::BlockChoice& block) { return block.block == vn::Block::elastic_again; });
   for (const vn::BlockChoice& block : found.blocks) {
     if (std::getenv("VERBOSE") != nullptr)
       std::printf("  %s: p %.4f, used %d, %.4f -> %.4f mm, size %.4f [%.4f, %.4f]\n", vn::traits_of(block.block).key,
@@ -117,7 +117,11 @@ void run_arm(const vn::Robot<6>& robot, const std::string& effect, double size, 
   cell.with_false_claims += false_claim;
 }
 
-double median(const std::vector<double>& values) { return values.empty() ? 0 : vn::quantile(Eigen::Map<const vn::VectorX>(values.data(), static_cast<Index>(values.size())), 0.5); }
+double median(const std::vector<double>& values) {
+  return values.empty()
+             ? 0
+             : vn::quantile(Eigen::Map<const vn::VectorX>(values.data(), static_cast<Index>(values.size())), 0.5);
+}
 
 }  // namespace
 
@@ -130,7 +134,8 @@ int main(int argc, char** argv) try {
   if (poses.empty()) poses = {60, 120, 300};
   std::printf("%-10s %5s | %5s %12s | %13s %13s | %9s | claims\n", "arm", "poses", "arms", "false claims",
               "median ratio", "worst ratio", "intervals");
-  for (const auto& [name, robot] : {std::pair{"UR10", vn::robots::ur10()}, std::pair{"IRB 120", vn::robots::abb_irb120()}})
+  for (const auto& [name, robot] :
+       {std::pair{"UR10", vn::robots::ur10()}, std::pair{"IRB 120", vn::robots::abb_irb120()}})
     for (const Index n : poses) {
       Cell cell;
       for (int arm = 0; arm < arms; ++arm)
@@ -141,7 +146,8 @@ int main(int argc, char** argv) try {
                   *std::max_element(cell.ratios.begin(), cell.ratios.end()),
                   100.0 * cell.covered / std::max(1, cell.truths));
       for (const auto& [key, count] : cell.claims) std::printf(" %s %d", key.c_str(), count);
-      if (!cell.sizes.empty()) std::printf(" | size %.4f mm, decisive poses %.0f", median(cell.sizes), median(cell.decisive));
+      if (!cell.sizes.empty())
+        std::printf(" | size %.4f mm, decisive poses %.0f", median(cell.sizes), median(cell.decisive));
       std::printf("\n");
       std::fflush(stdout);
     }

@@ -1,10 +1,11 @@
 #pragma once
 
 /// @file
-/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for four parts that
-/// few programs use, which would add a quarter to its compile time. Include those by name:
+/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for five parts that
+/// few programs use, which would add a third to its compile time. Include those by name:
 /// - the general inverse kinematics: `kinematics/general_six_axis.hpp`
 /// - tables of a tracker: `data/pair_points.hpp`
+/// - plans of measurements: `planning/plan_measurements.hpp`
 /// - calibration by contacts: `identification/identify_by_contacts.hpp`, `simulation/touches.hpp`
 /// - robot programs: `robot_programs/correct_program.hpp`
 ///
@@ -29,7 +30,6 @@
 #include "vernier/identification/options.hpp"
 #include "vernier/kinematics/arm_angle_form.hpp"
 #include "vernier/kinematics/robots.hpp"
-#include "vernier/planning/plan_measurements.hpp"
 #include "vernier/registration/recursive_calibration.hpp"
 #include "vernier/regression/back_propagation.hpp"
 #include "vernier/regression/elm.hpp"

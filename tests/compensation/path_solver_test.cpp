@@ -75,8 +75,8 @@ struct BowedSlides {
 };
 
 /// Settings of two slides; no step is too long.
-detail::PathSettings slides_settings(const detail::PathJoints& speed) {
-  return {1e-3, 1, 2, 127, joints_of({-3, -3}), joints_of({3, 3}), speed, joints_of({0, 0})};
+detail::PathSettings slides_settings() {
+  return {1e-3, 1, 2, 127, joints_of({-3, -3}), joints_of({3, 3}), joints_of({0, 0})};
 }
 
 TEST(PathSolverWhiteBox, AJointThatTurnedRoundComesFromTheCommandBeyondATransition) {
@@ -96,7 +96,7 @@ TEST(PathSolverWhiteBox, DeviationsShrinkWithTheSquareOfAPiece) {
   const BowedSlides arm{.bow = 15.5e-3};  // in units of the tolerance of 1 mm: sqrt(15.5) pieces, rounded up
   const detail::SolvedPath path = arm.path({{rigid_motion(Matrix3::Identity(), Vector3(0, 0, 0)), {}, Motion::joint},
                                             {rigid_motion(Matrix3::Identity(), Vector3(1, 0, 0)), {}, Motion::linear}},
-                                           slides_settings(joints_of({1, 1})));
+                                           slides_settings());
   ASSERT_EQ(path.points.size(), 5u);  // both ends, and three that were inserted
   for (std::size_t k = 1; k < 5; ++k) EXPECT_NEAR(path.points[k].command(0), 0.25 * static_cast<double>(k), 1e-15);
   EXPECT_NEAR(path.points[2].command(1), -15.5e-3, 1e-15);
@@ -113,8 +113,7 @@ std::vector<detail::PathGoal> line_through(std::initializer_list<double> places)
 }
 
 TEST(PathSolverWhiteBox, AJointComesFromWhereItTurnedRound) {
-  const detail::SolvedPath path =
-      BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.6}), slides_settings(joints_of({1, 1})));
+  const detail::SolvedPath path = BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.6}), slides_settings());
   ASSERT_EQ(path.points.size(), 7u);  // in four pieces from 0 to 1, in two from there to 0.6
   for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(path.points[k].coming(0), k < 5 ? 0 : 1, 1e-15) << k;
 }
@@ -122,7 +121,7 @@ TEST(PathSolverWhiteBox, AJointComesFromWhereItTurnedRound) {
 PointStatus last_status(const BowedSlides& arm, double x, Motion motion = Motion::linear) {
   std::vector<detail::PathGoal> goals = line_through({x});
   goals.back().motion = motion;
-  return arm.path(goals, slides_settings(joints_of({1, 1}))).points.back().status;
+  return arm.path(goals, slides_settings()).points.back().status;
 }
 
 TEST(PathSolverWhiteBox, ALineMayNotChangeTheBranch) {
@@ -143,7 +142,7 @@ TEST(PathSolverWhiteBox, ALineEndsWhereTheNominalArmComesTo) {
 }
 
 TEST(PathSolverWhiteBox, ThePiecesOfALineBeginWhereTheNominalArmIs) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.max_joint_step = 0.3;
   const BowedSlides arm{.reach = 0.1, .nominal_reach = 0.3};  // from the piece before it would not be found
   const detail::SolvedPath path = arm.path(line_through({0.8}), settings);
@@ -157,7 +156,7 @@ TEST(PathSolverWhiteBox, ThePiecesOfALineBeginWhereTheNominalArmIs) {
 }
 
 TEST(PathSolverWhiteBox, ALineWhoseStepsStayTooLongIsAJump) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.max_joint_step = 0.15;
   for (const int inserted : {5, 6}) {  // steps of 1/6, 1/7
     settings.max_inserted = inserted;
@@ -173,21 +172,21 @@ TEST(PathSolverWhiteBox, ALineIsWatchedAtItsQuarters) {
   const auto hump = [](double x) { return 10e-3 * 256 / 27 * x * x * x * (1 - x); };
   for (const bool late : {false, true}) {
     const BowedSlides arm{.way = [&](double x) { return hump(late ? x : 1 - x); }};
-    EXPECT_NEAR(arm.path(line_through({1}), slides_settings(joints_of({1, 1}))).before, 10e-3, 1e-12) << late;
+    EXPECT_NEAR(arm.path(line_through({1}), slides_settings()).before, 10e-3, 1e-12) << late;
   }
 }
 
 TEST(PathSolverWhiteBox, NothingIsAskedOfTheMoveToTheFirstTarget) {
   std::vector<detail::PathGoal> goals = line_through({0.1});
   goals.front().motion = Motion::linear;
-  for (const detail::SolvedPoint& point : BowedSlides{}.path(goals, slides_settings(joints_of({1, 1}))).points)
+  for (const detail::SolvedPoint& point : BowedSlides{}.path(goals, slides_settings()).points)
     EXPECT_EQ(point.status, PointStatus::met);
 }
 
 TEST(PathSolverWhiteBox, WithoutAStartTheWayToTheFirstTargetHardlyCounts) {
   std::vector<detail::PathGoal> goals = line_through({1});
   goals.back().motion = Motion::joint;
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   const auto branch = [&] { return BowedSlides{.other_branch = true}.path(goals, settings).points.back().command(1); };
   EXPECT_EQ(branch(), 0);  // 0 to the first target and 1 m to the second, in place of 2 m and 0
   settings.start(1) = std::nan("");
@@ -195,8 +194,7 @@ TEST(PathSolverWhiteBox, WithoutAStartTheWayToTheFirstTargetHardlyCounts) {
 }
 
 TEST(PathSolverWhiteBox, ALineFromATargetThatWasNotMetIsAJump) {
-  const detail::SolvedPath path =
-      BowedSlides{.hole = 0.5}.path(line_through({0.5, 1}), slides_settings(joints_of({1, 1})));
+  const detail::SolvedPath path = BowedSlides{.hole = 0.5}.path(line_through({0.5, 1}), slides_settings());
   ASSERT_EQ(path.points.size(), 3u);
   EXPECT_EQ(path.points[0].status, PointStatus::met);
   EXPECT_EQ(path.points[1].status, PointStatus::not_found);
@@ -206,7 +204,7 @@ TEST(PathSolverWhiteBox, ALineFromATargetThatWasNotMetIsAJump) {
 TEST(PathSolverWhiteBox, WithoutAStartItBeginsInTheMiddleOfTheLimits) {
   std::vector<detail::PathGoal> goals = line_through({});
   goals.front().pose(0, 3) = 1;
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.start(0) = std::nan("");
   const auto second = [&](double lower, double upper) {  // of (1, 0) and (0, 2)
     settings.lower(1) = lower;
@@ -221,7 +219,7 @@ TEST(PathSolverWhiteBox, WithoutAStartItBeginsInTheMiddleOfTheLimits) {
 }
 
 TEST(PathSolverWhiteBox, ALongLineEndsWithTheTurnsThatItTook) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.lower(0) = -10;
   settings.upper(0) = 10;
   const detail::SolvedPath path = BowedSlides{}.path(line_through({5}), settings);
@@ -231,7 +229,7 @@ TEST(PathSolverWhiteBox, ALongLineEndsWithTheTurnsThatItTook) {
 
 /// Settings of slides that count turns: 10 m either way.
 detail::PathSettings wide_settings() {
-  detail::PathSettings out = slides_settings(joints_of({1, 1}));
+  detail::PathSettings out = slides_settings();
   out.lower = joints_of({-10, -10});
   out.upper = joints_of({10, 10});
   return out;
@@ -285,7 +283,7 @@ TEST(PathSolverWhiteBox, TheFirstTargetMayBeginWithAnyTurnOfAnyBranch) {
 
 // In four pieces the arm leaves its line by twice the tolerance, in eight by three times, as gears may: four it is.
 TEST(PathSolverWhiteBox, FinerPiecesThatAreWorseAreNotTaken) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.max_joint_step = 0.3;
   settings.max_inserted = 7;
   const BowedSlides arm{.way = [](double x) { return x == 0.125 ? 2e-3 : x == 0.03125 ? 3e-3 : 0; }};
@@ -299,7 +297,7 @@ TEST(PathSolverWhiteBox, FinerPiecesThatAreWorseAreNotTaken) {
 
 // Two pieces are too few for the first line; the second line begins where it ends.
 TEST(PathSolverWhiteBox, ALineGoesOnFromOneThatWasLeft) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.max_inserted = 1;
   const detail::SolvedPath path = BowedSlides{.bow = 15.5e-3}.path(line_through({1, 0.9}), settings);
   ASSERT_EQ(path.points.size(), 4u);
@@ -309,7 +307,7 @@ TEST(PathSolverWhiteBox, ALineGoesOnFromOneThatWasLeft) {
 }
 
 TEST(PathSolverWhiteBox, ALineMayNotEndBeyondALimit) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   for (const double upper : {0.9, 1.1}) {
     settings.upper(0) = upper;
     EXPECT_EQ(BowedSlides{}.path(line_through({1}), settings).points.back().status,
@@ -318,10 +316,11 @@ TEST(PathSolverWhiteBox, ALineMayNotEndBeyondALimit) {
 }
 
 TEST(PathSolverWhiteBox, ATargetOutOfReachOfNewtonsMethodIsNotFound) {
-  BowedSlides arm{.other_branch = true, .reach = 0.5};  // the other branch begins at 0, the target is at 1
+  // the other branch, which costs less, begins at 0; the target is at 1
+  BowedSlides arm{.other_branch = true, .cost_at = [](double y) { return y > 1 ? 0 : 100; }, .reach = 0.5};
   std::vector<detail::PathGoal> goals = line_through({});
   goals.front().pose(0, 3) = 1;
-  detail::PathSettings settings = slides_settings(joints_of({0.1, 1}));
+  detail::PathSettings settings = slides_settings();
   EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::not_found);
   settings.upper(1) = 2 + 1e-10;  // where the other branch is, but for rounding errors
   EXPECT_EQ(arm.path(goals, settings).points.back().status, PointStatus::beyond_limits);
@@ -332,7 +331,7 @@ TEST(PathSolverWhiteBox, ATargetOutOfReachOfNewtonsMethodIsNotFound) {
 
 // Where the correction turns a joint round, the command is corrected once more for the approach that this makes.
 TEST(PathSolverWhiteBox, CommandsAndApproachesFitOneAnother) {
-  detail::PathSettings settings = slides_settings(joints_of({1, 1}));
+  detail::PathSettings settings = slides_settings();
   settings.max_joint_step = 0.13;
   const BowedSlides arm{.bow = 20e-3, .lag = 1e-3};
   const detail::SolvedPath path = arm.path(line_through({1}), settings);

@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 #include <vernier/io.hpp>
+#include <vernier/planning/plan_measurements.hpp>
 #include <vernier/robot_programs/correct_program.hpp>
 #include <vernier/urdf.hpp>
 #include <vernier/vernier.hpp>

@@ -90,8 +90,8 @@ TEST(TemperatureOfSessions, AnExpansionIsFoundAndHelpsOnAnotherDay) {
     // from a pose to another one: the base of that day does not matter
     for (Index i = 1; i < 100; ++i) {
       const JointVector<6> q = configuration(joints, i);
-      sum += std::abs((model.position(q) - model.position(home)).norm() -
-                      (cold.position(q) - cold.position(home)).norm());
+      sum +=
+          std::abs((model.position(q) - model.position(home)).norm() - (cold.position(q) - cold.position(home)).norm());
     }
     return sum / 99;
   };

@@ -78,8 +78,8 @@ double mean_error(const Model& a, const Model& b, std::uint64_t seed) {
   return sum;
 }
 
-/// Thermal unknowns, each beside that of its parameter, in steps of the expected expansion: of lengths, counted as 0.3 m
-/// at least, and of angles.
+/// Thermal unknowns, each beside that of its parameter, in steps of the expected expansion: of lengths, counted as 0.3
+/// m at least, and of angles.
 void expect_thermal_unknowns(const ErrorModelEstimate& found, double expansion) {
   std::vector<std::pair<Index, int>> thermal, others;
   for (const GeometricUnknown& u : found.arm.geometric()) {

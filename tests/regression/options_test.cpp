@@ -56,8 +56,6 @@ TEST(RegressionOptions, LimitsOfExtremeLearningMachines) {
   expect_limits(elm, &Elm::weight_limit, {1e-9, below(1e6)}, {0.0, 1e6});
   expect_limits(elm, &Elm::rcond, {0.0, below(1)}, {below(0), 1.0});
   const Samples samples;
-  const auto objective = [&](const Elm& one) { (void)one.objective(samples.inputs, samples.targets); };
-  vernier_test::expect_limits(objective, elm, &Elm::fitness_lambda, {1e-300, below(1)}, {0.0, 1.0});
   const RidgeElm ridge{.hidden_nodes = 3};
   expect_limits(ridge, &RidgeElm::hidden_nodes, {1}, {0});
   expect_limits(ridge, &RidgeElm::weight_limit, {1e-9, below(1e6)}, {0.0, 1e6});

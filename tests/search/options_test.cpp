@@ -62,9 +62,6 @@ TEST(SearchOptions, LimitsOfPso) {
 TEST(SearchOptions, LimitsOfSpso2011) {
   expect_limits(Spso2011{}, &Spso2011::particles, {1}, {0});
   expect_limits(Spso2011{}, &Spso2011::iterations, {Index{0}}, {Index{-1}});
-  expect_limits(Spso2011{}, &Spso2011::informed, {1}, {0});
-  expect_limits(Spso2011{}, &Spso2011::inertia, {0.0, 1.0}, {below(0), above(1)});
-  expect_limits(Spso2011{}, &Spso2011::acceleration, {0.0, 10.0}, {below(0), above(10)});
 }
 
 TEST(SearchOptions, LimitsOfGeneticAlgorithms) {
@@ -100,7 +97,6 @@ TEST(SearchOptions, LimitsOfDifferentialEvolution) {
   expect_limits(LShade{}, &LShade::individuals_per_dimension, {1e-9}, {0.0, above(1e6)});
   // as many as that have a schedule that takes them
   expect_limits(LShade{.max_evaluations = 2'000'000}, &LShade::individuals_per_dimension, {1e6}, {});
-  expect_limits(LShade{}, &LShade::final_individuals, {4}, {3});
   expect_limits(LShade{}, &LShade::memory, {1}, {0});
   expect_limits(LShade{}, &LShade::archive_rate, {0.0, 1000.0}, {below(0), above(1000)});
   expect_limits(LShade{}, &LShade::best_share, {0.0, 1.0}, {below(0), above(1)});

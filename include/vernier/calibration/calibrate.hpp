@@ -3,7 +3,6 @@
 /// @file
 /// The calibration pipeline: from measurements to everything known of a real arm.
 
-#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +11,7 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/calibration/detail/plausibility.hpp"
 #include "vernier/calibration/learn_remainders.hpp"
+#include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/identify.hpp"
@@ -78,7 +78,7 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
       detail::require_plausible_set(ArmGeometry(registered.around(registered.chain())), sets[s]);
   }
 
-  const auto began = std::chrono::steady_clock::now();
+  const double began = detail::steady_seconds();
   const auto identified = [&](const IdentifyOptions& of_geometry) {
     const auto from = [&](const MeasuredSet& set) {
       return detail::identified_from(nominal, set, of_geometry, options.sensors, solver);
@@ -93,11 +93,11 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   if (options.refuse_implausible) detail::require_usable(geometry, "identifying the geometry");
   FittedErrorModel<Chain> errors =
       fit_error_model(geometry, measured, options.errors, options.sensors, options.search, options.fit.executor);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+  const double seconds = detail::steady_seconds() - began;
 
   if (!poses.empty()) errors.stages.insert(errors.stages.begin(), std::move(frames));
   Calibration<Chain> out{std::move(geometry), std::move(errors)};
-  out.fit_seconds = seconds.count();
+  out.fit_seconds = seconds;
   out.sensors = options.sensors;
   if (!poses.empty()) detail::learn_remainders<Chain>(out, poses, options.remainder, options.fit);
 

@@ -166,13 +166,11 @@ VERNIER_LOCAL std::string describe_block(const BlockChoice& block) {
   std::string out = message(capitalised(traits_of(block.block).title), ": ");
   switch (effect.answer) {
     case Answer::found:
-      out += message("found (p = ", brief(effect.p), "), ", mm(effect.size), " mm at the tool, ", mm(effect.interval[0]),
-                     " to ", mm(effect.interval[1]), " with 95 %");
+      out += message("found (p = ", brief(effect.p), "), ", mm(effect.size), " mm at the tool, ",
+                     mm(effect.interval[0]), " to ", mm(effect.interval[1]), " with 95 %");
       if (!block.used) out += "; not deployed, because it predicts left-out poses worse";
       break;
-    case Answer::ruled_out:
-      out += message("ruled out above ", mm(effect.interval[1]), " mm at the tool");
-      break;
+    case Answer::ruled_out: out += message("ruled out above ", mm(effect.interval[1]), " mm at the tool"); break;
     case Answer::undecided:
       out += message("undecided (p = ", brief(effect.p), "): below ", mm(effect.interval[1]), " mm at the tool, ",
                      mm(effect.relevance), " mm would matter; ",
@@ -283,7 +281,7 @@ VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::v
     double largest = -1;
     for (Index j = 0; j + 6 < drift.knots.rows(); ++j) {
       const VectorX zero = row_of(drift.knots, 6 + j);
-      const double range = zero.maxCoeff() - zero.minCoeff();
+      const double range = VERNIER_LATER(zero).maxCoeff() - VERNIER_LATER(zero).minCoeff();
       if (range > largest) largest = range, joint = j;
     }
     const auto j = static_cast<std::size_t>(joint);

@@ -4,7 +4,6 @@
 /// Assessment of a calibration on held-out poses.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "vernier/calibration/calibration.hpp"
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/pose_advice.hpp"
+#include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measurements.hpp"
@@ -136,15 +136,15 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
 
   const auto evaluation = [&](const auto& model) {
-    const auto began = std::chrono::steady_clock::now();
+    const double began = detail::steady_seconds();
     double sum = 0;  // which nobody can optimise away
     Index count = 0;
     for (; count < 2000; ++count) {
       const Dataset<N>& data = test.front();
       sum += model.pose_and_jacobian(data.joints(count % data.size())).jacobian(0, 0);
     }
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
-    return std::isfinite(sum) ? seconds.count() / static_cast<double>(count) : 0;
+    const double seconds = detail::steady_seconds() - began;
+    return std::isfinite(sum) ? seconds / static_cast<double>(count) : 0;
   };
   const LearnedRemainder<N>* deployed = calibration.deployed();
   const auto& chosen_model = deployed != nullptr ? calibration.model() : errors.models(out.chosen.stage).front();

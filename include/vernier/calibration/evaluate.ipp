@@ -8,7 +8,7 @@
 namespace vernier::detail {
 
 VERNIER_IMPL double normalised_error(const Vector3& error, const Matrix3& covariance) {
-  const Matrix3 weight = covariance.inverse();
+  const Matrix3 weight = VERNIER_LATER(covariance).inverse();
   const Vector3 weighted = weight * error;
   return std::sqrt(error.dot(weighted));
 }

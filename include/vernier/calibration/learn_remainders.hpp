@@ -86,7 +86,7 @@ VectorX fold_errors(Learner learner, const ErrorModel<Chain>& model, const Datas
 /// @param errors,others of the same poses
 /// @param looks         how often a calibration asks this
 /// @cite Fisher 1935
-inline bool clearly_better(const VectorX& errors, const VectorX& others, std::size_t looks) {
+VERNIER_API inline bool clearly_better(const VectorX& errors, const VectorX& others, std::size_t looks) {
   const VectorX saved = others.cwiseAbs2() - errors.cwiseAbs2();
   if (!saved.allFinite()) return errors.allFinite();  // the others do not predict each pose
   return errors.mean() < others.mean() && one_standard_error_rule({{0, errors}, {1, others}}) == 0 &&

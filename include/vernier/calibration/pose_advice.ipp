@@ -43,7 +43,8 @@ VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estim
   for (const std::string& name : weak) {
     const Index at = std::find(names.begin(), names.end(), name) - names.begin();
     if (at >= dense || out.size() == max_parameters) continue;
-    const HelpfulPoses helpful = helpful_poses(estimate.covariance.topLeftCorner(dense, dense), rows, at, poses);
+    const HelpfulPoses helpful =
+        helpful_poses(VERNIER_LATER(estimate.covariance).topLeftCorner(dense, dense), rows, at, poses);
     if (helpful.poses.empty()) continue;
     const Index parameter = estimate.arm.geometric()[static_cast<std::size_t>(at)].parameter;
     PoseAdvice advice{name,

@@ -26,11 +26,13 @@ struct StageName {
   friend bool operator==(const StageName&, const StageName&) = default;
 
   /// Its key in files: `jointwise`, `jointwise_pso_elm`.
-  std::string key() const { return std::string(traits_of(stage).key) + (learner ? learner_key(*learner) : ""); }
+  VERNIER_API std::string key() const {
+    return std::string(traits_of(stage).key) + (learner ? learner_key(*learner) : "");
+  }
 };
 
 /// The stage of a learner on geometry alone, or on the error model.
-inline StageName learned_stage(bool on_geometry, Learner learner) {
+VERNIER_API inline StageName learned_stage(bool on_geometry, Learner learner) {
   return {on_geometry ? Stage::geometry_learned : Stage::learned, learner};
 }
 
@@ -44,17 +46,17 @@ struct StageErrors {
   /// @param of               the stage, whose title it has
   /// @param position_errors  n values [m]
   /// @param rotation_errors  n values [rad], or none
-  StageErrors(Stage of, VectorX position_errors, VectorX rotation_errors)
+  VERNIER_API StageErrors(Stage of, VectorX position_errors, VectorX rotation_errors)
       : StageErrors(of, traits_of(of).title, std::move(position_errors), std::move(rotation_errors)) {}
   /// Errors of a stage with a title of its own.
-  StageErrors(StageName of, std::string its_title, VectorX position_errors, VectorX rotation_errors)
+  VERNIER_API StageErrors(StageName of, std::string its_title, VectorX position_errors, VectorX rotation_errors)
       : name(of),
         title(std::move(its_title)),
         position(std::move(position_errors)),
         rotation(std::move(rotation_errors)) {}
 
   /// Its key in files.
-  std::string key() const { return name.key(); }
+  VERNIER_API std::string key() const { return name.key(); }
 };
 
 /// A table of the position errors [mm] of stages, and of their mean orientation errors [mrad] where used, in three

@@ -15,10 +15,10 @@ VERNIER_IMPL std::string stage_table(const std::vector<StageErrors>& stages) {
     out += std::string(text.size() < width ? width - text.size() : 1, ' ') + text;
   };
   for (const StageErrors& stage : stages) {
-    const auto e = ErrorStatistics::of(stage.position * 1e3);
+    const auto e = ErrorStatistics::of(VERNIER_LATER(stage.position) * 1e3);
     out += stage.title + std::string(stage.title.size() < 22 ? 22 - stage.title.size() : 0, ' ');
     for (const double value : {e.mean, e.rms, e.max, e.min, e.p95}) add(value, 9);
-    if (stage.rotation.size() > 0) add(stage.rotation.mean() * 1e3, 13);
+    if (stage.rotation.size() > 0) add(VERNIER_LATER(stage.rotation).mean() * 1e3, 13);
     out += "\n";
   }
   return out;

@@ -45,7 +45,7 @@ struct WhitenedResiduals {
 VERNIER_LOCAL Index take_off(const ConstMatrixRef& nuisance, VectorX& residual, MatrixX& columns) {
   std::vector<VectorX> axes;
   for (Index k = 0; k < nuisance.cols(); ++k) {
-    VectorX axis = nuisance.col(k);
+    VectorX axis = VERNIER_LATER(nuisance).col(k);
     const double before = axis.norm();
     for (int pass = 0; pass < 2; ++pass)
       for (const VectorX& other : axes) axis -= other.dot(axis) * other;
@@ -53,7 +53,7 @@ VERNIER_LOCAL Index take_off(const ConstMatrixRef& nuisance, VectorX& residual, 
     axis /= axis.norm();
     residual -= axis.dot(residual) * axis;
     const VectorX along = transposed_product(columns, axis);
-    for (Index c = 0; c < columns.cols(); ++c) columns.col(c) -= along(c) * axis;
+    for (Index c = 0; c < columns.cols(); ++c) VERNIER_LATER(columns).col(c) -= along(c) * axis;
     axes.push_back(std::move(axis));
   }
   return static_cast<Index>(axes.size());
@@ -68,9 +68,9 @@ VERNIER_LOCAL ColumnTest test_columns(const WhitenedResiduals& of, const std::ve
   MatrixX columns(of.residual.size(), static_cast<Index>(which.size())), none(of.residual.size(), 0);
   Index used = 0;
   for (const Index k : which)
-    if (of.informative(k) > least_informative) columns.col(used++) = of.columns.col(k);
+    if (of.informative(k) > least_informative) VERNIER_LATER(columns).col(used++) = VERNIER_LATER(of.columns).col(k);
   VectorX residual = of.residual;
-  const Index rank = take_off(columns.leftCols(used), residual, none);
+  const Index rank = take_off(VERNIER_LATER(columns).leftCols(used), residual, none);
   return {of.residual.squaredNorm() - residual.squaredNorm(), rank};
 }
 
@@ -117,17 +117,18 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
       for (Index k = 0; k < values; ++k) kept.push_back(values * i + k);
   const auto rows = static_cast<Index>(kept.size());
   MatrixX factor = rows_of(covariance, kept);
-  for (Index c = 0; c < rows; ++c) factor.col(c) = factor.col(kept[static_cast<std::size_t>(c)]);  // in ascending order
+  for (Index c = 0; c < rows; ++c)
+    VERNIER_LATER(factor).col(c) = VERNIER_LATER(factor).col(kept[static_cast<std::size_t>(c)]);  // in ascending order
   factor.conservativeResize(rows, rows);
   demand(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
   MatrixX all(rows, 1 + registered.cols() + changes.cols());
-  all.col(0) = rows_of(residual, kept);
-  all.middleCols(1, registered.cols()) = rows_of(registered, kept);
-  all.rightCols(changes.cols()) = rows_of(changes, kept);
+  VERNIER_LATER(all).col(0) = rows_of(residual, kept);
+  VERNIER_LATER(all).middleCols(1, registered.cols()) = rows_of(registered, kept);
+  VERNIER_LATER(all).rightCols(changes.cols()) = rows_of(changes, kept);
   solve_lower(factor, all);
-  WhitenedResiduals whitened{all.col(0), all.rightCols(changes.cols()), {}, 0};
+  WhitenedResiduals whitened{VERNIER_LATER(all).col(0), VERNIER_LATER(all).rightCols(changes.cols()), {}, 0};
   const VectorX before_registration = squared_column_norms(whitened.columns);
-  const Index rank = take_off(all.middleCols(1, registered.cols()), whitened.residual, whitened.columns);
+  const Index rank = take_off(VERNIER_LATER(all).middleCols(1, registered.cols()), whitened.residual, whitened.columns);
   whitened.informative = squared_column_norms(whitened.columns);
   for (Index k = 0; k < whitened.informative.size(); ++k)
     whitened.informative(k) = std::sqrt(whitened.informative(k) / (std::max)(before_registration(k), 1e-300));
@@ -147,7 +148,7 @@ VERNIER_LOCAL void test_all(const VerificationInput& input, const MatrixX& covar
     const bool revolute = out.joint_types[static_cast<std::size_t>(j)] == JointType::revolute;
     if (joint.determined) {
       ++tests;
-      const VectorX column = whitened.columns.col(j);
+      const VectorX column = VERNIER_LATER(whitened.columns).col(j);
       const double information = column.squaredNorm();
       joint.zero_change = -column.dot(whitened.residual) / information;
       joint.zero_std = 1 / std::sqrt(information);
@@ -251,15 +252,15 @@ VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const V
   out.normalised.resize(n);
   if (values == 6) out.rotations.resize(n);
   for (Index i = 0; i < n; ++i) {
-    const VectorX error = residual.segment(values * i, 3);
+    const VectorX error = VERNIER_LATER(residual).segment(values * i, 3);
     const MatrixX visit = visits[static_cast<std::size_t>(i)];
-    MatrixX factor = visit.topLeftCorner(3, 3);
+    MatrixX factor = VERNIER_LATER(visit).topLeftCorner(3, 3);
     VectorX whitened = error;
     demand(cholesky(factor), "verify_calibration: the predicted covariance is not positive definite");
     solve_lower(factor, whitened);
     out.errors(i) = error.norm();
     out.normalised(i) = whitened.norm();
-    if (values == 6) out.rotations(i) = VectorX(residual.segment(values * i + 3, 3)).norm();
+    if (values == 6) out.rotations(i) = VectorX(VERNIER_LATER(residual).segment(values * i + 3, 3)).norm();
   }
   test_all(input, covariance, residual, registered, changes, values, out);
   if (!out.consistent) {  // a reflector that was bumped is no change of the arm

@@ -34,9 +34,8 @@ struct PathOptions {
   double rotation_tolerance = 0.2e-3;  ///< deviation of its orientation from the one in between [rad]
   double max_joint_step = 0.5;         ///< largest change of a joint between commands of a linear move [rad, m]
   int max_inserted = 127;              ///< most points that are inserted in one linear move
-  JointVector<N> speed = JointVector<N>::Ones();  ///< of the joints in a joint move; their ratios choose the branch
   /// Each target outside the measured joint ranges, where the gate is 0, counts as so much joint motion in the choice
-  /// of branches [rad at speed 1]: inside, the model predicts better.
+  /// of branches [rad, m]: inside, the model predicts better.
   double extrapolation_cost = 10;
   /// Whether each command is for the approach from the one before; else it is for the middle of all approaches.
   bool approach = true;
@@ -98,12 +97,11 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
                                      const PathOptions<Arm::dof>& options) {
   constexpr int N = Arm::dof;
   constexpr bool branches_known = !std::is_same_v<Roots, NoClosedForm>;
-  static_assert(N <= PathJoints::MaxRowsAtCompileTime);
+  static_assert(N <= max_arm_joints, "correct_path: arms of up to nine joints");
   using Joints = JointVector<N>;
   demand(options.tolerance > 0 && options.rotation_tolerance > 0 && options.max_joint_step > 0 &&
-             options.max_inserted >= 0 &&
-             std::all_of(options.speed.data(), options.speed.data() + N, [](double speed) { return speed > 0; }),
-         "correct_path: tolerances, steps and speeds must be positive");
+             options.max_inserted >= 0,
+         "correct_path: tolerances and steps must be positive");
   const auto& nominal = nominal_of(arm);
   IkOptions<N> tight;
   tight.max_iterations = 30;
@@ -172,11 +170,10 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   for (const PathTarget<N>& target : targets)
     goals.push_back(
         {target.pose, detail::all_finite(target.joints) ? PathJoints(target.joints) : PathJoints(), target.motion});
-  const SolvedPath solved =
-      solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
-                 {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
-                  options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper,
-                  options.speed, options.start});
+  const SolvedPath solved = solve_path(
+      {N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
+      {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
+       options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper, options.start});
   CorrectedPath<N> out;
   out.before = solved.before;
   out.after = solved.after;

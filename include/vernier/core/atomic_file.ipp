@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include "vernier/core/check.hpp"
@@ -62,7 +61,7 @@ class Output {
 
  private:
   Output() = default;
-  [[noreturn]] void fail(const char* what, int reason) const {
+  VERNIER_LOCAL [[noreturn]] void fail(const char* what, int reason) const {
     throw std::runtime_error(path_ + ": " + what +
                              (reason != 0 ? std::string(": ") + std::strerror(reason) : std::string()));
   }
@@ -123,10 +122,10 @@ VERNIER_IMPL void Output::open_stream(int descriptor) {
 /// @return whether that is possible; else `errno` says why not
 VERNIER_IMPL bool Output::open_beside(const struct stat* replaced) {
   static std::atomic<unsigned> count{0};
-  const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
-  const mode_t mode = replaced != nullptr ? 0600 : 0666;  // what is private stays so
+  const std::string folder = target_.substr(0, target_.rfind('/') + 1);  // empty without a slash
+  const mode_t mode = replaced != nullptr ? 0600 : 0666;                 // what is private stays so
   do {
-    beside_ = (folder / message(".vernier.", ::getpid(), '.', count++, ".partial")).string();
+    beside_ = message(folder, ".vernier.", ::getpid(), '.', count++, ".partial");
     file_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   } while (file_ < 0 && errno == EEXIST);
   if (file_ < 0) {

@@ -46,7 +46,7 @@ struct SequentialExecutor {
 class ThreadExecutor {
  public:
   /// @param threads at least 1
-  explicit ThreadExecutor(int threads) : threads_(threads) {
+  VERNIER_API explicit ThreadExecutor(int threads) : threads_(threads) {
     demand(threads >= 1, "ThreadExecutor: threads is ", threads, ", must be at least 1");
   }
 

@@ -13,7 +13,7 @@ namespace vernier {
 VERNIER_IMPL Matrix3 nearest_rotation(const Matrix3& matrix) {
   const detail::ThinSvd svd = detail::thin_svd(matrix);
   Matrix3 left = svd.u;
-  const Matrix3 right = svd.v, back = right.transpose(), nearest = left * back;
+  const Matrix3 right = svd.v, back = VERNIER_LATER(right).transpose(), nearest = left * back;
   if (!(nearest.determinant() < 0)) return nearest;
   for (Index r = 0; r < 3; ++r) left(r, 2) = -left(r, 2);
   return left * back;

@@ -9,24 +9,28 @@
 namespace vernier {
 
 /// The i-th point.
-inline Vector3 point(const PointRows& points, Index i) { return {points(i, 0), points(i, 1), points(i, 2)}; }
+VERNIER_API inline Vector3 point(const PointRows& points, Index i) {
+  return {points(i, 0), points(i, 1), points(i, 2)};
+}
 
 /// Sets the i-th point.
-inline void set_point(PointRows& points, Index i, const Vector3& value) {
+VERNIER_API inline void set_point(PointRows& points, Index i, const Vector3& value) {
   for (Index c = 0; c < 3; ++c) points(i, c) = value(c);
 }
 
 /// Mean of points, of which there is at least one.
-inline Vector3 centroid(const PointRows& points) {
-  Vector3 sum = Vector3::Zero();
-  for (Index i = 0; i < points.rows(); ++i) sum += point(points, i);
-  return sum / static_cast<double>(points.rows());
+VERNIER_API inline Vector3 centroid(const PointRows& points) {
+  Vector3 sum(0, 0, 0);
+  for (Index i = 0; i < points.rows(); ++i)
+    for (Index c = 0; c < 3; ++c) sum(c) += points(i, c);
+  for (double& c : sum) c /= static_cast<double>(points.rows());
+  return sum;
 }
 
 /// Distance of each point from another.
-inline VectorX distances_from(const PointRows& points, const Vector3& from) {
+VERNIER_API inline VectorX distances_from(const PointRows& points, const Vector3& from) {
   VectorX out(points.rows());
-  for (Index i = 0; i < points.rows(); ++i) out(i) = (point(points, i) - from).norm();
+  for (Index i = 0; i < points.rows(); ++i) out(i) = (VERNIER_LATER(point(points, i)) - from).norm();
   return out;
 }
 
@@ -45,10 +49,10 @@ void set_configuration(JointRows<N>& joints, Index i, const JointVector<N>& valu
 }
 
 /// Translation of a rigid motion [m].
-inline Vector3 translation(const Isometry3& pose) { return {pose(0, 3), pose(1, 3), pose(2, 3)}; }
+VERNIER_API inline Vector3 translation(const Isometry3& pose) { return {pose(0, 3), pose(1, 3), pose(2, 3)}; }
 
 /// Rotation matrix of a rigid motion.
-inline Matrix3 rotation(const Isometry3& pose) {
+VERNIER_API inline Matrix3 rotation(const Isometry3& pose) {
   Matrix3 out;
   for (Index c = 0; c < 3; ++c)
     for (Index r = 0; r < 3; ++r) out(r, c) = pose(r, c);
@@ -56,8 +60,8 @@ inline Matrix3 rotation(const Isometry3& pose) {
 }
 
 /// Rigid motion of a rotation matrix and a translation [m].
-inline Isometry3 rigid_motion(const Matrix3& rotation, const Vector3& translation) {
-  Isometry3 out = Isometry3::Identity();
+VERNIER_API inline Isometry3 rigid_motion(const Matrix3& rotation, const Vector3& translation) {
+  Isometry3 out = VERNIER_LATER(Isometry3::Identity());
   for (Index r = 0; r < 3; ++r) {
     for (Index c = 0; c < 3; ++c) out(r, c) = rotation(r, c);
     out(r, 3) = translation(r);
@@ -66,8 +70,8 @@ inline Isometry3 rigid_motion(const Matrix3& rotation, const Vector3& translatio
 }
 
 /// The product `outer inner` of rigid motions: the inner one, then the outer one.
-inline Isometry3 composed(const Isometry3& outer, const Isometry3& inner) {
-  Isometry3 out = Isometry3::Identity();
+VERNIER_API inline Isometry3 composed(const Isometry3& outer, const Isometry3& inner) {
+  Isometry3 out = VERNIER_LATER(Isometry3::Identity());
   for (Index r = 0; r < 3; ++r)
     for (Index c = 0; c < 4; ++c)
       out(r, c) = outer(r, 0) * inner(0, c) + outer(r, 1) * inner(1, c) + outer(r, 2) * inner(2, c) +
@@ -76,8 +80,8 @@ inline Isometry3 composed(const Isometry3& outer, const Isometry3& inner) {
 }
 
 /// The inverse of a rigid motion.
-inline Isometry3 inverse_of(const Isometry3& pose) {
-  Isometry3 out = Isometry3::Identity();
+VERNIER_API inline Isometry3 inverse_of(const Isometry3& pose) {
+  Isometry3 out = VERNIER_LATER(Isometry3::Identity());
   for (Index r = 0; r < 3; ++r) {
     for (Index c = 0; c < 3; ++c) out(r, c) = pose(c, r);
     out(r, 3) = -(pose(0, r) * pose(0, 3) + pose(1, r) * pose(1, 3) + pose(2, r) * pose(2, 3));
@@ -86,7 +90,7 @@ inline Isometry3 inverse_of(const Isometry3& pose) {
 }
 
 /// A point after a rigid motion.
-inline Vector3 transformed(const Isometry3& motion, const Vector3& point) {
+VERNIER_API inline Vector3 transformed(const Isometry3& motion, const Vector3& point) {
   Vector3 out;
   for (Index r = 0; r < 3; ++r)
     out(r) = motion(r, 0) * point(0) + motion(r, 1) * point(1) + motion(r, 2) * point(2) + motion(r, 3);

@@ -25,7 +25,7 @@ VERNIER_IMPL Matrix3 left_jacobian_so3(const Vector3& r) {
     b = 2 * half_sine * half_sine / angle2;
     c = (angle - std::sin(angle)) / (angle2 * angle);
   }
-  const Matrix3 k = skew(r);
+  const auto k = VERNIER_LATER(skew(r));
   return Matrix3::Identity() + b * k + c * (k * k);
 }
 
@@ -38,17 +38,17 @@ VERNIER_IMPL Matrix3 left_jacobian_inverse_so3(const Vector3& r) {
     const double half = std::sqrt(angle2) / 2;
     c = (1 - half * std::cos(half) / std::sin(half)) / angle2;
   }
-  const Matrix3 k = skew(r);
+  const auto k = VERNIER_LATER(skew(r));
   return Matrix3::Identity() - 0.5 * k + c * (k * k);
 }
 
 VERNIER_IMPL Vector3 rotation_difference(const Matrix3& to, const Matrix3& from) {
-  const Matrix3 back = from.transpose();
-  return detail::double_log_so3(to * back);
+  const Matrix3 back = VERNIER_LATER(from).transpose();
+  return detail::double_log_so3(VERNIER_LATER(to) * back);
 }
 
 VERNIER_IMPL Vector6 pose_difference(const Isometry3& to, const Isometry3& from) {
-  const Vector3 shift = translation(to) - translation(from);
+  const Vector3 shift = VERNIER_LATER(translation(to)) - translation(from);
   const Vector3 turn = rotation_difference(rotation(to), rotation(from));
   Vector6 out;
   for (Index c = 0; c < 3; ++c) {
@@ -59,9 +59,9 @@ VERNIER_IMPL Vector6 pose_difference(const Isometry3& to, const Isometry3& from)
 }
 
 VERNIER_IMPL Isometry3 interpolated(const Isometry3& from, const Isometry3& to, double fraction) noexcept {
-  const Vector3 start = translation(from), apart = translation(to) - start;
-  const Matrix3 orientation = rotation(from);
-  const Vector3 turn = fraction * rotation_difference(rotation(to), orientation);
+  const auto start = VERNIER_LATER(translation(from)), apart = VERNIER_LATER(Vector3(translation(to) - start));
+  const auto orientation = VERNIER_LATER(rotation(from));
+  const Vector3 turn = fraction * VERNIER_LATER(rotation_difference(rotation(to), orientation));
   return rigid_motion(exp_so3(turn) * orientation, start + fraction * apart);
 }
 

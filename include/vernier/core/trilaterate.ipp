@@ -22,7 +22,7 @@ VERNIER_IMPL Vector3 trilaterate(const PointRows& points, const VectorX& distanc
   const detail::RightSingular axes = detail::right_singular(scatter);
   Vector3 out = mean;
   for (Index k = 0; k < 3 && axes.values(k) > 1e-12 * axes.values(0); ++k) {
-    const Vector3 axis = axes.vectors.col(k);
+    const Vector3 axis = VERNIER_LATER(axes.vectors).col(k);
     out -= 0.5 * axis.dot(right) / axes.values(k) * axis;
   }
   return out;

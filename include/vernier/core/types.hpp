@@ -49,6 +49,10 @@ enum class JointType { revolute, prismatic };
 template <int N>
 using JointVector = Eigen::Matrix<double, N, 1>;
 
+/// Most joints of an arm that files and programs have, of which the library has instances, whose paths are corrected,
+/// and of which tables are kept that grow as a power of their number. A chain may have more (`max_joints`).
+inline constexpr int max_arm_joints = 9;
+
 /// A closed range of joint values [rad, m].
 struct JointRange {
   double lower;  ///< minimum

@@ -47,7 +47,7 @@ class Contact {
   /// Where the touches stand in a file; empty where they are from none.
   const RowOrigin& origin() const { return origin_; }
   /// These touches, said to be from some rows of a file.
-  Contact from(RowOrigin origin) const {
+  VERNIER_API Contact from(RowOrigin origin) const {
     Contact out = *this;
     out.origin_ = std::move(origin);
     return out;

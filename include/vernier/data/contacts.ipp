@@ -20,8 +20,8 @@ VERNIER_IMPL Contact::Contact(std::string name, ContactKind kind, MatrixX joints
   demand(known_.size() == joints_.rows(), "contact ", name_, ": ", joints_.rows(), " touches, but ", known_.size(),
          " known lengths");
   for (Index i = 0; i < size(); ++i) {
-    demand(detail::all_finite(joints_.middleRows(i, 1)) && std::isfinite(known_(i)), "contact ", name_, ": touch ", i,
-           " has a value that is not finite");
+    demand(detail::all_finite(VERNIER_LATER(joints_).middleRows(i, 1)) && std::isfinite(known_(i)), "contact ", name_,
+           ": touch ", i, " has a value that is not finite");
     demand(kind_ != ContactKind::ball || known_(i) > 0, "contact ", name_, ": touch ", i, " has a radius of ",
            known_(i), " m, must be positive");
   }
@@ -31,7 +31,8 @@ VERNIER_IMPL Contact::Contact(std::string name, ContactKind kind, MatrixX joints
 }
 
 VERNIER_IMPL bool Contact::has_length() const {
-  return size() > 0 && (kind_ == ContactKind::ball || known_.minCoeff() < known_.maxCoeff());
+  return size() > 0 &&
+         (kind_ == ContactKind::ball || VERNIER_LATER(known_).minCoeff() < VERNIER_LATER(known_).maxCoeff());
 }
 
 }  // namespace vernier

@@ -107,8 +107,9 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
   out.temperatures = values_of(table, "temperature", quantities::temperature).value_or(VectorX());
-  out.previous = has_joints(table, "from_") ? table.numbers(joint_columns(table, joints, types, "from_"))
-                                            : approach_by_order(table, MatrixX(out.values.leftCols(joints)), times);
+  out.previous = has_joints(table, "from_")
+                     ? table.numbers(joint_columns(table, joints, types, "from_"))
+                     : approach_by_order(table, MatrixX(VERNIER_LATER(out.values).leftCols(joints)), times);
   table.remark_unread();
   return out;
 }

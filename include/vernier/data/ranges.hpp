@@ -4,7 +4,8 @@
 /// Sets of measurements in contiguous memory.
 
 #include <concepts>
-#include <ranges>
+#include <cstddef>
+#include <iterator>
 #include <type_traits>
 
 #include "vernier/core/language.hpp"
@@ -13,7 +14,9 @@ namespace vernier {
 
 /// One or more `T` in contiguous memory: a vector, an array, a span.
 template <class Range, class T>
-concept RangeOf = std::ranges::contiguous_range<const Range> && std::ranges::sized_range<const Range> &&
-    std::same_as<std::remove_cvref_t<std::ranges::range_value_t<const Range>>, T>;
+concept RangeOf = requires(const Range& range) {
+  { std::size(range) } -> std::convertible_to<std::size_t>;
+  requires std::same_as<std::remove_cvref_t<decltype(*std::data(range))>, T>;
+};
 
 }  // namespace vernier

@@ -65,7 +65,8 @@ VERNIER_IMPL std::vector<std::vector<Index>> readings_of_visits(const ConstMatri
   std::vector<std::vector<Index>> out;
   for (Index i = 0; i < joints.rows(); ++i) {
     bool again = i > 0 && agree(joints, i, joints, out.back().front(), tolerances);
-    if (again && previous.row(i).allFinite())  // moved in between, unless it stood there or came as before
+    if (again &&
+        VERNIER_LATER(previous).row(i).allFinite())  // moved in between, unless it stood there or came as before
       again = agree(previous, i, joints, i, tolerances) || agree(previous, i, previous, i - 1, tolerances);
     if (!again) out.emplace_back();
     out.back().push_back(i);

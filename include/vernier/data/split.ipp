@@ -50,7 +50,7 @@ VERNIER_IMPL SplitRows region_rows(const PointRows& positions, const RegionOptio
   const Index n = positions.rows(), tests = num_test_rows("split_region", n, options.test_fraction);
   const int axis = static_cast<int>(options.face) / 2;
   const double sign = static_cast<int>(options.face) % 2 == 0 ? 1 : -1;
-  const VectorX along = positions.col(axis);
+  const VectorX along = VERNIER_LATER(positions).col(axis);
   return split_order(argsort(sign * along), tests);
 }
 

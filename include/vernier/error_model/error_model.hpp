@@ -75,7 +75,7 @@ struct ThermalRates {
   VectorX parameters{};  ///< changes of the parameters as `ArmGeometry` counts them [m/K, rad/K]
 
   /// Equal in every entry.
-  bool operator==(const ThermalRates& other) const {
+  VERNIER_API bool operator==(const ThermalRates& other) const {
     return same_value(reference, other.reference) && same_value(lower, other.lower) && same_value(upper, other.upper) &&
            parameters == other.parameters;
   }

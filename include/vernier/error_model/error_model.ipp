@@ -10,7 +10,7 @@ VERNIER_IMPL void blend_jacobians(double gate, const double* slope, const Isomet
                                   double* jacobian) noexcept {
   // R = Exp(gate * phi) R_far with Exp(phi) = R_near R_far'
   const Vector3 apart = translation(inside) - translation(outside);
-  const Matrix3 back = rotation(outside).transpose(), between = rotation(inside) * back;
+  const Matrix3 back = VERNIER_LATER(rotation(outside)).transpose(), between = rotation(inside) * back;
   const Vector3 phi = log_so3(between), part = gate * phi;
   const Matrix3 inverse = left_jacobian_inverse_so3(phi), left = left_jacobian_so3(part), turned = exp_so3(part);
   for (Index k = 0; k < joints; ++k) {

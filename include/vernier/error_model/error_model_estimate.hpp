@@ -21,12 +21,12 @@ namespace vernier {
 /// Decision on a block of unknowns. It is in the model if it exists, and if left-out poses are not predicted worse with
 /// it by more than a standard error.
 struct BlockChoice {
-  Block block{};         ///< which unknowns
-  double without = 0;    ///< mean leave-one-pose-out error without the block [m]
-  double with = 0;       ///< with it, sized by evidence [m]
-  bool used = false;     ///< whether it is in the model
-  double precision = 1;  ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
-                         ///< terms that of the lowest band of orders, of drift that of its random walk
+  Block block{};          ///< which unknowns
+  double without = 0;     ///< mean leave-one-pose-out error without the block [m]
+  double with = 0;        ///< with it, sized by evidence [m]
+  bool used = false;      ///< whether it is in the model
+  double precision = 1;   ///< of its prior: 1 for the expected sizes, t for sizes divided by sqrt(t); of joint-wise
+                          ///< terms that of the lowest band of orders, of drift that of its random walk
   Existence existence{};  ///< whether it exists; untested where that is no question about the arm
 };
 

@@ -43,9 +43,10 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::first_station() const {
   }
   const Index terms = arm.terms().size();
   for (Index k = 0; k < terms; ++k) kept.push_back(static_cast<Index>(arm.geometric().size()) + k);
-  ErrorModelEstimate out{.arm = detail::parameterised({arm.geometry(0), arm.joint_errors()}, std::move(unknowns),
-                                                      arm.scales().tail(terms), arm.precisions().tail(terms),
-                                                      arm.thermal_rates(0))};
+  ErrorModelEstimate out{.arm =
+                             detail::parameterised({arm.geometry(0), arm.joint_errors()}, std::move(unknowns),
+                                                   VERNIER_LATER(arm).scales().tail(terms),
+                                                   VERNIER_LATER(arm).precisions().tail(terms), arm.thermal_rates(0))};
   out.converged = converged;
   out.position_sigma = position_sigma;
   out.joint_sigma = joint_sigma;
@@ -53,7 +54,7 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::first_station() const {
   out.fallback_error = fallback_error;
   out.mean_temperature = mean_temperature;
   out.temperature_std = temperature_std;
-  out.covariance = detail::rows_of(MatrixX(detail::rows_of(covariance, kept).transpose()), kept);
+  out.covariance = detail::rows_of(MatrixX(VERNIER_LATER(detail::rows_of(covariance, kept)).transpose()), kept);
   out.variance_factor = variance_factor;
   out.residual_variance = residual_variance;
   return out;
@@ -64,8 +65,8 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::of_arm(const FittedArm& now)
   const Index terms = arm.terms().size();
   demand(now.errors.terms().size() == terms, "of_arm: ", now.errors.terms().size(), " terms of joint errors, expected ",
          terms);
-  out.arm = detail::parameterised(now, arm.geometric(), arm.scales().tail(terms), arm.precisions().tail(terms),
-                                  arm.thermal_rates(0));
+  out.arm = detail::parameterised(now, arm.geometric(), VERNIER_LATER(arm.scales()).tail(terms),
+                                  VERNIER_LATER(arm.precisions()).tail(terms), arm.thermal_rates(0));
   return out;
 }
 
@@ -84,8 +85,8 @@ VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std
     for (Index c = 0; c < count; ++c) rows(k, c) = all(first + c);
   }
   rows = detail::rows_minus(rows, detail::column_means(rows));
-  const MatrixX spread = detail::matrix_product(rows, covariance.block(at, at, count, count));
-  JointFunction out{detail::product(rows, arm.steps().segment(at, count)), VectorX(n)};
+  const MatrixX spread = detail::matrix_product(rows, VERNIER_LATER(covariance).block(at, at, count, count));
+  JointFunction out{detail::product(rows, VERNIER_LATER(arm.steps()).segment(at, count)), VectorX(n)};
   for (Index k = 0; k < n; ++k) {
     double variance = 0;
     for (Index c = 0; c < count; ++c) variance += spread(k, c) * rows(k, c);
@@ -97,7 +98,7 @@ VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std
 namespace detail {
 
 /// Rows first .. first + count - 1.
-inline MatrixX consecutive_rows(const ConstMatrixRef& rows, Index first, Index count) {
+VERNIER_LOCAL inline MatrixX consecutive_rows(const ConstMatrixRef& rows, Index first, Index count) {
   MatrixX out(count, rows.cols());
   for (Index c = 0; c < rows.cols(); ++c)
     for (Index r = 0; r < count; ++r) out(r, c) = rows(first + r, c);
@@ -105,7 +106,7 @@ inline MatrixX consecutive_rows(const ConstMatrixRef& rows, Index first, Index c
 }
 
 /// A vector as the only row.
-inline MatrixX one_row(const ConstVectorRef& values) {
+VERNIER_LOCAL inline MatrixX one_row(const ConstVectorRef& values) {
   MatrixX out(1, values.size());
   for (Index k = 0; k < values.size(); ++k) out(0, k) = values(k);
   return out;
@@ -130,12 +131,13 @@ VERNIER_LOCAL std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& es
   for (Index i = 0; i < n; ++i)
     for (Index c = 0; c < 6; ++c)
       for (Index r = 0; r < 6; ++r)
-        out[static_cast<std::size_t>(i)](r, c) = half.col(6 * i + r).dot(all.col(6 * i + c));
+        out[static_cast<std::size_t>(i)](r, c) =
+            VERNIER_LATER(half).col(6 * i + r).dot(VERNIER_LATER(all).col(6 * i + c));
   return out;
 }
 
 /// out += factor x x'
-inline void add_outer_product(const Vector6& x, double factor, Matrix6& out) {
+VERNIER_LOCAL inline void add_outer_product(const Vector6& x, double factor, Matrix6& out) {
   for (Index c = 0; c < 6; ++c)
     for (Index r = 0; r < 6; ++r) out(r, c) += factor * x(r) * x(c);
 }
@@ -189,8 +191,8 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
             effect += steps(k) * detail::column_of(warm[i].dense, k);
         detail::add_outer_product(effect, 1, out);
       }
-      const bool by_half_loops =
-          !arm.terms().hysteresis.empty() && (before.rows() == 0 || !detail::all_finite(before.middleRows(row, 1)));
+      const bool by_half_loops = !arm.terms().hysteresis.empty() &&
+                                 (before.rows() == 0 || !detail::all_finite(VERNIER_LATER(before).middleRows(row, 1)));
       for (int j = 0; j < static_cast<int>(rows[i].factor.cols()); ++j) {
         const double half_loop = by_half_loops ? arm.joint_errors().half_loop(j) : 0;
         detail::add_outer_product(detail::column_of(rows[i].factor, j),

@@ -34,9 +34,9 @@ struct ErrorModelOptions {
   double thermal_prior_std = 2e-5;      ///< expected relative change of a length [1/K], and change of an angle [rad/K]
   bool drift = true;                    ///< motion of the bases during a session
   const ArmPrior* prior = nullptr;      ///< an earlier calibration, which must outlive the fit; null for none
-  double relevant_size = 0;             ///< from which an effect matters: displacement of the tool point [m]; 0: a tenth
-                                        ///< of the left-out error, at least the sensor's standard deviation
-  Index num_validation_poses = 200;     ///< approximate number of poses left out, one at a time, to validate a block
+  double relevant_size = 0;          ///< from which an effect matters: displacement of the tool point [m]; 0: a tenth
+                                     ///< of the left-out error, at least the sensor's standard deviation
+  Index num_validation_poses = 200;  ///< approximate number of poses left out, one at a time, to validate a block
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;

@@ -33,11 +33,12 @@ constexpr std::string_view name_of(Answer answer) {
 /// measured poses, less what frames and the other unknowns take over.
 struct Existence {
   Answer answer = Answer::untested;
-  double p = 1;                      ///< probability of such data without the effect
-  double size = 0;                   ///< most likely [m]
-  std::array<double, 2> interval{};  ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
-  double relevance = 0;              ///< from which size on it matters [m]
-  Index poses = 0;                   ///< with that many, an effect of that size is found with 80 %; 0 if never
+  double p = 1;     ///< probability of such data without the effect
+  double size = 0;  ///< most likely [m]
+  std::array<double, 2>
+      interval{};        ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
+  double relevance = 0;  ///< from which size on it matters [m]
+  Index poses = 0;       ///< with that many, an effect of that size is found with 80 %; 0 if never
 };
 
 /// The answer on an effect.

@@ -24,8 +24,8 @@ struct Moments {
   }
 };
 
-/// Squared sizes of an effect [m^2], as the data leave them: a mixture over the variance of its coefficients, whose root
-/// has a uniform prior.
+/// Squared sizes of an effect [m^2], as the data leave them: a mixture over the variance of its coefficients, whose
+/// root has a uniform prior.
 class SizeOfEffect {
  public:
   VERNIER_LOCAL explicit SizeOfEffect(const ScoreTest& score) {
@@ -66,8 +66,7 @@ class SizeOfEffect {
     const VectorX image = product(form, mean);
     Moments out{image.dot(mean) + diagonal_of(form).dot(variance), 4 * weighted_square(variance, image)};
     for (Index j = 0; j < form.cols(); ++j)
-      for (Index i = 0; i < form.rows(); ++i)
-        out.variance += 2 * form(i, j) * form(i, j) * variance(i) * variance(j);
+      for (Index i = 0; i < form.rows(); ++i) out.variance += 2 * form(i, j) * form(i, j) * variance(i) * variance(j);
     return out;
   }
 
@@ -116,9 +115,7 @@ VERNIER_IMPL Existence existence(const ScoreTest& score, double level, double re
   const double moved2 = detail::diagonal_of(score.displacement).sum();  // by one expected size of all
   if (score.information.size() == 0 || !(moved2 > 0) || !std::isfinite(relevance)) return out;
   const detail::SizeOfEffect squares(score);
-  const auto size_exceeded_with = [&](double probability) {
-    return std::sqrt(squares.exceeded_with(probability));
-  };
+  const auto size_exceeded_with = [&](double probability) { return std::sqrt(squares.exceeded_with(probability)); };
   out.size = size_exceeded_with(0.5);
   const double size2 = relevance * relevance / moved2;
   constexpr double wanted = 0.8, most = 1e4;  // times the poses

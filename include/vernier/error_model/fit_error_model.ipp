@@ -192,7 +192,7 @@ class ErrorModelFit {
     const ErrorModelEstimate& before = prior.estimate;
     const JointTerms& terms = before.arm.terms();
     problem_.arm = ArmParameterisation(input_.arms, with_unknowns_of(prior, geometric_unknowns(input_, options_)));
-    problem_.arm.set_terms(terms, before.arm.scales().tail(terms.size()), VectorX::Zero(terms.size()));
+    problem_.arm.set_terms(terms, VERNIER_LATER(before.arm.scales()).tail(terms.size()), VectorX::Zero(terms.size()));
     problem_.reference_temperature = before.mean_temperature;
     const TransferredUnknowns known = transferred_unknowns(prior, problem_.arm, input_.nominal);
     VectorX to_mean = VectorX::Zero(problem_.arm.size());
@@ -224,7 +224,7 @@ class ErrorModelFit {
     }
     model_.converged = true;
     if (same_value(estimate.fallback_error, 0)) estimate.fallback_error = error_without;
-    expected_ = before.arm.precisions().tail(terms.size());
+    expected_ = VERNIER_LATER(before.arm.precisions()).tail(terms.size());
     if (before.temperature_std > 0) {
       out.temperatures = problem_.temperatures().std > 0
                              ? std::array{(std::min)(problem_.temperatures().range[0], prior.temperatures[0]),

@@ -47,13 +47,14 @@ VERNIER_IMPL std::vector<HarmonicEstimate> joint_spectrum(const ErrorModelEstima
                                              posterior.ss - precisions(at + 1)};
     const double determinant = information.determinant(), trace = information.cc + information.ss;
     if (!(trace > 0 && determinant > 1e-9 * trace * trace)) continue;
-    const auto value = information.inverse() * (posterior * std::array{steps(at), steps(at + 1)});
+    const auto value = VERNIER_LATER(information).inverse() * (posterior * std::array{steps(at), steps(at + 1)});
     const double norm = std::hypot(value[0], value[1]), scale = scales(at);
     if (!(norm > 0)) continue;
     const std::array direction{value[0] / norm, value[1] / norm};
-    out.push_back({fourier.order(k), scale * norm,
-                   scale * std::sqrt(estimate.residual_variance * information.inverse().square(direction)),
-                   information.square(value) / estimate.residual_variance});
+    out.push_back(
+        {fourier.order(k), scale * norm,
+         scale * std::sqrt(estimate.residual_variance * VERNIER_LATER(information).inverse().square(direction)),
+         information.square(value) / estimate.residual_variance});
   }
   return out;
 }

@@ -55,7 +55,7 @@ VERNIER_IMPL double PriorObjective::error(const VectorX& precisions) const {
 }
 
 VERNIER_IMPL void PriorObjective::operator()(const ConstMatrixRef& population, VectorRef fitness) const {
-  for (Index k = 0; k < population.cols(); ++k) fitness(k) = error(precisions(population.col(k)));
+  for (Index k = 0; k < population.cols(); ++k) fitness(k) = error(precisions(VERNIER_LATER(population).col(k)));
 }
 
 }  // namespace vernier

@@ -18,7 +18,7 @@ class GravityCompliance {
   /// @param down  direction of gravity in the base frame of the chain; a unit vector
   /// @throws std::invalid_argument on a direction whose length is not 1
   template <int N, class Convention>
-  explicit GravityCompliance(const DhChain<N, Convention>& chain, const Vector3& down = -Vector3::UnitZ())
+  explicit GravityCompliance(const DhChain<N, Convention>& chain, const Vector3& down = Vector3(0, 0, -1))
       : GravityCompliance(detail::ChainTable(chain.view()), down) {}
   /// Compliance columns of an arm whose number of joints is known at run time.
   VERNIER_API GravityCompliance(const detail::ChainTable& chain, const Vector3& down);

@@ -19,7 +19,7 @@ class GravityTilt {
   /// @param down  direction of gravity in the base frame of the chain; a unit vector
   /// @throws std::invalid_argument on a direction whose length is not 1
   template <int N, class Convention>
-  explicit GravityTilt(const DhChain<N, Convention>& chain, const Vector3& down = -Vector3::UnitZ())
+  explicit GravityTilt(const DhChain<N, Convention>& chain, const Vector3& down = Vector3(0, 0, -1))
       : GravityTilt(detail::ChainTable(chain.view()), down) {}
   /// Tilt columns of an arm whose number of joints is known at run time.
   VERNIER_API GravityTilt(const detail::ChainTable& chain, const Vector3& down);

@@ -52,7 +52,7 @@ struct JointTerms {
   /// No terms.
   JointTerms() = default;
   /// No terms yet, for an arm of some joints.
-  explicit JointTerms(int number_of_joints)
+  VERNIER_API explicit JointTerms(int number_of_joints)
       : joints(number_of_joints), transmission(static_cast<std::size_t>(number_of_joints), Fourier{}) {}
 
   /// Number of coefficients before the transmission's, each with a column of its own in a linearised pose.

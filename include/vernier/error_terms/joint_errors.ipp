@@ -14,7 +14,7 @@ namespace vernier {
 namespace detail {
 
 /// The function of a joint's hysteresis with a width, in [-1, 1]; 0 where the approach is unknown.
-inline double step_of(const double* q, const double* previous, int joint, double width) noexcept {
+VERNIER_LOCAL inline double step_of(const double* q, const double* previous, int joint, double width) noexcept {
   return previous == nullptr || !std::isfinite(previous[joint]) ? 0 : std::tanh((q[joint] - previous[joint]) / width);
 }
 
@@ -59,7 +59,7 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
   if (coupling)
     for (int i = 1; i < joints; ++i) out(i, at++) = linear_value(i - 1, q[i - 1]);
   if (gravity) {
-    gravity->basis(q, out.middleCols(at, gravity->size()));
+    gravity->basis(q, VERNIER_LATER(out).middleCols(at, gravity->size()));
     at += gravity->size();
   }
   for (const double width : hysteresis)
@@ -193,7 +193,7 @@ VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* ja
   double rates[6 * max_joints];
   const Vector6 motion =
       terms_.tilt->motion(q, coefficients_.data() + terms_.tilt_begin(), jacobian != nullptr ? rates : nullptr);
-  const Vector3 shift = motion.head<3>(), turn = motion.tail<3>();
+  const Vector3 shift = VERNIER_LATER(motion).template head<3>(), turn = VERNIER_LATER(motion).template tail<3>();
   const Matrix3 rotation = exp_so3(turn);
   const Vector3 turned = rotation * translation(pose);
   pose = composed(rigid_motion(rotation, shift), pose);

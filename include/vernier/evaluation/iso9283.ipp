@@ -64,15 +64,17 @@ struct DrawnRepeatability {
 
 VERNIER_LOCAL DrawnRepeatability drawn_repeatability(const PointRows& points, const VectorX& counts, VectorX& l) {
   const double n = counts.sum();
-  const Vector3 centre = Vector3(counts.dot(points.col(0)), counts.dot(points.col(1)), counts.dot(points.col(2))) / n;
+  const Vector3 centre = Vector3(counts.dot(VERNIER_LATER(points).col(0)), counts.dot(VERNIER_LATER(points).col(1)),
+                                 counts.dot(VERNIER_LATER(points).col(2))) /
+                         n;
   for (Index i = 0; i < l.size(); ++i) l(i) = (point(points, i) - centre).squaredNorm();
-  l = l.cwiseSqrt();
+  l = VERNIER_LATER(l).cwiseSqrt();
   const double mean = counts.dot(l) / n;
   for (double& d : l) d -= mean;
-  const double variance = counts.dot(l.cwiseAbs2()) / (n - 1), s = std::sqrt(variance);
+  const double variance = counts.dot(VERNIER_LATER(l).cwiseAbs2()) / (n - 1), s = std::sqrt(variance);
   if (!(s > 1e-12 * mean)) return {mean, 0};
   for (double& d : l) d += 1.5 / s * (d * d - variance);  // its influence
-  return {mean + 3 * s, std::sqrt(counts.dot(l.cwiseAbs2())) / n};
+  return {mean + 3 * s, std::sqrt(counts.dot(VERNIER_LATER(l).cwiseAbs2())) / n};
 }
 
 /// 95 % interval of RP by the bootstrap-t.
@@ -172,9 +174,15 @@ VERNIER_LOCAL std::optional<Iso9283Distance> accuracy_of_distance(const VisitedP
   VectorX accuracy = column_means(rows) - distance_and_angles(from, to), scatter = three_deviations(rows);
   if (!oriented)
     for (Index c = 4; c < 7; ++c) accuracy(c) = scatter(c) = std::numeric_limits<double>::quiet_NaN();
-  return Iso9283Distance{
-      first.visits.front()->pose, second.visits.front()->pose, rows.rows(),           accuracy(0),          scatter(0),
-      accuracy.segment(1, 3),     accuracy.segment(4, 3),      scatter.segment(1, 3), scatter.segment(4, 3)};
+  return Iso9283Distance{first.visits.front()->pose,
+                         second.visits.front()->pose,
+                         rows.rows(),
+                         accuracy(0),
+                         scatter(0),
+                         VERNIER_LATER(accuracy).segment(1, 3),
+                         VERNIER_LATER(accuracy).segment(4, 3),
+                         VERNIER_LATER(scatter).segment(1, 3),
+                         VERNIER_LATER(scatter).segment(4, 3)};
 }
 
 VERNIER_LOCAL Iso9283Variation variation_of(int pose, const std::map<int, VisitedPose>& directions, bool oriented) {
@@ -200,7 +208,7 @@ VERNIER_LOCAL Iso9283Variation variation_of(int pose, const std::map<int, Visite
 VERNIER_LOCAL Iso9283Drift drift_of(int pose, const VisitedPose& visited, const Isometry3& command, int together) {
   Iso9283Drift out{pose, {}, 0, 0};
   for (Index i = 0; i + together <= visited.positions.rows(); i += together) {
-    const PointRows points = visited.positions.middleRows(i, together);
+    const PointRows points = VERNIER_LATER(visited.positions).middleRows(i, together);
     double time = 0;
     for (Index k = i; k < i + together; ++k) time += visited.visits[static_cast<std::size_t>(k)]->time_s / together;
     out.groups.push_back({time, (centroid(points) - translation(command)).norm(), repeatability(points)});

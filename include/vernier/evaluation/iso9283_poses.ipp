@@ -34,7 +34,7 @@ VERNIER_IMPL std::optional<Iso9283Cube> largest_iso9283_cube(const Vector3& lowe
                                                              FunctionRef<bool(const Isometry3&)> reachable,
                                                              const Matrix3& orientation, int plane) {
   const Vector3 diagonal = upper - lower;
-  demand(diagonal.minCoeff() > 0 && detail::all_finite(lower) && detail::all_finite(upper),
+  demand(VERNIER_LATER(diagonal).minCoeff() > 0 && detail::all_finite(lower) && detail::all_finite(upper),
          "largest_iso9283_cube: the lower corner (", lower.x(), ", ", lower.y(), ", ", lower.z(),
          ") must be below the upper one (", upper.x(), ", ", upper.y(), ", ", upper.z(), ")");
   constexpr int edges = 50, half = 4;
@@ -45,7 +45,7 @@ VERNIER_IMPL std::optional<Iso9283Cube> largest_iso9283_cube(const Vector3& lowe
   const auto key = [](const Vector3& a) { return std::array{a.squaredNorm(), a.x(), a.y(), a.z()}; };
   std::sort(places.begin(), places.end(), [&](const Vector3& a, const Vector3& b) { return key(a) < key(b); });
   for (int k = edges; k >= 1; --k) {
-    const double edge = diagonal.minCoeff() * k / edges;
+    const double edge = VERNIER_LATER(diagonal).minCoeff() * k / edges;
     for (const Vector3& place : places) {
       Iso9283Cube cube{.edge = edge};
       for (Index c = 0; c < 3; ++c) cube.centre(c) = (lower(c) + upper(c)) / 2 + place(c) * (diagonal(c) - edge);

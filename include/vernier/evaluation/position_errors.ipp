@@ -27,7 +27,7 @@ namespace detail {
 VERNIER_IMPL VectorX position_errors_of(std::span<const Isometry3> predicted, const PointRows& positions) {
   VectorX errors(positions.rows());
   for (Index i = 0; i < errors.size(); ++i)
-    errors(i) = (point(positions, i) - translation(predicted[static_cast<std::size_t>(i)])).norm();
+    errors(i) = (VERNIER_LATER(point(positions, i)) - translation(predicted[static_cast<std::size_t>(i)])).norm();
   return errors;
 }
 

@@ -61,7 +61,7 @@ VERNIER_IMPL RankTest rank_sum_test(const ConstVectorRef& a, const ConstVectorRe
   VectorX joined(n + m);
   joined << a, b;
   const VectorX rank = ranks(joined);
-  const double u = rank.head(n).sum() - static_cast<double>(n * (n + 1)) / 2, tied = detail::ties(rank);
+  const double u = VERNIER_LATER(rank).head(n).sum() - static_cast<double>(n * (n + 1)) / 2, tied = detail::ties(rank);
   if (tied <= 0 && (std::max)(n, m) <= exact_up_to) {
     // ways(k, u): choices of k of the ranks so far with that U; rank r as the k-th chosen beats r - k of the others
     MatrixX ways = MatrixX::Zero(n * m + 1, n + 1);
@@ -69,7 +69,7 @@ VERNIER_IMPL RankTest rank_sum_test(const ConstVectorRef& a, const ConstVectorRe
     for (Index r = 1; r <= n + m; ++r)
       for (Index k = (std::min)(r, n); k >= std::max<Index>(1, r - m); --k)
         for (Index sum = r - k; sum <= n * m; ++sum) ways(sum, k) += ways(sum - (r - k), k - 1);
-    return {u, detail::two_sided({ways.col(n).begin(), ways.col(n).end()}, u), true};
+    return {u, detail::two_sided({VERNIER_LATER(ways).col(n).begin(), VERNIER_LATER(ways).col(n).end()}, u), true};
   }
   const auto pairs = static_cast<double>(n * m), all = static_cast<double>(n + m);
   return {u, detail::two_sided(u, pairs / 2, pairs / 12 * (all + 1 - tied / (all * (all - 1)))), false};

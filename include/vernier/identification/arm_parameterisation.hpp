@@ -31,7 +31,7 @@ class ArmParameterisation {
   VERNIER_API ArmParameterisation(std::vector<ArmGeometry> arms, std::vector<GeometricUnknown> unknowns);
 
   /// Replaces the geometric unknowns; values stay, changes with temperature start from none.
-  void set_geometric(std::vector<GeometricUnknown> unknowns) {
+  VERNIER_API void set_geometric(std::vector<GeometricUnknown> unknowns) {
     unknowns_ = std::move(unknowns);
     thermal_rates_.clear();
   }

@@ -31,7 +31,7 @@ VERNIER_IMPL void ArmParameterisation::set_precisions(const VectorX& precisions)
   demand(precisions.size() == size(), "ArmParameterisation: ", precisions.size(), " precisions of ", size(),
          " unknowns");
   for (std::size_t k = 0; k < unknowns_.size(); ++k) unknowns_[k].precision = precisions(static_cast<Index>(k));
-  coefficient_precisions_ = precisions.tail(terms().size());
+  coefficient_precisions_ = VERNIER_LATER(precisions).tail(terms().size());
 }
 
 VERNIER_IMPL VectorX ArmParameterisation::thermal_rates(int station) const {
@@ -133,7 +133,8 @@ VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, con
   const GravityTilt& tilt = *errors.terms().tilt;
   const Index begin = errors.terms().tilt_begin();
   const Vector6 at = tilt.motion(q.data(), errors.coefficients().data() + begin);
-  const Vector3 shift = at.head<3>(), turn = at.tail<3>(), before = translation(pose);
+  const Vector3 shift = VERNIER_LATER(at).template head<3>(), turn = VERNIER_LATER(at).template tail<3>(),
+                before = translation(pose);
   const Matrix3 to_base = rotation(base), tilted = exp_so3(turn);
   const Isometry3 in_base = rigid_motion(tilted, shift), out_of_base = inverse_of(base);
   const Isometry3 motion = composed(composed(base, in_base), out_of_base);

@@ -12,7 +12,8 @@ VERNIER_IMPL FittedArm FittedArm::with_hysteresis_of(const FittedArm& other) con
     const JointErrors& from = now.kind == JointTermBlock::Kind::hysteresis ? other.errors : errors;
     for (const JointTermBlock& block : from.terms().blocks())
       if (block.kind == now.kind && block.joint == now.joint)
-        coefficients.segment(now.begin, now.count) = from.coefficients().segment(block.begin, block.count);
+        VERNIER_LATER(coefficients).segment(now.begin, now.count) =
+            VERNIER_LATER(from.coefficients()).segment(block.begin, block.count);
   }
   return {geometry, JointErrors(std::move(terms), std::move(coefficients))};
 }

@@ -15,7 +15,7 @@ VERNIER_IMPL IdentifiableParameters::IdentifiableParameters(const ConstMatrixRef
   MatrixX triangle = MatrixX::Zero(basis.cols(), basis.cols());  // base columns = basis * triangle
   Index rank = 0;
   for (Index k = 0; k < jacobian.cols(); ++k) {
-    VectorX column = jacobian.col(k);
+    VectorX column = VERNIER_LATER(jacobian).col(k);
     const double norm = column.norm();
     if (!(norm > 1e-9 * largest)) {
       dependent.push_back({k, {}});
@@ -24,8 +24,8 @@ VERNIER_IMPL IdentifiableParameters::IdentifiableParameters(const ConstMatrixRef
     VectorX projection = VectorX::Zero(rank);
     double before = norm;
     for (int pass = 0; pass < 2; ++pass) {  // Gram-Schmidt: twice is enough, and once where little was subtracted
-      const VectorX more = detail::transposed_product(basis.leftCols(rank), column);
-      detail::add_product(column, basis.leftCols(rank), more, -1);
+      const VectorX more = detail::transposed_product(VERNIER_LATER(basis).leftCols(rank), column);
+      detail::add_product(column, VERNIER_LATER(basis).leftCols(rank), more, -1);
       projection += more;
       const double rest = column.norm();
       if (rest > 0.5 * before) break;
@@ -34,7 +34,7 @@ VERNIER_IMPL IdentifiableParameters::IdentifiableParameters(const ConstMatrixRef
     if (rank < basis.cols() && column.norm() > tolerance * norm) {
       for (Index j = 0; j < rank; ++j) triangle(j, rank) = projection(j);
       triangle(rank, rank) = column.norm();
-      basis.col(rank++) = column / column.norm();
+      VERNIER_LATER(basis).col(rank++) = column / column.norm();
       base.push_back(k);
       continue;
     }

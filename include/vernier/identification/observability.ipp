@@ -42,7 +42,7 @@ namespace detail {
 VERNIER_LOCAL MatrixX whitened_gain(const MatrixX& rows, const MatrixX& covariance) {
   MatrixX cross = MatrixX::Zero(rows.rows(), covariance.cols()), inner = MatrixX::Identity(rows.rows(), rows.rows());
   add_product(cross, rows, covariance);
-  add_product(inner, cross, rows.transpose());
+  add_product(inner, cross, VERNIER_LATER(rows).transpose());
   cholesky(inner);
   solve_lower(inner, cross);
   return cross;
@@ -60,7 +60,7 @@ VERNIER_IMPL HelpfulPoses helpful_poses(MatrixX covariance, const std::vector<Ma
     MatrixX gain;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       MatrixX of_candidate = detail::whitened_gain(candidates[c], covariance);
-      const double reduction = of_candidate.col(unknown).squaredNorm();
+      const double reduction = VERNIER_LATER(of_candidate).col(unknown).squaredNorm();
       if (reduction <= best) continue;
       best = reduction;
       at = static_cast<Index>(c);

@@ -40,7 +40,7 @@ VERNIER_IMPL VectorX SessionDrift::joint_zeros(double time) const {
 
 VERNIER_IMPL Isometry3 SessionDrift::motion(double time) const {
   const Vector6 by = twist(time);
-  const Vector3 shift = by.head<3>(), turn = by.tail<3>();
+  const Vector3 shift = VERNIER_LATER(by).template head<3>(), turn = VERNIER_LATER(by).template tail<3>();
   const Matrix3 turned = exp_so3(turn);
   const Vector3 origin = centre - turned * centre;
   return rigid_motion(turned, origin + shift);

@@ -73,7 +73,8 @@ VERNIER_IMPL RobotDescription load_robot(const std::string& path) {
     root.at("convention").fail("'" + detail::quotable(convention) + "' is neither standard nor modified");
   out.modified = convention == "modified";
   const JsonNode joints = root.at("joints");
-  if (joints.size() < 3 || joints.size() > 9) joints.fail(message("has ", joints.size(), " joints, must have 3 to 9"));
+  if (joints.size() < 3 || joints.size() > max_arm_joints)
+    joints.fail(message("has ", joints.size(), " joints, must have 3 to ", max_arm_joints));
   for (std::size_t i = 0; i < joints.size(); ++i) detail::read_joint(joints.at(i), out);
   return out;
 }

@@ -105,6 +105,7 @@ template <BranchRoots Roots, KinematicModel M>
 [[nodiscard]] Branches<M::dof> all_branches(const Roots& nominal, const M& model, const Isometry3& target,
                                             const BranchOptions<M::dof>& options = {}) noexcept {
   constexpr int N = M::dof;
+  static_assert(N <= detail::most_branch_joints, "all_branches: arms of up to seven joints");
   const detail::MovingJoints<N> moving(HeldJoint{nominal.held_joint(), 0});
   Branches<N> out;
   if (!detail::is_pose(target)) {

@@ -50,12 +50,12 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
     return out;
   }
   /// The arm angle of the nominal arm at joint values, in (-pi, pi] [rad].
-  double arm_angle(const JointVector<7>& q) const noexcept { return arm_.arm_angle(q); }
+  VERNIER_API double arm_angle(const JointVector<7>& q) const noexcept { return arm_.arm_angle(q); }
 
   /// All joint values with which the nominal arm is at a pose; see `ClosedForm::roots`. None where the wrist is in the
   /// shoulder.
-  InverseRoots<7> roots(const Isometry3& target, const JointVector<7>& close_to = JointVector<7>::Zero(),
-                        double width = 0) const noexcept {
+  VERNIER_API InverseRoots<7> roots(const Isometry3& target, const JointVector<7>& close_to = JointVector<7>::Zero(),
+                                    double width = 0) const noexcept {
     const detail::SphericalArmRoots from = arm_.solve(target, angle_, close_to, width);
     InverseRoots<7> out;
     out.count = from.count;
@@ -67,7 +67,7 @@ class ArmAngleForm : public ChecksJoints<ArmAngleForm> {
     return out;
   }
   /// Sines of the angles between the first and third, and the fifth and seventh axis, and of the elbow.
-  SingularityDistances distances(const JointVector<7>& q) const noexcept { return arm_.distances(q); }
+  VERNIER_API SingularityDistances distances(const JointVector<7>& q) const noexcept { return arm_.distances(q); }
   /// The joint that `all_branches` leaves at its value of the nominal arm: the third.
   int held_joint() const { return 2; }
   /// Sum of the lengths of its links [m].

@@ -110,7 +110,7 @@ class ArmGeometry {
   /// Tool frame with its six values.
   const FrameParameters& tool() const { return tool_; }
   /// This chain between other frames.
-  ArmGeometry with_frames(const FrameParameters& base, const FrameParameters& tool) const {
+  VERNIER_API ArmGeometry with_frames(const FrameParameters& base, const FrameParameters& tool) const {
     return {chain_, base, tool};
   }
 

@@ -36,7 +36,7 @@ struct PosesAndJacobians {
                       ///< all n is contiguous. `jacobians.row(i).reshaped(6, P)` is that Jacobian.
 
   /// Allocates for n configurations.
-  void resize(Index n, Index columns) {
+  VERNIER_API void resize(Index n, Index columns) {
     poses.resize(static_cast<std::size_t>(n));
     jacobians.resize(n, 6 * columns);
   }

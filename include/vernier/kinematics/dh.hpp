@@ -10,7 +10,7 @@
 
 namespace vernier {
 
-/// Maximum number of joints of a chain.
+/// Maximum number of joints of a chain, and so of the arrays on the stack that hold joint values.
 inline constexpr int max_joints = 64;
 
 /// One link: lengths in m, angles in rad. `beta` is Hayati's rotation about y for (nearly) parallel axes, zero

@@ -12,7 +12,7 @@ namespace vernier {
 class FrameParameters {
  public:
   /// Identity.
-  FrameParameters()
+  VERNIER_API FrameParameters()
       : values_(Vector6::Zero()), frame_(Isometry3::Identity()), rotation_vector_jacobian_(Matrix3::Identity()) {}
   /// From a matrix.
   VERNIER_API FrameParameters(const Isometry3& frame);  // NOLINT(google-explicit-constructor)

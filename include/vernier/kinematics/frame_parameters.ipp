@@ -16,6 +16,6 @@ VERNIER_IMPL FrameParameters::FrameParameters(const Isometry3& frame) : frame_(f
 VERNIER_IMPL FrameParameters::FrameParameters(const Vector6& values)
     : values_(values),
       frame_(isometry<double>(values)),
-      rotation_vector_jacobian_(left_jacobian_so3(values.tail<3>())) {}
+      rotation_vector_jacobian_(left_jacobian_so3(VERNIER_LATER(values).template tail<3>())) {}
 
 }  // namespace vernier

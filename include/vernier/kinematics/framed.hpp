@@ -32,7 +32,7 @@ VERNIER_API void frame_columns(const FrameParameters& base, const FrameParameter
                                Index columns, double* jacobian) noexcept;
 
 /// Turns the axes of a pose as a tool does, whose origin it has already.
-inline void turn_axes(Isometry3& pose, const Isometry3& tool) noexcept {
+VERNIER_API inline void turn_axes(Isometry3& pose, const Isometry3& tool) noexcept {
   for (Index r = 0; r < 3; ++r) {
     const double x = pose(r, 0), y = pose(r, 1), z = pose(r, 2);
     for (Index c = 0; c < 3; ++c) pose(r, c) = x * tool(0, c) + y * tool(1, c) + z * tool(2, c);

@@ -53,8 +53,8 @@ namespace robots {
 using namespace vernier::literals;
 
 /// ABB IRB 120-3/0.6: the small six-axis arm of the paper's experiment.
-inline Robot<6> abb_irb120() {
-  constexpr DhChain<6> chain{{{
+VERNIER_API inline Robot<6> abb_irb120() {
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = -90_deg, .d = 290_mm, .theta = 0_deg},
       {.a = 270_mm, .alpha = 0_deg, .d = 0_mm, .theta = -90_deg},
       {.a = 70_mm, .alpha = -90_deg, .d = 0_mm, .theta = 0_deg},
@@ -67,8 +67,8 @@ inline Robot<6> abb_irb120() {
 }
 
 /// Universal Robots UR10 (CB series).
-inline Robot<6> ur10() {
-  constexpr DhChain<6> chain{{{
+VERNIER_API inline Robot<6> ur10() {
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = 90_deg, .d = 127.3_mm},
       {.a = -612_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = -572.3_mm, .alpha = 0_deg, .d = 0_mm},
@@ -80,8 +80,8 @@ inline Robot<6> ur10() {
 }
 
 /// Universal Robots UR5 (CB series).
-inline Robot<6> ur5() {
-  constexpr DhChain<6> chain{{{
+VERNIER_API inline Robot<6> ur5() {
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = 90_deg, .d = 89.159_mm},
       {.a = -425_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = -392.25_mm, .alpha = 0_deg, .d = 0_mm},
@@ -93,8 +93,8 @@ inline Robot<6> ur5() {
 }
 
 /// Barrett WAM, seven joints, cable-driven.
-inline Robot<7> barrett_wam() {
-  constexpr DhChain<7> chain{{{
+VERNIER_API inline Robot<7> barrett_wam() {
+  constexpr VERNIER_LATER_TYPE(DhChain<7>) chain{{{
       {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 45_mm, .alpha = -90_deg, .d = 550_mm},
@@ -111,7 +111,7 @@ inline Robot<7> barrett_wam() {
 
 namespace detail {
 
-inline JointLimits<6> puma560_limits() {
+VERNIER_API inline JointLimits<6> puma560_limits() {
   return vernier::detail::limits_deg<6>({-160, -45, -225, -110, -100, -266}, {160, 225, 45, 170, 100, 266});
 }
 
@@ -119,8 +119,8 @@ inline JointLimits<6> puma560_limits() {
 
 /// Unimation PUMA 560, standard convention.
 /// @cite Corke 2011
-inline Robot<6> puma560() {
-  constexpr DhChain<6> chain{{{
+VERNIER_API inline Robot<6> puma560() {
+  constexpr VERNIER_LATER_TYPE(DhChain<6>) chain{{{
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 431.8_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = 20.3_mm, .alpha = -90_deg, .d = 150.05_mm},
@@ -132,8 +132,8 @@ inline Robot<6> puma560() {
 }
 
 /// The PUMA 560 in the modified convention: every pose equals that of `puma560()`.
-inline Robot<6, ModifiedDh> puma560_modified() {
-  constexpr DhChain<6, ModifiedDh> chain{{{
+VERNIER_API inline Robot<6, ModifiedDh> puma560_modified() {
+  constexpr VERNIER_LATER_TYPE(DhChain<6, ModifiedDh>) chain{{{
       {.a = 0_mm, .alpha = 0_deg, .d = 0_mm},
       {.a = 0_mm, .alpha = 90_deg, .d = 0_mm},
       {.a = 431.8_mm, .alpha = 0_deg, .d = 150.05_mm},

@@ -21,9 +21,9 @@ VERNIER_IMPL EstimateCovariance::EstimateCovariance(const ConstMatrixRef& jacobi
   while (rank < columns && singular_values(rank) > 1e-12 * singular_values(0)) ++rank;
   condition =
       rank < columns ? std::numeric_limits<double>::infinity() : singular_values(0) / singular_values(columns - 1);
-  if (prior.maxCoeff() > 0) {
+  if (VERNIER_LATER(prior).maxCoeff() > 0) {
     MatrixX stacked = MatrixX::Zero(2 * columns, columns);
-    stacked.topRows(columns) = triangle;
+    VERNIER_LATER(stacked).topRows(columns) = triangle;
     for (Index k = 0; k < columns; ++k) stacked(columns + k, k) = std::sqrt(prior(k));
     svd = detail::right_singular(stacked);
   }
@@ -31,7 +31,7 @@ VERNIER_IMPL EstimateCovariance::EstimateCovariance(const ConstMatrixRef& jacobi
   MatrixX scaled = svd.vectors;  // V diag(1/s)
   for (Index k = 0; k < columns; ++k)
     for (Index r = 0; r < columns; ++r) scaled(r, k) /= svd.values(k);
-  inverse = detail::matrix_product(scaled, scaled.transpose());
+  inverse = detail::matrix_product(scaled, VERNIER_LATER(scaled).transpose());
   MatrixX middle = detail::transposed_matrix_product(jacobian, detail::rows_scaled(row_variance, jacobian));
   for (Index k = 0; k < columns; ++k)
     if (prior(k) > 0) middle(k, k) += prior(k) * prior(k) * prior_variance(k);

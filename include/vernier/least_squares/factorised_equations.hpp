@@ -39,7 +39,8 @@ class FactorisedEquations {
   const VectorX& local_step() const { return local_step_; }
   /// log determinant of the whole matrix.
   VERNIER_API double log_determinant() const;
-  /// The matrix of dense and factored unknowns, both triangles: local unknowns eliminated, priors of the others left out.
+  /// The matrix of dense and factored unknowns, both triangles: local unknowns eliminated, priors of the others left
+  /// out.
   VERNIER_API MatrixX reduced() const;
   /// Inverse of the matrix with local unknowns eliminated: the covariance of dense and factored unknowns.
   VERNIER_API MatrixX inverse() const;

@@ -45,9 +45,9 @@ VERNIER_IMPL std::shared_ptr<const FactorisedEquations::Reduced> FactorisedEquat
   for (std::size_t k = 0; k < out.local.values.size(); ++k) out.local.values[k] += normal.local_prior.values[k];
   const Index n = normal.matrix.rows();
   out.eliminated.resize(normal.local.size, 1 + n);
-  out.eliminated.col(0) = normal.local_gradient;
-  if (local_steps.size() > 0) out.eliminated.col(0) += detail::multiply(normal.local_prior, local_steps);
-  out.eliminated.rightCols(n) = normal.coupling;
+  VERNIER_LATER(out.eliminated).col(0) = normal.local_gradient;
+  if (local_steps.size() > 0) VERNIER_LATER(out.eliminated).col(0) += detail::multiply(normal.local_prior, local_steps);
+  VERNIER_LATER(out.eliminated).rightCols(n) = normal.coupling;
   // factorised once a panel, which costs little beside its solutions
   constexpr Index width = 256;
   const Index panels = n / width + 1;
@@ -55,15 +55,15 @@ VERNIER_IMPL std::shared_ptr<const FactorisedEquations::Reduced> FactorisedEquat
   normal.executor.for_ranges(panels, [&](Index from, Index to) {
     for (Index k = from; k < to; ++k)
       outcomes[static_cast<std::size_t>(k)] =
-          solve(out.local, out.eliminated.middleCols(k * width, (std::min)(width, n + 1 - k * width)));
+          solve(out.local, VERNIER_LATER(out.eliminated).middleCols(k * width, (std::min)(width, n + 1 - k * width)));
   });
   if (!outcomes.front().solved) return {};
   out.log_determinant = outcomes.front().log_determinant;
-  detail::add_transposed_product(out.gradient, normal.coupling, out.eliminated.col(0), -1);
+  detail::add_transposed_product(out.gradient, normal.coupling, VERNIER_LATER(out.eliminated).col(0), -1);
   detail::visit_panels(normal.executor, n, 64, [&](Index first, Index count) {
-    detail::add_transposed_product(out.matrix.block(first, first, n - first, count),
-                                   normal.coupling.rightCols(n - first), out.eliminated.middleCols(1 + first, count),
-                                   -1);
+    detail::add_transposed_product(VERNIER_LATER(out.matrix).block(first, first, n - first, count),
+                                   VERNIER_LATER(normal.coupling).rightCols(n - first),
+                                   VERNIER_LATER(out.eliminated).middleCols(1 + first, count), -1);
   });
   return std::make_shared<const Reduced>(std::move(out));
 }
@@ -77,7 +77,7 @@ VERNIER_IMPL void FactorisedEquations::factorise(const VectorX& precisions, cons
   const Index n = gradient.size();
   VectorX of_data = detail::diagonal_of(normal.matrix);  // priors may be huge
   if (normal.prior.size() > 0) of_data -= detail::diagonal_of(normal.prior);
-  const double least = 1e-12 * of_data.maxCoeff();
+  const double least = 1e-12 * VERNIER_LATER(of_data).maxCoeff();
   VectorX step(n);
   for (Index k = 0; k < n; ++k) {
     factor_(k, k) += precisions(k) + damping * (normal.matrix(k, k) + precisions(k)) + least;
@@ -88,8 +88,8 @@ VERNIER_IMPL void FactorisedEquations::factorise(const VectorX& precisions, cons
   detail::solve_cholesky(factor_, step_);
   usable_ = detail::all_finite(step_);
   if (!local) return;
-  local_step_ = reduced_->eliminated.col(0);
-  detail::add_product(local_step_, reduced_->eliminated.rightCols(n), step_);
+  local_step_ = VERNIER_LATER(reduced_->eliminated).col(0);
+  detail::add_product(local_step_, VERNIER_LATER(reduced_->eliminated).rightCols(n), step_);
   local_step_ *= -1;
 }
 
@@ -112,8 +112,8 @@ VERNIER_IMPL VectorX FactorisedEquations::inverse_diagonal() const {
   VectorX out(n);
   detail::visit_panels(executor(), n, 64, [&](Index first, Index count) {
     MatrixX columns = MatrixX::Identity(n - first, count);
-    detail::solve_lower(factor_.bottomRightCorner(n - first, n - first), columns);
-    out.segment(first, count) = detail::squared_column_norms(columns);
+    detail::solve_lower(VERNIER_LATER(factor_).bottomRightCorner(n - first, n - first), columns);
+    VERNIER_LATER(out).segment(first, count) = detail::squared_column_norms(columns);
   });
   return out;
 }

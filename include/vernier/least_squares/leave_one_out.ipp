@@ -18,7 +18,7 @@ namespace detail {
 /// Predicts all blocks of a pose from those of other poses.
 /// @return whitened errors, six a block
 VERNIER_LOCAL VectorX leave_out(const BlockSystem& system, const FactorisedEquations& solved,
-                                    const std::vector<Index>& blocks) {
+                                const std::vector<Index>& blocks) {
   const auto size = static_cast<Index>(6 * blocks.size());
   std::vector<RowBlock> rows(blocks.size());
   MatrixX columns(system.unknowns(), size), rest = MatrixX::Identity(size, size);
@@ -99,13 +99,13 @@ VERNIER_IMPL LeftOutBlocks leave_one_out(const BlockSystem& system, const Factor
         for (Index i = 0; i < 6; ++i)
           for (Index c = 0; c < expanded.cols(); ++c) columns(c, 6 * b + i) = expanded(i, c);
       });
-      solved.apply_inverse_factor(columns.leftCols(6 * n));
+      solved.apply_inverse_factor(VERNIER_LATER(columns).leftCols(6 * n));
       if (local) gains = solved.local_gains(kept);
       for (Index b = 0; b < n; ++b) {
-        const auto z = columns.middleCols(6 * b, 6);
+        const auto z = VERNIER_LATER(columns).middleCols(6 * b, 6);
         rest.setIdentity(6, 6);
         detail::add_transposed_product(rest, z, z, -1);
-        if (local) rest -= gains.middleCols(6 * b, 6);
+        if (local) rest -= VERNIER_LATER(gains).middleCols(6 * b, 6);
         const auto k = static_cast<std::size_t>(b);
         Vector6 left_out = residuals[k];
         detail::solve_general(rest, left_out);

@@ -16,7 +16,7 @@ class PairBlocks {
  public:
   using Pair = std::pair<Index, Index>;  // (column state, row state), row at or below column
 
-  PairBlocks(std::vector<Pair> pairs, Index block_size) : pairs_(std::move(pairs)), size_(block_size) {
+  VERNIER_LOCAL PairBlocks(std::vector<Pair> pairs, Index block_size) : pairs_(std::move(pairs)), size_(block_size) {
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     values_.assign(pairs_.size() * static_cast<std::size_t>(size_ * size_), 0.0);
@@ -25,13 +25,13 @@ class PairBlocks {
   static Pair pair(Index a, Index b) { return {(std::min)(a, b), (std::max)(a, b)}; }
 
   /// The block of rows of the later state and columns of the earlier one, by columns.
-  double* block(const Pair& pair) {
+  VERNIER_LOCAL double* block(const Pair& pair) {
     const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), pair) - pairs_.begin();
     return values_.data() + at * size_ * size_;
   }
 
   /// By columns, the same entries for any values.
-  SparseSymmetric compressed(Index states) const {
+  VERNIER_LOCAL SparseSymmetric compressed(Index states) const {
     SparseSymmetric out;
     out.size = states * size_;
     std::size_t next = 0;
@@ -79,12 +79,12 @@ VERNIER_LOCAL void add_local(const BlockSystem& system, const std::vector<LocalP
     rows.expand(system.group_sizes, expanded);
     for (const RowBlock::Local& a : rows.local) {
       if (a.state < 0) continue;
-      add_transposed_product(out.coupling.middleRows(a.state * k, k), a.columns, expanded);
+      add_transposed_product(VERNIER_LATER(out.coupling).middleRows(a.state * k, k), a.columns, expanded);
       for (Index i = 0; i < k; ++i)
         out.local_gradient(a.state * k + i) += detail::column_of(a.columns, i).dot(rows.residual);
       for (const RowBlock::Local& b : rows.local) {
         if (b.state < 0 || b.state > a.state) continue;
-        double* sum = sums.block({b.state, a.state});
+        double* sum = VERNIER_LATER(sums).block({b.state, a.state});
         for (Index j = 0; j < k; ++j) {
           const Vector6 right = detail::column_of(b.columns, j);
           for (Index i = 0; i < k; ++i) sum[k * j + i] += detail::column_of(a.columns, i).dot(right);
@@ -93,7 +93,7 @@ VERNIER_LOCAL void add_local(const BlockSystem& system, const std::vector<LocalP
     }
   });
   for (const LocalPrior& prior : priors) {
-    double* sum = prior_sums.block(PairBlocks::pair(prior.first, prior.second));
+    double* sum = VERNIER_LATER(prior_sums).block(PairBlocks::pair(prior.first, prior.second));
     for (Index j = 0; j < k; ++j)
       for (Index i = 0; i < k; ++i)
         sum[k * j + i] += prior.first >= prior.second ? prior.precision(i, j) : prior.precision(j, i);
@@ -140,36 +140,40 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
         }
       });
     });
-    const auto dense_rows = dense.topRows(6 * n);
-    const VectorX present = residuals.head(6 * n);
-    detail::add_transposed_product(matrix.topLeftCorner(d, d), dense_rows, dense_rows);
-    detail::add_transposed_product(gradient.head(d), dense_rows, present);
+    const auto dense_rows = VERNIER_LATER(dense).topRows(6 * n);
+    const VectorX present = VERNIER_LATER(residuals).head(6 * n);
+    detail::add_transposed_product(VERNIER_LATER(matrix).topLeftCorner(d, d), dense_rows, dense_rows);
+    detail::add_transposed_product(VERNIER_LATER(gradient).head(d), dense_rows, present);
     cost += present.squaredNorm();
     const auto functions = [&](Index j) {
       const auto group = static_cast<std::size_t>(j);
-      return h.block(0, begin[group], n, begin[group + 1] - begin[group]);
+      return VERNIER_LATER(h).block(0, begin[group], n, begin[group + 1] - begin[group]);
     };
     for (Index j = 0; j < groups && all > d; ++j) {
       const auto h_j = functions(j);
       const Index at = d + begin[static_cast<std::size_t>(j)];
-      detail::add_transposed_product(gradient.segment(at, h_j.cols()), h_j, factor_residual.col(j).head(n));
-      detail::add_transposed_product(matrix.block(0, at, d, h_j.cols()), mixed.block(0, j * d, n, d), h_j);
+      detail::add_transposed_product(VERNIER_LATER(gradient).segment(at, h_j.cols()), h_j,
+                                     VERNIER_LATER(factor_residual).col(j).head(n));
+      detail::add_transposed_product(VERNIER_LATER(matrix).block(0, at, d, h_j.cols()),
+                                     VERNIER_LATER(mixed).block(0, j * d, n, d), h_j);
     }
     executor.for_ranges(all > d ? static_cast<Index>(pairs.size()) : 0, [&](Index from, Index to) {
       for (Index pair = from; pair < to; ++pair) {
         const Index i = pairs[static_cast<std::size_t>(pair)][0], j = pairs[static_cast<std::size_t>(pair)][1];
         const auto h_i = functions(i), h_j = functions(j);
         const Index row = d + begin[static_cast<std::size_t>(i)], column = d + begin[static_cast<std::size_t>(j)];
-        const MatrixX scaled = detail::rows_scaled(factor_product.col(i + groups * j).head(n), h_j);
+        const MatrixX scaled = detail::rows_scaled(VERNIER_LATER(factor_product).col(i + groups * j).head(n), h_j);
         if (i != j) {
-          detail::add_transposed_product(matrix.block(row, column, h_i.cols(), h_j.cols()), h_i, scaled);
+          detail::add_transposed_product(VERNIER_LATER(matrix).block(row, column, h_i.cols(), h_j.cols()), h_i, scaled);
           continue;
         }
         const Index half = h_i.cols() / 2, rest = h_i.cols() - half;  // nothing below the diagonal blocks of this block
         const Index at = begin[static_cast<std::size_t>(i)];
-        detail::add_transposed_product(matrix.block(row, column, half, h_i.cols()), h.block(0, at, n, half), scaled);
-        detail::add_transposed_product(matrix.block(row + half, column + half, rest, rest),
-                                       h.block(0, at + half, n, rest), scaled.rightCols(rest));
+        detail::add_transposed_product(VERNIER_LATER(matrix).block(row, column, half, h_i.cols()),
+                                       VERNIER_LATER(h).block(0, at, n, half), scaled);
+        detail::add_transposed_product(VERNIER_LATER(matrix).block(row + half, column + half, rest, rest),
+                                       VERNIER_LATER(h).block(0, at + half, n, rest),
+                                       VERNIER_LATER(scaled).rightCols(rest));
       }
     });
   }

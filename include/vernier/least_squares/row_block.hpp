@@ -18,7 +18,7 @@ using Rows6 = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 namespace detail {
 
 /// The j-th column of six rows.
-inline Vector6 column_of(const Rows6& rows, Index j) {
+VERNIER_API inline Vector6 column_of(const Rows6& rows, Index j) {
   Vector6 out;
   std::copy_n(rows.data() + 6 * j, 6, out.data());
   return out;

@@ -17,8 +17,8 @@ struct ScoreTest {
   /// Of each direction, descending: by how much the sum of whitened squares grows with one expected size of it, less
   /// what the other unknowns take over.
   VectorX information{};
-  VectorX estimates{};       ///< of each direction, by least squares; their variances are `noise / information`
-  double noise = 1;          ///< variance of the whitened residuals, as the scores show it
+  VectorX estimates{};  ///< of each direction, by least squares; their variances are `noise / information`
+  double noise = 1;     ///< variance of the whitened residuals, as the scores show it
   /// Mean squared displacement of the measured positions, less what the other unknowns take over: a quadratic form of
   /// the directions [m^2].
   MatrixX displacement{};

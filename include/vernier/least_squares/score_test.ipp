@@ -18,7 +18,8 @@ namespace detail {
 /// Some columns of a matrix.
 VERNIER_LOCAL MatrixX columns_of(const MatrixX& a, const std::vector<Index>& columns) {
   MatrixX out(a.rows(), static_cast<Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = a.col(columns[k]);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    std::copy_n(a.data() + columns[k] * a.rows(), a.rows(), out.data() + static_cast<Index>(k) * a.rows());
   return out;
 }
 
@@ -32,8 +33,8 @@ struct WithoutGroup {
 };
 
 /// Solves without the group.
-VERNIER_LOCAL WithoutGroup without_group(const NormalEquations& normal, const VectorX& precisions,
-                                         const VectorX& steps, const UnknownGroup& group, const VectorX& local_steps) {
+VERNIER_LOCAL WithoutGroup without_group(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
+                                         const UnknownGroup& group, const VectorX& local_steps) {
   VectorX held = precisions;
   std::vector<bool> of_group(static_cast<std::size_t>(precisions.size()), false);
   for (const Index k : group) {
@@ -78,7 +79,7 @@ VERNIER_LOCAL WithoutGroup without_group(const NormalEquations& normal, const Ve
 
 /// Scores of the tested unknowns, a column a cluster, and one for each prior of the others.
 struct Scores {
-  MatrixX flipped;           ///< with residuals of the model with the group: those whose signs are flipped
+  MatrixX flipped;        ///< with residuals of the model with the group: those whose signs are flipped
   VectorX sum;            ///< of the scores as they are
   MatrixX displacements;  ///< sum of squared displacements of all positions, a quadratic form of the columns [m^2]
   Index positions = 0;    ///< blocks with positions
@@ -89,7 +90,7 @@ struct Scores {
 /// @param columns  of all unknowns
 VERNIER_LOCAL Vector6 left_out_residual(const FactorisedEquations& solved, const Rows6& columns,
                                         const Vector6& residual) {
-  MatrixX half = columns.transpose(), rest = MatrixX::Identity(6, 6);
+  MatrixX half = VERNIER_LATER(columns).transpose(), rest = VERNIER_LATER_TYPE(MatrixX)::Identity(6, 6);
   solved.apply_inverse_factor(half);
   add_transposed_product(rest, half, half, -1);
   for (Index k = 0; k < 6; ++k) rest(k, k) = (std::max)(rest(k, k), 0.0) + 1e-3;  // a residual that is all taken over
@@ -108,7 +109,8 @@ VERNIER_LOCAL double mean_leverage(const BlockSystem& system, const FactorisedEq
   RowBlock block;
   system.rows(0, 1, &block);
   Index rows = 0;
-  for (Index r = 0; r < 6; ++r) rows += block.dense.row(r).squaredNorm() > 0;
+  const VectorX squares = squared_row_norms(block.dense);
+  for (const double square : squares) rows += square > 0;
   return (std::min)(0.9, explained / static_cast<double>((std::max)(Index{1}, rows) * system.blocks));
 }
 
@@ -143,20 +145,23 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
     rows.expand(system.group_sizes, all);
     const Vector6 residual = residual_of(rows, all, at.solved), noise = residual_of(rows, all, with);
     if (system.local_states > 0) at.solved.eliminate_local(rows, all);
-    for (Index k = 0; k < rest; ++k) others.col(k) = all.col(at.others[static_cast<std::size_t>(k)]);
-    for (Index k = 0; k < m; ++k) tested.col(k) = all.col(at.tested[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < rest; ++k) std::copy_n(&all(0, at.others[static_cast<std::size_t>(k)]), 6, &others(0, k));
+    for (Index k = 0; k < m; ++k) std::copy_n(&all(0, at.tested[static_cast<std::size_t>(k)]), 6, &tested(0, k));
     add_product(tested, others, at.taken_over, -1);
     out.flipped.col(columns.at(cluster_of(b))) +=
         transposed_product(tested, exact ? left_out_residual(with, all, noise) : Vector6(mean * noise));
     out.sum += transposed_product(tested, residual);
     if (b >= system.validation_blocks) return;
-    const Rows6 rows_moved = rows.unwhiten * tested;
-    const MatrixX moved = rows.position_sigma * rows_moved.topRows(3);
-    waiting.middleRows(3 * (out.positions % batch), 3) = moved;
+    const Index row = 3 * (out.positions % batch);
+    for (Index k = 0; k < m; ++k) {
+      const Vector6 moved = rows.unwhiten * column_of(tested, k);
+      for (Index r = 0; r < 3; ++r) waiting(row + r, k) = rows.position_sigma * moved(r);
+    }
     if (++out.positions % batch == 0) add_transposed_product(out.displacements, waiting, waiting);
   });
-  const MatrixX left = waiting.topRows(3 * (out.positions % batch));
-  add_transposed_product(out.displacements, left, left);
+  for (Index k = 0; k < m; ++k)
+    for (Index r = 3 * (out.positions % batch); r < 3 * batch; ++r) waiting(r, k) = 0;
+  add_transposed_product(out.displacements, waiting, waiting);
   for (std::size_t i = 0; i < informed.size(); ++i) {  // a prior is a measurement of zero
     const Index k = informed[i], unknown = at.others[static_cast<std::size_t>(k)];
     const auto pulled = [&](const FactorisedEquations& solved) -> VectorX {
@@ -214,12 +219,15 @@ VERNIER_IMPL ScoreTest score_test(const BlockSystem& system, const NormalEquatio
     out.information(k) = directions.values(m - 1 - k);
     out.estimates(k) = -along(m - 1 - k) / out.information(k);
   }
-  const MatrixX determined = directions.vectors.rightCols(m - first).rowwise().reverse();
-  out.displacement = detail::transposed_matrix_product(determined, detail::matrix_product(scores.displacements, determined)) /
-                     static_cast<double>((std::max)(Index{1}, scores.positions));
+  std::vector<Index> descending;
+  for (Index k = m; k-- > first;) descending.push_back(k);
+  const MatrixX determined = detail::columns_of(directions.vectors, descending);
+  out.displacement =
+      detail::transposed_matrix_product(determined, detail::matrix_product(scores.displacements, determined));
+  out.displacement *= 1 / static_cast<double>((std::max)(Index{1}, scores.positions));
   VectorX weights(m);
   for (Index k = 0; k < m; ++k) weights(k) = 1 / std::sqrt((std::max)(directions.values(k), 0.0) + score_precision);
-  const MatrixX along_directions = detail::rows_scaled(weights, directions.vectors.transpose());
+  const MatrixX along_directions = detail::rows_scaled(weights, VERNIER_LATER(directions.vectors).transpose());
   scores.flipped = detail::matrix_product(along_directions, scores.flipped);
   scores.sum = detail::product(along_directions, scores.sum);
   out.p = detail::share_as_large(scores, draws);

@@ -10,12 +10,13 @@ namespace vernier {
 
 VERNIER_IMPL SparseOutcome EigenSparseSolver::operator()(const SparseSymmetric& matrix, MatrixRef right) const {
   using Sparse = Eigen::SparseMatrix<double>;
-  const Eigen::Map<const Sparse> view(matrix.size, matrix.size, static_cast<Index>(matrix.values.size()),
-                                      matrix.starts.data(), matrix.rows.data(), matrix.values.data());
-  const Eigen::SimplicialLDLT<Sparse> factor{Sparse(view)};
+  const VERNIER_LATER_TYPE(Eigen::Map<const Sparse>)
+      view(matrix.size, matrix.size, static_cast<Index>(matrix.values.size()), matrix.starts.data(), matrix.rows.data(),
+           matrix.values.data());
+  const VERNIER_LATER_TYPE(Eigen::SimplicialLDLT<Sparse>) factor{Sparse(view)};
   if (!detail::succeeded(factor)) return {};
   const VectorX diagonal = factor.vectorD();
-  if (!(diagonal.minCoeff() > 0)) return {};
+  if (!(VERNIER_LATER(diagonal).minCoeff() > 0)) return {};
   const MatrixX given = right, solution = factor.solve(given);
   right = solution;
   double log_determinant = 0;

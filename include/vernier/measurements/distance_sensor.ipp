@@ -9,7 +9,7 @@ namespace vernier {
 
 VERNIER_IMPL void DistanceSensor::sense(Index i, const Isometry3& pose, SensedRows& rows) const {
   const Vector3 point = translation(pose);
-  detail::one_length(point.norm() - lengths_(i), point.normalized(), rows);
+  detail::one_length(point.norm() - lengths_(i), VERNIER_LATER(point).normalized(), rows);
 }
 
 VERNIER_IMPL Isometry3 DistanceSensor::base_from(std::span<const Isometry3> poses) const {

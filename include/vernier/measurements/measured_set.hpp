@@ -90,7 +90,7 @@ class MeasuredSet {
   /// upside down, it turns the set's frame by half a turn: rotation vectors are singular there.
   VERNIER_API Isometry3 register_base(std::span<const Isometry3> poses);
   /// The z axis of the sensor's frame in the set's frame.
-  Vector3 axis() const { return turned_ * Vector3::UnitZ(); }
+  Vector3 axis() const { return {turned_(0, 2), turned_(1, 2), turned_(2, 2)}; }
   /// With the accuracy that a user states for its kind.
   /// @throws std::invalid_argument for an unusable one
   VERNIER_API MeasuredSet with(const SensorModel& sensors) const;

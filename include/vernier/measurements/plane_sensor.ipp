@@ -9,7 +9,7 @@ namespace vernier {
 VERNIER_IMPL Plausibility PlaneSensor::plausibility() const { return detail::plausible_touches; }
 
 VERNIER_IMPL void PlaneSensor::sense(Index i, const Isometry3& pose, SensedRows& rows) const {
-  detail::one_length(translation(pose).z() - heights_(i), Vector3::UnitZ(), rows);
+  detail::one_length(translation(pose).z() - heights_(i), Vector3(0, 0, 1), rows);
 }
 
 VERNIER_IMPL Isometry3 PlaneSensor::base_from(std::span<const Isometry3> poses) const {

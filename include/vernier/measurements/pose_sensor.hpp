@@ -38,7 +38,7 @@ class PoseSensor {
   /// When the measurements cannot be of this arm.
   Plausibility plausibility() const { return {0.05, "the arm is off by", "wrong robot, units or columns?"}; }
   /// Without orientations where `use_orientations` is off.
-  PoseSensor with(const SensorModel& sensors) const {
+  VERNIER_API PoseSensor with(const SensorModel& sensors) const {
     return {positions_,
             sensors.use_orientations ? orientations_ : std::vector<Matrix3>(),
             {sensors.position_sigma, sensors.orientation_sigma}};

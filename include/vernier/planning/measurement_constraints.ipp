@@ -69,7 +69,7 @@ VERNIER_IMPL Rejection MeasurementScene::rejection(const ConstVectorRef& q) cons
     if ((c.lower.size() > 0 && q(j) < c.lower(j) + c.joint_margin) ||
         (c.upper.size() > 0 && q(j) > c.upper(j) - c.joint_margin))
       return Rejection::joint_limits;
-  const Isometry3 pose = arm_.poses(q.transpose()).front();
+  const Isometry3 pose = arm_.poses(VERNIER_LATER(q).transpose()).front();
   const Vector3 tool = translation(pose);
   for (Index k = 0; c.tool_box && k < 3; ++k)
     if (tool(k) < c.tool_box->lower(k) || tool(k) > c.tool_box->upper(k)) return Rejection::tool_box;
@@ -85,7 +85,7 @@ VERNIER_IMPL Rejection MeasurementScene::rejection(const ConstVectorRef& q) cons
     points.push_back(tool);
   }
   if (c.tracker) {
-    const Rejection seen = check_sight(tool, rotation(pose) * c.tracker->reflector_direction, points);
+    const Rejection seen = check_sight(tool, VERNIER_LATER(rotation(pose)) * c.tracker->reflector_direction, points);
     if (seen != Rejection::none) return seen;
   }
   return collides(points) ? Rejection::self_collision : Rejection::none;

@@ -27,8 +27,8 @@ class JointBins {
   VERNIER_LOCAL JointBins(const MatrixX& candidates, double width) : width_(width), lower_(candidates.cols()) {
     first_.push_back(0);
     for (Index j = 0; j < candidates.cols(); ++j) {
-      lower_(j) = candidates.col(j).minCoeff();
-      const double range = candidates.col(j).maxCoeff() - lower_(j);
+      lower_(j) = VERNIER_LATER(candidates).col(j).minCoeff();
+      const double range = VERNIER_LATER(candidates).col(j).maxCoeff() - lower_(j);
       first_.push_back(first_.back() + (std::max)(1, static_cast<int>(std::ceil(range / width - 1e-9))));
     }
   }
@@ -145,7 +145,7 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   out.unknowns = rows.cols();
   out.log_det = found.log_det;
   const VectorX relative = found.region_variance / found.region_variance(options.count);
-  out.relative_error = relative.cwiseSqrt();
+  out.relative_error = VERNIER_LATER(relative).cwiseSqrt();
   if (options.bound_iterations > 0 && measured.rows() == 0)
     out.bound = information_bound(rows, block, options.count, options.bound_iterations);
   for (const Index c : out.chosen)

@@ -64,14 +64,14 @@ class GrowingDesign {
   VERNIER_LOCAL void update(Index first, Index count) {
     const Index from = level_[static_cast<std::size_t>(first)] * block_, rows = chosen_ * block_ - from;
     const MatrixX tail = solved(columns_, known_, first * block_, count * block_, from);
-    known_.block(from, first * block_, rows, count * block_) = tail;
+    VERNIER_LATER(known_).block(from, first * block_, rows, count * block_) = tail;
     for (Index c = 0; c < count; ++c) {
       add_to_variance(first + c, products(tail, c), -1);
       level_[static_cast<std::size_t>(first + c)] = chosen_;
     }
     if (to_region_.size() > 0)
-      add_transposed_product(to_region_.middleCols(first * block_, count * block_),
-                             known_region_.middleRows(from, rows), tail, -1);
+      add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_),
+                             VERNIER_LATER(known_region_).middleRows(from, rows), tail, -1);
   }
   /// Information of a candidate that is up to date [nat].
   VERNIER_LOCAL double information(Index c) const { return cholesky_log_determinant(factor(c)); }
@@ -84,7 +84,7 @@ class GrowingDesign {
   /// Chooses a candidate that is up to date.
   VERNIER_LOCAL void choose(Index c) {
     const Index at = chosen_ * block_;
-    picks_.middleCols(at, block_) = columns_.middleCols(c * block_, block_);
+    VERNIER_LATER(picks_).middleCols(at, block_) = VERNIER_LATER(columns_).middleCols(c * block_, block_);
     const Matrix6 own = factor(c);
     for (Index a = 0; a < block_; ++a) {
       for (Index k = 0; k < at; ++k) factor_(at + a, k) = known_(k, c * block_ + a);
@@ -93,11 +93,13 @@ class GrowingDesign {
     ++chosen_;
     if (region_.cols() == 0) return;
     const MatrixX tail = solved(region_, known_region_, 0, region_.cols(), at);
-    known_region_.middleRows(at, block_) = tail;
+    VERNIER_LATER(known_region_).middleRows(at, block_) = tail;
     region_variance_ -= squared_column_norms(tail);
   }
   /// Mean variance of the region's points, three rows each.
-  double region_variance() const { return 3 * region_variance_.sum() / static_cast<double>(region_.cols()); }
+  VERNIER_LOCAL double region_variance() const {
+    return 3 * region_variance_.sum() / static_cast<double>(region_.cols());
+  }
 
  private:
   /// Products of a candidate's columns with each other; zero beyond them.
@@ -105,23 +107,28 @@ class GrowingDesign {
     Matrix6 out = Matrix6::Zero();
     for (Index a = 0; a < block_; ++a)
       for (Index b = 0; b <= a; ++b)
-        out(a, b) = out(b, a) = columns.col(c * block_ + a).dot(columns.col(c * block_ + b));
+        out(a, b) = out(b, a) =
+            VERNIER_LATER(columns).col(c * block_ + a).dot(VERNIER_LATER(columns).col(c * block_ + b));
     return out;
   }
-  void add_to_variance(Index c, const Matrix6& change, double sign) {
+  VERNIER_LOCAL void add_to_variance(Index c, const Matrix6& change, double sign) {
     for (Index b = 0; b < block_; ++b)
       for (Index a = 0; a < block_; ++a) variance_(a, c * block_ + b) += sign * change(a, b);
   }
   /// Cholesky factor of I + V of a candidate.
-  VERNIER_LOCAL Matrix6 factor(Index c) const { return factor_of_sum(variance_.middleCols(c * block_, block_)); }
+  VERNIER_LOCAL Matrix6 factor(Index c) const {
+    return factor_of_sum(VERNIER_LATER(variance_).middleCols(c * block_, block_));
+  }
   /// Rows `from` .. of some columns of the solution of `F known = P' columns`, of which those before are known.
   VERNIER_LOCAL MatrixX solved(const MatrixX& columns, const MatrixX& known, Index first, Index count,
                                Index from) const {
     const Index rows = chosen_ * block_ - from;
     MatrixX out = MatrixX::Zero(rows, count);
-    add_transposed_product(out, picks_.middleCols(from, rows), columns.middleCols(first, count));
-    add_product(out, factor_.block(from, 0, rows, from), known.block(0, first, from, count), -1);
-    solve_lower(factor_.block(from, from, rows, rows), out);
+    add_transposed_product(out, VERNIER_LATER(picks_).middleCols(from, rows),
+                           VERNIER_LATER(columns).middleCols(first, count));
+    add_product(out, VERNIER_LATER(factor_).block(from, 0, rows, from),
+                VERNIER_LATER(known).block(0, first, from, count), -1);
+    solve_lower(VERNIER_LATER(factor_).block(from, from, rows, rows), out);
     return out;
   }
 
@@ -159,7 +166,8 @@ VERNIER_LOCAL void check_design(const ConstMatrixRef& rows, Index block, const C
   demand(all_finite(rows) && all_finite(measured) && all_finite(region), "design_poses: a row is not finite");
   const Eigen::MatrixXi& bins = options.coverage.bins;
   demand(bins.rows() == 0 || bins.rows() == n, "design_poses: bins of ", bins.rows(), " candidates, expected ", n);
-  demand(bins.size() == 0 || (bins.minCoeff() >= 0 && bins.maxCoeff() < options.coverage.missing.size()),
+  demand(bins.size() == 0 ||
+             (VERNIER_LATER(bins).minCoeff() >= 0 && VERNIER_LATER(bins).maxCoeff() < options.coverage.missing.size()),
          "design_poses: a bin is not in 0 .. ", options.coverage.missing.size() - 1);
 }
 
@@ -187,8 +195,8 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
   PoseDesign out;
   out.missing = options.coverage.missing;
   out.log_det.setZero(options.count + 1);
-  MatrixX candidates = rows.transpose(),
-          to_predict = region.rows() > 0 ? MatrixX(region.transpose()) : MatrixX(rows.cols(), 0);
+  MatrixX candidates = VERNIER_LATER(rows).transpose(),
+          to_predict = region.rows() > 0 ? MatrixX(VERNIER_LATER(region).transpose()) : MatrixX(rows.cols(), 0);
   if (measured.rows() > 0) detail::account_for_measured(measured, candidates, to_predict);
   detail::GrowingDesign design(std::move(candidates), std::move(to_predict), block, options);
   if (region.rows() > 0) {
@@ -247,7 +255,7 @@ VERNIER_LOCAL WeightedInformation weighted_information(const ConstMatrixRef& row
   VectorX roots(rows.rows());
   for (Index i = 0; i < roots.size(); ++i) roots(i) = std::sqrt(weights(i / block));
   const MatrixX weighted = rows_scaled(roots, rows);
-  MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()), columns = rows.transpose();
+  MatrixX information = MatrixX::Identity(rows.cols(), rows.cols()), columns = VERNIER_LATER(rows).transpose();
   add_transposed_product(information, weighted, weighted);
   demand(cholesky(information), "information_bound: the rows are not usable");
   solve_lower(information, columns);
@@ -292,8 +300,8 @@ VERNIER_IMPL double information_bound(const ConstMatrixRef& rows, Index block, I
     const auto at = detail::weighted_information(rows, block, weights);
     VectorX largest = at.gradient;
     std::nth_element(largest.begin(), largest.begin() + count, largest.end(), std::greater<>());
-    best = (std::min)(best, at.value + largest.head(count).sum() - weights.dot(at.gradient));
-    weights = weights.cwiseProduct(at.gradient);
+    best = (std::min)(best, at.value + VERNIER_LATER(largest).head(count).sum() - weights.dot(at.gradient));
+    weights = VERNIER_LATER(weights).cwiseProduct(at.gradient);
     detail::share_out(static_cast<double>(count), weights);
   }
   return best;

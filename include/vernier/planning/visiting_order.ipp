@@ -19,9 +19,9 @@ VERNIER_LOCAL MatrixX travel_times(const ConstMatrixRef& joints, const VectorX& 
   demand(all_finite(joints), "visiting_order: a joint value is not finite");
   demand(speeds.size() == 0 || speeds.size() == joints.cols(), "visiting_order: ", speeds.size(), " speeds of ",
          joints.cols(), " joints");
-  demand(speeds.size() == 0 || (all_finite(speeds) && speeds.minCoeff() > 0),
+  demand(speeds.size() == 0 || (all_finite(speeds) && VERNIER_LATER(speeds).minCoeff() > 0),
          "visiting_order: a speed is not positive");
-  MatrixX scaled = joints.transpose();
+  MatrixX scaled = VERNIER_LATER(joints).transpose();
   for (Index k = 0; k < speeds.size(); ++k)
     for (Index i = 0; i < scaled.cols(); ++i) scaled(k, i) *= 1 / speeds(k);
   const Index n = joints.rows();

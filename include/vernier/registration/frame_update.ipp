@@ -32,7 +32,7 @@ VERNIER_IMPL FrameMotion FrameUpdate::motion(const VectorX& change) const {
     return FrameParameters::isometry<double>(values);
   };
   if (base) out.base = twist(0);
-  if (offsets) out.offsets = change.segment(offsets_begin(), joints);
+  if (offsets) out.offsets = VERNIER_LATER(change).segment(offsets_begin(), joints);
   if (tool) out.tool = twist(tool_begin());
   for (Index k = 0; probe && k < 3; ++k) out.probe(k) = change(probe_begin() + k);
   return out;

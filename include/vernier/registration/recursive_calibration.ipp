@@ -8,7 +8,9 @@
 namespace vernier::detail {
 
 VERNIER_IMPL RecursiveEstimator::RecursiveEstimator(const VectorX& std, double forgetting)
-    : start_(std.cwiseProduct(std)), covariance_(MatrixX::Zero(std.size(), std.size())), forgetting_(forgetting) {
+    : start_(VERNIER_LATER(std).cwiseProduct(std)),
+      covariance_(MatrixX::Zero(std.size(), std.size())),
+      forgetting_(forgetting) {
   demand(forgetting > 0 && forgetting <= 1, "RecursiveCalibration: forgetting is ", forgetting, ", must lie in (0, 1]");
   for (Index k = 0; k < std.size(); ++k) covariance_(k, k) = start_(k);
 }
@@ -24,7 +26,7 @@ VERNIER_IMPL VectorX RecursiveEstimator::update(const MatrixX& rows, const Vecto
   }
   MatrixX cross = MatrixX::Zero(rows.rows(), covariance_.cols()), inner = MatrixX::Identity(rows.rows(), rows.rows());
   add_product(cross, rows, covariance_);
-  add_product(inner, cross, rows.transpose());
+  add_product(inner, cross, VERNIER_LATER(rows).transpose());
   cholesky(inner);
   MatrixX whitened = residual;
   solve_lower(inner, cross);
@@ -45,7 +47,8 @@ VERNIER_IMPL VectorX initial_std(const FrameUpdate& update, const ReregisterOpti
   for (Index k = 0; k < out.size(); ++k) out(k) = k < 3 ? sizes[0] : sizes[1];
   if (update.tool)
     for (Index k = 0; k < 6; ++k) out(out.size() - 6 + k) = k < 3 ? sizes[0] : sizes[1];
-  if (update.offsets) out.segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);
+  if (update.offsets)
+    VERNIER_LATER(out).segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);
   return out;
 }
 

@@ -140,11 +140,11 @@ VERNIER_LOCAL Isometry3 tool_rotation(const std::vector<Isometry3>& modelled, co
   for (std::size_t i = 0; i < modelled.size(); ++i)
     for (Index r = 0; r < 9; ++r)
       for (Index c = 0; c < 9; ++c) sum(r, c) += modelled[i](r / 3, c / 3) * measured[i](r % 3, c % 3);
-  const VectorX x = right_singular(sum.transpose()).vectors.col(0);
+  const VectorX x = right_singular(VERNIER_LATER(sum).transpose()).vectors.col(0);
   Matrix3 base;
   for (Index k = 0; k < 9; ++k) base(k % 3, k / 3) = x(k);
   if (base.determinant() < 0) base *= -1;
-  const Matrix3 nearest = nearest_rotation(base), back = nearest.transpose();
+  const Matrix3 nearest = nearest_rotation(base), back = VERNIER_LATER(nearest).transpose();
   Matrix3 turned = Matrix3::Zero();
   for (std::size_t i = 0; i < modelled.size(); ++i) {
     const Matrix3 in_base = back * measured[i];
@@ -196,12 +196,13 @@ VERNIER_LOCAL Vector3 probe_rotation(const std::vector<Isometry3>& modelled, con
 /// Prior standard deviations of what is estimated.
 VERNIER_LOCAL VectorX prior_std_of(const FrameUpdate& update, const ReregisterOptions& options, double probe_std) {
   VectorX out = VectorX::Constant(update.size(), std::numeric_limits<double>::infinity());
-  if (update.offsets) out.segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);
+  if (update.offsets)
+    VERNIER_LATER(out).segment(update.offsets_begin(), update.joints).setConstant(options.offset_prior_std);
   if (update.tool) {
-    out.segment(update.tool_begin(), 3).setConstant(options.tool_position_prior_std);
-    out.segment(update.tool_begin() + 3, 3).setConstant(options.tool_rotation_prior_std);
+    VERNIER_LATER(out).segment(update.tool_begin(), 3).setConstant(options.tool_position_prior_std);
+    VERNIER_LATER(out).segment(update.tool_begin() + 3, 3).setConstant(options.tool_rotation_prior_std);
   }
-  if (update.probe) out.segment(update.probe_begin(), 3).setConstant(probe_std);
+  if (update.probe) VERNIER_LATER(out).segment(update.probe_begin(), 3).setConstant(probe_std);
   return out;
 }
 
@@ -218,11 +219,11 @@ VERNIER_LOCAL std::vector<std::string> hold_undetermined_tool(FrameFit& fit) {
     if (count == 0) continue;
     std::string what = part == 0 ? "the position of the tool" : "the rotation of the tool";
     for (Index k = 0; k < count; ++k) {
-      Vector3 axis = axes.vectors.col(k);
+      Vector3 axis = VERNIER_LATER(axes.vectors).col(k);
       VectorX held = VectorX::Zero(fit.update.size());
-      held.segment(begin, 3) = axis;
+      VERNIER_LATER(held).segment(begin, 3) = axis;
       fit.held.conservativeResize(held.size(), fit.held.cols() + 1);
-      fit.held.col(fit.held.cols() - 1) = held;
+      VERNIER_LATER(fit.held).col(fit.held.cols() - 1) = held;
       const double largest =
           *std::max_element(axis.begin(), axis.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
       if (largest < 0) axis *= -1;
@@ -261,7 +262,7 @@ VERNIER_LOCAL void judge_probe(const MovedPoses& evaluate, const MeasuredSet& da
   fit.motion.probe.setZero();
   fit.update.probe = own > 1e-18;
   fit.total.conservativeResize(fit.update.size());
-  if (fit.update.probe) fit.total.tail(3).setZero();
+  if (fit.update.probe) VERNIER_LATER(fit.total).tail(3).setZero();
   fit.prior_std = prior_std_of(fit.update, options, std::sqrt(own));
   solve_frames(evaluate, data, fit);
 }
@@ -307,7 +308,7 @@ VERNIER_IMPL FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSe
         fit.motion.base = base_motion(before, data, false);
         evaluate(fit.motion, fit.poses, jacobians);
         fit.motion.probe = probe_rotation(fit.poses, data.orientations());
-        fit.total.tail(3) = fit.motion.probe;
+        VERNIER_LATER(fit.total).tail(3) = fit.motion.probe;
       }
     }
     if (!data.oriented() && options.tool && std::isinf(options.tool_position_prior_std))

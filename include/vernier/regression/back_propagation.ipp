@@ -38,7 +38,7 @@ VERNIER_LOCAL void train_by_adam(NetworkError& problem, VectorX& theta, const Ad
         mean(k) = adam.momentum * mean(k) + (1 - adam.momentum) * gradient(k);
         square(k) = adam.memory * square(k) + (1 - adam.memory) * gradient(k) * gradient(k);
       }
-      roots = square.cwiseSqrt();
+      roots = VERNIER_LATER(square).cwiseSqrt();
       mean_bias *= adam.momentum;
       square_bias *= adam.memory;
       const double rate = adam.learning_rate * (0.5 + 0.5 * std::cos(3.14159265358979323846 * step / steps));
@@ -96,7 +96,7 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
   detail::NetworkError problem = part(kept, weight_decay), validation = part(held_out.empty() ? kept : held_out, 0);
 
   VectorX theta(problem.dimension()), best;
-  theta.head(problem.hidden()) = layer().draw(static_cast<int>(inputs.cols()), options.seed);
+  VERNIER_LATER(theta).head(problem.hidden()) = layer().draw(static_cast<int>(inputs.cols()), options.seed);
   Rng rng(child_seed(options.seed, 0));
   for (Index k = problem.hidden(); k < theta.size(); ++k) theta(k) = rng.uniform(-1, 1) / hidden_nodes;
   double least = std::numeric_limits<double>::infinity(), lowest = least;
@@ -125,7 +125,7 @@ VERNIER_IMPL detail::FittedNetwork BackPropagation::train(const ConstMatrixRef& 
     for (Index node = 0; node < hidden_nodes; ++node) beta(node, o) = out.spread * best(k++);
     offset(o) += out.spread * best(k++);
   }
-  return {layer(), in, best.head(problem.hidden()), beta, offset};
+  return {layer(), in, VERNIER_LATER(best).head(problem.hidden()), beta, offset};
 }
 
 }  // namespace vernier

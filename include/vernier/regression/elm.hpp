@@ -20,9 +20,8 @@ struct Elm {
   Scaling input_scaling = Scaling::min_max;
   /// Of the targets, fitted on the samples.
   Scaling target_scaling = Scaling::min_max;
-  double weight_limit = 1;        ///< hidden weights and biases lie in [-limit, limit]
-  double rcond = 1e-12;           ///< singular values of H below this times the largest count as zero
-  double fitness_lambda = 1e-10;  ///< ridge of the fitness alone, relative to tr(H'H) / nodes; the fit has none
+  double weight_limit = 1;  ///< hidden weights and biases lie in [-limit, limit]
+  double rcond = 1e-12;     ///< singular values of H below this times the largest count as zero
 
   /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }

@@ -15,7 +15,7 @@ VERNIER_IMPL void Elm::validate() const {
 
 VERNIER_IMPL detail::ElmFitness Elm::fitness(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                              const VectorX* weights) const {
-  demand(fitness_lambda > 0 && fitness_lambda < 1, "Elm: fitness_lambda is ", fitness_lambda, ", must lie in (0, 1)");
+  constexpr double fitness_lambda = 1e-10;  // ridge of the fitness alone, relative to tr(H'H) / nodes
   const MatrixX mapped = layer().map(inputs);
   return {layer(), layer().scaling(mapped).apply(mapped), ColumnScaling::fit(targets, target_scaling).apply(targets),
           fitness_lambda, weights};
@@ -35,7 +35,7 @@ VERNIER_IMPL detail::FittedNetwork Elm::solve(const ConstMatrixRef& inputs, cons
     t = detail::rows_scaled(roots, t);
   }
   MatrixX beta = minimum_norm_solution(h, t, rcond);
-  for (Index o = 0; o < beta.cols(); ++o) beta.col(o) /= out.factor(o);
+  for (Index o = 0; o < beta.cols(); ++o) VERNIER_LATER(beta).col(o) /= out.factor(o);
   return {layer(), in, theta, beta, out.offset};
 }
 

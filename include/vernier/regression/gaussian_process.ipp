@@ -17,8 +17,9 @@ VERNIER_IMPL void GaussianProcess::validate(Index dimension) const {
          "GaussianProcess: products of sines and cosines have no length scale of one input");
   demand(length_scales.size() == 0 || length_scales.size() == dimension, "GaussianProcess: ", length_scales.size(),
          " length scales for ", dimension, " inputs");
-  demand(length_scales.size() == 0 || (detail::all_finite(length_scales) && length_scales.minCoeff() > 0),
-         "GaussianProcess: the length scales must be positive");
+  demand(
+      length_scales.size() == 0 || (detail::all_finite(length_scales) && VERNIER_LATER(length_scales).minCoeff() > 0),
+      "GaussianProcess: the length scales must be positive");
   demand(!noise_ratio || (*noise_ratio > 0 && std::isfinite(*noise_ratio)), "GaussianProcess: noise_ratio is ",
          noise_ratio.value_or(0), ", must be positive");
   demand(starts >= 1 && iterations >= 1, "GaussianProcess: starts is ", starts, ", iterations is ", iterations,
@@ -34,10 +35,10 @@ VERNIER_IMPL detail::FittedProcess GaussianProcess::solve(const ConstMatrixRef& 
   const VectorX weights = detail::weights_or_ones(options.weights, inputs.rows());
   const VectorX found = logarithms(features.values, dimension, targets, weights, options);
   const double ratio = std::exp(found(dimension));
-  VectorX scales = found.head(dimension);
+  VectorX scales = VERNIER_LATER(found).head(dimension);
   detail::exponentiate(scales);
   features.divide(scales);
-  const VectorX inverse = weights.cwiseInverse();
+  const VectorX inverse = VERNIER_LATER(weights).cwiseInverse();
   const detail::KernelSystem system(detail::kernel_matrix(kernel, features.values), ratio * inverse, targets);
   demand(system.solved, "GaussianProcess: noise_ratio is ", ratio, ", too small for ", inputs.rows(), " samples");
   VectorX variance = detail::varying_outputs(targets);

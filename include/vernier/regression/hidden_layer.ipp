@@ -61,19 +61,21 @@ VERNIER_IMPL void HiddenLayer::outputs(const ConstMatrixRef& features, const Con
   if (activation == Activation::radial_basis) {
     for (Index k = 0; k < nodes; ++k) {
       const double inverse_width = theta(k * (f + 1) + f), factor = -inverse_width * inverse_width;
-      out.col(k).setZero();
+      VERNIER_LATER(out).col(k).setZero();
       for (Index j = 0; j < f; ++j)
-        out.col(k) += factor * (features.col(j) - VectorX::Constant(features.rows(), weights(j, k))).cwiseAbs2();
+        VERNIER_LATER(out).col(k) +=
+            factor * (VERNIER_LATER(features).col(j) - VectorX::Constant(features.rows(), weights(j, k))).cwiseAbs2();
       for (Index i = 0; i < out.rows(); ++i) out(i, k) = std::exp(out(i, k));  // zero far away, unlike Eigen's
     }
   } else {
-    for (Index k = 0; k < nodes; ++k) out.col(k).setConstant(theta(k * (f + 1) + f));
+    for (Index k = 0; k < nodes; ++k) VERNIER_LATER(out).col(k).setConstant(theta(k * (f + 1) + f));
     detail::add_product(out, features, weights);
   }
+  auto values = VERNIER_LATER(out).array();
   switch (activation) {
-    case Activation::sigmoid: out.array() = out.array().logistic(); break;
-    case Activation::tanh: out.array() = out.array().tanh(); break;
-    case Activation::sine: out.array() = out.array().sin(); break;
+    case Activation::sigmoid: values = values.logistic(); break;
+    case Activation::tanh: values = values.tanh(); break;
+    case Activation::sine: values = values.sin(); break;
     case Activation::radial_basis: break;
   }
 }

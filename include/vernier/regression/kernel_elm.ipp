@@ -30,7 +30,7 @@ VERNIER_IMPL detail::FittedKernels KernelElm::solve(const ConstMatrixRef& inputs
             features.values,
             MatrixX::Zero(targets.rows(), targets.cols()),
             detail::transposed_product(targets, weights) / weights.sum()};
-  const VectorX inverse = weights.cwiseInverse();
+  const VectorX inverse = VERNIER_LATER(weights).cwiseInverse();
   const detail::KernelSystem system(detail::kernel_matrix(Kernel::squared_exponential, features.values),
                                     chosen.lambda * inverse, targets);
   demand(system.solved, "KernelElm: lambda is ", chosen.lambda, ", too small for ", inputs.rows(),

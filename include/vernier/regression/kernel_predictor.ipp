@@ -7,7 +7,7 @@
 
 namespace vernier::detail {
 
-VERNIER_IMPL void exponentiate(VectorX& values) { values.array() = values.array().exp(); }
+VERNIER_IMPL void exponentiate(VectorX& values) { VERNIER_LATER(values).array() = VERNIER_LATER(values).array().exp(); }
 
 VERNIER_IMPL void kernel_values(Kernel kernel, VectorX& squares) {
   if (kernel == Kernel::squared_exponential) {
@@ -16,7 +16,7 @@ VERNIER_IMPL void kernel_values(Kernel kernel, VectorX& squares) {
     return;
   }
   squares *= 5;
-  const VectorX s = squares.cwiseSqrt();
+  const VectorX s = VERNIER_LATER(squares).cwiseSqrt();
   squares = -1 * s;
   exponentiate(squares);
   for (Index i = 0; i < s.size(); ++i) squares(i) *= 1 + s(i) * (1 + s(i) * (1.0 / 3));
@@ -47,7 +47,7 @@ VERNIER_IMPL NodeSum node_sum_of(const FittedKernels& fitted, int inputs) {
          fitted.alpha.rows(), " coefficients");
   const NodeFunction function =
       fitted.kernel == Kernel::squared_exponential ? NodeFunction::squared_exponential : NodeFunction::matern_5_2;
-  return {function,  fitted.input_map, inputs,     fitted.scaling, fitted.centres.transpose(),
+  return {function,  fitted.input_map, inputs,     fitted.scaling, VERNIER_LATER(fitted.centres).transpose(),
           VectorX(), fitted.alpha,     fitted.mean};
 }
 

@@ -23,8 +23,8 @@ VERNIER_IMPL RidgeSolution relative_ridge(const ConstMatrixRef& h, const ConstMa
   MatrixX gram = MatrixX::Zero(nodes, nodes);  // its lower triangle, and blocks of the diagonal
   for (Index first = 0, width = 32; first < nodes; first += width) {
     const Index rest = nodes - first, columns = (std::min)(width, rest);
-    detail::add_transposed_product(gram.block(first, first, rest, columns), h.rightCols(rest),
-                                   h.middleCols(first, columns));
+    detail::add_transposed_product(VERNIER_LATER(gram).block(first, first, rest, columns),
+                                   VERNIER_LATER(h).rightCols(rest), VERNIER_LATER(h).middleCols(first, columns));
   }
   const double lambda = relative_lambda * detail::diagonal_of(gram).sum() / static_cast<double>(nodes);
   RidgeSolution out;
@@ -40,8 +40,8 @@ VERNIER_IMPL RidgeSolution relative_ridge(const ConstMatrixRef& h, const ConstMa
     detail::solve_cholesky(gram, out.beta);
   } else {
     MatrixX stacked = MatrixX::Zero(h.rows() + nodes, nodes), right = MatrixX::Zero(h.rows() + nodes, t.cols());
-    stacked.topRows(h.rows()) = h;
-    right.topRows(t.rows()) = t;
+    VERNIER_LATER(stacked).topRows(h.rows()) = h;
+    VERNIER_LATER(right).topRows(t.rows()) = t;
     for (Index k = 0; k < nodes; ++k) stacked(h.rows() + k, k) = std::sqrt(lambda);
     out.beta = detail::solve_by_qr(stacked, right).solution;
   }
@@ -56,7 +56,7 @@ VERNIER_IMPL MatrixX ridge_weights(const ConstMatrixRef& gram, const ConstMatrix
   MatrixX regularised = gram;
   for (Index k = 0; k < regularised.rows(); ++k) regularised(k, k) += lambda;
   if (!detail::cholesky(regularised)) return {};
-  MatrixX beta = right.transpose();
+  MatrixX beta = VERNIER_LATER(right).transpose();
   detail::solve_cholesky(regularised, beta);
   return beta;
 }
@@ -92,7 +92,7 @@ namespace detail {
 /// Shares of samples in the sum of their weights.
 /// @param weights null: all the same
 VERNIER_LOCAL VectorX shares_of(const VectorX* weights, Index samples) {
-  if (weights != nullptr) return *weights / weights->sum();
+  if (weights != nullptr) return VERNIER_LATER(*weights) / weights->sum();
   return VectorX::Constant(samples, 1 / static_cast<double>(samples));
 }
 
@@ -104,7 +104,7 @@ VERNIER_IMPL RidgePath::RidgePath(const ConstMatrixRef& h, const ConstMatrixRef&
       mean_t_(weights != nullptr ? detail::transposed_product(t, shares_) : detail::column_means(t)),
       centred_t_(scaled(detail::rows_minus(t, mean_t_), weights != nullptr)),
       svd_(detail::thin_svd(scaled(detail::rows_minus(h, mean_h_), weights != nullptr))),
-      squares_(svd_.u.cwiseAbs2()),
+      squares_(VERNIER_LATER(svd_.u).cwiseAbs2()),
       projected_(detail::transposed_matrix_product(svd_.u, centred_t_)) {
   if (rank() == 0) svd_.s.setZero();
 }
@@ -125,7 +125,7 @@ VERNIER_IMPL MatrixX RidgePath::beta(double lambda) const {
 }
 
 VERNIER_IMPL VectorX RidgePath::offset(const MatrixX& beta) const {
-  return mean_t_ - detail::transposed_product(beta, mean_h_);
+  return VERNIER_LATER(mean_t_) - detail::transposed_product(beta, mean_h_);
 }
 
 VERNIER_IMPL MatrixX RidgePath::leave_one_out_residuals(double lambda) const {
@@ -135,8 +135,8 @@ VERNIER_IMPL MatrixX RidgePath::leave_one_out_residuals(double lambda) const {
   for (Index i = 0; i < n; ++i) one_minus_leverage(i) = 1 - shares_(i);
   if (std::isfinite(lambda)) {
     const Index r = rank();
-    const auto u = svd_.u.leftCols(r), squares = squares_.leftCols(r);
-    const MatrixX projected = projected_.topRows(r);
+    const auto u = VERNIER_LATER(svd_.u).leftCols(r), squares = VERNIER_LATER(squares_).leftCols(r);
+    const MatrixX projected = VERNIER_LATER(projected_).topRows(r);
     VectorX kept(r);
     for (Index j = 0; j < r; ++j) kept(j) = lambda / (svd_.s(j) * svd_.s(j) + lambda);
     if (r < n - 1) {  // what U does not span; where it spans all centred samples, nothing but rounding
@@ -157,8 +157,8 @@ VERNIER_IMPL MatrixX RidgePath::leave_one_out_residuals(double lambda) const {
 
 VERNIER_IMPL MatrixX RidgePath::scaled(const ConstMatrixRef& rows, bool weighted) const {
   if (!weighted) return rows;
-  const VectorX relative = static_cast<double>(shares_.size()) * shares_;
-  return detail::rows_scaled(relative.cwiseSqrt(), rows);
+  const VectorX relative = static_cast<double>(shares_.size()) * VERNIER_LATER(shares_);
+  return detail::rows_scaled(VERNIER_LATER(relative).cwiseSqrt(), rows);
 }
 
 VERNIER_IMPL LeaveOneOutChoice choose_lambda(const RidgePath& path, Index samples) {
@@ -179,7 +179,8 @@ VERNIER_IMPL double evidence_against_mean(const RidgePath& path, double lambda, 
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!std::isfinite(lambda) || samples < 3) return 0;
   const VectorX of_mean = detail::squared_row_norms(path.leave_one_out_residuals(infinity)),
-                of_path = detail::squared_row_norms(path.leave_one_out_residuals(lambda)), gain = of_mean - of_path;
+                of_path = detail::squared_row_norms(path.leave_one_out_residuals(lambda)),
+                gain = VERNIER_LATER(of_mean) - of_path;
   const double mean = gain.mean(), n = static_cast<double>(samples);
   double sum = 0;
   for (const double value : gain) sum += (value - mean) * (value - mean);

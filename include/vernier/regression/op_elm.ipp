@@ -30,19 +30,20 @@ VERNIER_IMPL detail::FittedNetwork OpElm::solve(const ConstMatrixRef& inputs, co
   HiddenLayer pruned = layer();
   pruned.nodes = (std::max)(1, static_cast<int>(kept));
   const Index each = layer().features(n) + 1;
-  if (kept == 0) return {pruned, scaling, theta.head(each), MatrixX::Zero(1, targets.cols()), mean};
+  if (kept == 0) return {pruned, scaling, VERNIER_LATER(theta).head(each), MatrixX::Zero(1, targets.cols()), mean};
   const std::vector<Index> nodes(ranked.order.begin(), ranked.order.begin() + static_cast<std::ptrdiff_t>(kept));
   MatrixX design = MatrixX::Ones(h.rows(), pruned.nodes + 1);
   VectorX chosen(each * pruned.nodes);
   for (Index k = 0; k < pruned.nodes; ++k) {
     const Index node = nodes[static_cast<std::size_t>(k)];
-    design.col(k) = h.col(node);
-    chosen.segment(k * each, each) = theta.segment(node * each, each);
+    VERNIER_LATER(design).col(k) = VERNIER_LATER(h).col(node);
+    VERNIER_LATER(chosen).segment(k * each, each) = VERNIER_LATER(theta).segment(node * each, each);
   }
-  const VectorX root = weights.cwiseSqrt();
+  const VectorX root = VERNIER_LATER(weights).cwiseSqrt();
   const MatrixX beta =
       detail::solve_by_qr(detail::rows_scaled(root, design), detail::rows_scaled(root, centred)).solution;
-  return {pruned, scaling, chosen, beta.topRows(pruned.nodes), detail::row_of(beta, pruned.nodes) + mean};
+  return {pruned, scaling, chosen, VERNIER_LATER(beta).topRows(pruned.nodes),
+          detail::row_of(beta, pruned.nodes) + mean};
 }
 
 }  // namespace vernier

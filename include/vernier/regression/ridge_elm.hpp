@@ -19,9 +19,7 @@ struct RidgeElm {
   /// Features of the inputs.
   InputMap input_map = InputMap::sines_and_cosines;
   Scaling input_scaling = Scaling::min_max;  ///< of the features, see `HiddenLayer`
-  double evidence = 3;      ///< standard errors by which leave-one-out must beat the mean alone, or the mean is kept: a
-                            ///< search over many layers finds one that seems a little better by chance
-  double weight_limit = 1;  ///< hidden weights and biases lie in [-limit, limit]
+  double weight_limit = 1;                   ///< hidden weights and biases lie in [-limit, limit]
 
   /// The hidden layer.
   HiddenLayer layer() const { return {hidden_nodes, activation, input_map, input_scaling, weight_limit}; }

@@ -12,11 +12,11 @@ VERNIER_IMPL ColumnScaling ColumnScaling::fit(const ConstMatrixRef& columns, Sca
   ColumnScaling s{VectorX::Zero(d), VectorX::Ones(d)};
   if (kind == Scaling::none || n == 0) return s;
   for (Index j = 0; j < d; ++j) {
-    const double low = columns.col(j).minCoeff(), high = columns.col(j).maxCoeff();
+    const double low = VERNIER_LATER(columns).col(j).minCoeff(), high = VERNIER_LATER(columns).col(j).maxCoeff();
     double width = (high - low) / 2;
     s.offset(j) = low + width;
     if (kind == Scaling::standard) {
-      s.offset(j) = columns.col(j).mean();
+      s.offset(j) = VERNIER_LATER(columns).col(j).mean();
       double sum = 0;
       for (Index i = 0; i < n; ++i) sum += std::pow(columns(i, j) - s.offset(j), 2);
       width = std::sqrt(sum / static_cast<double>(n));

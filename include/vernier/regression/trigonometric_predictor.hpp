@@ -78,7 +78,8 @@ class TrigonometricSum {
 template <int Inputs, int Outputs>
 class TrigonometricPredictor
     : public detail::PredictorInterface<TrigonometricPredictor<Inputs, Outputs>, Inputs, Outputs> {
-  static_assert(Inputs <= 9, "the 3^N coefficients of more than nine inputs need too much memory and time");
+  static_assert(Inputs <= max_arm_joints,
+                "the 3^N coefficients of more than nine inputs need too much memory and time");
   using Base = detail::PredictorInterface<TrigonometricPredictor<Inputs, Outputs>, Inputs, Outputs>;
 
  public:

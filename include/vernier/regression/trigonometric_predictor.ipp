@@ -11,10 +11,8 @@
 
 namespace vernier::detail {
 
-inline constexpr Index max_trigonometric_inputs = 9;
-
 VERNIER_IMPL void trigonometric_features(const double* x, Index n, double* out) noexcept {
-  double sine[max_trigonometric_inputs], cosine[max_trigonometric_inputs];
+  double sine[max_arm_joints], cosine[max_arm_joints];
   sines_and_cosines_of(x, n, sine, cosine);
   out[0] = 1;
   Index size = 1;
@@ -69,7 +67,7 @@ VERNIER_INLINE void differentiate(const double* thirds, double sine, double cosi
 /// and with `cos q T_1 - sin q T_2` the derivative with respect to it, which is then summed out in the same way.
 VERNIER_IMPL void TrigonometricSum::evaluate(const double* x, double* y, double* slope,
                                              double* workspace) const noexcept {
-  double sine[max_trigonometric_inputs], cosine[max_trigonometric_inputs];
+  double sine[max_arm_joints], cosine[max_arm_joints];
   sines_and_cosines_of(x, inputs_, sine, cosine);
   const Index outputs = coefficients_.cols();
   double* const even = workspace;
@@ -100,7 +98,7 @@ VERNIER_IMPL void TrigonometricSum::standard_deviation(const double* x, double* 
     z(f) = workspace[s.features[static_cast<std::size_t>(f)]] * s.scale(f) - s.mean(f);
   double variance = s.mean_share, left = z.squaredNorm();
   for (Index k = 0; k < s.gain.size(); ++k) {
-    const double along = s.directions.col(k).dot(z);
+    const double along = VERNIER_LATER(s.directions).col(k).dot(z);
     variance += s.gain(k) * along * along;
     left -= along * along;
   }

@@ -52,7 +52,7 @@ VERNIER_IMPL detail::TrigonometricSum TrigonometricRegression::solve(const Const
                                      .gain = std::move(found.gain),
                                      .rest = found.rest,
                                      .mean_share = 1 / path.total_weight(),
-                                     .noise = found.noise.cwiseSqrt()};
+                                     .noise = VERNIER_LATER(found.noise).cwiseSqrt()};
   return {n, coefficients, std::move(spread)};
 }
 

@@ -19,7 +19,7 @@ VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
   for (Index i = 0; i < individuals; ++i)
     weights(i) = std::log((static_cast<double>(individuals) + 1) / 2) - std::log(static_cast<double>(i + 1));
   const auto effective = [](const VectorX& w) { return w.sum() * w.sum() / w.squaredNorm(); };
-  VectorX better = weights.head(mu), worse = weights.tail(individuals - mu);
+  VectorX better = VERNIER_LATER(weights).head(mu), worse = VERNIER_LATER(weights).tail(individuals - mu);
   mu_eff = effective(better);
   c_c = (4 + mu_eff / n) / (n + 4 + 2 * mu_eff / n);
   c_1 = 2 / ((n + 1.3) * (n + 1.3) + mu_eff);
@@ -34,8 +34,8 @@ VERNIER_IMPL CmaEsConstants::CmaEsConstants(Index dimension, Index individuals)
         (std::max)(0.0, (std::min)({1 + c_1 / c_mu, 1 + 2 * of_worse / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)})) /
         sum;
   }
-  weights.head(mu) = better;
-  weights.tail(individuals - mu) = worse;
+  VERNIER_LATER(weights).head(mu) = better;
+  VERNIER_LATER(weights).tail(individuals - mu) = worse;
 }
 
 VERNIER_IMPL bool CmaEs::State::consistent() const {
@@ -69,7 +69,8 @@ VERNIER_IMPL void CmaEs::step(State& s, const Box& box, Evaluate evaluate) const
 VERNIER_IMPL MatrixX CmaEs::stretched(const State& s, const MatrixX& z) {
   const MatrixX scaled = detail::rows_scaled(s.scales, z);
   MatrixX out(z.rows(), z.cols());
-  for (Index k = 0; k < z.cols(); ++k) out.col(k) = detail::product(s.basis, scaled.col(k));
+  for (Index k = 0; k < z.cols(); ++k)
+    VERNIER_LATER(out).col(k) = detail::product(s.basis, VERNIER_LATER(scaled).col(k));
   return out;
 }
 
@@ -83,9 +84,10 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
   const Index n = s.mean.size(), lambda = z.cols();
   const CmaEsConstants c(n, lambda);
   MatrixX sorted(n, lambda);
-  for (Index i = 0; i < lambda; ++i) sorted.col(i) = z.col(order[static_cast<std::size_t>(i)]);
-  const VectorX z_mean = detail::product(sorted.leftCols(c.mu), c.weights.head(c.mu));
-  const VectorX y_mean = detail::product(s.basis, s.scales.cwiseProduct(z_mean));
+  for (Index i = 0; i < lambda; ++i)
+    VERNIER_LATER(sorted).col(i) = VERNIER_LATER(z).col(order[static_cast<std::size_t>(i)]);
+  const VectorX z_mean = detail::product(VERNIER_LATER(sorted).leftCols(c.mu), VERNIER_LATER(c.weights).head(c.mu));
+  const VectorX y_mean = detail::product(s.basis, VERNIER_LATER(s.scales).cwiseProduct(z_mean));
   s.mean += s.sigma * y_mean;
   ++s.updates;
 
@@ -110,7 +112,7 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
     }
   };
   add_square(c.c_1, s.path_c.data());
-  for (Index k = 0; k < lambda; ++k) add_square(c.c_mu * weights(k), y.col(k).data());
+  for (Index k = 0; k < lambda; ++k) add_square(c.c_mu * weights(k), VERNIER_LATER(y).col(k).data());
   s.sigma *= std::exp((std::min)(1.0, c.c_sigma / c.d_sigma * (length / c.expected_norm - 1)));
 
   if (static_cast<double>(s.updates - s.decomposed) > 1 / ((c.c_1 + c.c_mu) * static_cast<double>(n) * 10)) {
@@ -121,7 +123,7 @@ VERNIER_IMPL void CmaEs::update(State& s, const MatrixX& z, const std::vector<In
       return;
     }
     s.basis = eigen.vectors;
-    s.scales = values.cwiseSqrt();
+    s.scales = VERNIER_LATER(values).cwiseSqrt();
     s.decomposed = s.updates;
   }
 }
@@ -167,9 +169,10 @@ VERNIER_IMPL void CmaEs::check_convergence(State& s, double best, double worst) 
   if (s.history.size() < length) s.history.conservativeResize(s.history.size() + 1);
   s.history(s.history.size() - 1) = best;
   const auto within = [&](double a, double b) { return same_value(a, b) || std::abs(a - b) <= tolerance_f; };
-  const bool flat =
-      s.history.size() == length && within(s.history.minCoeff(), s.history.maxCoeff()) && within(best, worst);
-  const double spread = s.sigma * (std::max)({s.path_c.maxCoeff(), -s.path_c.minCoeff(),
+  const bool flat = s.history.size() == length &&
+                    within(VERNIER_LATER(s.history).minCoeff(), VERNIER_LATER(s.history).maxCoeff()) &&
+                    within(best, worst);
+  const double spread = s.sigma * (std::max)({VERNIER_LATER(s.path_c).maxCoeff(), -VERNIER_LATER(s.path_c).minCoeff(),
                                               std::sqrt(detail::diagonal_of(s.covariance).maxCoeff())});
   s.converged = s.converged || flat || !(spread >= tolerance_x) || !(spread < 1e6);
 }

@@ -21,16 +21,16 @@ VERNIER_IMPL void DifferentialEvolution::step(State& s, const Box& box, Evaluate
   for (Index k = 0; k < n; ++k) {
     const Index r1 = detail::index_besides(n, {k}, s.rng), r2 = detail::index_besides(n, {k, r1}, s.rng),
                 r3 = detail::index_besides(n, {k, r1, r2}, s.rng);
-    const double* from = base == DifferentialBase::best ? s.best.data() : x.col(r1).data();
+    const double* from = base == DifferentialBase::best ? s.best.data() : VERNIER_LATER(x).col(r1).data();
     const auto mutant = [&](Index d) { return from[d] + weight * (x(d, r2) - x(d, r3)); };
-    detail::cross_binomially(x.col(k).data(), mutant, crossover_probability, trials_outside, box, s.rng,
-                             trials.col(k).data());
+    detail::cross_binomially(VERNIER_LATER(x).col(k).data(), mutant, crossover_probability, trials_outside, box, s.rng,
+                             VERNIER_LATER(trials).col(k).data());
   }
   VectorX values;
   evaluate(trials, values);
   for (Index k = 0; k < n; ++k) {
     if (values(k) > s.fitness(k)) continue;
-    s.positions.col(k) = trials.col(k);
+    VERNIER_LATER(s.positions).col(k) = VERNIER_LATER(trials).col(k);
     s.fitness(k) = values(k);
   }
   s.keep_best(trials, values);

@@ -12,7 +12,7 @@ namespace vernier {
 namespace detail {
 
 /// Exchanges the bits of a mask.
-inline void exchange_bits(std::uint16_t& a, std::uint16_t& b, std::uint16_t mask) {
+VERNIER_LOCAL inline void exchange_bits(std::uint16_t& a, std::uint16_t& b, std::uint16_t mask) {
   const auto differing = static_cast<std::uint16_t>((a ^ b) & mask);
   a = static_cast<std::uint16_t>(a ^ differing);
   b = static_cast<std::uint16_t>(b ^ differing);

@@ -26,10 +26,11 @@ namespace vernier {
 struct LShade {
   Index max_evaluations = 15'000;         ///< the schedule, including the first population
   double individuals_per_dimension = 18;  ///< first population, at least `final_individuals`
-  int final_individuals = 4;              ///< at least 4
   int memory = 6;                         ///< number of remembered pairs of F and CR
   double archive_rate = 2.6;              ///< size of the archive relative to the population
   double best_share = 0.11;               ///< p: share of the population that counts as best, at least two
+
+  static constexpr int final_individuals = 4;  ///< of the last population: the fewest that a mutation needs
 
   /// A population between two generations.
   struct State : PointPopulation {

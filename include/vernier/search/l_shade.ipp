@@ -48,11 +48,12 @@ VERNIER_IMPL void LShade::step(State& s, const Box& box, Evaluate evaluate) cons
     } while (!(f(k) > 0));
     const Index leader = order[s.rng.below(leaders)], r1 = detail::index_besides(n, {k}, s.rng),
                 r2 = detail::index_besides(n + s.archive.cols(), {k, r1}, s.rng);
-    const double* other = r2 < n ? x.col(r2).data() : s.archive.col(r2 - n).data();
+    const double* other = r2 < n ? VERNIER_LATER(x).col(r2).data() : VERNIER_LATER(s.archive).col(r2 - n).data();
     const auto mutant = [&](Index d) {
       return x(d, k) + f(k) * (x(d, leader) - x(d, k)) + f(k) * (x(d, r1) - other[d]);
     };
-    detail::cross_binomially(x.col(k).data(), mutant, cr(k), TrialRule::halfway, box, s.rng, trials.col(k).data());
+    detail::cross_binomially(VERNIER_LATER(x).col(k).data(), mutant, cr(k), TrialRule::halfway, box, s.rng,
+                             VERNIER_LATER(trials).col(k).data());
   }
   evaluate(trials, values);
   s.evaluations += count;
@@ -94,17 +95,17 @@ VERNIER_IMPL void LShade::replace(State& s, const MatrixX& trials, const VectorX
   const Index full = archive_size(s.positions.cols());
   MatrixX archive(s.archive.rows(), (std::max)(full, s.archive.cols()));
   Index filled = s.archive.cols();
-  archive.leftCols(filled) = s.archive;
+  VERNIER_LATER(archive).leftCols(filled) = s.archive;
   for (Index k = 0; k < values.size(); ++k) {
     if (values(k) > s.fitness(k)) continue;
     if (values(k) < s.fitness(k) && full > 0) {
       const Index at = filled < full ? filled++ : static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(filled)));
-      archive.col(at) = s.positions.col(k);
+      VERNIER_LATER(archive).col(at) = VERNIER_LATER(s.positions).col(k);
     }
-    s.positions.col(k) = trials.col(k);
+    VERNIER_LATER(s.positions).col(k) = VERNIER_LATER(trials).col(k);
     s.fitness(k) = values(k);
   }
-  s.archive = archive.leftCols(filled);
+  s.archive = VERNIER_LATER(archive).leftCols(filled);
 }
 
 VERNIER_IMPL void LShade::shrink(State& s) const {
@@ -114,15 +115,15 @@ VERNIER_IMPL void LShade::shrink(State& s) const {
   MatrixX positions(s.positions.rows(), n);
   VectorX fitness(n);
   for (Index k = 0; k < n; ++k) {
-    positions.col(k) = s.positions.col(order[static_cast<std::size_t>(k)]);
+    VERNIER_LATER(positions).col(k) = VERNIER_LATER(s.positions).col(order[static_cast<std::size_t>(k)]);
     fitness(k) = s.fitness(order[static_cast<std::size_t>(k)]);
   }
   s.positions.swap(positions);
   s.fitness.swap(fitness);
   Index filled = s.archive.cols();
   for (; filled > archive_size(n); --filled)
-    s.archive.col(static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(filled)))) =
-        s.archive.col(filled - 1).eval();
+    VERNIER_LATER(s.archive).col(static_cast<Index>(s.rng.below(static_cast<std::uint64_t>(filled)))) =
+        VERNIER_LATER(s.archive).col(filled - 1).eval();
   s.archive.conservativeResize(Eigen::NoChange, filled);
 }
 
@@ -133,7 +134,6 @@ VERNIER_IMPL Index LShade::archive_size(Index individuals) const {
 VERNIER_IMPL void LShade::validate() const {
   demand(individuals_per_dimension > 0 && individuals_per_dimension <= 1e6, "LShade: individuals_per_dimension is ",
          individuals_per_dimension, ", must lie in (0, 1e6]");
-  demand(final_individuals >= 4, "LShade: final_individuals is ", final_individuals, ", must be at least 4");
   demand(memory >= 1, "LShade: memory is ", memory, ", must be at least 1");
   demand(archive_rate >= 0 && archive_rate <= 1000, "LShade: archive_rate is ", archive_rate,
          ", must lie in [0, 1000]");

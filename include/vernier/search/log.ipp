@@ -1,20 +1,11 @@
 #pragma once
 
-#include "vernier/search/log.hpp"
-
-#include <chrono>
 #include <limits>
 
+#include "vernier/core/detail/steady_seconds.hpp"
+#include "vernier/search/log.hpp"
+
 namespace vernier {
-
-namespace detail {
-
-/// Seconds on a monotonic clock.
-VERNIER_LOCAL double steady_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace detail
 
 VERNIER_IMPL SearchLog::SearchLog(ObserverRef next) : next_(next), started_(detail::steady_seconds()) {}
 

@@ -17,12 +17,14 @@ namespace detail {
 VERNIER_IMPL void ObjectiveRef::evaluate(ExecutorRef executor, const MatrixX& population, VectorX& fitness) const {
   fitness.resize(population.cols());
   // The fingerprint of the search, by which an executor detects processes that run different ones.
-  if (executor.is_distributed()) fitness = population.row(0).transpose();
+  if (executor.is_distributed()) fitness = VERNIER_LATER(population).row(0).transpose();
   executor.allgather(fitness, [&](Index begin, Index end) {
-    if (batch) return batch(population.middleCols(begin, end - begin), fitness.segment(begin, end - begin));
+    if (batch)
+      return batch(VERNIER_LATER(population).middleCols(begin, end - begin),
+                   VERNIER_LATER(fitness).segment(begin, end - begin));
     VectorX x(population.rows());
     for (Index k = begin; k < end; ++k) {
-      std::copy_n(population.col(k).data(), x.size(), x.data());
+      std::copy_n(VERNIER_LATER(population).col(k).data(), x.size(), x.data());
       fitness(k) = scalar(x);
     }
   });

@@ -28,7 +28,7 @@ VERNIER_IMPL void Pso::step(State& s, const Box& box, Evaluate evaluate) const {
   for (Index k = 0; k < n; ++k) {
     const double* leader = s.best.data();
     if (neighbourhood != Neighbourhood::global)
-      leader = s.best_positions.col(informant(s.best_values, k, columns)).data();
+      leader = VERNIER_LATER(s.best_positions).col(informant(s.best_values, k, columns)).data();
     for (Index d = 0; d < s.positions.rows(); ++d) {
       double& x = s.positions(d, k);
       double& v = s.velocities(d, k);

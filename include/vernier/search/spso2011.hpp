@@ -22,11 +22,12 @@ namespace vernier {
 /// All particles move, then all are evaluated (synchronous).
 /// @cite Clerc 2012; Zambrano-Bigiarini 2013
 struct Spso2011 {
-  int particles = 40;                                      ///< at least 1
-  Index iterations = 375;                                  ///< generations after the first population
-  int informed = 3;                                        ///< number of particles each one informs, drawn with repeats
-  double inertia = 1 / (2 * std::numbers::ln2_v<double>);  ///< w
-  double acceleration = 0.5 + std::numbers::ln2_v<double>;  ///< c
+  int particles = 40;      ///< at least 1
+  Index iterations = 375;  ///< generations after the first population
+
+  static constexpr int informed = 3;  ///< number of particles each one informs, drawn with repeats
+  static constexpr double inertia = 1 / (2 * std::numbers::ln2_v<double>);   ///< w
+  static constexpr double acceleration = 0.5 + std::numbers::ln2_v<double>;  ///< c
 
   /// Particle indices, informed x particles: column k has the particles that k informs.
   using Links = Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic>;

@@ -5,8 +5,9 @@
 namespace vernier {
 
 VERNIER_IMPL bool Spso2011::State::consistent() const {
-  return Swarm::consistent() && (links.size() == 0 || (links.cols() == positions.cols() && links.minCoeff() >= 0 &&
-                                                       links.maxCoeff() < positions.cols()));
+  return Swarm::consistent() &&
+         (links.size() == 0 || (links.cols() == positions.cols() && VERNIER_LATER(links).minCoeff() >= 0 &&
+                                VERNIER_LATER(links).maxCoeff() < positions.cols()));
 }
 
 VERNIER_IMPL Spso2011::State Spso2011::start(const Box& box, std::uint64_t seed, Evaluate evaluate) const {
@@ -66,9 +67,6 @@ VERNIER_IMPL std::vector<Index> Spso2011::best_informants(const VectorX& values,
 VERNIER_IMPL void Spso2011::validate() const {
   demand(particles >= 1, "Spso2011: particles is ", particles, ", must be at least 1");
   demand(iterations >= 0, "Spso2011: iterations is ", iterations, ", must not be negative");
-  demand(informed >= 1, "Spso2011: informed is ", informed, ", must be at least 1");
-  demand(inertia >= 0 && inertia <= 1 && acceleration >= 0 && acceleration <= 10, "Spso2011: inertia ", inertia,
-         " must lie in [0, 1] and acceleration ", acceleration, " in [0, 10]");
 }
 
 }  // namespace vernier

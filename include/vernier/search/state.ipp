@@ -6,10 +6,10 @@ namespace vernier {
 
 VERNIER_IMPL void CommonState::keep_best(const MatrixX& population, const VectorX& fitness) {
   Index leader = 0;
-  const double value = fitness.minCoeff(&leader);
+  const double value = VERNIER_LATER(fitness).minCoeff(&leader);
   if (!(value < best_fitness) && best.size() > 0) return;
   best_fitness = value;
-  best = population.col(leader);
+  best = VERNIER_LATER(population).col(leader);
 }
 
 VERNIER_IMPL MatrixX uniform_points(const Box& box, Index count, Rng& rng) {

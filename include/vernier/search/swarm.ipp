@@ -24,7 +24,7 @@ VERNIER_IMPL void Swarm::evaluate_and_update(Evaluate evaluate) {
   for (Index k = 0; k < positions.cols(); ++k) {
     if (!(fitness(k) < best_values(k))) continue;
     best_values(k) = fitness(k);
-    best_positions.col(k) = positions.col(k);
+    VERNIER_LATER(best_positions).col(k) = VERNIER_LATER(positions).col(k);
   }
   keep_best(positions, fitness);
   ++generation;

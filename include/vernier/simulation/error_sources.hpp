@@ -26,8 +26,8 @@ struct JointErrorSizes {
   int harmonics = 3;         ///< number of harmonics; harmonic k has the size `harmonic / k^decay`
   double decay = 1;          ///< how fast higher harmonics die out
   double ripple = 0;         ///< of one more harmonic, that of the meshing teeth [rad]
-  int ripple_harmonic = 100;         ///< periods a turn of the joint; above `harmonics`
-  Vector3 down = -Vector3::UnitZ();  ///< direction of gravity in the base frame of the chain; a unit vector
+  int ripple_harmonic = 100;  ///< periods a turn of the joint; above `harmonics`
+  Vector3 down{0, 0, -1};     ///< direction of gravity in the base frame of the chain; a unit vector
 };
 
 namespace detail {

@@ -22,16 +22,16 @@ namespace vernier::testing {
 /// How closely the laws are held.
 template <int N>
 struct BranchLawOptions {
-  double position_tolerance = 1e-9;    ///< what a branch may miss its target by [m]
-  double rotation_tolerance = 1e-9;    ///< likewise [rad]
-  double distinct = 1e-6;              ///< joint values that differ by less are the same [rad]
-  double generating_tolerance = 1e-6;  ///< of the joint values that made the target [rad]
+  double position_tolerance = 1e-9;                     ///< what a branch may miss its target by [m]
+  double rotation_tolerance = 1e-9;                     ///< likewise [rad]
+  static constexpr double distinct = 1e-6;              ///< joint values that differ by less are the same [rad]
+  static constexpr double generating_tolerance = 1e-6;  ///< of the joint values that made the target [rad]
   /// Samples whose Jacobian has a smaller singular value are next to a singularity: there a branch may be missing
   /// [m/rad].
-  double singular = 0.02;
-  double rotation_length = 0.3;  ///< 1 rad of rotation weighs as many metres in singular values [m]
-  JointLimits<N> limits{};       ///< those of the solver
-  int held_joint = -1;           ///< counted from 0; -1 where all move
+  static constexpr double singular = 0.02;
+  static constexpr double rotation_length = 0.3;  ///< 1 rad of rotation weighs as many metres in singular values [m]
+  JointLimits<N> limits{};                        ///< those of the solver
+  int held_joint = -1;                            ///< counted from 0; -1 where all move
 };
 
 namespace detail {

@@ -24,7 +24,8 @@ struct CompensatorLawOptions {
   double position_tolerance = 1e-6;  ///< of a converged correction: what `predict(command)` may miss the target by [m]
   double rotation_tolerance =
       1e-6;  ///< likewise [rad]; infinity for a compensator that leaves orientation to fall as it may
-  double value_tolerance = 1e-12;  ///< two ways to the same value [m], and of rotations being orthonormal
+  static constexpr double value_tolerance =
+      1e-12;  ///< two ways to the same value [m], and of rotations being orthonormal
 };
 
 namespace detail {

@@ -22,10 +22,10 @@ namespace vernier::testing {
 
 /// How closely the laws are held. Differences are measured per entry, relative to the entry where that exceeds 1.
 struct KinematicLawOptions {
-  double value_tolerance = 1e-12;       ///< two ways to the same value [m, or as a ratio]
-  double derivative_tolerance = 1e-8;   ///< a derivative and its central difference
-  double difference_step = 1e-5;        ///< of the central differences [rad, m]
-  double parameter_perturbation = 0.1;  ///< how far from its own parameters a model is tried [rad, m]
+  static constexpr double value_tolerance = 1e-12;       ///< two ways to the same value [m, or as a ratio]
+  double derivative_tolerance = 1e-8;                    ///< a derivative and its central difference
+  static constexpr double difference_step = 1e-5;        ///< of the central differences [rad, m]
+  static constexpr double parameter_perturbation = 0.1;  ///< how far from its own parameters a model is tried [rad, m]
 };
 
 namespace detail {

@@ -21,8 +21,8 @@ struct PathLawOptions {
   double position_tolerance = 1e-6;  ///< by which a command may miss its target [m]
   double rotation_tolerance = 1e-6;  ///< likewise [rad]
   double line_slack = 1.1;           ///< between the places where a path is checked a line may be left by so much more
-  double joint_tolerance = 1e-6;     ///< between a path and its reverse [rad, m]
-  bool reversible = true;            ///< whether the arm has no hysteresis
+  static constexpr double joint_tolerance = 1e-6;  ///< between a path and its reverse [rad, m]
+  bool reversible = true;                          ///< whether the arm has no hysteresis
 };
 
 namespace detail {

@@ -16,12 +16,12 @@ namespace vernier::testing::detail {
 using vernier::detail::all_finite;
 using vernier::detail::row_of;
 
-inline void set_row(MatrixX& matrix, Index i, const VectorX& values) {
+VERNIER_LOCAL inline void set_row(MatrixX& matrix, Index i, const VectorX& values) {
   for (Index c = 0; c < matrix.cols(); ++c) matrix(i, c) = values(c);
 }
 
 /// The largest absolute element; infinite where one is not finite.
-inline double largest_of(const MatrixX& matrix) {
+VERNIER_LOCAL inline double largest_of(const MatrixX& matrix) {
   if (!all_finite(matrix)) return std::numeric_limits<double>::infinity();
   double out = 0;
   for (Index k = 0; k < matrix.size(); ++k) out = (std::max)(out, std::abs(matrix.data()[k]));

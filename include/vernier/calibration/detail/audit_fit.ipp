@@ -134,7 +134,7 @@ VERNIER_LOCAL VectorX audit_whitened(const AuditResiduals& residuals) {
 }
 
 /// Three values from the k-th on.
-inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
+VERNIER_LOCAL inline Vector3 three(const VectorX& values, Index k) { return {values(k), values(k + 1), values(k + 2)}; }
 
 /// Weights of Cauchy's loss, positions and orientations apart.
 VERNIER_LOCAL VectorX audit_weights(const VectorX& whitened) {
@@ -190,7 +190,7 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
   const bool oriented = rows.oriented();
   const MatrixX jacobian = audit_jacobian(at, columns, oriented, fit.residuals);
   const VectorX whitened = audit_whitened(fit.residuals), weights = audit_weights(whitened);
-  MatrixX factor = normal_matrix(jacobian, weights, columns.precision), whitening = jacobian.transpose();
+  MatrixX factor = normal_matrix(jacobian, weights, columns.precision), whitening = VERNIER_LATER(jacobian).transpose();
   cholesky(factor);
   solve_lower(factor, whitening);
   std::vector<LeftOut> out(static_cast<std::size_t>(rows.size()));
@@ -202,11 +202,12 @@ VERNIER_IMPL std::vector<LeftOut> leave_out_rows(const AuditFit& fit, const Cons
       const Index k = values * i + part;
       Matrix3 h;
       for (Index a = 0; a < 3; ++a)
-        for (Index b = 0; b < 3; ++b) h(a, b) = whitening.col(k + a).dot(whitening.col(k + b));
-      const Matrix3 identity = Matrix3::Identity(), rest = (1 + 1e-9) * identity - weights(k) * h;
-      const Matrix3 kept = rest.inverse();
-      const Vector3 r = kept * three(whitened, k);
-      const Matrix3 covariance = identity + kept * h, weight = covariance.inverse();
+        for (Index b = 0; b < 3; ++b)
+          h(a, b) = VERNIER_LATER(whitening).col(k + a).dot(VERNIER_LATER(whitening).col(k + b));
+      const VERNIER_LATER_TYPE(Matrix3) identity = Matrix3::Identity(), rest = (1 + 1e-9) * identity - weights(k) * h;
+      const VERNIER_LATER_TYPE(Matrix3) kept = VERNIER_LATER(rest).inverse();
+      const VERNIER_LATER_TYPE(Vector3) r = kept * three(whitened, k);
+      const VERNIER_LATER_TYPE(Matrix3) covariance = identity + kept * h, weight = VERNIER_LATER(covariance).inverse();
       const double t = std::sqrt((std::max)(0.0, r.dot(weight * r)));
       factors[part / 3].push_back(t);
       if (part == 0) {
@@ -234,7 +235,7 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   BaseTrend out;
   const Index n = rows.size(), values = rows.oriented() ? 6 : 3;
   const int joints = fit.arm.joints();
-  const double first = times.minCoeff(), span = times.maxCoeff() - first;
+  const double first = VERNIER_LATER(times).minCoeff(), span = VERNIER_LATER(times).maxCoeff() - first;
   const AuditColumns columns(stds);
   const Index geometry = columns.size();
   const Index orders =
@@ -244,7 +245,7 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   PosesAndJacobians at;
   fit.arm.poses_and_parameter_jacobians(rows.joints, at);
   MatrixX design(values * n, all);
-  design.middleCols(6, geometry) = audit_jacobian(at, columns, rows.oriented(), fit.residuals);
+  VERNIER_LATER(design).middleCols(6, geometry) = audit_jacobian(at, columns, rows.oriented(), fit.residuals);
   const Vector3 mean = centroid(rows.positions);
   std::vector<Matrix6> motions(static_cast<std::size_t>(n));
   const auto sigma = [&](Index v) { return v < 3 ? fit.residuals.position_scale : fit.residuals.rotation_scale; };
@@ -277,11 +278,11 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   for (int round = 0; round < 3; ++round) {
     MatrixX normal = normal_matrix(design, weights, precision / (scale * scale));
     MatrixX columns_of_motion = MatrixX::Identity(all, 6);
-    solution = transposed_product(design, weights.cwiseProduct(whitened));
+    solution = transposed_product(design, VERNIER_LATER(weights).cwiseProduct(whitened));
     if (!cholesky(normal)) return out;
     solve_cholesky(normal, solution);
     solve_cholesky(normal, columns_of_motion);
-    covariance = columns_of_motion.topRows(6);
+    covariance = VERNIER_LATER(columns_of_motion).topRows(6);
     const VectorX left = whitened - product(design, solution);
     std::vector<double> norms, of_positions;
     for (Index k = 0; k + 3 <= left.size(); k += 3) {
@@ -300,17 +301,18 @@ VERNIER_IMPL BaseTrend base_trend(const AuditFit& fit, const ConstVectorRef& std
   out.chi_square = whitened_motion.squaredNorm() / (scale * scale * dof);
   out.centre = mean;
   double sum = 0;
-  for (const Matrix6& motion : motions) sum += Vector6(motion * out.motion).head<3>().squaredNorm();
+  for (const Matrix6& motion : motions)
+    sum += VERNIER_LATER(Vector6(motion * out.motion)).template head<3>().squaredNorm();
   out.displacement = std::sqrt(sum / static_cast<double>(n));
   return out;
 }
 
 VERNIER_IMPL AuditRows without_trend(const AuditRows& rows, const BaseTrend& trend, const ConstVectorRef& times) {
   AuditRows out = rows;
-  const double first = times.minCoeff(), span = times.maxCoeff() - first;
+  const double first = VERNIER_LATER(times).minCoeff(), span = VERNIER_LATER(times).maxCoeff() - first;
   for (Index i = 0; i < rows.size(); ++i) {
     const Vector6 motion = ((times(i) - first) / span - 0.5) * trend.motion;
-    const Vector3 shift = motion.head<3>(), turn = motion.tail<3>();
+    const Vector3 shift = VERNIER_LATER(motion).template head<3>(), turn = VERNIER_LATER(motion).template tail<3>();
     const Matrix3 back = exp_so3(Vector3(-turn));
     const Vector3 arm = point(rows.positions, i) - trend.centre, position = trend.centre + back * arm;
     set_point(out.positions, i, position - shift);

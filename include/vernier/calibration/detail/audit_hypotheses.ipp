@@ -27,7 +27,7 @@ VERNIER_IMPL std::string convention_name(int convention) {
 
 VERNIER_LOCAL Matrix3 rotation_by_convention(int convention, const Vector3& v) {
   const Vector3 angles = convention % 2 == 0 ? Vector3(v * std::numbers::pi / 180) : v;
-  if (convention == 1) return exp_so3(v).transpose();
+  if (convention == 1) return VERNIER_LATER(exp_so3(v)).transpose();
   if (convention == 2) return exp_so3(angles);
   const Matrix3 x = exp_so3(Vector3(angles(0), 0, 0)), y = exp_so3(Vector3(0, angles(1), 0)),
                 z = exp_so3(Vector3(0, 0, angles(2)));
@@ -45,12 +45,12 @@ VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const A
       break;
     case FaultKind::joint_unit:
       for (int j = 0; j < arm.joints(); ++j)
-        if (arm.chain().revolute(j)) out.joints.col(j) /= factor;
+        if (arm.chain().revolute(j)) VERNIER_LATER(out.joints).col(j) /= factor;
       break;
     case FaultKind::joint_sign:
     case FaultKind::joint_coupling:
-      if (coupled >= 0) out.joints.col(coupled) -= factor * out.joints.col(coupled - 1);
-      for (const int j : reversed) out.joints.col(j) *= -1;
+      if (coupled >= 0) VERNIER_LATER(out.joints).col(coupled) -= factor * VERNIER_LATER(out.joints).col(coupled - 1);
+      for (const int j : reversed) VERNIER_LATER(out.joints).col(j) *= -1;
       break;
     case FaultKind::mirrored_frame: {
       const bool turned = convention == 3;  // the orientations are mirrored, too
@@ -119,7 +119,7 @@ VERNIER_LOCAL std::vector<int> coupled_candidates(const ArmGeometry& arm) {
 /// The patterns of signs and couplings that fit best after registration in closed form, best first.
 VERNIER_LOCAL std::vector<AuditHypothesis> best_patterns(const ArmGeometry& nominal, const AuditRows& rows) {
   constexpr std::size_t kept = 8;
-  if (nominal.joints() > 10) return {};  // too many patterns
+  if (nominal.joints() > max_arm_joints) return {};  // too many patterns
   const std::vector<Index> few = spread_rows(rows.size(), 60);
   const AuditRows sample = rows.rows(few);
   std::vector<std::pair<double, AuditHypothesis>> all;
@@ -230,16 +230,17 @@ VERNIER_IMPL std::optional<RowShift> find_shift(const ArmGeometry& nominal, cons
       cost(all[k], shift + most) = (std::min)(1.0, std::pow(size / limit, 2));
     }
   }
-  const double unshifted = cost.col(most).sum();
+  const double unshifted = VERNIER_LATER(cost).col(most).sum();
   double least = std::numeric_limits<double>::infinity();
   Index before = 0, after = 0, change = 0;
   for (Index a = 0; a <= 2 * most; ++a)
     for (Index b = 0; b <= 2 * most; ++b) {
       if (a == b) {
-        if (const double sum = cost.col(a).sum(); sum < least) least = sum, before = after = a, change = 0;
+        if (const double sum = VERNIER_LATER(cost).col(a).sum(); sum < least)
+          least = sum, before = after = a, change = 0;
         continue;
       }
-      double sum = cost.col(b).sum();
+      double sum = VERNIER_LATER(cost).col(b).sum();
       for (Index r = 0; r < n; ++r) {
         if (r > 0 && sum < least - 1e-9) least = sum, before = a, after = b, change = r;
         sum += cost(r, a) - cost(r, b);

@@ -125,7 +125,7 @@ VERNIER_IMPL void audit_joint_values(const MatrixX& joints, std::vector<DataFind
   std::vector<int> read;
   double scatter = 0;
   for (int j = 0; j < static_cast<int>(joints.cols()); ++j) {
-    std::vector<double> values(joints.col(j).begin(), joints.col(j).end()), gaps;
+    std::vector<double> values(VERNIER_LATER(joints).col(j).begin(), VERNIER_LATER(joints).col(j).end()), gaps;
     std::sort(values.begin(), values.end());
     for (std::size_t k = 0; k + 1 < values.size(); ++k) gaps.push_back(values[k + 1] - values[k]);
     const std::vector<double> in_order = gaps;

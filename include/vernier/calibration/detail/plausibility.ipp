@@ -47,7 +47,7 @@ VERNIER_IMPL void require_plausible_set(const ArmGeometry& registered, MeasuredS
   double sum = 0;
   for (Index i = 0; i < set.size(); ++i) {
     set.sense(i, poses[static_cast<std::size_t>(i)], sensed);
-    sum += sensed.residual.head<3>().squaredNorm();
+    sum += VERNIER_LATER(sensed.residual).template head<3>().squaredNorm();
   }
   const double rms = std::sqrt(sum / static_cast<double>(set.size()));
   if (!(rms <= set.plausibility().rms))

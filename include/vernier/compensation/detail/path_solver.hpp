@@ -30,7 +30,7 @@ enum class PointStatus {
 namespace detail {
 
 /// Joint values; no allocation.
-using PathJoints = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
+using PathJoints = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_arm_joints, 1>;
 
 /// A target; `joints` has no entries where any branch will do.
 struct PathGoal {
@@ -67,7 +67,7 @@ struct PathArm {
 struct PathSettings {
   double tolerance, rotation_tolerance, max_joint_step;
   int max_inserted;
-  PathJoints lower, upper, speed, start;
+  PathJoints lower, upper, start;
 };
 
 /// A command of the path.

@@ -15,28 +15,28 @@
 namespace vernier::detail {
 
 /// One value for each of n joints.
-inline PathJoints same_joints(int n, double value) noexcept {
+VERNIER_LOCAL inline PathJoints same_joints(int n, double value) noexcept {
   PathJoints out(n);
   for (int j = 0; j < n; ++j) out(j) = value;
   return out;
 }
 
 /// Largest difference of a joint.
-inline double largest_difference(const PathJoints& a, const PathJoints& b) noexcept {
+VERNIER_LOCAL inline double largest_difference(const PathJoints& a, const PathJoints& b) noexcept {
   double out = 0;
   for (Index j = 0; j < a.size(); ++j) out = (std::max)(out, std::abs(a(j) - b(j)));
   return out;
 }
 
 /// a, and a share of the way to b.
-inline PathJoints joints_at_share(const PathJoints& a, const PathJoints& b, double share) noexcept {
+VERNIER_LOCAL inline PathJoints joints_at_share(const PathJoints& a, const PathJoints& b, double share) noexcept {
   PathJoints out = a;
   for (Index j = 0; j < a.size(); ++j) out(j) += share * (b(j) - a(j));
   return out;
 }
 
 /// Whether joint values are the same but for rounding errors.
-inline bool nearly_same(const PathJoints& a, const PathJoints& b) noexcept {
+VERNIER_LOCAL inline bool nearly_same(const PathJoints& a, const PathJoints& b) noexcept {
   double off = 0, of_a = 0, of_b = 0;
   for (Index j = 0; j < a.size(); ++j) {
     off += (a(j) - b(j)) * (a(j) - b(j));
@@ -92,32 +92,32 @@ class PathSearch {
   VERNIER_LOCAL SolvedPath run();
 
  private:
-  /// Time of a joint move, in units of the speeds.
-  double duration(const PathJoints& a, const PathJoints& b) const {
+  /// Time of a joint move whose joints are equally fast.
+  VERNIER_LOCAL double duration(const PathJoints& a, const PathJoints& b) const {
     double out = 0;
-    for (int j = 0; j < arm_.joints; ++j) out = (std::max)(out, std::abs(b(j) - a(j)) / settings_.speed(j));
+    for (int j = 0; j < arm_.joints; ++j) out = (std::max)(out, std::abs(b(j) - a(j)));
     return out;
   }
-  PathJoints turned(const PathJoints& joints, const PathJoints& close_to) const {
+  VERNIER_LOCAL PathJoints turned(const PathJoints& joints, const PathJoints& close_to) const {
     PathJoints out = joints;
     for (int j = 0; j < arm_.joints; ++j)
       out(j) = nearest_turn(joints(j), close_to(j), settings_.lower(j), settings_.upper(j));
     return out;
   }
-  bool within(const PathJoints& q) const {
+  VERNIER_LOCAL bool within(const PathJoints& q) const {
     bool out = true;
     for (int j = 0; j < arm_.joints; ++j)
       out = out && q(j) >= settings_.lower(j) - 1e-9 && q(j) <= settings_.upper(j) + 1e-9;
     return out;
   }
-  bool at_limit(const PathJoints& q) const {
+  VERNIER_LOCAL bool at_limit(const PathJoints& q) const {
     bool out = false;
     for (int j = 0; j < arm_.joints; ++j)
       out = out || q(j) - settings_.lower(j) <= 1e-9 || settings_.upper(j) - q(j) <= 1e-9;
     return out;
   }
   /// Adds a state, or a cheaper way to it.
-  static void relax(std::vector<PathState>& states, const PathState& state) {
+  VERNIER_LOCAL static void relax(std::vector<PathState>& states, const PathState& state) {
     for (PathState& known : states)
       if (known.id == state.id && largest_difference(known.joints, state.joints) < 1e-6) {
         if (state.cost < known.cost) known = state;

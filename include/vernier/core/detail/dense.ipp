@@ -17,7 +17,7 @@ namespace vernier::detail {
 
 /// Kernels for the widest instruction set of this machine; null for Eigen as this unit is compiled: where the operation
 /// is small, the machine has neither AVX2 nor AVX-512, or this is not the library.
-inline const DenseKernels* wide_kernels([[maybe_unused]] double operations) {
+VERNIER_LOCAL inline const DenseKernels* wide_kernels([[maybe_unused]] double operations) {
 #if defined(VERNIER_DENSE_KERNELS)
   static const DenseKernels* const kernels = widest_instruction_set() == InstructionSet::avx512 ? &avx512_kernels
                                              : widest_instruction_set() == InstructionSet::avx2 ? &avx2_kernels
@@ -27,10 +27,12 @@ inline const DenseKernels* wide_kernels([[maybe_unused]] double operations) {
   return nullptr;
 }
 
-inline MatrixAt<double> at(MatrixRef m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
-inline MatrixAt<const double> at(const ConstMatrixRef& m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
+VERNIER_LOCAL inline MatrixAt<double> at(MatrixRef m) { return {m.data(), m.outerStride(), m.rows(), m.cols()}; }
+VERNIER_LOCAL inline MatrixAt<const double> at(const ConstMatrixRef& m) {
+  return {m.data(), m.outerStride(), m.rows(), m.cols()};
+}
 /// Number of operations on some matrices.
-inline double operations(Index a, Index b, Index c) {
+VERNIER_LOCAL inline double operations(Index a, Index b, Index c) {
   return static_cast<double>(a) * static_cast<double>(b) * static_cast<double>(c);
 }
 
@@ -38,9 +40,9 @@ VERNIER_IMPL void add_product(MatrixRef out, const ConstMatrixRef& a, const Cons
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.cols())))
     return wide->add_product(at(out), at(a), at(b), factor);
   if (same_value(factor, 1))
-    out.noalias() += a * b;
+    VERNIER_LATER(out).noalias() += VERNIER_LATER(a) * b;
   else
-    out.noalias() += a * ConstMatrixRef(MatrixX(factor * b));
+    VERNIER_LATER(out).noalias() += VERNIER_LATER(a) * ConstMatrixRef(MatrixX(factor * VERNIER_LATER(b)));
 }
 
 VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a, const ConstMatrixRef& b,
@@ -48,14 +50,16 @@ VERNIER_IMPL void add_transposed_product(MatrixRef out, const ConstMatrixRef& a,
   if (const auto* wide = wide_kernels(operations(out.rows(), out.cols(), a.rows())))
     return wide->add_transposed_product(at(out), at(a), at(b), factor);
   if (same_value(factor, 1))
-    out.noalias() += a.transpose() * b;
+    VERNIER_LATER(out).noalias() += VERNIER_LATER(a).transpose() * b;
   else
-    out.noalias() += a.transpose() * ConstMatrixRef(MatrixX(factor * b));
+    VERNIER_LATER(out).noalias() += VERNIER_LATER(a).transpose() * ConstMatrixRef(MatrixX(factor * VERNIER_LATER(b)));
 }
 
-VERNIER_IMPL VectorX product(const ConstMatrixRef& a, const ConstVectorRef& x) { return a * x; }
+VERNIER_IMPL VectorX product(const ConstMatrixRef& a, const ConstVectorRef& x) { return VERNIER_LATER(a) * x; }
 
-VERNIER_IMPL VectorX transposed_product(const ConstMatrixRef& a, const ConstVectorRef& x) { return a.transpose() * x; }
+VERNIER_IMPL VectorX transposed_product(const ConstMatrixRef& a, const ConstVectorRef& x) {
+  return VERNIER_LATER(a).transpose() * x;
+}
 
 VERNIER_IMPL MatrixX matrix_product(const ConstMatrixRef& a, const ConstMatrixRef& b) {
   MatrixX out = MatrixX::Zero(a.rows(), b.cols());
@@ -111,13 +115,13 @@ VERNIER_IMPL VectorX diagonal_of(const ConstMatrixRef& a) {
 
 VERNIER_IMPL VectorX column_means(const ConstMatrixRef& a) {
   VectorX out(a.cols());
-  for (Index c = 0; c < a.cols(); ++c) out(c) = a.col(c).sum() / static_cast<double>(a.rows());
+  for (Index c = 0; c < a.cols(); ++c) out(c) = VERNIER_LATER(a).col(c).sum() / static_cast<double>(a.rows());
   return out;
 }
 
 VERNIER_IMPL VectorX squared_column_norms(const ConstMatrixRef& a) {
   VectorX out(a.cols());
-  for (Index c = 0; c < a.cols(); ++c) out(c) = a.col(c).squaredNorm();
+  for (Index c = 0; c < a.cols(); ++c) out(c) = VERNIER_LATER(a).col(c).squaredNorm();
   return out;
 }
 
@@ -144,19 +148,19 @@ VERNIER_IMPL double weighted_square(const ConstVectorRef& weights, const ConstVe
 VERNIER_IMPL bool cholesky(MatrixRef matrix) {
   if (const auto* wide = wide_kernels(operations(matrix.rows(), matrix.rows(), matrix.rows())))
     return wide->cholesky(at(matrix));
-  return succeeded(Eigen::LLT<MatrixRef>(matrix));  // in place
+  return succeeded(VERNIER_LATER_TYPE(Eigen::LLT<MatrixRef>)(matrix));  // in place
 }
 
 VERNIER_IMPL void solve_lower(const ConstMatrixRef& factor, MatrixRef right) {
   if (const auto* wide = wide_kernels(operations(factor.rows(), factor.rows(), right.cols())))
     return wide->solve_lower(at(factor), at(right));
-  factor.triangularView<Eigen::Lower>().solveInPlace(right);
+  VERNIER_LATER(factor).template triangularView<Eigen::Lower>().solveInPlace(right);
 }
 
 VERNIER_IMPL void solve_lower_transposed(const ConstMatrixRef& factor, MatrixRef right) {
   if (const auto* wide = wide_kernels(operations(factor.rows(), factor.rows(), right.cols())))
     return wide->solve_lower_transposed(at(factor), at(right));
-  factor.triangularView<Eigen::Lower>().transpose().solveInPlace(right);
+  VERNIER_LATER(factor).template triangularView<Eigen::Lower>().transpose().solveInPlace(right);
 }
 
 VERNIER_IMPL void solve_cholesky(const ConstMatrixRef& factor, MatrixRef right) {
@@ -177,53 +181,54 @@ VERNIER_IMPL MatrixX inverse_from_cholesky(const ConstMatrixRef& factor) {
 }
 
 VERNIER_IMPL double solve_general(MatrixRef a, VectorRef b) {
-  const Eigen::PartialPivLU<MatrixRef> lu(a);  // in place
+  const VERNIER_LATER_TYPE(Eigen::PartialPivLU<MatrixRef>) lu(a);  // in place
   b = VectorX(lu.solve(b));
-  return a.diagonal().array().abs().log().sum();
+  return VERNIER_LATER(a).diagonal().array().abs().log().sum();
 }
 
 /// R of a decomposition of a matrix of n columns, n x n.
 VERNIER_LOCAL MatrixX triangle_of(const Eigen::HouseholderQR<MatrixX>& qr) {
-  const Index columns = qr.cols(), height = (std::min)(qr.rows(), columns);
+  const Index columns = VERNIER_LATER(qr).cols(), height = (std::min)(VERNIER_LATER(qr).rows(), columns);
   MatrixX out = MatrixX::Zero(columns, columns);
-  out.topRows(height) = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();
+  VERNIER_LATER(out).topRows(height) =
+      VERNIER_LATER(qr).matrixQR().topRows(height).template triangularView<Eigen::Upper>();
   return out;
 }
 
 VERNIER_IMPL MatrixX triangular_factor(const ConstMatrixRef& matrix) {
-  return triangle_of(Eigen::HouseholderQR<MatrixX>(matrix));
+  return triangle_of(VERNIER_LATER_TYPE(Eigen::HouseholderQR<MatrixX>)(matrix));
 }
 
 VERNIER_IMPL QrSolution solve_by_qr(const ConstMatrixRef& matrix, const ConstMatrixRef& right) {
-  const Eigen::HouseholderQR<MatrixX> qr(matrix);
+  const VERNIER_LATER_TYPE(Eigen::HouseholderQR<MatrixX>) qr(matrix);
   return {qr.solve(right), triangle_of(qr)};
 }
 
 VERNIER_IMPL SymmetricEigen symmetric_eigen(const ConstMatrixRef& matrix) {
-  const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(matrix);
+  const VERNIER_LATER_TYPE(Eigen::SelfAdjointEigenSolver<MatrixX>) eigen(matrix);
   return {eigen.eigenvalues(), eigen.eigenvectors(), succeeded(eigen)};
 }
 
 VERNIER_IMPL TridiagonalForm tridiagonal_form(const ConstMatrixRef& matrix) {
-  const Eigen::Tridiagonalization<MatrixX> form(matrix);
-  return {form.matrixQ(), form.diagonal(), form.subDiagonal()};
+  const VERNIER_LATER_TYPE(Eigen::Tridiagonalization<MatrixX>) form(matrix);
+  return {form.matrixQ(), VERNIER_LATER(form).diagonal(), form.subDiagonal()};
 }
 
 using JacobiSvd = Eigen::JacobiSVD<MatrixX, Eigen::NoQRPreconditioner>;
 
 VERNIER_IMPL RightSingular right_singular(const ConstMatrixRef& matrix) {
   const MatrixX square = matrix.rows() == matrix.cols() ? MatrixX(matrix) : triangular_factor(matrix);
-  const JacobiSvd svd(square, Eigen::ComputeFullV);
+  const VERNIER_LATER_TYPE(JacobiSvd) svd(square, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
 }
 
 VERNIER_IMPL ThinSvd thin_svd(const ConstMatrixRef& h) {
   const bool tall = h.rows() >= h.cols();
   const Index k = (std::min)(h.rows(), h.cols());
-  const Eigen::HouseholderQR<MatrixX> qr(tall ? MatrixX(h) : MatrixX(h.transpose()));
-  const JacobiSvd svd(triangle_of(qr), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  MatrixX longer = MatrixX::Zero(qr.rows(), k);
-  longer.topRows(k) = svd.matrixU();
+  const VERNIER_LATER_TYPE(Eigen::HouseholderQR<MatrixX>) qr(tall ? MatrixX(h) : MatrixX(VERNIER_LATER(h).transpose()));
+  const VERNIER_LATER_TYPE(JacobiSvd) svd(triangle_of(qr), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  VERNIER_LATER_TYPE(MatrixX) longer = MatrixX::Zero(qr.rows(), k);
+  VERNIER_LATER(longer).topRows(k) = svd.matrixU();
   longer.applyOnTheLeft(qr.householderQ());
   return {tall ? longer : svd.matrixV(), svd.singularValues(), tall ? svd.matrixV() : longer};
 }

@@ -43,19 +43,24 @@ inline constexpr std::array<std::string_view, 13> noted_names{"visit",
                                                               "singularity",
                                                               "singularity_deg"};
 
-/// The number behind q that begins a text, and how many characters both take; none where there is none.
-VERNIER_LOCAL std::optional<std::pair<int, std::size_t>> joint_number(std::string_view text) {
+/// The number behind q that begins a text, and how many characters both take; no characters where there is none.
+struct JointNumber {
+  int number = 0;
+  std::size_t length = 0;
+};
+VERNIER_LOCAL JointNumber joint_number(std::string_view text) {
   if (!text.starts_with('q') || text.size() < 2 || text[1] < '0' || text[1] > '9') return {};
   int number = 0;
   const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), number);
   if (error != std::errc{} || (text[1] == '0' && end != text.data() + 2)) return {};
-  return std::pair{number, static_cast<std::size_t>(end - text.data())};
+  return {number, static_cast<std::size_t>(end - text.data())};
 }
 
 /// The rest of a name behind what a unit follows, and the first unit that may; none for a name that begins otherwise.
 VERNIER_LOCAL std::optional<std::pair<std::string_view, std::string_view>> behind_stem(std::string_view name) {
   const std::string_view of_joint = name.starts_with("from_q") ? name.substr(5) : name;
-  if (const auto joint = joint_number(of_joint)) return std::pair{of_joint.substr(joint->second), angle_units[0].first};
+  if (const JointNumber joint = joint_number(of_joint); joint.length > 0)
+    return std::pair{of_joint.substr(joint.length), angle_units[0].first};
   for (const auto& [stem, quantity] : column_stems)
     if (name.starts_with(stem) && (name.size() == stem.size() || name[stem.size()] == '_'))
       return std::pair{name.substr(stem.size()), quantity.units[0].first};
@@ -65,13 +70,13 @@ VERNIER_LOCAL std::optional<std::pair<std::string_view, std::string_view>> behin
 VERNIER_IMPL std::optional<int> joint_of(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return {};
   name.remove_prefix(prefix.size());
-  const auto joint = joint_number(name);
-  if (!joint) return {};
-  name.remove_prefix(joint->second);
+  const JointNumber joint = joint_number(name);
+  if (joint.length == 0) return {};
+  name.remove_prefix(joint.length);
   const auto is = [&](const Quantity::Unit& unit) { return unit.first == name; };
   const bool known = std::any_of(length_units.begin(), length_units.end(), is) ||
                      std::any_of(angle_units.begin(), angle_units.end(), is);
-  return known ? std::optional<int>(joint->first) : std::nullopt;
+  return known ? std::optional<int>(joint.number) : std::nullopt;
 }
 
 VERNIER_IMPL bool known_quantity(std::string_view name) {

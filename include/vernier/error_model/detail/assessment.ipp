@@ -42,11 +42,12 @@ class LeftOutVisits {
 
  private:
   VERNIER_LOCAL void multiply() {
-    const MatrixX half = matrix_product(covariance_, rows_.leftCols(3 * waiting_));
+    const MatrixX half = matrix_product(covariance_, VERNIER_LATER(rows_).leftCols(3 * waiting_));
     for (Index i = 0; i < waiting_; ++i) {
       Matrix3& model = visits_[visits_.size() - static_cast<std::size_t>(waiting_ - i)].model;
       for (Index c = 0; c < 3; ++c)
-        for (Index r = 0; r < 3; ++r) model(r, c) = rows_.col(3 * i + r).dot(half.col(3 * i + c));
+        for (Index r = 0; r < 3; ++r)
+          model(r, c) = VERNIER_LATER(rows_).col(3 * i + r).dot(VERNIER_LATER(half).col(3 * i + c));
     }
     waiting_ = 0;
   }
@@ -65,10 +66,10 @@ VERNIER_IMPL void assess(const ModelSelection& model, ErrorModelEstimate& estima
   const VectorX precisions = problem.arm.precisions();
   const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
   const Index p = system.unknowns();
-  estimate.covariance = solved.inverse();
+  estimate.covariance = VERNIER_LATER(solved).inverse();
   double explained = static_cast<double>(p) - diagonal_of(estimate.covariance).dot(precisions);
   for (Index k = 0; k < at.normal.prior.cols(); ++k)
-    explained -= estimate.covariance.col(k).dot(at.normal.prior.col(k));
+    explained -= VERNIER_LATER(estimate.covariance).col(k).dot(VERNIER_LATER(at.normal.prior).col(k));
   const double values = static_cast<double>(problem.measured_values());
   const double freedom = (std::max)(1.0, values - explained);
   estimate.residual_variance = estimate.variance_factor = at.normal.cost / freedom;

@@ -61,7 +61,7 @@ VERNIER_IMPL std::vector<Index> hidden_terms(const CalibrationProblem& problem, 
     arms.emplace_back(nominal, problem.arm.geometry(s).base(), problem.arm.geometry(s).tool());
   ArmParameterisation arm(std::move(arms), std::move(of_frames));
   const Index first = problem.arm.num_dense() - terms.size();
-  arm.set_terms(terms, problem.arm.scales().segment(first, terms.size()), VectorX::Ones(terms.size()));
+  arm.set_terms(terms, VERNIER_LATER(problem.arm.scales()).segment(first, terms.size()), VectorX::Ones(terms.size()));
 
   const IdentifiableParameters columns(
       CalibrationProblem(std::move(arm), problem.sets(), Loss::squared).stacked(true).jacobian);

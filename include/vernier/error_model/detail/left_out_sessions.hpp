@@ -7,8 +7,8 @@
 
 namespace vernier::detail {
 
-/// Mean position error of each session, predicted from all other sessions and fifteen of its own poses, which tell where
-/// its base is [m]. A session is a set of measurements that locates its base.
+/// Mean position error of each session, predicted from all other sessions and fifteen of its own poses, which tell
+/// where its base is [m]. A session is a set of measurements that locates its base.
 /// @param precisions of the priors of all unknowns
 /// @return           one value a session; none with fewer than two sessions, or where one has too few poses
 /// @complexity       O(sessions n u^2)

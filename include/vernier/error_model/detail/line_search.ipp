@@ -33,9 +33,11 @@ VERNIER_LOCAL std::vector<std::vector<int>> lines_beyond(const ModelSelection& m
   std::vector<std::vector<int>> out(static_cast<std::size_t>(joints));
   for (Index j = 0; j < joints; ++j) {
     const std::vector<int>& known = terms.transmission[static_cast<std::size_t>(j)].orders;
-    if (known.empty() || !tells_orders_apart(angles.col(j), weight.col(j), highest)) continue;
+    if (known.empty() || !tells_orders_apart(VERNIER_LATER(angles).col(j), VERNIER_LATER(weight).col(j), highest))
+      continue;
     out[static_cast<std::size_t>(j)] =
-        lines_of_residuals(angles.col(j), score.col(j), weight.col(j), known, highest, variance * threshold);
+        lines_of_residuals(VERNIER_LATER(angles).col(j), VERNIER_LATER(score).col(j), VERNIER_LATER(weight).col(j),
+                           known, highest, variance * threshold);
   }
   return out;
 }

@@ -41,7 +41,7 @@ class ModelSelection {
   };
   /// Computed again only after a change.
   VERNIER_API const Linearised& linearised() const;
-  void changed() { linearised_.reset(); }
+  VERNIER_API void changed() { linearised_.reset(); }
 
   /// Solves the problem as it is.
   VERNIER_API void solve();
@@ -68,8 +68,8 @@ class ModelSelection {
   /// A block of unknowns, by its scores and by the left-out errors with it and without.
   VERNIER_API BlockChoice choice_between(Block block, ScoreTest score, const VectorX& with, const VectorX& without,
                                          double precision) const;
-  /// Each block's cluster: its pose, or neighbouring poses if the poses are ordered. Errors of the model are alike within
-  /// a cluster, and independent between them.
+  /// Each block's cluster: its pose, or neighbouring poses if the poses are ordered. Errors of the model are alike
+  /// within a cluster, and independent between them.
   const std::vector<Index>& clusters() const { return clusters_; }
 
   /// Sizes of some coefficients by evidence, unless they are suppressed.
@@ -88,8 +88,8 @@ class ModelSelection {
 
   const ErrorModelOptions& options_;
   ChainTable nominal_;
-  std::vector<Index> clusters_;      // of each block
-  std::vector<Index> left_together_; // of each validation block, if poses are ordered; else empty
+  std::vector<Index> clusters_;       // of each block
+  std::vector<Index> left_together_;  // of each validation block, if poses are ordered; else empty
   mutable std::optional<Linearised> linearised_{};
 };
 

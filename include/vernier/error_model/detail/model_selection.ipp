@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <utility>
 
+#include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/data/ordered_rows.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
@@ -19,11 +19,11 @@ class Stopwatch {
   explicit Stopwatch(double& sum) : sum_(sum) {}
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  ~Stopwatch() { sum_ += steady_seconds() - began_; }
 
  private:
   double& sum_;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  double began_ = steady_seconds();  // [s]
 };
 
 VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const ErrorModelOptions& options,
@@ -83,7 +83,7 @@ VERNIER_IMPL Eigen::Matrix3Xd ModelSelection::left_out_errors(const FactorisedEq
 
 VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
   const JointTerms before = problem.arm.terms();
-  const VectorX old_precisions = problem.arm.precisions().tail(before.size());
+  const VectorX old_precisions = VERNIER_LATER(problem.arm.precisions()).tail(before.size());
   VectorX precisions = VectorX::Ones(terms.size());
   visit_common_terms(before, terms, [&](Index old, Index now) { precisions(now) = old_precisions(old); });
   VectorX sizes = expected_sizes(terms, options_, spectra);
@@ -142,12 +142,12 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
                                                         const VectorX& without, double precision) const {
   constexpr double looks = 12, level = 0.05 / looks;  // at one arm
   const double sigma = problem.set_of(0).sigma().length;
-  const double relevance = options_.relevant_size > 0 ? options_.relevant_size
-                                                      : (std::max)(0.1 * without.mean(), sigma);
+  const double relevance =
+      options_.relevant_size > 0 ? options_.relevant_size : (std::max)(0.1 * without.mean(), sigma);
   if (score.p <= level)  // what the effect adds to the residuals is no noise
     score.noise *= (std::min)(1.0, with.squaredNorm() / without.squaredNorm());
-  BlockChoice out{block, without.mean(), with.mean(), false, suppressing_precision,
-                  existence(score, level, relevance, problem.num_validation_poses())};
+  BlockChoice out{block, without.mean(),        with.mean(),
+                  false, suppressing_precision, existence(score, level, relevance, problem.num_validation_poses())};
   out.used = out.existence.answer == Answer::found && !predicts_worse(with, without);
   if (out.used) out.precision = precision;
   return out;

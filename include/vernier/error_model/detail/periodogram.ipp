@@ -22,7 +22,8 @@ VERNIER_LOCAL Waves waves(const VectorX& angles, int order) {
 }
 
 /// Cosines and sines of sums of two angles each, in place.
-inline void turn_waves(Index n, const double* by_cosine, const double* by_sine, double* cosine, double* sine) {
+VERNIER_LOCAL inline void turn_waves(Index n, const double* by_cosine, const double* by_sine, double* cosine,
+                                     double* sine) {
   for (Index i = 0; i < n; ++i) {
     const double c = cosine[i], s = sine[i];
     cosine[i] = c * by_cosine[i] - s * by_sine[i];
@@ -52,7 +53,8 @@ struct OrderFit {
 VERNIER_LOCAL OrderFit fit_order(const VectorX& score, const VectorX& weight, double sum, const VectorX& c,
                                  const VectorX& s) {
   const double gc = score.dot(c), gs = score.dot(s);
-  const double cc = weight.cwiseProduct(c).dot(c), cs = weight.cwiseProduct(c).dot(s), ss = sum - cc;
+  const double cc = VERNIER_LATER(weight).cwiseProduct(c).dot(c), cs = VERNIER_LATER(weight).cwiseProduct(c).dot(s),
+               ss = sum - cc;
   const double determinant = cc * ss - cs * cs;
   if (!(determinant > 1e-6 * sum * sum)) return {};
   const double a = (ss * gc - cs * gs) / determinant, b = (cc * gs - cs * gc) / determinant;
@@ -77,7 +79,7 @@ VERNIER_IMPL std::vector<int> lines_of_residuals(const VectorX& angles, VectorX 
     for (const int order : known)
       if (order <= highest) power(order - 1) = 0;
     Index largest = 0;
-    if (!(power.maxCoeff(&largest) > threshold)) break;
+    if (!(VERNIER_LATER(power).maxCoeff(&largest) > threshold)) break;
     const auto order = static_cast<int>(largest + 1);
     if (std::find(out.begin(), out.end(), order) != out.end()) break;
     out.push_back(order);

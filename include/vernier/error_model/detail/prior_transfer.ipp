@@ -133,15 +133,18 @@ VERNIER_IMPL PriorTransfer likely_transfer(const CalibrationProblem& problem, co
   });
   add_product(error, rows, offset);
   const auto covariance_of = [](const MatrixX& columns, const MatrixX& half) {
-    return matrix_product(half, columns.transpose());
+    return matrix_product(half, VERNIER_LATER(columns).transpose());
   };
   MatrixX fixed = covariance_of(rows, matrix_product(rows, known.covariance));
   for (Index k = 0; k < fixed.rows(); ++k) fixed(k, k) += 1;
   constexpr double unknown = 1e4;  // times the expected size, squared: what the earlier calibration does not know
   fixed += covariance_of(others, unknown * others);
-  const MatrixX geometry = rows.leftCols(known.geometric), joints = rows.rightCols(n - known.geometric);
-  const MatrixX of_geometry = covariance_of(geometry, columns_scaled(geometry, known.expected.head(known.geometric)));
-  const MatrixX of_joints = covariance_of(joints, columns_scaled(joints, known.expected.tail(n - known.geometric)));
+  const MatrixX geometry = VERNIER_LATER(rows).leftCols(known.geometric),
+                joints = VERNIER_LATER(rows).rightCols(n - known.geometric);
+  const MatrixX of_geometry =
+      covariance_of(geometry, columns_scaled(geometry, VERNIER_LATER(known.expected).head(known.geometric)));
+  const MatrixX of_joints =
+      covariance_of(joints, columns_scaled(joints, VERNIER_LATER(known.expected).tail(n - known.geometric)));
 
   const auto freedom = static_cast<double>(std::max<Index>(1, values - others.cols()));
   PriorTransfer best{.name = {}};

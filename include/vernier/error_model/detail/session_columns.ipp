@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -34,16 +35,20 @@ VERNIER_IMPL void SessionColumns::operator()(Index first, Index count, RowBlock*
   for (Index i = 0; i < count; ++i) {
     RowBlock& rows = out[i];
     const auto b = static_cast<std::size_t>(first + i);
-    Rows6 dense = Rows6::Zero(6, dense_ + added_), knots = Rows6::Zero(6, size_);
-    dense.leftCols(dense_) = rows.dense;
+    Rows6 dense(6, dense_ + added_), knots(6, size_);
+    std::fill_n(dense.data(), dense.size(), 0.0);
+    std::fill_n(knots.data(), knots.size(), 0.0);
+    std::copy_n(rows.dense.data(), rows.dense.size(), dense.data());
     for (RowBlock::Local& part : rows.local) {
-      if (part.state >= 0) knots += part.columns;  // their shares add up to one
+      for (Index k = 0; part.state >= 0 && k < knots.size(); ++k)  // their shares add up to one
+        knots.data()[k] += part.columns.data()[k];
       part = {};
     }
     for (Index k = 0; k < half_periods && set_[b] >= 0; ++k) {
       const auto order = static_cast<double>(k + 1);
       const Index at = dense_ + (set_[b] * half_periods + k) * size_;
-      dense.middleCols(at, size_) = knots * (std::cos(order * std::numbers::pi * phase_(first + i)) / order);
+      const double slow = std::cos(order * std::numbers::pi * phase_(first + i)) / order;
+      for (Index c = 0; c < knots.size(); ++c) dense.data()[6 * at + c] = slow * knots.data()[c];
     }
     rows.dense = std::move(dense);
   }

@@ -13,8 +13,8 @@
 
 namespace vernier::detail {
 
-/// Share of the variance of the temperature that the time within sessions explains, 20 bins of time each: the rest varies
-/// at one time, or from session to session.
+/// Share of the variance of the temperature that the time within sessions explains, 20 bins of time each: the rest
+/// varies at one time, or from session to session.
 VERNIER_LOCAL double explained_by_time(const CalibrationProblem& problem) {
   double otherwise = 0, all = 0;
   const double mean = problem.temperatures().mean;

@@ -16,7 +16,7 @@ struct ExplainedError {
 };
 
 /// @param space variance in space, `joints` of every joint
-inline ExplainedError explained(const LeftOutVisit& visit, double space, double joints, double model) {
+VERNIER_LOCAL inline ExplainedError explained(const LeftOutVisit& visit, double space, double joints, double model) {
   const auto covariance = [&](Index r, Index c) {
     return model * visit.model(r, c) + joints * visit.joint_noise(r, c) + (r == c ? space : 0);
   };

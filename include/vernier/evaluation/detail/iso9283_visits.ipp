@@ -16,11 +16,11 @@
 namespace vernier::detail {
 
 VERNIER_IMPL const char* fault_of_pose(const Isometry3& pose, bool oriented) {
-  if (!all_finite(translation(pose))) return "the position is not finite";
+  if (!all_finite(VERNIER_LATER(translation(pose)))) return "the position is not finite";
   if (!oriented) return nullptr;
-  const Matrix3 r = rotation(pose), back = r.transpose(), product = r * back, identity = Matrix3::Identity();
-  const Matrix3 fault = product - identity;
-  const bool turns = fault.squaredNorm() < 1e-12 && r.determinant() > 0;
+  const auto r = VERNIER_LATER(rotation(pose));
+  const Matrix3 product = r * VERNIER_LATER(r).transpose(), fault = VERNIER_LATER(product) - Matrix3::Identity();
+  const bool turns = VERNIER_LATER(fault).squaredNorm() < 1e-12 && r.determinant() > 0;
   return turns ? nullptr : "the orientation is not a rotation";
 }
 
@@ -45,7 +45,7 @@ VERNIER_IMPL VisitedPoses visited_poses(std::span<const Iso9283Visit> visits, st
   for (std::size_t k = 0; k < commanded.size(); ++k)
     if (const char* fault = fault_of_pose(commanded[k], oriented))
       demand(false, "iso9283: commanded pose ", k + 1, ": ", fault);
-  std::map<int, std::map<int, std::map<int, const Iso9283Visit*>>> sorted;
+  VERNIER_LATER_TYPE(std::map<int, std::map<int, std::map<int, const Iso9283Visit*>>>) sorted;
   for (const Iso9283Visit& v : visits) {
     demand(v.pose >= 1 && static_cast<std::size_t>(v.pose) <= commanded.size(), "iso9283: a visit of pose ", v.pose,
            ", the commanded poses are 1 to ", commanded.size());
@@ -69,12 +69,12 @@ VERNIER_IMPL VisitedPoses visited_poses(std::span<const Iso9283Visit> visits, st
 /// Sentences about poses, those of the same words joined.
 class Departures {
  public:
-  void add(int pose, const std::string& words) {
+  VERNIER_LOCAL void add(int pose, const std::string& words) {
     for (auto& [text, poses] : all_)
       if (text == words) return poses.push_back(pose);
     all_.push_back({words, {pose}});
   }
-  std::vector<std::string> sentences() const {
+  VERNIER_LOCAL std::vector<std::string> sentences() const {
     std::vector<std::string> out;
     for (const auto& [text, poses] : all_) {
       std::string names = poses.size() == 1 ? "pose " : "poses ";
@@ -119,9 +119,9 @@ VERNIER_LOCAL void check_sequence(std::span<const Iso9283Visit> visits, Departur
   std::sort(sequence.begin(), sequence.end(), [](const Iso9283Visit* a, const Iso9283Visit* b) {
     return a->time_s < b->time_s || (same_value(a->time_s, b->time_s) && a < b);
   });
-  std::map<std::pair<int, int>, const Iso9283Visit*> last;
-  std::map<int, std::map<int, int>> before;
-  std::map<std::pair<int, int>, bool> told;
+  VERNIER_LATER_TYPE(std::map<std::pair<int, int>, const Iso9283Visit*>) last;
+  VERNIER_LATER_TYPE(std::map<int, std::map<int, int>>) before;
+  VERNIER_LATER_TYPE(std::map<std::pair<int, int>, bool>) told;
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     const Iso9283Visit& v = *sequence[i];
     const std::pair<int, int> key{v.pose, v.direction};

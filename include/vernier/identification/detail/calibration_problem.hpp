@@ -69,7 +69,7 @@ class CalibrationProblem {
   /// Lets the joints' zeros drift along, from no change.
   VERNIER_API void start_joint_drift();
   /// No drift any more.
-  void stop_drift() { drift.clear(); }
+  VERNIER_API void stop_drift() { drift.clear(); }
   /// No drift of the joints' zeros any more.
   VERNIER_API void stop_joint_drift();
   /// Precision of the random walks of bases, relative to steps of 0.03 mm and 20 urad in 200 poses.

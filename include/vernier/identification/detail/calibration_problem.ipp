@@ -28,7 +28,7 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
   std::vector<JointType> types;
   for (int j = 0; j < arm.geometry(0).joints(); ++j)
     types.push_back(arm.geometry(0).chain().revolute(j) ? JointType::revolute : JointType::prismatic);
-  poses_ = pose_numbers(joints().topRows(validation_blocks_), {.joint_types = types});
+  poses_ = pose_numbers(VERNIER_LATER(joints()).topRows(validation_blocks_), {.joint_types = types});
   for (const Index pose : poses_) validation_poses_ = (std::max)(validation_poses_, pose + 1);
   if (validation_poses_ == validation_blocks_) poses_.clear();
   for (const MeasuredSet& set : sets_)
@@ -61,7 +61,7 @@ VERNIER_IMPL MatrixX CalibrationProblem::joints() const {
   MatrixX out(num_blocks(), arm.geometry(0).joints());
   Index at = 0;
   for (const MeasuredSet& set : sets_) {
-    out.middleRows(at, set.size()) = set.joints;
+    VERNIER_LATER(out).middleRows(at, set.size()) = set.joints;
     at += set.size();
   }
   return out;
@@ -92,7 +92,7 @@ VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
     first_state_[s] = states;
     if (!set.locates() || set.times.size() == 0) continue;
     const Index intervals = std::max<Index>(1, set.size() / rows_per_knot);
-    const double begin = set.times.minCoeff(), end = set.times.maxCoeff();
+    const double begin = VERNIER_LATER(set.times).minCoeff(), end = VERNIER_LATER(set.times).maxCoeff();
     if (!(end > begin)) continue;
     const Vector3 centre = set.positions() != nullptr
                                ? centroid(*set.positions())
@@ -111,11 +111,11 @@ VERNIER_IMPL void CalibrationProblem::start_joint_drift() {
   for (SessionDrift& of_station : drift)
     if (!of_station.empty()) {
       of_station.knots.conservativeResize(6 + joints, Eigen::NoChange);
-      of_station.knots.bottomRows(joints).setZero();
+      VERNIER_LATER(of_station.knots).bottomRows(joints).setZero();
     }
   const double step = drift_scale_(3) / 2;  // half of the base's rotation
   drift_scale_.conservativeResize(6 + joints);
-  drift_scale_.tail(joints).setConstant(step);
+  VERNIER_LATER(drift_scale_).tail(joints).setConstant(step);
 }
 
 VERNIER_IMPL void CalibrationProblem::stop_joint_drift() {
@@ -237,14 +237,14 @@ VERNIER_LOCAL void whiten_rows(const Matrix6& motion, Index values, bool mixed, 
 /// @param along  the derivative of the length by a small motion of the relative pose
 VERNIER_LOCAL void fold_pair(const RowBlock& from, const Isometry3& from_pose, const Isometry3& relative,
                              const std::vector<Index>& group_sizes, const Vector6& along, RowBlock& rows) {
-  const Matrix3 back = rotation(from_pose).transpose();
+  const Matrix3 back = VERNIER_LATER(rotation(from_pose)).transpose();
   const auto relative_rate = [&](const double* of, const double* of_from) {
     const Vector3 lever = rotation(from_pose) * translation(relative);
     const Vector3 turn(of_from[3], of_from[4], of_from[5]);
     const Vector3 shift = Vector3(of[0] - of_from[0], of[1] - of_from[1], of[2] - of_from[2]) - turn.cross(lever);
     const Vector3 linear = back * shift;
     const Vector3 angular = back * Vector3(of[3] - turn.x(), of[4] - turn.y(), of[5] - turn.z());
-    return along.head<3>().dot(linear) + along.tail<3>().dot(angular);
+    return VERNIER_LATER(along).template head<3>().dot(linear) + VERNIER_LATER(along).template tail<3>().dot(angular);
   };
   const double none[6] = {};
   for (Index k = 0; k < rows.dense.cols(); ++k) {
@@ -276,9 +276,10 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     for (Index i = 0; i < warmer.size(); ++i) warmer(i) = set.temperatures(begin.row + i) - reference_temperature;
     const bool visited = set.previous.rows() > 0, paired = set.seen_from.rows() > 0;
     const auto linearise = [&](const MatrixX& joints, bool with_previous, RowBlock* rows) {
-      return arm.linearise(begin.station, joints.middleRows(begin.row, stretch),
-                           set.previous.middleRows(with_previous ? begin.row : 0, with_previous ? stretch : 0), rows,
-                           joint_columns || joint_sigma_ > 0, warmer);
+      return arm.linearise(
+          begin.station, VERNIER_LATER(joints).middleRows(begin.row, stretch),
+          VERNIER_LATER(set.previous).middleRows(with_previous ? begin.row : 0, with_previous ? stretch : 0), rows,
+          joint_columns || joint_sigma_ > 0, warmer);
     };
     std::vector<Isometry3> poses = linearise(set.joints, visited, out + done), from;
     if (paired) {
@@ -298,8 +299,8 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       const double orientation = set.oriented() ? std::sqrt(block.weight[1]) / set.sigma().angle : 0;
       rows.position_sigma = 1 / position;
       rows.residual = sensed.residual;
-      rows.residual.head<3>() *= position;
-      rows.residual.tail<3>() *= orientation;
+      VERNIER_LATER(rows.residual).template head<3>() *= position;
+      VERNIER_LATER(rows.residual).template tail<3>() *= orientation;
       bool mixed = false;
       for (Index c = 0; c < 6; ++c)
         for (Index r = 0; r < 6; ++r) {
@@ -370,7 +371,8 @@ VERNIER_IMPL void CalibrationProblem::stack(bool with_jacobian, StackedRows& out
 VERNIER_IMPL MatrixX CalibrationProblem::residual_norms() const {
   MatrixX norms(num_blocks(), 2);
   visit_blocks(system(), 0, 1, num_blocks(), [&](Index b, const RowBlock& rows) {
-    const Vector3 linear = rows.residual.head<3>(), angular = rows.residual.tail<3>();
+    const Vector3 linear = VERNIER_LATER(rows.residual).template head<3>(),
+                  angular = VERNIER_LATER(rows.residual).template tail<3>();
     norms(b, 0) = linear.norm();
     norms(b, 1) = angular.norm();
   });

@@ -19,7 +19,7 @@ VERNIER_IMPL std::vector<Index> frame_unknowns(const MeasuredSet& set) {
 VERNIER_IMPL void require_spread(const ArmGeometry& arm, const MeasuredSet& set) {
   if (frame_unknowns(set) != std::vector<Index>{2, 3, 4}) return;  // no plane
   const PointRows points = arm.positions(set.joints);
-  const MatrixX centred = rows_minus(points, column_means(points)).leftCols(2);
+  const MatrixX centred = VERNIER_LATER(rows_minus(points, column_means(points))).leftCols(2);
   const VectorX squares = symmetric_eigen(transposed_matrix_product(centred, centred)).values;
   const double width = std::sqrt((std::max)(squares(0), 0.0) / static_cast<double>(points.rows()));
   const double length = std::sqrt(squares(1) / static_cast<double>(points.rows()));
@@ -44,8 +44,8 @@ VERNIER_IMPL MatrixX touching_joints(const ArmGeometry& arm, const MeasuredSet& 
           for (Index r = 0; r < values; ++r)
             rows(r, j) += sensed.motion(r, c) * at.jacobians.data()[(6 * k + c) * n + i];
       }
-      VectorX residual = sensed.residual.head(values);
-      MatrixX gram = matrix_product(rows, rows.transpose());
+      VectorX residual = VERNIER_LATER(sensed.residual).head(values);
+      MatrixX gram = matrix_product(rows, VERNIER_LATER(rows).transpose());
       const double least = 1e-12 * rows.squaredNorm();
       for (Index k = 0; k < gram.cols(); ++k) gram(k, k) += least;
       solve_general(gram, residual);

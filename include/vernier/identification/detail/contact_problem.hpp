@@ -59,7 +59,7 @@ class ContactProblem {
 };
 
 /// Adds a row below a matrix.
-inline void append_row(MatrixX& matrix, const VectorX& row) {
+VERNIER_API inline void append_row(MatrixX& matrix, const VectorX& row) {
   matrix.conservativeResize(matrix.rows() + 1, Eigen::NoChange);
   for (Index k = 0; k < row.size(); ++k) matrix(matrix.rows() - 1, k) = row(k);
 }

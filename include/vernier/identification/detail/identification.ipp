@@ -227,8 +227,8 @@ class IdentificationRun {
     const std::vector<Isometry3> poses = data().seen_poses(poses_of);
     for (Index i = 0; i < data().size(); ++i) {
       data().sense(i, poses[static_cast<std::size_t>(i)], sensed);
-      sum.length += sensed.residual.head<3>().squaredNorm();
-      sum.angle += sensed.residual.tail<3>().squaredNorm();
+      sum.length += VERNIER_LATER(sensed.residual).template head<3>().squaredNorm();
+      sum.angle += VERNIER_LATER(sensed.residual).template tail<3>().squaredNorm();
     }
     const auto n = static_cast<double>(data().size());
     return {std::sqrt(sum.length / n), std::sqrt(sum.angle / n)};

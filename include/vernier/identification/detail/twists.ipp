@@ -8,7 +8,7 @@
 namespace vernier::detail {
 
 VERNIER_IMPL Isometry3 shifted(const Isometry3& pose, const Vector6& by) {
-  const Vector3 shift = by.head<3>(), turn = by.tail<3>();
+  const Vector3 shift = VERNIER_LATER(by).template head<3>(), turn = VERNIER_LATER(by).template tail<3>();
   return rigid_motion(exp_so3(turn) * rotation(pose), translation(pose) + shift);
 }
 

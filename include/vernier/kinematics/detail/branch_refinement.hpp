@@ -23,7 +23,7 @@ enum class Reach {
 
 namespace detail {
 
-/// Most joints of an arm that moves six.
+/// Most joints of an arm whose branches are found: six that move, and one that is held.
 inline constexpr int most_branch_joints = 7;
 
 /// A target and a model of run-time size.
@@ -57,7 +57,7 @@ struct BranchSet {
   bool suspicious = false;  ///< whether a seed was beyond a boundary, lost, or not alone at its solution
 
   /// Whether some may be missing: branches come in pairs, and may change their number next to a singularity.
-  bool may_be_incomplete() const {
+  VERNIER_API bool may_be_incomplete() const {
     return suspicious || count % 2 != 0 ||
            std::any_of(branches.begin(), branches.begin() + count, [](const auto& b) { return b.sigma_min < 0.002; });
   }

@@ -29,26 +29,26 @@ struct BranchIterate {
 };
 
 /// a x
-inline Vector6 product6(const Matrix6& a, const Vector6& x) noexcept {
+VERNIER_LOCAL inline Vector6 product6(const Matrix6& a, const Vector6& x) noexcept {
   Vector6 out;
   multiply_few<6, 6>(a.data(), x.data(), out.data());
   return out;
 }
 
 /// out = a b
-inline void product66(const Matrix6& a, const Matrix6& b, Matrix6& out) noexcept {
+VERNIER_LOCAL inline void product66(const Matrix6& a, const Matrix6& b, Matrix6& out) noexcept {
   for (int j = 0; j < 6; ++j) multiply_few<6, 6>(a.data(), b.data() + 6 * j, out.data() + 6 * j);
 }
 
 /// a' x
-inline Vector6 transposed_product6(const Matrix6& a, const Vector6& x) noexcept {
+VERNIER_LOCAL inline Vector6 transposed_product6(const Matrix6& a, const Vector6& x) noexcept {
   Vector6 out;
   for (int j = 0; j < 6; ++j) out(j) = dot6(a.data() + 6 * j, x.data());
   return out;
 }
 
 /// out = factor a a'
-inline void product_with_transpose(const Matrix6& a, double factor, Matrix6& out) noexcept {
+VERNIER_LOCAL inline void product_with_transpose(const Matrix6& a, double factor, Matrix6& out) noexcept {
   Matrix6 scaled_transpose;
   for (int j = 0; j < 6; ++j)
     for (int k = 0; k < 6; ++k) scaled_transpose(k, j) = factor * a(j, k);
@@ -56,7 +56,7 @@ inline void product_with_transpose(const Matrix6& a, double factor, Matrix6& out
 }
 
 /// Squared Frobenius norm.
-inline double square6(const Matrix6& a) noexcept {
+VERNIER_LOCAL inline double square6(const Matrix6& a) noexcept {
   double out = 0;
   for (int j = 0; j < 6; ++j) out += dot6(a.data() + 6 * j, a.data() + 6 * j);
   return out;

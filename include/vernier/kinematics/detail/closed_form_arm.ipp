@@ -132,14 +132,14 @@ VERNIER_IMPL SixAxisRoots ClosedFormArm::solve(const Isometry3& target, const Jo
   };
 
   // displacement of the arm: rotation, and from the point of the first axis to that of the last
-  const Matrix3 back_at_zero = rotation(axes_.tool).transpose();
+  const Matrix3 back_at_zero = VERNIER_LATER(rotation(axes_.tool)).transpose();
   Matrix3 turn = times3(rotation(target), back_at_zero);
   const Vector3 lever = (mirrored_ ? o_[0] : o_[5]) - translation(axes_.tool), moved = rotated(turn, lever);
   Vector3 w = translation(target) + moved;
   w -= mirrored_ ? o_[5] : o_[0];
   if (mirrored_) {
     const Matrix3 forward = turn;
-    turn = forward.transpose();
+    turn = VERNIER_LATER(forward).transpose();
     w = rotated(turn, -w);
   }
 

@@ -18,7 +18,7 @@ struct AxisLine {
 };
 
 /// A line moved.
-inline AxisLine operator*(const Isometry3& motion, const AxisLine& line) {
+VERNIER_API inline AxisLine operator*(const Isometry3& motion, const AxisLine& line) {
   return {transformed(motion, line.point), rotated(rotation(motion), line.direction)};
 }
 

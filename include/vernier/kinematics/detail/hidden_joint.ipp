@@ -125,7 +125,7 @@ VERNIER_IMPL void equations_at(const LoopPencil& pencil, double q3, double (&out
 }
 
 /// Largest sum of a column's absolute values.
-inline double column_sum_norm(const double (&a)[12][12]) noexcept {
+VERNIER_LOCAL inline double column_sum_norm(const double (&a)[12][12]) noexcept {
   double out = 0;
   for (const auto& column : a) {
     double sum = 0;

@@ -35,7 +35,7 @@ VERNIER_LOCAL void move_together(const ArmAxes& arm, Vector3* points) noexcept {
 }
 
 /// Length of the way from point to point.
-inline double length_through(const Vector3* points, int n) noexcept {
+VERNIER_LOCAL inline double length_through(const Vector3* points, int n) noexcept {
   double out = 0;
   for (int i = 0; i + 1 < n; ++i) out += (points[i + 1] - points[i]).norm();
   return out;

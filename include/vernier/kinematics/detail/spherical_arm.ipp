@@ -36,13 +36,13 @@ VERNIER_IMPL SphericalArm::SphericalArm(const ArmAxes& axes, double tolerance) :
 
 VERNIER_IMPL Vector3 SphericalArm::reference(const Vector3& to_wrist) const noexcept {
   const Vector3 across = first_.k4.cross(to_wrist);
-  if (across.norm() > 1e-9 * to_wrist.norm()) return across.normalized();
+  if (across.norm() > 1e-9 * to_wrist.norm()) return VERNIER_LATER(across).normalized();
   const double along = to_wrist.dot(first_.k5) / to_wrist.squaredNorm();
   return Vector3(first_.k5 - along * to_wrist).normalized();
 }
 
 /// The matrix of columns `a`, `b` and `a x b`.
-inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
+VERNIER_LOCAL inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
   const Vector3 c = a.cross(b);
   Matrix3 out;
   for (int r = 0; r < 3; ++r) {
@@ -56,7 +56,8 @@ inline Matrix3 frame_of_two(const Vector3& a, const Vector3& b) noexcept {
 VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, double angle,
                                                    const JointVector<7>& close_to, double width) const noexcept {
   SphericalArmRoots out;
-  const Matrix3 back_at_zero = rotation(axes_.tool).transpose(), turn = times3(rotation(target), back_at_zero);
+  const Matrix3 back_at_zero = VERNIER_LATER(rotation(axes_.tool)).transpose(),
+                turn = times3(rotation(target), back_at_zero);
   const Vector3 lever = wrist_ - translation(axes_.tool);
   const Vector3 wrist_centre = translation(target) + rotated(turn, lever), to_wrist = wrist_centre - shoulder_;
   const auto missed = [&](double margin) {
@@ -65,7 +66,7 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
   const Candidates elbows(angles_to_distance(axis4_, fore_, -upper_, to_wrist.norm(), negligible_length), close_to(3));
   missed(elbows.margin);
   if (!(to_wrist.norm() > negligible_length)) return out;  // the wrist in the shoulder: no arm angle
-  const Vector3 along = to_wrist.normalized();
+  const Vector3 along = VERNIER_LATER(to_wrist).normalized();
   const Vector3 normal = rotated(rotation_about(along, angle), reference(to_wrist));
   const Matrix3 then = frame_of_two(along, normal);
   for (int i = 0; i < elbows.count; ++i) {
@@ -73,7 +74,7 @@ VERNIER_IMPL SphericalArmRoots SphericalArm::solve(const Isometry3& target, doub
     const Matrix3 r4 = rotation_about(axis4_, q4);
     const Vector3 from = upper_ + rotated(r4, fore_);
     // the rotation of the upper arm brings the wrist and axis 4 where they have to be
-    const Matrix3 now = frame_of_two(from / from.norm(), axis4_), back = now.transpose();
+    const Matrix3 now = frame_of_two(from / from.norm(), axis4_), back = VERNIER_LATER(now).transpose();
     const Matrix3 upper_arm = times3(then, back), forearm = times3(upper_arm, r4);
     const WristAngles begin = solve_wrist(first_, upper_arm, close_to(0), 0);
     const WristAngles end = solve_wrist(last_, transposed_times3(forearm, turn), close_to(4), width);
@@ -97,7 +98,7 @@ VERNIER_IMPL double SphericalArm::arm_angle(const JointVector<7>& q) const noexc
   const Matrix3 upper_arm = times3(first_two, rotation_about(first_.k6, q(2)));
   const Vector3 bent = upper_ + rotated(rotation_about(axis4_, q(3)), fore_), to_wrist = rotated(upper_arm, bent);
   const Vector3 normal = rotated(upper_arm, axis4_), zero = reference(to_wrist);
-  return std::atan2(to_wrist.normalized().dot(zero.cross(normal)), zero.dot(normal));
+  return std::atan2(VERNIER_LATER(to_wrist).normalized().dot(zero.cross(normal)), zero.dot(normal));
 }
 
 VERNIER_IMPL SingularityDistances SphericalArm::distances(const JointVector<7>& q) const noexcept {

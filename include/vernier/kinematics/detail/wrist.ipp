@@ -31,7 +31,7 @@ VERNIER_IMPL MeetingPoint meeting_point(const Vector3* directions, const Vector3
     normal += off;
     right += rotated(off, points[k]);
   }
-  const Matrix3 inverse = normal.inverse();
+  const Matrix3 inverse = VERNIER_LATER(normal).inverse();
   MeetingPoint out{rotated(inverse, right), 0};
   for (int k = 0; k < lines; ++k) {
     const Vector3 lever = out.point - points[k];

@@ -25,7 +25,7 @@ void visit_blocks(const BlockSystem& system, Index first, Index stride, Index co
 }
 
 /// Adds `factor columns x` to six values.
-inline void add_columns(const Rows6& columns, const double* x, double factor, double* out) {
+VERNIER_API inline void add_columns(const Rows6& columns, const double* x, double factor, double* out) {
   double sum[6] = {};
   for (Index j = 0; j < columns.cols(); ++j)
     for (Index r = 0; r < 6; ++r) sum[r] += x[j] * columns(r, j);

@@ -36,7 +36,7 @@ VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const Cons
   const CalibrationProblem problem(std::move(arm), {std::move(set)}, Loss::squared, planned.sensors.joint_sigma);
   MatrixX out = problem.stacked(true).jacobian;
   const VectorX precisions = problem.arm.precisions();
-  for (Index k = 0; k < out.cols(); ++k) out.col(k) /= std::sqrt(precisions(k));
+  for (Index k = 0; k < out.cols(); ++k) VERNIER_LATER(out).col(k) /= std::sqrt(precisions(k));
   return out;
 }
 

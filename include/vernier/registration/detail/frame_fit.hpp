@@ -33,7 +33,9 @@ struct FrameFit {
   std::vector<Isometry3> poses{};     ///< as modelled after the motion
 
   /// Covariance of some unknowns that follow each other.
-  MatrixX covariance_of(Index begin, Index count) const { return covariance.block(begin, begin, count, count); }
+  VERNIER_API MatrixX covariance_of(Index begin, Index count) const {
+    return covariance.block(begin, begin, count, count);
+  }
 };
 
 /// Solves for the unknowns, weights as given.

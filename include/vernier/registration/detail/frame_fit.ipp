@@ -17,25 +17,25 @@ VERNIER_LOCAL void frame_rows(const MeasuredSet& data, const FrameFit& fit, cons
                               RowBlock& out) {
   const Isometry3& pose = fit.poses[static_cast<std::size_t>(i)];
   out.residual.setZero();
-  out.residual.head<3>() = (translation(pose) - data.position(i)) / fit.position_sigma;
+  VERNIER_LATER(out.residual).template head<3>() = (translation(pose) - data.position(i)) / fit.position_sigma;
   out.dense = fit.update.columns(pose, jacobians.data() + 6 * fit.update.joints * i);
   const double angular = data.oriented() ? 1 / fit.orientation_sigma : 0;
   for (Index c = 0; c < out.dense.cols(); ++c)
     for (Index r = 0; r < 6; ++r) out.dense(r, c) *= r < 3 ? 1 / fit.position_sigma : angular;
   if (!data.oriented()) return;
   const Matrix3 seen = rotation(pose) * exp_so3(fit.motion.probe);
-  out.residual.tail<3>() =
+  VERNIER_LATER(out.residual).template tail<3>() =
       rotation_difference(seen, data.orientations()[static_cast<std::size_t>(i)]) / fit.orientation_sigma;
 }
 
 /// Adds priors so tight that the held directions stay where they are.
 VERNIER_LOCAL void hold(const FrameFit& fit, const VectorX& total, NormalEquations& normal) {
   for (Index k = 0; k < fit.held.cols(); ++k) {
-    const VectorX axis = fit.held.col(k);
+    const VectorX axis = VERNIER_LATER(fit.held).col(k);
     double variance = 0;
     for (Index r = 0; r < axis.size(); ++r) variance += std::pow(axis(r) * (std::min)(fit.prior_std(r), 1.0), 2);
     const double precision = 1e8 / variance, at = axis.dot(total);
-    add_product(normal.matrix, axis, axis.transpose(), precision);
+    add_product(normal.matrix, axis, VERNIER_LATER(axis).transpose(), precision);
     normal.gradient += precision * at * axis;
     normal.cost += precision * at * at;
   }
@@ -87,7 +87,7 @@ VERNIER_IMPL void solve_frames(const MovedPoses& evaluate, const MeasuredSet& da
   fit.covariance.resize(0, 0);
   if (fit.determined) {
     const LinearisedProblem at = linearise();
-    fit.covariance = FactorisedEquations(at.normal, precisions, total).inverse();
+    fit.covariance = VERNIER_LATER(FactorisedEquations(at.normal, precisions, total)).inverse();
   }
   fit.total = total;
   if (fit.covariance.size() == 0) return;

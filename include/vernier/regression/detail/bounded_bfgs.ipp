@@ -19,7 +19,9 @@ VERNIER_IMPL BoundedMinimum minimise_within(FunctionRef<double(const VectorX& x,
   const auto clamp = [&](VectorX& point) {
     for (Index j = 0; j < d; ++j) point(j) = (std::min)((std::max)(point(j), lower(j)), upper(j));
   };
-  const auto longest_part = [](const VectorX& v) { return (std::max)(v.maxCoeff(), -v.minCoeff()); };
+  const auto longest_part = [](const VectorX& v) {
+    return (std::max)(VERNIER_LATER(v).maxCoeff(), -VERNIER_LATER(v).minCoeff());
+  };
   clamp(x);
   double value = function(x, gradient);
   MatrixX inverse = MatrixX::Identity(d, d);  // of the Hessian
@@ -28,7 +30,7 @@ VERNIER_IMPL BoundedMinimum minimise_within(FunctionRef<double(const VectorX& x,
     VectorX free(d);
     for (Index j = 0; j < d; ++j)
       free(j) = (x(j) <= lower(j) && gradient(j) > 0) || (x(j) >= upper(j) && gradient(j) < 0) ? 0 : 1;
-    const VectorX slope = gradient.cwiseProduct(free);
+    const VectorX slope = VERNIER_LATER(gradient).cwiseProduct(free);
     const double steepest = longest_part(slope);
     if (!(steepest > tolerance)) break;
     VectorX step = product(inverse, slope);

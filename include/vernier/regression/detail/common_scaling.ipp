@@ -15,7 +15,7 @@ VERNIER_IMPL CommonScaling::CommonScaling(const ConstMatrixRef& targets, const V
   const double total = each.sum();
   mean = transposed_product(targets, each) / total;
   spread = std::sqrt(each.dot(squared_row_norms(rows_minus(targets, mean))) / total);
-  if (!(spread > 1e-12 * (std::max)(targets.maxCoeff(), -targets.minCoeff()))) spread = 1;
+  if (!(spread > 1e-12 * (std::max)(VERNIER_LATER(targets).maxCoeff(), -VERNIER_LATER(targets).minCoeff()))) spread = 1;
 }
 
 VERNIER_IMPL MatrixX CommonScaling::apply(const ConstMatrixRef& targets) const {

@@ -30,12 +30,12 @@ VERNIER_IMPL void ElmFitness::operator()(const ConstMatrixRef& population, Vecto
   for (Index k = 0; k < population.cols(); ++k) {
     double error = -1;
     if (equations) {
-      equations->form(population.col(k));
+      equations->form(VERNIER_LATER(population).col(k));
       error =
           relative_ridge_objective(equations->gram(), equations->right(), equations->target_square(), relative_lambda_);
     }
     // too nearly perfect or too badly conditioned for the products
-    if (!(error >= 0)) error = from_samples(population.col(k));
+    if (!(error >= 0)) error = from_samples(VERNIER_LATER(population).col(k));
     fitness(k) = error / total_weight_;
   }
 }

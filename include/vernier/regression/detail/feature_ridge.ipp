@@ -16,7 +16,8 @@ VERNIER_LOCAL MatrixX lower_gram(const MatrixX& a) {
   MatrixX out = MatrixX::Zero(a.cols(), a.cols());
   for (Index first = 0; first < a.cols(); first += width) {
     const Index rest = a.cols() - first, count = (std::min)(width, rest);
-    add_transposed_product(out.block(first, first, rest, count), a.middleCols(first, rest), a.middleCols(first, count));
+    add_transposed_product(VERNIER_LATER(out).block(first, first, rest, count),
+                           VERNIER_LATER(a).middleCols(first, rest), VERNIER_LATER(a).middleCols(first, count));
   }
   return out;
 }
@@ -27,7 +28,7 @@ VERNIER_IMPL FeatureRidge::FeatureRidge(const ConstMatrixRef& features, const Co
       total_(weights_.sum()),
       mean_features_(transposed_product(features, weights_) / total_),
       mean_targets_(transposed_product(targets, weights_) / total_) {
-  const VectorX root = weights_.cwiseSqrt();
+  const VectorX root = VERNIER_LATER(weights_).cwiseSqrt();
   features_ = rows_scaled(root, rows_minus(features, mean_features_));
   targets_ = rows_scaled(root, rows_minus(targets, mean_targets_));
   if (features_.cols() == 0) {
@@ -36,15 +37,16 @@ VERNIER_IMPL FeatureRidge::FeatureRidge(const ConstMatrixRef& features, const Co
     return;
   }
   const bool dual = features_.rows() < features_.cols();
-  SymmetricEigen eigen = symmetric_eigen(dual ? lower_gram(features_.transpose()) : lower_gram(features_));
+  SymmetricEigen eigen =
+      symmetric_eigen(dual ? lower_gram(VERNIER_LATER(features_).transpose()) : lower_gram(features_));
   const Index k = eigen.values.size();
   const double top = std::max<double>(eigen.values(k - 1), 0), threshold = (std::max)(1e-14 * top, 1e-300);
   Index rank = 0;
   while (rank < k && eigen.values(k - 1 - rank) > threshold) ++rank;
-  squares_ = eigen.values.tail(rank);
+  squares_ = VERNIER_LATER(eigen.values).tail(rank);
   VectorX inverse = squares_;
   for (double& value : inverse) value = 1 / std::sqrt(value);
-  const MatrixX vectors = eigen.vectors.rightCols(rank), scaled = columns_scaled(vectors, inverse);
+  const MatrixX vectors = VERNIER_LATER(eigen.vectors).rightCols(rank), scaled = columns_scaled(vectors, inverse);
   left_ = dual ? vectors : matrix_product(features_, scaled);
   right_ = dual ? transposed_matrix_product(features_, scaled) : vectors;
   projected_ = transposed_matrix_product(left_, targets_);
@@ -96,12 +98,12 @@ VERNIER_IMPL VectorX FeatureRidge::leave_one_out(const VectorX& lambdas) const {
     rest = targets_;
     add_product(rest, left_, projected_, -1);
   }
-  const MatrixX share = matrix_product(left_.cwiseAbs2(), kept);
+  const MatrixX share = matrix_product(VERNIER_LATER(left_).cwiseAbs2(), kept);
   VectorX out(lambdas.size());
   for (Index l = 0; l < lambdas.size(); ++l) {
     MatrixX residual = rest;
-    add_product(residual, left_, rows_scaled(kept.col(l), projected_));
-    VectorX one_minus_leverage = share.col(l);
+    add_product(residual, left_, rows_scaled(VERNIER_LATER(kept).col(l), projected_));
+    VectorX one_minus_leverage = VERNIER_LATER(share).col(l);
     one_minus_leverage += spare;
     out(l) = left_out_error(residual, one_minus_leverage);
   }
@@ -127,12 +129,12 @@ VERNIER_IMPL double FeatureRidge::left_out_error(const MatrixX& residual, const 
 VERNIER_IMPL FeatureRidgeFit FeatureRidge::from_samples(double lambda) const {
   const Index n = features_.rows(), f = features_.cols();
   MatrixX stacked = MatrixX::Zero(n + f, f), right = MatrixX::Zero(n + f, targets_.cols());
-  stacked.topRows(n) = features_;
-  right.topRows(n) = targets_;
+  VERNIER_LATER(stacked).topRows(n) = features_;
+  VERNIER_LATER(right).topRows(n) = targets_;
   for (Index k = 0; k < f; ++k) stacked(n + k, k) = std::sqrt(lambda);
   const QrSolution qr = solve_by_qr(stacked, right);
   MatrixX inverse = MatrixX::Identity(f, f);
-  solve_lower_transposed(qr.triangle.transpose(), inverse);
+  solve_lower_transposed(VERNIER_LATER(qr.triangle).transpose(), inverse);
   return finish(lambda, qr.solution, static_cast<double>(f) - lambda * inverse.squaredNorm(), inverse, VectorX::Ones(f),
                 0);
 }

@@ -11,18 +11,19 @@ namespace vernier::detail {
 /// T + lambda = L D L' for a tridiagonal T of no negative eigenvalue.
 class ShiftedTridiagonal {
  public:
-  ShiftedTridiagonal(const TridiagonalForm& form, double lambda)
+  VERNIER_LOCAL ShiftedTridiagonal(const TridiagonalForm& form, double lambda)
       : pivots_(form.diagonal.size()), multipliers_(form.subdiagonal.size()) {
     // no pivot is below the smallest eigenvalue, but for rounding
-    pivots_(0) = (std::max)(form.diagonal(0) + lambda, lambda);
+    pivots_(0) = (std::max)(VERNIER_LATER(form).diagonal(0) + lambda, lambda);
     for (Index k = 1; k < pivots_.size(); ++k) {
       multipliers_(k - 1) = form.subdiagonal(k - 1) / pivots_(k - 1);
-      pivots_(k) = (std::max)(form.diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
+      pivots_(k) =
+          (std::max)(VERNIER_LATER(form).diagonal(k) + lambda - multipliers_(k - 1) * form.subdiagonal(k - 1), lambda);
     }
   }
 
   /// (T + lambda)^-1 x, in place.
-  void solve(MatrixX& x) const {
+  VERNIER_LOCAL void solve(MatrixX& x) const {
     const Index n = pivots_.size();
     for (Index c = 0; c < x.cols(); ++c) {
       for (Index k = 1; k < n; ++k) x(k, c) -= multipliers_(k - 1) * x(k - 1, c);
@@ -32,11 +33,13 @@ class ShiftedTridiagonal {
   }
 
   /// Diagonal of Q (T + lambda)^-1 Q'.
-  VectorX inverse_diagonal(const MatrixX& q) const {
-    VectorX row = q.col(0), sum = row.cwiseAbs2() / pivots_(0);  // rows of L^-1 Q'
+  VERNIER_LOCAL VectorX inverse_diagonal(const MatrixX& q) const {
+    VERNIER_LATER_TYPE(VectorX)
+    row = VERNIER_LATER(q).col(0),
+    sum = VERNIER_LATER(row).cwiseAbs2() / pivots_(0);  // rows of L^-1 Q'
     for (Index k = 1; k < pivots_.size(); ++k) {
-      row = q.col(k) - multipliers_(k - 1) * row;
-      sum += row.cwiseAbs2() / pivots_(k);
+      row = VERNIER_LATER(q).col(k) - multipliers_(k - 1) * row;
+      sum += VERNIER_LATER(row).cwiseAbs2() / pivots_(k);
     }
     return sum;
   }
@@ -46,33 +49,35 @@ class ShiftedTridiagonal {
 };
 
 VERNIER_IMPL KernelRidgePath::KernelRidgePath(MatrixX k, const ConstMatrixRef& targets, const VectorX& weights)
-    : root_(weights.cwiseSqrt()), targets_(targets) {
+    : root_(VERNIER_LATER(weights).cwiseSqrt()), targets_(targets) {
   for (Index c = 0; c < k.cols(); ++c)
     for (Index r = c; r < k.rows(); ++r) k(r, c) *= root_(r) * root_(c);
   form_ = tridiagonal_form(k);
   MatrixX right(root_.size(), 1 + targets_.cols());
-  right.col(0) = root_;
-  right.rightCols(targets_.cols()) = rows_scaled(root_, targets_);
+  VERNIER_LATER(right).col(0) = root_;
+  VERNIER_LATER(right).rightCols(targets_.cols()) = rows_scaled(root_, targets_);
   projected_ = transposed_matrix_product(form_.basis, right);
 }
 
 VERNIER_IMPL MatrixX KernelRidgePath::leave_one_out_residuals(double lambda) const {
-  const VectorX weights = root_.cwiseAbs2();
+  const auto& targets = VERNIER_LATER(targets_);
+  const VectorX weights = VERNIER_LATER(root_).cwiseAbs2();
   const Index n = weights.size();
   VectorX factor(n);
   if (!std::isfinite(lambda)) {
     const double total = weights.sum();
     for (Index i = 0; i < n; ++i) factor(i) = 1 / (1 - weights(i) / total);
-    return rows_scaled(factor, rows_minus(targets_, transposed_product(targets_, weights) / total));
+    return rows_scaled(factor, rows_minus(targets, transposed_product(targets, weights) / total));
   }
   const ShiftedTridiagonal shifted(form_, lambda);
   MatrixX alpha = projected_;
   shifted.solve(alpha);
-  const VectorX ones = alpha.col(0);
-  const double precision = ones.dot(projected_.col(0));
-  const VectorX mean = transposed_product(projected_.rightCols(targets_.cols()), ones) / precision;
-  alpha = alpha.rightCols(targets_.cols()).eval();
-  add_product(alpha, ones, mean.transpose(), -1);
+  const VectorX ones = VERNIER_LATER(alpha).col(0);
+  const double precision = VERNIER_LATER(ones).dot(VERNIER_LATER(projected_).col(0));
+  const VERNIER_LATER_TYPE(VectorX) mean =
+      transposed_product(VERNIER_LATER(projected_).rightCols(targets.cols()), ones) / precision;
+  alpha = VERNIER_LATER(alpha).rightCols(targets.cols()).eval();
+  add_product(alpha, ones, VERNIER_LATER(mean).transpose(), -1);
   // of (K + lambda / W)^-1 with the mean projected out
   const VectorX diagonal = shifted.inverse_diagonal(form_.basis), along = product(form_.basis, ones);
   for (Index i = 0; i < n; ++i) factor(i) = root_(i) / (weights(i) * (diagonal(i) - along(i) * along(i) / precision));

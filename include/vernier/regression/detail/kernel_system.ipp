@@ -19,7 +19,7 @@ VERNIER_IMPL void KernelFeatures::divide(const VectorX& length_scales) {
   for (Index j = 0; j < values.cols(); ++j) {
     const double length = length_scales(j % length_scales.size());
     scaling.factor(j) /= length;
-    values.col(j) /= length;
+    VERNIER_LATER(values).col(j) /= length;
   }
 }
 
@@ -32,19 +32,19 @@ VERNIER_IMPL KernelSystem::KernelSystem(MatrixX a, const VectorX& noise, const C
   const Index m = targets.cols();
   const VectorX centre = column_means(targets);  // first, so that little cancels later
   MatrixX right(n, 1 + m);
-  right.col(0).setOnes();
-  right.rightCols(m) = rows_minus(targets, centre);
+  VERNIER_LATER(right).col(0).setOnes();
+  VERNIER_LATER(right).rightCols(m) = rows_minus(targets, centre);
   MatrixX solution = right;
   solve_cholesky(factor, solution);
-  ones = solution.col(0);
+  ones = VERNIER_LATER(solution).col(0);
   precision = ones.sum();
-  alpha = solution.rightCols(m);
+  alpha = VERNIER_LATER(solution).rightCols(m);
   mean.resize(m);
   square.resize(m);
   for (Index o = 0; o < m; ++o) {
-    const double shift = alpha.col(o).sum() / precision;
-    alpha.col(o) -= shift * ones;
-    square(o) = right.col(1 + o).dot(alpha.col(o));
+    const double shift = VERNIER_LATER(alpha).col(o).sum() / precision;
+    VERNIER_LATER(alpha).col(o) -= shift * ones;
+    square(o) = VERNIER_LATER(right).col(1 + o).dot(VERNIER_LATER(alpha).col(o));
     mean(o) = centre(o) + shift;
   }
 }

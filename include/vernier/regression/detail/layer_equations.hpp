@@ -39,9 +39,9 @@ class LayerEquations {
   const double* outputs() const { return tile_.data(); }
   Index stride() const { return stride_; }
   /// H'H, nodes x nodes; its lower triangle.
-  ConstMatrixRef gram() const { return products_.topLeftCorner(layer_.nodes, layer_.nodes); }
+  VERNIER_API ConstMatrixRef gram() const { return products_.topLeftCorner(layer_.nodes, layer_.nodes); }
   /// T'H, outputs x nodes.
-  ConstMatrixRef right() const { return products_.block(layer_.nodes, 0, targets_.cols(), layer_.nodes); }
+  VERNIER_API ConstMatrixRef right() const { return products_.block(layer_.nodes, 0, targets_.cols(), layer_.nodes); }
   /// |T|^2.
   double target_square() const {
     double sum = 0;

@@ -112,11 +112,11 @@ VERNIER_IMPL LeaveOneOutError::LeaveOneOutError(const HiddenLayer& layer, const 
       rotated_((layer.nodes + 7) / 8 * 8),
       set_(set),
       mean_target_(column_means(targets)),
-      mean_feature_(column_means(features).transpose()),
+      mean_feature_(VERNIER_LATER(column_means(features)).transpose()),
       targets_and_ones_(samples_, outputs_ + 1),
       equations_(layer, features, targets_and_ones_, set, true) {
-  targets_and_ones_.leftCols(outputs_) = targets;
-  targets_and_ones_.col(outputs_).setOnes();
+  VERNIER_LATER(targets_and_ones_).leftCols(outputs_) = targets;
+  VERNIER_LATER(targets_and_ones_).col(outputs_).setOnes();
   centred_square_ = rows_minus(targets, mean_target_).squaredNorm();
   scratch_.resize(
       static_cast<std::size_t>(LeaveOneOutBlock::tile_samples * (2 * rotated_ + (1 + outputs_) * padded_lambdas)));
@@ -145,7 +145,7 @@ VERNIER_IMPL double LeaveOneOutError::operator()(const ConstVectorRef& theta) {
   const MatrixX rotated_right = transposed_matrix_product(eigen.vectors, right);
   MatrixX rotation = MatrixX::Zero(rotated_, h), shares = MatrixX::Zero(padded_lambdas, h),
           weights = MatrixX::Zero(outputs_ * padded_lambdas, h);
-  rotation.topRows(h) = eigen.vectors.transpose();
+  VERNIER_LATER(rotation).topRows(h) = VERNIER_LATER(eigen.vectors).transpose();
   const VectorX start = -product(rotation, mean);
   for (Index l = 0; l < lambdas; ++l) {
     const double lambda = scale * std::pow(10.0, -0.5 * static_cast<double>(l));

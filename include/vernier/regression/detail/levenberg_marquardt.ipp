@@ -24,7 +24,7 @@ VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, Vect
       gradient = problem.gradient();
       problem.curvature(curvature, executor);
       scale = diagonal_of(curvature);
-      if (!(scale.maxCoeff() > 0)) break;  // every node is saturated or unused
+      if (!(VERNIER_LATER(scale).maxCoeff() > 0)) break;  // every node is saturated or unused
       // Nodes that hardly matter at the moment must not be thrown far away.
       const double least = 1e-3 * scale.mean();
       for (double& of_weight : scale) of_weight = (std::max)(of_weight, least);
@@ -35,7 +35,7 @@ VERNIER_IMPL double levenberg_marquardt(const LeastSquaresProblem& problem, Vect
     if (cholesky(damped)) {
       VectorX step = -gradient;
       solve_cholesky(damped, step);
-      const VectorX scaled = scale.cwiseProduct(step);
+      const VectorX scaled = VERNIER_LATER(scale).cwiseProduct(step);
       const double predicted = 0.5 * (damping.value() * step.dot(scaled) - gradient.dot(step));
       if (!(predicted > 1e-15 * value)) break;  // the value cannot tell such steps apart
       const VectorX trial = theta + step;

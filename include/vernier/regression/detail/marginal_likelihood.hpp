@@ -21,7 +21,7 @@ class MarginalLikelihood {
   /// @param features n x features before length scales; feature j belongs to input j modulo `inputs`
   /// @param targets  n x outputs
   /// @param weights  n
-  MarginalLikelihood(Kernel kernel, MatrixX features, int inputs, MatrixX targets, VectorX weights)
+  VERNIER_API MarginalLikelihood(Kernel kernel, MatrixX features, int inputs, MatrixX targets, VectorX weights)
       : kernel_(kernel),
         features_(std::move(features)),
         inputs_(inputs),

@@ -16,7 +16,7 @@ namespace vernier::detail {
 VERNIER_IMPL VectorX varying_outputs(const ConstMatrixRef& targets) {
   VectorX out(targets.cols());
   for (Index o = 0; o < targets.cols(); ++o) {
-    const double low = targets.col(o).minCoeff(), high = targets.col(o).maxCoeff();
+    const double low = VERNIER_LATER(targets).col(o).minCoeff(), high = VERNIER_LATER(targets).col(o).maxCoeff();
     out(o) = high - low > 1e-12 * (std::max)(std::abs(low), std::abs(high)) ? 1 : 0;
   }
   return out;
@@ -28,8 +28,8 @@ VERNIER_IMPL double MarginalLikelihood::operator()(const VectorX& logarithms, Ve
   gradient = VectorX::Zero(inputs_ + 1);
   if (same_value(outputs, 0)) return 0;
   MatrixX x = features_;
-  for (Index j = 0; j < x.cols(); ++j) x.col(j) *= std::exp(-logarithms(j % inputs_));
-  VectorX noise = weights_.cwiseInverse();
+  for (Index j = 0; j < x.cols(); ++j) VERNIER_LATER(x).col(j) *= std::exp(-logarithms(j % inputs_));
+  VectorX noise = VERNIER_LATER(weights_).cwiseInverse();
   noise *= ratio;
   const KernelSystem system(kernel_matrix(kernel_, x), noise, targets_);
   if (!system.solved) return std::numeric_limits<double>::infinity();
@@ -63,7 +63,7 @@ VERNIER_IMPL double MarginalLikelihood::operator()(const VectorX& logarithms, Ve
       }
     VectorX pulled = slope(std::move(distance));
     for (Index i = 0; i < rest; ++i) pulled(i) *= pull(b + 1 + i, b);
-    for (Index j = 0; j < x.cols(); ++j) gradient(j % inputs_) -= pulled.dot(square.col(j));
+    for (Index j = 0; j < x.cols(); ++j) gradient(j % inputs_) -= pulled.dot(VERNIER_LATER(square).col(j));
   }
   const double scale = -1 / (total * outputs);
   gradient *= scale;
@@ -76,7 +76,7 @@ VERNIER_IMPL VectorX MarginalLikelihood::slope(VectorX square) const {
     return square;
   }
   VectorX s = 5 * square;
-  s = s.cwiseSqrt();
+  s = VERNIER_LATER(s).cwiseSqrt();
   VectorX out = -1 * s;
   exponentiate(out);
   for (Index i = 0; i < s.size(); ++i) out(i) *= 5.0 / 3 * (1 + s(i));

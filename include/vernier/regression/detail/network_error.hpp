@@ -28,8 +28,8 @@ class NetworkError {
   /// @param weights  q, n; only their ratios matter
   /// @param decay    of all weights but biases, 0 or more
   /// @param set      instructions to use; must be there
-  NetworkError(const HiddenLayer& layer, MatrixX features, MatrixX targets, const VectorX& weights, double decay,
-               InstructionSet set = widest_instruction_set())
+  VERNIER_API NetworkError(const HiddenLayer& layer, MatrixX features, MatrixX targets, const VectorX& weights,
+                           double decay, InstructionSet set = widest_instruction_set())
       : layer_(layer),
         features_(std::move(features)),
         targets_(std::move(targets)),
@@ -61,7 +61,7 @@ class NetworkError {
 
  private:
   /// B; after every column a bias.
-  Eigen::Map<const MatrixX, 0, Eigen::OuterStride<>> output_weights() const {
+  VERNIER_API Eigen::Map<const MatrixX, 0, Eigen::OuterStride<>> output_weights() const {
     return {theta_.data() + hidden(), layer_.nodes, targets_.cols(), Eigen::OuterStride<>(layer_.nodes + 1)};
   }
 

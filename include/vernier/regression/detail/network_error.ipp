@@ -41,7 +41,8 @@ VERNIER_IMPL void NetworkError::curvature(MatrixX& out, ExecutorRef executor) {
   const auto product = [&](Index task) -> const MatrixX& { return products_[static_cast<std::size_t>(task)]; };
 
   out.setZero(dimension(), dimension());
-  const MatrixX b = output_weights(), transposed = b.transpose(), both = 2 * matrix_product(b, transposed);
+  const MatrixX b = output_weights(), transposed = VERNIER_LATER(b).transpose(),
+                both = 2 * matrix_product(b, transposed);
   for (Index j = 0, pair = 0; j < d; ++j)
     for (Index i = j; i < d; ++i, ++pair)
       for (Index k = 0; k < h; ++k)
@@ -69,8 +70,8 @@ VERNIER_IMPL double NetworkError::over_samples(VectorX* gradient) {
   double value = add_decay(gradient);
   for (Index begin = 0; begin < samples(); begin += tile) {
     const Index count = (std::min)(tile, samples() - begin);
-    value += add(features_.middleRows(begin, count), targets_.middleRows(begin, count), shares_.segment(begin, count),
-                 gradient);
+    value += add(VERNIER_LATER(features_).middleRows(begin, count), VERNIER_LATER(targets_).middleRows(begin, count),
+                 VERNIER_LATER(shares_).segment(begin, count), gradient);
   }
   return value;
 }
@@ -93,7 +94,7 @@ VERNIER_IMPL double NetworkError::add(const ConstMatrixRef& x, const ConstMatrix
                                       VectorX* gradient) {
   const Index n = x.rows(), f = features_.cols(), h = layer_.nodes, m = targets_.cols();
   const auto bias = [&](Index o) { return hidden() + o * (h + 1) + h; };
-  layer_.outputs(x, theta_.head(hidden()), outputs_);
+  layer_.outputs(x, VERNIER_LATER(theta_).head(hidden()), outputs_);
   residual_.resize(n, m);
   for (Index o = 0; o < m; ++o)
     for (Index i = 0; i < n; ++i) residual_(i, o) = theta_(bias(o)) - t(i, o);
@@ -102,36 +103,36 @@ VERNIER_IMPL double NetworkError::add(const ConstMatrixRef& x, const ConstMatrix
   if (gradient == nullptr) return value;
   for (Index o = 0; o < m; ++o)
     for (Index i = 0; i < n; ++i) residual_(i, o) *= 2 * q(i);
-  const MatrixX back = output_weights().transpose();
+  const MatrixX back = VERNIER_LATER(output_weights()).transpose();
   pulled_.setZero(n, h);
   add_product(pulled_, residual_, back);
   Eigen::Map<MatrixX, 0, Eigen::OuterStride<>> to_hidden(gradient->data(), f, h, Eigen::OuterStride<>(f + 1)),
       to_output(gradient->data() + hidden(), h, m, Eigen::OuterStride<>(h + 1));
   add_transposed_product(to_output, outputs_, residual_);
-  for (Index o = 0; o < m; ++o) (*gradient)(bias(o)) += residual_.col(o).sum();
+  for (Index o = 0; o < m; ++o) (*gradient)(bias(o)) += VERNIER_LATER(residual_).col(o).sum();
   to_slopes(outputs_);
-  pulled_ = pulled_.cwiseProduct(outputs_);
+  pulled_ = VERNIER_LATER(pulled_).cwiseProduct(outputs_);
   add_transposed_product(to_hidden, x, pulled_);
-  for (Index k = 0; k < h; ++k) (*gradient)(k * (f + 1) + f) += pulled_.col(k).sum();
+  for (Index k = 0; k < h; ++k) (*gradient)(k * (f + 1) + f) += VERNIER_LATER(pulled_).col(k).sum();
   return value;
 }
 
 VERNIER_IMPL void NetworkError::to_slopes(MatrixX& h) const {
   if (layer_.activation == Activation::tanh)
-    h = MatrixX::Ones(h.rows(), h.cols()) - h.cwiseAbs2();
+    h = MatrixX::Ones(h.rows(), h.cols()) - VERNIER_LATER(h).cwiseAbs2();
   else
-    h -= h.cwiseAbs2();
+    h -= VERNIER_LATER(h).cwiseAbs2();
 }
 
 VERNIER_IMPL void NetworkError::fill() {
   const Index h = layer_.nodes;
   stride_ = (h + 8) / 8 * 8;
   if (nodes_.size() == 0) nodes_ = slopes_ = MatrixX::Zero(stride_, samples());
-  layer_.outputs(features_, theta_.head(hidden()), outputs_);
-  nodes_.topRows(h) = outputs_.transpose();
+  layer_.outputs(features_, VERNIER_LATER(theta_).head(hidden()), outputs_);
+  VERNIER_LATER(nodes_).topRows(h) = VERNIER_LATER(outputs_).transpose();
   for (Index i = 0; i < samples(); ++i) nodes_(h, i) = 1;
   to_slopes(outputs_);
-  slopes_.topRows(h) = outputs_.transpose();
+  VERNIER_LATER(slopes_).topRows(h) = VERNIER_LATER(outputs_).transpose();
 }
 
 VERNIER_IMPL void NetworkError::form_products(Index begin, Index end) {
@@ -148,7 +149,7 @@ VERNIER_IMPL void NetworkError::form_products(Index begin, Index end) {
       if (task < begin || task >= end) return;
       for (Index s = 0; s < count; ++s) weights(s) = shares_(from + s) * shared(s, j) * shared(s, i);
       add_weighted_product(
-          {left.col(from).data(), right.col(from).data(), weights.data(), tile.data(),
+          {VERNIER_LATER(left).col(from).data(), VERNIER_LATER(right).col(from).data(), weights.data(), tile.data(),
            products_[static_cast<std::size_t>(task)].data(), count, stride_, tile.cols(), &left == &right},
           set_);
     };

@@ -65,7 +65,7 @@ VERNIER_INLINE void distance_function(NodeFunction function, const typename Simd
   }
 }
 
-inline bool is_projection(NodeFunction function) { return function <= NodeFunction::sine; }
+VERNIER_LOCAL inline bool is_projection(NodeFunction function) { return function <= NodeFunction::sine; }
 
 /// Values and slopes of all nodes of a block.
 template <int W>
@@ -230,7 +230,9 @@ VERNIER_IMPL void NodeSum::node_values(const double* features, Index first, Inde
   }
 }
 
-VERNIER_IMPL MatrixX NodeSum::weights() const { return packed_.topLeftCorner(nodes_, features_).transpose(); }
+VERNIER_IMPL MatrixX NodeSum::weights() const {
+  return VERNIER_LATER(packed_).topLeftCorner(nodes_, features_).transpose();
+}
 
 VERNIER_IMPL VectorX NodeSum::weights_and_biases() const {
   VectorX out(nodes_ * (features_ + 1));
@@ -239,6 +241,8 @@ VERNIER_IMPL VectorX NodeSum::weights_and_biases() const {
   return out;
 }
 
-VERNIER_IMPL MatrixX NodeSum::coefficients() const { return packed_.block(0, features_ + 1, nodes_, outputs_); }
+VERNIER_IMPL MatrixX NodeSum::coefficients() const {
+  return VERNIER_LATER(packed_).block(0, features_ + 1, nodes_, outputs_);
+}
 
 }  // namespace vernier::detail

@@ -14,17 +14,17 @@ VERNIER_IMPL OnlineElm::OnlineElm(const HiddenLayer& layer, const VectorX& theta
     : layer_(layer), theta_(theta), features_(layer.features(static_cast<int>(x.cols()))), forgetting_(forgetting) {
   const Index n = x.rows(), size = layer.nodes + 1;
   MatrixX stacked = MatrixX::Zero(n + layer.nodes, size), right = MatrixX::Zero(n + layer.nodes, y.cols());
-  const VectorX samples = weights_or_ones(weights, n), root = samples.cwiseSqrt();
+  const VectorX samples = weights_or_ones(weights, n), root = VERNIER_LATER(samples).cwiseSqrt();
   total_ = samples.sum();
-  stacked.topRows(n) = rows_scaled(root, hidden(x));
-  right.topRows(n) = rows_scaled(root, y);
+  VERNIER_LATER(stacked).topRows(n) = rows_scaled(root, hidden(x));
+  VERNIER_LATER(right).topRows(n) = rows_scaled(root, y);
   for (Index k = 0; k < layer.nodes; ++k) stacked(n + k, k) = std::sqrt(lambda);  // the constant has none
   QrSolution qr = solve_by_qr(stacked, right);
   coefficients_ = std::move(qr.solution);
   add_product(right, stacked, coefficients_, -1);
   square_ = squared_column_norms(right);
   root_ = MatrixX::Identity(size, size);  // R^-T
-  solve_lower(qr.triangle.transpose(), root_);
+  solve_lower(VERNIER_LATER(qr.triangle).transpose(), root_);
 }
 
 VERNIER_IMPL void OnlineElm::update(const ConstMatrixRef& x, const ConstMatrixRef& y, const VectorX* weights) {
@@ -53,7 +53,7 @@ VERNIER_IMPL double OnlineElm::variance_factor(const double* features) const noe
 
 VERNIER_IMPL FittedNetwork OnlineElm::network() const {
   return {layer_, ColumnScaling{VectorX::Zero(features_), VectorX::Ones(features_)}, theta_,
-          coefficients_.topRows(layer_.nodes), row_of(coefficients_, layer_.nodes)};
+          VERNIER_LATER(coefficients_).topRows(layer_.nodes), row_of(coefficients_, layer_.nodes)};
 }
 
 VERNIER_IMPL MatrixX OnlineElm::covariance() const { return transposed_matrix_product(root_, root_); }
@@ -64,8 +64,8 @@ VERNIER_IMPL VectorX OnlineElm::noise_variance() const { return square_ / total_
 VERNIER_IMPL MatrixX OnlineElm::hidden(const ConstMatrixRef& x) const {
   MatrixX nodes, out(x.rows(), layer_.nodes + 1);
   layer_.outputs(layer_.map(x), theta_, nodes);
-  out.leftCols(layer_.nodes) = nodes;
-  out.col(layer_.nodes).setOnes();
+  VERNIER_LATER(out).leftCols(layer_.nodes) = nodes;
+  VERNIER_LATER(out).col(layer_.nodes).setOnes();
   return out;
 }
 
@@ -95,11 +95,11 @@ VERNIER_IMPL void OnlineElm::absorb(const VectorX& h, const VectorX& y, double w
   const double scale = 1 / (1 / weight + f.squaredNorm());
   const VectorX error = y - transposed_product(coefficients_, h);
   for (Index o = 0; o < error.size(); ++o) {
-    coefficients_.col(o) += scale * error(o) * through;
+    VERNIER_LATER(coefficients_).col(o) += scale * error(o) * through;
     square_(o) += scale * error(o) * error(o);
   }
   const double of_root = scale / (1 + std::sqrt(scale / weight));
-  for (Index k = 0; k < through.size(); ++k) root_.col(k) -= of_root * through(k) * f;
+  for (Index k = 0; k < through.size(); ++k) VERNIER_LATER(root_).col(k) -= of_root * through(k) * f;
   total_ += weight;
 }
 

@@ -17,7 +17,7 @@ VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
   for (Index j = 0; j < rows_; ++j) {  // a tile's columns of the inverse are zero above it
     const Index first = j * size, rest = n - first, width = (std::min)(size, rest);
     columns = MatrixX::Identity(rest, width);
-    solve_lower(factor.bottomRightCorner(rest, rest), columns);
+    solve_lower(VERNIER_LATER(factor).bottomRightCorner(rest, rest), columns);
     for (Index i = j; i < rows_; ++i) {
       const Index height = (std::min)(size, n - i * size);
       for (Index c = 0; c < width; ++c)
@@ -34,7 +34,7 @@ VERNIER_LOCAL void fill_tile(const NodeSum& nodes, const double* features, Index
 }
 
 /// product += tile k.
-inline void add_tile_product(const double* tile, const double* k, double* product) noexcept {
+VERNIER_LOCAL inline void add_tile_product(const double* tile, const double* k, double* product) noexcept {
   run_widest([&]<int W>() VERNIER_INLINED {
     constexpr int vectors = 4;
     typename Simd<W>::Double sum[vectors], part;
@@ -73,9 +73,9 @@ VERNIER_IMPL ProcessSpread::ProcessSpread(const KernelSystem& system, const Vect
       ones_(VectorX::Zero((system.ones.size() + LowerInverseTiles::size - 1) / LowerInverseTiles::size *
                           LowerInverseTiles::size)),
       precision_(system.precision),
-      signal_deviation_(signal_variance.cwiseSqrt()),
+      signal_deviation_(VERNIER_LATER(signal_variance).cwiseSqrt()),
       noise_ratio_(noise_ratio) {
-  ones_.head(system.ones.size()) = system.ones;
+  VERNIER_LATER(ones_).head(system.ones.size()) = system.ones;
 }
 
 VERNIER_IMPL void ProcessSpread::standard_deviation(const NodeSum& kernels, const double* x, double* out,

@@ -13,33 +13,36 @@ namespace vernier::detail {
 VERNIER_IMPL RankedNodes rank_nodes(const ConstMatrixRef& h, const ConstMatrixRef& targets, const VectorX& weights) {
   constexpr double rounding = 1e-10;
   const Index n = h.rows();
-  const VectorX root = weights.cwiseSqrt();
+  const VectorX root = VERNIER_LATER(weights).cwiseSqrt();
   MatrixX columns = rows_scaled(root, h), residual = rows_scaled(root, targets);
   VectorX basis = root / root.norm(), leverage = VectorX::Zero(n), inverse(n);
-  const VectorX norms = squared_column_norms(columns).cwiseSqrt();
+  const VectorX norms = VERNIER_LATER(squared_column_norms(columns)).cwiseSqrt();
   MatrixX taken(n, (std::min)(n, h.cols() + 1));
   std::vector<Index> left(static_cast<std::size_t>(h.cols()));
   for (Index k = 0; k < h.cols(); ++k) left[static_cast<std::size_t>(k)] = k;
 
   RankedNodes out;
   for (Index count = 0;; ++count) {
-    taken.col(count) = basis;
-    leverage += basis.cwiseAbs2();
-    for (Index o = 0; o < residual.cols(); ++o) residual.col(o) -= basis.dot(residual.col(o)) * basis;
+    VERNIER_LATER(taken).col(count) = basis;
+    leverage += VERNIER_LATER(basis).cwiseAbs2();
+    for (Index o = 0; o < residual.cols(); ++o)
+      VERNIER_LATER(residual).col(o) -= basis.dot(VERNIER_LATER(residual).col(o)) * basis;
     for (Index i = 0; i < n; ++i) inverse(i) = 1 / (1 - leverage(i));
-    out.press.push_back(1 - leverage.maxCoeff() > 1e-8 ? rows_scaled(inverse, residual).squaredNorm() / weights.sum()
-                                                       : std::numeric_limits<double>::infinity());
+    out.press.push_back(1 - VERNIER_LATER(leverage).maxCoeff() > 1e-8
+                            ? rows_scaled(inverse, residual).squaredNorm() / weights.sum()
+                            : std::numeric_limits<double>::infinity());
     if (count + 1 == taken.cols()) break;
 
     std::size_t best = left.size();
     double most = -1;
     for (std::size_t i = 0; i < left.size(); ++i) {
-      auto column = columns.col(left[i]);
+      auto column = VERNIER_LATER(columns).col(left[i]);
       column -= basis.dot(column) * basis;
       const double square = column.squaredNorm();
       if (!(square > std::pow(rounding * norms(left[i]), 2))) continue;
       double gain = 0;
-      for (Index o = 0; o < residual.cols(); ++o) gain += std::pow(column.dot(residual.col(o)), 2) / square;
+      for (Index o = 0; o < residual.cols(); ++o)
+        gain += std::pow(column.dot(VERNIER_LATER(residual).col(o)), 2) / square;
       if (gain > most) {
         most = gain;
         best = i;
@@ -48,8 +51,8 @@ VERNIER_IMPL RankedNodes rank_nodes(const ConstMatrixRef& h, const ConstMatrixRe
     if (best == left.size()) break;
     const Index node = left[best];
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
-    basis = columns.col(node);
-    const auto before = taken.leftCols(count + 1);
+    basis = VERNIER_LATER(columns).col(node);
+    const auto before = VERNIER_LATER(taken).leftCols(count + 1);
     for (int pass = 0; pass < 2; ++pass)  // what many subtractions have left of the directions taken
       basis -= product(before, transposed_product(before, basis));
     if (!(basis.norm() > rounding * norms(node))) break;

@@ -24,9 +24,9 @@ VERNIER_IMPL void RidgeElmLeaveOneOutError::operator()(const ConstMatrixRef& pop
     products.emplace(layer_, features_, targets_);
   MatrixX h;
   for (Index k = 0; k < population.cols(); ++k) {
-    fitness(k) = products ? (*products)(population.col(k)) : -1;
+    fitness(k) = products ? (*products)(VERNIER_LATER(population).col(k)) : -1;
     if (fitness(k) >= 0) continue;  // else from the singular values
-    layer_.outputs(features_, population.col(k), h);
+    layer_.outputs(features_, VERNIER_LATER(population).col(k), h);
     fitness(k) = all_finite(h) ? choose_lambda(RidgePath(h, targets_, weights), targets_.rows()).mean_squared_error
                                : std::numeric_limits<double>::infinity();
   }

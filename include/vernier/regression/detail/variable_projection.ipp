@@ -29,9 +29,9 @@ VERNIER_IMPL VariableProjection::VariableProjection(const HiddenLayer& layer, co
       products_(stride_, stride_),
       ones_(VectorX::Ones((std::max)(samples_, nodes_ + 1))) {
   const Index f = features.cols();
-  shared_.leftCols(f) = features;
-  shared_.col(f).setOnes();
-  if (radial()) shared_.col(f + 1) = squared_row_norms(features);
+  VERNIER_LATER(shared_).leftCols(f) = features;
+  VERNIER_LATER(shared_).col(f).setOnes();
+  if (radial()) VERNIER_LATER(shared_).col(f + 1) = squared_row_norms(features);
   for (Index i = 0; i < samples_; ++i) {
     hidden_(nodes_, i) = roots_(i);
     for (Index o = 0; o < targets.cols(); ++o) hidden_(nodes_ + 1 + o, i) = targets_(i, o);
@@ -49,25 +49,25 @@ VERNIER_IMPL double VariableProjection::evaluate(const ConstVectorRef& theta) {
     if (!std::isfinite(products_(k, k))) return std::numeric_limits<double>::infinity();
   mean_.resize(nodes_);
   for (Index k = 0; k < nodes_; ++k) mean_(k) = products_(nodes_, k) / n_;
-  MatrixX gram = products_.topLeftCorner(nodes_, nodes_);  // its lower triangle
+  MatrixX gram = VERNIER_LATER(products_).topLeftCorner(nodes_, nodes_);  // its lower triangle
   for (Index c = 0; c < nodes_; ++c) {
     for (Index r = c; r < nodes_; ++r) gram(r, c) -= n_ * mean_(r) * mean_(c);
     gram(c, c) += lambda_;
   }
   factorise(std::move(gram));
-  const auto h = hidden_.topRows(nodes_);
+  const auto h = VERNIER_LATER(hidden_).topRows(nodes_);
   const auto centred = [&](MatrixX right, const MatrixX& residual) {  // H' residual becomes that of the centred H
     const VectorX sums = transposed_product(residual, roots_);
-    for (Index o = 0; o < m; ++o) right.col(o) -= sums(o) * mean_;
+    for (Index o = 0; o < m; ++o) VERNIER_LATER(right).col(o) -= sums(o) * mean_;
     return right;
   };
   const auto fit = [&](const MatrixX& beta) {  // leaves the residual
     add_transposed_product(residual_, h, beta, -1);
     const VectorX shift = transposed_product(beta, mean_);
-    for (Index o = 0; o < m; ++o) residual_.col(o) += shift(o) * roots_;
+    for (Index o = 0; o < m; ++o) VERNIER_LATER(residual_).col(o) += shift(o) * roots_;
   };
   residual_ = targets_;
-  beta_ = solve(centred(products_.block(nodes_ + 1, 0, m, nodes_).transpose(), targets_));
+  beta_ = solve(centred(VERNIER_LATER(products_).block(nodes_ + 1, 0, m, nodes_).transpose(), targets_));
   fit(beta_);
   // The products lose digits that the samples have: one step of refinement brings them back.
   MatrixX right = centred(matrix_product(h, residual_), residual_);
@@ -80,14 +80,14 @@ VERNIER_IMPL double VariableProjection::evaluate(const ConstVectorRef& theta) {
 
 VERNIER_IMPL VectorX VariableProjection::gradient() {
   find_slopes();
-  const MatrixX residual = residual_.transpose();
+  const MatrixX residual = VERNIER_LATER(residual_).transpose();
   MatrixX pulled = matrix_product(beta_, residual);
   for (Index i = 0; i < samples_; ++i)
     for (Index k = 0; k < nodes_; ++k) pulled(k, i) *= slopes_(k, i);
   const MatrixX by_shared = matrix_product(pulled, shared_);
   const Index p = features_.cols() + 1;
   VectorX out(dimension());
-  for (Index k = 0; k < nodes_; ++k) out.segment(k * p, p) = to_weights(k, row_of(by_shared, k));
+  for (Index k = 0; k < nodes_; ++k) VERNIER_LATER(out).segment(k * p, p) = to_weights(k, row_of(by_shared, k));
   return (-2 / n_) * out;
 }
 
@@ -113,21 +113,21 @@ VERNIER_IMPL void VariableProjection::curvature(MatrixX& out, ExecutorRef execut
     }
   }
   solve_lower(factor_, cross);
-  taken.topLeftCorner(dimension(), nodes_) = cross.transpose();
+  VERNIER_LATER(taken).topLeftCorner(dimension(), nodes_) = VERNIER_LATER(cross).transpose();
   MatrixX all_taken = MatrixX::Zero(padded, padded);
   add_square(taken, all_taken, nodes_ + 1);
 
   out.resize(dimension(), dimension());
-  const MatrixX by_node = beta_.transpose();
+  const MatrixX by_node = VERNIER_LATER(beta_).transpose();
   MatrixX block(d, d), radial_block;
   for (Index k = 0; k < nodes_; ++k)
     for (Index l = k; l < nodes_; ++l) {
       for (Index j = 0, pair = 0; j < d; ++j)
         for (Index i = j; i < d; ++i, ++pair)
           block(i, j) = block(j, i) = by_pair_[static_cast<std::size_t>(pair)](l, k);
-      if (radial()) radial_block = to_weights(l, to_weights(k, block).transpose());
+      if (radial()) radial_block = to_weights(l, VERNIER_LATER(to_weights(k, block)).transpose());
       const MatrixX& of_weights = radial() ? radial_block : block;  // p x p, rows of node l
-      const double weight = 2 / n_ * by_node.col(k).dot(by_node.col(l));
+      const double weight = 2 / n_ * VERNIER_LATER(by_node).col(k).dot(VERNIER_LATER(by_node).col(l));
       for (Index j = k * p; j < (k + 1) * p; ++j)
         for (Index i = l * p; i < (l + 1) * p; ++i)
           out(i, j) = weight * (of_weights(i - l * p, j - k * p) - all_taken(i, j));
@@ -141,7 +141,7 @@ VERNIER_IMPL void VariableProjection::fill(const VectorX& theta, MatrixX& column
   MatrixX block;
   for (Index begin = 0; begin < samples_; begin += tile) {
     const Index count = (std::min)(tile, samples_ - begin);
-    layer_.outputs(features_.middleRows(begin, count), theta, block);
+    layer_.outputs(VERNIER_LATER(features_).middleRows(begin, count), theta, block);
     for (Index i = 0; i < count; ++i)
       for (Index k = 0; k < nodes_; ++k) columns(k, begin + i) = roots_(begin + i) * block(i, k);
   }
@@ -160,8 +160,8 @@ VERNIER_IMPL void VariableProjection::find_slopes() {
   }
   for (Index i = 0; i < samples_; ++i) {
     const double root = roots_(i);
-    const double* h = hidden_.col(i).data();  // root times output
-    double* slope = slopes_.col(i).data();    // root times slope
+    const double* h = VERNIER_LATER(hidden_).col(i).data();  // root times output
+    double* slope = VERNIER_LATER(slopes_).col(i).data();    // root times slope
     switch (layer_.activation) {
       case Activation::sigmoid:
         for (Index k = 0; k < nodes_; ++k) slope[k] = h[k] * (1 - h[k] / root);
@@ -204,9 +204,10 @@ VERNIER_IMPL void VariableProjection::products_of_pairs(Index begin, Index end) 
     const Index count = (std::min)(stage, samples_ - from);
     Index task = 0;
     const auto run = [&](const MatrixX& right, bool symmetric) {
-      add_weighted_product({slopes_.col(from).data(), right.col(from).data(), weights.data(), tile.data(),
-                            by_pair_[static_cast<std::size_t>(task)].data(), count, stride_, tile.cols(), symmetric},
-                           set_);
+      add_weighted_product(
+          {VERNIER_LATER(slopes_).col(from).data(), VERNIER_LATER(right).col(from).data(), weights.data(), tile.data(),
+           by_pair_[static_cast<std::size_t>(task)].data(), count, stride_, tile.cols(), symmetric},
+          set_);
     };
     for (Index j = 0; j < d; ++j)
       for (Index i = j; i < d; ++i, ++task) {
@@ -236,7 +237,7 @@ VERNIER_IMPL void VariableProjection::factorise(MatrixX gram) {
     for (Index i = 0; i < samples_; ++i) stacked(i, k) = hidden_(k, i) - roots_(i) * mean_(k);
     stacked(samples_ + k, k) = std::sqrt(lambda_);
   }
-  factor_ = triangular_factor(stacked).transpose();
+  factor_ = VERNIER_LATER(triangular_factor(stacked)).transpose();
 }
 
 VERNIER_IMPL MatrixX VariableProjection::solve(MatrixX right) const {

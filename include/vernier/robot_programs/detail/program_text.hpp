@@ -61,7 +61,7 @@ struct ProgramStep {
 /// Most moves, those that several literals serve counted as many times.
 inline constexpr std::size_t most_steps = 1'000'000;
 /// Adds a step, unless there are too many already; `use_targets` refuses those.
-inline void add_step(std::vector<ProgramStep>& steps, const ProgramStep& step) {
+VERNIER_API inline void add_step(std::vector<ProgramStep>& steps, const ProgramStep& step) {
   if (steps.size() <= most_steps) steps.push_back(step);
 }
 
@@ -88,7 +88,7 @@ class ProgramText {
 };
 
 /// Whether a character may be part of a word.
-inline bool is_word_character(char c) {
+VERNIER_API inline bool is_word_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '$' ||
          static_cast<signed char>(c) < 0;
 }

@@ -13,7 +13,7 @@
 namespace vernier::detail {
 
 /// An index below n that differs from all others given, drawn uniformly.
-inline Index index_besides(Index n, std::initializer_list<Index> others, Rng& rng) {
+VERNIER_API inline Index index_besides(Index n, std::initializer_list<Index> others, Rng& rng) {
   for (;;) {
     const auto i = static_cast<Index>(rng.below(static_cast<std::uint64_t>(n)));
     if (std::find(others.begin(), others.end(), i) == others.end()) return i;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vernier/calibration/fitted_set.hpp"
+#include "vernier/calibration/outlying_row.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -60,7 +61,8 @@ struct CalibrationReport {
   double ellipsoid_coverage = 0;       ///< share of held-out poses within their predicted 95 % ellipsoid
   bool oriented = false;               ///< whether orientations are used
   bool converged = true;               ///< whether the error model converged
-  Index outliers = 0;                  ///< training poses whose error exceeds eight times the median
+  std::vector<OutlyingRow> outliers{};  ///< training rows that are outliers: all of them
+  bool outliers_kept = false;           ///< whether the calibration was fitted to them all the same
   double median_error = 0;             ///< median position error of the training poses [m]
   Loss loss = Loss::huber;             ///< of the fit
   double fit_seconds = 0;              ///< time from poses to error model

@@ -52,6 +52,7 @@ class ErrorModelFit {
     if (jointwise) {
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
+      model_.size_by_evidence(link_unknowns(problem_.arm));  // less is left than when their priors were chosen
       model_.learn_spectrum(6);
       // linear in the joints, so beyond the measured ranges they stay as at their ends
       all.gear_ratio = options_.gear_ratio;
@@ -63,6 +64,7 @@ class ErrorModelFit {
       if ((all.gear_ratio || all.coupling) && model_.add(Block::gears, all, true)) model_.learn_spectrum(4);
       if (elastic.size() > 0)  // deflection is clearer once all else is modelled
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
+      model_.size_by_evidence(link_unknowns(problem_.arm));
       model_.solve();
       if (search) {
         tune(search);

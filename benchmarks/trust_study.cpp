@@ -61,11 +61,11 @@ Error off(const Model& model, const Actual& actual, const vn::JointRows<N>& join
 /// Calibrates and prints a line: the arm as designed in registered frames, each stage, and what is deployed.
 template <int N, class Actual>
 void study(const char* name, std::uint64_t seed, const vn::DhChain<N>& chain, const Actual& actual,
-           const std::vector<vn::Dataset<N>>& data, const vn::JointRows<N>& fresh,
-           vn::CalibrateOptions options = {}) {
+           const std::vector<vn::Dataset<N>>& data, const vn::JointRows<N>& fresh, vn::CalibrateOptions options = {}) {
   try {
     const auto found = vn::calibrate(chain, data, options);
-    const Error nominal = off<vn::ErrorModel<vn::DhChain<N>>, Actual, N>(found.errors.stages.front().models.front(), actual, fresh);
+    const Error nominal =
+        off<vn::ErrorModel<vn::DhChain<N>>, Actual, N>(found.errors.stages.front().models.front(), actual, fresh);
     const vn::ErrorModel<vn::DhChain<N>>& model = found.errors.models(found.chosen().stage).front();
     Error deployed = off<vn::ErrorModel<vn::DhChain<N>>, Actual, N>(model, actual, fresh);
     if (found.deployed())
@@ -74,7 +74,8 @@ void study(const char* name, std::uint64_t seed, const vn::DhChain<N>& chain, co
     const double saved = off<vn::Framed<vn::DhChain<N>>, Actual, N>(model.nominal(), actual, fresh).mean;
     std::printf("%s %llu: nominal %.3f (%.2f), deployed %.3f (%.2f) %s, in its frames %.2f, condition %.1e%s;", name,
                 static_cast<unsigned long long>(seed), nominal.mean, nominal.worst, deployed.mean, deployed.worst,
-                found.chosen().key().c_str(), saved, found.geometry.condition, found.geometry.converged() ? "" : " UNDETERMINED");
+                found.chosen().key().c_str(), saved, found.geometry.condition,
+                found.geometry.converged() ? "" : " UNDETERMINED");
     for (const auto& staged : found.errors.stages)
       if (staged.stage != vn::Stage::frames && staged.included)
         std::printf(" %s %.3f", vn::traits_of(staged.stage).key,
@@ -169,12 +170,14 @@ int main(int argc, char** argv) {
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     if (wanted(argc, argv, "exact")) {
       const auto actual = made(irb.chain, exact, rigid, seed);
-      const auto data = vn::measure(actual, vn::sample_joints(irb.limits, 20, seed), {.position = 2e-3, .with_orientations = false}, seed);
+      const auto data = vn::measure(actual, vn::sample_joints(irb.limits, 20, seed),
+                                    {.position = 2e-3, .with_orientations = false}, seed);
       study<6>("exact", seed, irb.chain, actual, {data}, vn::sample_joints(irb.limits, 200, 1000 + seed));
     }
     if (wanted(argc, argv, "exact-oriented")) {
       const auto actual = made(irb.chain, exact, rigid, seed);
-      const auto data = vn::measure(actual, vn::sample_joints(irb.limits, 20, seed), {.position = 2e-3, .orientation = 2e-3}, seed);
+      const auto data =
+          vn::measure(actual, vn::sample_joints(irb.limits, 20, seed), {.position = 2e-3, .orientation = 2e-3}, seed);
       study<6>("exact-oriented", seed, irb.chain, actual, {data}, vn::sample_joints(irb.limits, 200, 1000 + seed));
     }
     if (wanted(argc, argv, "mobile")) {
@@ -183,49 +186,63 @@ int main(int argc, char** argv) {
       limits.lower(0) = 0, limits.upper(0) = 1;
       const auto actual = made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, rigid, seed);
       for (const bool oriented : {false, true}) {
-        const auto data = vn::measure(actual, vn::sample_joints(limits, 34, seed), {.position = 2e-3, .orientation = 2e-3, .with_orientations = oriented}, seed);
-        study<8>(oriented ? "mobile-oriented" : "mobile", seed, chain, actual, {data}, vn::sample_joints(limits, 200, 1000 + seed));
+        const auto data = vn::measure(actual, vn::sample_joints(limits, 34, seed),
+                                      {.position = 2e-3, .orientation = 2e-3, .with_orientations = oriented}, seed);
+        study<8>(oriented ? "mobile-oriented" : "mobile", seed, chain, actual, {data},
+                 vn::sample_joints(limits, 200, 1000 + seed));
       }
     }
     if (wanted(argc, argv, "grid")) {
-      const auto actual = made(ur10.chain, {.length_min = 0, .length_max = 0.5e-3, .angle_min = 0, .angle_max = 0.5e-3}, {.harmonic = 0.03e-3}, seed);
+      const auto actual = made(ur10.chain, {.length_min = 0, .length_max = 0.5e-3, .angle_min = 0, .angle_max = 0.5e-3},
+                               {.harmonic = 0.03e-3}, seed);
       const vn::JointVector<6> middle(0.3, -1.5, 1.6, -0.4, 1.2, 0.2);
       for (const bool oriented : {false, true}) {
-        const auto data = vn::measure(actual, on_a_grid<6>(ur10.chain, middle, 4, 0.12, 0.05, seed), {.position = 0.1e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed);
-        study<6>(oriented ? "grid-oriented" : "grid", seed, ur10.chain, actual, {data}, vn::sample_joints(ranges, 300, 1000 + seed));
+        const auto data = vn::measure(actual, on_a_grid<6>(ur10.chain, middle, 4, 0.12, 0.05, seed),
+                                      {.position = 0.1e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed);
+        study<6>(oriented ? "grid-oriented" : "grid", seed, ur10.chain, actual, {data},
+                 vn::sample_joints(ranges, 300, 1000 + seed));
       }
     }
     if (wanted(argc, argv, "path")) {
-      const auto actual = made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.03e-3}, seed);
+      const auto actual =
+          made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.03e-3}, seed);
       const vn::JointVector<6> middle(0.3, -1.5, 1.6, -0.4, 1.2, 0.2);
       const auto grid = on_a_grid<6>(ur10.chain, middle, 12, 0.5, 1e-4, seed);
       vn::JointRows<6> path(120, 6);
       for (Index i = 0; i < 120; ++i) path.row(i) = grid.row((i / 12) * 144 % grid.rows() + i % 12);
       for (const bool oriented : {false, true}) {
-        const auto data = vn::measure(actual, path, {.position = 0.05e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed);
+        const auto data = vn::measure(
+            actual, path, {.position = 0.05e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed);
         study<6>(oriented ? "path-oriented" : "path", seed, ur10.chain, actual, {data}, path);
       }
     }
     if (wanted(argc, argv, "gears")) {
-      const auto actual = made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.gear_ratio = 3e-4, .coupling = 0, .compliance = 0, .harmonic = 0}, seed);
-      const auto data = vn::measure(actual, vn::sample_joints(ranges, 100, seed), {.position = 0.1e-3, .orientation = 0.1e-3}, seed);
+      const auto actual = made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3},
+                               {.gear_ratio = 3e-4, .coupling = 0, .compliance = 0, .harmonic = 0}, seed);
+      const auto data =
+          vn::measure(actual, vn::sample_joints(ranges, 100, seed), {.position = 0.1e-3, .orientation = 0.1e-3}, seed);
       study<6>("gears", seed, ur10.chain, actual, {data}, vn::sample_joints(ranges, 300, 1000 + seed));
     }
     if (wanted(argc, argv, "no-harmonics")) {
       vn::CalibrateOptions options;
       options.errors.harmonics = 0;
-      const auto actual = made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.2e-3}, seed);
+      const auto actual =
+          made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.2e-3}, seed);
       for (const Index poses : {60, 400}) {
-        const auto data = vn::measure(actual, vn::sample_joints(ranges, poses, seed), {.position = 0.1e-3, .orientation = 0.1e-3}, seed);
-        study<6>("no-harmonics", seed, ur10.chain, actual, {data}, vn::sample_joints(ranges, 300, 1000 + seed), options);
+        const auto data = vn::measure(actual, vn::sample_joints(ranges, poses, seed),
+                                      {.position = 0.1e-3, .orientation = 0.1e-3}, seed);
+        study<6>("no-harmonics", seed, ur10.chain, actual, {data}, vn::sample_joints(ranges, 300, 1000 + seed),
+                 options);
       }
     }
     if (wanted(argc, argv, "line")) {
-      const auto actual = made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.03e-3}, seed);
+      const auto actual =
+          made(ur10.chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.03e-3}, seed);
       const vn::JointVector<6> middle(0.3, -1.5, 1.6, -0.4, 1.2, 0.2);
       const auto grid = on_a_grid<6>(ur10.chain, middle, 6, 0.5, 0, seed);
       for (const bool oriented : {false, true}) {
-        const auto data = vn::measure(actual, grid, {.position = 0.05e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed);
+        const auto data = vn::measure(
+            actual, grid, {.position = 0.05e-3, .orientation = 0.1e-3, .with_orientations = oriented}, seed);
         study<6>(oriented ? "line-oriented" : "line", seed, ur10.chain, actual, {data}, grid);
       }
     }
@@ -234,8 +251,10 @@ int main(int argc, char** argv) {
       const auto limits = all_round<7>(1.5);
       const auto actual = made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 2e-3}, {.harmonic = 0.1e-3}, seed);
       for (const bool oriented : {false, true}) {
-        const auto data = vn::measure(actual, in_small_steps(limits, 150, 0.08, seed), {.position = 1e-3, .orientation = 2e-3, .with_orientations = oriented}, seed);
-        study<7>(oriented ? "ordered-oriented" : "ordered", seed, chain, actual, {data}, vn::sample_joints(limits, 300, 1000 + seed));
+        const auto data = vn::measure(actual, in_small_steps(limits, 150, 0.08, seed),
+                                      {.position = 1e-3, .orientation = 2e-3, .with_orientations = oriented}, seed);
+        study<7>(oriented ? "ordered-oriented" : "ordered", seed, chain, actual, {data},
+                 vn::sample_joints(limits, 300, 1000 + seed));
       }
     }
   }

@@ -39,8 +39,9 @@ void print_measurements(const vn::RobotDescription& robot, const support::Calibr
   const vn::CalibrationReport& report = found.report;
   fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
              robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
-  if (o.data.size() > 1) fmt::print("{} stations: one arm, {} base frames{}\n", o.data.size(), o.data.size(),
-                                     o.calibrate.errors.tool_per_station ? " and as many tools" : "");
+  if (o.data.size() > 1)
+    fmt::print("{} stations: one arm, {} base frames{}\n", o.data.size(), o.data.size(),
+               o.calibrate.errors.tool_per_station ? " and as many tools" : "");
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), found.held_out);
   for (const vn::FittedSet& set : report.others)
     fmt::print("{} measurements ({}) to learn from: {}\n", set.measurements, set.kind, set.name);

@@ -316,7 +316,8 @@ TEST(CalibrationReport, RemarksByHand) {
   report.others = {{"touches.csv", "lengths", 12, 0.02e-3}};
   const std::string brief = report.summary(), full = report.full_summary();
   EXPECT_EQ(brief.rfind("Verdict\n- Only 5 poses", 0), 0u) << brief;
-  for (const char* words : {"and kept, as asked: row 4 (off by up to 2 mm, 100 mrad).\n", "\nErrors of the 5 held-out poses [mm]\n\nstage  ",
+  for (const char* words : {"and kept, as asked: row 4 (off by up to 2 mm, 100 mrad).\n",
+                            "\nErrors of the 5 held-out poses [mm]\n\nstage  ",
                             "touches.csv: 12 measurements (lengths), fitted to 0.02 mm (rms)\n"})
     EXPECT_NE(brief.find(words), std::string::npos) << words << brief;
   EXPECT_EQ(full, brief + "\n" + report.identification.summary() + "\nDetails\n- " + report.details()[0] + "\n- " +

@@ -73,9 +73,7 @@ JointRows<6> on_a_grid(int per_side, double side, double turn, std::uint64_t see
   Rng rng(seed);
   JointRows<6> out(per_side * per_side * per_side, 6);
   for (Index k = 0; k < out.rows(); ++k) {
-    const auto at = [&](Index digit) {
-      return side * (static_cast<double>(digit % per_side) / (per_side - 1) - 0.5);
-    };
+    const auto at = [&](Index digit) { return side * (static_cast<double>(digit % per_side) / (per_side - 1) - 0.5); };
     Isometry3 pose = chain.pose(middle);
     pose.translation() += Vector3(at(k / per_side / per_side), at(k / per_side), at(k));
     const Vector3 tilt{rng.uniform(-turn, turn), rng.uniform(-turn, turn), rng.uniform(-turn, turn)};
@@ -91,8 +89,8 @@ TEST(FewPoses, NominalLinksWinWhereNothingIsWrongWithThem) {
   int as_designed = 0, no_worse = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const auto actual = made(robot.chain, exact, rigid, seed);
-    const auto data = measure(actual, sample_joints(robot.limits, 20, seed),
-                              {.position = 2e-3, .with_orientations = false}, seed);
+    const auto data =
+        measure(actual, sample_joints(robot.limits, 20, seed), {.position = 2e-3, .with_orientations = false}, seed);
     const auto found = calibrate(robot.chain, data, geometry_alone());
     as_designed += found.geometry.links_as_designed && found.chosen() == Stage::frames;
     const Outcome errors = outcome(found, actual, sample_joints(robot.limits, 100, 1000 + seed));
@@ -109,8 +107,7 @@ TEST(FewPoses, AMobileManipulatorIsNoWorseThanAsDesigned) {
   double nominal = 0, deployed = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const auto actual = made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, rigid, seed);
-    const auto data =
-        measure(actual, sample_joints(limits, 34, seed), {.position = 2e-3, .orientation = 2e-3}, seed);
+    const auto data = measure(actual, sample_joints(limits, 34, seed), {.position = 2e-3, .orientation = 2e-3}, seed);
     const Outcome errors =
         outcome(calibrate(chain, data, models_alone), actual, sample_joints(limits, 200, 1000 + seed));
     EXPECT_LT(errors.deployed.mean, 1.0001 * errors.nominal.mean) << seed;
@@ -127,8 +124,8 @@ TEST(FewPoses, ASmallGridMakesNoLinkRunAway) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto actual = made(chain, {.length_min = 0, .length_max = 0.5e-3, .angle_min = 0, .angle_max = 0.5e-3},
                              {.harmonic = 0.03e-3}, seed);
-    const auto data = measure(actual, on_a_grid(4, 0.12, 0.05, seed),
-                              {.position = 0.1e-3, .with_orientations = false}, seed);
+    const auto data =
+        measure(actual, on_a_grid(4, 0.12, 0.05, seed), {.position = 0.1e-3, .with_orientations = false}, seed);
     const auto found = calibrate(chain, data, models_alone);
     for (const ParameterEstimate& p : found.geometry.parameters)
       if (p.prior_std < 1) {
@@ -147,10 +144,9 @@ TEST(FewPoses, OfOneOrientationWhatIsUnknownIsHeldAndNamed) {
   const DhChain<6> chain = robots::ur10().chain;
   const JointRows<6> grid = on_a_grid(5, 0.5, 0, 1);
   for (const bool oriented : {false, true}) {
-    const auto actual =
-        made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.03e-3}, 1);
-    const auto data = measure(
-        actual, grid, {.position = 0.05e-3, .orientation = 0.1e-3, .with_orientations = oriented}, 3);
+    const auto actual = made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3}, {.harmonic = 0.03e-3}, 1);
+    const auto data =
+        measure(actual, grid, {.position = 0.05e-3, .orientation = 0.1e-3, .with_orientations = oriented}, 3);
     const auto found = calibrate(chain, data, models_alone);
     EXPECT_EQ(found.geometry.status, IdentifyStatus::underdetermined);
     EXPECT_NE(found.geometry.message.find("held where they were: "), std::string::npos) << found.geometry.message;
@@ -168,10 +164,10 @@ TEST(FewPoses, ErrorsOfGearRatiosAreFound) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const auto actual = made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 1e-3},
                              {.gear_ratio = 3e-4, .coupling = 0, .compliance = 0, .harmonic = 0}, seed);
-    const auto data = measure(actual, sample_joints(ur10_ranges(), 100, seed),
-                              {.position = 0.1e-3, .orientation = 0.1e-3}, seed);
-    const Outcome errors = outcome(calibrate(chain, data, models_alone), actual,
-                                   sample_joints(ur10_ranges(), 200, 1000 + seed));
+    const auto data =
+        measure(actual, sample_joints(ur10_ranges(), 100, seed), {.position = 0.1e-3, .orientation = 0.1e-3}, seed);
+    const Outcome errors =
+        outcome(calibrate(chain, data, models_alone), actual, sample_joints(ur10_ranges(), 200, 1000 + seed));
     EXPECT_LT(errors.deployed.mean, 0.12e-3) << seed;
   }
 }
@@ -194,8 +190,7 @@ TEST(FewPoses, AnOrderedSessionIsNoWorseThanItsGeometry) {
       for (double& value : q) value = std::clamp(value + 0.24 * rng.normal(), -1.5, 1.5);
       path.row(i) = q.transpose();
     }
-    const auto actual =
-        made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 2e-3}, {.harmonic = 0.1e-3}, seed);
+    const auto actual = made(chain, {.length_min = 0, .angle_min = 0, .angle_max = 2e-3}, {.harmonic = 0.1e-3}, seed);
     const auto data = measure(actual, path, {.position = 1e-3, .orientation = 2e-3}, seed);
     const auto found = calibrate(chain, data, models_alone);
     const auto fresh = measure(actual, sample_joints(limits, 200, 1000 + seed));

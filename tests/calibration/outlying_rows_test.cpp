@@ -101,9 +101,9 @@ TEST(OutlyingRows, ManyStopTheRun) {
 }
 
 TEST(OutlyingRows, NamesByStation) {
-  const auto found = calibrate(robot.chain,
-                               std::vector<Dataset<6>>{Dataset<6>(in_a_file(60, 1)), spoilt(in_a_file(60, 5), {8}, 0.2)},
-                               models_alone);
+  const auto found =
+      calibrate(robot.chain, std::vector<Dataset<6>>{Dataset<6>(in_a_file(60, 1)), spoilt(in_a_file(60, 5), {8}, 0.2)},
+                models_alone);
   ASSERT_EQ(found.outliers.size(), 1u);
   EXPECT_EQ(found.outliers[0].station, 1u);
   EXPECT_EQ(found.outliers[0].row, 8);

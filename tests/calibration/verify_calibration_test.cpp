@@ -227,8 +227,8 @@ TEST(VerifyCalibration, ATurnedProbeIsTakenOff) {
 // The same where nothing is registered: sensor and arm stand as they did.
 TEST(VerifyCalibration, ATurnedProbeIsTakenOffWhereNothingIsRegistered) {
   const auto checked = [](const Vector3& probe, std::uint64_t seed) {
-    const auto seen = measure(changed(JointVector<6>::Zero(), Isometry3::Identity()), poses_of(25, 300 + seed), noise,
-                              400 + seed);
+    const auto seen =
+        measure(changed(JointVector<6>::Zero(), Isometry3::Identity()), poses_of(25, 300 + seed), noise, 400 + seed);
     return verify_calibration(calibration().model(), calibration().errors, seen_by_turned(seen, probe),
                               {.base = false});
   };

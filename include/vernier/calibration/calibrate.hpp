@@ -162,9 +162,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
         one.row = detail::other_rows(outliers, s, measured.poses()[s].size())[static_cast<std::size_t>(one.row)];
     }
     for (OutlyingRow& one : more)
-      if (std::none_of(outliers.begin(), outliers.end(), [&](const OutlyingRow& known) {
-            return known.station == one.station && known.row == one.row;
-          }))
+      if (std::none_of(outliers.begin(), outliers.end(),
+                       [&](const OutlyingRow& known) { return known.station == one.station && known.row == one.row; }))
         outliers.push_back(std::move(one));
     if (leave_out) {
       detail::require_few(outliers, rows);

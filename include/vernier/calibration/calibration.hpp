@@ -74,15 +74,15 @@ struct Calibration {
   std::vector<LearnedRemainder<dof>> remainders{};  ///< those of them that were learned from all poses
   std::optional<std::size_t> deployed_remainder{};  ///< which of them is deployed; none where cross-validation
                                                     ///< supports none
-  JointCoverage<dof> coverage{};    ///< measured joint ranges, and the range of validity: these widened a little
-  Index poses = 0;                  ///< number of poses it was fitted to
-  std::vector<FittedSet> others{};  ///< sets of measurements beside the poses
-  bool oriented = false;            ///< whether orientations were used
-  SensorModel sensors{};            ///< as given
+  JointCoverage<dof> coverage{};        ///< measured joint ranges, and the range of validity: these widened a little
+  Index poses = 0;                      ///< number of poses it was fitted to
+  std::vector<FittedSet> others{};      ///< sets of measurements beside the poses
+  bool oriented = false;                ///< whether orientations were used
+  SensorModel sensors{};                ///< as given
   std::vector<OutlyingRow> outliers{};  ///< training rows that are outliers
   bool outliers_kept = false;           ///< whether it was fitted to them all the same
-  double median_error = 0;          ///< median position error of the poses it was fitted to [m]
-  double fit_seconds = 0;           ///< time from poses to error model
+  double median_error = 0;              ///< median position error of the poses it was fitted to [m]
+  double fit_seconds = 0;               ///< time from poses to error model
 
   /// What was learned and is deployed; null for nothing.
   const LearnedRemainder<dof>* deployed() const {
@@ -93,8 +93,10 @@ struct Calibration {
     if (deployed() != nullptr) return learned_stage(deployed()->on_geometry, deployed()->learner);
     StageName out;
     for (const StagedModels<Chain>& staged : errors.stages)
-      if (staged.included && (staged.stage == Stage::frames ? geometry.links_as_designed
-                                                            : staged.stage > Stage::geometry) && staged.stage < Stage::session) out = staged.stage;
+      if (staged.included &&
+          (staged.stage == Stage::frames ? geometry.links_as_designed : staged.stage > Stage::geometry) &&
+          staged.stage < Stage::session)
+        out = staged.stage;
     return out;
   }
   /// The model of a station that is deployed, without what was learned on it.
@@ -178,12 +180,12 @@ Dataset<Chain::dof> in_first_frame(const std::vector<ErrorModel<Chain>>& models,
 
 /// Errors of the models of a station at visits, in the frame of that station, and their sizes.
 struct PredictedErrors {
-  PointRows errors;     ///< n x 3: predicted - measured [m]
+  PointRows errors;      ///< n x 3: predicted - measured [m]
   VectorX normalised{};  ///< norms in standard deviations of the predicted ellipsoids, n
 };
 
-/// Errors of visits of one station, beside their predicted covariances: of the unknowns, of a visit, and of drift beyond
-/// the session.
+/// Errors of visits of one station, beside their predicted covariances: of the unknowns, of a visit, and of drift
+/// beyond the session.
 /// @param learned takes a position error that was learned off, in the base frame of the first station; null for none
 template <class Chain>
 PredictedErrors predicted_errors(const FittedErrorModel<Chain>& errors, std::size_t station,

@@ -78,10 +78,10 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
       largest = (std::max)(largest, one.position);
       turned = (std::max)(turned, one.rotation);
     }
-    out.push_back(message(counted(static_cast<Index>(outliers.size()), "training row is an outlier",
-                                  "training rows are outliers"),
-                          outliers_kept ? " and kept, as asked: " : " and left out: ", where(outliers), " (off by up to ",
-                          brief(largest * 1e3), " mm", turned > 0 ? ", " + brief(turned * 1e3) + " mrad" : "", ")."));
+    out.push_back(message(
+        counted(static_cast<Index>(outliers.size()), "training row is an outlier", "training rows are outliers"),
+        outliers_kept ? " and kept, as asked: " : " and left out: ", where(outliers), " (off by up to ",
+        brief(largest * 1e3), " mm", turned > 0 ? ", " + brief(turned * 1e3) + " mrad" : "", ")."));
   }
   return out;
 }

@@ -175,11 +175,10 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
     const auto& models = trial.on_geometry ? errors.models(Stage::geometry) : errors.models();
     const std::vector<Dataset<Chain::dof>> still = static_poses<Chain>(errors.models(), stations, errors.drift);
     out.deployed_remainder = out.remainders.size();
-    out.remainders.push_back(
-        learn_remainder(trial.on_geometry, trial.learner, models.front(),
-                        in_first_frame<Chain>(
-                            models, trial.on_geometry ? stations : std::span<const Dataset<Chain::dof>>(still)),
-                        options, fit));
+    out.remainders.push_back(learn_remainder(
+        trial.on_geometry, trial.learner, models.front(),
+        in_first_frame<Chain>(models, trial.on_geometry ? stations : std::span<const Dataset<Chain::dof>>(still)),
+        options, fit));
   }
   if (out.remainders[*out.deployed_remainder].empty()) {  // nothing but a mean
     out.deployed_remainder.reset();

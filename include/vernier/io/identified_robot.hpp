@@ -71,7 +71,8 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
        left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
        info.held_out_error, info.data_sha256});
   const LearnedRemainder<N>* learned = calibration.deployed();
-  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.of_station(static_cast<int>(station)));
+  if (learned == nullptr || !learned->on_geometry)
+    robot = robot.with_estimate(calibration.errors.of_station(static_cast<int>(station)));
   if (learned == nullptr) return robot;
   const Matrix3 back = rotation(calibration.model().identified().base()).transpose();
   const Matrix3 turn = rotation(calibration.model(station).identified().base()) * back;

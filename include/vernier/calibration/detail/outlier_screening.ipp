@@ -31,8 +31,7 @@ VERNIER_IMPL std::vector<OutlyingRow> outlying_rows(const ArmGeometry& nominal, 
   constexpr Index fewest = 10;
   constexpr double least_sigmas = 4;  // of the sensor, which residuals of exact data do not reach
   if (data.size() < fewest || data.positions() == nullptr) return {};
-  const AuditRows rows{data.joints, *data.positions(),
-                       data.oriented() ? data.orientations() : std::vector<Matrix3>(),
+  const AuditRows rows{data.joints, *data.positions(), data.oriented() ? data.orientations() : std::vector<Matrix3>(),
                        PointRows::Zero(data.oriented() ? data.size() : 0, 3)};
   const HypothesisFit registered = fit_hypothesis(nominal, rows, {});
   if (!plausible_residuals(nominal, rows, registered.fit.residuals)) return {};

@@ -98,10 +98,10 @@ class IdentificationRun {
     report.too_few = problem_.measured_values() <= wanted;
     if (report.too_few) report.status = IdentifyStatus::underdetermined;
     if (report.status == IdentifyStatus::underdetermined)
-      report.message = message(counted(problem_.num_blocks(), "pose gives ", "poses give "), problem_.measured_values(),
-                               " measured values, which determine only ", wanted, " of the ",
-                               static_cast<Index>(candidates_.size()), " parameters to be estimated",
-                               held_.empty() ? "" : "; held where they were: " + held_);
+      report.message =
+          message(counted(problem_.num_blocks(), "pose gives ", "poses give "), problem_.measured_values(),
+                  " measured values, which determine only ", wanted, " of the ", static_cast<Index>(candidates_.size()),
+                  " parameters to be estimated", held_.empty() ? "" : "; held where they were: " + held_);
     if (!summary_.converged) {
       report.status = IdentifyStatus::not_converged;
       report.message = summary_.message;
@@ -121,8 +121,8 @@ class IdentificationRun {
       if (out.empty() || own_tools)
         out.push_back(starting_frames(nominal, set, options.base_free(), options.tool_free()));
       else
-        out.push_back(starting_frames(nominal.with_frames(nominal.base(), out.front().tool()), set,
-                                      options.base_free(), false));
+        out.push_back(
+            starting_frames(nominal.with_frames(nominal.base(), out.front().tool()), set, options.base_free(), false));
     }
     return out;
   }
@@ -206,8 +206,8 @@ class IdentificationRun {
     problem_.arm.set_geometric(std::move(unknowns));
     solve();
     const NormalEquations normal(problem_.system());
-    problem_.arm.set_precisions(scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(),
-                                             problem_.measured_values(), links));
+    problem_.arm.set_precisions(
+        scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(), problem_.measured_values(), links));
     prior_scale_ = std::sqrt(variance / problem_.arm.precisions()(links.front()));
     solve();
 
@@ -216,8 +216,7 @@ class IdentificationRun {
     problem_.arm = registered;
     const auto [errors_as_designed, evidence_as_designed] = left_out();
     const bool better = one_standard_error_rule({{0, errors}, {1, errors_as_designed}}) == 0;
-    const bool clear =
-        errors.mean() < errors_as_designed.mean() && evidence > evidence_as_designed + clear_evidence;
+    const bool clear = errors.mean() < errors_as_designed.mean() && evidence > evidence_as_designed + clear_evidence;
     links_as_designed_ = !better && !clear;
     if (!links_as_designed_) {
       problem_.arm = estimated;
@@ -269,14 +268,8 @@ class IdentificationRun {
                                          const ArmGeometry& identified, const EstimateCovariance& covariance) const {
     const VectorX before = starts_.front().parameters(), now = identified.parameters();
     for (Index k = 0; k < before.size(); ++k)
-      report.parameters.push_back({plan_.names[at(k)],
-                                   plan_.kinds[at(k)],
-                                   before(k),
-                                   now(k),
-                                   0,
-                                   ParameterState::fixed,
-                                   {},
-                                   plan_.scales(k)});
+      report.parameters.push_back(
+          {plan_.names[at(k)], plan_.kinds[at(k)], before(k), now(k), 0, ParameterState::fixed, {}, plan_.scales(k)});
     std::vector<Index> places;  // of those in the covariance
     for (std::size_t k = 0; k < estimated.size(); ++k) {
       const GeometricUnknown& candidate = candidates_[at(estimated[k])];

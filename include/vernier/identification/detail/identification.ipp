@@ -184,8 +184,8 @@ class IdentificationRun {
   }
 
   /// Gives the links priors around nominal, and solves again. How wide these are, in expected sizes, follows from
-  /// evidence. Whether the links stay as designed is decided by leave-one-pose-out errors, unless evidence speaks
-  /// clearly.
+  /// evidence, or is more where left-out poses support that. Whether the links stay as designed is decided by
+  /// leave-one-pose-out errors, unless evidence speaks clearly.
   /// @param registered the arm as designed, its frames estimated
   VERNIER_LOCAL void choose_links(const ArmParameterisation& registered) {
     constexpr double first_scale = 3, clear_evidence = 3;  // twenty to one
@@ -208,15 +208,29 @@ class IdentificationRun {
     const NormalEquations normal(problem_.system());
     problem_.arm.set_precisions(
         scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(), problem_.measured_values(), links));
-    prior_scale_ = std::sqrt(variance / problem_.arm.precisions()(links.front()));
-    solve();
+    const VectorX likely = problem_.arm.precisions();
 
-    const ArmParameterisation estimated = problem_.arm;
-    const auto [errors, evidence] = left_out();
+    // Some links of an arm may be off by more than the rest: wider priors where left-out poses support them clearly.
+    std::vector<ArmParameterisation> arms;
+    std::vector<PriorTrial> trials;
+    std::vector<double> evidences;
+    for (const double wider : {10.0, 3.0, 1.0}) {
+      problem_.arm.set_precisions(likely / (wider * wider));
+      solve();
+      auto [errors, evidence] = left_out();
+      trials.push_back({1 / (wider * wider), std::move(errors)});
+      evidences.push_back(evidence);
+      arms.push_back(problem_.arm);
+    }
+    const std::size_t chosen = one_standard_error_rule(trials);
+    const ArmParameterisation& estimated = arms[chosen];
+    const VectorX& errors = trials[chosen].errors;
+    prior_scale_ = std::sqrt(variance / estimated.precisions()(links.front()));
     problem_.arm = registered;
     const auto [errors_as_designed, evidence_as_designed] = left_out();
     const bool better = one_standard_error_rule({{0, errors}, {1, errors_as_designed}}) == 0;
-    const bool clear = errors.mean() < errors_as_designed.mean() && evidence > evidence_as_designed + clear_evidence;
+    const bool clear =
+        errors.mean() < errors_as_designed.mean() && evidences.back() > evidence_as_designed + clear_evidence;
     links_as_designed_ = !better && !clear;
     if (!links_as_designed_) {
       problem_.arm = estimated;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/evaluation/position_errors.hpp"
@@ -71,16 +72,19 @@ JointRows<6> on_a_grid(int per_side, double side, double turn, std::uint64_t see
   const DhChain<6> chain = robots::ur10().chain;
   const JointVector<6> middle(0.3, -1.5, 1.6, -0.4, 1.2, 0.2);
   Rng rng(seed);
-  JointRows<6> out(per_side * per_side * per_side, 6);
-  for (Index k = 0; k < out.rows(); ++k) {
+  std::vector<JointVector<6>> reached;
+  for (Index k = 0; k < per_side * per_side * per_side; ++k) {
     const auto at = [&](Index digit) { return side * (static_cast<double>(digit % per_side) / (per_side - 1) - 0.5); };
     Isometry3 pose = chain.pose(middle);
     pose.translation() += Vector3(at(k / per_side / per_side), at(k / per_side), at(k));
     const Vector3 tilt{rng.uniform(-turn, turn), rng.uniform(-turn, turn), rng.uniform(-turn, turn)};
     const Matrix3 turned = pose.linear() * exp_so3(tilt);
     pose.linear() = turned;
-    out.row(k) = inverse_kinematics(chain, pose, middle).joints.transpose();
+    const auto found = inverse_kinematics(chain, pose, middle);
+    if (found.status == IkStatus::converged) reached.push_back(found.joints);
   }
+  JointRows<6> out(static_cast<Index>(reached.size()), 6);
+  for (Index k = 0; k < out.rows(); ++k) out.row(k) = reached[static_cast<std::size_t>(k)].transpose();
   return out;
 }
 

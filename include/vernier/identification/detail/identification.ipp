@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -240,8 +241,10 @@ class IdentificationRun {
     summary_ = {true, 0, "the links stay as designed"};
   }
 
-  /// Leave-one-pose-out errors of the problem as it is, and its evidence.
+  /// Leave-one-pose-out errors of the problem as it is, and its evidence; infinite where nothing is estimated, so that
+  /// errors alone decide.
   VERNIER_LOCAL std::pair<VectorX, double> left_out() {
+    if (num_free() == 0) return {residual_norms(), std::numeric_limits<double>::infinity()};
     const VectorX precisions = problem_.arm.precisions(), steps = problem_.arm.steps();
     const NormalEquations unweighted(problem_.system());
     const double evidence = log_evidence(unweighted, FactorisedEquations(unweighted, precisions, steps), precisions,
@@ -253,6 +256,23 @@ class IdentificationRun {
     VectorX errors = error_norms(leave_one_out(system, solved, 1));
     problem_.reset_weights();
     return {std::move(errors), evidence};
+  }
+
+  /// Norms of the measured lengths' residuals [m]: where nothing is estimated, those of left-out poses.
+  VERNIER_LOCAL VectorX residual_norms() const {
+    VectorX out(problem_.num_blocks());
+    SensedRows sensed;
+    Index block = 0;
+    for (int s = 0; s < problem_.arm.stations(); ++s) {
+      const MeasuredSet& set = problem_.sets()[static_cast<std::size_t>(s)];
+      const auto poses_of = [&](const MatrixX& joints) { return problem_.arm.geometry(s).poses(joints); };
+      const std::vector<Isometry3> poses = set.seen_poses(poses_of);
+      for (Index i = 0; i < set.size(); ++i) {
+        set.sense(i, poses[at(i)], sensed);
+        out(block++) = sensed.residual.head<3>().norm();
+      }
+    }
+    return out;
   }
 
   /// Of the measured lengths [m] and angles [rad], 0 where there are none.

@@ -255,10 +255,13 @@ TEST(Calibrate, TestFileFixedParametersAndRobustLoss) {
   for (const Index bad : {5, 40, 77}) positions.row(bad) += Eigen::RowVector3d(0.02, -0.01, 0.03);
   write_dataset(folder / "train.csv", Dataset<6>(train.joints(), positions));
   write_dataset(folder / "test.csv", measured(40, 4, false));
-  const std::string arguments = "--robot abb_irb120 --data train.csv --test test.csv --json r.json --threads 1 ";
+  const std::string arguments =
+      "--robot abb_irb120 --data train.csv --test test.csv --keep-outliers --json r.json --threads 1 ";
   const CommandResult plain = run(folder, "calibrate", arguments + "--loss squared");
   ASSERT_EQ(plain.exit_code, 0) << plain.errors;
-  EXPECT_NE(plain.output.find("A robust loss (huber)"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("3 training rows are outliers and kept, as asked: train.csv, lines 7, 42 and 79"),
+            std::string::npos)
+      << plain.output;
   const double squared = Json::parse(read_file(folder / "r.json")).at("stages").at("geometry").at("mean_mm");
 
   const CommandResult robust = run(folder, "calibrate", arguments + "--loss cauchy --fix d4 theta3");

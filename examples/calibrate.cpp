@@ -39,7 +39,9 @@ void print_measurements(const vn::RobotDescription& robot, const support::Calibr
   const vn::CalibrationReport& report = found.report;
   fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
              robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
-  if (o.data.size() > 1) fmt::print("{} stations: one arm, {} base frames\n", o.data.size(), o.data.size());
+  if (o.data.size() > 1)
+    fmt::print("{} stations: one arm, {} base frames{}\n", o.data.size(), o.data.size(),
+               o.calibrate.errors.tool_per_station ? " and as many tools" : "");
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), found.held_out);
   for (const vn::FittedSet& set : report.others)
     fmt::print("{} measurements ({}) to learn from: {}\n", set.measurements, set.kind, set.name);
@@ -69,6 +71,8 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
       folder.string());
   if (!o.verbose) fmt::print("Details behind the verdict: --verbose, or --report FILE\n");
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", support::shown(o.save));
+  for (std::size_t k = 0; k < found.further_models.size(); ++k)
+    fmt::print("With the tool of {}: {}\n", support::shown(o.data[k + 1]), support::shown(found.further_models[k]));
   if (!o.report.empty()) fmt::print("Report: {}\n", support::shown(o.report));
   return 0;
 }

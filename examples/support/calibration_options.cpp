@@ -108,6 +108,8 @@ void add_estimation(Program& program, CalibrationOptions& o, TypedValues& typed)
       .one_of({"default", "pso", "ga"});
   program.add_flag("--own-tools", o.calibrate.errors.tool_per_station,
                    "every file of --data has its own tool, not only its own base");
+  program.add_flag("--keep-outliers", o.calibrate.keep_outliers,
+                   "learn from training rows that are outliers, too; by default they are named and left out");
   program.add_flag("--positions-only", typed.positions_only, "ignore measured orientations");
   program.add_setting("--date", o.date, "date written into the model", "DATE");
   program.add_option("--prior", o.prior,

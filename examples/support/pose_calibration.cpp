@@ -1,5 +1,8 @@
 #include "pose_calibration.hpp"
 
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -44,6 +47,12 @@ std::string file_hashes(const std::vector<vn::Dataset<N>>& sets) {
   return out;
 }
 
+/// The name of a file with a number before its ending: "arm.json", 2 gives "arm.2.json".
+std::string numbered(const std::filesystem::path& path, std::size_t number) {
+  std::filesystem::path out = path;
+  return out.replace_extension(fmt::format(".{}{}", number, path.extension().string())).string();
+}
+
 template <int N>
 vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, const MeasuredFiles<N>& measured,
                                    const CalibrationOptions& o) {
@@ -81,14 +90,17 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
-  if (!o.save.empty())
-    out.model = {o.save, vn::save(o.save, calibration,
-                                  {.name = robot.name,
-                                   .limits = robot.limits,
-                                   .data_file = file_names(o.data),
-                                   .date = o.date,
-                                   .held_out_error = out.report.stage(out.report.chosen).position.mean(),
-                                   .data_sha256 = file_hashes<N>(measured->files)})};
+  const vn::RobotInfo<N> info{.name = robot.name,
+                              .limits = robot.limits,
+                              .data_file = file_names(o.data),
+                              .date = o.date,
+                              .held_out_error = out.report.stage(out.report.chosen).position.mean(),
+                              .data_sha256 = file_hashes<N>(measured->files)};
+  if (!o.save.empty()) out.model = {o.save, vn::save(o.save, calibration, info)};
+  for (std::size_t s = 1; !o.save.empty() && options.errors.tool_per_station && s < o.data.size(); ++s) {
+    out.further_models.push_back(numbered(o.save, s + 1));
+    vn::save(out.further_models.back(), calibration, info, s);
+  }
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);
     out.page.audit = audit_rows(o.data, out.audits);

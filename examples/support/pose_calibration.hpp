@@ -22,13 +22,14 @@ inline constexpr vernier::Index prior_generations = 15;
 
 /// A calibration from measured poses, assessed.
 struct PoseCalibration {
-  vernier::ArmGeometry nominal;              ///< the arm as designed
-  vernier::ArmGeometry identified;           ///< by geometry alone: in the error model, joint errors have their share
-  vernier::CalibrationReport report{};       ///< the assessment
-  std::string held_out{};                    ///< which poses are held out, in words
-  std::vector<vernier::DataAudit> audits{};  ///< of the files of poses
-  vernier::SourceFile model{};               ///< that was saved; without a name where none was
-  vernier::ReportInput page{};               ///< what an HTML page shows; empty unless it is asked for
+  vernier::ArmGeometry nominal;               ///< the arm as designed
+  vernier::ArmGeometry identified;            ///< by geometry alone: in the error model, joint errors have their share
+  vernier::CalibrationReport report{};        ///< the assessment
+  std::string held_out{};                     ///< which poses are held out, in words
+  std::vector<vernier::DataAudit> audits{};   ///< of the files of poses
+  vernier::SourceFile model{};                ///< that was saved; without a name where none was
+  std::vector<std::string> further_models{};  ///< with `--own-tools`: those of the other files' tools
+  vernier::ReportInput page{};                ///< what an HTML page shows; empty unless it is asked for
   /// Held-out position errors at the first station by another description of the arm, its base and tool registered by
   /// the poses to learn from [m].
   std::function<vernier::ErrorStatistics(const vernier::RobotDescription&)> error_of{};

@@ -171,8 +171,7 @@ TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
                    {Block::approach, 1e-3, 2e-3, false, 1, {Answer::ruled_out}},
                    {Block::tilt, 1e-3, 2e-3, false, 1, {Answer::undecided}}};
   report.converged = false;
-  report.outliers = 2;
-  report.median_error = 0.04e-3;
+  report.outliers = {{.file = "m.csv", .line = 3, .position = 2}, {.file = "m.csv", .line = 9, .position = 0.5}};
   report.identification.status = IdentifyStatus::not_converged;
   report.identification.message = "100 iterations";
   report.identification.condition = 2.6e6;
@@ -192,9 +191,8 @@ TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
             "poses are too few: tilts of joint frames under gravity.");
   EXPECT_EQ(said[4],
             "The fit of the joint errors stopped before it converged. The fit of the geometry did not converge: 100 "
-            "iterations. The geometry is poorly determined: its condition is 2.6e+06. 2 of the training rows have "
-            "errors above eight times the median of 0.04 mm: outliers? The loss reduces their weight in the fit; check "
-            "them.");
+            "iterations. The geometry is poorly determined: its condition is 2.6e+06. 2 training rows are "
+            "outliers and left out: m.csv, lines 3 and 9 (off by up to 2000 mm).");
   EXPECT_EQ(said[5],
             "Drift was estimated and is not in the saved model: the base of station 2 moved by up to 0.05 mm and 20 "
             "urad during the session.");
@@ -320,21 +318,17 @@ TEST(CalibrationReport, RemarksByHand) {
   report.identification.message = "2 poses give 6 values";
   EXPECT_EQ(joined(report.remarks()), "The geometry is underdetermined: 2 poses give 6 values.\n");
   report.identification.status = IdentifyStatus::converged;
-  report.outliers = 3;
-  report.median_error = 0.5e-6;  // of exact data nothing is an outlier
-  EXPECT_TRUE(report.remarks().empty());
-  report.median_error = 0.04e-3;
+  report.outliers = {{.row = 4, .position = 2e-3, .rotation = 0.1}};
   EXPECT_EQ(joined(report.remarks()),
-            "3 of the training rows have errors above eight times the median of 0.04 mm: outliers? The loss reduces "
-            "their weight in the fit; check them.\n");
-  report.loss = Loss::squared;
+            "1 training row is an outlier and left out: row 4 (off by up to 2 mm, 100 mrad).\n");
+  report.outliers_kept = true;
   EXPECT_EQ(joined(report.remarks()),
-            "3 of the training rows have errors above eight times the median of 0.04 mm: outliers? A robust loss "
-            "(huber) reduces their weight.\n");
+            "1 training row is an outlier and kept, as asked: row 4 (off by up to 2 mm, 100 mrad).\n");
   report.others = {{"touches.csv", "lengths", 12, 0.02e-3}};
   const std::string brief = report.summary(), full = report.full_summary();
   EXPECT_EQ(brief.rfind("Verdict\n- Only 5 poses", 0), 0u) << brief;
-  for (const char* words : {"(huber) reduces their weight.\n", "\nErrors of the 5 held-out poses [mm]\n\nstage  ",
+  for (const char* words : {"and kept, as asked: row 4 (off by up to 2 mm, 100 mrad).\n",
+                            "\nErrors of the 5 held-out poses [mm]\n\nstage  ",
                             "touches.csv: 12 measurements (lengths), fitted to 0.02 mm (rms)\n"})
     EXPECT_NE(brief.find(words), std::string::npos) << words << brief;
   EXPECT_EQ(full, brief + "\n" + report.identification.summary() + "\nDetails\n- " + report.details()[0] + "\n- " +

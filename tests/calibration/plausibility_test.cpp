@@ -132,9 +132,12 @@ TEST(PlausibilityWhiteBox, AnIdentificationThatMayNotBeUsed) {
   const auto said = [&] { return failure([&] { detail::require_usable(report, "this step"); }); };
   EXPECT_EQ(said(), "");
   report.status = IdentifyStatus::underdetermined;
+  EXPECT_EQ(said(), "");  // what is unknown is held and named
+  report.too_few = true;
   EXPECT_EQ(said(),
             "this step is underdetermined: of 6 values 3 are known; measure more poses, with every joint moved widely, "
             "or fix parameters");
+  report.too_few = false;
   report.status = IdentifyStatus::not_converged;
   EXPECT_EQ(said(),
             "this step did not converge: of 6 values 3 are known; look for outliers, wrong units or a wrong robot");

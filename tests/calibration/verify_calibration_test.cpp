@@ -224,6 +224,28 @@ TEST(VerifyCalibration, ATurnedProbeIsTakenOff) {
   }
 }
 
+// The same where nothing is registered: sensor and arm stand as they did.
+TEST(VerifyCalibration, ATurnedProbeIsTakenOffWhereNothingIsRegistered) {
+  const auto checked = [](const Vector3& probe, std::uint64_t seed) {
+    const auto seen =
+        measure(changed(JointVector<6>::Zero(), Isometry3::Identity()), poses_of(25, 300 + seed), noise, 400 + seed);
+    return verify_calibration(calibration().model(), calibration().errors, seen_by_turned(seen, probe),
+                              {.base = false});
+  };
+  for (const Vector3& probe : {Vector3(0, 0, 3.1), Vector3(0, 0, 0.05), Vector3(1.5e-3, 0, 2e-3)}) {
+    int valid = 0;
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const VerificationReport report = checked(probe, seed);
+      ASSERT_TRUE(report.registration);
+      EXPECT_LT((report.registration->motion.probe - probe).norm(), 0.3e-3) << probe.transpose();
+      EXPECT_EQ(report.dof, 6 * 25 - 3);
+      valid += report.valid;
+    }
+    EXPECT_GE(valid, 9) << probe.transpose();
+  }
+  EXPECT_FALSE(checked(Vector3::Zero(), 0).registration);  // a probe that stands as it did
+}
+
 // The zero of another joint is found behind a turned probe.
 TEST(VerifyCalibration, AZeroIsFoundBesideATurnedProbe) {
   const auto seen = measure(changed(0.4e-3 * JointVector<6>::Unit(2), elsewhere), poses_of(30, 310), noise, 410);

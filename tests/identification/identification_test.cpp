@@ -127,11 +127,9 @@ TEST(IdentificationWhiteBox, ARobustLossTakesTheMedianForTheScale) {
   EXPECT_LT(relative_difference(found.covariance, wanted), 1e-6);
 }
 
-// Errors, and what is expected of them, far below the noise: then parameters of the chain are weak, and their
-// covariance is that of rows and priors together.
-// @param size of the errors [m, rad]
-// @param expected width of the priors that left-out poses support, in expected sizes
-void expect_covariance_of_weak_parameters(double size, double expected) {
+// Links have priors, whose width follows from evidence; their covariance is that of rows and priors together.
+TEST(IdentificationWhiteBox, CovarianceOfLinksHasTheirPriors) {
+  constexpr double size = 1e-3;  // of the errors [m, rad], fifty times as large as expected
   const Dataset<6> data =
       measured(20, 5, false, {.length_min = size / 4, .length_max = size, .angle_min = size / 4, .angle_max = size});
   const auto identified = [&](bool priors) {
@@ -150,6 +148,7 @@ void expect_covariance_of_weak_parameters(double size, double expected) {
   const std::vector<std::string> weak = held.names(ParameterState::weak);
   ASSERT_GE(weak.size(), 3u);
   ASSERT_GE(p, static_cast<Index>(weak.size()) + 6);
+  EXPECT_NEAR(held.residual_variance, square_sum(rows_of(loose, data, squared)) / (60 - static_cast<double>(p)), 1e-6);
   const double freedom = static_cast<double>(60 - p);
   const double before = square_sum(rows_of(loose, data, squared)) / freedom;
   const detail::StackedRows rows = rows_of(held, data, squared);
@@ -160,16 +159,16 @@ void expect_covariance_of_weak_parameters(double size, double expected) {
     const ParameterEstimate &of_k = held.parameters[at], &without = loose.parameters[at];
     const bool chain = at >= 6 && at < 36;
     EXPECT_EQ(of_k.state == ParameterState::weak, chain && without.std > without.scale) << of_k.name;
-    if (of_k.state != ParameterState::weak) {
+    if (!chain) {
       EXPECT_TRUE(std::isinf(of_k.prior_std)) << of_k.name;
       continue;
     }
     const double width = of_k.prior_std / of_k.scale;
-    EXPECT_NEAR(width, expected, 1e-12) << of_k.name;
+    EXPECT_GT(width, 10) << of_k.name;
+    EXPECT_LT(width, 150) << of_k.name;
     precisions(k, k) = before / (width * width);
     variances(k, k) = width * width;
     EXPECT_LT(of_k.std, of_k.prior_std) << of_k.name;
-    EXPECT_TRUE(of_k.std < without.std || expected > 1) << of_k.name;
   }
   const RealMatrix information = information_of(rows), inverse = (information + precisions).inverse(),
                    middle = after * information + precisions * variances * precisions;
@@ -177,9 +176,18 @@ void expect_covariance_of_weak_parameters(double size, double expected) {
   EXPECT_LT(relative_difference(held.covariance, wanted), 1e-6);
 }
 
-TEST(IdentificationWhiteBox, CovarianceOfWeakParametersHasTheirPriors) {
-  expect_covariance_of_weak_parameters(20e-6, 1);
-  expect_covariance_of_weak_parameters(1e-3, 10);  // errors fifty times as large as expected
+// Errors far below the noise: others do not predict left-out poses better than the links as designed.
+TEST(IdentificationWhiteBox, LinksThatNothingShowsStayAsDesigned) {
+  const Dataset<6> data =
+      measured(20, 5, false, {.length_min = 5e-6, .length_max = 20e-6, .angle_min = 5e-6, .angle_max = 20e-6});
+  const auto found = identify_by_gauss_newton(Framed<Chain>(robot.chain, base, tool), data,
+                                              {.frames = Frames::base_and_tool}, squared);
+  EXPECT_TRUE(found.converged());
+  EXPECT_TRUE(found.links_as_designed);
+  EXPECT_EQ(found.free, (std::vector<Index>{0, 1, 2, 3, 4, 5, 36, 37, 38}));
+  EXPECT_EQ(found.covariance.rows(), 9);
+  EXPECT_TRUE(found.model.identified().model() == robot.chain);
+  EXPECT_NE(found.summary().find("The links stay as designed"), std::string::npos);
 }
 
 // The errors are those of the arms before and after: frames alone, then all parameters.
@@ -364,7 +372,7 @@ TEST(IdentificationWhiteBox, ASolverThatGivesUpIsReported) {
   const Framed<Chain> arm(robot.chain, base, tool);
   const Dataset<6> data = measured(30, 7);
   const auto gives_up = [](detail::CalibrationProblem&, int) { return SolverSummary{false, 3, "gave up"}; };
-  const auto found = detail::identify_geometry(ArmGeometry(arm), vernier_test::set_of(data, squared),
+  const auto found = detail::identify_geometry(ArmGeometry(arm), {vernier_test::set_of(data, squared)},
                                                {.frames = Frames::base_and_tool, .priors = false}, squared, gives_up);
   EXPECT_EQ(found.report.status, IdentifyStatus::not_converged);
   EXPECT_EQ(found.report.message, "gave up");

@@ -92,6 +92,20 @@ TEST(ReportJson, MeanOfHeldOutPosesWithItsInterval) {
   EXPECT_NEAR(mean.at("upper"), 3 + 2.776445 * std::sqrt(0.5), 1e-3);
 }
 
+// All of them, however many; rows of no file have none.
+TEST(ReportJson, EveryOutlierIsListed) {
+  CalibrationReport report = least();
+  report.outliers.assign(12, {.row = 5, .position = 1e-3, .factor = 20});
+  report.outliers[0] = {
+      .file = "m.csv", .line = 9, .station = 1, .row = 7, .position = 2, .rotation = 0.1, .factor = 3e4};
+  const Json json = to_json(report, "arm");
+  ASSERT_EQ(json.at("outliers").size(), 12u);
+  expect_parts(json.at("outliers").at(0), R"({"file": "m.csv", "line": 9, "station": 2, "row": 7, "position_mm": 2000,
+    "rotation_mrad": 100, "spreads": 30000})");
+  EXPECT_TRUE(json.at("outliers").at(11).at("file").is_null());
+  EXPECT_EQ(json.at("outliers_kept"), false);
+}
+
 TEST(ReportJson, WhatThereIsNotIsNull) {
   const Json json = to_json(least(), "arm");
   EXPECT_TRUE(json.at("mean_temperature_c").is_null());

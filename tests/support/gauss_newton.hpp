@@ -20,8 +20,8 @@ template <class Chain, class Data>
 vernier::Identified<Chain> identify_by_gauss_newton(const vernier::Framed<Chain>& arm, const Data& data,
                                                     const vernier::IdentifyOptions& options,
                                                     const vernier::SensorModel& sensors) {
-  const auto found = vernier::detail::identify_geometry(vernier::ArmGeometry(arm), vernier_test::set_of(data, sensors),
-                                                        options, sensors, gauss_newton);
+  const auto found = vernier::detail::identify_geometry(
+      vernier::ArmGeometry(arm), {vernier_test::set_of(data, sensors)}, options, sensors, gauss_newton);
   return {found.report, {found.arm.framed(arm.model()), arm.model()}};
 }
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "vernier/calibration/calibration.hpp"
+#include "vernier/calibration/detail/outlier_screening.hpp"
 #include "vernier/calibration/detail/plausibility.hpp"
 #include "vernier/calibration/learn_remainders.hpp"
 #include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/identification/identify.hpp"
-#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
@@ -29,12 +29,94 @@ struct CalibrateOptions {
   FitOptions fit{};                  ///< seed and observer of what is learned, executor of that and of the error model
   PriorSearch search{};              ///< of priors, see `fit_error_model`
   GeometrySolver solver{};           ///< of the geometric identification; by default `own_solver`, or `ceres_solver`
+  bool keep_outliers = false;        ///< learn from training rows that are outliers, too
   bool refuse_implausible = true;    ///< throw for data that do not fit the arm, or do not support a calibration
   std::string arm_name = "the arm";  ///< how messages name the arm
 };
 
-/// Calibrates an arm: registers every station, identifies geometry and frames, fits geometry, frames and joint errors
-/// together, and learns the remainder. Whatever leave-one-out errors do not support is left out.
+namespace detail {
+
+/// Measurements without some rows of their poses.
+template <int N>
+Measurements<N> without_rows(const Measurements<N>& measured, const std::vector<OutlyingRow>& outliers) {
+  std::vector<Dataset<N>> poses;
+  for (std::size_t s = 0; s < measured.poses().size(); ++s)
+    poses.push_back(measured.poses()[s].rows(other_rows(outliers, s, measured.poses()[s].size())));
+  return measured.with_poses(std::move(poses));
+}
+
+/// Frames, geometry and error model of an arm, from rows that are no outliers.
+template <class Chain>
+Calibration<Chain> fitted(const Framed<Chain>& nominal, const Measurements<Chain::dof>& measured,
+                          const CalibrateOptions& options) {
+  const std::size_t stations = measured.poses().size();
+  const std::vector<MeasuredSet> sets = measured.sets(options.sensors);
+  const GeometrySolver solver = options.solver ? options.solver : GeometrySolver(own_solver);
+
+  IdentifyOptions frames_alone = options.geometry;
+  frames_alone.geometry = false;
+  StagedModels<Chain> frames{Stage::frames, true, {}};
+  for (std::size_t s = 0; s < stations; ++s) {
+    const auto registered = identified_from(nominal, {sets[s]}, frames_alone, options.sensors, solver);
+    if (options.refuse_implausible) {
+      if (!options.keep_outliers)
+        require_plausible(ArmGeometry(nominal), sets[s], registered.rms_after, options.arm_name);
+      require_usable(registered, "registering the frames");
+    }
+    const Framed<Chain>& there = registered.model.identified();
+    frames.models.emplace_back(nominal.model(), there.around(WithJointErrors<Chain>(there.model())));
+  }
+  if (stations > 0 && options.refuse_implausible && !options.errors.tool_per_station) {
+    const auto& registered = frames.models.front().identified();
+    for (std::size_t s = stations; s < sets.size(); ++s)
+      require_plausible_set(ArmGeometry(registered.around(registered.chain())), sets[s]);
+  }
+
+  const double began = steady_seconds();
+  const auto identified = [&](const IdentifyOptions& of_geometry) {
+    const auto last = sets.begin() + static_cast<std::ptrdiff_t>((std::max<std::size_t>)(1, stations));
+    return identified_from(nominal, {sets.begin(), last}, of_geometry, options.sensors, solver,
+                           options.errors.tool_per_station);
+  };
+  Identified<Chain> geometry = identified(options.geometry);
+  if (options.errors.prior != nullptr && geometry.status == IdentifyStatus::underdetermined)
+    geometry = identified(frames_alone);  // an earlier calibration knows the rest
+  if (options.refuse_implausible) require_usable(geometry, "identifying the geometry");
+  FittedErrorModel<Chain> errors =
+      fit_error_model(geometry, measured, options.errors, options.sensors, options.search, options.fit.executor);
+  const double seconds = steady_seconds() - began;
+
+  if (geometry.links_as_designed) {
+    StagedModels<Chain>& of_links = errors.stages.front();
+    of_links.included = false;
+    frames.models.assign(of_links.models.begin(),
+                         of_links.models.begin() + static_cast<std::ptrdiff_t>(frames.models.size()));
+  }
+  if (stations > 0) errors.stages.insert(errors.stages.begin(), std::move(frames));
+  Calibration<Chain> out{std::move(geometry), std::move(errors)};
+  out.fit_seconds = seconds;
+  out.sensors = options.sensors;
+  return out;
+}
+
+/// Training rows that are outliers beside the fitted model.
+template <class Chain>
+std::vector<OutlyingRow> outlying_rows(const FittedErrorModel<Chain>& errors,
+                                       const Measurements<Chain::dof>& measured) {
+  std::vector<OutlyingRow> out;
+  for (std::size_t s = 0; s < measured.poses().size(); ++s) {
+    const PredictedErrors predicted = predicted_errors(errors, s, measured.poses()[s]);
+    for (OutlyingRow& one : outlying_rows(measured.sets()[s], s, predicted.errors, predicted.normalised))
+      out.push_back(std::move(one));
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Calibrates an arm: leaves training rows out that are outliers, registers every station, identifies geometry and
+/// frames, fits geometry, frames and joint errors together, and learns the remainder. Whatever leave-one-out errors do
+/// not support is left out.
 ///
 ///     calibrate(arm, poses);                                       // one data set
 ///     calibrate(arm, Measurements<6>(poses).add(wire), {.sensors = {.loss = Loss::cauchy}});
@@ -51,54 +133,47 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   using Chain = ChainOf<Arm>;
   constexpr int N = Chain::dof;
   const Framed<Chain> nominal = in_frames(arm);
-  const std::vector<Dataset<N>>& poses = measured.poses();
   demand(!measured.sets().empty(), "calibrate: no measurements");
   options.errors.validate();
   options.sensors.validate();
-  const std::vector<MeasuredSet> sets = measured.sets(options.sensors);
-  const GeometrySolver solver = options.solver ? options.solver : GeometrySolver(own_solver);
 
-  IdentifyOptions frames_alone = options.geometry;
-  frames_alone.geometry = false;
-  StagedModels<Chain> frames{Stage::frames, true, {}};
-  std::vector<Isometry3> bases;
-  for (std::size_t s = 0; s < poses.size(); ++s) {
-    const auto registered = detail::identified_from(nominal, sets[s], frames_alone, options.sensors, solver);
-    if (options.refuse_implausible) {
-      detail::require_plausible(ArmGeometry(nominal), sets[s], registered.rms_after, options.arm_name);
-      detail::require_usable(registered, "registering the frames");
-    }
-    const Framed<Chain>& there = registered.model.identified();
-    frames.models.emplace_back(nominal.model(), there.around(WithJointErrors<Chain>(there.model())));
-    bases.push_back(there.base());
+  std::vector<OutlyingRow> outliers;
+  Index rows = 0;
+  const std::vector<MeasuredSet> as_stated = measured.sets(options.sensors);
+  for (std::size_t s = 0; s < measured.poses().size(); ++s) {
+    rows += measured.poses()[s].size();
+    for (OutlyingRow& one : detail::outlying_rows(ArmGeometry(nominal), as_stated[s], s))
+      outliers.push_back(std::move(one));
   }
-  if (!poses.empty() && options.refuse_implausible && !options.errors.tool_per_station) {
-    const auto& registered = frames.models.front().identified();
-    for (std::size_t s = poses.size(); s < sets.size(); ++s)
-      detail::require_plausible_set(ArmGeometry(registered.around(registered.chain())), sets[s]);
-  }
-
-  const double began = detail::steady_seconds();
-  const auto identified = [&](const IdentifyOptions& of_geometry) {
-    const auto from = [&](const MeasuredSet& set) {
-      return detail::identified_from(nominal, set, of_geometry, options.sensors, solver);
-    };
-    if (poses.empty()) return from(sets.front());
-    const Measurements<N> joined(in_one_frame<N>(poses, bases, options.sensors.use_orientations));
-    return from(joined.sets(options.sensors).front());
+  const bool leave_out = !options.keep_outliers;
+  if (leave_out) detail::require_few(outliers, rows);
+  CalibrateOptions of_fit = options;
+  of_fit.keep_outliers = options.keep_outliers && !outliers.empty();
+  const auto kept_rows = [&] {
+    return leave_out && !outliers.empty() ? detail::without_rows(measured, outliers) : measured;
   };
-  Identified<Chain> geometry = identified(options.geometry);
-  if (options.errors.prior != nullptr && geometry.status == IdentifyStatus::underdetermined)
-    geometry = identified(frames_alone);  // an earlier calibration knows the rest
-  if (options.refuse_implausible) detail::require_usable(geometry, "identifying the geometry");
-  FittedErrorModel<Chain> errors =
-      fit_error_model(geometry, measured, options.errors, options.sensors, options.search, options.fit.executor);
-  const double seconds = detail::steady_seconds() - began;
-
-  if (!poses.empty()) errors.stages.insert(errors.stages.begin(), std::move(frames));
-  Calibration<Chain> out{std::move(geometry), std::move(errors)};
-  out.fit_seconds = seconds;
-  out.sensors = options.sensors;
+  Measurements<N> kept = kept_rows();
+  Calibration<Chain> out = detail::fitted(nominal, kept, of_fit);
+  std::vector<OutlyingRow> more = detail::outlying_rows(out.errors, kept);
+  if (!more.empty()) {
+    for (OutlyingRow& one : more) {
+      const std::size_t s = one.station;
+      if (leave_out)
+        one.row = detail::other_rows(outliers, s, measured.poses()[s].size())[static_cast<std::size_t>(one.row)];
+    }
+    for (OutlyingRow& one : more)
+      if (std::none_of(outliers.begin(), outliers.end(),
+                       [&](const OutlyingRow& known) { return known.station == one.station && known.row == one.row; }))
+        outliers.push_back(std::move(one));
+    if (leave_out) {
+      detail::require_few(outliers, rows);
+      kept = kept_rows();
+      out = detail::fitted(nominal, kept, of_fit);
+    }
+  }
+  out.outliers = std::move(outliers);
+  out.outliers_kept = options.keep_outliers;
+  const std::vector<Dataset<N>>& poses = kept.poses();
   if (!poses.empty()) detail::learn_remainders<Chain>(out, poses, options.remainder, options.fit);
 
   std::vector<double> residuals;
@@ -109,7 +184,8 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
     const VectorX e = detail::visited_errors(out.errors.models()[s], poses[s]);
     residuals.insert(residuals.end(), e.begin(), e.end());
   }
-  JointRows<N> joints(measured.size(), N);
+  const std::vector<MeasuredSet> sets = kept.sets(options.sensors);
+  JointRows<N> joints(kept.size(), N);
   Index at = 0;
   for (const MeasuredSet& set : sets) {
     joints.middleRows(at, set.size()) = set.joints;
@@ -120,11 +196,9 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   out.coverage = JointCoverage<N>::covering(joints);
   for (int i = 0; i < N; ++i)
     out.coverage.periodic[static_cast<std::size_t>(i)] = nominal.model().row(i).joint == JointType::revolute;
-  if (!residuals.empty()) {
-    const Eigen::Map<const VectorX> e(residuals.data(), static_cast<Index>(residuals.size()));
-    out.median_error = ErrorStatistics::of(e).median;
-    out.outliers = (e.array() > 8 * out.median_error).count();
-  }
+  if (!residuals.empty())
+    out.median_error =
+        ErrorStatistics::of(Eigen::Map<const VectorX>(residuals.data(), static_cast<Index>(residuals.size()))).median;
   return out;
 }
 

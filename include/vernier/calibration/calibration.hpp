@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "vernier/calibration/fitted_set.hpp"
+#include "vernier/calibration/outlying_row.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/compensation/cartesian.hpp"
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/identification/identified.hpp"
+#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measured_set.hpp"
 
 namespace vernier {
@@ -34,6 +36,9 @@ struct LearnedRemainder {
 };
 
 namespace detail {
+
+/// An error in standard deviations of a covariance (Mahalanobis' distance).
+VERNIER_API double normalised_error(const Vector3& error, const Matrix3& covariance);
 
 /// How well a model fits the lengths of a set.
 template <class Model>
@@ -69,14 +74,15 @@ struct Calibration {
   std::vector<LearnedRemainder<dof>> remainders{};  ///< those of them that were learned from all poses
   std::optional<std::size_t> deployed_remainder{};  ///< which of them is deployed; none where cross-validation
                                                     ///< supports none
-  JointCoverage<dof> coverage{};    ///< measured joint ranges, and the range of validity: these widened a little
-  Index poses = 0;                  ///< number of poses it was fitted to
-  std::vector<FittedSet> others{};  ///< sets of measurements beside the poses
-  bool oriented = false;            ///< whether orientations were used
-  SensorModel sensors{};            ///< as given
-  Index outliers = 0;               ///< poses whose error exceeds eight times the median
-  double median_error = 0;          ///< median position error of the poses it was fitted to [m]
-  double fit_seconds = 0;           ///< time from poses to error model
+  JointCoverage<dof> coverage{};        ///< measured joint ranges, and the range of validity: these widened a little
+  Index poses = 0;                      ///< number of poses it was fitted to
+  std::vector<FittedSet> others{};      ///< sets of measurements beside the poses
+  bool oriented = false;                ///< whether orientations were used
+  SensorModel sensors{};                ///< as given
+  std::vector<OutlyingRow> outliers{};  ///< training rows that are outliers
+  bool outliers_kept = false;           ///< whether it was fitted to them all the same
+  double median_error = 0;              ///< median position error of the poses it was fitted to [m]
+  double fit_seconds = 0;               ///< time from poses to error model
 
   /// What was learned and is deployed; null for nothing.
   const LearnedRemainder<dof>* deployed() const {
@@ -87,12 +93,17 @@ struct Calibration {
     if (deployed() != nullptr) return learned_stage(deployed()->on_geometry, deployed()->learner);
     StageName out;
     for (const StagedModels<Chain>& staged : errors.stages)
-      if (staged.included && staged.stage > Stage::geometry && staged.stage < Stage::session) out = staged.stage;
+      if (staged.included &&
+          (staged.stage == Stage::frames ? geometry.links_as_designed : staged.stage > Stage::geometry) &&
+          staged.stage < Stage::session)
+        out = staged.stage;
     return out;
   }
-  /// The model of the first station that is deployed, without what was learned on it.
-  const ErrorModel<Chain>& model() const {
-    return deployed() != nullptr && deployed()->on_geometry ? errors.models(Stage::geometry).front() : errors.model();
+  /// The model of a station that is deployed, without what was learned on it.
+  /// @param station from 0
+  const ErrorModel<Chain>& model(std::size_t station = 0) const {
+    const bool on_geometry = deployed() != nullptr && deployed()->on_geometry;
+    return (on_geometry ? errors.models(Stage::geometry) : errors.models())[station];
   }
 };
 
@@ -142,6 +153,74 @@ std::vector<Dataset<Chain::dof>> static_poses(const std::vector<ErrorModel<Chain
   return out;
 }
 
+/// Poses of all stations as the first one sees them, with its tool: the errors of each are those of its own model.
+/// @param models one a station
+template <class Chain>
+Dataset<Chain::dof> in_first_frame(const std::vector<ErrorModel<Chain>>& models,
+                                   std::span<const Dataset<Chain::dof>> stations) {
+  std::vector<Dataset<Chain::dof>> seen;
+  std::vector<Isometry3> bases(stations.size(), Isometry3::Identity());
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    const Dataset<Chain::dof>& data = stations[s];
+    if (s == 0) {
+      seen.push_back(data);
+      continue;
+    }
+    const Matrix3 back = rotation(models[s].identified().base()).transpose();
+    const Matrix3 turn = rotation(models.front().identified().base()) * back;
+    PointRows positions(data.size(), 3);
+    for (Index i = 0; i < data.size(); ++i) {
+      const Vector3 error = models[s].position(data.joints(i)) - data.position(i);
+      set_point(positions, i, Vector3(models.front().position(data.joints(i)) - turn * error));
+    }
+    seen.push_back(Dataset<Chain::dof>(data.joints(), positions).from(data.origin()));
+  }
+  return in_one_frame<Chain::dof>(seen, bases, false);
+}
+
+/// Errors of the models of a station at visits, in the frame of that station, and their sizes.
+struct PredictedErrors {
+  PointRows errors;      ///< n x 3: predicted - measured [m]
+  VectorX normalised{};  ///< norms in standard deviations of the predicted ellipsoids, n
+};
+
+/// Errors of visits of one station, beside their predicted covariances: of the unknowns, of a visit, and of drift
+/// beyond the session.
+/// @param learned takes a position error that was learned off, in the base frame of the first station; null for none
+template <class Chain>
+PredictedErrors predicted_errors(const FittedErrorModel<Chain>& errors, std::size_t station,
+                                 const Dataset<Chain::dof>& data,
+                                 const LearnedRemainder<Chain::dof>* learned = nullptr) {
+  const ErrorModel<Chain>& model = errors.models()[station];
+  PredictedErrors out{PointRows(data.size(), 3), VectorX(data.size())};
+  VectorX gates(data.size());
+  for (Index i = 0; i < data.size(); ++i) gates(i) = model.gate(data.joints(i));
+  const std::vector<Matrix6> covariances =
+      errors.visit_covariances(data.joints(), gates, static_cast<int>(station), data.previous(), data.temperatures());
+  const std::vector<Isometry3> poses = predicted_visits(model, data, true, {});
+  const Matrix3 back = rotation(errors.model().identified().base()).transpose();
+  const Matrix3 turn = rotation(model.identified().base()) * back;
+  for (Index i = 0; i < data.size(); ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    Vector3 error = translation(poses[row]) - data.position(i);
+    if (learned != nullptr)
+      error -= turn * (learned->coverage(data.joints(i)) * learned->predictor.predict(data.joints(i)));
+    Matrix3 covariance = covariances[row].template topLeftCorner<3, 3>();
+    if (station < errors.drift.size() && !errors.drift[station].empty())
+      covariance += errors.drift[station]
+                        .covariance_beyond(data.times()(i), poses[row].translation(),
+                                           model.pose_and_jacobian(data.joints(i)).jacobian)
+                        .template topLeftCorner<3, 3>();
+    set_point(out.errors, i, error);
+    out.normalised(i) = normalised_error(error, covariance);
+  }
+  return out;
+}
+
 }  // namespace detail
 
 }  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/calibration/calibration.ipp"
+#endif

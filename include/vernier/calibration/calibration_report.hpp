@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vernier/calibration/fitted_set.hpp"
+#include "vernier/calibration/outlying_row.hpp"
 #include "vernier/calibration/stage_errors.hpp"
 #include "vernier/error_model/joint_spectrum.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -55,20 +56,21 @@ struct CalibrationReport {
   std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
   std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
-  double max_degradation = 0;          ///< largest excess of the chosen stage's error over that of geometry, inside the
-                                       ///< range of validity [m]
-  double ellipsoid_coverage = 0;       ///< share of held-out poses within their predicted 95 % ellipsoid
-  bool oriented = false;               ///< whether orientations are used
-  bool converged = true;               ///< whether the error model converged
-  Index outliers = 0;                  ///< training poses whose error exceeds eight times the median
-  double median_error = 0;             ///< median position error of the training poses [m]
-  Loss loss = Loss::huber;             ///< of the fit
-  double fit_seconds = 0;              ///< time from poses to error model
-  double leave_one_out_seconds = 0;    ///< of it, for leave-one-pose-out errors
-  double evaluation_seconds = 0;       ///< time that the chosen stage takes for a pose and its Jacobian [s]
-  VectorX normalised_errors{};         ///< of held-out poses, in standard deviations of their predicted ellipsoids
-  VectorX left_out_errors{};           ///< of some training poses, each predicted by the model without it [m]
-  std::vector<Index> left_out_rows{};  ///< which poses, counted over the stations
+  double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the
+                                  ///< range of validity [m]
+  double ellipsoid_coverage = 0;  ///< share of held-out poses within their predicted 95 % ellipsoid
+  bool oriented = false;          ///< whether orientations are used
+  bool converged = true;          ///< whether the error model converged
+  std::vector<OutlyingRow> outliers{};  ///< training rows that are outliers: all of them
+  bool outliers_kept = false;           ///< whether the calibration was fitted to them all the same
+  double median_error = 0;              ///< median position error of the training poses [m]
+  Loss loss = Loss::huber;              ///< of the fit
+  double fit_seconds = 0;               ///< time from poses to error model
+  double leave_one_out_seconds = 0;     ///< of it, for leave-one-pose-out errors
+  double evaluation_seconds = 0;        ///< time that the chosen stage takes for a pose and its Jacobian [s]
+  VectorX normalised_errors{};          ///< of held-out poses, in standard deviations of their predicted ellipsoids
+  VectorX left_out_errors{};            ///< of some training poses, each predicted by the model without it [m]
+  std::vector<Index> left_out_rows{};   ///< which poses, counted over the stations
 
   /// Number of held-out poses.
   Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }

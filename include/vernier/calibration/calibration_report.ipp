@@ -34,6 +34,27 @@ VERNIER_IMPL std::string CalibrationReport::few_poses() const {
                  " held out: too few to judge the accuracy; hold out at least ", enough, ".");
 }
 
+namespace detail {
+
+/// The distance of the identified tool point from the flange, and the reach of the links as designed [m].
+struct ToolAndReach {
+  double tool = 0, reach = 0;
+};
+
+VERNIER_LOCAL ToolAndReach tool_and_reach(const IdentificationReport& identification) {
+  ToolAndReach out;
+  for (const ParameterEstimate& p : identification.parameters) {
+    if (p.kind != ParameterKind::length || p.name.starts_with("base")) continue;
+    if (p.name.starts_with("tool"))
+      out.tool = std::hypot(out.tool, p.identified);
+    else
+      out.reach += std::abs(p.nominal);
+  }
+  return out;
+}
+
+}  // namespace detail
+
 VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   using detail::brief;
   constexpr double largest_condition = 1e6;
@@ -46,11 +67,22 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
                   identification.message + ".");
   if (identification.condition > largest_condition)
     out.push_back("The geometry is poorly determined: its condition is " + brief(identification.condition) + ".");
-  if (outliers > 0 && median_error > 1e-6)
-    out.push_back(message(outliers, " of the training rows have errors above eight times the median of ",
-                          brief(median_error * 1e3), " mm: outliers?",
-                          loss == Loss::squared ? " A robust loss (huber) reduces their weight."
-                                                : " The loss reduces their weight in the fit; check them."));
+  constexpr double least_reach = 1;  // [m]; travel of sliding joints is not known here
+  const auto [tool, reach] = detail::tool_and_reach(identification);
+  if (tool > (std::max)(reach, least_reach))
+    out.push_back("The tool point lies " + brief(tool) + " m from the flange, beyond the arm's reach of " +
+                  brief(reach) + " m: these poses do not determine the tool.");
+  if (!outliers.empty()) {
+    double largest = 0, turned = 0;
+    for (const OutlyingRow& one : outliers) {
+      largest = (std::max)(largest, one.position);
+      turned = (std::max)(turned, one.rotation);
+    }
+    out.push_back(message(
+        counted(static_cast<Index>(outliers.size()), "training row is an outlier", "training rows are outliers"),
+        outliers_kept ? " and kept, as asked: " : " and left out: ", where(outliers), " (off by up to ",
+        brief(largest * 1e3), " mm", turned > 0 ? ", " + brief(turned * 1e3) + " mrad" : "", ")."));
+  }
   return out;
 }
 

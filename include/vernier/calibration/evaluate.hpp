@@ -16,15 +16,11 @@
 #include "vernier/calibration/pose_advice.hpp"
 #include "vernier/core/detail/steady_seconds.hpp"
 #include "vernier/evaluation/position_errors.hpp"
-#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
 
 namespace detail {
-
-/// An error in standard deviations of a covariance (Mahalanobis' distance).
-VERNIER_API double normalised_error(const Vector3& error, const Matrix3& covariance);
 
 /// Ranges of validity of a joint: no farther than its limits, unless it was measured there.
 VERNIER_API std::vector<std::pair<double, double>> within_limits(const std::vector<JointRange>& ranges,
@@ -76,6 +72,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   for (const auto& data : test) out.oriented = out.oriented && data.has_orientations();
   out.converged = errors.converged;
   out.outliers = calibration.outliers;
+  out.outliers_kept = calibration.outliers_kept;
   out.median_error = calibration.median_error;
   out.loss = calibration.sensors.loss;
   out.fit_seconds = calibration.fit_seconds;
@@ -104,16 +101,13 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   };
   const auto assess_learned = [&](bool on_geometry, const std::vector<ErrorModel<Chain>>& below,
                                   std::span<const Dataset<N>> data) {
-    std::vector<Isometry3> bases;
-    for (const auto& model : below) bases.push_back(model.identified().base());
-    bases.resize(test.size());
     const VectorX rotation = out.stages.back().rotation;
     for (const LearnedRemainder<N>& remainder : calibration.remainders) {
       if (remainder.on_geometry != on_geometry) continue;
       const CartesianCorrected hybrid(below.front(), remainder.predictor, remainder.coverage);
       out.stages.emplace_back(learned_stage(on_geometry, remainder.learner),
                               message(last_title, " + ", learner_title(remainder.learner)),
-                              position_errors(hybrid, in_one_frame<N>(data, bases, false)), rotation);
+                              position_errors(hybrid, detail::in_first_frame<Chain>(below, data)), rotation);
     }
   };
   const auto assess_learned_on_models = [&] {
@@ -157,28 +151,9 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     for (Index i = 0; i < data.size(); ++i) gates(i) = calibration.coverage(data.joints(i));
     return gates;
   });
+  const LearnedRemainder<N>* learned = deployed != nullptr && !deployed->on_geometry ? deployed : nullptr;
   out.normalised_errors = detail::over_stations<N>(test, [&](std::size_t s, const Dataset<N>& data) {
-    VectorX gates(data.size()), normalised(data.size());
-    for (Index i = 0; i < data.size(); ++i) gates(i) = models[s].gate(data.joints(i));
-    const std::vector<Matrix6> covariances =
-        errors.visit_covariances(data.joints(), gates, static_cast<int>(s), data.previous(), data.temperatures());
-    const std::vector<Isometry3> poses = detail::predicted_visits(models[s], data, true, {});
-    const Matrix3 back = rotation(errors.model().identified().base()).transpose();
-    const Matrix3 turn = rotation(models[s].identified().base()) * back;
-    for (Index i = 0; i < data.size(); ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      Vector3 error = translation(poses[row]) - data.position(i);
-      if (deployed != nullptr && !deployed->on_geometry)
-        error -= turn * (deployed->coverage(data.joints(i)) * deployed->predictor.predict(data.joints(i)));
-      Matrix3 covariance = covariances[row].template topLeftCorner<3, 3>();
-      if (s < errors.drift.size() && !errors.drift[s].empty())
-        covariance += errors.drift[s]
-                          .covariance_beyond(data.times()(i), poses[row].translation(),
-                                             models[s].pose_and_jacobian(data.joints(i)).jacobian)
-                          .template topLeftCorner<3, 3>();
-      normalised(i) = detail::normalised_error(error, covariance);
-    }
-    return normalised;
+    return detail::predicted_errors(errors, s, data, learned).normalised;
   });
   const auto within = std::count_if(out.normalised_errors.begin(), out.normalised_errors.end(),
                                     [](double error) { return error <= std::sqrt(chi_square_95); });

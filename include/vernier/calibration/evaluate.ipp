@@ -1,17 +1,10 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "vernier/calibration/evaluate.hpp"
 
 namespace vernier::detail {
-
-VERNIER_IMPL double normalised_error(const Vector3& error, const Matrix3& covariance) {
-  const Matrix3 weight = VERNIER_LATER(covariance).inverse();
-  const Vector3 weighted = weight * error;
-  return std::sqrt(error.dot(weighted));
-}
 
 VERNIER_IMPL std::vector<std::pair<double, double>> within_limits(
     const std::vector<JointRange>& ranges, const std::vector<std::pair<double, double>>& measured, double lower,

@@ -12,7 +12,6 @@
 #include "vernier/data/same_pose.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/sign_flip_test.hpp"
-#include "vernier/identification/in_one_frame.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 #include "vernier/regression/kernel_elm.hpp"
@@ -113,9 +112,7 @@ std::optional<BestLearner> try_learners(Calibration<Chain>& out, bool on_geometr
                                         const std::vector<Index>& rows, const RemainderOptions& options,
                                         const FitOptions& fit) {
   constexpr Index enough = 10;
-  std::vector<Isometry3> bases;
-  for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
-  const Dataset<Chain::dof> data = in_one_frame<Chain::dof>(stations, bases, false);
+  const Dataset<Chain::dof> data = in_first_frame<Chain>(models, stations);
   const ErrorModel<Chain>& model = models.front();
   out.remainders.push_back(learn_remainder(on_geometry, options.learners.front(), model, data, options, fit));
   const std::vector<Index> poses = poses_of(model, data.joints());
@@ -161,9 +158,7 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
   std::optional<std::size_t> chosen;
   if (on_model && on_model->helps) chosen = on_model->trial;
   if (on_geometry) {
-    std::vector<Isometry3> bases;
-    for (const auto& model : errors.models()) bases.push_back(model.identified().base());
-    const std::vector<Index> all = poses_of(errors.model(), in_one_frame<Chain::dof>(stations, bases, false).joints());
+    const std::vector<Index> all = poses_of(errors.model(), in_first_frame<Chain>(errors.models(), stations).joints());
     std::vector<Index> poses;
     for (const Index row : errors.left_out_rows) poses.push_back(all[static_cast<std::size_t>(row)]);
     const VectorX& others = chosen ? on_model->left_out : errors.left_out_errors;
@@ -179,15 +174,12 @@ void learn_remainders(Calibration<Chain>& out, std::span<const Dataset<Chain::do
       out.deployed_remainder = k;
   if (!out.deployed_remainder) {
     const auto& models = trial.on_geometry ? errors.models(Stage::geometry) : errors.models();
-    std::vector<Isometry3> bases;
-    for (std::size_t s = 0; s < stations.size(); ++s) bases.push_back(models[s].identified().base());
     const std::vector<Dataset<Chain::dof>> still = static_poses<Chain>(errors.models(), stations, errors.drift);
     out.deployed_remainder = out.remainders.size();
-    out.remainders.push_back(
-        learn_remainder(trial.on_geometry, trial.learner, models.front(),
-                        in_one_frame<Chain::dof>(
-                            trial.on_geometry ? stations : std::span<const Dataset<Chain::dof>>(still), bases, false),
-                        options, fit));
+    out.remainders.push_back(learn_remainder(
+        trial.on_geometry, trial.learner, models.front(),
+        in_first_frame<Chain>(models, trial.on_geometry ? stations : std::span<const Dataset<Chain::dof>>(still)),
+        options, fit));
   }
   if (out.remainders[*out.deployed_remainder].empty()) {  // nothing but a mean
     out.deployed_remainder.reset();

@@ -4,6 +4,7 @@
 /// The yearly check: whether a calibration still holds, from a few fresh poses.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -107,9 +108,8 @@ VERNIER_API VerificationReport better_reading(VerificationReport probe, Verifica
 /// compared with the covariance that the calibration itself predicts: of its parameters, which all poses share, and of
 /// each visit. A chi-square of everything, and one of each joint's zero and of each joint's transmission once a turn,
 /// are tested at the given level together (Bonferroni). Of several joints the one that explains most is named first,
-/// and the others are tested again beside it. Where the base is registered, orientations that are turned against the
-/// tool are taken to be those of a turned probe, as `reregister` does, unless a change of one joint explains them as
-/// well.
+/// and the others are tested again beside it. Orientations that are turned against the tool are taken to be those of a
+/// turned probe, as `reregister` does, unless a change of one joint explains them as well.
 ///
 /// The zero of a first joint that the base follows cannot be told from it and is not determined.
 /// @param model    as calibrated
@@ -162,7 +162,26 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     }
     return detail::verified(input, options);
   };
-  if (!options.base && !options.tool) return checked(model, {});
+  constexpr double largest_zero = 0.02;  // [rad]; more is no change of a joint
+  if (!options.base && !options.tool) {
+    VerificationReport stands = checked(model, {});
+    if (!set.oriented()) return stands;
+    std::vector<Isometry3> modelled;
+    for (Index i = 0; i < data.size(); ++i)
+      modelled.push_back(model.approached_from(configuration(data.previous(), i)).pose(data.joints(i)));
+    ReregistrationReport probe{.determined = true, .converged = true, .estimated = {.base = false}};
+    probe.motion.offsets = VectorX::Zero(N);
+    probe.motion.probe = detail::probe_rotation(modelled, set.orientations());
+    probe.joint_types = {types.begin(), types.end()};
+    probe.poses = data.size();
+    probe.rms_before = probe.rms_after =
+        std::sqrt(stands.errors.squaredNorm() / static_cast<double>(stands.errors.size()));
+    probe.probe_turned = true;
+    VerificationReport turned = checked(model, probe);
+    turned.registration->contradiction = stands.chi_square - turned.chi_square;
+    if (turned.registration->motion.probe.norm() > largest_zero) return turned;
+    return detail::better_reading(std::move(turned), std::move(stands));
+  }
   ReregisterOptions free{.base = options.base, .tool = options.tool};
   const auto register_again = [&] {
     const auto found = reregister(model, data, free, options.sensors);
@@ -171,7 +190,6 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   };
   VerificationReport out = register_again();
   if (!out.registration->probe_turned) return out;
-  constexpr double largest_zero = 0.02;  // [rad]; more is no change of a joint
   if (out.registration->motion.probe.norm() > largest_zero) return out;
   free.contradiction_threshold = std::numeric_limits<double>::infinity();
   return detail::better_reading(std::move(out), register_again());

@@ -363,7 +363,7 @@ VERNIER_IMPL std::vector<std::string> VerificationReport::advice() const {
           "again.");
     else
       out.push_back("Calibrate again, with the earlier model as the prior: calibrate --prior MODEL.");
-    if (!registration)
+    if (!registration || !(registration->estimated.base || registration->estimated.tool))
       out.push_back("If the sensor or the arm was set up anew, check without --registered.");
     else if (!options.tool)
       out.push_back("If the tool was remounted, check again with --tool-remounted.");

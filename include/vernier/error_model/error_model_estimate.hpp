@@ -80,8 +80,10 @@ struct ErrorModelEstimate {
   double variance_factor = 1;          ///< covariance divided by the inverse of the normal equations' matrix
   double residual_variance = 1;        ///< of the whitened residuals: that factor as far as the residuals alone tell
 
+  /// What it says of a station, from 0.
+  VERNIER_API ErrorModelEstimate of_station(int station) const;
   /// What it says of the first station.
-  VERNIER_API ErrorModelEstimate first_station() const;
+  VERNIER_API ErrorModelEstimate first_station() const { return of_station(0); }
   /// This estimate at other values of the unknowns: of the arm in other frames, with other joint zeros.
   /// @param now with the same terms
   VERNIER_API ErrorModelEstimate of_arm(const FittedArm& now) const;

@@ -31,22 +31,21 @@ VERNIER_IMPL ArmParameterisation parameterised(const FittedArm& arm, std::vector
 
 }  // namespace detail
 
-VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::first_station() const {
+VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::of_station(int station) const {
   std::vector<GeometricUnknown> unknowns;
   std::vector<Index> kept;
   for (std::size_t k = 0; k < arm.geometric().size(); ++k) {
     GeometricUnknown u = arm.geometric()[k];
-    if (u.station > 0) continue;
+    if (u.station >= 0 && u.station != station) continue;
     u.station = -1;
     unknowns.push_back(u);
     kept.push_back(static_cast<Index>(k));
   }
   const Index terms = arm.terms().size();
   for (Index k = 0; k < terms; ++k) kept.push_back(static_cast<Index>(arm.geometric().size()) + k);
-  ErrorModelEstimate out{.arm =
-                             detail::parameterised({arm.geometry(0), arm.joint_errors()}, std::move(unknowns),
-                                                   VERNIER_LATER(arm).scales().tail(terms),
-                                                   VERNIER_LATER(arm).precisions().tail(terms), arm.thermal_rates(0))};
+  ErrorModelEstimate out{.arm = detail::parameterised({arm.geometry(station), arm.joint_errors()}, std::move(unknowns),
+                                                      VERNIER_LATER(arm).scales().tail(terms), VERNIER_LATER(arm).precisions().tail(terms),
+                                                      arm.thermal_rates(station))};
   out.converged = converged;
   out.position_sigma = position_sigma;
   out.joint_sigma = joint_sigma;

@@ -82,6 +82,7 @@ class ErrorModelFit {
     if (harmonics) {
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
+      model_.size_by_evidence(link_unknowns(problem_.arm));  // less is left than when their priors were chosen
       model_.learn_spectrum(6);
       linear.transmission = all.transmission;
       if (geared && !problem_.arm.terms().gear_ratio && !problem_.arm.terms().coupling &&
@@ -91,6 +92,7 @@ class ErrorModelFit {
     if (jointwise) {
       if (elastic.size() > 0)  // deflection is clearer once all else is modelled
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
+      model_.size_by_evidence(link_unknowns(problem_.arm));
       model_.solve();
       if (search) {
         tune(search);

@@ -52,8 +52,12 @@ struct IdentificationReport {
   std::vector<Index> free;                    ///< the estimated ones, in the order of `covariance`
   MatrixX covariance;                         ///< of the estimated parameters [m, rad]; empty where rank deficient
   Index rank = 0;                             ///< of the Jacobian of the estimated parameters
-  double condition = 0;           ///< of the Jacobian in steps of expected sizes; above 100 poses are poorly chosen
-  int iterations = 0;             ///< of the solver, all rounds
+  double condition = 0;  ///< of the Jacobian in steps of expected sizes; above 100 poses are poorly chosen
+  int iterations = 0;    ///< of the solver, all rounds
+  /// Whether the links stay as designed, because others do not predict left-out poses better.
+  bool links_as_designed = false;
+  bool too_few = false;           ///< whether there are no more measured values than parameters to be estimated
+  double residual_variance = 1;   ///< of residuals divided by the sensor's standard deviation
   Observability observability{};  ///< of the estimated parameters
 
   /// Whether the model may be trusted.

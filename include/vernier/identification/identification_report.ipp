@@ -48,6 +48,7 @@ VERNIER_IMPL std::string IdentificationReport::summary() const {
   if (!freed.empty())
     out += "Consecutive axes nearly parallel: " + comma_list(freed) + " (Hayati) estimated in place of " +
            comma_list(held) + ".\n";
+  if (links_as_designed) out += "The links stay as designed: others do not predict left-out poses better.\n";
   if (const auto weak = names(ParameterState::weak); !weak.empty())
     out += "Weakly determined, regularised by priors around nominal: " + comma_list(weak) + ".\n";
   if (const auto pairs = strongly_correlated(); !pairs.empty()) {

@@ -4,6 +4,9 @@
 /// Identification of an arm's geometry and frames by nonlinear least squares: in Ceres, which the component `ceres`
 /// brings (vernier/ceres.hpp), or by the library's own solver.
 
+#include <utility>
+#include <vector>
+
 #include "vernier/identification/detail/identification.hpp"
 #include "vernier/identification/identified.hpp"
 #include "vernier/measurements/measurements.hpp"
@@ -17,11 +20,13 @@ struct CeresSolver {
   VERNIER_API SolverSummary operator()(CalibrationProblem& problem, int max_iterations) const;
 };
 
-/// An arm identified from one set.
+/// An arm identified from sets of one place each, as the first sees it.
 template <class Chain>
-Identified<Chain> identified_from(const Framed<Chain>& arm, const MeasuredSet& set, const IdentifyOptions& options,
-                                  const SensorModel& sensors, GeometrySolver solver) {
-  const IdentifiedGeometry found = identify_geometry(ArmGeometry(arm), set, options, sensors, solver);
+Identified<Chain> identified_from(const Framed<Chain>& arm, std::vector<MeasuredSet> sets,
+                                  const IdentifyOptions& options, const SensorModel& sensors, GeometrySolver solver,
+                                  bool own_tools = false) {
+  const IdentifiedGeometry found =
+      identify_geometry(ArmGeometry(arm), std::move(sets), options, sensors, solver, own_tools);
   return {found.report, {found.arm.framed(arm.model()), arm.model()}};
 }
 
@@ -54,7 +59,7 @@ Identified<ChainOf<Arm>> identify(const Arm& nominal, const Measurements<ChainOf
                                   GeometrySolver solver = ceres_solver) {
   demand(data.sets().size() == 1, "identify: ", data.sets().size(),
          " sets of measurements; it takes one, `calibrate` takes several");
-  return detail::identified_from(in_frames(nominal), data.sets().front().with(sensors), options, sensors, solver);
+  return detail::identified_from(in_frames(nominal), {data.sets().front().with(sensors)}, options, sensors, solver);
 }
 
 }  // namespace vernier

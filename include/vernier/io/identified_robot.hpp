@@ -5,6 +5,7 @@
 /// covariance.
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -54,20 +55,28 @@ CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Con
 
 }  // namespace detail
 
-/// The arm of a calibration, with what was learned on top: as seen from its first station.
+/// The arm of a calibration, with what was learned on top, as seen from one of its stations.
+/// @param station from 0; with `ErrorModelOptions::tool_per_station` each has a tool of its own
+/// @throws std::invalid_argument for a station that is not there
 template <int N, class Convention>
 CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Convention>>& calibration,
-                                                const RobotInfo<N>& info = {}) {
+                                                const RobotInfo<N>& info = {}, std::size_t station = 0) {
+  demand(station < calibration.errors.models().size(), "calibrated_robot: station ", station, " of ",
+         calibration.errors.models().size());
   const VectorX& left_out = calibration.errors.left_out_errors;
   auto robot = CalibratedRobot<N, Convention>(
-      info.name, calibration.model(), info.limits,
+      info.name, calibration.model(station), info.limits,
       {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
        calibration.errors.position_sigma,
        left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
        info.held_out_error, info.data_sha256});
   const LearnedRemainder<N>* learned = calibration.deployed();
-  if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
-  return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
+  if (learned == nullptr || !learned->on_geometry)
+    robot = robot.with_estimate(calibration.errors.of_station(static_cast<int>(station)));
+  if (learned == nullptr) return robot;
+  const Matrix3 back = rotation(calibration.model().identified().base()).transpose();
+  const Matrix3 turn = rotation(calibration.model(station).identified().base()) * back;
+  return robot.with_learned(station == 0 ? learned->predictor : learned->predictor.turned(turn), learned->coverage);
 }
 
 /// The arm of an identification from measured poses, with its covariance where they determine it.

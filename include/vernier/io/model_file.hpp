@@ -33,12 +33,13 @@ std::string save(const std::string& path, const CalibratedRobot<N, Convention>& 
   return detail::write_model(path, detail::model_data(robot));
 }
 
-/// Saves the arm of a calibration, with what was learned on top: as seen from its first station.
+/// Saves the arm of a calibration, with what was learned on top, as seen from one of its stations.
+/// @param station from 0
 /// @return and throws as for an arm
 template <int N, class Convention>
 std::string save(const std::string& path, const Calibration<DhChain<N, Convention>>& calibration,
-                 const RobotInfo<N>& info = {}) {
-  return save(path, calibrated_robot(calibration, info));
+                 const RobotInfo<N>& info = {}, std::size_t station = 0) {
+  return save(path, calibrated_robot(calibration, info, station));
 }
 
 /// A model file that was read and checked, of an arm of any number of joints.

@@ -48,6 +48,15 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                       {"used", trial.supported},
                       {"left_out_without_mm", trial.without * 1e3},
                       {"left_out_with_mm", trial.with * 1e3}});
+  Json outliers = Json::array();
+  for (const OutlyingRow& one : report.outliers)
+    outliers.push_back({{"file", one.file.empty() ? Json() : Json(one.file)},
+                        {"line", one.file.empty() ? Json() : Json(one.line)},
+                        {"station", one.station + 1},
+                        {"row", one.row},
+                        {"position_mm", one.position * 1e3},
+                        {"rotation_mrad", one.rotation * 1e3},
+                        {"spreads", one.factor}});
   Json drift = Json::array();
   for (const SessionDrift& of_station : report.drift) {
     Json knots = Json::array();
@@ -87,6 +96,8 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
   return {{"robot", robot},
           {"train_rows", report.train_poses},
           {"test_rows", report.test_poses()},
+          {"outliers_kept", report.outliers_kept},
+          {"outliers", outliers},
           {"stages", stages_to_json(report.stages)},
           {"chosen", report.chosen.key()},
           {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},

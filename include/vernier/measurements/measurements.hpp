@@ -179,6 +179,15 @@ class Measurements {
     for (const MeasuredSet& set : sets_) out.push_back(set.with(sensors));
     return out;
   }
+  /// These measurements with other poses, as many sets in the same order, which keep their names.
+  /// @throws std::invalid_argument for another number of sets
+  Measurements with_poses(std::vector<Dataset<N>> poses) const {
+    demand(poses.size() == poses_.size(), "with_poses: ", poses.size(), " sets of poses for ", poses_.size());
+    Measurements out;
+    for (std::size_t s = 0; s < poses.size(); ++s) out.add(std::move(poses[s]), sets_[s].name);
+    out.sets_.insert(out.sets_.end(), sets_.begin() + static_cast<std::ptrdiff_t>(poses_.size()), sets_.end());
+    return out;
+  }
   /// Number of measurements.
   Index size() const {
     Index sum = 0;

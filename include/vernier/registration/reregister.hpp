@@ -92,6 +92,9 @@ struct Reregistered : ReregistrationReport {
 
 namespace detail {
 
+/// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
+VERNIER_API Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured);
+
 /// Estimates how an arm was moved.
 VERNIER_API FrameMotion reregister(const MovedPoses& evaluate, const MeasuredSet& data,
                                    const ReregisterOptions& options, const SensorModel& sensors,

@@ -186,8 +186,7 @@ VERNIER_LOCAL void start_of_another_tool(const MovedPoses& evaluate, const Measu
   evaluate(fit.motion, fit.poses, jacobians);
 }
 
-/// Mean rotation of the measured orientations against the modelled ones, in the tool frame [rad].
-VERNIER_LOCAL Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
+VERNIER_IMPL Vector3 probe_rotation(const std::vector<Isometry3>& modelled, const std::vector<Matrix3>& measured) {
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t i = 0; i < modelled.size(); ++i) sum += rotation(inverse_of(modelled[i])) * measured[i];
   return log_so3(nearest_rotation(sum));

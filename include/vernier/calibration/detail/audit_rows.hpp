@@ -8,13 +8,17 @@
 
 namespace vernier::detail {
 
+/// From which studentised residual on a row is an outlier: larger where the tails are longer than those of noise.
+/// @param factors studentised residuals of all rows, three components each
+/// @param least   the limit where the tails are those of noise
+VERNIER_API double outlier_limit(const VectorX& factors, double least);
+
 /// Rows whose pose is not that of their joints, and pairs of rows whose poses are exchanged.
 /// @param geometry a robust fit of the geometry
 /// @param stds      of its parameters
 /// @param numbers  of the rows, in the data
 /// @param origin   where the rows of the data stand
-/// @param least_factor studentised residual from which on a row is an outlier; larger where the tails are longer than
-///                     those of noise
+/// @param least_factor studentised residual from which on a row is an outlier, see `outlier_limit`
 VERNIER_API void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
                                    const std::vector<Index>& numbers, const RowOrigin& origin, double least_factor,
                                    std::vector<DataFinding>& findings);

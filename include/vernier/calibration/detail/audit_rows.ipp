@@ -13,22 +13,24 @@
 
 namespace vernier::detail {
 
+VERNIER_IMPL double outlier_limit(const VectorX& factors, double least) {
+  // what the model lacks makes longer tails than noise has; more than a tenth of outliers, too, hence the bound
+  constexpr double p90_of_normal = 2.5003;
+  return least * std::clamp(quantile(factors, 0.9) / p90_of_normal, 1.0, 2.0);
+}
+
 VERNIER_IMPL void audit_single_rows(const AuditFit& geometry, const ConstVectorRef& stds, const AuditRows& rows,
                                     const std::vector<Index>& numbers, const RowOrigin& origin, double least_factor,
                                     std::vector<DataFinding>& findings) {
   const std::vector<LeftOut> left = leave_out_rows(geometry, stds, rows);
   std::vector<Index> wrong;
-  // what the model lacks makes longer tails than noise has; more than a tenth of outliers, too, hence the bound
-  constexpr double p90_of_normal = 2.5003;
   VectorX by_position_factor(rows.size()), by_rotation_factor(rows.size());
   for (Index i = 0; i < rows.size(); ++i) {
     by_position_factor(i) = left[static_cast<std::size_t>(i)].position_factor;
     by_rotation_factor(i) = left[static_cast<std::size_t>(i)].rotation_factor;
   }
-  const auto limit = [&](const VectorX& factors) {
-    return least_factor * std::clamp(quantile(factors, 0.9) / p90_of_normal, 1.0, 2.0);
-  };
-  const double factor = limit(by_position_factor), rotation_limit = limit(by_rotation_factor);
+  const double factor = outlier_limit(by_position_factor, least_factor),
+               rotation_limit = outlier_limit(by_rotation_factor, least_factor);
   for (Index i = 0; i < rows.size(); ++i) {
     const LeftOut& row = left[static_cast<std::size_t>(i)];
     if (row.position_factor > factor || row.rotation_factor > rotation_limit) wrong.push_back(i);

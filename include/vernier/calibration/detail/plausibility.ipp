@@ -56,7 +56,7 @@ VERNIER_IMPL void require_plausible_set(const ArmGeometry& registered, MeasuredS
 }
 
 VERNIER_IMPL void require_usable(const IdentificationReport& report, const std::string& step) {
-  if (report.status == IdentifyStatus::underdetermined)
+  if (report.too_few)
     throw CalibrationFailure(step + " is underdetermined: " + report.message +
                              "; measure more poses, with every joint moved widely, or fix parameters");
   if (report.status == IdentifyStatus::not_converged)

@@ -31,6 +31,9 @@ struct ErrorModelInput {
 VERNIER_API std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelInput& input,
                                                              const ErrorModelOptions& options);
 
+/// Numbers of the unknowns of an arm's links, without their changes with temperature.
+VERNIER_API std::vector<Index> link_unknowns(const ArmParameterisation& arm);
+
 /// Joint errors that an arm with nominal links does not show apart from its frames, for example what gravity does to an
 /// axis that is always vertical. Found tilts would show them by milliradians, and the frames would run away along them.
 /// @param problem with the joint errors in question

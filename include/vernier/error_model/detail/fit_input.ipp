@@ -33,7 +33,7 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
     const bool of_chain = k >= ArmParameters::chain_begin && k < chain_end;
     // thirty expected sizes do not affect what is determined
     const double deviation = std::isfinite(p.prior_std) ? p.prior_std / p.scale : 30;
-    const double precision = of_chain ? 1 / (deviation * deviation) : 0;
+    const double precision = of_chain ? input.identification.residual_variance / (deviation * deviation) : 0;
     const bool own = stations > 1 && (k < 6 || (options.tool_per_station && k >= chain_end));  // a base, or a tool
     if (!own) {
       out.push_back({k, -1, p.scale, precision});
@@ -45,6 +45,17 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
   for (std::size_t s = locating; s < stations && stations > 1; ++s)  // frames of objects and fixed points
     for (const Index k : frame_unknowns(input.sets[s]))
       out.push_back({k, static_cast<int>(s), input.identification.parameters[static_cast<std::size_t>(k)].scale, 0});
+  return out;
+}
+
+VERNIER_IMPL std::vector<Index> link_unknowns(const ArmParameterisation& arm) {
+  const Index chain_end = ArmParameters::chain_end(arm.geometry(0).joints());
+  std::vector<Index> out;
+  for (std::size_t k = 0; k < arm.geometric().size(); ++k) {
+    const GeometricUnknown& u = arm.geometric()[k];
+    if (u.parameter >= ArmParameters::chain_begin && u.parameter < chain_end && !u.thermal)
+      out.push_back(static_cast<Index>(k));
+  }
   return out;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,59 +13,49 @@
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/identification.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/identification/detail/parameter_selection.hpp"
 #include "vernier/identification/frames.hpp"
-#include "vernier/identification/identifiable_parameters.hpp"
 #include "vernier/least_squares/estimate_covariance.hpp"
+#include "vernier/least_squares/evidence.hpp"
 #include "vernier/least_squares/leave_one_out.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier::detail {
 
-/// `IdentifiableParameters` by parameter.
-struct ParameterSelection {
-  struct Dependent {
-    Index parameter;
-    std::vector<Index> absorbed_by;
-  };
-  std::vector<Index> base;
-  std::vector<Dependent> dependent;
-
-  VERNIER_LOCAL ParameterSelection(const std::vector<Index>& candidates, const MatrixX& jacobian) {
-    const IdentifiableParameters columns(jacobian);
-    const auto parameters = [&](const std::vector<Index>& which) {
-      std::vector<Index> out;
-      for (const Index k : which) out.push_back(candidates[static_cast<std::size_t>(k)]);
-      return out;
-    };
-    base = parameters(columns.base);
-    for (const auto& d : columns.dependent)
-      dependent.push_back({candidates[static_cast<std::size_t>(d.column)], parameters(d.absorbed_by)});
-  }
-};
-
 /// The steps of `identify_geometry`.
 class IdentificationRun {
  public:
-  VERNIER_LOCAL IdentificationRun(const ArmGeometry& nominal, const MeasuredSet& data, const IdentifyOptions& options,
-                                  const SensorModel& sensors, GeometrySolver solver)
+  VERNIER_LOCAL IdentificationRun(const ArmGeometry& nominal, std::vector<MeasuredSet> sets,
+                                  const IdentifyOptions& options, const SensorModel& sensors, GeometrySolver solver,
+                                  bool own_tools)
       : options_(options),
         solver_(solver),
         plan_(nominal, options),
-        start_(starting_frames(nominal, data, options.base_free(), options.tool_free())),
-        problem_(ArmParameterisation({start_}, {}), {data}, sensors.loss, sensors.joint_sigma) {
+        starts_(starts(nominal, sets, options, own_tools)),
+        problem_(ArmParameterisation(starts_, {}), std::move(sets), sensors.loss, sensors.joint_sigma) {
     problem_.joint_columns = false;
+    const int places = problem_.arm.stations();
+    for (const Index k : plan_.candidates) {
+      const bool own = places > 1 && !plan_.in_chain(k) && (own_tools || k < plan_.chain_begin);
+      for (int place = 0; place < (own ? places : 1); ++place) {
+        all_.push_back(static_cast<Index>(candidates_.size()));
+        if (!plan_.in_chain(k)) frames_.push_back(all_.back());
+        candidates_.push_back({k, own ? place : -1, plan_.scales(k), 0});
+      }
+    }
   }
 
   VERNIER_LOCAL IdentifiedGeometry run() {
     // Frames alone first: a good start, and a fair figure of the nominal arm.
-    estimate(select(plan_.frames).base);
+    estimate(select(frames_).base);
     solve();
-    const ArmGeometry registered = problem_.arm.geometry(0);
+    const ArmParameterisation registered = problem_.arm;
+    const Rms rms_before = rms();
 
     // Then all that this arm with nominal links shows. What is dependent there on links alone may not be so at the
     // solution, where priors hold it. What is dependent on a frame is held: frames have no priors, and would move by
     // metres along what milliradians of found tilt show.
-    ParameterSelection columns = select(plan_.candidates);
+    ParameterSelection columns = select(all_);
     for (int round = 0; round < 3; ++round) {
       estimate(columns.base);
       solve();
@@ -80,7 +72,10 @@ class IdentificationRun {
       columns = std::move(again);
     }
     estimate(columns.base);
-    regularise_weak();
+    const auto wanted = static_cast<Index>(columns.base.size());
+    choose_links(registered);
+    if (links_as_designed_)
+      std::erase_if(columns.base, [&](Index k) { return plan_.in_chain(candidates_[at(k)].parameter); });
 
     const ArmGeometry identified = problem_.arm.geometry(0);
     const StackedRows rows = problem_.stacked(true);
@@ -89,23 +84,25 @@ class IdentificationRun {
     IdentifiedGeometry out{identified, {}};
     IdentificationReport& report = out.report;
     report.message = message(summary_.message, " after ", iterations_, " iterations");
-    report.rms_before = rms(registered).length;
-    report.rms_after = rms(identified).length;
-    report.rotation_rms_after = rms(identified).angle;
-    report.free = columns.base;
+    report.rms_before = rms_before.length;
+    report.rms_after = rms().length;
+    report.rotation_rms_after = rms().angle;
+    report.links_as_designed = links_as_designed_;
+    report.residual_variance = variance_.size() > 0 ? variance_(0) : row_variance(rows)(0);
     report.rank = covariance.rank;
     report.condition = covariance.condition;
     report.iterations = iterations_;
     if (covariance.singular_values.size() > 0)
-      report.observability = Observability::of(covariance.singular_values, data().size());
-    describe_parameters(report, identified, covariance);
+      report.observability = Observability::of(covariance.singular_values, problem_.num_blocks());
+    describe_parameters(report, columns.base, identified, covariance);
     if (!columns.dependent.empty()) explain(report, registered, columns);
-    const auto estimated = static_cast<Index>(report.free.size());
-    if (problem_.measured_values() <= estimated) report.status = IdentifyStatus::underdetermined;
+    report.too_few = problem_.measured_values() <= wanted;
+    if (report.too_few) report.status = IdentifyStatus::underdetermined;
     if (report.status == IdentifyStatus::underdetermined)
-      report.message = message(counted(data().size(), "pose gives ", "poses give "), problem_.measured_values(),
-                               " measured values, which determine only ", estimated, " of the ",
-                               static_cast<Index>(plan_.candidates.size()), " parameters to be estimated");
+      report.message =
+          message(counted(problem_.num_blocks(), "pose gives ", "poses give "), problem_.measured_values(),
+                  " measured values, which determine only ", wanted, " of the ", static_cast<Index>(candidates_.size()),
+                  " parameters to be estimated", held_.empty() ? "" : "; held where they were: " + held_);
     if (!summary_.converged) {
       report.status = IdentifyStatus::not_converged;
       report.message = summary_.message;
@@ -114,15 +111,29 @@ class IdentificationRun {
   }
 
  private:
-  const MeasuredSet& data() const { return problem_.sets().front(); }
+  static std::size_t at(Index k) { return static_cast<std::size_t>(k); }
   std::size_t num_free() const { return problem_.arm.geometric().size(); }
 
-  /// Names the parameters to be estimated; present values stay, priors go.
-  VERNIER_LOCAL void estimate(const std::vector<Index>& parameters) {
+  /// The nominal arm in frames that roughly fit each set; a shared tool is that of the first.
+  VERNIER_LOCAL static std::vector<ArmGeometry> starts(const ArmGeometry& nominal, std::vector<MeasuredSet>& sets,
+                                                       const IdentifyOptions& options, bool own_tools) {
+    std::vector<ArmGeometry> out;
+    for (MeasuredSet& set : sets) {
+      if (out.empty() || own_tools)
+        out.push_back(starting_frames(nominal, set, options.base_free(), options.tool_free()));
+      else
+        out.push_back(
+            starting_frames(nominal.with_frames(nominal.base(), out.front().tool()), set, options.base_free(), false));
+    }
+    return out;
+  }
+
+  /// Names the candidates to be estimated; present values stay, priors go.
+  VERNIER_LOCAL void estimate(const std::vector<Index>& candidates) {
     std::vector<GeometricUnknown> unknowns;
-    for (const Index k : parameters) unknowns.push_back({k, -1, plan_.scales(k), 0});
+    for (const Index k : candidates) unknowns.push_back(candidates_[at(k)]);
     problem_.arm.set_geometric(std::move(unknowns));
-    weak_.assign(parameters.size(), false);
+    weak_.assign(candidates.size(), false);
   }
 
   VERNIER_LOCAL void solve() {
@@ -139,7 +150,7 @@ class IdentificationRun {
 
   /// Whether a parameter and all that it depends on are of links.
   VERNIER_LOCAL bool of_links(const ParameterSelection::Dependent& d) const {
-    const auto link = [&](Index k) { return plan_.in_chain(k); };
+    const auto link = [&](Index k) { return plan_.in_chain(candidates_[at(k)].parameter); };
     return link(d.parameter) && std::all_of(d.absorbed_by.begin(), d.absorbed_by.end(), link);
   }
 
@@ -151,7 +162,7 @@ class IdentificationRun {
     if (degrees < 1) return out;
     for (const bool orientation : {false, true}) {
       double square_sum = 0, count = 0;
-      std::vector<double> squares(static_cast<std::size_t>(data().size()), 0.0);
+      std::vector<double> squares(at(problem_.num_blocks()), 0.0);
       for (Index i = 0; i < n; ++i) {
         if (rows.of_orientation[static_cast<std::size_t>(i)] != orientation) continue;
         const double square = rows.residuals(i) * rows.residuals(i);
@@ -163,7 +174,7 @@ class IdentificationRun {
       double variance = square_sum / count;
       if (problem_.loss() != Loss::squared) {
         for (double& square : squares) square = std::sqrt(square);
-        const double sigma = robust_sigma(std::move(squares), data().projected() ? 1 : 3);
+        const double sigma = robust_sigma(std::move(squares), problem_.sets().front().projected() ? 1 : 3);
         variance = sigma * sigma;
       }
       for (Index i = 0; i < n; ++i)
@@ -173,117 +184,183 @@ class IdentificationRun {
     return out;
   }
 
-  /// Gives chain parameters whose standard deviation exceeds their expected size a prior, and solves again. How wide
-  /// the prior is, 1, 3 or 10 sizes, is decided by leave-one-pose-out errors.
-  VERNIER_LOCAL void regularise_weak() {
-    if (!options_.priors || num_free() == 0) return;
-    const std::vector<GeometricUnknown> unknowns = problem_.arm.geometric();
+  /// Gives the links priors around nominal, and solves again. How wide these are, in expected sizes, follows from
+  /// evidence, or is more where left-out poses support that. Whether the links stay as designed is decided by
+  /// leave-one-pose-out errors, unless evidence speaks clearly.
+  /// @param registered the arm as designed, its frames estimated
+  VERNIER_LOCAL void choose_links(const ArmParameterisation& registered) {
+    constexpr double first_scale = 3, clear_evidence = 3;  // twenty to one
+    std::vector<GeometricUnknown> unknowns = problem_.arm.geometric();
+    UnknownGroup links;
+    for (std::size_t k = 0; k < unknowns.size(); ++k)
+      if (plan_.in_chain(unknowns[k].parameter)) links.push_back(static_cast<Index>(k));
+    if (!options_.priors || links.empty()) return;
     const StackedRows rows = problem_.stacked(true);
-    const VectorX variance = row_variance(rows), none = VectorX::Zero(problem_.arm.size());
-    const EstimateCovariance free(rows.jacobian, variance, none, none);
-    for (std::size_t k = 0; k < unknowns.size(); ++k) {
-      const auto i = static_cast<Index>(k);
-      weak_[k] = plan_.in_chain(unknowns[k].parameter) && !(free.covariance.size() > 0 && free.covariance(i, i) <= 1);
+    variance_ = row_variance(rows);
+    const VectorX none = VectorX::Zero(problem_.arm.size());
+    const EstimateCovariance free(rows.jacobian, variance_, none, none);
+    const double variance = (std::max)(variance_(0), 1e-12);
+    for (const Index k : links) {
+      weak_[at(k)] = !(free.covariance.size() > 0 && free.covariance(k, k) <= 1);
+      unknowns[at(k)].precision = variance / (first_scale * first_scale);
     }
-    if (std::find(weak_.begin(), weak_.end(), true) == weak_.end()) return;
+    problem_.arm.set_geometric(std::move(unknowns));
+    solve();
+    const NormalEquations normal(problem_.system());
+    problem_.arm.set_precisions(
+        scale_priors(normal, problem_.arm.precisions(), problem_.arm.steps(), problem_.measured_values(), links));
+    const VectorX likely = problem_.arm.precisions();
 
-    struct Candidate {
-      double prior_scale;
-      ArmParameterisation arm;
-      SolverSummary summary;
-    };
-    std::vector<Candidate> candidates;
+    // Some links of an arm may be off by more than the rest: wider priors where left-out poses support them clearly.
+    std::vector<ArmParameterisation> arms;
     std::vector<PriorTrial> trials;
-    const ArmParameterisation start = problem_.arm;
-    for (const double prior_scale : {10.0, 3.0, 1.0}) {
-      problem_.arm = start;
-      std::vector<GeometricUnknown> regularised = unknowns;
-      for (std::size_t k = 0; k < unknowns.size(); ++k)
-        if (weak_[k]) regularised[k].precision = (std::max)(variance(0), 1e-12) / (prior_scale * prior_scale);
-      problem_.arm.set_geometric(std::move(regularised));
+    std::vector<double> evidences;
+    for (const double wider : {10.0, 3.0, 1.0}) {
+      problem_.arm.set_precisions(likely / (wider * wider));
       solve();
-      if (problem_.loss() != Loss::squared) problem_.reweight();
-      const BlockSystem system = problem_.system();
-      const NormalEquations normal(system);
-      const FactorisedEquations solved(normal, problem_.arm.precisions(), problem_.arm.steps());
-      trials.push_back({1 / (prior_scale * prior_scale), error_norms(leave_one_out(system, solved, 1))});
-      problem_.reset_weights();
-      candidates.push_back({prior_scale, problem_.arm, summary_});
+      auto [errors, evidence] = left_out();
+      trials.push_back({1 / (wider * wider), std::move(errors)});
+      evidences.push_back(evidence);
+      arms.push_back(problem_.arm);
     }
-    const Candidate& chosen = candidates[one_standard_error_rule(trials)];
-    prior_scale_ = chosen.prior_scale;
-    problem_.arm = chosen.arm;
-    summary_ = chosen.summary;
+    const std::size_t chosen = one_standard_error_rule(trials);
+    const ArmParameterisation& estimated = arms[chosen];
+    const VectorX& errors = trials[chosen].errors;
+    prior_scale_ = std::sqrt(variance / estimated.precisions()(links.front()));
+    problem_.arm = registered;
+    const auto [errors_as_designed, evidence_as_designed] = left_out();
+    const bool better = one_standard_error_rule({{0, errors}, {1, errors_as_designed}}) == 0;
+    const bool clear =
+        errors.mean() < errors_as_designed.mean() && evidences.back() > evidence_as_designed + clear_evidence;
+    links_as_designed_ = !better && !clear;
+    if (!links_as_designed_) {
+      problem_.arm = estimated;
+      return;
+    }
+    weak_.assign(registered.geometric().size(), false);
+    summary_ = {true, 0, "the links stay as designed"};
+  }
+
+  /// Leave-one-pose-out errors of the problem as it is, and its evidence; infinite where nothing is estimated, so that
+  /// errors alone decide.
+  VERNIER_LOCAL std::pair<VectorX, double> left_out() {
+    if (num_free() == 0) return {residual_norms(), std::numeric_limits<double>::infinity()};
+    const VectorX precisions = problem_.arm.precisions(), steps = problem_.arm.steps();
+    const NormalEquations unweighted(problem_.system());
+    const double evidence = log_evidence(unweighted, FactorisedEquations(unweighted, precisions, steps), precisions,
+                                         steps, problem_.measured_values());
+    if (problem_.loss() != Loss::squared) problem_.reweight();
+    const BlockSystem system = problem_.system();
+    const NormalEquations normal(system);
+    const FactorisedEquations solved(normal, precisions, steps);
+    VectorX errors = error_norms(leave_one_out(system, solved, 1));
+    problem_.reset_weights();
+    return {std::move(errors), evidence};
+  }
+
+  /// Norms of the measured lengths' residuals [m]: where nothing is estimated, those of left-out poses.
+  VERNIER_LOCAL VectorX residual_norms() const {
+    VectorX out(problem_.num_blocks());
+    SensedRows sensed;
+    Index block = 0;
+    for (int s = 0; s < problem_.arm.stations(); ++s) {
+      const MeasuredSet& set = problem_.sets()[static_cast<std::size_t>(s)];
+      const auto poses_of = [&](const MatrixX& joints) { return problem_.arm.geometry(s).poses(joints); };
+      const std::vector<Isometry3> poses = set.seen_poses(poses_of);
+      for (Index i = 0; i < set.size(); ++i) {
+        set.sense(i, poses[at(i)], sensed);
+        out(block++) = sensed.residual.head<3>().norm();
+      }
+    }
+    return out;
   }
 
   /// Of the measured lengths [m] and angles [rad], 0 where there are none.
   struct Rms {
     double length = 0, angle = 0;
   };
-  VERNIER_LOCAL Rms rms(const ArmGeometry& arm) const {
+  VERNIER_LOCAL Rms rms() const {
     Rms sum;
     SensedRows sensed;
-    const auto poses_of = [&](const MatrixX& joints) { return arm.poses(joints); };
-    const std::vector<Isometry3> poses = data().seen_poses(poses_of);
-    for (Index i = 0; i < data().size(); ++i) {
-      data().sense(i, poses[static_cast<std::size_t>(i)], sensed);
-      sum.length += VERNIER_LATER(sensed.residual).template head<3>().squaredNorm();
-      sum.angle += VERNIER_LATER(sensed.residual).template tail<3>().squaredNorm();
+    for (int s = 0; s < problem_.arm.stations(); ++s) {
+      const MeasuredSet& set = problem_.sets()[static_cast<std::size_t>(s)];
+      const auto poses_of = [&](const MatrixX& joints) { return problem_.arm.geometry(s).poses(joints); };
+      const std::vector<Isometry3> poses = set.seen_poses(poses_of);
+      for (Index i = 0; i < set.size(); ++i) {
+        set.sense(i, poses[at(i)], sensed);
+        sum.length += VERNIER_LATER(sensed.residual).template head<3>().squaredNorm();
+        sum.angle += VERNIER_LATER(sensed.residual).template tail<3>().squaredNorm();
+      }
     }
-    const auto n = static_cast<double>(data().size());
+    const auto n = static_cast<double>(problem_.num_blocks());
     return {std::sqrt(sum.length / n), std::sqrt(sum.angle / n)};
   }
 
-  VERNIER_LOCAL void describe_parameters(IdentificationReport& report, const ArmGeometry& identified,
-                                         const EstimateCovariance& covariance) const {
-    const VectorX before = start_.parameters(), now = identified.parameters();
+  /// Parameters of the arm in the frame of the first set.
+  /// @param estimated candidates, in the order of the covariance
+  VERNIER_LOCAL void describe_parameters(IdentificationReport& report, const std::vector<Index>& estimated,
+                                         const ArmGeometry& identified, const EstimateCovariance& covariance) const {
+    const VectorX before = starts_.front().parameters(), now = identified.parameters();
     for (Index k = 0; k < before.size(); ++k)
-      report.parameters.push_back({plan_.names[static_cast<std::size_t>(k)],
-                                   plan_.kinds[static_cast<std::size_t>(k)],
-                                   before(k),
-                                   now(k),
-                                   0,
-                                   ParameterState::fixed,
-                                   {},
-                                   plan_.scales(k)});
-    const VectorX scales = problem_.arm.scales();
-    if (covariance.covariance.size() > 0)
-      report.covariance = rows_scaled(scales, columns_scaled(covariance.covariance, scales));
-    for (std::size_t k = 0; k < report.free.size(); ++k) {
-      ParameterEstimate& p = report.parameters[static_cast<std::size_t>(report.free[k])];
-      p.state = weak_[k] ? ParameterState::weak : ParameterState::identified;
-      if (weak_[k]) p.prior_std = prior_scale_ * p.scale;
-      const auto i = static_cast<Index>(k);
-      if (report.covariance.size() > 0) p.std = std::sqrt(report.covariance(i, i));
+      report.parameters.push_back(
+          {plan_.names[at(k)], plan_.kinds[at(k)], before(k), now(k), 0, ParameterState::fixed, {}, plan_.scales(k)});
+    std::vector<Index> places;  // of those in the covariance
+    for (std::size_t k = 0; k < estimated.size(); ++k) {
+      const GeometricUnknown& candidate = candidates_[at(estimated[k])];
+      if (candidate.station > 0) continue;
+      report.free.push_back(candidate.parameter);
+      places.push_back(static_cast<Index>(k));
+    }
+    const bool known = covariance.covariance.size() > 0;
+    const auto n = static_cast<Index>(places.size());
+    if (known) report.covariance.resize(n, n);
+    for (Index a = 0; known && a < n; ++a)
+      for (Index b = 0; b < n; ++b)
+        report.covariance(a, b) = covariance.covariance(places[at(a)], places[at(b)]) *
+                                  plan_.scales(report.free[at(a)]) * plan_.scales(report.free[at(b)]);
+    for (Index k = 0; k < n; ++k) {
+      ParameterEstimate& p = report.parameters[at(report.free[at(k)])];
+      const bool weak = weak_[at(places[at(k)])];
+      p.state = weak ? ParameterState::weak : ParameterState::identified;
+      if (plan_.in_chain(report.free[at(k)]) && variance_.size() > 0) p.prior_std = prior_scale_ * p.scale;
+      if (known) p.std = std::sqrt(report.covariance(k, k));
     }
   }
 
   /// Why parameters are dependent: by the structure of arm and sensor, so at random poses too, or for want of poses.
-  VERNIER_LOCAL void explain(IdentificationReport& report, const ArmGeometry& arm, const ParameterSelection& columns) {
+  VERNIER_LOCAL void explain(IdentificationReport& report, const ArmParameterisation& arm,
+                             const ParameterSelection& columns) {
     Rng rng(0);
-    MatrixX joints(100, arm.joints());
-    for (Index k = 0; k < joints.size(); ++k) joints.data()[k] = rng.uniform(-3, 3);
-    std::vector<GeometricUnknown> unknowns;
-    for (const Index k : plan_.candidates) unknowns.push_back({k, -1, plan_.scales(k), 0});
-    const CalibrationProblem random_poses(ArmParameterisation({arm}, std::move(unknowns)),
-                                          {data().at_joints(std::move(joints))}, Loss::squared);
-    const ParameterSelection structure(plan_.candidates, random_poses.stacked(true).jacobian);
+    std::vector<MeasuredSet> sets;
+    std::vector<ArmGeometry> arms;
+    for (int s = 0; s < arm.stations(); ++s) {
+      MatrixX joints(100, arm.geometry(s).joints());
+      for (Index k = 0; k < joints.size(); ++k) joints.data()[k] = rng.uniform(-3, 3);
+      sets.push_back(problem_.sets()[static_cast<std::size_t>(s)].at_joints(std::move(joints)));
+      arms.push_back(arm.geometry(s));
+    }
+    const CalibrationProblem random_poses(ArmParameterisation(std::move(arms), candidates_), std::move(sets),
+                                          Loss::squared);
+    const ParameterSelection structure(all_, random_poses.stacked(true).jacobian);
 
     for (const auto& d : columns.dependent) {
-      ParameterEstimate& p = report.parameters[static_cast<std::size_t>(d.parameter)];
-      p.state = ParameterState::not_identifiable;
       const auto structural = std::find_if(structure.dependent.begin(), structure.dependent.end(),
                                            [&](const auto& s) { return s.parameter == d.parameter; });
       const bool always = structural != structure.dependent.end();
       if (!always) report.status = IdentifyStatus::underdetermined;
+      if (candidates_[at(d.parameter)].station > 0) continue;
+      ParameterEstimate& p = report.parameters[at(candidates_[at(d.parameter)].parameter)];
+      p.state = ParameterState::not_identifiable;
       const auto& others = always ? structural->absorbed_by : d.absorbed_by;
       if (others.empty()) {
+        if (!always) held_ += (held_.empty() ? "" : ", ") + p.name;
         p.remark = always ? "no effect on what was measured" : "no effect at these poses";
         continue;
       }
+      if (!always) held_ += (held_.empty() ? "" : ", ") + p.name;
       p.remark = always ? "absorbed by " : "at these poses indistinguishable from ";
       for (std::size_t j = 0; j < others.size() && j < 4; ++j)
-        p.remark += (j > 0 ? ", " : "") + plan_.names[static_cast<std::size_t>(others[j])];
+        p.remark += (j > 0 ? ", " : "") + plan_.names[at(candidates_[at(others[j])].parameter)];
       if (others.size() > 4) p.remark += ", ...";
     }
   }
@@ -291,10 +368,15 @@ class IdentificationRun {
   const IdentifyOptions& options_;
   GeometrySolver solver_;
   IdentificationPlan plan_;
-  ArmGeometry start_;
+  std::vector<GeometricUnknown> candidates_{};  // to be estimated, as the plan orders them
+  std::vector<Index> all_{}, frames_{};         // numbers of the candidates, and of those of frames
+  std::vector<ArmGeometry> starts_;             // of each set
   CalibrationProblem problem_;
-  std::vector<bool> weak_;  // of the estimated parameters
-  double prior_scale_ = 1;  // standard deviations of the priors of weak parameters, in expected sizes
+  std::vector<bool> weak_;          // of the estimated candidates
+  VectorX variance_{};              // of whitened rows, where the links have priors
+  double prior_scale_ = 1;          // standard deviations of the priors of links, in expected sizes
+  bool links_as_designed_ = false;  // left-out poses support no others
+  std::string held_{};              // names of what these poses do not determine, but others would
   int iterations_ = 0;
   SolverSummary summary_{true, 0, "nothing to estimate"};
 };
@@ -308,12 +390,13 @@ VERNIER_IMPL SolverSummary OwnSolver::operator()(CalibrationProblem& problem, in
                         : "the normal equations have no solution"};
 }
 
-VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, const MeasuredSet& data,
+VERNIER_IMPL IdentifiedGeometry identify_geometry(const ArmGeometry& nominal, std::vector<MeasuredSet> sets,
                                                   const IdentifyOptions& options, const SensorModel& sensors,
-                                                  GeometrySolver solver) {
-  demand(data.size() >= 1, "identify: no samples");
+                                                  GeometrySolver solver, bool own_tools) {
+  demand(!sets.empty(), "identify: no measurements");
+  for (const MeasuredSet& set : sets) demand(set.size() >= 1, "identify: no samples");
   sensors.validate();
-  return IdentificationRun(nominal, data, options, sensors, solver).run();
+  return IdentificationRun(nominal, std::move(sets), options, sensors, solver, own_tools).run();
 }
 
 }  // namespace vernier::detail

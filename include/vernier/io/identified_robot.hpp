@@ -22,12 +22,13 @@ namespace vernier {
 template <int N>
 struct RobotInfo {
   std::string name = "robot";        ///< of the arm
-  JointLimits<N> limits{};           ///< of the commands
+  JointLimits<N> limits{};           ///< of the controller's joints
   std::string data_file{};           ///< name of the file of measured poses
   std::string date{};                ///< of the calibration
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
   double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
   std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
+  ControllerMap controller{};        ///< how the chain's joints follow from those of the controller
 };
 
 namespace detail {
@@ -47,7 +48,8 @@ CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Con
   provenance.position_sigma = position_sigma;
   provenance.held_out_error = info.held_out_error;
   provenance.data_sha256 = info.data_sha256;
-  CalibratedRobot<N, Convention> out(info.name, model, info.limits, std::move(provenance));
+  const auto out = CalibratedRobot<N, Convention>(info.name, model, info.limits, std::move(provenance))
+                       .with_controller(info.controller);
   if (report.covariance.size() == 0) return out;
   return out.with_estimate(geometry_estimate(ArmGeometry(identified), report, position_sigma, orientation_sigma));
 }
@@ -60,11 +62,12 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
                                                 const RobotInfo<N>& info = {}) {
   const VectorX& left_out = calibration.errors.left_out_errors;
   auto robot = CalibratedRobot<N, Convention>(
-      info.name, calibration.model(), info.limits,
-      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
-       calibration.errors.position_sigma,
-       left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
-       info.held_out_error, info.data_sha256});
+                   info.name, calibration.model(), info.limits,
+                   {info.data_file, calibration.poses, info.date, info.joints,
+                    calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma,
+                    left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
+                    info.held_out_error, info.data_sha256})
+                   .with_controller(info.controller);
   const LearnedRemainder<N>* learned = calibration.deployed();
   if (learned == nullptr || !learned->on_geometry) robot = robot.with_estimate(calibration.errors.first_station());
   return learned == nullptr ? robot : robot.with_learned(learned->predictor, learned->coverage);
@@ -104,6 +107,7 @@ CalibratedRobot<N, Convention> calibrated_robot(const FittedErrorModel<DhChain<N
                                          .position_sigma = fitted.position_sigma,
                                          .held_out_error = info.held_out_error,
                                          .data_sha256 = info.data_sha256})
+      .with_controller(info.controller)
       .with_estimate(fitted.first_station());
 }
 

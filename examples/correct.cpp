@@ -20,6 +20,7 @@
 #include "vernier/data/csv.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/general_six_axis.hpp"
+#include "vernier/kinematics/in_controller_joints.hpp"
 
 namespace {
 
@@ -51,16 +52,14 @@ const char* words(vn::PointStatus status) {
   }
 }
 
-template <class Values>
-auto list(const Values& values) {
-  return std::vector<std::remove_cvref_t<decltype(*values.begin())>>(values.begin(), values.end());
-}
-
-/// The targets of a file.
+/// The targets of a file, their joints those of the controller.
 /// @throws vn::DataError on a malformed file, or one without what the settings ask for
 template <int N>
 std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::CalibratedRobot<N>& robot) {
-  const auto file = vn::read_targets<N>(settings.targets, robot.nominal().chain().joint_types(), settings.csv.format());
+  vn::CsvFormat format = settings.csv.format();
+  format.controller = robot.controller();
+  const auto file = vn::read_targets<N>(settings.targets, robot.nominal().chain().joint_types(), format);
+  const vn::JointChange<N> change(robot.controller());
   const bool joints = file.joints.rows() > 0, poses = file.positions.rows() > 0 && (settings.poses || !joints);
   if (settings.poses && file.positions.rows() == 0)
     throw vn::DataError(settings.targets + ": no columns x_mm, y_mm, z_mm");
@@ -71,8 +70,9 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
   for (vn::Index i = 0; i < file.size(); ++i) {
     vn::PathTarget<N> target{.pose = vn::Isometry3::Identity()};
     if (joints) {
-      target.joints = file.joints.row(i).transpose();
-      target.pose = robot.nominal().pose(target.joints);
+      const vn::JointVector<N> chain = file.joints.row(i).transpose();
+      target.joints = change.to_controller(chain);
+      target.pose = robot.nominal().pose(chain);
     }
     if (poses) {
       target.pose.translation() = file.positions.row(i).transpose();
@@ -86,7 +86,8 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
   return out;
 }
 
-/// Calls `use` with what finds the branches of an arm of six joints; with null for others, whose branch is followed.
+/// Calls `use` with what finds the branches of an arm of six joints, in the controller's joints; with null for others,
+/// whose branch is followed.
 template <int N, class Use>
 void with_branches(const vn::CalibratedRobot<N>& robot, const Use& use) {
   if constexpr (N == 6) {
@@ -97,45 +98,65 @@ void with_branches(const vn::CalibratedRobot<N>& robot, const Use& use) {
       }
       return roots.has_value();
     };
-    if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form)) return use(*closed_form);
-    if (std::optional<vn::GeneralSixAxis<N>> general; made(general)) return use(*general);
+    const vn::JointChange<N> change(robot.controller());
+    if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form))
+      return use(vn::RootsInControllerJoints<vn::ClosedForm<N>>(*closed_form, change));
+    if (std::optional<vn::GeneralSixAxis<N>> general; made(general))
+      return use(vn::RootsInControllerJoints<vn::GeneralSixAxis<N>>(*general, change));
   }
   use(nullptr);
 }
 
-/// The row of a target without any command.
+/// The values of the controller's joints, of which there may be fewer than joints of the chain.
 template <int N>
-support::CommandRow no_command(vn::Index target, vn::PointStatus status) {
+std::vector<double> shown_joints(const vn::JointVector<N>& q, const vn::JointChange<N>& change) {
+  return {q.data(), q.data() + change.moving()};
+}
+
+/// The row of a target without any command.
+support::CommandRow no_command(int joints, vn::Index target, vn::PointStatus status) {
   const double none = std::nan("");
-  return {std::vector<double>(N, none), target, "target", words(status), none, none, 0, 0, 1, {}};
+  return {std::vector<double>(static_cast<std::size_t>(joints), none),
+          target,
+          "target",
+          words(status),
+          none,
+          none,
+          0,
+          0,
+          1,
+          {}};
 }
 
 /// All branches of each target.
 template <int N, class Roots>
-void list_branches(const vn::CalibratedRobot<N>& robot, const Roots& roots,
+void list_branches(const vn::InControllerJoints<vn::CalibratedRobot<N>>& arm, const Roots& roots,
                    const std::vector<vn::PathTarget<N>>& targets, support::CorrectionReport& report) {
+  const vn::CalibratedRobot<N>& robot = arm.in_chain_joints();
   for (const auto& target : targets) {
     const vn::Index number = static_cast<vn::Index>(&target - targets.data()) + 1;
     vn::BranchOptions<N> options{.limits = robot.limits()};
     if (target.joints.allFinite()) options.close_to = target.joints;
-    const vn::Branches<N> found = vn::all_branches(roots, robot, target.pose, options);
+    const vn::Branches<N> found = vn::all_branches(roots, arm, target.pose, options);
     std::vector<vn::Branch<N>> sorted(found.begin(), found.end());
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const auto& a, const auto& b) { return a.singularities.branch() < b.singularities.branch(); });
     for (const auto& b : sorted) {
-      const auto links = robot.nominal().chain().links(b.joints);
+      const vn::JointVector<N> chain = arm.change().to_chain(b.joints);
+      const auto links = robot.nominal().chain().links(chain);
       std::vector<vn::Vector3> points;
       for (int j = 0; j < N; ++j) points.push_back(robot.nominal().base() * vn::Vector3(links.point.col(j)));
-      points.push_back(robot.nominal().position(b.joints));
-      report.rows.push_back({list(b.joints), number, vn::message("branch ", b.singularities.branch()),
+      points.push_back(robot.nominal().position(chain));
+      report.rows.push_back({shown_joints(b.joints, arm.change()), number,
+                             vn::message("branch ", b.singularities.branch()),
                              words(b.within_limits ? vn::PointStatus::met : vn::PointStatus::beyond_limits),
-                             b.position_error, b.rotation_error, 0, 0, robot.gate(b.joints), b.singularities, points});
+                             b.position_error, b.rotation_error, 0, 0, arm.gate(b.joints), b.singularities, points});
     }
     if (found.count == 0)
-      report.rows.push_back(no_command<N>(number, found.reach == vn::Reach::proven_out ? vn::PointStatus::proven_out
-                                                  : found.reach == vn::Reach::invalid_target
-                                                      ? vn::PointStatus::invalid_target
-                                                      : vn::PointStatus::not_found));
+      report.rows.push_back(no_command(arm.change().moving(), number,
+                                       found.reach == vn::Reach::proven_out       ? vn::PointStatus::proven_out
+                                       : found.reach == vn::Reach::invalid_target ? vn::PointStatus::invalid_target
+                                                                                  : vn::PointStatus::not_found));
   }
 }
 
@@ -146,8 +167,9 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
   const vn::CalibratedRobot<N> saved = model.as<N>();
   const vn::CalibratedRobot<N> robot = settings.temperature ? saved.at_temperature(*settings.temperature) : saved;
   const std::vector<vn::PathTarget<N>> targets = read_targets(settings, robot);
+  const vn::InControllerJoints<vn::CalibratedRobot<N>> arm = robot.in_controller_joints();
   support::CorrectionReport report{.robot = robot.name(),
-                                   .joints = list(robot.nominal().chain().joint_types()),
+                                   .joints = robot.controller().types(robot.nominal().chain().joint_types()),
                                    .targets = static_cast<vn::Index>(targets.size())};
   if (const vn::ThermalRates* thermal = robot.model().thermal()) {
     report.temperature = thermal->reference;
@@ -162,8 +184,10 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
                              .max_joint_step = settings.max_step_deg * std::numbers::pi / 180,
                              .approach = settings.approach};
   if (!settings.start.empty()) {
-    if (settings.start.size() != N) throw support::UsageError(fmt::format("--start needs {} values", N));
-    options.start = Eigen::Map<const vn::JointVector<N>>(settings.start.data());
+    if (settings.start.size() != report.joints.size())
+      throw support::UsageError(fmt::format("--start needs {} values", report.joints.size()));
+    options.start.setZero();
+    std::copy(settings.start.begin(), settings.start.end(), options.start.begin());
   }
   vn::CorrectedPath<N> path;
   with_branches(robot, [&](const auto& roots) {
@@ -171,11 +195,11 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
       if (settings.branches) throw support::UsageError("--all-branches: needs an arm of six revolute joints");
       if (!targets.front().joints.allFinite() && settings.start.empty())
         throw support::UsageError(fmt::format("poses of an arm of {} joints need joints q1_rad .. or --start", N));
-      path = vn::correct_path(robot, targets, options);
+      path = vn::correct_path(arm, targets, options);
     } else if (settings.branches) {
-      list_branches(robot, roots, targets, report);
+      list_branches(arm, roots, targets, report);
     } else {
-      path = vn::correct_path(robot, roots, targets, options);
+      path = vn::correct_path(arm, roots, targets, options);
     }
   });
   if (!settings.branches)
@@ -184,8 +208,8 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
   report.after = path.after;
   vn::JointRows<N> commands(static_cast<vn::Index>(path.points.size()), N);
   for (const auto& p : path.points) {
-    commands.row(static_cast<vn::Index>(report.rows.size())) = p.command.transpose();
-    report.rows.push_back({list(p.command),
+    commands.row(static_cast<vn::Index>(report.rows.size())) = arm.change().to_chain(p.command).transpose();
+    report.rows.push_back({shown_joints(p.command, arm.change()),
                            p.target + 1,
                            p.inserted ? "inserted" : "target",
                            words(p.status),

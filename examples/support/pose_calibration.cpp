@@ -68,6 +68,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
+  options.errors.down = robot.down;
   if (prior) options.errors.prior = &*prior;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
@@ -77,7 +78,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   const auto calibration = vn::calibrate(robot.arm, measured->train, options);
   PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
                       .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
-                      .report = vn::evaluate(calibration, measured->test, robot.limits),
+                      .report = vn::evaluate(calibration, measured->test, robot.limits, robot.controller),
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
@@ -88,7 +89,8 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                                    .data_file = file_names(o.data),
                                    .date = o.date,
                                    .held_out_error = out.report.stage(out.report.chosen).position.mean(),
-                                   .data_sha256 = file_hashes<N>(measured->files)})};
+                                   .data_sha256 = file_hashes<N>(measured->files),
+                                   .controller = robot.controller})};
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);
     out.page.audit = audit_rows(o.data, out.audits);

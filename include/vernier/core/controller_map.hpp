@@ -54,6 +54,11 @@ class ControllerMap {
   /// @throws std::invalid_argument on another number of columns
   VERNIER_API MatrixX to_controller(const ConstMatrixRef& chain) const;
 
+  /// The box of chain joints that a box of controller joints reaches.
+  /// @param lower,upper limits, at least one a joint of the controller [rad, m]; infinite where there are none
+  /// @return            lower limits of the chain's joints, then upper ones, n x 2
+  VERNIER_API MatrixX chain_limits(const ConstVectorRef& lower, const ConstVectorRef& upper) const;
+
   /// Types of the controller's joints.
   /// @param chain those of the chain's joints; none: not known
   /// @throws std::invalid_argument where a joint moves revolute and prismatic joints alike, or on another number

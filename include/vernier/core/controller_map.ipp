@@ -229,6 +229,24 @@ VERNIER_IMPL MatrixX ControllerMap::to_controller(const ConstMatrixRef& chain) c
   return detail::mapped_rows(from_zero, inverse_, joints_);
 }
 
+VERNIER_IMPL MatrixX ControllerMap::chain_limits(const ConstVectorRef& lower, const ConstVectorRef& upper) const {
+  demand(lower.size() == upper.size() && lower.size() >= joints_, "ControllerMap: limits of ", lower.size(),
+         " joints, expected ", joints_);
+  const Index n = same() ? lower.size() : square_.rows();
+  MatrixX out(n, 2);
+  for (Index i = 0; i < n; ++i) {
+    out(i, 0) = same() ? lower(i) : zeros_(i);
+    out(i, 1) = same() ? upper(i) : zeros_(i);
+    for (Index j = 0; j < joints_; ++j) {
+      const double factor = square_(i, j);
+      if (same_value(factor, 0)) continue;
+      out(i, 0) += factor * (factor > 0 ? lower(j) : upper(j));
+      out(i, 1) += factor * (factor > 0 ? upper(j) : lower(j));
+    }
+  }
+  return out;
+}
+
 VERNIER_IMPL std::vector<JointType> ControllerMap::types(std::span<const JointType> chain) const {
   if (same() || chain.empty()) return {chain.begin(), chain.end()};
   demand(static_cast<Index>(chain.size()) == square_.rows(), "ControllerMap: ", chain.size(),

@@ -1,5 +1,7 @@
 #include "pose_calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 
@@ -11,6 +13,7 @@
 #include "saved_model.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
+#include "vernier/identification/commanded_parameters.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 
@@ -54,9 +57,29 @@ vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, cons
   return vn::prediction_error(registered.model, measured.test.poses()[0]);
 }
 
+/// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide.
+/// @throws UsageError for a known base of several stations
+CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm) {
+  if (arm.base_known && o.data.size() > 1)
+    throw UsageError(
+        "the base frame of the arm is known, but there are several stations, each with a frame of its own");
+  if (arm.base_known || arm.tool_known)
+    o.calibrate.geometry.frames = arm.base_known && arm.tool_known ? vn::Frames::none
+                                  : arm.base_known                 ? vn::Frames::tool
+                                                                   : vn::Frames::base;
+  std::string held;
+  for (const std::string& name : vn::unseen_parameters(arm.geometry(), arm.controller, o.calibrate.geometry)) {
+    o.calibrate.geometry.fixed.push_back(name);
+    held += (held.empty() ? "" : ", ") + name;
+  }
+  if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
+  return o;
+}
+
 template <int N>
-PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& o,
+PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& given,
                               const vn::FitOptions& fit) {
+  const CalibrationOptions o = options_for(given, description);
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::SavedModel> earlier;
   if (!o.prior.empty()) earlier = vn::read_model(o.prior);

@@ -1,6 +1,8 @@
 // Robot files and model files of arms whose controllers count joints differently; frames and gravity in robot files.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "complaint.hpp"
 #include "real_matrix.hpp"
 #include "temporary_folder.hpp"
@@ -8,6 +10,7 @@
 #include "vernier/core/so3.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/robot_file.hpp"
+#include "vernier/kinematics/robots.hpp"
 
 namespace vernier::controller_file_test {
 namespace {
@@ -87,6 +90,41 @@ TEST_F(ControllerFile, ComplaintsOfFrames) {
   EXPECT_EQ(complaint(R"(, "down": [0, 0, 0])"), "down: has no direction");
 }
 
+TEST(RobotFiles, TheExamplesAreReadAndStandAsTheirMakersSay) {
+  const std::filesystem::path folder = VERNIER_ROBOT_FILES;
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const RobotDescription robot = load_robot(entry.path().string());
+    EXPECT_EQ(robot.geometry().joints(), robot.dof()) << entry.path();
+    EXPECT_EQ(static_cast<int>(robot.limits.size()), robot.controller_joints());
+    for (const auto& [lower, upper] : robot.limits) EXPECT_TRUE(std::isfinite(lower) && std::isfinite(upper));
+    ++files;
+  }
+  EXPECT_EQ(files, 9);
+  const auto of = [&](const char* name) { return load_robot((folder / name).string()); };
+  const auto rows_of = [](const RobotDescription& robot) { return robot.arm<6>().arm.model(); };
+  EXPECT_TRUE(rows_of(of("fanuc.json")) == robots::fanuc_r2000ib_165f().chain);
+  EXPECT_TRUE(of("fanuc.json").controller == robots::fanuc_r2000ib_165f().controller);
+  EXPECT_TRUE(rows_of(of("kuka.json")) == robots::kuka_kr6_r900().chain);
+  EXPECT_TRUE(of("kuka.json").controller == robots::kuka_kr6_r900().controller);
+  EXPECT_EQ(of("fanuc.json").arm<6>().limits.upper, robots::fanuc_r2000ib_165f().limits.upper);
+  const auto at = [](const RobotDescription& robot, const VectorX& q) {
+    const MatrixX chain = robot.controller.to_chain(q.transpose());
+    return Vector3(robot.geometry().positions(chain).row(0).transpose());
+  };
+  // by hand: the wrist of a palletiser is 1150 sin 20 + 1250 cos 10 + 220 + 260 mm in front, and its flange points down
+  VectorX q = VectorX::Zero(4);
+  q(1) = 20 * 3.14159265358979 / 180;
+  q(2) = 10 * 3.14159265358979 / 180;
+  EXPECT_NEAR(at(of("palletiser.json"), q).x(), 0.26 + 1.15 * std::sin(q(1)) + 1.25 * std::cos(q(2)) + 0.22, 1e-12);
+  EXPECT_NEAR(at(of("palletiser.json"), q).z(), 0.814 + 1.15 * std::cos(q(1)) - 1.25 * std::sin(q(2)) - 0.25, 1e-12);
+  // a rail along y carries the arm of six_axis.json, upright
+  VectorX rail = VectorX::Zero(7);
+  rail(0) = 1.5;
+  EXPECT_LT((at(of("rail.json"), rail) - at(of("six_axis.json"), VectorX::Zero(6)) - Vector3(0, 1.5, 0)).norm(), 1e-12);
+  EXPECT_LT((at(of("positioner.json"), VectorX::Zero(2)) - Vector3(0, -0.15, 0)).norm(), 1e-12);
+}
+
 TEST_F(ControllerFile, GravityOfAModifiedChainTurnsWithItsConversion) {
   RobotDescription robot{.name = "m", .modified = true};
   robot.rows = {{.alpha = 0.7}, {.a = 0.3}, {.a = 0.2}};
@@ -134,14 +172,14 @@ TEST_F(ControllerFile, ModelFilesKeepTheController) {
 
 TEST_F(ControllerFile, CommandsOfAPassiveJointKeepItsLaw) {
   const CalibratedRobot<5> robot = palletiser();
-  const JointVector<5> controller{0.2, 0.5, 0.3, -0.4, 0};
-  const JointVector<5> q = robot.in_controller_joints().change().to_chain(controller);
+  const JointVector<5> at{0.2, 0.5, 0.3, -0.4, 0};
+  const JointVector<5> q = robot.in_controller_joints().change().to_chain(at);
   const Correction<5> found = robot.correct(q);
   EXPECT_EQ(found.status, IkStatus::converged);
   EXPECT_LT((robot.position(found.command) - robot.nominal().position(q)).norm(), 1e-6);
   EXPECT_GT((robot.position(q) - robot.nominal().position(q)).norm(), 1e-3);
   EXPECT_NEAR(found.command(1) + found.command(2) + found.command(3), 0, 1e-15);
-  JointVector<5> beyond = controller;
+  JointVector<5> beyond = at;
   beyond(1) = 1.2;  // beyond the limit of J2
   const Correction<5> held = robot.correct(robot.in_controller_joints().change().to_chain(beyond));
   EXPECT_LE(robot.in_controller_joints().change().to_controller(held.command)(1), 1 + 1e-12);

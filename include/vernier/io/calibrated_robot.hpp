@@ -17,8 +17,8 @@
 #include "vernier/core/checked_joints.hpp"
 #include "vernier/core/controller_map.hpp"
 #include "vernier/core/rigid_motions.hpp"
-#include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
+#include "vernier/error_model/error_model_estimate.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/io/provenance.hpp"
@@ -94,19 +94,15 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     return out;
   }
 
-  /// This robot with a controller that counts its joints differently: limits are those of its joints. Where it has
-  /// fewer, the limits of the further values are 0.
-  /// @throws std::invalid_argument for a map of another number of joints
+  /// This robot with a controller whose joints have the limits; throws for a map of another number of joints.
   CalibratedRobot with_controller(const ControllerMap& controller) const {
     CalibratedRobot out = *this;
-    out.controller_ = controller;
-    out.change_ = JointChange<N>(controller);
+    out.change_ = JointChange<N>(out.controller_ = controller);
     return out;
   }
   /// How the chain's joints follow from those of the controller.
   const ControllerMap& controller() const { return controller_; }
-  /// This robot with the controller's joints, for `all_branches` and `correct_path` with `limits()`; their roots are
-  /// `RootsInControllerJoints(closed_form, in_controller_joints().change())`.
+  /// This robot with the controller's joints, for `all_branches` and `correct_path` within `limits()`.
   auto in_controller_joints() const { return InControllerJoints<CalibratedRobot>(*this, change_); }
 
   /// This robot with the estimate of its calibration: unknowns with their covariance, and noise.
@@ -179,10 +175,8 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   /// @param previous the command before [rad, m]; not finite where unknown
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
                                       const JointVector<N>& previous) const noexcept {
-    const InControllerJoints<Approached> arm({*this, previous}, change_);
-    Correction<N> out = Compensated<InControllerJoints<Approached>, Framed<Chain>>(arm, nominal())
-                            .within(limits_)
-                            .correct(target, change_.to_controller(seed));
+    const Compensated<InControllerJoints<Approached>, Framed<Chain>> arm({{*this, previous}, change_}, nominal());
+    Correction<N> out = arm.within(limits_).correct(target, change_.to_controller(seed));
     out.command = change_.to_chain(out.command);
     return out;
   }
@@ -302,13 +296,5 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   JointChange<N> change_{};
   std::shared_ptr<const ErrorModelEstimate> estimate_{};  // shared, for it is large and never changes
 };
-
-/// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
-/// @throws std::invalid_argument where its covariance was not kept
-template <int N, class Convention>
-ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
-  demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
-  return arm_prior(robot.name(), robot.model(), *robot.estimate());
-}
 
 }  // namespace vernier

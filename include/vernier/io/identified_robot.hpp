@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vernier/calibration/calibration.hpp"
+#include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/error_model/geometry_estimate.hpp"
 #include "vernier/identification/contact_report.hpp"
@@ -109,6 +110,14 @@ CalibratedRobot<N, Convention> calibrated_robot(const FittedErrorModel<DhChain<N
                                          .data_sha256 = info.data_sha256})
       .with_controller(info.controller)
       .with_estimate(fitted.first_station());
+}
+
+/// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
+/// @throws std::invalid_argument where its covariance was not kept
+template <int N, class Convention>
+ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
+  demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
+  return arm_prior(robot.name(), robot.model(), *robot.estimate());
 }
 
 }  // namespace vernier

@@ -9,7 +9,6 @@
 
 #include "dispatch.hpp"
 #include "report_page.hpp"
-#include "vernier/calibration/audited_controller.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/same_pose.hpp"

@@ -1,5 +1,5 @@
 // The map of a controller's joints, named by an audit of poses that were read without it.
-#include "vernier/calibration/audited_controller.hpp"
+#include "vernier/calibration/data_audit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -107,7 +107,7 @@ TEST_F(ControllerRuns, ARailIsHeldOrStandsWhereTargetsHaveIt) {
   const std::string robot = file("rail");
   measure(robot, 60, 1, "measured.csv");
   done("calibrate' --robot " + robot + " --data measured.csv --test-every 5 --save model.json");
-  done("correct' --model model.json --targets plan_measured.csv --out moved.csv");
+  run("correct' --model model.json --targets plan_measured.csv --out moved.csv");  // near limits some are not met
   const CsvText targets = read_csv_text((folder_ / "plan_measured.csv").string()),
                 moved = read_csv_text((folder_ / "moved.csv").string());
   for (std::size_t i = 0; i < targets.rows.size(); ++i) EXPECT_EQ(moved.rows[i][0], targets.rows[i][0]);

@@ -159,7 +159,8 @@ VERNIER_LOCAL std::string describe_block(const BlockChoice& block) {
 }
 
 /// Poses that would determine a parameter.
-VERNIER_LOCAL std::string describe_advice(const PoseAdvice& advice, bool oriented) {
+VERNIER_LOCAL std::string describe_advice(const PoseAdvice& advice, const std::vector<JointReport>& joints,
+                                          bool oriented) {
   const bool length = advice.kind == ParameterKind::length;
   std::string out = message(advice.parameter, " is weakly determined (standard deviation ", brief(advice.std_now * 1e3),
                             length ? " mm" : " mrad", ')');
@@ -171,12 +172,12 @@ VERNIER_LOCAL std::string describe_advice(const PoseAdvice& advice, bool oriente
   out += ": add poses like ";
   for (std::size_t k = 0; k < advice.poses.size(); ++k) {
     out += k > 0 ? ", (" : "(";
-    for (Index i = 0; i < advice.poses[k].size(); ++i)
-      out += message(
-          i > 0 ? ", " : "",
-          std::llround(advice.poses[k](i) * (advice.joint_types[static_cast<std::size_t>(i)] == JointType::revolute
-                                                 ? 180 / std::numbers::pi
-                                                 : 1e3)));
+    for (Index i = 0; i < advice.poses[k].size(); ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      const bool revolute = advice.joint_types.empty() ? joints[joint].revolute  // those of the chain
+                                                       : advice.joint_types[joint] == JointType::revolute;
+      out += message(i > 0 ? ", " : "", std::llround(advice.poses[k](i) * (revolute ? 180 / std::numbers::pi : 1e3)));
+    }
     out += ")";
   }
   return out + message("; ", advice.poses.size(), " of them reduce it to ", brief(advice.std_then * 1e3), ".");
@@ -338,7 +339,7 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::details() const {
 
 VERNIER_IMPL std::vector<std::string> CalibrationReport::next() const {
   std::vector<std::string> out;
-  for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, oriented));
+  for (const PoseAdvice& one : advice) out.push_back(detail::describe_advice(one, joints, oriented));
   return out;
 }
 

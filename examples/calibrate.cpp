@@ -50,6 +50,7 @@ void print_measurements(const vn::RobotDescription& robot, const support::Calibr
 int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o) {
   program.require_output_folder();
   const vn::RobotDescription robot = support::choose_robot(o.robot);
+  o.csv.controller = robot.controller;
   support::PoseCalibration found = calibrate_with_progress(program, robot, o);
   const vn::CalibrationReport& report = found.report;
   print_measurements(robot, o, found);
@@ -80,9 +81,12 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
 int run(support::Program& program) {
   support::CalibrationOptions o = support::read_calibration_options(program);
   if (o.reregister) return support::reregister_model(program, o);
-  if (o.data.empty())
-    return support::calibrate_by_contacts(program, support::choose_robot(o.robot), o.contacts, o.csv.format(),
-                                          o.calibrate.geometry, o.calibrate.sensors, o.save, o.date);
+  if (o.data.empty()) {
+    const vn::RobotDescription robot = support::choose_robot(o.robot);
+    o.csv.controller = robot.controller;
+    return support::calibrate_by_contacts(program, robot, o.contacts, o.csv.format(), o.calibrate.geometry,
+                                          o.calibrate.sensors, o.save, o.date);
+  }
   return calibrate_by_poses(program, o);
 }
 

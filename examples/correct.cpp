@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -17,9 +19,12 @@
 #include "json_file.hpp"
 #include "program_correction.hpp"
 #include "vernier/compensation/correct_path.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/io/json.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/general_six_axis.hpp"
+#include "vernier/kinematics/in_controller_joints.hpp"
 
 namespace {
 
@@ -37,6 +42,7 @@ struct Settings {
   std::optional<double> temperature{};
   double tolerance_mm = 0.05, max_step_deg = 30;
   std::vector<double> start{};
+  std::vector<std::string> hold{};  ///< joints that stay, q1_m=1.2
 };
 
 const char* words(vn::PointStatus status) {
@@ -51,16 +57,14 @@ const char* words(vn::PointStatus status) {
   }
 }
 
-template <class Values>
-auto list(const Values& values) {
-  return std::vector<std::remove_cvref_t<decltype(*values.begin())>>(values.begin(), values.end());
-}
-
-/// The targets of a file.
+/// The targets of a file, their joints those of the controller.
 /// @throws vn::DataError on a malformed file, or one without what the settings ask for
 template <int N>
 std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::CalibratedRobot<N>& robot) {
-  const auto file = vn::read_targets<N>(settings.targets, robot.nominal().chain().joint_types(), settings.csv.format());
+  vn::CsvFormat format = settings.csv.format();
+  format.controller = robot.controller();
+  const auto file = vn::read_targets<N>(settings.targets, robot.nominal().chain().joint_types(), format);
+  const vn::JointChange<N> change(robot.controller());
   const bool joints = file.joints.rows() > 0, poses = file.positions.rows() > 0 && (settings.poses || !joints);
   if (settings.poses && file.positions.rows() == 0)
     throw vn::DataError(settings.targets + ": no columns x_mm, y_mm, z_mm");
@@ -71,8 +75,9 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
   for (vn::Index i = 0; i < file.size(); ++i) {
     vn::PathTarget<N> target{.pose = vn::Isometry3::Identity()};
     if (joints) {
-      target.joints = file.joints.row(i).transpose();
-      target.pose = robot.nominal().pose(target.joints);
+      const vn::JointVector<N> chain = file.joints.row(i).transpose();
+      target.joints = change.to_controller(chain);
+      target.pose = robot.nominal().pose(chain);
     }
     if (poses) {
       target.pose.translation() = file.positions.row(i).transpose();
@@ -86,9 +91,92 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
   return out;
 }
 
-/// Calls `use` with what finds the branches of an arm of six joints; with null for others, whose branch is followed.
+/// The value of `--hold q1_m=1.2` in rad or m, and its joint, from 0.
+/// @throws support::UsageError for what is no joint of the controller
+std::pair<vn::Index, double> held_joint(const std::string& text, const std::vector<vn::JointType>& types) {
+  static const std::map<std::string, std::pair<vn::JointType, double>> units{
+      {"rad", {vn::JointType::revolute, 1}},     {"deg", {vn::JointType::revolute, std::numbers::pi / 180}},
+      {"mrad", {vn::JointType::revolute, 1e-3}}, {"m", {vn::JointType::prismatic, 1}},
+      {"mm", {vn::JointType::prismatic, 1e-3}},  {"um", {vn::JointType::prismatic, 1e-6}}};
+  const std::size_t unit_at = text.find('_'), equals = text.find('=');
+  const auto number = [&](std::size_t from, std::size_t to, auto& value) {
+    const auto [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
+    return error == std::errc() && end == text.data() + to;
+  };
+  vn::Index joint = 0;
+  double value = 0;
+  if (text.size() < 2 || text[0] != 'q' || unit_at == std::string::npos || equals == std::string::npos ||
+      equals < unit_at || !number(1, unit_at, joint) || !number(equals + 1, text.size(), value) ||
+      !std::isfinite(value))
+    throw support::UsageError(fmt::format("--hold {}: not like q1_m=1.2", vn::detail::quotable(text)));
+  if (joint < 1 || joint > static_cast<vn::Index>(types.size()))
+    throw support::UsageError(fmt::format("--hold {}: the controller has {} joints", text, types.size()));
+  const auto unit = units.find(text.substr(unit_at + 1, equals - unit_at - 1));
+  if (unit == units.end() || unit->second.first != types[static_cast<std::size_t>(joint - 1)])
+    throw support::UsageError(fmt::format(
+        "--hold {}: the unit of joint {} is {}", text, joint,
+        types[static_cast<std::size_t>(joint - 1)] == vn::JointType::revolute ? "rad, deg or mrad" : "m, mm or um"));
+  return {joint - 1, value * unit->second.second};
+}
+
+/// Targets that follow each other while all held joints stay.
+template <int N>
+struct Run {
+  std::size_t first, count;
+  vn::JointLimits<N> limits;  ///< equal ones hold a joint
+};
+
+/// The runs of targets: a rail that carries the arm stands where each target has it.
+/// @throws support::UsageError where nobody says where it stands
+template <int N>
+std::vector<Run<N>> runs_of(const std::vector<vn::PathTarget<N>>& targets, const vn::CalibratedRobot<N>& robot,
+                            const vn::JointLimits<N>& limits) {
+  const int rail = robot.nominal().chain().row(0).joint == vn::JointType::prismatic
+                       ? vn::JointChange<N>(robot.controller()).alone(0)
+                       : -1;
+  if (N != 7 || rail < 0 || vn::same_value(limits.lower(rail), limits.upper(rail)))
+    return {{0, targets.size(), limits}};
+  std::vector<Run<N>> out;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const double at = targets[i].joints(rail);
+    if (!std::isfinite(at))
+      throw support::UsageError(fmt::format(
+          "where is the rail at the poses? State joints q1_m .. beside them, or --hold q{}_m=..", rail + 1));
+    if (out.empty() || !vn::same_value(out.back().limits.lower(rail), at)) {
+      out.push_back({i, 0, limits});
+      out.back().limits.lower(rail) = out.back().limits.upper(rail) = at;
+    }
+    ++out.back().count;
+  }
+  return out;
+}
+
+/// Calls `use` with what finds the branches of an arm of six joints that move, in the controller's joints; with null
+/// for others, whose branch is followed.
+/// @param limits equal ones hold a joint
 template <int N, class Use>
-void with_branches(const vn::CalibratedRobot<N>& robot, const Use& use) {
+void with_branches(const vn::CalibratedRobot<N>& robot, const vn::JointLimits<N>& limits, const Use& use) {
+  if constexpr (N == 7) {
+    const vn::JointChange<N> change(robot.controller());
+    for (int k = 0; k < N; ++k) {
+      const int j = change.alone(k);
+      if (j < 0 || j >= change.moving() || !vn::same_value(limits.lower(j), limits.upper(j))) continue;
+      vn::JointVector<N> at = vn::JointVector<N>::Zero();
+      at(j) = limits.lower(j);
+      const vn::HeldJoint held{k, change.to_chain(at)(k)};
+      const auto made = [&]<class Roots>(std::optional<Roots>& roots) {
+        try {
+          roots.emplace(robot.nominal(), held);
+        } catch (const std::invalid_argument&) {  // another geometry
+        }
+        return roots.has_value();
+      };
+      if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form))
+        return use(vn::RootsInControllerJoints<vn::ClosedForm<N>>(*closed_form, change));
+      if (std::optional<vn::GeneralSixAxis<N>> general; made(general))
+        return use(vn::RootsInControllerJoints<vn::GeneralSixAxis<N>>(*general, change));
+    }
+  }
   if constexpr (N == 6) {
     const auto made = [&]<class Roots>(std::optional<Roots>& roots) {
       try {
@@ -97,45 +185,66 @@ void with_branches(const vn::CalibratedRobot<N>& robot, const Use& use) {
       }
       return roots.has_value();
     };
-    if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form)) return use(*closed_form);
-    if (std::optional<vn::GeneralSixAxis<N>> general; made(general)) return use(*general);
+    const vn::JointChange<N> change(robot.controller());
+    if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form))
+      return use(vn::RootsInControllerJoints<vn::ClosedForm<N>>(*closed_form, change));
+    if (std::optional<vn::GeneralSixAxis<N>> general; made(general))
+      return use(vn::RootsInControllerJoints<vn::GeneralSixAxis<N>>(*general, change));
   }
   use(nullptr);
 }
 
-/// The row of a target without any command.
+/// The values of the controller's joints, of which there may be fewer than joints of the chain.
 template <int N>
-support::CommandRow no_command(vn::Index target, vn::PointStatus status) {
+std::vector<double> shown_joints(const vn::JointVector<N>& q, const vn::JointChange<N>& change) {
+  return {q.data(), q.data() + change.moving()};
+}
+
+/// The row of a target without any command.
+support::CommandRow no_command(int joints, vn::Index target, vn::PointStatus status) {
   const double none = std::nan("");
-  return {std::vector<double>(N, none), target, "target", words(status), none, none, 0, 0, 1, {}};
+  return {std::vector<double>(static_cast<std::size_t>(joints), none),
+          target,
+          "target",
+          words(status),
+          none,
+          none,
+          0,
+          0,
+          1,
+          {}};
 }
 
 /// All branches of each target.
 template <int N, class Roots>
-void list_branches(const vn::CalibratedRobot<N>& robot, const Roots& roots,
-                   const std::vector<vn::PathTarget<N>>& targets, support::CorrectionReport& report) {
+void list_branches(const vn::InControllerJoints<vn::CalibratedRobot<N>>& arm, const Roots& roots,
+                   const std::vector<vn::PathTarget<N>>& targets, std::size_t before, const vn::JointLimits<N>& limits,
+                   support::CorrectionReport& report) {
+  const vn::CalibratedRobot<N>& robot = arm.in_chain_joints();
   for (const auto& target : targets) {
-    const vn::Index number = static_cast<vn::Index>(&target - targets.data()) + 1;
-    vn::BranchOptions<N> options{.limits = robot.limits()};
+    const vn::Index number = static_cast<vn::Index>(before) + (&target - targets.data()) + 1;
+    vn::BranchOptions<N> options{.limits = limits};
     if (target.joints.allFinite()) options.close_to = target.joints;
-    const vn::Branches<N> found = vn::all_branches(roots, robot, target.pose, options);
+    const vn::Branches<N> found = vn::all_branches(roots, arm, target.pose, options);
     std::vector<vn::Branch<N>> sorted(found.begin(), found.end());
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const auto& a, const auto& b) { return a.singularities.branch() < b.singularities.branch(); });
     for (const auto& b : sorted) {
-      const auto links = robot.nominal().chain().links(b.joints);
+      const vn::JointVector<N> chain = arm.change().to_chain(b.joints);
+      const auto links = robot.nominal().chain().links(chain);
       std::vector<vn::Vector3> points;
       for (int j = 0; j < N; ++j) points.push_back(robot.nominal().base() * vn::Vector3(links.point.col(j)));
-      points.push_back(robot.nominal().position(b.joints));
-      report.rows.push_back({list(b.joints), number, vn::message("branch ", b.singularities.branch()),
+      points.push_back(robot.nominal().position(chain));
+      report.rows.push_back({shown_joints(b.joints, arm.change()), number,
+                             vn::message("branch ", b.singularities.branch()),
                              words(b.within_limits ? vn::PointStatus::met : vn::PointStatus::beyond_limits),
-                             b.position_error, b.rotation_error, 0, 0, robot.gate(b.joints), b.singularities, points});
+                             b.position_error, b.rotation_error, 0, 0, arm.gate(b.joints), b.singularities, points});
     }
     if (found.count == 0)
-      report.rows.push_back(no_command<N>(number, found.reach == vn::Reach::proven_out ? vn::PointStatus::proven_out
-                                                  : found.reach == vn::Reach::invalid_target
-                                                      ? vn::PointStatus::invalid_target
-                                                      : vn::PointStatus::not_found));
+      report.rows.push_back(no_command(arm.change().moving(), number,
+                                       found.reach == vn::Reach::proven_out       ? vn::PointStatus::proven_out
+                                       : found.reach == vn::Reach::invalid_target ? vn::PointStatus::invalid_target
+                                                                                  : vn::PointStatus::not_found));
   }
 }
 
@@ -146,8 +255,9 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
   const vn::CalibratedRobot<N> saved = model.as<N>();
   const vn::CalibratedRobot<N> robot = settings.temperature ? saved.at_temperature(*settings.temperature) : saved;
   const std::vector<vn::PathTarget<N>> targets = read_targets(settings, robot);
+  const vn::InControllerJoints<vn::CalibratedRobot<N>> arm = robot.in_controller_joints();
   support::CorrectionReport report{.robot = robot.name(),
-                                   .joints = list(robot.nominal().chain().joint_types()),
+                                   .joints = robot.controller().types(robot.nominal().chain().joint_types()),
                                    .targets = static_cast<vn::Index>(targets.size())};
   if (const vn::ThermalRates* thermal = robot.model().thermal()) {
     report.temperature = thermal->reference;
@@ -162,30 +272,57 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
                              .max_joint_step = settings.max_step_deg * std::numbers::pi / 180,
                              .approach = settings.approach};
   if (!settings.start.empty()) {
-    if (settings.start.size() != N) throw support::UsageError(fmt::format("--start needs {} values", N));
-    options.start = Eigen::Map<const vn::JointVector<N>>(settings.start.data());
+    if (settings.start.size() != report.joints.size())
+      throw support::UsageError(fmt::format("--start needs {} values", report.joints.size()));
+    options.start.setZero();
+    std::copy(settings.start.begin(), settings.start.end(), options.start.begin());
+  }
+  for (const std::string& text : settings.hold) {
+    const auto [joint, value] = held_joint(text, report.joints);
+    if (value < options.limits.lower(joint) || value > options.limits.upper(joint))
+      throw support::UsageError(fmt::format("--hold {}: beyond the limits of the joint", text));
+    options.limits.lower(joint) = options.limits.upper(joint) = value;
   }
   vn::CorrectedPath<N> path;
-  with_branches(robot, [&](const auto& roots) {
+  const auto correct_run = [&](const Run<N>& run, const std::vector<vn::PathTarget<N>>& part, const auto& roots) {
+    vn::CorrectedPath<N> found;
     if constexpr (std::is_null_pointer_v<std::remove_cvref_t<decltype(roots)>>) {
-      if (settings.branches) throw support::UsageError("--all-branches: needs an arm of six revolute joints");
-      if (!targets.front().joints.allFinite() && settings.start.empty())
+      if (settings.branches)
+        throw support::UsageError("--all-branches: needs an arm of six revolute joints that move; --hold the others");
+      if (!part.front().joints.allFinite() && settings.start.empty())
         throw support::UsageError(fmt::format("poses of an arm of {} joints need joints q1_rad .. or --start", N));
-      path = vn::correct_path(robot, targets, options);
+      found = vn::correct_path(arm, part, options);
     } else if (settings.branches) {
-      list_branches(robot, roots, targets, report);
+      list_branches(arm, roots, part, run.first, run.limits, report);
     } else {
-      path = vn::correct_path(robot, roots, targets, options);
+      found = vn::correct_path(arm, roots, part, options);
     }
-  });
+    path.before = std::max(path.before, found.before);
+    path.after = std::max(path.after, found.after);
+    for (vn::PathPoint<N>& point : found.points) {
+      // the rail moved before the first target of a further run, which is no linear move
+      const bool first = run.first > 0 && point.target == 0;
+      if (first && part.front().motion == vn::Motion::linear && point.status == vn::PointStatus::met)
+        point.status = vn::PointStatus::jump;
+      point.target += static_cast<vn::Index>(run.first);
+      path.points.push_back(point);
+    }
+    if (!path.points.empty()) options.start = path.points.back().command;
+  };
+  for (const Run<N>& run : runs_of(targets, robot, options.limits)) {
+    options.limits = run.limits;
+    const auto begin = targets.begin() + static_cast<std::ptrdiff_t>(run.first);
+    const std::vector<vn::PathTarget<N>> part(begin, begin + static_cast<std::ptrdiff_t>(run.count));
+    with_branches(robot, run.limits, [&](const auto& roots) { correct_run(run, part, roots); });
+  }
   if (!settings.branches)
     for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;
   report.before = path.before;
   report.after = path.after;
   vn::JointRows<N> commands(static_cast<vn::Index>(path.points.size()), N);
   for (const auto& p : path.points) {
-    commands.row(static_cast<vn::Index>(report.rows.size())) = p.command.transpose();
-    report.rows.push_back({list(p.command),
+    commands.row(static_cast<vn::Index>(report.rows.size())) = arm.change().to_chain(p.command).transpose();
+    report.rows.push_back({shown_joints(p.command, arm.change()),
                            p.target + 1,
                            p.inserted ? "inserted" : "target",
                            words(p.status),
@@ -232,6 +369,13 @@ int run(support::Program& program) {
       .add_option("--start", settings.start, "joint values before the first target [rad, m], separated by commas",
                   "Q1,..")
       .delimiter(',');
+  program
+      .add_option(
+          "--hold", settings.hold,
+          "a joint that stays, e.g. a rail: q1_m=1.2; of seven joints the others are then solved in closed form. "
+          "Without it a rail stands where the joints of each target have it",
+          "qN_UNIT=VALUE")
+      .one_value_each();
   program.add_flag("--all-branches", settings.branches, "all joint values of each target, not a path");
   program.add_flag("--no-approach", no_approach,
                    "the commands are not executed in the order of the file: correct for the middle of both directions "

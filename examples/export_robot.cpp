@@ -39,12 +39,13 @@ struct Outcome {
   vn::ErrorStatistics designed, full;  ///< errors of held-out poses, as designed and by the chosen stage [m]
 };
 
-support::CalibrationOptions calibration_options(const Settings& o, const std::string& arm_name) {
+support::CalibrationOptions calibration_options(const Settings& o, const vn::RobotDescription& robot) {
   support::CalibrationOptions out;
   out.data = {o.data};
   out.csv = o.csv;
+  out.csv.controller = robot.controller;
   out.test_every = o.test_every;
-  out.calibrate.arm_name = arm_name;
+  out.calibrate.arm_name = robot.name;
   out.calibrate.sensors.use_orientations = !o.positions_only;
   out.calibrate.remainder.on_geometry = true;
   return out;
@@ -52,8 +53,7 @@ support::CalibrationOptions calibration_options(const Settings& o, const std::st
 
 Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const std::optional<vn::UrdfChain>& chain,
                    const vn::FitOptions& fit) {
-  const support::PoseCalibration calibration =
-      support::calibrate_from_poses(robot, calibration_options(o, robot.name), fit);
+  const support::PoseCalibration calibration = support::calibrate_from_poses(robot, calibration_options(o, robot), fit);
   const vn::CalibrationReport& report = calibration.report;
 
   Outcome out;

@@ -80,8 +80,9 @@ std::vector<vn::Isometry3> flanges_of(const Settings& o) {
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   return support::dispatch_dof(robot.dof(), [&](auto n) {
     const auto arm = robot.arm<n()>().arm;
-    const auto joints =
-        of_joints([&] { return vn::read_joints<n()>(o.joints, arm.model().joint_types(), joints_format(o)); });
+    vn::CsvFormat format = joints_format(o);
+    format.controller = robot.controller;
+    const auto joints = of_joints([&] { return vn::read_joints<n()>(o.joints, arm.model().joint_types(), format); });
     std::vector<vn::Isometry3> out;
     for (vn::Index i = 0; i < joints.rows(); ++i) out.push_back(arm.pose(joints.row(i).transpose()));
     return out;

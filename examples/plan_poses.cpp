@@ -53,8 +53,8 @@ support::PlanOutcome choose_rows(const Settings& o, const vn::DescribedRobot<N>&
   const auto plan = vn::plan_measurements(robot.arm, {data.joints(), data.previous(), {}}, options);
   std::vector<vn::Index> rows = plan.chosen;
   std::sort(rows.begin(), rows.end());
-  vn::write_dataset(o.out, data.rows(rows), types);
-  if (!o.held_out.empty()) vn::write_dataset(o.held_out, held_out, types);
+  vn::write_dataset(o.out, data.rows(rows), types, robot.controller);
+  if (!o.held_out.empty()) vn::write_dataset(o.held_out, held_out, types, robot.controller);
   return {
       plan, {}, plan.joints, data.joints(), robot.arm.positions(plan.joints), robot.arm.positions(data.joints()), {},
       0,    0};
@@ -65,7 +65,7 @@ template <int N>
 support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& robot, vn::PlanOptions& options,
                               std::uint64_t seed) {
   const auto types = robot.arm.model().joint_types();
-  vn::MeasurementConstraints constraints;
+  vn::MeasurementConstraints constraints{.controller = robot.controller};
   constexpr double mm = 1e-3;
   if (!o.box.empty()) constraints.tool_box = tool_box(o.box);
   if (!o.tracker.empty())
@@ -89,7 +89,7 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   if (!o.region.empty()) {
     region = vn::read_joints<N>(o.region, types, o.csv.format());
   } else if (!o.region_box.empty()) {
-    vn::MeasurementConstraints inside;
+    vn::MeasurementConstraints inside{.controller = robot.controller};
     inside.tool_box = tool_box(o.region_box);
     region = vn::sample_candidates(arm, robot.limits, inside, 200, seed + 1).joints;
   }
@@ -98,13 +98,15 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   const auto plan = vn::plan_measurements(arm, candidates, options, measured, region);
 
   std::string text;
-  for (std::size_t j = 0; j < types.size(); ++j)
-    text += vn::message("q", j + 1, types[j] == vn::JointType::revolute ? "_rad," : "_m,");
+  const std::vector<vn::JointType> shown = robot.controller.types(types);
+  const vn::MatrixX joints = robot.controller.to_controller(plan.joints);
+  for (std::size_t j = 0; j < shown.size(); ++j)
+    text += vn::message("q", j + 1, shown[j] == vn::JointType::revolute ? "_rad," : "_m,");
   text += "visit\n";
   std::vector<bool> seen(plan.chosen.size(), false);
   for (std::size_t i = 0; i < plan.visits.size(); ++i) {
     const auto row = static_cast<std::size_t>(plan.visits[i]);
-    for (int j = 0; j < N; ++j) text += vn::message(plan.joints(plan.visits[i], j), ',');
+    for (vn::Index j = 0; j < joints.cols(); ++j) text += vn::message(joints(plan.visits[i], j), ',');
     text += seen[row] ? "check\n" : i < 3 ? "register\n" : "measure\n";
     seen[row] = true;
   }
@@ -125,6 +127,7 @@ support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& des
   const vn::DescribedRobot<N> robot = description.arm<N>();
   vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}), .oriented = o.orientations};
   options.errors.drives = robot.drives;
+  options.errors.down = robot.down;
   options.bin_count = o.cover;
   options.bound_iterations = o.bound ? 10 : 0;
   support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
@@ -219,6 +222,7 @@ int run(support::Program& program) {
   if (o.out.empty()) throw support::UsageError("--out is required");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
+  o.csv.controller = robot.controller;
   const support::PlanOutcome found =
       support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed); });
 

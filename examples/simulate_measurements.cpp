@@ -41,7 +41,8 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
   const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types, o.csv.format());
   const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
   const double gears = o.gears_urad * 1e-6;
-  const vn::JointErrorSizes sizes{.harmonic = gears, .harmonics = 30, .ripple = gears / 20};
+  vn::JointErrorSizes sizes{.harmonic = gears, .harmonics = 30, .ripple = gears / 20};
+  sizes.down = robot.down;
   const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
   // the sensor stands somewhere, the reflector is somewhere on the flange
   vn::Rng rng(vn::child_seed(seed, 2));
@@ -61,7 +62,7 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
   vn::write_dataset(out,
                     vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
                                               vn::child_seed(seed, digest(joints))),
-                    types);
+                    types, robot.controller);
   return joints.rows();
 }
 
@@ -85,6 +86,7 @@ int run(support::Program& program) {
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
+  o.csv.controller = robot.controller;
   const vn::Index rows =
       support::dispatch_dof(robot.dof(), [&](auto n) { return simulate<n()>(o, robot, out, program.common().seed); });
   fmt::print("{} {}: {} poses of the virtual arm of seed {} measured: {}\n", robot.name,

@@ -25,13 +25,14 @@ struct Options {
 };
 
 template <int N>
-int verify_arm(const support::Program& program, const Options& o, const vn::SavedModel& model) {
+int verify_arm(const support::Program& program, Options& o, const vn::SavedModel& model) {
   const vn::CalibratedRobot<N> robot = model.as<N>();
   if (robot.estimate() == nullptr)
     throw support::UsageError(o.model +
                               ": has no covariance: an older program saved it, or what was learned is on geometry "
                               "alone; calibrate that arm again");
   const auto types = robot.nominal().chain().joint_types();
+  o.csv.controller = robot.controller();
   vn::Dataset<N> data = vn::read_dataset<N>(o.data, types, o.csv.format());
   if (o.no_approach) data = data.without_approach();
   vn::PointRows learned(robot.learned() != nullptr ? data.size() : 0, 3);

@@ -161,6 +161,15 @@ std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::De
   for (std::size_t s = 0; s < files.size(); ++s) {
     out.push_back(files[s].size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, files[s]));
     if (!out.back().findings.empty()) fmt::print("{}: {}\n", o.data[s], out.back().summary());
+    if (const auto map = vn::audited_controller(out.back(), robot.controller, N)) {
+      const auto types = robot.arm.chain().joint_types();
+      std::string formulas;
+      for (const std::string& formula : map->formulas(types)) formulas += (formulas.empty() ? "" : ", ") + formula;
+      fmt::print(
+          "In place of other columns, state the joints of the controller: {} (controller of a robot file, or "
+          "--controller-joints)\n\n",
+          formulas);
+    }
   }
   return out;
 }

@@ -101,7 +101,8 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
                                                         .limits = robot.limits,
                                                         .data_file = std::filesystem::path(file).filename().string(),
                                                         .date = date,
-                                                        .data_sha256 = contacts.front().origin().hashes.front()}));
+                                                        .data_sha256 = contacts.front().origin().hashes.front(),
+                                                        .controller = robot.controller}));
   fmt::print("Calibrated model: {}; its base frame is the nominal one\n", shown(save));
   return 0;
 }

@@ -35,6 +35,7 @@ vernier::CsvFormat CsvOptions::format() const {
       std::isalnum(static_cast<unsigned char>(out.separator)) != 0)
     throw UsageError(fmt::format("--{}separator: '{}' cannot be one", of_, out.separator));
   out.remark = [](const std::string& line) { fmt::print("{}\n", line); };
+  out.controller = controller;
   return out;
 }
 

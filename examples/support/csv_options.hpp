@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli.hpp"
+#include "vernier/core/controller_map.hpp"
 #include "vernier/data/csv_format.hpp"
 
 namespace support {
@@ -17,7 +18,8 @@ char one_character(const std::string& text, const std::string& option);
 
 /// How the CSV files of a command line are written.
 struct CsvOptions {
-  std::string separator{}, decimal{};  ///< empty: a comma, and a point
+  std::string separator{}, decimal{};   ///< empty: a comma, and a point
+  vernier::ControllerMap controller{};  ///< whose joint values the files have; programs take it from the arm
 
   /// Adds --separator and --decimal to a command line.
   /// @param of   "" or what their names begin with, e.g. "joints-"

@@ -9,7 +9,7 @@
 #include "vernier/core/types.hpp"
 
 /// Expands `macro(N)` for every number of joints that the programs serve.
-#define VERNIER_FOR_ALL_DOF(macro) macro(3) macro(4) macro(5) macro(6) macro(7) macro(8) macro(9)
+#define VERNIER_FOR_ALL_DOF(macro) macro(1) macro(2) macro(3) macro(4) macro(5) macro(6) macro(7) macro(8) macro(9)
 static_assert(vernier::max_arm_joints == 9);
 
 namespace support {

@@ -14,6 +14,7 @@
 #include "saved_model.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
+#include "vernier/identification/commanded_parameters.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 
@@ -63,9 +64,29 @@ vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, cons
   return vn::prediction_error(registered.model, measured.test.poses()[0]);
 }
 
+/// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide.
+/// @throws UsageError for a known base of several stations
+CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm) {
+  if (arm.base_known && o.data.size() > 1)
+    throw UsageError(
+        "the base frame of the arm is known, but there are several stations, each with a frame of its own");
+  if (arm.base_known || arm.tool_known)
+    o.calibrate.geometry.frames = arm.base_known && arm.tool_known ? vn::Frames::none
+                                  : arm.base_known                 ? vn::Frames::tool
+                                                                   : vn::Frames::base;
+  std::string held;
+  for (const std::string& name : vn::unseen_parameters(arm.geometry(), arm.controller, o.calibrate.geometry)) {
+    o.calibrate.geometry.fixed.push_back(name);
+    held += (held.empty() ? "" : ", ") + name;
+  }
+  if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
+  return o;
+}
+
 template <int N>
-PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& o,
+PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& given,
                               const vn::FitOptions& fit) {
+  const CalibrationOptions o = options_for(given, description);
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::SavedModel> earlier;
   if (!o.prior.empty()) earlier = vn::read_model(o.prior);
@@ -77,6 +98,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
+  options.errors.down = robot.down;
   if (prior) options.errors.prior = &*prior;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
@@ -86,7 +108,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   const auto calibration = vn::calibrate(robot.arm, measured->train, options);
   PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
                       .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
-                      .report = vn::evaluate(calibration, measured->test, robot.limits),
+                      .report = vn::evaluate(calibration, measured->test, robot.limits, robot.controller),
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
@@ -95,7 +117,8 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                               .data_file = file_names(o.data),
                               .date = o.date,
                               .held_out_error = out.report.stage(out.report.chosen).position.mean(),
-                              .data_sha256 = file_hashes<N>(measured->files)};
+                              .data_sha256 = file_hashes<N>(measured->files),
+                              .controller = robot.controller};
   if (!o.save.empty()) out.model = {o.save, vn::save(o.save, calibration, info)};
   for (std::size_t s = 1; !o.save.empty() && options.errors.tool_per_station && s < o.data.size(); ++s) {
     out.further_models.push_back(numbered(o.save, s + 1));

@@ -113,6 +113,7 @@ vn::CorrectedProgram correct_for_controller(const std::string& named, const std:
       nominal.rows.push_back(chain.row(i));
       nominal.limits.emplace_back(robot.limits().lower(i), robot.limits().upper(i));
     }
+    nominal.controller = robot.controller();
     return correct(vn::read_ur_calibration(named, nominal).arm<6>().arm.model());
   }
   const vn::SavedModel its = vn::read_model(named);
@@ -126,6 +127,7 @@ const char* remedy(vn::MissingInput missing) {
     case vn::MissingInput::controller: return "; name it with --controller";
     case vn::MissingInput::tool: return "; name it with --tool";
     case vn::MissingInput::workobject: return "; name it with --workobject";
+    case vn::MissingInput::controller_joints: return "; its robot file states the controller's joints";
     case vn::MissingInput::effect: return "; if nothing, name it with --assume-harmless";
     default: return "";
   }
@@ -196,7 +198,8 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
   for (vn::Uncorrected& one : outcome.uncorrected) one.reason += remedy(one.missing);
   double radius = std::nan("");
   if (saved.estimate() != nullptr)
-    for (const double r : robot.radii_95(outcome.commands())) radius = std::isfinite(radius) ? std::max(radius, r) : r;
+    for (const double r : robot.radii_95(robot.controller().to_chain(outcome.commands())))
+      radius = std::isfinite(radius) ? std::max(radius, r) : r;
 
   fmt::print("{}: {} targets corrected, by {:.2g} mm (mean), {:.2g} mm (largest)\n", options.program,
              outcome.targets.size(), outcome.mean_correction() * 1e3, outcome.largest_correction() * 1e3);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "vernier/io/json.hpp"
 #include "vernier/io/ur_calibration.hpp"
@@ -17,9 +19,10 @@ namespace {
 std::vector<vernier::RobotDescription> catalogue() {
   using vernier::RobotDescription;
   namespace robots = vernier::robots;
-  return {RobotDescription::of(robots::abb_irb120()), RobotDescription::of(robots::ur10()),
-          RobotDescription::of(robots::ur5()), RobotDescription::of(robots::barrett_wam()),
-          RobotDescription::of(robots::puma560())};
+  return {RobotDescription::of(robots::abb_irb120()),   RobotDescription::of(robots::ur10()),
+          RobotDescription::of(robots::ur5()),          RobotDescription::of(robots::barrett_wam()),
+          RobotDescription::of(robots::puma560()),      RobotDescription::of(robots::fanuc_r2000ib_165f()),
+          RobotDescription::of(robots::kuka_kr6_r900())};
 }
 
 }  // namespace
@@ -44,12 +47,58 @@ Option RobotOptions::add_to(Program& program) {
                   "was made, not as designed",
                   "FILE")
       .needs(out);
+  program
+      .add_option(
+          "--controller-joints", controller_joints,
+          "how each joint of the arm's table follows from the controller's joints: J1,J2,-J2-J3,-J4,-J5,-J6 of a "
+          "FANUC arm; a robot file has them in its key controller",
+          "FORMULAS")
+      .delimiter(',')
+      .needs(out);
+  program.add_option("--down", down, "direction of gravity in the arm's base frame; by default -z", "X,Y,Z")
+      .delimiter(',')
+      .expected(3)
+      .needs(out);
   return out;
 }
 
 bool RobotOptions::is_urdf() const { return robot.ends_with(".urdf") || robot.ends_with(".xacro"); }
 
-vernier::RobotDescription choose_robot(const RobotOptions& options, [[maybe_unused]] vernier::UrdfChain* chain) {
+namespace {
+
+/// Limits of controller joints that are each one row's, turned and shifted; infinite of others.
+void take_controller(const std::vector<std::string>& formulas, vernier::RobotDescription& robot) {
+  if (!robot.controller.same())
+    throw UsageError("--controller-joints: " + robot.name + " states the joints of its controller itself");
+  try {
+    robot.controller = vernier::ControllerMap(formulas, robot.joint_types());
+    static_cast<void>(robot.controller.joints(robot.dof()));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("--controller-joints: {}", error.what()));
+  }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto joints = static_cast<std::size_t>(robot.controller_joints());
+  std::vector<std::pair<double, double>> limits(joints, {-infinity, infinity});
+  const vernier::MatrixX& inverse = robot.controller.inverse();
+  for (vernier::Index j = 0; j < static_cast<vernier::Index>(joints); ++j) {
+    vernier::Index row = -1, terms = 0;
+    for (vernier::Index i = 0; i < inverse.cols(); ++i)
+      if (inverse(j, i) != 0) {
+        row = i;
+        ++terms;
+      }
+    auto [lower, upper] = robot.limits[static_cast<std::size_t>(row)];
+    const double factor = inverse(j, row), zero = robot.controller.zeros()(row);
+    if (terms == 1)
+      limits[static_cast<std::size_t>(j)] = {factor * ((factor > 0 ? lower : upper) - zero),
+                                             factor * ((factor > 0 ? upper : lower) - zero)};
+    else if (std::isfinite(lower) || std::isfinite(upper))
+      fmt::print("Controller joint {} moves with others; its limits are unknown, a robot file can state them\n", j + 1);
+  }
+  robot.limits = limits;
+}
+
+vernier::RobotDescription arm_of(const RobotOptions& options, [[maybe_unused]] vernier::UrdfChain* chain) {
   if (!options.is_urdf() && !(options.base_link.empty() && options.tip_link.empty()))
     throw UsageError("--base-link and --tip-link are of a URDF file (.urdf) of --robot");
   const bool yaml = options.robot.ends_with(".yaml") || options.robot.ends_with(".yml");
@@ -73,6 +122,19 @@ vernier::RobotDescription choose_robot(const RobotOptions& options, [[maybe_unus
   return options.ur_calibration.empty() ? out : vernier::read_ur_calibration(options.ur_calibration, out);
 }
 
+}  // namespace
+
+vernier::RobotDescription choose_robot(const RobotOptions& options, vernier::UrdfChain* chain) {
+  vernier::RobotDescription out = arm_of(options, chain);
+  if (!options.controller_joints.empty()) take_controller(options.controller_joints, out);
+  if (!options.down.empty()) {
+    const vernier::Vector3 down(options.down[0], options.down[1], options.down[2]);
+    if (!(down.norm() > 1e-3 && down.allFinite())) throw UsageError("--down has no direction");
+    out.down = down.normalized();
+  }
+  return out;
+}
+
 std::vector<std::string> catalogue_names() {
   std::vector<std::string> names;
   for (const auto& robot : catalogue()) names.push_back(robot.name);
@@ -82,7 +144,7 @@ std::vector<std::string> catalogue_names() {
 vernier::RobotDescription choose_robot(const std::string& name_or_file) {
   for (auto& robot : catalogue())
     if (robot.name == name_or_file) return robot;
-  if (const RobotOptions alone{name_or_file, {}, {}, {}};
+  if (const RobotOptions alone{name_or_file, {}, {}, {}, {}, {}};
       alone.is_urdf() || name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml"))
     return choose_robot(alone);
   std::error_code error;

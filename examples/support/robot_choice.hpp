@@ -24,6 +24,9 @@ struct RobotOptions {
   std::string base_link;       ///< of a URDF file: where the chain begins; empty: the root
   std::string tip_link;        ///< likewise: where it ends; empty: the only link without a child
   std::string ur_calibration;  ///< factory calibration of an arm of Universal Robots; empty: none
+  std::vector<std::string>
+      controller_joints{};     ///< formulas of the chain's joints, see `ControllerMap`; none: the arm's
+  std::vector<double> down{};  ///< direction of gravity where the first row stands; none: the arm's
 
   /// Adds them to a command line.
   /// @return `--robot`
@@ -38,6 +41,7 @@ struct RobotOptions {
 /// build
 ///         cannot read
 /// @throws vernier::DataError on a file that does not describe an arm
+/// The controller's joints and the direction of gravity are those of the options, where these state them.
 /// @param chain where given, becomes the chain of a URDF file
 vernier::RobotDescription choose_robot(const RobotOptions& options, vernier::UrdfChain* chain = nullptr);
 /// The same of a name alone.

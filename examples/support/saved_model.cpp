@@ -96,9 +96,10 @@ void write_results(Program& program, const CalibrationOptions& o, const std::str
 }
 
 template <int N>
-void reregister_arm(Program& program, const CalibrationOptions& o, const vn::ReregisterOptions& free,
+void reregister_arm(Program& program, CalibrationOptions o, const vn::ReregisterOptions& free,
                     const vn::SavedModel& model) {
   const vn::CalibratedRobot<N> robot = model.as<N>();
+  o.csv.controller = robot.controller();
   const auto types = robot.nominal().chain().joint_types();
   const std::string& file = o.data.front();
   const vn::Dataset<N> data = read_poses<N>(file, o, types);

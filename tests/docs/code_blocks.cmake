@@ -41,7 +41,7 @@ endfunction()
 # vernier_add_pages(<test>): the blocks of all pages with a test, in front of it, and the README's program.
 function(vernier_add_pages test)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/docs")
-  foreach(page README.md docs/guide.md docs/your_own.md)
+  foreach(page README.md docs/guide.md docs/robot_files.md docs/your_own.md)
     vernier_code_blocks("${PROJECT_SOURCE_DIR}/${page}" "${folder}")
   endforeach()
   target_include_directories(${test} PRIVATE "${folder}")

@@ -24,36 +24,19 @@ constexpr const char* tables =
 using Features = std::set<std::string>;
 
 /// All features that the text asks for, and sets of them as arms have them; together these compile every line.
-const Features all{"EXP",
-                   "FALLBACK",
-                   "GATES",
-                   "GRAVITY",
-                   "HARMONICS",
-                   "HYSTERESIS",
-                   "LEARNED",
-                   "LINEAR",
-                   "LINKS",
-                   "LOG",
-                   "MAP_PRODUCTS",
-                   "MAP_RAW",
-                   "MODIFIED",
-                   "ORIENTED",
-                   "PRISMATIC",
-                   "RADIAL_BASIS",
-                   "REDUNDANT",
-                   "SIGMOID",
-                   "SINE",
-                   "SINES",
-                   "TANH",
-                   "TILT",
-                   "MAP_SINES_AND_COSINES"};
+const Features all{"CONTROLLER", "EXP",      "FALLBACK", "GATES",     "GRAVITY",      "HARMONICS",
+                   "HYSTERESIS", "LEARNED",  "LINEAR",   "LINKS",     "LOG",          "MAP_PRODUCTS",
+                   "MAP_RAW",    "MODIFIED", "ORIENTED", "PRISMATIC", "RADIAL_BASIS", "REDUNDANT",
+                   "SIGMOID",    "SINE",     "SINES",    "TANH",      "TILT",         "MAP_SINES_AND_COSINES"};
 const std::vector<Features> arms{
     {},
     {"ORIENTED", "LOG", "LEARNED", "GATES", "SINES", "MAP_SINES_AND_COSINES", "TANH", "HARMONICS"},
     {"EXP", "FALLBACK", "GATES", "GRAVITY", "HARMONICS", "HYSTERESIS", "LEARNED", "LINEAR", "LINKS", "LOG",
      "MAP_PRODUCTS", "MODIFIED", "ORIENTED", "PRISMATIC", "REDUNDANT", "SIGMOID", "SINES", "TILT"},
     {"REDUNDANT", "GRAVITY", "LINKS", "LEARNED", "GATES", "MAP_RAW", "RADIAL_BASIS"},
-    {"LEARNED", "GATES", "MAP_RAW", "SINE", "TILT", "LINKS", "EXP"}};
+    {"LEARNED", "GATES", "MAP_RAW", "SINE", "TILT", "LINKS", "EXP"},
+    {"CONTROLLER"},
+    {"CONTROLLER", "FALLBACK", "GATES", "LEARNED", "MAP_RAW", "SINE", "LOG", "EXP", "ORIENTED"}};
 
 class CText : public ::testing::Test {
  protected:

@@ -131,7 +131,7 @@ void arm_rotation_vector(const double *rotation, double *out) { arm_log_(rotatio
 template <int N>
 class Compiled {
  public:
-  Compiled(const vernier_test::TemporaryFolder& folder, const std::string& source) {
+  Compiled(const vernier_test::TemporaryFolder& folder, const std::string& source, int joints = N) : joints_(joints) {
     write_file(folder / "arm.h", source);
     const std::string library = folder / "arm.so";
     const auto done = run_command("gcc -std=c99 " + std::string(strict) + " -shared -fPIC -DARM_API= -x c '" +
@@ -158,11 +158,11 @@ class Compiled {
     return from_rows(rows);
   }
   Jacobian<N> jacobian(const JointVector<N>& q, const double* previous) const {
-    double rows[6][N];
-    function<void(const double*, const double*, double*)>("arm_jacobian")(q.data(), previous, rows[0]);
-    Jacobian<N> out;
+    double rows[6 * N];
+    function<void(const double*, const double*, double*)>("arm_jacobian")(q.data(), previous, rows);
+    Jacobian<N> out = Jacobian<N>::Zero();
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < N; ++j) out(i, j) = rows[i][j];
+      for (int j = 0; j < joints_; ++j) out(i, j) = rows[i * joints_ + j];
     return out;
   }
   double gate(const JointVector<N>& q) const { return function<double(const double*)>("arm_gate")(q.data()); }
@@ -196,6 +196,7 @@ class Compiled {
   }
 
   void* handle_ = nullptr;
+  int joints_;  ///< of the controller
 };
 
 struct Differences {
@@ -204,11 +205,14 @@ struct Differences {
   Index met = 0, statuses = 0, compared = 0;   ///< corrections: met by the library, with another status in C, compared
 };
 
-/// Compares an exported arm with the library.
+/// Compares an exported arm with the library, in joints of the controller.
 template <int N, class Convention>
-Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<N>& c, Index n, Index corrections) {
+Differences compare(const CalibratedRobot<N, Convention>& chain, const Compiled<N>& c, Index n, Index corrections) {
   Differences out;
-  const JointRows<N> joints = test_joints(robot.limits(), n);
+  const auto robot = chain.in_controller_joints();
+  const auto& limits = chain.limits();
+  const int moving = robot.change().moving();
+  const JointRows<N> joints = test_joints(limits, n);
   const auto grow = [](double& largest, double value) { largest = vernier_test::larger(largest, value); };
   for (Index i = 0; i < n; ++i) {
     const JointVector<N> q = configuration(joints, i);
@@ -221,7 +225,9 @@ Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<
     const double* from = known ? previous.data() : nullptr;
     grow(out.pose, difference(c.pose(q, from), arm.pose(q)));
     grow(out.pose, difference(c.nominal_pose(q), robot.nominal().pose(q)));
-    const RealMatrix jacobian = RealMatrix::of(arm.jacobian(q));
+    Jacobian<N> of_arm = arm.jacobian(q);
+    of_arm.rightCols(N - moving).setZero();  // of passive joints
+    const RealMatrix jacobian = RealMatrix::of(of_arm);
     grow(out.jacobian, difference(RealMatrix::of(c.jacobian(q, from)), jacobian));
     const double gate = robot.gate(q);
     EXPECT_NEAR(c.gate(q), gate, 1e-14);
@@ -230,11 +236,13 @@ Differences compare(const CalibratedRobot<N, Convention>& robot, const Compiled<
 
     const Isometry3 target = robot.nominal().pose(q);
     const JointVector<N> nan = JointVector<N>::Constant(std::nan(""));
-    const Correction<N> expected = robot.correct(target, q, known ? previous : nan);
+    const auto& change = robot.change();
+    Correction<N> expected = chain.correct(target, change.to_chain(q), known ? change.to_chain(previous) : nan);
+    expected.command = change.to_controller(expected.command);
     const Correction<N> found = c.correct(target, q, from);
     out.met += expected.status == IkStatus::converged;
     if (found.status != expected.status) ++out.statuses;
-    const double least = jacobian.singular_values()(std::min(6, N) - 1);
+    const double least = jacobian.singular_values()(std::min(6, moving) - 1);
     if (expected.status != IkStatus::converged || least < 0.005) continue;
     const RealMatrix command = RealMatrix::of(expected.command);
     // on its way through half a radian a redundant arm magnifies what roundings move it along its null space
@@ -258,7 +266,7 @@ class ExportC : public ::testing::Test {
 
   template <int N, class Convention>
   void expect_equal(const CalibratedRobot<N, Convention>& robot, Index n = 10000, Index corrections = 10000) {
-    const Compiled<N> c(folder_, c_source(robot));
+    const Compiled<N> c(folder_, c_source(robot), robot.controller().joints(N));
     const Differences found = compare(robot, c, n, corrections);
     EXPECT_LT(found.pose, 1e-13);
     EXPECT_LT(found.jacobian, 1e-11);  // slopes of harmonics are multiplied by their orders
@@ -317,6 +325,40 @@ TEST_F(ExportC, OfSlidingJointsEqualsTheLibrary) {
     expect_equal(with_everything(vernier_test::random_chain<4>(rng, {.prismatic = 0.5}), limits), 10000, 10000);
   expect_equal(with_everything(vernier_test::random_chain<4, ModifiedDh>(rng, {.prismatic = 0.5}), limits), 10000,
                10000);
+}
+
+/// An arm whose controller counts its joints differently.
+template <int N, class Convention>
+CalibratedRobot<N, Convention> counted(const CalibratedRobot<N, Convention>& robot, const ControllerMap& controller,
+                                       const JointLimits<N>& limits) {
+  return CalibratedRobot<N, Convention>(robot.name(), robot.model(), limits, robot.provenance())
+      .with_controller(controller);
+}
+
+TEST_F(ExportC, OfControllerJointsEqualsTheLibrary) {
+  const auto fanuc = robots::fanuc_r2000ib_165f();
+  const MatrixX box = fanuc.controller.chain_limits(fanuc.limits.lower, fanuc.limits.upper);
+  const auto robot = with_everything(fanuc.chain, JointLimits<6>{box.col(0), box.col(1)});
+  const Compiled<6> c(folder_, c_source(counted(robot, fanuc.controller, fanuc.limits)));
+  const Differences found = compare(counted(robot, fanuc.controller, fanuc.limits), c, 4000, 4000);
+  EXPECT_LT(found.pose, 1e-12);
+  EXPECT_LT(found.jacobian, 1e-10);
+  EXPECT_LT(found.command, 1e-9);
+  EXPECT_GT(found.compared, 1000);
+  EXPECT_EQ(found.statuses, 0);
+}
+
+TEST_F(ExportC, OfAPassiveJointEqualsTheLibrary) {
+  const DhChain<5> palletiser{
+      {{{.a = 0.3, .alpha = -1.5, .d = 0.8}, {.a = 1.2}, {.a = 1.3}, {.a = 0.25, .alpha = 1.5}, {.d = 0.2}}}};
+  JointLimits<5> limits;
+  limits.lower << -1, 0.3, -1, -1, 0;
+  limits.upper << 1, 1, 0.2, 1, 0;
+  const std::array<std::string, 5> law{"J1", "J2 + 20 deg", "J3 - J2", "-J3", "J4"};
+  const auto robot = counted(geometric(palletiser, limits), ControllerMap(law), limits);
+  const std::string source = c_source(robot);
+  EXPECT_NE(source.find("#define ARM_JOINTS 4\n"), std::string::npos);
+  expect_equal(robot, 4000, 4000);
 }
 
 TEST_F(ExportC, OfWhatWasLearnedEqualsTheLibrary) {

@@ -150,7 +150,7 @@ TEST(ParseProgram, UrScript) {
 
 TEST(ParseProgram, FanucTp) {
   const RobotProgram program = parsed(fanuc_sample());
-  ASSERT_EQ(program.targets.size(), 2u);
+  ASSERT_EQ(program.targets.size(), 3u);
   const ProgramTarget& p1 = program.targets[0];
   EXPECT_EQ(p1.name, "P[1]");
   EXPECT_EQ(p1.line, 18u);
@@ -170,13 +170,14 @@ TEST(ParseProgram, FanucTp) {
   EXPECT_LT((turned - v).norm(), 1e-14);
   EXPECT_EQ(program.targets[1].configuration, (std::vector<int>{1, 0, 0, 0, 0, -1}));
   EXPECT_EQ(program.targets[1].workobject, "2");
+  EXPECT_EQ(program.targets[2].kind, TargetKind::joints);
+  EXPECT_LT((program.targets[2].joints - degree * JointVector<6>{0, -20, 1, 0, -90, 0}).norm(), 1e-15);
   EXPECT_EQ(remarks(program),
             "12 L PR[2] 100mm/sec FINE: a position register\n"
             "13 L P[2] 100mm/sec FINE Offset,PR[1]: an offset that a register adds\n"
             "14 L P[5] 100mm/sec FINE INC: a relative move\n"
             "15 J P[R[1]] 50% FINE: no position of this file\n"
             "16 CALL P: what it does to targets is not known\n"
-            "31 P[3]: joint values, in which J2 and J3 depend on each other\n"
             "36 P[4]: a component is missing or no number\n"
             "42 P[5]: no move of this file uses it\n");
 }

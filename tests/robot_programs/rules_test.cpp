@@ -535,14 +535,16 @@ TEST(FanucRules, OrderOfMoves) {
       "   5:C P[5]\n    :  P[6] 100mm/sec FINE ;\n",
       positions);
   EXPECT_EQ(before(program, "P[2]"), "P[1]");
-  EXPECT_EQ(before(program, "P[4]"), "");  // from joint values that are not read
+  EXPECT_EQ(before(program, "P[4]"), "P[3]");
   EXPECT_EQ(before(program, "P[5]"), "P[4]");
   EXPECT_EQ(before(program, "P[6]"), "P[5]");
   EXPECT_EQ(named(program, "P[1]").move, TargetMove::joint);
   for (const char* name : {"P[2]", "P[5]", "P[6]"}) EXPECT_EQ(named(program, name).move, TargetMove::linear) << name;
   EXPECT_EQ(named(program, "P[1]").workobject, "1");
   EXPECT_EQ(named(program, "P[1]").tool, "2");
-  EXPECT_EQ(remarks(program), "40 P[3]: joint values, in which J2 and J3 depend on each other\n");
+  EXPECT_EQ(remarks(program), "");
+  EXPECT_EQ(named(program, "P[3]").kind, TargetKind::joints);
+  EXPECT_NEAR(named(program, "P[3]").joints(2), 0.0349065850399, 1e-12);
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ Samples<N> simulate(const Problem& problem, const vn::DescribedRobot<N>& robot, 
     if constexpr (N == 6)
       if (problem.region == "operating")
         return vn::abb_irb120_operating_region().sample(nominal, n, vn::child_seed(seed, stream));
-    return vn::sample_joints(robot.limits, n, vn::child_seed(seed, stream));
+    const vn::JointRows<N> drawn = vn::sample_joints(robot.limits, n, vn::child_seed(seed, stream));
+    return robot.controller.to_chain(drawn.leftCols(robot.controller.joints(N)));
   };
   const vn::JointRows<N> train = sample(poses, train_stream), test = sample(1000, test_stream);
   const vn::DhChain<N> actual = vn::with_geometric_errors(nominal, {}, seed);
@@ -88,8 +89,10 @@ Samples<N> measured(const Problem& problem, const vn::DescribedRobot<N>& robot, 
 /// @return their file
 template <int N>
 vn::SourceFile read_positions(const Plan& plan, Problem& problem, const vn::DescribedRobot<N>& robot) {
+  vn::CsvFormat format = problem.csv.format();
+  format.controller = robot.controller;
   const vn::Dataset<N> data =
-      vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types(), problem.csv.format()).without_orientations();
+      vn::read_dataset<N>(problem.data, robot.arm.chain().joint_types(), format).without_orientations();
   problem.poses = data;
   const Index most = *std::max_element(plan.poses.begin(), plan.poses.end());
   for (const std::uint64_t seed : plan.seeds)

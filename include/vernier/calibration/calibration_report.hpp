@@ -34,11 +34,12 @@ struct JointReport {
 
 /// A weakly determined parameter, and poses that would determine it.
 struct PoseAdvice {
-  std::string parameter;         ///< its name
-  ParameterKind kind;            ///< length [m] or angle [rad]
-  double std_now = 0;            ///< its standard deviation
-  double std_then = 0;           ///< the same after the poses were measured
-  std::vector<VectorX> poses{};  ///< joint values of helpful poses [rad, m]
+  std::string parameter;                 ///< its name
+  ParameterKind kind;                    ///< length [m] or angle [rad]
+  double std_now = 0;                    ///< its standard deviation
+  double std_then = 0;                   ///< the same after the poses were measured
+  std::vector<VectorX> poses{};          ///< joint values of helpful poses, of the controller's joints [rad, m]
+  std::vector<JointType> joint_types{};  ///< types of those joints
 };
 
 /// A calibration, assessed.

@@ -232,10 +232,12 @@ VERNIER_LOCAL std::string describe_advice(const PoseAdvice& advice, const std::v
   out += ": add poses like ";
   for (std::size_t k = 0; k < advice.poses.size(); ++k) {
     out += k > 0 ? ", (" : "(";
-    for (Index i = 0; i < advice.poses[k].size(); ++i)
-      out += message(i > 0 ? ", " : "",
-                     std::llround(advice.poses[k](i) *
-                                  (joints[static_cast<std::size_t>(i)].revolute ? 180 / std::numbers::pi : 1e3)));
+    for (Index i = 0; i < advice.poses[k].size(); ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      const bool revolute = advice.joint_types.empty() ? joints[joint].revolute  // those of the chain
+                                                       : advice.joint_types[joint] == JointType::revolute;
+      out += message(i > 0 ? ", " : "", std::llround(advice.poses[k](i) * (revolute ? 180 / std::numbers::pi : 1e3)));
+    }
     out += ")";
   }
   return out + message("; ", advice.poses.size(), " of them reduce it to ", brief(advice.std_then * 1e3), ".");

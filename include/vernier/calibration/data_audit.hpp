@@ -4,11 +4,13 @@
 /// An audit of measured poses before any geometric fit: units, signs and zeros of joints, mirrored frames, rows that
 /// are swapped, shifted, duplicate or wrong, and a session that drifts.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vernier/calibration/data_finding.hpp"
+#include "vernier/core/controller_map.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/measurements/measurements.hpp"
@@ -67,6 +69,15 @@ DataAudit audit_data(const Arm& nominal, const Measurements<ChainOf<Arm>::dof>& 
   return detail::audit_data(ArmGeometry(in_frames(nominal)), data.sets().front(), data.poses().front().orientations(),
                             options);
 }
+
+/// The map with which the faults of an audit in signs and couplings of joints vanish; none where it found no such
+/// fault.
+/// @param audit        of poses whose joints were read by `controller`
+/// @param controller   the map of before
+/// @param chain_joints number of joints of the chain
+/// @throws std::invalid_argument for a map of another number of joints
+VERNIER_API std::optional<ControllerMap> audited_controller(const DataAudit& audit, const ControllerMap& controller,
+                                                            int chain_joints);
 
 }  // namespace vernier
 

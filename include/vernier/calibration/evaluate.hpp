@@ -49,11 +49,12 @@ VectorX over_stations(std::span<const Dataset<N>> stations, const F& values) {
 /// Errors of held-out poses after every stage of a calibration, and what follows from them.
 /// @param calibration from poses, one set a station
 /// @param held_out    poses that it was not fitted to, as many sets in the same order
-/// @param limits      of the joints, for advice on poses
+/// @param limits      of the controller's joints, for advice on poses
+/// @param controller  how the chain's joints follow from those
 /// @throws std::invalid_argument for another number of stations, no poses, or measurements that are no poses
 template <class Chain>
 CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurements<Chain::dof>& held_out,
-                           const JointLimits<Chain::dof>& limits = {}) {
+                           const JointLimits<Chain::dof>& limits = {}, const ControllerMap& controller = {}) {
   constexpr int N = Chain::dof;
   const std::span<const Dataset<N>> test(held_out.poses());
   const FittedErrorModel<Chain>& errors = calibration.errors;
@@ -163,6 +164,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   const VectorX &geometry = out.stage(Stage::geometry).position, &of_chosen = out.stage(out.chosen).position;
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) >= 1) out.max_degradation = (std::max)(out.max_degradation, of_chosen(i) - geometry(i));
+  const MatrixX chain_limits = controller.chain_limits(limits.lower, limits.upper);
   for (int j = 0; j < N; ++j) {
     JointReport joint;
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;
@@ -171,12 +173,12 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     const auto k = static_cast<std::size_t>(j);
     for (const auto& range : calibration.coverage.measured[k])
       joint.measured_ranges.emplace_back(range.lower, range.upper);
-    joint.valid_ranges =
-        detail::within_limits(calibration.coverage.ranges[k], joint.measured_ranges, limits.lower(j), limits.upper(j));
+    joint.valid_ranges = detail::within_limits(calibration.coverage.ranges[k], joint.measured_ranges,
+                                               chain_limits(j, 0), chain_limits(j, 1));
     detail::describe_transmission(errors, j, joint);
     out.joints.push_back(std::move(joint));
   }
-  out.advice = pose_advice(errors, out.identification, limits, calibration.sensors, out.oriented);
+  out.advice = pose_advice(errors, out.identification, limits, calibration.sensors, out.oriented, 3, 3, controller);
   return out;
 }
 

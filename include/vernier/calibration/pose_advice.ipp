@@ -15,19 +15,24 @@ namespace vernier::detail {
 VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estimate,
                                                  const IdentificationReport& identification, const VectorX& lower,
                                                  const VectorX& upper, const SensorModel& sensors, bool oriented,
-                                                 std::size_t max_parameters, int poses) {
+                                                 std::size_t max_parameters, int poses,
+                                                 const ControllerMap& controller) {
   std::vector<PoseAdvice> out;
   const std::vector<std::string> weak = identification.names(ParameterState::weak);
   if (weak.empty()) return out;
   constexpr Index candidates = 200;
   const ArmGeometry& arm = estimate.arm.geometry(0);
   Rng rng(1);
-  MatrixX joints(candidates, arm.joints());
+  std::vector<JointType> types;
+  for (const DhRow& row : arm.chain().rows()) types.push_back(row.joint);
+  types = controller.types(types);
+  MatrixX shown(candidates, static_cast<Index>(types.size()));
   for (Index c = 0; c < candidates; ++c)
-    for (int i = 0; i < arm.joints(); ++i) {
-      const double widest = arm.chain().revolute(i) ? std::numbers::pi : 0.5;
-      joints(c, i) = rng.uniform((std::max)(lower(i), -widest), (std::min)(upper(i), widest));
+    for (Index i = 0; i < shown.cols(); ++i) {
+      const double widest = types[static_cast<std::size_t>(i)] == JointType::revolute ? std::numbers::pi : 0.5;
+      shown(c, i) = rng.uniform((std::max)(lower(i), -widest), (std::min)(upper(i), widest));
     }
+  const MatrixX joints = controller.to_chain(shown);
   std::vector<RowBlock> blocks(candidates);
   estimate.arm.linearise(0, joints, MatrixX(), blocks.data());
   std::vector<MatrixX> rows;
@@ -51,8 +56,9 @@ VERNIER_IMPL std::vector<PoseAdvice> pose_advice(const ErrorModelEstimate& estim
                       identification.parameters[static_cast<std::size_t>(parameter)].kind,
                       std::sqrt(estimate.covariance(at, at)) * scales(at),
                       std::sqrt(helpful.variances.back()) * scales(at),
-                      {}};
-    for (const Index pose : helpful.poses) advice.poses.push_back(row_of(joints, pose));
+                      {},
+                      types};
+    for (const Index pose : helpful.poses) advice.poses.push_back(row_of(shown, pose));
     out.push_back(std::move(advice));
   }
   return out;

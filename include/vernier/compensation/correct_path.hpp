@@ -12,6 +12,7 @@
 
 #include "vernier/compensation/detail/path_solver.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/kinematics/all_branches.hpp"
 #include "vernier/kinematics/inverse_kinematics.hpp"
 
@@ -29,7 +30,7 @@ struct PathTarget {
 /// Options of `correct_path`.
 template <int N>
 struct PathOptions {
-  JointLimits<N> limits{};             ///< of the commands
+  JointLimits<N> limits{};             ///< of the commands; equal ones hold a joint, e.g. a rail
   double tolerance = 0.05e-3;          ///< distance of the tool from the line of a linear move [m]
   double rotation_tolerance = 0.2e-3;  ///< deviation of its orientation from the one in between [rad]
   double max_joint_step = 0.5;         ///< largest change of a joint between commands of a linear move [rad, m]
@@ -108,7 +109,14 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   tight.position_tolerance = tight.rotation_tolerance = 1e-8;
   IkOptions<N> within = tight;
   within.limits = options.limits;
+  for (int j = 0; j < N; ++j)  // the nominal arm is looked at beyond limits, but a held joint stays
+    if (same_value(options.limits.lower(j), options.limits.upper(j)))
+      tight.limits.lower(j) = tight.limits.upper(j) = options.limits.lower(j);
 
+  // one or two joints go as near as they can
+  const auto near_enough = [](IkStatus status) {
+    return status == IkStatus::converged || (N < 3 && status == IkStatus::unreachable);
+  };
   const auto solve = [&](const auto& model, const Isometry3& target, const Joints& seed, const IkOptions<N>& ik) {
     if constexpr (N >= 6) {
       return inverse_kinematics(model, target, seed, ik);
@@ -130,7 +138,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
       return found.reach;
     } else {
       const IkResult<N> found = solve(arm, target, Joints(close_to), within);
-      if (found.status != IkStatus::converged) return Reach::not_found;
+      if (!near_enough(found.status)) return Reach::not_found;
       out.push_back({found.joints, 0});
       return Reach::met;
     }
@@ -141,7 +149,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
     command = found.joints;
     errors[0] = found.position_error;
     errors[1] = found.rotation_error;
-    return found.status == IkStatus::converged;
+    return near_enough(found.status);
   };
   const auto pose = [&](const PathJoints& q, const PathJoints& from) {
     return coming_from(Joints(from), [&](const auto& model) { return model.pose(Joints(q)); });
@@ -150,7 +158,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   const auto nominal_joints = [&](const Isometry3& target, PathJoints& q) {
     const IkResult<N> found = solve(nominal, target, Joints(q), tight);
     q = found.joints;
-    return found.status == IkStatus::converged;
+    return near_enough(found.status);
   };
   const auto distances = [&](const Joints& q) {
     if constexpr (branches_known) {
@@ -201,7 +209,8 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
 
 }  // namespace detail
 
-/// Corrected commands for a whole path; positions alone of an arm of fewer than six joints. Branches and whole turns
+/// Corrected commands for a whole path; positions alone of an arm of fewer than six joints, as near as they can come of
+/// one or two joints. Branches and whole turns
 /// are chosen for all targets together, for the shortest time of joint moves within the measured joint ranges (dynamic
 /// programming); a linear move stays on its branch. Between two commands a controller moves the tool of the *nominal*
 /// arm along a line, the real one beside it: points are inserted, equally spaced, until it stays within the tolerances.

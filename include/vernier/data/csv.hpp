@@ -50,7 +50,8 @@ VERNIER_API DistanceColumns read_distance_columns(const std::string& path, int j
                                                   const CsvFormat& format);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
-                                  const VectorX& temperatures, std::span<const JointType> types);
+                                  const VectorX& temperatures, std::span<const JointType> types,
+                                  const ControllerMap& controller);
 
 }  // namespace detail
 
@@ -65,7 +66,8 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 /// number) changes, or the time goes back, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint
 /// values from which each pose was approached; `segment` is ignored then. A column `time_s` or `time_ms` states the
 /// time of measuring [s], Unix time or any other; else that is the row's number, from 0. A column `temperature_c`
-/// states the temperature of the arm.
+/// states the temperature of the arm. Where `format.controller` says so, columns q1 .. qM are the joints of the
+/// controller; the rows that are returned have those of the chain.
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
 /// @param format      how the file is written
@@ -175,12 +177,14 @@ VERNIER_API std::vector<Contact> read_contacts(const std::string& path, int join
 /// not move. Atomic: the file is whole, or as it was before.
 /// @param path        the file
 /// @param data        the poses
-/// @param joint_types of the arm: columns of prismatic joints are q1_m ..; none: all joints are revolute
+/// @param joint_types of the arm's chain: columns of prismatic joints are q1_m ..; none: all joints are revolute
+/// @param controller  whose joint values are written
 /// @throws std::runtime_error when the file cannot be written
 template <int N>
-void write_dataset(const std::string& path, const Dataset<N>& data, std::span<const JointType> joint_types = {}) {
+void write_dataset(const std::string& path, const Dataset<N>& data, std::span<const JointType> joint_types = {},
+                   const ControllerMap& controller = {}) {
   write_file(path, detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(),
-                                     data.times(), data.temperatures(), joint_types));
+                                     data.times(), data.temperatures(), joint_types, controller));
 }
 
 }  // namespace vernier

@@ -18,16 +18,21 @@
 
 namespace vernier::detail {
 
-/// Columns q1 .. qN behind a prefix: angles, or lengths for prismatic joints. Refuses a file with other joints, and
-/// units that do not fit the types of joints, where these are given.
-VERNIER_LOCAL std::vector<CsvColumn> joint_columns(const CsvTable& table, int joints, std::span<const JointType> types,
-                                                   std::string_view prefix = "") {
-  demand(types.empty() || types.size() == static_cast<std::size_t>(joints), "CSV: ", types.size(),
-         " types of joints for ", joints, " joints");
+/// Columns q1 .. qM of the controller behind a prefix: angles, or lengths for prismatic joints. Refuses a file with
+/// other joints, and units that do not fit the types of joints, where these are given.
+/// @param chain_joints number of joints of the chain
+/// @param chain_types  their types, or none
+VERNIER_LOCAL std::vector<CsvColumn> joint_columns(const CsvTable& table, int chain_joints,
+                                                   std::span<const JointType> chain_types,
+                                                   const ControllerMap& controller, std::string_view prefix = "") {
+  demand(chain_types.empty() || chain_types.size() == static_cast<std::size_t>(chain_joints),
+         "CSV: ", chain_types.size(), " types of joints for ", chain_joints, " joints");
+  const int joints = controller.joints(chain_joints);
+  const std::vector<JointType> types = controller.types(chain_types);
   for (const std::string_view name : table.header())
     if (const auto joint = joint_of(name, prefix); joint && (*joint < 1 || *joint > joints))
-      table.fail_in_header("column ", name, ", but the robot has ", joints, " joints",
-                           *joint < 1 ? ", counted from 1" : "");
+      table.fail_in_header("column ", name, ", but the ", joints < chain_joints ? "controller" : "robot", " has ",
+                           joints, " joints", *joint < 1 ? ", counted from 1" : "");
   std::vector<CsvColumn> columns;
   for (int i = 1; i <= joints; ++i) {
     const std::string stem = message(prefix, "q", i);
@@ -43,6 +48,17 @@ VERNIER_LOCAL std::vector<CsvColumn> joint_columns(const CsvTable& table, int jo
                            prismatic ? " is prismatic: a length is needed" : " is revolute: an angle is needed");
   }
   return columns;
+}
+
+/// Values of columns, of which those of the controller's joints come first, with the joints of the chain in their
+/// place.
+VERNIER_LOCAL MatrixX with_chain_joints(MatrixX values, const ControllerMap& controller) {
+  if (controller.same()) return values;
+  const Index others = values.cols() - controller.joints();
+  MatrixX out(values.rows(), controller.chain_joints() + others);
+  out.leftCols(controller.chain_joints()) = controller.to_chain(values.leftCols(controller.joints()));
+  out.rightCols(others) = values.rightCols(others);
+  return out;
 }
 
 /// Whether a file has any column of joints behind a prefix.
@@ -92,7 +108,8 @@ VERNIER_LOCAL MatrixX approach_by_order(const CsvTable& table, const MatrixX& jo
 VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types,
                                         const CsvFormat& format) {
   const CsvTable table(path, format);
-  MatrixX out = table.numbers(joint_columns(table, joints, types));
+  MatrixX out =
+      with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
   table.remark_unread();
   return out;
 }
@@ -100,15 +117,16 @@ VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std
 VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types,
                                            const CsvFormat& format) {
   const CsvTable table(path, format);
-  std::vector<CsvColumn> columns = joint_columns(table, joints, types);
+  std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
   for (CsvColumn& column : pose_columns(table)) columns.push_back(std::move(column));
-  PoseColumns out{table.numbers(columns), {}, {}, {}, table.origin()};
+  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, table.origin()};
   const Index n = out.values.rows();
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
   out.temperatures = values_of(table, "temperature", quantities::temperature).value_or(VectorX());
   out.previous = has_joints(table, "from_")
-                     ? table.numbers(joint_columns(table, joints, types, "from_"))
+                     ? with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller, "from_")),
+                                         format.controller)
                      : approach_by_order(table, MatrixX(VERNIER_LATER(out.values).leftCols(joints)), times);
   table.remark_unread();
   return out;
@@ -120,7 +138,9 @@ VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int join
   TargetColumns out;
   const bool posed = table.find("x", quantities::coordinate) || table.find("y", quantities::coordinate) ||
                      table.find("z", quantities::coordinate);
-  if (!posed || has_joints(table, "")) out.joints = table.numbers(joint_columns(table, joints, types));
+  if (!posed || has_joints(table, ""))
+    out.joints =
+        with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
   if (posed) out.poses = table.numbers(pose_columns(table));
   if (const auto move = table.find("move", quantities::words)) {
     const std::vector<std::string> moves = table.texts(*move);
@@ -138,20 +158,23 @@ VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int join
 VERNIER_IMPL DistanceColumns read_distance_columns(const std::string& path, int joints,
                                                    std::span<const JointType> types, const CsvFormat& format) {
   const CsvTable table(path, format);
-  std::vector<CsvColumn> columns = joint_columns(table, joints, types);
+  std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
   columns.push_back(table.require_column("distance", quantities::measured_distance));
-  MatrixX values = table.numbers(columns);
+  MatrixX values = with_chain_joints(table.numbers(columns), format.controller);
   for (Index i = 0; i < values.rows(); ++i)
     if (!(values(i, joints) > 0)) table.fail_in_row(i, columns.back(), "a distance must be positive");
   table.remark_unread();
   return {std::move(values), table.origin()};
 }
 
-VERNIER_IMPL std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
-                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
-                                   const VectorX& temperatures, std::span<const JointType> types) {
-  demand(types.empty() || types.size() == static_cast<std::size_t>(joints.cols()), "write_dataset: ", types.size(),
-         " types of joints for ", joints.cols(), " joints");
+VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const PointRows& positions,
+                                   const PointRows& orientations, const ConstMatrixRef& chain_previous,
+                                   const VectorX& times, const VectorX& temperatures,
+                                   std::span<const JointType> chain_types, const ControllerMap& controller) {
+  demand(chain_types.empty() || chain_types.size() == static_cast<std::size_t>(chain_joints.cols()),
+         "write_dataset: ", chain_types.size(), " types of joints for ", chain_joints.cols(), " joints");
+  const MatrixX joints = controller.to_controller(chain_joints), previous = controller.to_controller(chain_previous);
+  const std::vector<JointType> types = controller.types(chain_types);
   const auto name = [&](Index j) {
     const bool angle = types.empty() || types[static_cast<std::size_t>(j)] == JointType::revolute;
     return message('q', j + 1, angle ? "_rad," : "_m,");
@@ -238,7 +261,8 @@ VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::ini
 VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joints,
                                                 std::span<const JointType> joint_types, const CsvFormat& format) {
   const detail::CsvTable table(path, format);
-  const MatrixX q = table.numbers(detail::joint_columns(table, joints, joint_types));
+  const MatrixX q = detail::with_chain_joints(
+      table.numbers(detail::joint_columns(table, joints, joint_types, format.controller)), format.controller);
   const detail::CsvColumn id_column = table.require_column("contact_id", detail::quantities::words),
                           kind_column = table.require_column("kind", detail::quantities::words);
   const std::vector<std::string> ids = table.texts(id_column), kinds = table.texts(kind_column);

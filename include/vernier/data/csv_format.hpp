@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "vernier/core/controller_map.hpp"
+
 namespace vernier {
 
 /// How a CSV file is written. Nothing of it is guessed from the file: another one is refused, and the message names
@@ -17,6 +19,8 @@ struct CsvFormat {
   /// back. Empty: nobody is told, and a file with a column that is not read, but differs from a known one by case, by
   /// blanks and brackets or by its unit alone, is refused.
   std::function<void(const std::string&)> remark{};
+  /// Joint values of the file are those of this controller. Readers return those of the chain.
+  ControllerMap controller{};
 };
 
 }  // namespace vernier

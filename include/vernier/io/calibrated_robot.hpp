@@ -15,19 +15,22 @@
 #include "vernier/compensation/compensated.hpp"
 #include "vernier/compensation/learned_error.hpp"
 #include "vernier/core/checked_joints.hpp"
+#include "vernier/core/controller_map.hpp"
 #include "vernier/core/rigid_motions.hpp"
-#include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/error_model.hpp"
+#include "vernier/error_model/error_model_estimate.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/fitted_arm.hpp"
 #include "vernier/io/provenance.hpp"
+#include "vernier/kinematics/in_controller_joints.hpp"
 #include "vernier/kinematics/joint_limits.hpp"
 
 namespace vernier {
 
 /// A nominal chain, its error model in base and tool frames, its limits, and optionally a learned position error on
 /// top. A kinematic model (of the identified arm) and a compensator. Frames are kept by their six values, so that what
-/// is loaded from a file is bit for bit what was saved.
+/// is loaded from a file is bit for bit what was saved. Joint values are those of the chain, but limits are those of
+/// the controller; `in_controller_joints` is the arm as its controller counts.
 template <int N, class Convention = StandardDh>
 class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   using Checks = ChecksJoints<CalibratedRobot>;
@@ -75,6 +78,8 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   /// This robot with another model, in other frames perhaps: what was learned in its base frame rotates with it.
   CalibratedRobot with_model(const Model& model, Provenance provenance) const {
     CalibratedRobot out(name_, model, limits_, std::move(provenance));
+    out.controller_ = controller_;
+    out.change_ = change_;
     if (estimate_) out = out.with_estimate(estimate_->of_arm(FittedArm::of(out.identified())));
     if (!corrected_) return out;
     const Matrix3 turn = out.identified().base().linear() * identified().base().linear().transpose();
@@ -88,6 +93,17 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     if (corrected_) out.corrected_.emplace(out.model_, corrected_->learned(), corrected_->coverage());
     return out;
   }
+
+  /// This robot with a controller whose joints have the limits; throws for a map of another number of joints.
+  CalibratedRobot with_controller(const ControllerMap& controller) const {
+    CalibratedRobot out = *this;
+    out.change_ = JointChange<N>(out.controller_ = controller);
+    return out;
+  }
+  /// How the chain's joints follow from those of the controller.
+  const ControllerMap& controller() const { return controller_; }
+  /// This robot with the controller's joints, for `all_branches` and `correct_path` within `limits()`.
+  auto in_controller_joints() const { return InControllerJoints<CalibratedRobot>(*this, change_); }
 
   /// This robot with the estimate of its calibration: unknowns with their covariance, and noise.
   CalibratedRobot with_estimate(ErrorModelEstimate estimate) const {
@@ -106,7 +122,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   const Framed<Chain>& nominal() const { return model_.nominal(); }
   /// The error model, without learned position error.
   const Model& model() const { return model_; }
-  /// Joint limits.
+  /// Limits of the controller's joints.
   const JointLimits<N>& limits() const { return limits_; }
   /// Where the calibration comes from.
   const Provenance& provenance() const { return provenance_; }
@@ -145,7 +161,7 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   /// @param q        where the nominal arm is to be [rad, m]
   /// @param previous the command before [rad, m]; not finite where unknown
   [[nodiscard]] Correction<N> correct(const JointVector<N>& q, const JointVector<N>& previous) const noexcept {
-    return compensated(previous).correct(q);
+    return correct(nominal().pose(q), q, previous);
   }
   /// The command that brings the arm to a pose in the frame of the measurements.
   /// @param target the pose
@@ -159,7 +175,10 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   /// @param previous the command before [rad, m]; not finite where unknown
   [[nodiscard]] Correction<N> correct(const Isometry3& target, const JointVector<N>& seed,
                                       const JointVector<N>& previous) const noexcept {
-    return compensated(previous).correct(target, seed);
+    const Compensated<InControllerJoints<Approached>, Framed<Chain>> arm({{*this, previous}, change_}, nominal());
+    Correction<N> out = arm.within(limits_).correct(target, change_.to_controller(seed));
+    out.command = change_.to_chain(out.command);
+    return out;
   }
 
   /// Radius around the modelled tool position within which the arm's is with 95 % probability [m], for n commands that
@@ -254,9 +273,6 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   Approached approached_from(const JointVector<N>& previous) const noexcept { return {*this, previous}; }
 
  private:
-  Compensated<Approached, Framed<Chain>> compensated(const JointVector<N>& previous) const {
-    return Compensated<Approached, Framed<Chain>>({*this, previous}, nominal()).within(limits_);
-  }
   static JointVector<N> unknown() { return JointVector<N>::Constant(std::numeric_limits<double>::quiet_NaN()); }
 
   static typename Model::Arm by_values(const typename Model::Arm& arm) {
@@ -276,15 +292,9 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   Provenance provenance_;
   Model model_;
   std::optional<Corrected> corrected_{};
+  ControllerMap controller_{};
+  JointChange<N> change_{};
   std::shared_ptr<const ErrorModelEstimate> estimate_{};  // shared, for it is large and never changes
 };
-
-/// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
-/// @throws std::invalid_argument where its covariance was not kept
-template <int N, class Convention>
-ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
-  demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
-  return arm_prior(robot.name(), robot.model(), *robot.estimate());
-}
 
 }  // namespace vernier

@@ -51,7 +51,8 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("MODIFIED", model.nominal.modified());
   const int joints = model.nominal.joints(), equations = joints >= 6 ? 6 : 3;  // as CorrectionTarget::automatic
   add("ORIENTED", equations == 6);
-  add("REDUNDANT", equations < joints);
+  add("CONTROLLER", !model.controller.same());
+  add("REDUNDANT", equations < model.controller.joints(joints));
   add("FALLBACK", model.fallback.has_value());
   add("LEARNED", model.learned.has_value());
   add("GATES", model.fallback || model.learned);
@@ -106,7 +107,7 @@ VERNIER_LOCAL std::string c_preamble(const ModelData& model, const CExport& opti
     out += message("#define ", capitals, "_", what, " ", value, "\n");
   };
   const auto quoted = [](const std::string& text) { return '"' + c_text(text) + '"'; };
-  define("JOINTS", message(model.nominal.joints()));
+  define("JOINTS", message(model.controller.joints(model.nominal.joints())));
   define("MODEL_NAME", quoted(model.name));
   define("MODEL_HASH", quoted(hash));
   define("MODEL_DATE", quoted(from.date));
@@ -127,7 +128,8 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
   if (const auto* kernels = model.learned ? std::get_if<FittedKernels>(&model.learned->function) : nullptr)
     demand(false, "c_source: the position error that was learned is a sum of ", kernels->centres.rows(),
            " kernels (kernel ELM, Gaussian process), which is not written as C source; networks are");
-  const int joints = model.nominal.joints(), lanes = (joints + 1) / 2 * 2;  // vectors hold an even number
+  const int joints = model.nominal.joints(), moving = model.controller.joints(joints);
+  const int lanes = (joints + 1) / 2 * 2;  // vectors hold an even number
   const bool oriented = joints >= 6;
 
   const std::set<std::string> features = c_features(model);
@@ -138,8 +140,9 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
   const auto define = [&](const char* what, const std::string& value) {
     out += message("#define ", capitals, "_", what, "_ ", value, "\n");
   };
+  define("CHAIN", message(joints));
   define("LANES", message(lanes));
-  define("SIZE", message((std::min)(joints, oriented ? 6 : 3)));
+  define("SIZE", message((std::min)(moving, oriented ? 6 : 3)));
   define("EVALUATIONS", message(CorrectionOptions{}.max_iterations));
   define("ROTATION_LENGTH", c_number(oriented ? IkOptions<6>{}.rotation_length : 0));
   const FittedNetwork* network = model.learned ? std::get_if<FittedNetwork>(&model.learned->function) : nullptr;
@@ -151,14 +154,22 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
   out += "\n/* ---- tables ---- */\n\n";
   std::vector<int> prismatic;
   std::string limits = message("static const double ", prefix, "limits_[2 * ", capitals, "_JOINTS] = {\n");
-  for (int i = 0; i < joints; ++i) {
-    prismatic.push_back(model.nominal.revolute(i) ? 0 : 1);
+  for (int i = 0; i < joints; ++i) prismatic.push_back(model.nominal.revolute(i) ? 0 : 1);
+  for (int i = 0; i < moving; ++i) {
     const auto limit = [](double value, const char* infinite) {
       return std::isinf(value) ? std::string(infinite) : c_number(value);
     };
     limits += message("    ", limit(model.lower(i), "-HUGE_VAL"), ", ", limit(model.upper(i), "HUGE_VAL"), ",\n");
   }
   out += limits + "};\n";
+  if (features.contains("CONTROLLER")) {
+    std::vector<double> factors;
+    for (int i = 0; i < joints; ++i)
+      for (int j = 0; j < moving; ++j) factors.push_back(model.controller.square()(i, j));
+    const VectorX& zeros = model.controller.zeros();
+    out += c_table(prefix + "factors_", factors, static_cast<std::size_t>(moving));
+    out += c_table(prefix + "zeros_", std::vector<double>(zeros.data(), zeros.data() + zeros.size()), 3);
+  }
   if (features.contains("PRISMATIC")) out += c_table(prefix + "prismatic_", prismatic);
   out += c_chain_table(prefix + "nominal_rows_", model.nominal);
   out += c_arm_tables(prefix + "arm_", prefix + "identified_", model.identified, lanes);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "vernier/calibration/calibration.hpp"
+#include "vernier/error_model/arm_prior.hpp"
 #include "vernier/error_model/fitted_error_model.hpp"
 #include "vernier/error_model/geometry_estimate.hpp"
 #include "vernier/identification/contact_report.hpp"
@@ -23,12 +24,13 @@ namespace vernier {
 template <int N>
 struct RobotInfo {
   std::string name = "robot";        ///< of the arm
-  JointLimits<N> limits{};           ///< of the commands
+  JointLimits<N> limits{};           ///< of the controller's joints
   std::string data_file{};           ///< name of the file of measured poses
   std::string date{};                ///< of the calibration
   std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
   double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
   std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
+  ControllerMap controller{};        ///< how the chain's joints follow from those of the controller
 };
 
 namespace detail {
@@ -48,7 +50,8 @@ CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Con
   provenance.position_sigma = position_sigma;
   provenance.held_out_error = info.held_out_error;
   provenance.data_sha256 = info.data_sha256;
-  CalibratedRobot<N, Convention> out(info.name, model, info.limits, std::move(provenance));
+  const auto out = CalibratedRobot<N, Convention>(info.name, model, info.limits, std::move(provenance))
+                       .with_controller(info.controller);
   if (report.covariance.size() == 0) return out;
   return out.with_estimate(geometry_estimate(ArmGeometry(identified), report, position_sigma, orientation_sigma));
 }
@@ -65,11 +68,12 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
          calibration.errors.models().size());
   const VectorX& left_out = calibration.errors.left_out_errors;
   auto robot = CalibratedRobot<N, Convention>(
-      info.name, calibration.model(station), info.limits,
-      {info.data_file, calibration.poses, info.date, info.joints, calibration.oriented ? "poses" : "positions",
-       calibration.errors.position_sigma,
-       left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
-       info.held_out_error, info.data_sha256});
+                   info.name, calibration.model(station), info.limits,
+                   {info.data_file, calibration.poses, info.date, info.joints,
+                    calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma,
+                    left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
+                    info.held_out_error, info.data_sha256})
+                   .with_controller(info.controller);
   const LearnedRemainder<N>* learned = calibration.deployed();
   if (learned == nullptr || !learned->on_geometry)
     robot = robot.with_estimate(calibration.errors.of_station(static_cast<int>(station)));
@@ -113,7 +117,16 @@ CalibratedRobot<N, Convention> calibrated_robot(const FittedErrorModel<DhChain<N
                                          .position_sigma = fitted.position_sigma,
                                          .held_out_error = info.held_out_error,
                                          .data_sha256 = info.data_sha256})
+      .with_controller(info.controller)
       .with_estimate(fitted.first_station());
+}
+
+/// A calibrated arm as the prior of another calibration: of the same arm, or of another of its type.
+/// @throws std::invalid_argument where its covariance was not kept
+template <int N, class Convention>
+ArmPrior arm_prior(const CalibratedRobot<N, Convention>& robot) {
+  demand(robot.estimate() != nullptr, robot.name(), ": its model has no covariance; calibrate it again");
+  return arm_prior(robot.name(), robot.model(), *robot.estimate());
 }
 
 }  // namespace vernier

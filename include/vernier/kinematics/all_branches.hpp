@@ -89,6 +89,23 @@ JointVector<N> nearest_turns(const JointVector<N>& joints, const JointVector<N>&
   return out;
 }
 
+namespace detail {
+
+/// Whether a model is geometric, of revolute joints alone.
+template <KinematicModel M>
+bool all_revolute([[maybe_unused]] const M& model) noexcept {
+  if constexpr (NominalArm<M>) {
+    const auto framed = in_frames(model);
+    bool out = true;
+    for (int i = 0; i < M::dof; ++i) out = out && framed.model().row(i).joint == JointType::revolute;
+    return out;
+  } else {
+    return false;
+  }
+}
+
+}  // namespace detail
+
 /// All branches of the inverse kinematics of a model whose nominal arm has a closed form: Newton's method from each of
 /// its roots, and across the fold where two branches meet. Of seven joints the held one stays.
 /// @param nominal roots of the nominal arm, in the same frames as the model: `ClosedForm(model.nominal())`, or
@@ -119,9 +136,10 @@ template <BranchRoots Roots, KinematicModel M>
     for (int k = 0; k < 6; ++k)
       std::copy_n(at.jacobian.data() + 6 * moving.index[static_cast<std::size_t>(k)], 6, jacobian + 6 * k);
   };
-  constexpr bool geometric = NominalArm<M>;
+  const bool geometric = detail::all_revolute(model);  // what a rail reaches depends on where it is
   const double length = [&] {
-    if constexpr (geometric) return detail::arm_length(detail::arm_axes(model));
+    if constexpr (NominalArm<M>)
+      if (geometric) return detail::arm_length(detail::arm_axes(model));
     return nominal.arm_length();
   }();
   const detail::BranchProblem problem{N,
@@ -168,8 +186,8 @@ template <BranchRoots Roots, KinematicModel M>
     out.margin = roots.nearest_margin;
     for (const InverseRoot<N>& root : roots) out.margin = (std::min)(out.margin, root.margin);
     double excess = 0;
-    if constexpr (geometric) {
-      excess = detail::reach_excess(detail::arm_axes(model), target);
+    if constexpr (NominalArm<M>) {
+      if (geometric) excess = detail::reach_excess(detail::arm_axes(model), target);
     } else if constexpr (requires { model.reach_sphere(); }) {
       const ReachSphere sphere = model.reach_sphere();
       excess = (translation(target) - sphere.centre).norm() - sphere.radius;

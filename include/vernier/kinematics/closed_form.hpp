@@ -20,7 +20,7 @@ namespace vernier {
 /// A joint that is held, so that six of seven move.
 struct HeldJoint {
   int joint;         ///< counted from 0
-  double value = 0;  ///< [rad]
+  double value = 0;  ///< [rad], or [m] of a prismatic joint, e.g. a rail
 };
 
 /// Joint values of one target.
@@ -88,13 +88,14 @@ struct MovingJoints {
 };
 
 /// The axes of all joints of an arm at joint values.
-/// @throws std::invalid_argument for prismatic joints
+/// @param held the joint that does not move, counted from 0; -1: none
+/// @throws std::invalid_argument for prismatic joints that move
 template <NominalArm Arm>
-ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Arm::dof>::Zero()) {
+ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Arm::dof>::Zero(), int held = -1) {
   const auto framed = in_frames(arm);
   const auto& chain = framed.model();
   for (int i = 0; i < Arm::dof; ++i)
-    demand(chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
+    demand(i == held || chain.row(i).joint == JointType::revolute, "ClosedForm: joint ", i + 1, " is prismatic");
   const auto links = chain.links(q);
   ArmAxes out;
   out.joints = Arm::dof;
@@ -108,7 +109,7 @@ ArmAxes arm_axes(const Arm& arm, const JointVector<Arm::dof>& q = JointVector<Ar
 }
 
 /// The axes of an arm's moving joints.
-/// @throws std::invalid_argument for a held joint that the arm does not have, and for prismatic joints
+/// @throws std::invalid_argument for a held joint that the arm does not have, and for prismatic joints that move
 template <NominalArm Arm>
 SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
   constexpr int N = Arm::dof;
@@ -117,7 +118,7 @@ SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
          " to be held");
   JointVector<N> q = JointVector<N>::Zero();
   if (held.joint >= 0) q(held.joint) = held.value;
-  const ArmAxes all = arm_axes(arm, q);
+  const ArmAxes all = arm_axes(arm, q, held.joint);
   SixAxes out;
   const MovingJoints<N> moving(held);
   for (int k = 0; k < 6; ++k) {
@@ -133,10 +134,10 @@ SixAxes six_axes_of(const Arm& arm, const HeldJoint& held) {
 
 }  // namespace detail
 
-/// The closed form of a nominal arm of six revolute joints, or of seven with one held, its base and tool frames
-/// included. The arm has a spherical wrist (or, mirrored, a spherical shoulder) and two parallel or meeting neighbours
-/// among its other three axes; or three parallel axes in its middle, the last two meeting (or, mirrored, the first
-/// two).
+/// The closed form of a nominal arm of six revolute joints, or of seven with one held, which may be a rail; its base
+/// and tool frames are included. The arm has a spherical wrist (or, mirrored, a spherical shoulder) and two parallel or
+/// meeting neighbours among its other three axes; or three parallel axes in its middle, the last two meeting (or,
+/// mirrored, the first two).
 ///
 ///     const ClosedForm closed_form(robots::ur10().chain);
 ///     for (const auto& root : closed_form.roots(target)) use(root.joints);
@@ -169,7 +170,7 @@ class ClosedForm : public ChecksJoints<ClosedForm<N>> {
   ClosedForm(const Arm& nominal, HeldJoint held, double tolerance = 1e-6)
       : moving_(held),
         arm_(detail::six_axes_of(nominal, held), tolerance),
-        length_(detail::arm_length(detail::arm_axes(nominal))) {}
+        length_(detail::arm_length(detail::arm_axes(nominal, JointVector<N>::Zero(), held.joint))) {}
 
   /// All joint values with which the nominal arm is at a pose; does not allocate.
   /// @param target base_T_tool, a proper rigid motion

@@ -40,7 +40,7 @@ class GeneralSixAxis : public ChecksJoints<GeneralSixAxis<N>> {
   GeneralSixAxis(const Arm& nominal, HeldJoint held)
       : moving_(held),
         axes_(detail::six_axes_of(nominal, held)),
-        length_(detail::arm_length(detail::arm_axes(nominal))) {}
+        length_(detail::arm_length(detail::arm_axes(nominal, JointVector<N>::Zero(), held.joint))) {}
 
   /// All joint values with which the nominal arm is at a pose. Does not allocate.
   /// @param target base_T_tool, a proper rigid motion

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <numbers>
+#include <string>
 #include <string_view>
 
+#include "vernier/core/controller_map.hpp"
 #include "vernier/core/literals.hpp"
 #include "vernier/kinematics/dh_chain.hpp"
 #include "vernier/kinematics/joint_drive.hpp"
@@ -23,12 +25,14 @@ struct Robot {
 
   /// The nominal chain.
   DhChain<N, Convention> chain;
-  /// Joint limits.
+  /// Joint limits, of the controller's joints.
   JointLimits<N> limits;
   /// Name in the catalogue.
   std::string_view name;
   /// Gears and encoders of the joints, as far as they are known.
   std::array<JointDrive, N> drives{};
+  /// How the chain's joints follow from those of the controller.
+  ControllerMap controller{};
 };
 
 namespace detail {
@@ -44,6 +48,9 @@ JointLimits<N> limits_deg(const double (&lower)[N], const double (&upper)[N]) {
   }
   return out;
 }
+
+/// The map of some formulas.
+inline ControllerMap controller_map(const std::array<std::string, 6>& formulas) { return ControllerMap(formulas); }
 
 }  // namespace detail
 
@@ -142,6 +149,41 @@ VERNIER_API inline Robot<6, ModifiedDh> puma560_modified() {
       {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
   }}};
   return {chain, detail::puma560_limits(), "puma560_modified"};
+}
+
+/// FANUC R-2000iB/165F. Its base frame is the controller's, at the height of joint 2; joint 3 is counted from the
+/// horizontal.
+inline Robot<6> fanuc_r2000ib_165f() {
+  constexpr DhChain<6> chain{{{
+      {.a = 312_mm, .alpha = -90_deg, .d = 0_mm},
+      {.a = 1075_mm, .alpha = 0_deg, .d = 0_mm, .theta = -90_deg},
+      {.a = 225_mm, .alpha = -90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 90_deg, .d = 1280_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 215_mm},
+  }}};
+  return {chain,
+          vernier::detail::limits_deg<6>({-180, -60, -132, -360, -125, -360}, {180, 76, 230, 360, 125, 360}),
+          "fanuc_r2000ib_165f",
+          {},
+          vernier::detail::controller_map({"J1", "J2", "-J2 - J3", "-J4", "-J5", "-J6"})};
+}
+
+/// KUKA KR 6 R900 sixx (Agilus). Joints 1, 4 and 6 turn the other way than its frames.
+inline Robot<6> kuka_kr6_r900() {
+  constexpr DhChain<6> chain{{{
+      {.a = 25_mm, .alpha = -90_deg, .d = 400_mm},
+      {.a = 455_mm, .alpha = 0_deg, .d = 0_mm},
+      {.a = 35_mm, .alpha = -90_deg, .d = 0_mm, .theta = -90_deg},
+      {.a = 0_mm, .alpha = 90_deg, .d = 420_mm},
+      {.a = 0_mm, .alpha = -90_deg, .d = 0_mm},
+      {.a = 0_mm, .alpha = 0_deg, .d = 80_mm, .theta = 180_deg},
+  }}};
+  return {chain,
+          vernier::detail::limits_deg<6>({-170, -190, -120, -185, -120, -350}, {170, 45, 156, 185, 120, 350}),
+          "kuka_kr6_r900",
+          {},
+          vernier::detail::controller_map({"-J1", "J2", "J3", "-J4", "J5", "-J6"})};
 }
 
 }  // namespace robots

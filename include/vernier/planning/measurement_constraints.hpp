@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "vernier/core/controller_map.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 
 namespace vernier {
@@ -39,6 +40,8 @@ struct MeasurementConstraints {
   /// Radii of the links [m], one a joint: link i is a capsule from the origin of frame i - 1 to that of frame i. Empty:
   /// links hide nothing and touch nothing.
   std::vector<double> link_radii{};
+  /// Limits are those of this controller's joints; where it has fewer than the chain, values behind them are 0.
+  ControllerMap controller{};
 };
 
 /// Why a configuration is rejected: the first constraint that it fails, in this order.
@@ -61,6 +64,8 @@ class MeasurementScene {
 
   /// Why the joint values q [rad, m] cannot be measured; `none` where they can.
   VERNIER_API Rejection rejection(const ConstVectorRef& q) const;
+  /// The controller whose joints have the limits.
+  const ControllerMap& controller() const { return constraints_.controller; }
 
  private:
   VERNIER_API Rejection check_sight(const Vector3& tool, const Vector3& looks,

@@ -42,6 +42,7 @@ VERNIER_IMPL MeasurementScene::MeasurementScene(const ArmGeometry& arm, Measurem
     : arm_(arm), constraints_(std::move(constraints)) {
   const MeasurementConstraints& c = constraints_;
   const Index joints = arm_.joints();
+  static_cast<void>(c.controller.joints(static_cast<int>(joints)));
   for (const VectorX* limits : {&c.lower, &c.upper})
     demand(limits->size() == 0 || limits->size() == joints, "MeasurementScene: limits of ", limits->size(),
            " joints for an arm of ", joints);
@@ -65,9 +66,10 @@ VERNIER_IMPL Rejection MeasurementScene::rejection(const ConstVectorRef& q) cons
   const MeasurementConstraints& c = constraints_;
   const Index joints = arm_.joints();
   demand(q.size() == joints, "MeasurementScene: ", q.size(), " joint values for an arm of ", joints);
-  for (Index j = 0; j < joints; ++j)
-    if ((c.lower.size() > 0 && q(j) < c.lower(j) + c.joint_margin) ||
-        (c.upper.size() > 0 && q(j) > c.upper(j) - c.joint_margin))
+  const MatrixX shown = c.controller.to_controller(q.transpose());
+  for (Index j = 0; j < shown.cols(); ++j)
+    if ((c.lower.size() > 0 && shown(0, j) < c.lower(j) + c.joint_margin) ||
+        (c.upper.size() > 0 && shown(0, j) > c.upper(j) - c.joint_margin))
       return Rejection::joint_limits;
   const Isometry3 pose = arm_.poses(VERNIER_LATER(q).transpose()).front();
   const Vector3 tool = translation(pose);

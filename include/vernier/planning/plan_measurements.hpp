@@ -93,7 +93,7 @@ VERNIER_API MatrixX admitted_joints(const MeasurementScene& scene, const VectorX
 /// Candidates drawn uniformly within joint limits, of which constraints admit all. Each counts as approached from the
 /// one before, so directions of approach are at random.
 /// @param arm         as designed, with its tool
-/// @param limits      finite, lower below upper
+/// @param limits      finite, lower below upper; of the controller's joints (`MeasurementConstraints::controller`)
 /// @param constraints their joint limits are replaced by `limits`
 /// @param n           number of candidates
 /// @param seed        same seed, same candidates

@@ -162,14 +162,17 @@ VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const Vector
                                      std::uint64_t seed, RejectionCounts& rejected) {
   demand(n >= 1, "sample_candidates: ", n, " candidates requested");
   bool usable = all_finite(lower) && all_finite(upper);
-  for (Index j = 0; j < lower.size(); ++j) usable = usable && lower(j) < upper(j);
+  const Index joints = scene.controller().joints(static_cast<int>(lower.size()));
+  for (Index j = 0; j < joints; ++j) usable = usable && lower(j) < upper(j);
   demand(usable, "sample_candidates: the joint limits are not finite, or empty");
   Rng rng(seed);
-  MatrixX out(n, lower.size());
+  MatrixX out(n, lower.size()), shown(1, joints);
   constexpr Index attempts = 1000;
   Index tried = 0;
   for (Index i = 0; i < n;) {
-    for (Index j = 0; j < lower.size(); ++j) out(i, j) = rng.uniform(lower(j), upper(j));
+    for (Index j = 0; j < joints; ++j) shown(0, j) = rng.uniform(lower(j), upper(j));
+    const MatrixX drawn = scene.controller().to_chain(shown);
+    for (Index j = 0; j < lower.size(); ++j) out(i, j) = drawn(0, j);
     const Rejection reason = scene.rejection(row_of(out, i));
     ++rejected[static_cast<std::size_t>(reason)];
     if (reason == Rejection::none) ++i;

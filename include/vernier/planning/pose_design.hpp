@@ -49,7 +49,8 @@ struct PoseDesign {
 /// @param region   rows of what is to be predicted, whose variance is meant, three a pose; may have no rows, unless the
 ///                 criterion is `region_variance`
 /// @throws std::invalid_argument for sizes that do not match, or values that are not finite
-/// @complexity at most O(count n b^2 p) for n candidates of b rows and p unknowns; O(p^3 + n b p^2) more where there
+/// @complexity at most O(count n b^2 p) for n candidates of b rows and p unknowns, memory O(n b p) whatever the count;
+///             O(p^3 + n b p^2) more where there
 /// are
 ///             measured rows, O(n b p r) more for `region_variance` over r rows
 /// @cite Chaloner and Verdinelli 1995 (criteria); Minoux 1978 (lazy greedy choice)

@@ -32,8 +32,19 @@ VERNIER_LOCAL Matrix6 factor_of_sum(const ConstMatrixRef& v) {
   return out;
 }
 
-/// A design that grows. Of all rows chosen so far, P, it keeps the Cholesky factor F of `I + P P'`; a candidate with
-/// rows A then has `V = A A' - known' known`, `F known = P A'`, which is brought up to date where it is looked at.
+/// Solves for columns in which unknowns of the prior precision I + measured' measured have the prior precision I.
+VERNIER_LOCAL void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
+  MatrixX precision = MatrixX::Identity(measured.cols(), measured.cols());
+  add_transposed_product(precision, measured, measured);
+  demand(cholesky(precision), "design_poses: the rows are not usable");
+  solve_lower(precision, candidates);
+  solve_lower(precision, region);
+}
+
+/// A design that grows. Of rows chosen so far, P, it keeps the Cholesky factor F of `I + P P'`; a candidate with
+/// rows A then has `V = A A' - known' known`, `F known = P A'`, which is brought up to date where it is looked at. P
+/// has at most as many rows as there are unknowns: then all columns are solved for unknowns with the prior I again, and
+/// P begins anew. So memory and time of a choice do not grow with the number of choices.
 class GrowingDesign {
  public:
   /// @param candidates p x n b, what the rows are transposed
@@ -42,18 +53,16 @@ class GrowingDesign {
       : columns_(std::move(candidates)),
         region_(std::move(region)),
         block_(block),
-        picks_(columns_.rows(), options.count * block),
-        factor_(MatrixX::Zero(options.count * block, options.count * block)),
-        known_(options.count * block, columns_.cols()),
-        known_region_(options.count * block, region_.cols()),
+        kept_((std::min)(options.count, (columns_.rows() + block - 1) / block)),
+        picks_(columns_.rows(), kept_ * block),
+        factor_(MatrixX::Zero(kept_ * block, kept_ * block)),
+        known_(kept_ * block, columns_.cols()),
+        known_region_(kept_ * block, region_.cols()),
         variance_(block, columns_.cols()),
         level_(static_cast<std::size_t>(size()), 0),
+        by_region_(options.criterion == DesignCriterion::region_variance),
         region_variance_(squared_column_norms(region_)) {
-    variance_.setZero();
-    for (Index c = 0; c < size(); ++c) add_to_variance(c, products(columns_, c), 1);
-    if (options.criterion != DesignCriterion::region_variance) return;
-    to_region_.setZero(region_.cols(), columns_.cols());
-    add_transposed_product(to_region_, region_, columns_);
+    begin();
   }
 
   /// Number of candidates.
@@ -82,7 +91,8 @@ class GrowingDesign {
     return sum.trace();
   }
   /// Chooses a candidate that is up to date.
-  VERNIER_LOCAL void choose(Index c) {
+  /// @return whether all others are up to date then, because P began anew
+  VERNIER_LOCAL bool choose(Index c) {
     const Index at = chosen_ * block_;
     VERNIER_LATER(picks_).middleCols(at, block_) = VERNIER_LATER(columns_).middleCols(c * block_, block_);
     const Matrix6 own = factor(c);
@@ -91,10 +101,16 @@ class GrowingDesign {
       for (Index b = 0; b < block_; ++b) factor_(at + a, at + b) = own(a, b);
     }
     ++chosen_;
-    if (region_.cols() == 0) return;
-    const MatrixX tail = solved(region_, known_region_, 0, region_.cols(), at);
-    VERNIER_LATER(known_region_).middleRows(at, block_) = tail;
-    region_variance_ -= squared_column_norms(tail);
+    if (region_.cols() > 0) {
+      const MatrixX tail = solved(region_, known_region_, 0, region_.cols(), at);
+      VERNIER_LATER(known_region_).middleRows(at, block_) = tail;
+      region_variance_ -= squared_column_norms(tail);
+    }
+    if (chosen_ < kept_) return false;
+    account_for_measured(VERNIER_LATER(picks_).transpose(), columns_, region_);
+    chosen_ = 0;
+    begin();
+    return true;
   }
   /// Mean variance of the region's points, three rows each.
   VERNIER_LOCAL double region_variance() const {
@@ -102,6 +118,15 @@ class GrowingDesign {
   }
 
  private:
+  /// V of all candidates, of which none is chosen.
+  VERNIER_LOCAL void begin() {
+    variance_.setZero();
+    std::fill(level_.begin(), level_.end(), Index{0});
+    for (Index c = 0; c < size(); ++c) add_to_variance(c, products(columns_, c), 1);
+    if (!by_region_) return;
+    to_region_.setZero(region_.cols(), columns_.cols());
+    add_transposed_product(to_region_, region_, columns_);
+  }
   /// Products of a candidate's columns with each other; zero beyond them.
   VERNIER_LOCAL Matrix6 products(const MatrixX& columns, Index c) const {
     Matrix6 out = Matrix6::Zero();
@@ -134,21 +159,14 @@ class GrowingDesign {
 
   MatrixX columns_, region_;
   Index block_, chosen_ = 0;
+  Index kept_;  // choices after which P begins anew
   MatrixX picks_, factor_, known_, known_region_;
   MatrixX variance_;          // V of each candidate, beside each other
   MatrixX to_region_{};       // K of each candidate, likewise
   std::vector<Index> level_;  // number of choices that V of each candidate knows
-  VectorX region_variance_;   // of each row
+  bool by_region_;
+  VectorX region_variance_;  // of each row
 };
-
-/// Solves for columns in which unknowns of the prior precision I + measured' measured have the prior precision I.
-VERNIER_LOCAL void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
-  MatrixX precision = MatrixX::Identity(measured.cols(), measured.cols());
-  add_transposed_product(precision, measured, measured);
-  demand(cholesky(precision), "design_poses: the measured rows are not usable");
-  solve_lower(precision, candidates);
-  solve_lower(precision, region);
-}
 
 VERNIER_LOCAL void check_design(const ConstMatrixRef& rows, Index block, const ConstMatrixRef& measured,
                                 const ConstMatrixRef& region, const PoseDesignOptions& options) {
@@ -214,9 +232,10 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
   std::vector<detail::DesignOffer> heap;
   for (Index c = 0; c < design.size(); ++c) heap.push_back(offer(c));
   std::make_heap(heap.begin(), heap.end());
+  bool all_known = false;
   for (Index step = 0; step < options.count; ++step) {
-    if (by_region && step > 0) {  // reductions may also grow by a choice
-      design.update(0, design.size());
+    if (by_region && step > 0 && !all_known) design.update(0, design.size());  // reductions may also grow by a choice
+    if (all_known || (by_region && step > 0)) {
       for (detail::DesignOffer& of : heap) of = offer(of.candidate);
       std::make_heap(heap.begin(), heap.end());
     }
@@ -237,7 +256,7 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
       int& missing = out.missing(bins(best, k));
       missing = (std::max)(0, missing - 1);
     }
-    design.choose(best);
+    all_known = design.choose(best);
     if (region.rows() > 0) out.region_variance(step + 1) = design.region_variance();
   }
   return out;

@@ -12,6 +12,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/kinematics/closed_form.hpp"
+#include "vernier/kinematics/in_controller_joints.hpp"
 #include "vernier/robot_programs/corrected_program.hpp"
 #include "vernier/robot_programs/detail/target_correction.hpp"
 
@@ -20,7 +21,8 @@ namespace vernier {
 /// A calibrated arm of six joints whose programs can be corrected: `CalibratedRobot<6>`, or a type of one's own.
 ///
 /// - `nominal()`: the arm as designed, a `DhChain` or one between frames, in the frames of the calibration
-/// - `limits()`: of its commands
+/// - `limits()`: of its commands, in joints of the controller
+/// - `controller()`, if it has one: the `ControllerMap` by which the chain's joints follow from those of the controller
 /// - `correct(target, seed, previous)`: the command that brings the arm to a pose in these frames, near the joint
 ///   values `seed`; it comes from the command `previous`, which is not finite where unknown
 template <class R>
@@ -57,22 +59,30 @@ ClosedForm<6> program_roots(const Arm& nominal) {
 template <class Robot, class Controller, class Nominal>
 CorrectedProgram correct_program(const RobotProgram& program, const Robot& robot, const Controller& controller,
                                  const Nominal& its, bool poses, const ProgramOptions& options) {
-  const ClosedForm<6> roots = program_roots(its);
+  const JointChange<6> change = [&] {
+    if constexpr (requires { JointChange<6>(robot.controller()); }) return JointChange<6>(robot.controller());
+    return JointChange<6>();
+  }();
+  const RootsInControllerJoints<ClosedForm<6>> roots(program_roots(its), change);
+  const InControllerJoints<Controller> shown(controller, change);
   const auto frames = in_frames(its);
   const auto nominal = in_frames(robot.nominal());
   const JointLimits<6> limits = robot.limits();
   const ControllerArm arm = options.arm.value_or(ControllerArm{});
   const Isometry3 from_base = frames.base().inverse(), to_flange = frames.tool().inverse();
-  const auto pose = [&](const JointVector<6>& q) { return Isometry3(from_base * controller.pose(q) * to_flange); };
+  const auto pose = [&](const JointVector<6>& q) { return Isometry3(from_base * shown.pose(q) * to_flange); };
   const auto joints = [&](const Isometry3& at, const std::vector<int>& configuration, const JointVector<6>& close_to) {
-    return controller_joints(roots, controller, limits, program.language, arm, frames.base() * at * frames.tool(),
+    return controller_joints(roots, shown, limits, program.language, arm, frames.base() * at * frames.tool(),
                              configuration, close_to);
   };
   const auto correct = [&](const Isometry3& at, const JointVector<6>& q, const JointVector<6>& previous) {
-    return robot.correct(Isometry3(nominal.base() * at * nominal.tool()), q, previous);
+    Correction<6> out =
+        robot.correct(Isometry3(nominal.base() * at * nominal.tool()), change.to_chain(q), change.to_chain(previous));
+    out.command = change.to_controller(out.command);
+    return out;
   };
   const auto branch = [&](const JointVector<6>& q) { return roots.distances(q).branch(); };
-  return correct_targets(program, {pose, joints, correct, branch, poses}, options);
+  return correct_targets(program, {pose, joints, correct, branch, poses, !change.same()}, options);
 }
 
 }  // namespace detail

@@ -55,7 +55,8 @@ struct CorrectedProgram {
 
   /// The new values of all corrected targets, for `replace_targets`.
   VERNIER_API std::vector<ReplacedTarget> replaced() const;
-  /// The corrected joint values, a row each [rad], for `CalibratedRobot::radii_95`.
+  /// The corrected joint values of the controller, a row each [rad]. `CalibratedRobot::radii_95` takes those of the
+  /// chain.
   VERNIER_API JointRows<6> commands() const;
   /// Mean distance by which a target is moved [m]; 0 where none is.
   VERNIER_API double mean_correction() const;

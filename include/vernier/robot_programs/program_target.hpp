@@ -65,11 +65,12 @@ struct ProgramTarget {
 
 /// An input without which a target cannot be corrected.
 enum class MissingInput {
-  none,        ///< no input would help
-  controller,  ///< the kinematics of the robot's controller
-  tool,        ///< the frame of the target's tool
-  workobject,  ///< the frame of the target's work object
-  effect,      ///< whether a statement, or a routine of another file, changes what targets mean
+  none,               ///< no input would help
+  controller,         ///< the kinematics of the robot's controller
+  tool,               ///< the frame of the target's tool
+  workobject,         ///< the frame of the target's work object
+  effect,             ///< whether a statement, or a routine of another file, changes what targets mean
+  controller_joints,  ///< how the controller counts the joints of the arm, see `ControllerMap`
 };
 
 /// What is not corrected, and why.

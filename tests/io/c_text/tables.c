@@ -2,6 +2,9 @@ R"c(
 /* Tables of an arm, as they stand behind the types; of them the text needs declarations alone. */
 extern const double arm_limits_[2 * ARM_JOINTS], arm_nominal_rows_[7 * ARM_JOINTS];
 extern const arm_arm_ arm_identified_;
+#if HAS_CONTROLLER
+extern const double arm_factors_[ARM_CHAIN_ * ARM_JOINTS], arm_zeros_[ARM_CHAIN_];
+#endif
 #if HAS_PRISMATIC
 extern const int arm_prismatic_[ARM_JOINTS];
 #endif

@@ -112,8 +112,9 @@ class PathSearch {
   }
   VERNIER_LOCAL bool at_limit(const PathJoints& q) const {
     bool out = false;
-    for (int j = 0; j < arm_.joints; ++j)
-      out = out || q(j) - settings_.lower(j) <= 1e-9 || settings_.upper(j) - q(j) <= 1e-9;
+    for (int j = 0; j < arm_.joints; ++j)  // a held joint is no limit
+      out = out || (settings_.lower(j) < settings_.upper(j) &&
+                    (q(j) - settings_.lower(j) <= 1e-9 || settings_.upper(j) - q(j) <= 1e-9));
     return out;
   }
   /// Adds a state, or a cheaper way to it.

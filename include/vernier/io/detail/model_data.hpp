@@ -28,6 +28,7 @@ struct ModelData {
   std::optional<ThermalRates> thermal;
   std::optional<LearnedData> learned;
   std::optional<ErrorModelEstimate> estimate;
+  ControllerMap controller{};  ///< `lower` and `upper` are of its joints, 0 behind them
 };
 
 VERNIER_API nlohmann::ordered_json model_to_json(const ModelData& model);
@@ -55,6 +56,7 @@ ModelData model_data(const CalibratedRobot<N, Convention>& robot) {
                 {},
                 {},
                 {}};
+  out.controller = robot.controller();
   if (robot.estimate() != nullptr) out.estimate = *robot.estimate();
   if (robot.model().thermal() != nullptr) out.thermal = *robot.model().thermal();
   if (const auto* fallback = robot.model().fallback()) {
@@ -87,7 +89,7 @@ CalibratedRobot<N, Convention> robot_of(const ModelData& data) {
                                       data.coverage.template typed<N>())
                               : Model(nominal, data.identified.typed(nominal));
   if (data.thermal) model = model.with_thermal(*data.thermal);
-  Robot robot(data.name, model, {data.lower, data.upper}, data.provenance);
+  Robot robot = Robot(data.name, model, {data.lower, data.upper}, data.provenance).with_controller(data.controller);
   if (data.estimate) robot = robot.with_estimate(*data.estimate);
   if (!data.learned) return robot;
   const JointCoverage<N> gate = data.learned->coverage.template typed<N>();

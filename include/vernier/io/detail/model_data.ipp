@@ -25,14 +25,86 @@ inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "p
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
 inline constexpr std::array<std::string_view, 3> measured_names{"poses", "positions", "contacts"};
 
+/// The key of a joint's limit, or of its zero.
+VERNIER_LOCAL const char* key_of(JointType type, const char* angle, const char* length) {
+  return type == JointType::revolute ? angle : length;
+}
+
+VERNIER_LOCAL std::vector<JointType> types_of(const ChainTable& chain) {
+  std::vector<JointType> out;
+  for (const DhRow& row : chain.rows()) out.push_back(row.joint);
+  return out;
+}
+
+VERNIER_LOCAL void add_limits(OrderedJson& joint, JointType type, double lower, double upper) {
+  if (std::isfinite(lower)) joint[key_of(type, "lower_rad", "lower_m")] = lower;
+  if (std::isfinite(upper)) joint[key_of(type, "upper_rad", "upper_m")] = upper;
+}
+
+VERNIER_LOCAL void read_limits_of(const JsonNode& joint, JointType type, double& lower, double& upper) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  lower = joint.has_quantity("lower") ? joint.at(key_of(type, "lower_rad", "lower_m")).number() : -infinity;
+  upper = joint.has_quantity("upper") ? joint.at(key_of(type, "upper_rad", "upper_m")).number() : infinity;
+  if (!(lower < upper)) joint.fail("the lower limit is not below the upper one");
+}
+
+/// A controller that counts its joints differently: for each joint of the chain factors and a zero, and limits.
+VERNIER_LOCAL OrderedJson controller_to_json(const ModelData& model) {
+  const ControllerMap& map = model.controller;
+  const std::vector<JointType> chain_types = types_of(model.nominal), types = map.types(chain_types);
+  OrderedJson chain = OrderedJson::array(), joints = OrderedJson::array();
+  for (int i = 0; i < map.chain_joints(); ++i) {
+    OrderedJson factors = OrderedJson::array();
+    for (int j = 0; j < map.joints(); ++j) factors.push_back(static_cast<int>(map.square()(i, j)));
+    chain.push_back({{"factors", std::move(factors)},
+                     {key_of(chain_types[static_cast<std::size_t>(i)], "zero_rad", "zero_m"), map.zeros()(i)}});
+  }
+  for (int j = 0; j < map.joints(); ++j) {
+    OrderedJson joint = OrderedJson::object();
+    add_limits(joint, types[static_cast<std::size_t>(j)], model.lower(j), model.upper(j));
+    joints.push_back(std::move(joint));
+  }
+  return {{"chain", std::move(chain)}, {"joints", std::move(joints)}};
+}
+
+/// Reads what `controller_to_json` writes.
+VERNIER_LOCAL void controller_from_json(const JsonNode& node, ModelData& model) {
+  const std::vector<JointType> chain_types = types_of(model.nominal);
+  const auto n = static_cast<Index>(chain_types.size());
+  const JsonNode chain = node.at("chain"), joints = node.at("joints");
+  chain.require_size(chain_types.size());
+  const auto m = static_cast<Index>(joints.size());
+  MatrixX factors(n, m);
+  VectorX zeros(n);
+  for (Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const VectorX row = chain.at(k).at("factors").numbers(joints.size());
+    for (Index j = 0; j < m; ++j) factors(i, j) = row(j);
+    zeros(i) = chain.at(k).at(key_of(chain_types[k], "zero_rad", "zero_m")).number();
+  }
+  std::vector<JointType> types;
+  try {
+    model.controller = ControllerMap(factors, zeros);
+    types = model.controller.types(chain_types);
+  } catch (const std::invalid_argument& error) {
+    node.fail(error.what());
+  }
+  model.lower.setZero();
+  model.upper.setZero();
+  for (Index j = 0; j < m; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    read_limits_of(joints.at(k), types[k], model.lower(j), model.upper(j));
+  }
+}
+
 VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   OrderedJson joints = OrderedJson::array();
   for (int i = 0; i < model.nominal.joints(); ++i) {
     const bool revolute = model.nominal.revolute(i);
     OrderedJson joint{{"type", joint_type_names[revolute ? 0 : 1]},
                       {"nominal", row_to_json(model.nominal.rows()[static_cast<std::size_t>(i)])}};
-    if (std::isfinite(model.lower(i))) joint[revolute ? "lower_rad" : "lower_m"] = model.lower(i);
-    if (std::isfinite(model.upper(i))) joint[revolute ? "upper_rad" : "upper_m"] = model.upper(i);
+    if (model.controller.same())
+      add_limits(joint, model.nominal.rows()[static_cast<std::size_t>(i)].joint, model.lower(i), model.upper(i));
     joints.push_back(std::move(joint));
   }
   const Provenance& from = model.provenance;
@@ -54,6 +126,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   add_known("held_out_error_m", from.held_out_error);
   if (!from.data_sha256.empty()) out["provenance"]["data_sha256"] = from.data_sha256;
   out["joints"] = std::move(joints);
+  if (!model.controller.same()) out["controller"] = controller_to_json(model);
   out["arm"] = arm_to_json(model.identified);
   if (model.fallback) {
     out["outside_arm"] = arm_to_json(*model.fallback);
@@ -108,16 +181,12 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
   if (list.size() < 1 || list.size() > max_joints) list.fail(message("has ", list.size(), " joints"));
   const auto joints = static_cast<int>(list.size());
   std::vector<DhRow> rows;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  VectorX lower = VectorX::Constant(joints, -infinity), upper = VectorX::Constant(joints, infinity);
+  VectorX lower(joints), upper(joints);
   for (int i = 0; i < joints; ++i) {
     const JsonNode joint = list.at(static_cast<std::size_t>(i));
     const auto type = static_cast<JointType>(named(joint.at("type"), joint_type_names));
     rows.push_back(row_from_json(joint.at("nominal"), type));
-    const bool revolute = type == JointType::revolute;
-    if (joint.has_quantity("lower")) lower(i) = joint.at(revolute ? "lower_rad" : "lower_m").number();
-    if (joint.has_quantity("upper")) upper(i) = joint.at(revolute ? "upper_rad" : "upper_m").number();
-    if (!(lower(i) < upper(i))) joint.fail("the lower limit is not below the upper one");
+    read_limits_of(joint, type, lower(i), upper(i));
   }
   const JsonNode from = root.at("provenance");
   const auto any_text = [](const JsonNode& node) { return node.is_empty_text() ? std::string() : node.text(); };
@@ -146,6 +215,7 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
                 {},
                 {},
                 {}};
+  if (root.has("controller")) controller_from_json(root.at("controller"), out);
   if (root.has("coverage") && !root.has("outside_arm")) root.fail("key 'outside_arm' is missing");
   if (root.has("outside_arm")) {
     out.fallback = arm_from_json(nominal, root.at("outside_arm"));

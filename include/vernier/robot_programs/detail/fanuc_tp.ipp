@@ -75,8 +75,8 @@ class FanucReader final : private StatementReader {
     place(text_, text_.tokens[first].begin, line, out);
     out.name = name;
     static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "w", "p", "r"};
-    std::array<std::optional<double>, 6> values{};
-    std::array<ByteRange, 6> ranges{};
+    std::array<std::optional<double>, 6> values{}, angles{};
+    std::array<ByteRange, 6> ranges{}, angle_ranges{};
     bool other_group = false, group = false, joints = false, external = false;
     for (std::size_t k = open + 1; k < close - 1; ++k) {
       const std::string key = word(k);
@@ -98,7 +98,15 @@ class FanucReader final : private StatementReader {
           if (word(next) != (c < 3 ? "mm" : "deg")) values[c].reset();
           ranges[c] = range;
         }
-      if (key.size() == 2 && key[0] == 'j') joints = true;
+      if (key.size() == 2 && key[0] == 'j') {
+        joints = true;
+        const std::size_t c = static_cast<std::size_t>(key[1]) - '1';
+        if (c < 6) {
+          angles[c] = signed_number(text_, k + 2, next, range);
+          if (word(next) != "deg") angles[c].reset();
+          angle_ranges[c] = range;
+        }
+      }
       if (key.size() == 2 && key[0] == 'e') {
         const std::optional<double> axis = signed_number(text_, k + 2, next, range);
         external = external || !axis || !same_value(*axis, 0);
@@ -107,12 +115,21 @@ class FanucReader final : private StatementReader {
     if (!group) return refuse("no group 1");
     if (other_group) return refuse("a second motion group");
     if (external) return refuse("external axes are in use");
-    if (joints) return refuse("joint values, in which J2 and J3 depend on each other");
     Vector6 v;
     for (std::size_t c = 0; c < 6; ++c) {
-      if (!values[c]) return refuse("a component is missing or no number");
-      v(static_cast<Index>(c)) = *values[c];
-      out.numbers.push_back(ranges[c]);
+      const std::optional<double>& value = joints ? angles[c] : values[c];
+      if (!value) return refuse("a component is missing or no number");
+      v(static_cast<Index>(c)) = *value;
+      out.numbers.push_back(joints ? angle_ranges[c] : ranges[c]);
+    }
+    if (joints) {
+      out.kind = TargetKind::joints;
+      out.joints = v * (std::numbers::pi / 180);
+      out.configuration.clear();
+      out.configuration_numbers.clear();
+      known_[name] = program_.targets.size();
+      program_.targets.push_back(std::move(out));
+      return close;
     }
     if (out.configuration.empty()) return refuse("its configuration is missing or of another kind");
     if (out.configuration[3] != 0 || out.configuration[4] != 0)

@@ -12,7 +12,7 @@
 namespace vernier::detail {
 
 /// A controller and the calibrated arm that it moves, their types forgotten. Poses are of the last frame of the nominal
-/// chain in its first one [m], joint values of six revolute joints [rad].
+/// chain in its first one [m], joint values of the controller's six revolute joints [rad].
 struct ProgramArm {
   /// Where the controller believes the arm to be.
   FunctionRef<Isometry3(const JointVector<6>& joints)> pose;
@@ -25,7 +25,8 @@ struct ProgramArm {
       correct;
   /// The branch of joint values.
   FunctionRef<int(const JointVector<6>& joints)> branch;
-  bool poses;  ///< whether the kinematics by which the controller reaches poses are known
+  bool poses;   ///< whether the kinematics by which the controller reaches poses are known
+  bool mapped;  ///< whether the arm states how the controller counts its joints
 };
 
 /// Corrects every target of a program.

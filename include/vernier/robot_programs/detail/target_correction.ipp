@@ -130,6 +130,8 @@ VERNIER_IMPL void TargetCorrection::correct(std::size_t k) {
     if (!found.joints) return refuse(target, found.reason);
     joints = *found.joints;
   } else {
+    if (program_.language == ProgramLanguage::fanuc_tp && !arm_.mapped)
+      return refuse(target, "joint values, in which J2 and J3 depend on each other", MissingInput::controller_joints);
     meant = arm_.pose(joints);
   }
   stands_[k] = joints;

@@ -3,10 +3,10 @@ R"c(
 
 /* Where the links are; three coordinates a joint. */
 typedef struct {
-  double axis[3 * ARM_JOINTS], point[3 * ARM_JOINTS]; /* of the joint */
+  double axis[3 * ARM_CHAIN_], point[3 * ARM_CHAIN_]; /* of the joint */
 #if HAS_LINKS
-  double end[3 * ARM_JOINTS];                        /* of the link */
-  double x[3 * ARM_JOINTS], y[3 * ARM_JOINTS], origin[3 * ARM_JOINTS]; /* of the frame behind the joint */
+  double end[3 * ARM_CHAIN_];                        /* of the link */
+  double x[3 * ARM_CHAIN_], y[3 * ARM_CHAIN_], origin[3 * ARM_CHAIN_]; /* of the frame behind the joint */
 #endif
 } arm_links_;
 
@@ -32,9 +32,9 @@ static inline void arm_store_(double *out, int joint, const double *v) {
 
 /* Carries a frame along a chain from where it begins. */
 static inline void arm_walk_(const double *rows, const double *q, double *frame, arm_links_ *links) {
-  double *x = frame, *y = frame + 3, *z = frame + 6, *origin = frame + 9, c[ARM_JOINTS], s[ARM_JOINTS];
+  double *x = frame, *y = frame + 3, *z = frame + 6, *origin = frame + 9, c[ARM_CHAIN_], s[ARM_CHAIN_];
   int i;
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
 #if HAS_PRISMATIC
     const double angle = rows[7 * i] + (arm_prismatic_[i] ? 0 : q[i]);
 #else
@@ -43,7 +43,7 @@ static inline void arm_walk_(const double *rows, const double *q, double *frame,
     c[i] = cos(angle);
     s[i] = sin(angle);
   }
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     const double *row = rows + 7 * i;
 #if HAS_PRISMATIC
     const double d = row[1] + (arm_prismatic_[i] ? q[i] : 0);

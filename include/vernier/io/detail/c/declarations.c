@@ -1,5 +1,5 @@
 R"c(
-/* Joint values are commands [rad, m]. A pose T is base_T_tool in the frame of the measurements: the upper three rows of
+/* Joint values are commands [rad, m], as the controller counts its joints. A pose T is base_T_tool in the frame of the measurements: the upper three rows of
  * the 4 x 4 matrix, row by row, [m]. `previous` is the command before, from which the arm comes; 0, or values that are
  * not finite, where that is unknown: then the arm is in the middle of both directions of approach. */
 

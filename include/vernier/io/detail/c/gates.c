@@ -25,18 +25,18 @@ static inline double arm_gate_of_joint_(const double *ranges, int count, double 
 
 /* The product of all, and where wanted its gradient. */
 static inline double arm_gate_at_(const arm_coverage_ *coverage, const double *q, double *gradient) {
-  double value[ARM_JOINTS], slope[ARM_JOINTS], product = 1;
+  double value[ARM_CHAIN_], slope[ARM_CHAIN_], product = 1;
   const double *ranges = coverage->ranges;
   int i, k;
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     value[i] =
         arm_gate_of_joint_(ranges, coverage->count[i], coverage->margin[i], coverage->periodic[i], q[i], slope + i);
     ranges += 2 * coverage->count[i];
     product *= value[i];
   }
-  for (k = 0; gradient && k < ARM_JOINTS; ++k) {
+  for (k = 0; gradient && k < ARM_CHAIN_; ++k) {
     gradient[k] = slope[k];
-    for (i = 0; i < ARM_JOINTS; ++i)
+    for (i = 0; i < ARM_CHAIN_; ++i)
       if (i != k) gradient[k] *= value[i];
   }
   return product;
@@ -59,7 +59,7 @@ static inline void arm_blend_(double gate, const double *slope, const double *ne
   if (near_J && far_J) {
     arm_left_inverse_(phi, inverse);
     arm_left_(part, left);
-    for (k = 0; k < ARM_JOINTS; ++k) {
+    for (k = 0; k < ARM_CHAIN_; ++k) {
       double *linear = far_J + 6 * k, *angular = linear + 3;
       for (j = 0; j < 3; ++j) linear[j] += gate * (near_J[6 * k + j] - linear[j]) + apart[j] * slope[k];
       arm_rotate_(between, angular, v);

@@ -1,5 +1,5 @@
 R"c(
-/* ---- errors of the joints. Derivatives `rate` are ARM_JOINTS x ARM_JOINTS, a column a commanded joint; 0 for none ---- */
+/* ---- errors of the joints. Derivatives `rate` are ARM_CHAIN_ x ARM_CHAIN_, a column a commanded joint; 0 for none ---- */
 #if HAS_LINEAR
 
 static inline double arm_linear_(const arm_arm_ *arm, int joint, double q) {
@@ -12,13 +12,13 @@ static inline double arm_linear_(const arm_arm_ *arm, int joint, double q) {
 /* Gear ratios and coupling. */
 static inline void arm_add_linear_(const arm_arm_ *arm, const double *q, double *joints, double *rate) {
   int i, from;
-  for (i = 0; i < ARM_JOINTS; ++i)
+  for (i = 0; i < ARM_CHAIN_; ++i)
     for (from = i; from >= 0 && from >= i - 1; --from) {
       const double *of = from == i ? arm->gear : arm->coupling;
       const double linear = arm_linear_(arm, from, q[from]);
       if (!of) continue;
       joints[i] += of[i] * linear;
-      if (rate && linear == q[from]) rate[from * ARM_JOINTS + i] += of[i];
+      if (rate && linear == q[from]) rate[from * ARM_CHAIN_ + i] += of[i];
     }
 }
 #endif
@@ -28,10 +28,10 @@ static inline void arm_add_linear_(const arm_arm_ *arm, const double *q, double 
 static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links, double *joints, double *rate) {
   const double *down = arm->gravity_down, *weight = arm->gravity;
   int i, j, k;
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     const double *axis = links->axis + 3 * i;
     double sum[3] = {0, 0, 0}, lever[3], turned[3], total = 0;
-    for (k = ARM_JOINTS - 1; k >= i; --k) { /* the links from k on */
+    for (k = ARM_CHAIN_ - 1; k >= i; --k) { /* the links from k on */
       total += weight[k - i];
       for (j = 0; j < 3; ++j) {
         sum[j] += weight[k - i] * links->end[3 * k + j];
@@ -40,21 +40,21 @@ static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links
 #if HAS_PRISMATIC
       if (arm_prismatic_[i]) continue;
       if (arm_prismatic_[k]) {
-        if (rate) rate[k * ARM_JOINTS + i] += total * arm_triple_(axis, links->axis + 3 * k, down);
+        if (rate) rate[k * ARM_CHAIN_ + i] += total * arm_triple_(axis, links->axis + 3 * k, down);
         continue;
       }
 #endif
       arm_cross_(links->axis + 3 * k, lever, turned);
-      if (rate) rate[k * ARM_JOINTS + i] += arm_triple_(axis, turned, down);
+      if (rate) rate[k * ARM_CHAIN_ + i] += arm_triple_(axis, turned, down);
     }
-    weight += ARM_JOINTS - i;
+    weight += ARM_CHAIN_ - i;
 #if HAS_PRISMATIC
     if (arm_prismatic_[i]) {
       joints[i] += total * arm_dot_(axis, down);
       for (k = 0; rate && k < i; ++k) {
         if (arm_prismatic_[k]) continue;
         arm_cross_(links->axis + 3 * k, axis, turned);
-        rate[k * ARM_JOINTS + i] += total * arm_dot_(turned, down);
+        rate[k * ARM_CHAIN_ + i] += total * arm_dot_(turned, down);
       }
       continue;
     }
@@ -66,9 +66,9 @@ static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links
       if (arm_prismatic_[k]) continue;
 #endif
       arm_cross_(turn, axis, turned);
-      rate[k * ARM_JOINTS + i] += arm_triple_(turned, lever, down);
+      rate[k * ARM_CHAIN_ + i] += arm_triple_(turned, lever, down);
       arm_cross_(turn, lever, turned);
-      rate[k * ARM_JOINTS + i] += arm_triple_(axis, turned, down);
+      rate[k * ARM_CHAIN_ + i] += arm_triple_(axis, turned, down);
     }
   }
 }
@@ -80,13 +80,13 @@ static inline void arm_add_hysteresis_(const arm_arm_ *arm, const double *q, con
   int i, w;
   if (!previous) return;
   for (w = 0; w < arm->widths; ++w) {
-    const double *of = arm->hysteresis + w * (ARM_JOINTS + 1), width = of[0];
-    for (i = 0; i < ARM_JOINTS; ++i) {
+    const double *of = arm->hysteresis + w * (ARM_CHAIN_ + 1), width = of[0];
+    for (i = 0; i < ARM_CHAIN_; ++i) {
       double step;
       if (!(previous[i] - previous[i] == 0)) continue; /* unknown */
       step = tanh((q[i] - previous[i]) / width);
       joints[i] += of[i + 1] * step;
-      if (rate && step != 0) rate[i * ARM_JOINTS + i] += of[i + 1] * (1 - step * step) / width;
+      if (rate && step != 0) rate[i * ARM_CHAIN_ + i] += of[i + 1] * (1 - step * step) / width;
     }
   }
 }
@@ -109,7 +109,7 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
   const double *of = arm->harmonics;
   int i, k, order = 0;
   for (i = 0; i < ARM_LANES_; ++i) {
-    const double angle = i < ARM_JOINTS ? q[i] : 0;
+    const double angle = i < ARM_CHAIN_ ? q[i] : 0;
     c1[i] = cos(angle);
     s1[i] = sin(angle);
     c[i] = 1;
@@ -138,9 +138,9 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
       s[i] = sine * c1[i] + cosine * s1[i];
     }
   }
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     joints[i] += value[i];
-    if (rate) rate[i * ARM_JOINTS + i] += slope[i];
+    if (rate) rate[i * ARM_CHAIN_ + i] += slope[i];
   }
 }
 #endif
@@ -148,9 +148,9 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
 
 /* Tilts of the joints' frames under gravity: a motion of the arm's end in the base frame of the chain. */
 static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, double *end, double *J) {
-  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_JOINTS], R[9], left[9], rotated[9], v[3], w[3];
+  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
   int i, j, k;
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     const double *c = arm->tilt + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
     double z[3], tilted[3];
     arm_cross_(x, y, z);
@@ -204,7 +204,7 @@ static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, d
   for (j = 0; j < 3; ++j) end[9 + j] = v[j] + shift[j];
   if (!J) return;
   arm_left_(turn, left);
-  for (k = 0; k < ARM_JOINTS; ++k) {
+  for (k = 0; k < ARM_CHAIN_; ++k) {
     double *linear = J + 6 * k, *angular = linear + 3, omega[3];
     arm_rotate_(left, rates + 6 * k + 3, omega);
     arm_rotate_(R, linear, linear);
@@ -222,16 +222,16 @@ static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, d
 
 /* base_T_tool as columns, and its Jacobian as columns of six; 0 for none. */
 static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const double *previous, double *frame, double *J) {
-  double joints[ARM_JOINTS], rate[ARM_JOINTS * ARM_JOINTS], end[12];
+  double joints[ARM_CHAIN_], rate[ARM_CHAIN_ * ARM_CHAIN_], end[12];
   arm_links_ links;
 #if HAS_LINKS
   arm_links_ nominal;
 #endif
   int i, j, k;
   (void)previous;
-  for (k = 0; k < ARM_JOINTS; ++k) {
+  for (k = 0; k < ARM_CHAIN_; ++k) {
     joints[k] = q[k];
-    for (i = 0; i < ARM_JOINTS; ++i) rate[k * ARM_JOINTS + i] = i == k ? 1 : 0;
+    for (i = 0; i < ARM_CHAIN_; ++i) rate[k * ARM_CHAIN_ + i] = i == k ? 1 : 0;
   }
 #if HAS_LINKS
   if (arm->gravity || arm->tilt) {
@@ -254,8 +254,8 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
   arm_identity_(end);
   arm_walk_(arm->rows, joints, end, &links);
   if (J) {
-    double columns[6 * ARM_JOINTS], lever[3];
-    for (k = 0; k < ARM_JOINTS; ++k) {
+    double columns[6 * ARM_CHAIN_], lever[3];
+    for (k = 0; k < ARM_CHAIN_; ++k) {
       double *column = columns + 6 * k;
       const double *axis = links.axis + 3 * k;
 #if HAS_PRISMATIC
@@ -273,10 +273,10 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
       }
       arm_cross_(axis, lever, column);
     }
-    for (k = 0; k < ARM_JOINTS; ++k)
+    for (k = 0; k < ARM_CHAIN_; ++k)
       for (j = 0; j < 6; ++j) {
         double sum = 0;
-        for (i = 0; i < ARM_JOINTS; ++i) sum += columns[6 * i + j] * rate[k * ARM_JOINTS + i];
+        for (i = 0; i < ARM_CHAIN_; ++i) sum += columns[6 * i + j] * rate[k * ARM_CHAIN_ + i];
         J[6 * k + j] = sum;
       }
   }
@@ -286,7 +286,7 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
   if (J) { /* from the flange to the tool point, from the chain's base to the base */
     double lever[3], moved[3];
     arm_rotate_(end, arm->tool + 9, lever);
-    for (k = 0; k < ARM_JOINTS; ++k) {
+    for (k = 0; k < ARM_CHAIN_; ++k) {
       double *linear = J + 6 * k, *angular = linear + 3;
       arm_cross_(angular, lever, moved);
       for (j = 0; j < 3; ++j) linear[j] += moved[j];

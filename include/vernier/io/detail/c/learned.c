@@ -13,27 +13,27 @@ static inline void arm_learned_(const double *q, double *y, double *slope) {
   double x[ARM_FEATURES_], gradient[3 * ARM_FEATURES_];
   int i, j, k, o;
 #if HAS_SINES
-  double c[ARM_JOINTS], s[ARM_JOINTS];
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  double c[ARM_CHAIN_], s[ARM_CHAIN_];
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     c[i] = cos(q[i]);
     s[i] = sin(q[i]);
   }
 #endif
 #if HAS_MAP_RAW
-  for (i = 0; i < ARM_JOINTS; ++i) x[i] = q[i];
+  for (i = 0; i < ARM_CHAIN_; ++i) x[i] = q[i];
 #endif
 #if HAS_MAP_SINES_AND_COSINES
-  for (i = 0; i < ARM_JOINTS; ++i) {
+  for (i = 0; i < ARM_CHAIN_; ++i) {
     x[i] = s[i];
-    x[ARM_JOINTS + i] = c[i];
+    x[ARM_CHAIN_ + i] = c[i];
   }
 #endif
 #if HAS_MAP_PRODUCTS
-  for (i = ARM_JOINTS - 1, k = 0; i >= 0; --i)
+  for (i = ARM_CHAIN_ - 1, k = 0; i >= 0; --i)
     for (o = 0; o < 2; ++o) {
       const double factor = o ? c[i] : s[i];
       x[k++] = factor;
-      for (j = ARM_JOINTS - 1; j > i; --j) {
+      for (j = ARM_CHAIN_ - 1; j > i; --j) {
         x[k++] = factor * s[j];
         x[k++] = factor * c[j];
       }
@@ -79,18 +79,18 @@ static inline void arm_learned_(const double *q, double *y, double *slope) {
     double *g = gradient + o * ARM_FEATURES_;
     for (j = 0; j < ARM_FEATURES_; ++j) g[j] *= arm_feature_factor_[j];
 #if HAS_MAP_RAW
-    for (i = 0; i < ARM_JOINTS; ++i) slope[3 * i + o] = g[i];
+    for (i = 0; i < ARM_CHAIN_; ++i) slope[3 * i + o] = g[i];
 #endif
 #if HAS_MAP_SINES_AND_COSINES
-    for (i = 0; i < ARM_JOINTS; ++i) slope[3 * i + o] = g[i] * c[i] - g[ARM_JOINTS + i] * s[i];
+    for (i = 0; i < ARM_CHAIN_; ++i) slope[3 * i + o] = g[i] * c[i] - g[ARM_CHAIN_ + i] * s[i];
 #endif
 #if HAS_MAP_PRODUCTS
-    for (i = ARM_JOINTS - 1; i >= 0; --i) {
+    for (i = ARM_CHAIN_ - 1; i >= 0; --i) {
       double sum = 0;
       for (k = 0; k < 2; ++k) {
         const double factor = k ? c[i] : s[i], rate = k ? -s[i] : c[i];
         double of_rate = *g++;
-        for (j = ARM_JOINTS - 1; j > i; --j, g += 2) {
+        for (j = ARM_CHAIN_ - 1; j > i; --j, g += 2) {
           of_rate += g[0] * s[j] + g[1] * c[j];
           slope[3 * j + o] += factor * (g[0] * c[j] - g[1] * s[j]);
         }

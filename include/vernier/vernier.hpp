@@ -1,11 +1,12 @@
 #pragma once
 
 /// @file
-/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for five parts that
+/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for six parts that
 /// few programs use, which would add a third to its compile time. Include those by name:
 /// - the general inverse kinematics: `kinematics/general_six_axis.hpp`
 /// - tables of a tracker: `data/pair_points.hpp`
 /// - plans of measurements: `planning/plan_measurements.hpp`
+/// - ISO 9283: `evaluation/iso9283.hpp`, `iso9283_poses.hpp`, `iso9283_path.hpp`
 /// - calibration by contacts: `identification/identify_by_contacts.hpp`, `simulation/touches.hpp`
 /// - robot programs: `robot_programs/correct_program.hpp`
 ///
@@ -22,9 +23,6 @@
 #include "vernier/core/version.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
-#include "vernier/evaluation/iso9283.hpp"
-#include "vernier/evaluation/iso9283_path.hpp"
-#include "vernier/evaluation/iso9283_poses.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/identification/options.hpp"

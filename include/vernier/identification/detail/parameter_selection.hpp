@@ -20,7 +20,7 @@ struct ParameterSelection {
   std::vector<Dependent> dependent;  ///< the others
 
   /// @param candidates that the columns belong to
-  ParameterSelection(const std::vector<Index>& candidates, const MatrixX& jacobian) {
+  VERNIER_LOCAL ParameterSelection(const std::vector<Index>& candidates, const MatrixX& jacobian) {
     const IdentifiableParameters columns(jacobian);
     const auto parameters = [&](const std::vector<Index>& which) {
       std::vector<Index> out;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibration without a tracker: 60 touches on three planes, one of them with a gauge block, against as many positions
 // measured by a tracker with the same noise per component.
 

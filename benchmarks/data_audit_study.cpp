@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the audit of data finds: measured poses with one planted fault each, and false alarms on subsets of measured
 // poses and on simulated files.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which effects a calibration claims on simulated arms: false claims on arms that have none, and the power, intervals
 // and limits of arms that have one.
 //

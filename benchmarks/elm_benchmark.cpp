@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a search over an ELM's hidden weights pays: the fitness of one particle, against Eigen written out.
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Error models: normal equations of all blocks against plain dense rows, and whole calibrations with their memory.
 
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Identification from 200 positions, against the same least squares in Ceres with dual numbers.
 
 #include <ceres/ceres.h>

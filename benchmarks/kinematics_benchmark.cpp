@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forward kinematics, Jacobians and inverse kinematics of a six-joint arm, against KDL.
 
 #include <array>

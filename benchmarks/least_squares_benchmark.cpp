@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Least squares with many local unknowns: the Schur complement against sparse Cholesky factorisations of everything.
 
 #include <Eigen/SparseCholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The four searches of the paper's experiment from data to compensation, against the same with the fitness in Eigen.
 
 #include <Eigen/Cholesky>

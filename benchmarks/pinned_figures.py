@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Pins the figures of the programs before a change of the code, and compares them after it.
 
 usage: pinned_figures.py record PROGRAMS FOLDER      PROGRAMS: where calibrate, correct, ... were built

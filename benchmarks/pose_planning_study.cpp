@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How good a calibration is by the choice of its poses: at random, D-optimal for the geometry alone, and D-optimal for
 // all unknowns of the error model, as `plan_poses --choose` takes them. All three choose from the training rows of
 // measured files by their joints alone, and are calibrated in the same way.

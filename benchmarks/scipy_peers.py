@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """SciPy as a peer: an ELM's fitness and an identification as one writes them in Python, one thread.
 
 usage: scipy_peers.py FOLDER    where elm_benchmark.txt and identification_benchmark.txt of `./dev bench` are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What particle swarm optimization costs beside the objective, and what it finds, against pagmo2.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the searches find, and what they cost beside the objective, against pagmo2's algorithms of the same name.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibrations that a few poor poses could lead astray, on simulated arms: what is deployed, beside the arm as designed
 // in its best frames. `trust_study [SITUATION [SEEDS]]`; every figure is a mean error at fresh poses [mm].
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # SuiteSparse's CHOLMOD as the target CHOLMOD::CHOLMOD: its older packages have no CMake files of their own.
 
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)

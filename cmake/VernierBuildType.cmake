@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # One line for a project that uses Vernier and is compiled without optimisation because nobody chose a build type.
 
 get_property(_vernier_configurations GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)

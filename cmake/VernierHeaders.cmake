@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # With VERNIER_CHECK_HEADERS the target `headers` compiles every header alone, where the libraries it needs are at hand,
 # the .ipp files as the compiled libraries have them, and a program that calls the common functions header-only.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The headers, the compiled libraries, and packages: for find_package(vernier [COMPONENTS io urdf ceres cholmod tbb mpi]),
 # for pkg-config (vernier, header-only, and vernier-compiled), and for Debian (cpack -G DEB).
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What Vernier's own tests, programs and benchmarks are built with; never installed, never seen by users.
 
 add_library(vernier_internal INTERFACE)

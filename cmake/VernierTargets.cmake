@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # vernier::vernier (Eigen and threads), header-only; vernier::io, ::ceres, ::cholmod, ::tbb and ::mpi add a library each,
 # ::urdf two to those of io. INTERFACE targets without a flag: they ask for C++20 and nothing else.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The version is written once, in include/vernier/core/version.hpp.
 
 function(vernier_read_version out header)

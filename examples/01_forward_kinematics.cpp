@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where is the tool? A robot is a table of link parameters; forward kinematics turns joint angles into a pose.
 
 #include <cstdio>

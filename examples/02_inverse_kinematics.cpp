@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which joints bring the tool to a pose? Inverse kinematics of any model, from a seed, within limits.
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Learn an error from samples: an extreme learning machine (ELM) draws its hidden weights and solves for the others.
 
 #include <cstdio>

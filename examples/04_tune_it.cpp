@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tune the hidden weights instead of drawing them: PSO-ELM and GA-ELM are one line each.
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Learn the position errors of a robot, then correct its commands.
 
 #include <cstdio>

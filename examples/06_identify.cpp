@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Find out how the real arm differs from its drawing: classical identification with Ceres.
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A robot that is no table: write the four functions of a KinematicModel, and everything else works with it.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Your own regressor: a recipe whose fit() gives a predictor. It can then be used wherever an Elm can.
 
 #include <Eigen/QR>

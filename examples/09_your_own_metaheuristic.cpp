@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Your own search: a recipe with start(), step(), done() and next_evaluations() on a state kept outside. Tuned accepts
 // it like Pso.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A search from another library: pagmo2's algorithms through an adapter (support/pagmo_search.hpp), under the same
 // laws, in the same places.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All joint values that bring a calibrated arm to a pose: closed form of the nominal arm, then Newton's method.
 
 #include <cstdio>

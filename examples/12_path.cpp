@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A rectangle in the air: correcting its corners is not correcting its sides.
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measured poses in; a calibrated model and its errors at held-out poses out.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Learners and searches on equal terms: a grid of problems, methods, numbers of poses and seeds, its tables, tests and
 /// figures.

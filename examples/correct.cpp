@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A calibrated model and a file of targets in, corrected joint commands out.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Prints an arm as it is understood: rows, joints of the controller, axes and poses, to be compared with the pendant.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A calibrated model in; one C header that predicts and corrects as the library does out.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measured poses in; the arm's calibrated geometry out, as its URDF file or as the kinematics file of Universal Robots'
 // driver, with what it loses against the full model.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Repeated visits and runs in, accuracy and repeatability after ISO 9283 out; or the poses of such a test.
 
 #include <fmt/format.h>

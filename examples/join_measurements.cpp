@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Commanded joints and a tracker's table of points in, measured poses as one CSV file out.
 
 #include <fmt/format.h>

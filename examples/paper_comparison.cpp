@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Repeats the experiment of Feng, Dong and Jin on a simulated ABB IRB 120: four learned compensations and the
 /// classical identification, evaluated by sending the actual arm to the corrected joints.

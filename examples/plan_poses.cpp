@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which poses to measure: joint values for an arm that is to be calibrated, or the most useful rows of a measured file.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measures a virtual arm: an arm of the catalogue or of a file with drawn errors, at given joint values.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Is a calibration still valid? A saved model and a few fresh poses in; a verdict out.
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Asks whether the tests still find bugs after a change: plants single-line bugs and counts those that tests kill.
 
 usage: planted_bugs.py draw BEFORE AFTER [--count 30] [--seed 1] > bugs.json

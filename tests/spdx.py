@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Whether each source file names its licence in one line, as https://spdx.dev/ids has it.
 
 usage: spdx.py            names the files that lack it, and exits with 1 if there are any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A calibrated arm in Python, through the C header. Write it and compile it as a library first:
      export_c --model model.json --name arm --out arm.h
      cc -O2 -shared -fPIC -DARM_API= -x c arm.h -o arm.so -lm

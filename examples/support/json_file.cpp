@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "json_file.hpp"
 
 #include "vernier/core/atomic_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "pose_calibration.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Findings of the audit on single rows and single joints, word by word; residuals of rows that are left out.
 
 #include "vernier/calibration/detail/audit_rows.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The map of a controller's joints, named by an audit of poses that were read without it.
 #include "vernier/calibration/data_audit.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibration end to end: where the truth is known, and on measured robots where VERNIER_DATA_DIR names them.
 
 #include "vernier/calibration/calibrate.hpp"

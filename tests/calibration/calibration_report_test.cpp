@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sentences of the report whose numbers are worked by hand.
 
 #include "vernier/calibration/calibration_report.hpp"

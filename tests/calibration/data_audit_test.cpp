@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The audit of data: every kind of fault planted in simulated files and, where VERNIER_DATA_DIR names them, in measured
 // ones; clean files; what frames absorb.
 

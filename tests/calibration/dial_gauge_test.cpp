@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A sensor of a user's own, without a change of the library: a dial gauge, which measures how far the tool point is
 // along a direction, from an unknown zero. The direction is known in the designed base frame. The identified one turns
 // against that, since it absorbs the zero of joint 1: so the known direction is a start, and estimated.

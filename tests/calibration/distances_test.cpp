@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibration from distances: draw-wires and ball-bars, alone and beside poses.
 
 #include <gtest/gtest.h>

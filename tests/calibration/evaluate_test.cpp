@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Assessment on held-out poses, and data that support no calibration.
 
 #include "vernier/calibration/evaluate.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibrations that few or poor poses could lead astray: nothing is deployed that is worse than the arm as designed in
 // its best frames. `benchmarks/trust_study` has many seeds of each.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where a nominal arm is taken, so is a robot of the catalogue: to the same bits as its chain.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Training rows whose pose is not that of their joints: named, left out, counted; kept if asked; many stop the run.
 
 #include "vernier/calibration/outlying_row.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two files with different tools: each has its own in every step.
 
 #include <gtest/gtest.h>

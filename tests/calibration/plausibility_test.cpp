@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What cannot belong to an arm is refused, and by how much it is off.
 
 #include "vernier/calibration/detail/plausibility.hpp"

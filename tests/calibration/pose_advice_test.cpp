@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Poses that would determine a weak parameter: within limits, and what they gain.
 
 #include "vernier/calibration/pose_advice.hpp"

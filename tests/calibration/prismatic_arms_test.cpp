@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms with parallel axes and a prismatic joint among them: found tilts make no frame observable, so none runs away.
 
 #include <gtest/gtest.h>

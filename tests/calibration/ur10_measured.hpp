@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // A UR10 that is off as arms are made, measured in a part of its joint space.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a check of a calibration computes, beside dense formulas of generalised least squares; what it says, by hand.
 
 #include <gtest/gtest.h>

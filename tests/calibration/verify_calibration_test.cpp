@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The yearly check, on simulated arms that have changed in known ways or not at all.
 
 #include "vernier/calibration/verify_calibration.hpp"

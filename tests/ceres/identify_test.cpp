@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/identification/identify.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The library's own solver and Ceres as the solver of an identification: one minimum, on simulated and measured arms.
 
 #include <gtest/gtest.h>

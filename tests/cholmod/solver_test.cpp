@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // CHOLMOD in place of Eigen for local states.
 
 #include "vernier/cholmod/solver.hpp"

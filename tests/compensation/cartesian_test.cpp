@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cartesian compensation on simulated arms: how much better, and what stays exact.
 
 #include <gtest/gtest.h>

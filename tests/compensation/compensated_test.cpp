@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Command correction on a known model: exact where the arm can get there, never wild where it cannot.
 
 #include <gtest/gtest.h>

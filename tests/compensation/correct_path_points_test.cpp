@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the points of a corrected path say, and what its options do.
 
 #include "vernier/compensation/correct_path.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Corrected commands of whole paths: branches, turns, lines, and what cannot be met.
 
 #include "vernier/compensation/correct_path.hpp"

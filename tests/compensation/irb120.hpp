@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // An IRB 120 and arms that differ from it, for tests of compensators.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joint-space compensation: labels and their signs, the paper's command, and the same as a kinematic model.
 
 #include <gtest/gtest.h>

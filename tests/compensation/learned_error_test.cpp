@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Learned errors whose kind is known at run time: what they predict is what they were made of, in any frame.
 
 #include "vernier/compensation/learned_error.hpp"

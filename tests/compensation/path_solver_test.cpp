@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How commands of a path are searched for, on two slides whose errors are known in closed form.
 
 #include "vernier/compensation/detail/path_solver.hpp"

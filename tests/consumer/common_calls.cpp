@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What most programs call, header-only: ./dev check headers compiles it with a careful user's warnings, so that the
 // templates are seen with their arguments. Nothing runs it.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The user's program, with the components named in CONSUMER_COMPONENTS (any of io, urdf, ceres, cholmod, tbb, mpi), header-only, or with
 # the compiled libraries, or both in one program.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A translation unit that uses the compiled library, beside one that is header-only.
 
 #include <vernier/core/register_points.hpp>

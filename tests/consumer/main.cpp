@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a user's program sees of Vernier: the headers, the namespace, the version, the libraries of what it asked for,
 // and functions that are compiled here (header-only) or come from the library.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Uses Vernier as users do: in their tree, through FetchContent and installed; bare, with io, with what runs in parallel,
 # and with everything; header-only, with the compiled libraries, and both in one program; from the Debian package, and
 # with pkg-config.

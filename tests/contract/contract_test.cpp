@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The contract of docs/architecture.md, word for word, on a file of simulated poses: it compiles, and does what it
 // says.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/core/argsort.hpp"
 
 #include <gtest/gtest.h>

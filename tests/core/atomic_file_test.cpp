@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files are whole or not there, and a failure leaves what was there before.
 
 #include "vernier/core/atomic_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Messages carry the numbers, exactly.
 
 #include "vernier/core/check.hpp"

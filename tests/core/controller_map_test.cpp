@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joint values of controllers and of the chains behind them.
 #include "vernier/core/controller_map.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Products and decompositions by their definitions, small and so large that kernels of wide instructions compute them.
 
 #include "vernier/core/detail/dense.hpp"

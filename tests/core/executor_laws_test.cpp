@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every executor that needs no library through the laws of the concept, and the laws against planted faults.
 
 #include "vernier/testing/executor_laws.hpp"

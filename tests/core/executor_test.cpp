@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Threads of executors, and exceptions that are handed on; what else is asked of executors are laws.
 
 #include "vernier/core/executor.hpp"

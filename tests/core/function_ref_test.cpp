@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // References to callables: work for ranges, observers of progress.
 
 #include "vernier/core/function_ref.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Unit literals are the nearest doubles to what they say, at compile time.
 
 #include "vernier/core/literals.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rounded numbers as text: what printf writes in the C locale, under every locale.
 
 #include "vernier/core/detail/number_text.hpp"

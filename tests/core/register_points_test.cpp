@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rigid registration of points against what defines it: the least sum of squares, and hand-made cases.
 
 #include "vernier/core/register_points.hpp"

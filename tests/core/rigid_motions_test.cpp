@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points and parts of poses, by hand.
 
 #include "vernier/core/rigid_motions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random numbers: known answers, moments, no bias.
 
 #include "vernier/core/rng.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/core/sha256.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sines, cosines and exponentials of vectors against the standard library's, for every instruction set that the machine
 // has.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rotations of dual numbers: the derivative is right where the angle is zero, tiny, and half a turn.
 
 #include <ceres/jet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rotations: exponential, logarithm and their derivatives, at identity, near half a turn and between.
 
 #include "vernier/core/so3.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Columns of CSV files one by one: signs, defaults, and what is written and read again.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Contacts read from files, and what is refused.
 
 #include <gtest/gtest.h>

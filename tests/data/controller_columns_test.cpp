@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files with the joint values of a controller that counts differently than the chain.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forms in which programs write CSV files: each is read as it is meant, or refused in one line that says what to state.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reading and writing CSV: every layout that is accepted, and what is said of those that are not.
 
 #include <gtest/gtest.h>

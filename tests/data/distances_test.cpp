@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measured distances: what is refused, and rows of them.
 
 #include "vernier/data/distances.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The gate: 1 inside the measured ranges, 0 beyond the margin, smooth between.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Poses with whole numbers beside them, read from files.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points paired with poses: planted faults in simulated and measured sets, and independent accounts of both parts.
 
 #include "vernier/data/pair_points.hpp"

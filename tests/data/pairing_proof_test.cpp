@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a proof of pairs reports, by the distances themselves, and what it must not be misled by.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tables of points in declared formats, and one example of each damage with its message.
 
 #include "vernier/data/point_table.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files and lines of rows, as messages name them.
 
 #include "vernier/data/row_origin.hpp"

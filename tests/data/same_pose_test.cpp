@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which rows are one pose, readings of a visit joined, and splits that keep poses together.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Splits: disjoint, complete, in row order, and by the documented rule.
 
 #include <gtest/gtest.h>

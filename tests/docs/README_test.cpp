@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program of the README, on data that are simulated into the folder where it runs.
 
 #include <gtest/gtest.h>

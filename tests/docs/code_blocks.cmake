@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The ```cpp blocks of a page, as files that its test includes: what a page shows is compiled and run.
 
 # vernier_code_blocks(<page> <folder>) writes block k of <page>.md to <folder>/<page>_<k>.inc, compilers' complaints about

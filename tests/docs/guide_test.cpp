@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The blocks of code of docs/guide.md, in the order of the page. What a block takes for granted stands before it; the
 // checks behind it are about what it made. Only the block on MPI is compiled and not run here: tests/mpi runs its like.
 

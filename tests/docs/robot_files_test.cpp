@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The blocks of code of docs/robot_files.md.
 #include <gtest/gtest.h>
 

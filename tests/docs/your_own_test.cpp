@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The blocks of code of docs/your_own.md, in the order of the page. Its types are declarations; the bodies stand here.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An earlier calibration as the prior of a later one.
 
 #include "vernier/error_model/arm_prior.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Contacts beside measured poses, in one fit.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a fit estimated, seen from elsewhere: many visits at once, another arm with the same unknowns.
 
 #include "vernier/error_model/error_model_estimate.hpp"

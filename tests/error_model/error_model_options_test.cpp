@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options of a fit that cannot be used are named.
 
 #include "vernier/error_model/error_model_options.hpp"

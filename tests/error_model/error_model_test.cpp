@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A fitted error model: its arm where the joints were measured, its fallback elsewhere, one smooth model in between.
 
 #include <gtest/gtest.h>

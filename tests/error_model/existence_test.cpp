@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Three answers, from scores made by hand.
 
 #include "vernier/error_model/existence.hpp"

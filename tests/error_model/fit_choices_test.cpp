@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a fit does with its input and its options: stations in their places, blocks that are allowed, directions, sizes,
 // priors that a search chooses.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A fit of an error model: priors on the right coefficients, and the covariance that it reports, without Ceres.
 
 #include "vernier/error_model/fit_error_model.hpp"

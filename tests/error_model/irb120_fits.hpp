@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Fits of error models of an IRB 120 between a base and a tool, of which an identification without Ceres is the start.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The spectrum of joints: lines of simulated drives at their order, with amplitudes inside their intervals; no lines
 // where there are none.
 

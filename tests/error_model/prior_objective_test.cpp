@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The error of poses left out as a function of priors.
 
 #include "vernier/error_model/prior_objective.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a session leaves in its measurements: the direction of approach, and a base that drifts.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several sessions, in each of which the temperature follows the time and the base drifts along: a change of the
 // geometry is found if there is one, and drift is not taken for it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A geometry that changes with temperature: found where it was measured, and where it is none nothing is found.
 
 #include <gtest/gtest.h>

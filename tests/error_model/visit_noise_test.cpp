@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The noise of a visit, from errors of poses left out.
 
 #include "vernier/error_model/detail/visit_noise.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The orders at which stated gears and encoders err, and what an order is called.
 
 #include "vernier/error_terms/drive_lines.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Gravity on compliant joints: cases by hand, slopes of the potential energy, and sums with their derivatives.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joint frames that tilt under gravity: a case by hand, arms whose rows are tilted one by one, derivatives, and chains
 // with tilts as kinematic models.
 

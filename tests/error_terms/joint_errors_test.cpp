@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What joints add to their commanded values: functions of an angle, and the sum of all terms, each against another way
 // to the same numbers; the chain with them as a kinematic model.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/evaluation/chi_square.hpp"
 
 #include <gtest/gtest.h>

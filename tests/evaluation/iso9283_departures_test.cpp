@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What departs from ISO 9283: sentences by hand.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Accuracy and repeatability of paths after ISO 9283, by hand.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The poses of ISO 9283 on the diagonals of a cube, and the largest cube within reach.
 
 #include "vernier/evaluation/iso9283_poses.hpp"

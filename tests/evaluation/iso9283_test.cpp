@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Accuracy and repeatability after ISO 9283: cases worked by hand.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Error statistics against cases worked by hand, and the errors they are made of.
 
 #include <gtest/gtest.h>

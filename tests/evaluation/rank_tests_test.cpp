@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rank tests against published figures and against all arrangements, counted.
 
 #include "vernier/evaluation/rank_tests.hpp"

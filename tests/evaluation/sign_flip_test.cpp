@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The sign-flip test: all arrangements by hand, draws beside Student's t, and its level.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Touches of objects, of three joints.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

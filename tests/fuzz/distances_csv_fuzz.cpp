@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measured distances, of three joints of given types.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

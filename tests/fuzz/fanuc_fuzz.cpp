@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Teach pendant programs of Fanuc.
 #include "robot_program_fuzz.hpp"
 

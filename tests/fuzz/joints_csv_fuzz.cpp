@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows of joints, of six.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // KRL programs and data lists.
 #include "robot_program_fuzz.hpp"
 

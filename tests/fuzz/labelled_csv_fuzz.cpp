@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Poses with numbers of their own.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measured poses, of six joints.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibrated arms of three joints: loaded, then asked for a correction.
 #include "reader_fuzz.hpp"
 #include "vernier/io/model_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Plans of comparisons.
 #include "cli.hpp"
 #include "comparison.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points of a tracker's table, in the format that the first character stands for.
 #include "reader_fuzz.hpp"
 #include "vernier/data/point_table.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Programs of moves with statements of the tables between them, in blocks and loops: a target behind a statement that
 // voids it is never corrected, and one behind harmless statements alone always is.
 #include <algorithm>

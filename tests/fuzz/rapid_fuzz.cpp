@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // RAPID modules.
 #include "robot_program_fuzz.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every seed of every fuzz target once, without libFuzzer. What is called valid* must be accepted, so that fuzzing
 // starts from files that readers do take.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The results of comparisons: read, then merged with themselves.
 #include "reader_fuzz.hpp"
 #include "results.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Nominal arms, as far as their geometry.
 #include "reader_fuzz.hpp"
 #include "vernier/io/robot_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ongoing searches.
 #include "reader_fuzz.hpp"
 #include "vernier/io/search_state.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measured poses with semicolons and decimal commas, of two joints, and what is remarked on them.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

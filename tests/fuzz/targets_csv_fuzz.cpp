@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets of a path, of three joints.
 #include "reader_fuzz.hpp"
 #include "vernier/data/csv.hpp"

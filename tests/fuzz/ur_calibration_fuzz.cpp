@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The calibration.conf of a UR10's controller.
 #include "reader_fuzz.hpp"
 #include "vernier/io/ur_calibration.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Kinematics files of Universal Robots' driver: what is read can be written, and read again.
 #include "reader_fuzz.hpp"
 #include "vernier/urdf/ur_kinematics.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // URDF files: the chain that is read has the origins of its joints.
 #include "reader_fuzz.hpp"
 #include "vernier/urdf/urdf_chain.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // URScript programs.
 #include "robot_program_fuzz.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The unknowns of an arm: what stays when terms or parameters are added.
 
 #include "vernier/identification/arm_parameterisation.hpp"

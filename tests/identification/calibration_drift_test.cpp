@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A calibration problem whose bases, and whose joints' zeros, drift: motions, rows, priors and steps.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rows of a calibration problem: residuals, their derivatives, and joint readings that are not exact.
 
 #include "vernier/identification/detail/calibration_problem.hpp"

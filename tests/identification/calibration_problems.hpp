@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Problems of identification: an arm with every kind of joint error, seen from two places, or from one beside a wire.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Parameters that no command of a controller tells apart.
 #include "vernier/identification/commanded_parameters.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Identification from touches: what is recovered, what cannot be observed, and what is refused.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is reported of an arm identified from touches: states and remarks of parameters, uncertainties, objects.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows of touches: their residuals, and derivatives against finite differences.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/identification/frames.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/trilaterate.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/identification/identifiable_parameters.hpp"
 
 #include <gtest/gtest.h>

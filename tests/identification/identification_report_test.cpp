@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What reports of an identification say, word by word, of figures given by hand.
 
 #include "vernier/identification/identification_report.hpp"

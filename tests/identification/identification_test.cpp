@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an identification reports of its own accuracy, from few poses and without Ceres.
 
 #include "vernier/identification/detail/identification.hpp"

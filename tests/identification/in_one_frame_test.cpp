@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/identification/in_one_frame.hpp"
 
 #include <gtest/gtest.h>

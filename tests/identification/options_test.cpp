@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What may be asked of an identification, and of its sensors.
 
 #include "vernier/identification/options.hpp"

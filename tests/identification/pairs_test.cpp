@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measurements between two configurations: distances of two positions of the tool point, wherever the base stands.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The motion of a base over a session, by hand.
 
 #include "vernier/identification/session_drift.hpp"

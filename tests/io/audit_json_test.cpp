@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Audits of data as JSON.
 
 #include "vernier/io/audit_json.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Malformed files: each gives one clear line that names the file, never a crash and never a half-written output.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The text that exported arms have in common: it is C as it stands in its files, and is filled in for an arm.
 #include <gtest/gtest.h>
 

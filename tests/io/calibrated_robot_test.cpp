@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibrated arms as values: in other frames, at other temperatures, with what was learned on top, and made of what a
 // calibration found.
 #include "vernier/io/calibrated_robot.hpp"

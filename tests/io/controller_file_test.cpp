@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Robot files and model files of arms whose controllers count joints differently; frames and gravity in robot files.
 #include <gtest/gtest.h>
 

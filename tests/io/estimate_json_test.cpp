@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a calibration estimated, in a model file.
 
 #include "vernier/io/detail/estimate_json.hpp"

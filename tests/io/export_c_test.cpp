@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms as C source: compiled here, equal to the library, and clean for every compiler at hand.
 #include "vernier/io/export_c.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rules of the files that are read and written, one by one: limits, options and what a model file says.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The report as a page: what it says, what it must not contain, and what browsers and a validator make of it.
 
 #include "vernier/io/html_report.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Results by ISO 9283 as JSON: every number under its name, in its unit.
 
 #include "vernier/io/iso9283_json.hpp"

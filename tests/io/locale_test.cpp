@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sentences, JSON, CSV, HTML, C and what is read have the same bits under any locale of the host program.
 
 #include <gtest/gtest.h>

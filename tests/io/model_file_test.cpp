@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Saved and loaded calibrations: the same bits, and an arm that corrects the same.
 #include "vernier/io/model_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reports as JSON: every number under its name, in its unit.
 
 #include "vernier/io/report_json.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the page of a report says: numbers and sentences of its sections, by hand for few poses.
 
 #include "vernier/io/detail/report_sections.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Robots read from JSON files.
 #include "vernier/io/robot_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joint values for calibrated robots in vectors whose size is known at run time only: those that fit are taken, others
 // are refused in every build, before Eigen converts them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Searches stopped half-way, saved, loaded and gone on with: the bits of the uninterrupted run; and files that are
 // wrong.
 

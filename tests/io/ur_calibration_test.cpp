@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The factory calibration of Universal Robots' arms.
 #include "vernier/io/ur_calibration.hpp"
 

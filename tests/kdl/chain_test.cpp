@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forward kinematics and Jacobians against KDL, for random chains of 1 to 9 joints in both conventions; all branches of
 // an arm by KDL's forward kinematics.
 

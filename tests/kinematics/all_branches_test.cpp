@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All branches of arms that differ from a nominal one: none lost, none twice, and what is said of each is true.
 
 #include "vernier/kinematics/all_branches.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closed-form inverse kinematics of seven joints at a given arm angle.
 
 #include "vernier/kinematics/arm_angle_form.hpp"

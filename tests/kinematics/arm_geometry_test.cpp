@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms whose number of joints is known at run time: their parameters, and the arm that these make.
 
 #include "vernier/kinematics/arm_geometry.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The laws of solvers that return all branches: ours obeys them, and each planted fault is named.
 
 #include "vernier/testing/branch_laws.hpp"

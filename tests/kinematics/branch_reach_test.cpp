@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What became of a target of which all branches were sought: met, beyond limits, out of reach, not found, no pose.
 
 #include <gtest/gtest.h>

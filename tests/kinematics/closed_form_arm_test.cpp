@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms by the lines of their axes: which point of a line is given does not matter.
 #include "vernier/kinematics/detail/closed_form_arm.hpp"
 

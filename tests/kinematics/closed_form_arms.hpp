@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Arms that have closed forms, one of each kind and their mirror images, and what the roots of a target are like.

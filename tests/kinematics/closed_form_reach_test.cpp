@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets out of reach of closed-form inverse kinematics: by how much, from points and axes alone.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closed-form inverse kinematics at and next to singular poses: roots are exact, and joints that are free are marked.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closed-form inverse kinematics: every arm of the catalogue and one of each family, random and singular poses.
 
 #include "vernier/kinematics/closed_form.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who is a kinematic model and who is not, and the helpers that any model gets.
 
 #include "vernier/kinematics/concepts.hpp"

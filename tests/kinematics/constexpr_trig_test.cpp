@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sine and cosine of constant expressions against the standard library's.
 
 #include "vernier/kinematics/detail/constexpr_trig.hpp"

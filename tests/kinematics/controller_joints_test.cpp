@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms whose controllers count joints differently: published forward kinematics, laws of the model, limits and turns.
 #include <gtest/gtest.h>
 

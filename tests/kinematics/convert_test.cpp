@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The standard chain of a modified one.
 #include "vernier/kinematics/convert.hpp"
 

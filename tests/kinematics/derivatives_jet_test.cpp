@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Derivatives three ways: analytic, dual numbers, central differences. The last through the law suites.
 
 #include <gtest/gtest.h>

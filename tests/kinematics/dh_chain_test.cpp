@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // DH chains: tables at compile time, a case worked by hand, the laws, and the five parameters of a row.
 
 #include "vernier/kinematics/dh_chain.hpp"

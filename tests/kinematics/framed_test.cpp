@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Base and tool frames around a model.
 
 #include "vernier/kinematics/framed.hpp"

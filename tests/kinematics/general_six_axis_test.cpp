@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Inverse kinematics of six revolute joints whose axes lie anyhow: generating joints found again, all roots correct.
 
 #include "vernier/kinematics/detail/general_six_axis.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Inverse kinematics: near seeds, limits, targets out of reach, singular starts, positions alone, joints held still.
 
 #include "vernier/kinematics/inverse_kinematics.hpp"

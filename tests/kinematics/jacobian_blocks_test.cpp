@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of Jacobians and parameter Jacobians against those one by one, which have tests of their own.
 
 #include <gtest/gtest.h>

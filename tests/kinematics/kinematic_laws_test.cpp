@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The law suite itself: models that obey pass, and each broken law is named.
 
 #include "vernier/testing/kinematic_laws.hpp"

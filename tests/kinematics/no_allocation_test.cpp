@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The calls that a controller makes do not allocate.
 
 #include <gtest/gtest.h>

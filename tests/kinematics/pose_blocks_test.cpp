@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of poses against poses one by one, and both against the chain written with the standard library's functions.
 
 #include <gtest/gtest.h>

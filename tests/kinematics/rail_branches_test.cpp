@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Branches of a six-axis arm on a rail that is held.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows of a chain from the axes of its joints.
 #include "vernier/kinematics/detail/rows_of_axes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Eigenvalues of few rows by hand.
 
 #include "vernier/kinematics/detail/small_systems.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The subproblems of closed-form inverse kinematics where nothing solves them, or everything: against a search over all
 // angles.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Candidates of a joint, and wrists: what is taken, left out and sampled.
 #include "vernier/kinematics/detail/wrist.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/least_squares/estimate_covariance.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Evidence against the density of a Gaussian, written out; sizes of priors against where its slope vanishes.
 
 #include "vernier/least_squares/evidence.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of one pose are left out together: held to the problem solved again without them.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Local states, eliminated by the Schur complement with the sparse solver of Eigen.
 
 #include "vernier/least_squares/sparse_solve.hpp"

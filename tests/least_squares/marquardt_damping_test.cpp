@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The step control of Levenberg-Marquardt by hand, and damped steps.
 
 #include "vernier/least_squares/marquardt_damping.hpp"

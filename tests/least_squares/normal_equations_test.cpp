@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Normal equations of blocks of rows, their solution, and leave-one-block-out errors.
 
 #include "vernier/least_squares/leave_one_out.hpp"

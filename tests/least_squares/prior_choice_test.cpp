@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scale of a prior by leave-one-block-out errors.
 
 #include "vernier/least_squares/prior_choice.hpp"

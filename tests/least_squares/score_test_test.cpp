@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The score test: its figures by dense formulas, its error rates by simulation.
 
 #include "vernier/least_squares/score_test.hpp"

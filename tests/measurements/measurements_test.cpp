@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measurements as one value: what is refused beside what the compiler sees.
 
 #include "vernier/measurements/measurements.hpp"

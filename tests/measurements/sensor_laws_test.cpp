@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The library's sensors under the laws of sensors, and planted faults that the laws must find.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Data of seven joints, added to measurements of an arm of six.
 // expect: the data have another number of joints than the arm
 #include <vernier/measurements/measurements.hpp>

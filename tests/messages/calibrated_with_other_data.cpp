@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Data of seven joints, with which an arm of six is to be calibrated. The data set of a `Robot` is right.
 // expect: the data have another number of joints than the arm
 #include <vernier/calibration/calibrate.hpp>

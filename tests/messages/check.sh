@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # What the compiler says about a user's mistakes: check.sh COMPILER FOLDER [FLAG...]
 #
 # A case is a file FOLDER/*.cpp. Compiled with -DMISTAKE it must fail, and each of its lines `// expect: <text>` must occur

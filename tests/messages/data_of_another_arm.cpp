@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Data of seven joints and a model of six.
 // expect: the data have another number of joints than the model
 #include <vernier/evaluation/position_errors.hpp>

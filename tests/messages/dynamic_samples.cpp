@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Samples whose numbers of columns are known at run time only.
 // expect: the numbers of inputs and outputs are compile-time constants: pass matrices with fixed numbers of columns
 #include <vernier/regression/elm.hpp>

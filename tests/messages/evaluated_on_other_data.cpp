@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several stations of seven joints, on which the calibration of an arm of six is to be evaluated.
 // expect: the data have another number of joints than the arm
 #include <vernier/calibration/evaluate.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Data of seven joints, from which an arm of six is to be identified.
 // expect: the data have another number of joints than the arm
 #include <vernier/identification/identify.hpp>

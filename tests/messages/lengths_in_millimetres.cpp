@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A length without its unit: 400 m.
 // expect: length_above_100_m_is_the_unit_right
 #include <vernier/core/literals.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A misspelt option of the joint errors.
 // expect: 'vernier::ErrorModelOptions'
 // expect: harmonic

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A model whose `pose` may throw, in frames.
 // expect: `pose(q)` must be const and noexcept and return vernier::Isometry3
 #include <vernier/kinematics/framed.hpp>

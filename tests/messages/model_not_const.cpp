@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A model whose `pose` is not const.
 // expect: `pose(q)` must be const and noexcept and return vernier::Isometry3
 #include <vernier/kinematics/inverse_kinematics.hpp>

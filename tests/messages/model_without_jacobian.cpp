@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A model without Jacobians, compared with data.
 // expect: `jacobian(q)` must be const and noexcept and return vernier::Jacobian<dof>
 #include <vernier/evaluation/position_errors.hpp>

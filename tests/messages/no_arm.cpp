@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Something that is no arm, calibrated.
 // expect: calibrate takes an arm as designed: a Robot, a DhChain, or a Framed DhChain
 #include <vernier/calibration/calibrate.hpp>

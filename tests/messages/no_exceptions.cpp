@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Misuse could not be reported.
 // expect: #error "Vernier throws exceptions where it is misused: compile without -fno-exceptions"
 // flags: -fno-exceptions

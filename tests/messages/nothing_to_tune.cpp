@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A regressor without inner parameters, tuned.
 // expect: `dimension(inputs)` must be const and return the number of inner parameters
 #include <vernier/regression/elm.hpp>

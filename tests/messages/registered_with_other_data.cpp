@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measurements of seven joints, with which a fitted arm of six is to be registered again.
 // expect: the data have another number of joints than the arm
 #include <vernier/registration/reregister.hpp>

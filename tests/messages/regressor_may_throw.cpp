@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A regressor whose fitted map may throw.
 // expect: `predict(x)` of one sample must be const and noexcept and return Eigen::Matrix<double, outputs, 1>
 #include <vernier/compensation/cartesian.hpp>

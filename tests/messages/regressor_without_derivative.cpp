@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A regressor whose fitted map has no derivative.
 // expect: `derivative(x)` must be const and noexcept and return Eigen::Matrix<double, outputs, inputs>
 #include <vernier/compensation/cartesian.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Members of a row in another order than that of their declaration: an error of g++, a warning of clang++.
 // expect: declaration order
 #include <vernier/core/literals.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No search at all, tuning a regressor.
 // expect: the search needs a type `State`, what one generation hands to the next
 #include <vernier/regression/elm.hpp>

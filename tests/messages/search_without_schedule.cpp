@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A search that does not say when it has ended, tuning a regressor.
 // expect: `done(state)` must be const and return bool
 #include <vernier/regression/elm.hpp>

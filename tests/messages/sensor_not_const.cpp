@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A sensor whose `plausibility` is not const, between two configurations known at run time.
 // expect: Sensor: `plausibility()` must be const and return vernier::Plausibility
 #include <vernier/measurements/measurements.hpp>

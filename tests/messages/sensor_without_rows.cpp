@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A sensor that does not say how its measurements depend on the pose.
 // expect: Sensor: `sense(i, pose, rows)` must be const and take vernier::Index, vernier::Isometry3
 #include <vernier/measurements/measurements.hpp>

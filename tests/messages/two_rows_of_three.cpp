@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two rows of an arm of three joints.
 // expect: the number of rows is not the number of joints
 #include <vernier/core/literals.hpp>

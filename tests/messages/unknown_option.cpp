@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An option of the joint errors among those of `calibrate`.
 // expect: harmonics
 #include <vernier/calibration/calibrate.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A population shared out over ranks: the same bits as without MPI, every particle evaluated once, and no rank left
 // waiting where another fails. Every rank runs every case; mpiexec fails when one of them does.
 

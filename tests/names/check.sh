@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Headers meet programs whose other headers define macros: check.sh COMPILER INCLUDE_FOLDER [-x FOLDER]... [FLAG...]
 #
 # What our headers include of others comes first, then the macros, then all our headers: header-only, and as with the

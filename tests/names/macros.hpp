@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Names that headers of other software define as macros. Each becomes characters that no compiler accepts, so a header
 // of ours that uses such a name does not compile. <curses.h>, <complex.h> and <math.h> spare C++ programs their macros
 // `move`, `clear`, `complex`, `round`.

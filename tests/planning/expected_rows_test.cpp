@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What measurements are expected to say: derivatives of the pose, in units of what is known and of the sensor.
 
 #include <gtest/gtest.h>

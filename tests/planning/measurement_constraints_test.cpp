@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/planning/measurement_constraints.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/planning/plan_measurements.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Configurations that can be measured: within limits, box and range, evenly spread.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Malformed files and wrong usage, given to the programs: one clear line, the exit code, and not one file more.
 
 #include <gtest/gtest.h>

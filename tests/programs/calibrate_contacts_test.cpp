@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // calibrate --contacts, with and without measured poses, on a simulated arm.
 
 #include <gtest/gtest.h>

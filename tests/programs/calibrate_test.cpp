@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs calibrate, and correct behind it, on simulated measurements and, where they are, on measured ones.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A comparison shared out over ranks of mpirun, and results of several machines made one.
 
 #include <gtest/gtest.h>

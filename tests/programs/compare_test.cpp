@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The comparison program: the same figures twice, goes on where it stopped, refuses what it does not know.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs correct on robot programs made here, and lets a simulated controller execute what it writes: it finds the joint
 // values of each pose by inverse kinematics from many starts, keeps those with the configuration that the program
 // states, by definitions of its own, and moves the real arm there.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs correct on a model made here, so that the answers are known exactly.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every program that reads CSV files takes --separator and --decimal, and names them where they are needed.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs export_c on models made here, compiles what it writes, and runs the demonstrations with it.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs export_robot on measurements of a virtual arm that is described by a URDF file.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs iso9283 on a test that is made here, and compares with the library; and plans one.
 
 #include <gtest/gtest.h>

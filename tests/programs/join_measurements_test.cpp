@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs join_measurements on tables that are made here, by order and by name, and with each damage.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms with prismatic joints on the whole way: every program takes what the one before has written.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Outputs of the programs: devices, pipes, links and standard output, and what is refused before any work.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs the program with small settings, as a user would.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Plans poses for an arm, measures them virtually, and chooses rows of measured files.
 
 #include <gtest/gtest.h>

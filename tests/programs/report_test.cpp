@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // calibrate --report and the yearly check, on simulated measurements.
 
 #include <gtest/gtest.h>

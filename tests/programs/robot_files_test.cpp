@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each kind of arm of examples/robots on the whole way, its joints as its controller counts them.
 #include <gtest/gtest.h>
 

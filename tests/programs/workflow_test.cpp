@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the table of an arm to a plan, a measurement, a report and corrected commands: the five commands of the guide.
 
 #include <gtest/gtest.h>

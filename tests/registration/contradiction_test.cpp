@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Re-registration where positions, orientations and the model contradict each other: a remounted probe, a model with
 // errors of its own, poses that cannot tell base from tool.
 

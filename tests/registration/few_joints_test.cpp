@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms of one joint and of four, whose re-registration is worked by hand.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Models of an IRB 120 that are re-registered, what takes one to another, and the rows of all changes at a pose.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An arm that drifts, followed pose by pose.
 
 #include "vernier/registration/recursive_calibration.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An arm that changes with temperature is registered again by warm poses.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A fitted arm that was moved or re-mounted.
 
 #include "vernier/registration/reregister.hpp"

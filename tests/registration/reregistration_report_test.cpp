@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a re-registration says of itself, by hand.
 
 #include <gtest/gtest.h>

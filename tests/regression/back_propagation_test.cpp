@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The classical network: gradient and curvature against differences, and what its two trainings reach.
 
 #include "vernier/regression/back_propagation.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The objective of a search and sample weights, against problems written out.
 
 #include "vernier/regression/detail/elm_fitness.hpp"

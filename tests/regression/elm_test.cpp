@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scaling, the hidden layer, and fitted predictors against naive loops.
 
 #include "vernier/regression/elm.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bagging against its own words: members refitted by hand, their mean and spread.
 
 #include "vernier/regression/ensemble.hpp"

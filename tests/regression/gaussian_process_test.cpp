@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Gaussian processes: likelihood, prediction and variance against dense algebra written out, gradients against
 // differences.
 

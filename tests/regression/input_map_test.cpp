@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Maps of inputs: features by brute force, gradients by differences, and learners behind them.
 
 #include "vernier/regression/input_map.hpp"

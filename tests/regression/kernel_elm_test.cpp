@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Kernel sums, kernel ridge regression and its leave-one-out errors against dense algebra written out.
 
 #include "vernier/regression/kernel_elm.hpp"

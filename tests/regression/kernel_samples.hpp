@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Kernels of samples from their formulas, for tests of what is made of kernels.

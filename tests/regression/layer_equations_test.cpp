@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vernier/regression/detail/layer_equations.hpp"
 
 #include <gtest/gtest.h>

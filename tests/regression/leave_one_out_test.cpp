@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closed-form leave-one-out error against refits, and the ridge it chooses.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Written by make_lstsq_cases.py with SciPy 1.10.1; matrices column by column.

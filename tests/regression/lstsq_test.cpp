@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Output weights against SciPy's lstsq.
 
 #include <gtest/gtest.h>

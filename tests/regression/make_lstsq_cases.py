@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes lstsq_cases.hpp: hidden layers and the output weights that SciPy's lstsq gives for them.
 
     python3 tests/regression/make_lstsq_cases.py > tests/regression/lstsq_cases.hpp

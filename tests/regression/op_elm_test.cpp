@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pruning by leave-one-out: the ranking and its errors against fits that leave each sample out.
 
 #include "vernier/regression/op_elm.hpp"

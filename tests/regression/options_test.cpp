@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options of all learners: the limits of what is taken.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Online sequential ELM: what was learned piece by piece against all at once.
 
 #include "vernier/regression/os_elm.hpp"

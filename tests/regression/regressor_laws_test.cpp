@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every model through the laws of its concept, and the laws against planted faults.
 
 #include "vernier/testing/regressor_laws.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fitness of one particle against a QR decomposition: agreement to 1e-6 where hidden layers are at their worst.
 
 #include <gtest/gtest.h>

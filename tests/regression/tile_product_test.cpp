@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Weighted products of tiles against Eigen, on every instruction set of this machine.
 
 #include "vernier/regression/detail/tile_product.hpp"

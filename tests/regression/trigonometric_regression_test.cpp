@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Products of sines and cosines: features, ridge, leave-one-out and spread against brute force; and an arm, exactly.
 
 #include "vernier/regression/trigonometric_regression.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The trained hidden layer: value, gradient and curvature against brute force, and what training brings.
 
 #include "vernier/regression/var_pro_elm.hpp"

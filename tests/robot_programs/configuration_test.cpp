@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arm's configuration that a program states, and the joint values that a controller takes for it.
 
 #include <gtest/gtest.h>

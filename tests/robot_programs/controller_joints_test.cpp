@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Programs of a FANUC arm, whose joint 3 is counted from the horizontal: joint values and poses are corrected, and the
 // real arm goes where the program means.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Robot programs corrected by the library, for an arm of the test's own: a program of each language is written,
 // corrected, parsed again and executed by the controller's kinematics, and the real arm must be where the program meant
 // it to be.

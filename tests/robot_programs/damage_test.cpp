@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Damaged programs: whatever the bytes, the answer is a program or a message in one line.
 
 #include <gtest/gtest.h>

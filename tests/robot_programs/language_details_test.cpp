@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Details of the languages that files from the field show now and then: what is read, what is refused, and where.
 
 #include <gtest/gtest.h>

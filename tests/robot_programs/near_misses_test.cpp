@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Statements of robot programs that nearly are something else: each is read as what it is, and what cannot be read says
 // so.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is found in programs of each language, and what is not corrected there.
 
 #include <gtest/gtest.h>

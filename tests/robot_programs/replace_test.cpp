@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets replaced in place: what is written is read again, everything else keeps its bytes.
 
 #include <gtest/gtest.h>

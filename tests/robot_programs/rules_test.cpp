@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rules of the languages one by one, in programs of a few lines.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of statements, and those of the guide: each name is in both, and in one class.
 
 #include <gtest/gtest.h>

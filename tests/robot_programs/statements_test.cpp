@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Statements between moves: which of them void the targets behind them, how far, and what ends that.
 
 #include <gtest/gtest.h>

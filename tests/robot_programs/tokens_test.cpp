@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words, numbers and texts of robot programs, and values in brackets: where each begins and ends.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Medians over 25 seeds on three classical functions, under stated targets, beside random sampling of the same size.
 
 #include <gtest/gtest.h>

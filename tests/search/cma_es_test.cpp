@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Constants against published figures, the update against its formulas written out, invariance, convergence and
 // restarts.
 

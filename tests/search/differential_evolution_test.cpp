@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Both forms by hand, with the random numbers drawn again; L-SHADE's memory, archive and shrinking population.
 
 #include "vernier/search/differential_evolution.hpp"

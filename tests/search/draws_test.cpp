@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What searches draw, with the random numbers drawn again, and when runs of CMA-ES end.
 
 #include <gtest/gtest.h>

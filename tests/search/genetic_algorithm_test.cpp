@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Encoding, crossover, mutation, selection and elitism, each by itself.
 
 #include "vernier/search/genetic_algorithm.hpp"

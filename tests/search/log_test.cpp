@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a log writes down, and whom it asks.
 
 #include "vernier/search/log.hpp"

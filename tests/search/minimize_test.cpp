@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The loop: budgets, stopping, observers, executors, misuse.
 
 #include "vernier/search/minimize.hpp"

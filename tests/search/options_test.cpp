@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options of all searches: the limits of what is taken, and the schedule that they state.
 
 #include <gtest/gtest.h>

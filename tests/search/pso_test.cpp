@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The update worked by hand, the inertia, the limits.
 
 #include "vernier/search/pso.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Crossover and mutation of real numbers, by hand and by their distributions.
 
 #include "vernier/search/real_genetic_algorithm.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Informants by hand; the ball from which a particle's next place is drawn, and its confinement.
 
 #include "vernier/search/spso2011.hpp"

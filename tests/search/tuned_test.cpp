@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Regressors whose inner weights a search finds: PSO-ELM, GA-ELM, and a user's own metaheuristic.
 
 #include "vernier/search/tuned.hpp"

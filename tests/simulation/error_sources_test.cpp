@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Simulated arms with every error source: drawn joint errors, backlash, outliers; sizes as asked for, seeds that decide
 // alone, sources that do not disturb each other.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joint configurations: within their limits, evenly spread, clear of what was to be avoided.
 
 #include <gtest/gtest.h>

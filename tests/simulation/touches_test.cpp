@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Touches of objects: on their faces, within their extent.
 
 #include "vernier/simulation/touches.hpp"

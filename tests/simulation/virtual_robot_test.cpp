@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The virtual actual robot: errors of the sizes asked for, noise with the statistics it claims, seeds that decide
 // alone.
 

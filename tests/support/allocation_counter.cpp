@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "allocation_counter.hpp"
 
 #include <Eigen/Core>  // first: clang declares posix_memalign in its intrinsics, without noexcept

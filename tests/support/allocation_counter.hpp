@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Counts what the calling thread allocates, whether through operator new, malloc or Eigen: allocation_counter.cpp, part

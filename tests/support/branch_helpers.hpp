@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Arms that differ a little from a nominal one, and joint values compared without whole turns.

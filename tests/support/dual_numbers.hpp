@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Derivatives of a pose by dual numbers: every joint and parameter carries its own infinitesimal part.

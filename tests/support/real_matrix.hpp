@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Matrices for formulas in tests. Eigen's expressions cost seconds of compiling in each file that has some; the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Samples of a smooth function, every kind of hidden layer, and formulas over samples, for tests of regressors.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Small robot programs, with the traps that files from the field have: both kinds of line ends, other encodings in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Published factory calibrations of Universal Robots' arms: facts from UniversalRobots/Universal_Robots_ROS2_Driver,

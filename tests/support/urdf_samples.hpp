@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // URDF files for tests: three arms as one meets them, and random trees.

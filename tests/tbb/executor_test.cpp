@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // oneTBB's threads through the laws of executors, and whole fits on them.
 
 #include <gtest/gtest.h>

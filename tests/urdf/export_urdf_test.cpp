@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Geometry written into URDF files: what changes, what stays, and what others read.
 #include "vernier/urdf/export_urdf.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kinematics files of Universal Robots' driver.
 #include "vernier/urdf/ur_kinematics.hpp"
 

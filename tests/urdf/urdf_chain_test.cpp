@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Chains of URDF files: rows against the catalogue, and what is refused.
 #include "vernier/urdf/urdf_chain.hpp"
 

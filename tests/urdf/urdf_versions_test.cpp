@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Versions of URDF and what is not of URDF: quaternions, and attributes and elements that may move a frame.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // URDF files read and written, against urdfdom (the parser), kdl_parser and KDL's forward kinematics.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "results.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One set of kernels. Compiled with the flags of its instruction set, and with an Eigen of its own (the macro renames
 // the namespace), so that no inline function is shared with units of other flags.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "vernier/urdf/detail/roll_pitch_yaw.hpp"

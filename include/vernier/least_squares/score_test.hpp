@@ -33,7 +33,7 @@ inline constexpr double score_precision = 10;
 /// without them and less what the other unknowns take over. If they are zero, the sign of each score is as likely as
 /// the opposite one. So the weighted square of their sum is compared with those of flipped signs. That holds for any
 /// symmetric noise, whatever its variance at each pose. The noise is the residual of each pose under a model with the
-/// unknowns that was fitted without it, so neither a large effect nor few poses change it.
+/// unknowns that was fitted without its cluster, so neither a large effect nor few poses change it.
 /// @param system,normal the problem; the unknowns in question have columns
 /// @param precisions    of independent priors of all unknowns, those of the group as their evidence suggests
 /// @param steps         present values of the unknowns, relative to the means of the priors

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "vernier/core/detail/dense.hpp"
@@ -86,23 +87,45 @@ struct Scores {
   Index positions = 0;    ///< blocks with positions
 };
 
-/// The residual of a block under a model that was fitted without it.
-/// @param factor   of the equations that were solved
-/// @param columns  of all unknowns
-VERNIER_LOCAL Vector6 left_out_residual(const FactorisedEquations& solved, const Rows6& columns,
-                                        const Vector6& residual) {
-  MatrixX half = VERNIER_LATER(columns).transpose(), rest = VERNIER_LATER_TYPE(MatrixX)::Identity(6, 6);
-  solved.apply_inverse_factor(half);
-  add_transposed_product(rest, half, half, -1);
-  for (Index k = 0; k < 6; ++k) rest(k, k) = (std::max)(rest(k, k), 0.0) + 1e-3;  // a residual that is all taken over
-  VectorX out = residual;
-  solve_general(rest, out);
-  Vector6 left_out;
-  for (Index k = 0; k < 6; ++k) left_out(k) = out(k);
-  return left_out;
+/// Residual of a block at the solution.
+/// @param all its columns of dense and factored unknowns
+VERNIER_LOCAL Vector6 residual_of(const BlockSystem& system, const FactorisedEquations& solved, const RowBlock& rows,
+                                  const Rows6& all) {
+  Vector6 residual = rows.residual;
+  add_columns(all, solved.step().data(), 1, residual.data());
+  for (const RowBlock::Local& part : rows.local)
+    if (system.local_states > 0 && part.state >= 0)
+      add_columns(part.columns, &solved.local_step()(part.state * system.local_size), 1, residual.data());
+  return residual;
 }
 
-/// Share of the measured values that the model explains.
+/// Residuals of the blocks of a cluster under a model that was fitted without them, written to columns of `out`.
+VERNIER_LOCAL void leave_out_cluster(const BlockSystem& system, const FactorisedEquations& solved,
+                                     const std::vector<Index>& blocks, MatrixX& out) {
+  const auto size = static_cast<Index>(6 * blocks.size());
+  MatrixX columns(system.unknowns(), size), rest = VERNIER_LATER_TYPE(MatrixX)::Identity(size, size);
+  VectorX residuals(size);
+  RowBlock rows;
+  Rows6 all(6, system.unknowns());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    system.rows(blocks[k], 1, &rows);
+    rows.expand(system.group_sizes, all);
+    const Vector6 residual = residual_of(system, solved, rows, all);
+    if (system.local_states > 0) solved.eliminate_local(rows, all);
+    for (Index i = 0; i < 6; ++i) {
+      residuals(static_cast<Index>(6 * k) + i) = residual(i);
+      for (Index c = 0; c < all.cols(); ++c) columns(c, static_cast<Index>(6 * k) + i) = all(i, c);
+    }
+  }
+  solved.apply_inverse_factor(columns);
+  add_transposed_product(rest, columns, columns, -1);
+  for (Index k = 0; k < size; ++k) rest(k, k) = (std::max)(rest(k, k), 0.0) + 1e-3;  // what is all taken over
+  solve_general(rest, residuals);
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    std::copy_n(&residuals(static_cast<Index>(6 * k)), 6, &out(0, blocks[k]));
+}
+
+/// Share of the measured values that the model explains, as if readings of a pose were one.
 VERNIER_LOCAL double mean_leverage(const BlockSystem& system, const FactorisedEquations& solved,
                                    const VectorX& precisions) {
   const VectorX variance = solved.inverse_diagonal();
@@ -112,7 +135,9 @@ VERNIER_LOCAL double mean_leverage(const BlockSystem& system, const FactorisedEq
   Index rows = 0;
   const VectorX squares = squared_row_norms(block.dense);
   for (const double square : squares) rows += square > 0;
-  return (std::min)(0.9, explained / static_cast<double>((std::max)(Index{1}, rows) * system.blocks));
+  const auto poses = static_cast<Index>(std::set<Index>(system.poses.begin(), system.poses.end()).size());
+  const Index independent = poses > 0 ? system.blocks - system.validation_blocks + poses : system.blocks;
+  return (std::min)(0.9, explained / static_cast<double>((std::max)(Index{1}, rows) * independent));
 }
 
 /// @param with the equations solved with the group
@@ -131,26 +156,25 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
   constexpr Index many = 500;  // exact where there are few poses; among many the mean leverage is that of each
   const bool exact = system.blocks < many;
   const double mean = exact ? 1 : 1 / (1 - mean_leverage(system, with, precisions));
-  const auto residual_of = [&](const RowBlock& rows, const Rows6& all, const FactorisedEquations& solved) {
-    Vector6 residual = rows.residual;
-    add_columns(all, solved.step().data(), 1, residual.data());
-    for (const RowBlock::Local& part : rows.local)
-      if (system.local_states > 0 && part.state >= 0)
-        add_columns(part.columns, &solved.local_step()(part.state * system.local_size), 1, residual.data());
-    return residual;
-  };
+  MatrixX left_out(6, exact ? system.blocks : 0);
+  if (exact) {
+    std::vector<std::vector<Index>> members(static_cast<std::size_t>(of_data));
+    for (Index b = 0; b < system.blocks; ++b) members[static_cast<std::size_t>(columns.at(cluster_of(b)))].push_back(b);
+    for (const std::vector<Index>& blocks : members) leave_out_cluster(system, with, blocks, left_out);
+  }
   Rows6 all(6, system.unknowns()), others(6, rest), tested(6, m);
   constexpr Index batch = 64;
   MatrixX waiting(3 * batch, m);  // displacements of positions
   visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
     rows.expand(system.group_sizes, all);
-    const Vector6 residual = residual_of(rows, all, at.solved), noise = residual_of(rows, all, with);
+    const Vector6 residual = residual_of(system, at.solved, rows, all);
+    Vector6 noise = mean * residual_of(system, with, rows, all);
+    if (exact) std::copy_n(&left_out(0, b), 6, noise.data());
     if (system.local_states > 0) at.solved.eliminate_local(rows, all);
     for (Index k = 0; k < rest; ++k) std::copy_n(&all(0, at.others[static_cast<std::size_t>(k)]), 6, &others(0, k));
     for (Index k = 0; k < m; ++k) std::copy_n(&all(0, at.tested[static_cast<std::size_t>(k)]), 6, &tested(0, k));
     add_product(tested, others, at.taken_over, -1);
-    out.flipped.col(columns.at(cluster_of(b))) +=
-        transposed_product(tested, exact ? left_out_residual(with, all, noise) : Vector6(mean * noise));
+    out.flipped.col(columns.at(cluster_of(b))) += transposed_product(tested, noise);
     out.sum += transposed_product(tested, residual);
     if (b >= system.validation_blocks) return;
     const Index row = 3 * (out.positions % batch);

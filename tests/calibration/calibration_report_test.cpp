@@ -209,11 +209,12 @@ TEST(CalibrationReport, TheVerdictNamesWhatIsDeployed) {
                    {Block::temperature, 1e-3, 1e-3, false},
                    {Block::drift, 1e-3, 0.5e-3, true, 1, {Answer::found}},
                    {Block::joint_drift, 1e-3, 2e-3, false, 1, {Answer::ruled_out}}};
-  EXPECT_TRUE(says(report.verdict(),
-                   "Deployed, as left-out poses decide: joint-wise. Included: functions of single joints. Found, but not "
-                   "deployed, because they predict left-out poses worse: gear ratios and coupling. Ruled out, as too "
-                   "small to matter: gravity compliance, drift of the joints' zeros. Not tested, because time cannot be "
-                   "told apart: change of the geometry with temperature."))
+  EXPECT_TRUE(
+      says(report.verdict(),
+           "Deployed, as left-out poses decide: joint-wise. Included: functions of single joints. Found, but not "
+           "deployed, because they predict left-out poses worse: gear ratios and coupling. Ruled out, as too "
+           "small to matter: gravity compliance, drift of the joints' zeros. Not tested, because time cannot be "
+           "told apart: change of the geometry with temperature."))
       << joined(report.verdict());
   report.chosen = {Stage::geometry_learned, Learner::pso_elm};
   report.stages.push_back({report.chosen, "geometry + PSO-ELM", 1e-3 * VectorX{{0.1, 0.2, 0.3, 9, 0.15}}, {}});

@@ -45,7 +45,8 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::of_station(int station) cons
   const Index terms = arm.terms().size();
   for (Index k = 0; k < terms; ++k) kept.push_back(static_cast<Index>(arm.geometric().size()) + k);
   ErrorModelEstimate out{.arm = detail::parameterised({arm.geometry(station), arm.joint_errors()}, std::move(unknowns),
-                                                      VERNIER_LATER(arm).scales().tail(terms), VERNIER_LATER(arm).precisions().tail(terms),
+                                                      VERNIER_LATER(arm).scales().tail(terms),
+                                                      VERNIER_LATER(arm).precisions().tail(terms),
                                                       arm.thermal_rates(station))};
   out.converged = converged;
   out.position_sigma = position_sigma;

@@ -149,7 +149,8 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
     score.noise *= (std::min)(1.0, with.squaredNorm() / without.squaredNorm());
   BlockChoice out{block, without.mean(),        with.mean(),
                   false, suppressing_precision, existence(score, level, relevance, problem.num_validation_poses())};
-  out.used = out.existence.answer == Answer::found && !predicts_worse(with, without);
+  constexpr double nothing = 1e6;  // evidence for sizes of a thousandth of the expected ones is evidence for none
+  out.used = out.existence.answer == Answer::found && precision < nothing && !predicts_worse(with, without);
   if (out.used) out.precision = precision;
   return out;
 }

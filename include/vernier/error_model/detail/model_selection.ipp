@@ -43,7 +43,7 @@ VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const Erro
   constexpr Index independent = 40, folds = 10, most = 100;  // clusters; blocks left out, and their poses
   for (Index b = 0; b < validated; ++b) {
     clusters_[static_cast<std::size_t>(b)] = b * independent / validated;
-    left_together_.push_back(b * std::max(folds, validated / most) / validated);
+    left_together_.push_back(b * (std::max)(folds, validated / most) / validated);
   }
 }
 

@@ -103,7 +103,7 @@ VERNIER_LOCAL Vector6 residual_of(const BlockSystem& system, const FactorisedEqu
 VERNIER_LOCAL void leave_out_cluster(const BlockSystem& system, const FactorisedEquations& solved,
                                      const std::vector<Index>& blocks, MatrixX& out) {
   const auto size = static_cast<Index>(6 * blocks.size());
-  MatrixX columns(system.unknowns(), size), rest = VERNIER_LATER_TYPE(MatrixX)::Identity(size, size);
+  MatrixX columns(system.unknowns(), size), rest = MatrixX::Identity(size, size);
   VectorX residuals(size);
   RowBlock rows;
   Rows6 all(6, system.unknowns());

@@ -93,10 +93,6 @@ void run_arm(const vn::Robot<6>& robot, const std::string& effect, double size, 
   const bool again = std::any_of(found.blocks.begin(), found.blocks.end(),
                                  [](const vn::BlockChoice& block) { return block.block == vn::Block::elastic_again; });
   for (const vn::BlockChoice& block : found.blocks) {
-    if (std::getenv("VERBOSE") != nullptr)
-      std::printf("  %s: p %.4f, used %d, %.4f -> %.4f mm, size %.4f [%.4f, %.4f]\n", vn::traits_of(block.block).key,
-                  block.existence.p, block.used, block.without * 1e3, block.with * 1e3, block.existence.size * 1e3,
-                  block.existence.interval[0] * 1e3, block.existence.interval[1] * 1e3);
     if (again && block.block == vn::Block::elastic) continue;
     const vn::Existence& answer = block.existence;
     if (answer.answer == vn::Answer::found) {

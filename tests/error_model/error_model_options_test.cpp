@@ -45,6 +45,9 @@ TEST(ErrorModelOptions, NumbersAndDirectionsHaveBounds) {
   for (const int bad : {-1, 501})
     EXPECT_EQ(complaint_after([&](ErrorModelOptions& o) { o.harmonics = bad; }),
               message("ErrorModelOptions: harmonics is ", bad, ", must lie in 0..500"));
+  EXPECT_EQ(complaint_after([](ErrorModelOptions& o) { o.relevant_size = 1e-5; }), "");
+  EXPECT_EQ(complaint_after([](ErrorModelOptions& o) { o.relevant_size = -1; }),
+            "ErrorModelOptions: relevant_size is -1, must be 0 or more");
   EXPECT_EQ(complaint_after([](ErrorModelOptions& o) { o.num_validation_poses = 1; }), "");
   EXPECT_EQ(complaint_after([](ErrorModelOptions& o) { o.num_validation_poses = 0; }),
             "ErrorModelOptions: num_validation_poses is 0, must be at least 1");

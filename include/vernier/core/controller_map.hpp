@@ -38,7 +38,8 @@ class ControllerMap {
 
   /// Whether the controller's joints are those of the chain, whatever their number.
   bool same() const { return square_.rows() == 0; }
-  /// Number of controller joints of an arm whose chain has so many joints.
+  /// Number of controller joints of an arm.
+  /// @param chain_joints number of joints of its chain
   /// @throws std::invalid_argument where the map is of a chain of another number of joints
   VERNIER_API int joints(int chain_joints) const;
   /// Number of controller joints; 0 where they are the same.

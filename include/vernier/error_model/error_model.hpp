@@ -27,10 +27,6 @@ VERNIER_API void blend_jacobians(double gate, const double* slope, const Isometr
                                  const double* inside_jacobian, const Isometry3& outside, Index joints,
                                  double* jacobian) noexcept;
 
-}  // namespace detail
-
-namespace detail {
-
 /// A blend of two models by a gate: `inside` where the joints were measured, `outside` elsewhere. Null pointers:
 /// `inside` alone.
 template <class Near, int N>

@@ -17,6 +17,8 @@ VERNIER_IMPL void ErrorModelOptions::validate() const {
                                     {"hysteresis_prior_std", hysteresis_prior_std},
                                     {"tilt_prior_std", tilt_prior_std}})
     demand(value > 0 && std::isfinite(value), "ErrorModelOptions: ", name, " is ", value, ", must be positive");
+  demand(relevant_size >= 0 && std::isfinite(relevant_size), "ErrorModelOptions: relevant_size is ", relevant_size,
+         ", must be 0 or more");
   demand(harmonics >= 0 && harmonics <= 500, "ErrorModelOptions: harmonics is ", harmonics, ", must lie in 0..500");
   demand(num_validation_poses >= 1, "ErrorModelOptions: num_validation_poses is ", num_validation_poses,
          ", must be at least 1");

@@ -58,27 +58,7 @@ class ErrorModelFit {
     for (Index j = 0; j < joints.cols(); ++j)
       linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
     const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
-    // what grows with the joint value looks like a function that repeats, and the other way round: the better one first
-    const CalibrationProblem before = problem_;
-    bool harmonics = periodic && model_.add(Block::jointwise, all);
-    if (geared) {
-      const CalibrationProblem with_harmonics = problem_;
-      const std::vector<BlockChoice> choices = model_.blocks;
-      problem_ = before;
-      model_.changed();
-      model_.blocks.pop_back();
-      if (model_.add(Block::gears, linear) && (!harmonics || model_.blocks.back().with < choices.back().with)) {
-        model_.solve();
-        linear.transmission = all.transmission;
-        harmonics = model_.add(Block::jointwise, linear);
-      } else {
-        problem_ = with_harmonics;
-        model_.changed();
-        const BlockChoice alone = model_.blocks.back();
-        model_.blocks = choices;
-        if (!harmonics) model_.blocks.push_back(alone);
-      }
-    }
+    const bool harmonics = geared ? add_functions(all, linear) : periodic && model_.add(Block::jointwise, all);
     const bool jointwise = harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
     if (harmonics) {
       model_.steps(2);
@@ -95,7 +75,7 @@ class ErrorModelFit {
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
       model_.size_by_evidence(link_unknowns(problem_.arm));
       model_.solve();
-      if (search) {
+      if (search && harmonics) {
         tune(search);
         model_.solve();
       }
@@ -125,12 +105,12 @@ class ErrorModelFit {
     }
     const bool inherited = options_.prior != nullptr && inherit(out);
     if (inherited) thermal = problem_.arm.thermal_rates(0).size() > 0;
-    const bool drift = options_.drift && add_drift(model_);
-    if ((hysteresis || tilt || thermal || drift) && jointwise && !search && !inherited) {
+    if (options_.drift) add_drift(model_);
+    if (harmonics && !search && !inherited) {  // with the weights that outliers have by now
       model_.learn_spectrum(4);
       model_.steps(1);
     }
-    if (jointwise && options_.find_lines && !inherited) find_lines(model_);
+    if (harmonics && options_.find_lines && !inherited) find_lines(model_);
     model_.solve();
     out.estimate.drift = problem_.drift;
     const std::vector<FittedArm> fitted = arms();
@@ -179,6 +159,32 @@ class ErrorModelFit {
     for (int s = 0; s < problem_.arm.stations(); ++s)
       out.push_back({problem_.arm.geometry(s), problem_.arm.joint_errors()});
     return out;
+  }
+
+  /// Adds harmonics, or gears and then harmonics beside them. What grows with the joint value looks like a function
+  /// that repeats, and the other way round. So each is tried alone, and the one that predicts better comes first.
+  /// @param periodic terms with harmonics
+  /// @param linear   terms with gear ratios and coupling
+  /// @return         whether there are harmonics
+  VERNIER_LOCAL bool add_functions(const JointTerms& periodic, JointTerms linear) {
+    const CalibrationProblem before = problem_;
+    const bool harmonics = model_.add(Block::jointwise, periodic);
+    const CalibrationProblem with_harmonics = problem_;
+    const std::vector<BlockChoice> choices = model_.blocks;
+    problem_ = before;
+    model_.changed();
+    model_.blocks.pop_back();
+    if (model_.add(Block::gears, linear) && (!harmonics || model_.blocks.back().with < choices.back().with)) {
+      model_.solve();
+      linear.transmission = periodic.transmission;
+      return model_.add(Block::jointwise, linear);
+    }
+    const BlockChoice alone = model_.blocks.back();
+    problem_ = with_harmonics;
+    model_.changed();
+    model_.blocks = choices;
+    if (!harmonics) model_.blocks.push_back(alone);
+    return harmonics;
   }
 
   /// Fits again with what an earlier calibration knows as the prior, and keeps that where left-out poses are predicted

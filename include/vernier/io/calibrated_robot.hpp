@@ -5,7 +5,6 @@
 /// A calibrated arm as one closed value: everything that is needed to correct its commands, saved and loaded as JSON.
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>

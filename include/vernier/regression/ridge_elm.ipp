@@ -27,7 +27,7 @@ VERNIER_IMPL detail::FittedNetwork RidgeElm::solve(const ConstMatrixRef& inputs,
   layer().outputs(in.apply(mapped), theta, h);
   const RidgePath path(h, targets, options.weights);
   double lambda = choose_lambda(path, h.rows()).lambda;
-  // by so many standard errors: a search over many layers finds one that seems a little better by chance
+  // in standard errors: among many layers a search finds one that is a little better by chance
   constexpr double enough = 3;
   if (evidence_against_mean(path, lambda, h.rows()) < enough) lambda = std::numeric_limits<double>::infinity();
   const MatrixX beta = path.beta(lambda);

@@ -142,15 +142,19 @@ VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
 VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest score, const VectorX& with,
                                                         const VectorX& without, double precision) const {
   constexpr double looks = 12, level = 0.05 / looks;  // at one arm
+  constexpr double nothing = 1e6;  // evidence for sizes of a thousandth of the expected ones is evidence for none
   const double sigma = problem.set_of(0).sigma().length;
   const double relevance =
       options_.relevant_size > 0 ? options_.relevant_size : (std::max)(0.1 * without.mean(), sigma);
   if (score.p <= level)  // what the effect adds to the residuals is no noise
     score.noise *= (std::min)(1.0, with.squaredNorm() / without.squaredNorm());
-  BlockChoice out{block, without.mean(),        with.mean(),
-                  false, suppressing_precision, existence(score, level, relevance, problem.num_validation_poses())};
-  constexpr double nothing = 1e6;  // evidence for sizes of a thousandth of the expected ones is evidence for none
-  out.used = out.existence.answer == Answer::found && precision < nothing && !predicts_worse(with, without);
+  BlockChoice out{block,
+                  without.mean(),
+                  with.mean(),
+                  false,
+                  suppressing_precision,
+                  existence(score, precision < nothing ? level : 0, relevance, problem.num_validation_poses())};
+  out.used = out.existence.answer == Answer::found && !predicts_worse(with, without);
   if (out.used) out.precision = precision;
   return out;
 }

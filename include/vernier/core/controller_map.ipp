@@ -60,8 +60,11 @@ class FormulaReader {
   }
 
   VERNIER_LOCAL void sum(double sign, std::vector<double>& row, double& zero) {
-    double term_sign = take('-') ? -sign : sign;
-    if (term_sign == sign) take('+');
+    double term_sign = sign;
+    if (take('-'))
+      term_sign = -sign;
+    else
+      take('+');
     for (;;) {
       term(term_sign, row, zero);
       if (take('+'))

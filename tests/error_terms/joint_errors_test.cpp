@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 #include <string>
@@ -475,6 +476,37 @@ TEST(JointErrors, CommonTermsHaveTheSameNames) {
       EXPECT_EQ(found, expected);
     }
   }
+}
+
+TEST(JointTerms, BlocksAreMadeFromTheirParameters) {
+  using Kind = vn::JointTermBlock::Kind;
+  const vn::DhChain<3> chain({{}, {}, {}});
+  const std::map<Kind, std::vector<double>> parameters{
+      {Kind::gravity, {0.6, 0, -0.8}}, {Kind::hysteresis, {0.02, 0.3}}, {Kind::tilt, {0, -1, 0}}};
+  const std::map<Kind, Index> sizes{
+      {Kind::gear_ratio, 3}, {Kind::coupling, 2}, {Kind::gravity, 6}, {Kind::hysteresis, 6}, {Kind::tilt, 18}};
+  for (const vn::JointTermTraits& row : vn::joint_term_rows) {
+    vn::JointTerms terms(3);
+    const auto of_kind = parameters.contains(row.kind) ? parameters.at(row.kind) : std::vector<double>{};
+    EXPECT_EQ(row.parameters != nullptr, !of_kind.empty() || row.kind == Kind::transmission);
+    const auto add = [&] { terms.add(row.kind, vn::detail::ChainTable(chain.view()), of_kind); };
+    if (row.kind == Kind::transmission) {
+      EXPECT_THROW(add(), std::invalid_argument);
+      continue;
+    }
+    add();
+    ASSERT_EQ(terms.blocks().size(), 1u) << row.key;
+    EXPECT_EQ(terms.blocks()[0].kind, row.kind);
+    EXPECT_EQ(terms.size(), sizes.at(row.kind)) << row.key;
+    EXPECT_EQ(terms.parameters(row.kind), of_kind);
+  }
+  vn::JointTerms terms(3);
+  const auto complaint = [&](Kind kind, const std::vector<double>& of_kind) {
+    return vernier_test::complaint([&] { terms.add(kind, vn::detail::ChainTable(chain.view()), of_kind); });
+  };
+  EXPECT_EQ(complaint(Kind::gravity, {0, 0, -2}), "must have length 1");
+  EXPECT_EQ(complaint(Kind::tilt, {0, 1}), "a direction has 2 components, must have 3");
+  EXPECT_EQ(complaint(Kind::hysteresis, {0.1, 0}), "a width is 0, must be positive");
 }
 
 TEST(JointErrors, WrongCoefficientsAreNamed) {

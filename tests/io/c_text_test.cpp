@@ -10,7 +10,7 @@
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/check.hpp"
-#include "vernier/io/detail/c_code.hpp"
+#include "vernier/io/detail/c_tables.hpp"
 
 namespace vernier::c_text_test {
 namespace {
@@ -25,14 +25,14 @@ constexpr const char* tables =
 using Features = std::set<std::string>;
 
 /// All features that the text asks for, and sets of them as arms have them; together these compile every line.
-const Features all{"CONTROLLER", "EXP",      "FALLBACK", "GATES",     "GRAVITY",      "HARMONICS",
+const Features all{"CONTROLLER", "EXP",      "FALLBACK", "GATES",     "GRAVITY",      "TRANSMISSION",
                    "HYSTERESIS", "LEARNED",  "LINEAR",   "LINKS",     "LOG",          "MAP_PRODUCTS",
                    "MAP_RAW",    "MODIFIED", "ORIENTED", "PRISMATIC", "RADIAL_BASIS", "REDUNDANT",
                    "SIGMOID",    "SINE",     "SINES",    "TANH",      "TILT",         "MAP_SINES_AND_COSINES"};
 const std::vector<Features> arms{
     {},
-    {"ORIENTED", "LOG", "LEARNED", "GATES", "SINES", "MAP_SINES_AND_COSINES", "TANH", "HARMONICS"},
-    {"EXP", "FALLBACK", "GATES", "GRAVITY", "HARMONICS", "HYSTERESIS", "LEARNED", "LINEAR", "LINKS", "LOG",
+    {"ORIENTED", "LOG", "LEARNED", "GATES", "SINES", "MAP_SINES_AND_COSINES", "TANH", "TRANSMISSION"},
+    {"EXP", "FALLBACK", "GATES", "GRAVITY", "TRANSMISSION", "HYSTERESIS", "LEARNED", "LINEAR", "LINKS", "LOG",
      "MAP_PRODUCTS", "MODIFIED", "ORIENTED", "PRISMATIC", "REDUNDANT", "SIGMOID", "SINES", "TILT"},
     {"REDUNDANT", "GRAVITY", "LINKS", "LEARNED", "GATES", "MAP_RAW", "RADIAL_BASIS"},
     {"LEARNED", "GATES", "MAP_RAW", "SINE", "TILT", "LINKS", "EXP"},
@@ -51,7 +51,7 @@ class CText : public ::testing::Test {
 // A file without its first and last lines, which are those of a string literal, is what the literal holds. Unknown
 // features are errors.
 TEST_F(CText, FilesCompileWithoutAWarning) {
-  std::string text = message(macros, detail::c_declarations, detail::c_types, tables);
+  std::string text = message(macros, detail::c_declarations, detail::c_kinds("ARM"), detail::c_types, tables);
   for (const std::string_view functions : detail::c_functions) text += functions;
   write_file(folder_ / "text.h", text);
   write_file(folder_ / "text.c", "#include \"text.h\"\n");

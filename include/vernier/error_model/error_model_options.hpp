@@ -4,8 +4,11 @@
 /// @file
 /// Which joint errors an error model may have, and their expected sizes.
 
+#include <optional>
+#include <vector>
+
 #include "vernier/core/executor.hpp"
-#include "vernier/error_terms/fourier.hpp"
+#include "vernier/error_terms/joint_errors.hpp"
 #include "vernier/kinematics/joint_drive.hpp"
 
 namespace vernier {
@@ -39,6 +42,11 @@ struct ErrorModelOptions {
                                      ///< of the left-out error, at least the sensor's standard deviation
   Index num_validation_poses = 200;  ///< approximate number of poses left out, one at a time, to validate a block
 
+  /// The parameters of a block that the options allow, for `JointTerms::add`; none where they do not allow it, and of a
+  /// transmission.
+  VERNIER_API std::optional<std::vector<double>> parameters(JointTermBlock::Kind kind) const;
+  /// Expected size of a coefficient of a block. Those of a transmission follow the spectrum instead.
+  VERNIER_API double expected_size(JointTermBlock::Kind kind) const;
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;
 };

@@ -9,6 +9,37 @@
 
 namespace vernier {
 
+VERNIER_IMPL std::optional<std::vector<double>> ErrorModelOptions::parameters(JointTermBlock::Kind kind) const {
+  using Kind = JointTermBlock::Kind;
+  const auto if_allowed = [](bool allowed, std::vector<double> values) {
+    return allowed ? std::optional(std::move(values)) : std::nullopt;
+  };
+  const std::vector<double> direction(down.begin(), down.end());
+  switch (kind) {
+    case Kind::gear_ratio: return if_allowed(gear_ratio, {});
+    case Kind::coupling: return if_allowed(coupling, {});
+    case Kind::gravity: return if_allowed(compliance, direction);
+    case Kind::hysteresis: return if_allowed(hysteresis, {0.01, 0.3});
+    case Kind::tilt: return if_allowed(tilt, direction);
+    case Kind::transmission: break;
+  }
+  return std::nullopt;
+}
+
+VERNIER_IMPL double ErrorModelOptions::expected_size(JointTermBlock::Kind kind) const {
+  using Kind = JointTermBlock::Kind;
+  switch (kind) {
+    case Kind::gear_ratio: return gear_ratio_prior_std;
+    case Kind::coupling: return coupling_prior_std;
+    case Kind::gravity: return compliance_prior_std;
+    case Kind::hysteresis: return hysteresis_prior_std;
+    case Kind::tilt: return tilt_prior_std;
+    case Kind::transmission: break;
+  }
+  demand(false, "ErrorModelOptions: functions of single joints have expected sizes by their spectrum");
+  return 0;
+}
+
 VERNIER_IMPL void ErrorModelOptions::validate() const {
   for (const auto& [name, value] : {std::pair{"compliance_prior_std", compliance_prior_std},
                                     std::pair{"thermal_prior_std", thermal_prior_std},

@@ -40,7 +40,7 @@ class ErrorModelFit {
     if (input_.sets.front().locates()) estimate.geometry_left_out_errors = model_.left_out_errors();
 
     JointTerms elastic(input_.nominal.joints());
-    if (options_.compliance) elastic.gravity.emplace(input_.nominal, options_.down);
+    add_to(elastic, JointTermBlock::Kind::gravity);
     const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic);
     if (deflects) model_.solve();
     out.stages.push_back({Stage::elastic, deflects, arms()});
@@ -83,13 +83,12 @@ class ErrorModelFit {
     out.stages.push_back({Stage::jointwise, jointwise, arms()});
 
     JointTerms approached = problem_.arm.terms();
-    approached.hysteresis = hysteresis_widths();
-    const bool hysteresis = options_.hysteresis && model_.add(Block::approach, approached);
+    const bool hysteresis =
+        add_to(approached, JointTermBlock::Kind::hysteresis) && model_.add(Block::approach, approached);
     if (hysteresis) model_.steps(2);
     std::vector<FittedArm> without_tilt = arms();
     JointTerms tilted = problem_.arm.terms();
-    if (options_.tilt) tilted.tilt.emplace(input_.nominal, options_.down);
-    const bool tilt = options_.tilt && model_.add(Block::tilt, tilted);
+    const bool tilt = add_to(tilted, JointTermBlock::Kind::tilt) && model_.add(Block::tilt, tilted);
     if (tilt) {
       if (!harmonics) estimate.fallback_error = model_.blocks.back().without;
       model_.steps(2);
@@ -154,6 +153,13 @@ class ErrorModelFit {
   }
 
  private:
+  /// Makes a block present if the options allow it.
+  VERNIER_LOCAL bool add_to(JointTerms& terms, JointTermBlock::Kind kind) const {
+    const auto parameters = options_.parameters(kind);
+    if (parameters) terms.add(kind, input_.nominal, *parameters);
+    return parameters.has_value();
+  }
+
   VERNIER_LOCAL std::vector<FittedArm> arms() const {
     std::vector<FittedArm> out;
     for (int s = 0; s < problem_.arm.stations(); ++s)

@@ -4,7 +4,10 @@
 /// @file
 /// Errors of the joints of a real arm: one sum, linear in its coefficients.
 
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +31,37 @@ struct JointTermBlock {
   Index begin;  ///< first coefficient
   Index count;  ///< number of coefficients
 };
+
+/// What is known of a kind of joint errors, beside its formula. Model files and C source follow this table.
+struct JointTermTraits {
+  JointTermBlock::Kind kind;  ///< itself
+  const char* key;            ///< of the block in model files; also its name in C
+  const char* parameters;     ///< key of the block's parameters; null: it has none
+  const char* coefficients;   ///< key of its coefficients beside the parameters
+};
+
+/// All kinds, by their number, in the order of the coefficients.
+inline constexpr std::array<JointTermTraits, 6> joint_term_rows{{
+    {JointTermBlock::Kind::gear_ratio, "gear_ratio", nullptr, nullptr},
+    {JointTermBlock::Kind::coupling, "coupling", nullptr, nullptr},
+    {JointTermBlock::Kind::gravity, "gravity", "down", "products_rad_per_m"},
+    {JointTermBlock::Kind::hysteresis, "hysteresis", "widths_rad", "coefficients_rad"},
+    {JointTermBlock::Kind::tilt, "tilt", "down", "coefficients_rad"},
+    {JointTermBlock::Kind::transmission, "transmission", "orders", "coefficients_rad"},
+}};
+
+static_assert(
+    [] {
+      for (std::size_t k = 0; k < joint_term_rows.size(); ++k)
+        if (static_cast<std::size_t>(joint_term_rows[k].kind) != k) return false;
+      return true;
+    }(),
+    "each row has the number of its place");
+
+/// What is known of a kind of joint errors.
+constexpr const JointTermTraits& traits_of(JointTermBlock::Kind kind) {
+  return joint_term_rows[static_cast<std::size_t>(kind)];
+}
 
 /// Which joint errors there are: `dq(q) = Phi(q) beta`, Phi one column a coefficient. Blocks, in the order of the
 /// coefficients; each may be absent:
@@ -77,6 +111,15 @@ struct JointTerms {
     const JointRange& range = linear_ranges[static_cast<std::size_t>(joint)];
     return q < range.lower ? range.lower : q > range.upper ? range.upper : q;
   }
+  /// Makes a block present that has one column a coefficient.
+  /// @param kind       any but transmission, which has functions of its own for each joint
+  /// @param nominal    the chain whose torques gravity compliance needs, and whose frames tilt
+  /// @param parameters direction of gravity (gravity, tilt) or widths (hysteresis); none for others
+  /// @throws std::invalid_argument on parameters that the block cannot have
+  VERNIER_API void add(JointTermBlock::Kind kind, const detail::ChainTable& nominal,
+                       std::span<const double> parameters);
+  /// The parameters with which `add` makes a present block.
+  VERNIER_API std::vector<double> parameters(JointTermBlock::Kind kind) const;
   /// The blocks that are present, in the order of their coefficients.
   VERNIER_API std::vector<JointTermBlock> blocks() const;
 

@@ -19,6 +19,14 @@ VERNIER_LOCAL inline double step_of(const double* q, const double* previous, int
   return previous == nullptr || !std::isfinite(previous[joint]) ? 0 : std::tanh((q[joint] - previous[joint]) / width);
 }
 
+/// A direction by its components.
+VERNIER_LOCAL inline Vector3 direction_of(std::span<const double> parameters) {
+  demand(parameters.size() == 3, "a direction has ", parameters.size(), " components, must have 3");
+  const Vector3 out(parameters[0], parameters[1], parameters[2]);
+  demand(std::abs(out.norm() - 1) < 1e-6, "must have length 1");
+  return out;
+}
+
 VERNIER_IMPL void compose_jacobian(const double* jacobian, const double* derivative, int n, double* out) noexcept {
   for (int j = 0; j < n; ++j) {
     double sum[6] = {};
@@ -65,6 +73,32 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
   }
   for (const double width : hysteresis)
     for (int i = 0; i < joints; ++i) out(i, at++) = detail::step_of(q, previous, i, width);
+}
+
+VERNIER_IMPL void JointTerms::add(JointTermBlock::Kind kind, const detail::ChainTable& nominal,
+                                  std::span<const double> parameters) {
+  using Kind = JointTermBlock::Kind;
+  switch (kind) {
+    case Kind::gear_ratio: gear_ratio = true; break;
+    case Kind::coupling: coupling = true; break;
+    case Kind::gravity: gravity.emplace(nominal, detail::direction_of(parameters)); break;
+    case Kind::hysteresis:
+      for (const double width : parameters)
+        demand(width > 0 && std::isfinite(width), "a width is ", width, ", must be positive");
+      hysteresis.assign(parameters.begin(), parameters.end());
+      break;
+    case Kind::tilt: tilt.emplace(nominal, detail::direction_of(parameters)); break;
+    case Kind::transmission: demand(false, "JointTerms::add: transmissions are functions of single joints");
+  }
+}
+
+VERNIER_IMPL std::vector<double> JointTerms::parameters(JointTermBlock::Kind kind) const {
+  using Kind = JointTermBlock::Kind;
+  const auto values = [](const Vector3& direction) { return std::vector<double>(direction.begin(), direction.end()); };
+  if (kind == Kind::gravity && gravity) return values(gravity->down());
+  if (kind == Kind::hysteresis) return hysteresis;
+  if (kind == Kind::tilt && tilt) return values(tilt->down());
+  return {};
 }
 
 VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {

@@ -36,14 +36,11 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   const auto add = [&](const char* feature, bool present) {
     if (present) out.insert(feature);
   };
-  using Kind = JointTermBlock::Kind;
   const auto add_terms = [&](const FittedArm& arm) {
     for (const JointTermBlock& block : arm.errors.terms().blocks()) {
-      add("LINEAR", block.kind == Kind::gear_ratio || block.kind == Kind::coupling);
-      add("GRAVITY", block.kind == Kind::gravity);
-      add("HYSTERESIS", block.kind == Kind::hysteresis);
-      add("TILT", block.kind == Kind::tilt);
-      add("HARMONICS", block.kind == Kind::transmission);
+      const JointTermTraits& row = traits_of(block.kind);
+      out.insert(c_capitals(row.key));
+      add("LINKS", row.parameters == std::string_view("down"));  // gravity acts on the links
     }
   };
   add_terms(model.identified);
@@ -57,7 +54,7 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("FALLBACK", model.fallback.has_value());
   add("LEARNED", model.learned.has_value());
   add("GATES", model.fallback || model.learned);
-  add("LINKS", out.contains("GRAVITY") || out.contains("TILT"));
+  add("LINEAR", out.contains("GEAR_RATIO") || out.contains("COUPLING"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
   add("EXP", out.contains("TILT") || out.contains("FALLBACK"));
   if (!model.learned) return out;
@@ -151,7 +148,7 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
     define("FEATURES", message(network->layer.features(joints)));
     define("NODES", message(network->layer.nodes));
   }
-  out += text(c_types);
+  out += c_kinds(capitals) + text(c_types);
   out += "\n/* ---- tables ---- */\n\n";
   std::vector<int> prismatic;
   std::string limits = message("static const double ", prefix, "limits_[2 * ", capitals, "_JOINTS] = {\n");

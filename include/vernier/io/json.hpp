@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -93,6 +94,8 @@ class JsonNode {
   VERNIER_API bool has_quantity(const std::string& stem) const;
 
   /// Refuses members of an object that are not in the list, so that a misspelt key is not ignored.
+  VERNIER_API void allow_only(std::span<const std::string_view> keys) const;
+  /// Likewise of a list in braces.
   VERNIER_API void allow_only(std::initializer_list<std::string_view> keys) const;
 
  private:

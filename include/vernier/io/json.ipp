@@ -147,6 +147,10 @@ VERNIER_IMPL bool JsonNode::has_quantity(const std::string& stem) const {
 }
 
 VERNIER_IMPL void JsonNode::allow_only(std::initializer_list<std::string_view> keys) const {
+  allow_only(std::span(keys.begin(), keys.size()));
+}
+
+VERNIER_IMPL void JsonNode::allow_only(std::span<const std::string_view> keys) const {
   for (const auto& [key, ignored] : object().items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) fail("key '" + detail::quotable(key) + "' is unknown");
 }

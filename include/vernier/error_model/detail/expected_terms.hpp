@@ -19,9 +19,6 @@ VERNIER_API std::vector<HarmonicSpectrum> spectra_of(const ErrorModelOptions& op
 VERNIER_API Fourier orders_of_joint(const ErrorModelOptions& options, const std::vector<HarmonicSpectrum>& spectra,
                                     std::size_t joint, Index measurements);
 
-/// Widths of hysteresis.
-VERNIER_API inline std::vector<double> hysteresis_widths() { return {0.01, 0.3}; }
-
 /// All terms that the options allow a number of measurements.
 VERNIER_API JointTerms allowed_terms(const ChainTable& nominal, const ErrorModelOptions& options, Index measurements);
 

@@ -37,16 +37,17 @@ VERNIER_IMPL JointTerms allowed_terms(const ChainTable& nominal, const ErrorMode
   const int joints = nominal.joints();
   const std::vector<HarmonicSpectrum> spectra = spectra_of(options, joints);
   JointTerms out(joints);
-  if (options.compliance) out.gravity.emplace(nominal, options.down);
   for (int j = 0; j < joints; ++j)
     if (nominal.revolute(j))
       out.transmission[static_cast<std::size_t>(j)] =
           orders_of_joint(options, spectra, static_cast<std::size_t>(j), measurements);
-  const bool jointwise = out.size() > out.num_dense_terms();
-  out.gear_ratio = options.gear_ratio && jointwise;
-  out.coupling = options.coupling && jointwise;
-  if (options.hysteresis) out.hysteresis = hysteresis_widths();
-  if (options.tilt) out.tilt.emplace(nominal, options.down);
+  const bool jointwise = out.size() > 0;
+  for (const JointTermTraits& row : joint_term_rows) {
+    const bool of_joint_values =
+        row.kind == JointTermBlock::Kind::gear_ratio || row.kind == JointTermBlock::Kind::coupling;
+    const auto parameters = options.parameters(row.kind);
+    if (parameters && (jointwise || !of_joint_values)) out.add(row.kind, nominal, *parameters);
+  }
   return out;
 }
 
@@ -55,18 +56,10 @@ VERNIER_IMPL VectorX expected_sizes(const JointTerms& terms, const ErrorModelOpt
   VectorX out(terms.size());
   for (const JointTermBlock& block : terms.blocks())
     for (Index k = 0; k < block.count; ++k) {
-      double& std = out(block.begin + k);
-      switch (block.kind) {
-        case JointTermBlock::Kind::gear_ratio: std = options.gear_ratio_prior_std; break;
-        case JointTermBlock::Kind::coupling: std = options.coupling_prior_std; break;
-        case JointTermBlock::Kind::gravity: std = options.compliance_prior_std; break;
-        case JointTermBlock::Kind::hysteresis: std = options.hysteresis_prior_std; break;
-        case JointTermBlock::Kind::tilt: std = options.tilt_prior_std; break;
-        case JointTermBlock::Kind::transmission:
-          std = expected_std(spectra[static_cast<std::size_t>(block.joint)],
-                             terms.transmission[static_cast<std::size_t>(block.joint)].order(k));
-          break;
-      }
+      const auto joint = static_cast<std::size_t>(block.joint);
+      out(block.begin + k) = block.kind == JointTermBlock::Kind::transmission
+                                 ? expected_std(spectra[joint], terms.transmission[joint].order(k))
+                                 : options.expected_size(block.kind);
     }
   return out;
 }

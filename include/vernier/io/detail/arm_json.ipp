@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/io/detail/arm_json.hpp"
@@ -79,7 +82,6 @@ VERNIER_IMPL CoverageData coverage_from_json(const JsonNode& node, int joints) {
 }
 
 VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
-  using Kind = JointTermBlock::Kind;
   const JointTerms& terms = errors.terms();
   OrderedJson out{{"coefficients", terms.size()}};  // so that a block that got lost is missed
   const bool transmissions = terms.size() > terms.num_dense_terms();
@@ -88,20 +90,13 @@ VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
     joints.push_back({{"orders", fourier.orders}, {"coefficients_rad", OrderedJson::array()}});
   for (const JointTermBlock& block : terms.blocks()) {
     OrderedJson values = list_of(errors.coefficients().segment(block.begin, block.count));
-    switch (block.kind) {
-      case Kind::gear_ratio: out["gear_ratio"] = std::move(values); break;
-      case Kind::coupling: out["coupling"] = std::move(values); break;
-      case Kind::gravity:
-        out["gravity"] = {{"down", list_of(terms.gravity->down())}, {"products_rad_per_m", std::move(values)}};
-        break;
-      case Kind::hysteresis:
-        out["hysteresis"] = {{"widths_rad", terms.hysteresis}, {"coefficients_rad", std::move(values)}};
-        break;
-      case Kind::tilt:
-        out["tilt"] = {{"down", list_of(terms.tilt->down())}, {"coefficients_rad", std::move(values)}};
-        break;
-      case Kind::transmission: joints[static_cast<std::size_t>(block.joint)]["coefficients_rad"] = std::move(values);
-    }
+    const JointTermTraits& row = traits_of(block.kind);
+    if (block.joint >= 0)
+      joints[static_cast<std::size_t>(block.joint)][row.coefficients] = std::move(values);
+    else if (row.parameters != nullptr)
+      out[row.key] = {{row.parameters, terms.parameters(block.kind)}, {row.coefficients, std::move(values)}};
+    else
+      out[row.key] = std::move(values);
   }
   if (transmissions) out["transmission"] = std::move(joints);
   if (!terms.linear_ranges.empty()) {
@@ -112,21 +107,31 @@ VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
   return out;
 }
 
-VERNIER_LOCAL Vector3 direction_from_json(const JsonNode& node) {
-  const Vector3 out = node.numbers(3);
-  if (!(std::abs(out.norm() - 1) < 1e-6)) node.fail("must have length 1");
-  return out;
-}
-
 /// @param nominal the chain whose torques gravity compliance needs, and whose frames tilt
 VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
-  node.allow_only(
-      {"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "hysteresis", "tilt", "transmission"});
+  std::vector<std::string_view> keys{"coefficients", "linear_ranges"};
+  for (const JointTermTraits& row : joint_term_rows) keys.emplace_back(row.key);
+  node.allow_only(keys);
   const auto joints = static_cast<std::size_t>(nominal.joints());
   JointTerms terms(nominal.joints());
   std::vector<VectorX> blocks;
-  if ((terms.gear_ratio = node.has("gear_ratio"))) blocks.push_back(node.at("gear_ratio").numbers(joints));
-  if ((terms.coupling = node.has("coupling"))) blocks.push_back(node.at("coupling").numbers(joints - 1));
+  for (const JointTermTraits& row : joint_term_rows) {
+    if (row.kind == JointTermBlock::Kind::transmission || !node.has(row.key)) continue;
+    const JsonNode block = node.at(row.key);
+    const Index before = terms.size();
+    std::vector<double> parameters;
+    if (row.parameters != nullptr) {
+      const JsonNode list = block.at(row.parameters);
+      for (std::size_t k = 0; k < list.size(); ++k) parameters.push_back(list.at(k).number());
+    }
+    try {
+      terms.add(row.kind, nominal, parameters);
+    } catch (const std::invalid_argument& fault) {
+      block.at(row.parameters).fail(fault.what());
+    }
+    const JsonNode coefficients = row.parameters != nullptr ? block.at(row.coefficients) : block;
+    blocks.push_back(coefficients.numbers(static_cast<std::size_t>(terms.size() - before)));
+  }
   if (node.has("linear_ranges")) {
     node.at("linear_ranges").require_size(joints);
     for (std::size_t i = 0; i < joints; ++i) {
@@ -135,24 +140,6 @@ VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, cons
       if (!(ends(0) <= ends(1))) range.fail("its lower end is above its upper one");
       terms.linear_ranges.push_back({ends(0), ends(1)});
     }
-  }
-  if (node.has("gravity")) {
-    const JsonNode gravity = node.at("gravity");
-    terms.gravity.emplace(nominal, direction_from_json(gravity.at("down")));
-    blocks.push_back(gravity.at("products_rad_per_m").numbers(static_cast<std::size_t>(terms.gravity->size())));
-  }
-  if (node.has("hysteresis")) {
-    const JsonNode hysteresis = node.at("hysteresis"), widths = hysteresis.at("widths_rad");
-    for (std::size_t k = 0; k < widths.size(); ++k) {
-      terms.hysteresis.push_back(widths.at(k).number());
-      if (!(terms.hysteresis.back() > 0)) widths.at(k).fail("must be positive");
-    }
-    blocks.push_back(hysteresis.at("coefficients_rad").numbers(joints * terms.hysteresis.size()));
-  }
-  if (node.has("tilt")) {
-    const JsonNode tilt = node.at("tilt");
-    terms.tilt.emplace(nominal, direction_from_json(tilt.at("down")));
-    blocks.push_back(tilt.at("coefficients_rad").numbers(static_cast<std::size_t>(terms.tilt->size())));
   }
   if (node.has("transmission")) {
     const JsonNode transmission = node.at("transmission");

@@ -27,6 +27,9 @@ VERNIER_API std::string c_table(const std::string& name, std::span<const int> va
 /// Of each joint: theta, d, a, sin and cos of alpha, sin and cos of beta.
 VERNIER_API std::string c_chain_table(const std::string& name, const ChainTable& chain);
 
+/// The kinds of joint errors with a column a coefficient, as an enumeration `CAPITALS_KEY_, ..., CAPITALS_KINDS_`.
+VERNIER_API std::string c_kinds(const std::string& capitals);
+
 /// All tables of an arm, and a struct `name` of type `type` that points to them.
 /// @param lanes numbers of an order of the harmonics, at least one a joint
 VERNIER_API std::string c_arm_tables(const std::string& type, const std::string& name, const FittedArm& arm, int lanes);

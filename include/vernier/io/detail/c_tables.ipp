@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/number_text.hpp"
+#include "vernier/io/detail/c_code.hpp"
 #include "vernier/io/detail/c_tables.hpp"
 
 namespace vernier::detail {
@@ -57,6 +59,13 @@ VERNIER_IMPL std::string c_chain_table(const std::string& name, const ChainTable
   return c_table(name, values, 7);
 }
 
+VERNIER_IMPL std::string c_kinds(const std::string& capitals) {
+  std::string out = "/* Kinds of joint errors. */\nenum { ";
+  for (const JointTermTraits& row : joint_term_rows)
+    if (row.kind != JointTermBlock::Kind::transmission) out += message(capitals, "_", c_capitals(row.key), "_, ");
+  return out + capitals + "_KINDS_ };\n";
+}
+
 VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string& name, const FittedArm& arm,
                                       int lanes) {
   const int joints = arm.geometry.joints();
@@ -78,64 +87,43 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
   const std::string rows = name + "rows_", base = frame("base_", arm.geometry.base()),
                     tool = frame("tool_", arm.geometry.tool());
 
-  using Kind = JointTermBlock::Kind;
   const JointTerms& terms = arm.errors.terms();
-  std::vector<double> gear, coupling, ranges, gravity, gravity_down, hysteresis, tilt, tilt_down, harmonics;
   std::vector<int> orders;
   for (const Fourier& of_joint : terms.transmission)
     orders.insert(orders.end(), of_joint.orders.begin(), of_joint.orders.end());
   std::sort(orders.begin(), orders.end());
   orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
-  harmonics.assign(orders.size() * 2 * static_cast<std::size_t>(lanes), 0.0);
+  std::vector<double> harmonics(orders.size() * 2 * static_cast<std::size_t>(lanes)), ranges;
+  const auto n = static_cast<std::size_t>(joints);
+  std::array<std::string, joint_term_rows.size()> of_kinds;
+  of_kinds.fill("{0, 0, 0}");
   for (const JointTermBlock& block : terms.blocks()) {
     const double* first = arm.errors.coefficients().data() + block.begin;
     const std::vector<double> values(first, first + block.count);
-    switch (block.kind) {
-      case Kind::gear_ratio: gear = values; break;
-      case Kind::coupling:
-        coupling = {0.0};
-        coupling.insert(coupling.end(), values.begin(), values.end());
-        break;
-      case Kind::gravity:
-        gravity = values;
-        gravity_down.assign(terms.gravity->down().begin(), terms.gravity->down().end());
-        break;
-      case Kind::hysteresis:
-        for (std::size_t w = 0; w < terms.hysteresis.size(); ++w) {
-          hysteresis.push_back(terms.hysteresis[w]);
-          hysteresis.insert(hysteresis.end(), first + static_cast<Index>(w) * joints,
-                            first + static_cast<Index>(w + 1) * joints);
-        }
-        break;
-      case Kind::tilt:
-        tilt = values;
-        tilt_down.assign(terms.tilt->down().begin(), terms.tilt->down().end());
-        break;
-      case Kind::transmission: {
-        const std::vector<int>& of_joint = terms.transmission[static_cast<std::size_t>(block.joint)].orders;
-        for (std::size_t k = 0; k < of_joint.size(); ++k) {
-          const auto row = std::lower_bound(orders.begin(), orders.end(), of_joint[k]) - orders.begin();
-          double* to = harmonics.data() + 2 * lanes * row + block.joint;
-          to[0] = values[2 * k];
-          to[lanes] = values[2 * k + 1];
-        }
-      }
+    if (block.joint < 0) {
+      const std::string key = traits_of(block.kind).key;
+      const std::vector<double> parameters = terms.parameters(block.kind);
+      const std::string coefficients = table((key + "_").c_str(), values, n);
+      of_kinds[static_cast<std::size_t>(block.kind)] = message(
+          "{", coefficients, ", ", table((key + "_parameters_").c_str(), parameters, 3), ", ", parameters.size(), "}");
+      continue;
+    }
+    const std::vector<int>& of_joint = terms.transmission[static_cast<std::size_t>(block.joint)].orders;
+    for (std::size_t k = 0; k < of_joint.size(); ++k) {
+      const auto row = std::lower_bound(orders.begin(), orders.end(), of_joint[k]) - orders.begin();
+      double* to = harmonics.data() + 2 * lanes * row + block.joint;
+      to[0] = values[2 * k];
+      to[lanes] = values[2 * k + 1];
     }
   }
-  for (const JointRange& range : terms.linear_ranges) ranges.insert(ranges.end(), {range.lower, range.upper});
-  if (gear.empty() && coupling.empty()) ranges.clear();
+  if (terms.gear_ratio || terms.coupling)
+    for (const JointRange& range : terms.linear_ranges) ranges.insert(ranges.end(), {range.lower, range.upper});
 
-  std::string fields = message("{", rows, ", ", base, ", ", tool);
-  const auto n = static_cast<std::size_t>(joints);
-  fields += ", " + table("gear_", gear, n);
-  fields += ", " + table("coupling_", coupling, n);
-  fields += ", " + table("linear_ranges_", ranges, 2);
-  fields += ", " + table("gravity_", gravity, n);
-  fields += ", " + table("gravity_down_", gravity_down, 3);
-  fields += ", " + table("hysteresis_", hysteresis, n + 1);
-  fields += message(", ", terms.hysteresis.size());
-  fields += ", " + table("tilt_", tilt, 6);
-  fields += ", " + table("tilt_down_", tilt_down, 3);
+  std::string fields = message("{", rows, ", ", base, ", ", tool, ", {");
+  for (const JointTermTraits& row : joint_term_rows)
+    if (row.kind != JointTermBlock::Kind::transmission)
+      fields += (fields.back() == '{' ? "" : ", ") + of_kinds[static_cast<std::size_t>(row.kind)];
+  fields += "}, " + table("linear_ranges_", ranges, 2);
   fields += ", " + table("harmonics_", harmonics, static_cast<std::size_t>(lanes));
   if (orders.empty()) {
     fields += ", 0, 0}";

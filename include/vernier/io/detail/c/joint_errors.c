@@ -9,24 +9,25 @@ static inline double arm_linear_(const arm_arm_ *arm, int joint, double q) {
   return q < range[0] ? range[0] : q > range[1] ? range[1] : q;
 }
 
-/* Gear ratios and coupling. */
+/* Error of the gear ratio of each joint; coupling of each joint, from the second, by the one before. */
 static inline void arm_add_linear_(const arm_arm_ *arm, const double *q, double *joints, double *rate) {
+  const double *gear = arm->terms[ARM_GEAR_RATIO_].of, *coupling = arm->terms[ARM_COUPLING_].of;
   int i, from;
   for (i = 0; i < ARM_CHAIN_; ++i)
     for (from = i; from >= 0 && from >= i - 1; --from) {
-      const double *of = from == i ? arm->gear : arm->coupling;
+      const double *of = from == i ? gear : coupling; /* its place among these is `from` */
       const double linear = arm_linear_(arm, from, q[from]);
       if (!of) continue;
-      joints[i] += of[i] * linear;
-      if (rate && linear == q[from]) rate[from * ARM_CHAIN_ + i] += of[i];
+      joints[i] += of[from] * linear;
+      if (rate && linear == q[from]) rate[from * ARM_CHAIN_ + i] += of[from];
     }
 }
 #endif
 #if HAS_GRAVITY
 
-/* Torques of the links' weights. */
+/* Torques of the links' weights: of joint i under link j >= i [rad/m], by the direction of gravity. */
 static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links, double *joints, double *rate) {
-  const double *down = arm->gravity_down, *weight = arm->gravity;
+  const double *down = arm->terms[ARM_GRAVITY_].parameters, *weight = arm->terms[ARM_GRAVITY_].of;
   int i, j, k;
   for (i = 0; i < ARM_CHAIN_; ++i) {
     const double *axis = links->axis + 3 * i;
@@ -75,23 +76,25 @@ static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links
 #endif
 #if HAS_HYSTERESIS
 
+/* Hysteresis: of each width a coefficient a joint. */
 static inline void arm_add_hysteresis_(const arm_arm_ *arm, const double *q, const double *previous, double *joints,
                                      double *rate) {
+  const arm_terms_ *terms = arm->terms + ARM_HYSTERESIS_;
   int i, w;
   if (!previous) return;
-  for (w = 0; w < arm->widths; ++w) {
-    const double *of = arm->hysteresis + w * (ARM_CHAIN_ + 1), width = of[0];
+  for (w = 0; w < terms->count; ++w) {
+    const double *of = terms->of + w * ARM_CHAIN_, width = terms->parameters[w];
     for (i = 0; i < ARM_CHAIN_; ++i) {
       double step;
       if (!(previous[i] - previous[i] == 0)) continue; /* unknown */
       step = tanh((q[i] - previous[i]) / width);
-      joints[i] += of[i + 1] * step;
-      if (rate && step != 0) rate[i * ARM_CHAIN_ + i] += of[i + 1] * (1 - step * step) / width;
+      joints[i] += of[i] * step;
+      if (rate && step != 0) rate[i * ARM_CHAIN_ + i] += of[i] * (1 - step * step) / width;
     }
   }
 }
 #endif
-#if HAS_HARMONICS
+#if HAS_TRANSMISSION
 
 /* Turns unit vectors on by others, or by themselves. */
 static inline void arm_turn_all_(double *c, double *s, const double *by_c, const double *by_s) {
@@ -146,20 +149,22 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
 #endif
 #if HAS_TILT
 
-/* Tilts of the joints' frames under gravity: a motion of the arm's end in the base frame of the chain. */
+/* Tilts of the joints' frames under gravity: a motion of the arm's end in the base frame of the chain. Of each joint
+ * about x by the three components of gravity, then about y. */
 static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, double *end, double *J) {
+  const double *down = arm->terms[ARM_TILT_].parameters;
   double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
   int i, j, k;
   for (i = 0; i < ARM_CHAIN_; ++i) {
-    const double *c = arm->tilt + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
+    const double *c = arm->terms[ARM_TILT_].of + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
     double z[3], tilted[3];
     arm_cross_(x, y, z);
     for (k = -1; k <= (J ? i : -1); ++k) { /* -1: the motion itself, else its change by joint k */
       double gravity[3], g[3], lever[3], about_x, about_y;
       if (k < 0) {
-        for (j = 0; j < 3; ++j) gravity[j] = arm->tilt_down[j];
+        for (j = 0; j < 3; ++j) gravity[j] = down[j];
       } else {
-        arm_cross_(arm->tilt_down, links->axis + 3 * k, gravity);
+        arm_cross_(down, links->axis + 3 * k, gravity);
       }
       g[0] = arm_dot_(x, gravity);
       g[1] = arm_dot_(y, gravity);
@@ -234,21 +239,19 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
     for (i = 0; i < ARM_CHAIN_; ++i) rate[k * ARM_CHAIN_ + i] = i == k ? 1 : 0;
   }
 #if HAS_LINKS
-  if (arm->gravity || arm->tilt) {
-    arm_identity_(end);
-    arm_walk_(arm_nominal_rows_, q, end, &nominal);
-  }
+  arm_identity_(end);
+  arm_walk_(arm_nominal_rows_, q, end, &nominal);
 #endif
 #if HAS_LINEAR
   arm_add_linear_(arm, q, joints, J ? rate : 0);
 #endif
 #if HAS_GRAVITY
-  if (arm->gravity) arm_add_gravity_(arm, &nominal, joints, J ? rate : 0);
+  if (arm->terms[ARM_GRAVITY_].of) arm_add_gravity_(arm, &nominal, joints, J ? rate : 0);
 #endif
 #if HAS_HYSTERESIS
   arm_add_hysteresis_(arm, q, previous, joints, J ? rate : 0);
 #endif
-#if HAS_HARMONICS
+#if HAS_TRANSMISSION
   if (arm->orders) arm_add_harmonics_(arm, q, joints, J ? rate : 0);
 #endif
   arm_identity_(end);
@@ -281,7 +284,7 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
       }
   }
 #if HAS_TILT
-  if (arm->tilt) arm_add_tilt_(arm, &nominal, end, J);
+  if (arm->terms[ARM_TILT_].of) arm_add_tilt_(arm, &nominal, end, J);
 #endif
   if (J) { /* from the flange to the tool point, from the chain's base to the base */
     double lever[3], moved[3];

@@ -1,18 +1,17 @@
 R"c(
+/* Coefficients of joint errors that belong together, and their parameters; 0 for what an arm lacks. */
+typedef struct {
+  const double *of, *parameters;
+  int count; /* of the parameters */
+} arm_terms_;
+
 /* An arm; 0 for what it lacks. Frames are four columns: the axes x, y, z and the origin. */
 typedef struct {
-  const double *rows;          /* of each joint: theta, d, a, sin and cos of alpha, sin and cos of beta */
-  const double *base, *tool;   /* frames */
-  const double *gear;          /* error of the gear ratio of each joint */
-  const double *coupling;      /* of each joint by the one before; the first is 0 */
-  const double *linear_ranges; /* of each joint, the range of these two */
-  const double *gravity;       /* of joint i under link j >= i [rad/m] */
-  const double *gravity_down;  /* direction of gravity */
-  const double *hysteresis;    /* of each width: the width, then a coefficient a joint */
-  int widths;
-  const double *tilt;      /* of each joint: about x by the three components of gravity, about y likewise */
-  const double *tilt_down; /* direction of gravity */
-  const double *harmonics; /* of each order: cosine coefficients of all joints, then sine coefficients */
+  const double *rows;           /* of each joint: theta, d, a, sin and cos of alpha, sin and cos of beta */
+  const double *base, *tool;    /* frames */
+  arm_terms_ terms[ARM_KINDS_]; /* joint errors of each kind, in a column of their own */
+  const double *linear_ranges;  /* of each joint, the range of gear ratio and coupling */
+  const double *harmonics;      /* of each order: cosine coefficients of all joints, then sine coefficients */
   const int *order;
   int orders;
 } arm_arm_;

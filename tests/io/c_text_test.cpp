@@ -10,6 +10,7 @@
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/io/detail/c_code.hpp"
 #include "vernier/io/detail/c_tables.hpp"
 
 namespace vernier::c_text_test {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# With VERNIER_CHECK_HEADERS the target `headers` compiles every header alone, where the libraries it needs are at hand,
-# the .ipp files as the compiled libraries have them, and a program that calls the common functions header-only.
+# With VERNIER_CHECK_HEADERS the target `headers` compiles every header where the libraries it needs are at hand, the .ipp
+# files as the compiled libraries have them, and a program that calls the common functions header-only. Its value says
+# whether headers are compiled alone, a translation unit each, or together, which shows the same warnings sooner.
 #
 # Most of that time would go into parsing Eigen again and again. It is parsed once for the headers that include
 # vernier/core/types.hpp, which begins with the same headers of Eigen: an include that such a header forgets is found
@@ -34,6 +35,9 @@ endfunction()
 function(vernier_check_headers target)
   add_library(${target}_headers OBJECT EXCLUDE_FROM_ALL)
   target_link_libraries(${target}_headers PRIVATE ${target})
+  if(VERNIER_CHECK_HEADERS STREQUAL "alone")
+    set_target_properties(${target}_headers PROPERTIES UNITY_BUILD OFF)
+  endif()
   vernier_precompile(${target}_headers <Eigen/Core> <Eigen/Geometry>)
   add_dependencies(headers ${target}_headers)
   foreach(file IN LISTS ARGN)

@@ -307,6 +307,7 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     known(i) = ball ? radii(i) : std::isnan(offsets(i)) ? 0 : offsets(i);
   }
   std::vector<Contact> out;
+  const RowOrigin origin = table.origin();
   for (const Object& object : objects) {
     const auto n = static_cast<Index>(object.rows.size());
     MatrixX of_joints(n, joints);
@@ -315,7 +316,7 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     detail::copy_rows(known, object.rows, of_known);
     try {
       out.push_back(Contact(object.name, object.kind, std::move(of_joints), std::move(of_known))
-                        .from(table.origin().rows(object.rows)));
+                        .from(origin.rows(object.rows)));
     } catch (const std::invalid_argument& e) {
       throw DataError(message(path, ": ", std::string(e.what())));
     }

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the commands of a page in a folder of their own, and compares with what the page shows.
+
+usage: run_page.py PAGE PROGRAMS [--fill]
+
+A block ```sh is run by bash, where `examples/` is that of the project and the programs are found. A block ```text that
+follows it shows what it prints, to both streams: words are equal, numbers within 2 %, times are not compared, and a line
+`...` stands for any lines. A block without output shown need only succeed. --fill writes the output into empty blocks.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+BLOCK = re.compile(r"```(\w+)\n(.*?)```\n", re.S)
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+TIME = re.compile(r"\d+(?:\.\d+)? (?:us|ms|s|min)\b|\d{4}-\d\d-\d\d")
+TOLERANCE = 0.02
+
+
+def agrees(shown, seen):
+    """Whether a line that was printed is the line of the page."""
+    shown, seen = (" ".join(TIME.sub("TIME", line).split()) for line in (shown, seen))
+    if NUMBER.sub("N", shown) != NUMBER.sub("N", seen):
+        return False
+    pairs = zip(map(float, NUMBER.findall(shown)), map(float, NUMBER.findall(seen)))
+    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
+
+
+def difference(shown, seen):
+    """The first line of the page that was not printed, with the one in its place; None if all are there."""
+    at = 0
+    skipping = False
+    for line in shown:
+        if line == "...":
+            skipping = True
+            continue
+        begin = at
+        while skipping and at < len(seen) and not agrees(line, seen[at]):
+            at += 1
+        if at >= len(seen) or not agrees(line, seen[at]):
+            return f"the page has    {line}\nit was printed  {seen[begin] if begin < len(seen) else '(nothing)'}"
+        at += 1
+        skipping = False
+    return None if skipping or at == len(seen) else f"the page lacks  {seen[at]}"
+
+
+def lines(text):
+    return [line.rstrip() for line in text.strip("\n").split("\n")]
+
+
+def main():
+    page, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    project = pathlib.Path(__file__).resolve().parents[2]
+    text = page.read_text()
+    blocks = list(BLOCK.finditer(text))
+    commands = [block for block in blocks if block[1] == "sh"]
+    if not commands:
+        sys.exit(f"{page}: no command to run")
+    filled = []
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "examples").symlink_to(project / "examples")
+        for k, block in enumerate(blocks):
+            if block[1] != "sh":
+                continue
+            line = text.count("\n", 0, block.start()) + 1
+            done = subprocess.run(["bash", "-ec", f'PATH="{programs}:$PATH"\n{block[2]}'], cwd=folder, text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+            if done.returncode:
+                sys.exit(f"{page}:{line}: exit code {done.returncode}\n{done.stdout}")
+            answer = blocks[k + 1] if k + 1 < len(blocks) and blocks[k + 1][1] == "text" else None
+            if answer is None:
+                continue
+            if not answer[2].strip():
+                filled.append((answer.start(2), done.stdout))
+                continue
+            wrong = difference(lines(answer[2]), lines(done.stdout))
+            if wrong:
+                sys.exit(f"{page}:{line}: other output\n{wrong}\n--- all of it\n{done.stdout}")
+    if filled and sys.argv[3:] != ["--fill"]:
+        sys.exit(f"{page}: a block of output is empty; run_page.py PAGE PROGRAMS --fill")
+    for at, output in reversed(filled):
+        text = text[:at] + output + text[at:]
+    if filled:
+        page.write_text(text)
+    print(f"{page.name}: {len(commands)} blocks of commands")
+
+
+if __name__ == "__main__":
+    main()

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the commands of a page in a folder of their own, and compares with what the page shows.
 
-usage: run_page.py PAGE PROGRAMS [--fill]
+usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--fill]
 
-A block ```sh is run by bash, where `examples/` is that of the project and the programs are found. A block ```text that
-follows it shows what it prints, to both streams: words are equal, numbers within 2 %, times are not compared, and a line
+A block ```sh is run by bash, where `examples/` is that of the project and the programs are found; in place of a block
+```cpp its compiled PROGRAM is run. A block ```text that follows shows what it prints, to both streams: words are equal, numbers within 2 %, times are not compared, and a line
 `...` stands for any lines. A block without output shown need only succeed. --fill writes the output into empty blocks.
 """
+import argparse
 import pathlib
 import re
 import subprocess
@@ -52,21 +53,29 @@ def lines(text):
 
 
 def main():
-    page, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("--cpp", type=pathlib.Path)
+    parser.add_argument("--fill", action="store_true")
+    options = parser.parse_args()
+    page, programs = options.page.resolve(), options.programs.resolve()
     project = pathlib.Path(__file__).resolve().parents[2]
     text = page.read_text()
     blocks = list(BLOCK.finditer(text))
-    commands = [block for block in blocks if block[1] == "sh"]
+    languages = {"sh", "cpp"} if options.cpp else {"sh"}
+    commands = [block for block in blocks if block[1] in languages]
     if not commands:
         sys.exit(f"{page}: no command to run")
     filled = []
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "examples").symlink_to(project / "examples")
         for k, block in enumerate(blocks):
-            if block[1] != "sh":
+            if block[1] not in languages:
                 continue
+            command = block[2] if block[1] == "sh" else str(options.cpp.resolve())
             line = text.count("\n", 0, block.start()) + 1
-            done = subprocess.run(["bash", "-ec", f'PATH="{programs}:$PATH"\n{block[2]}'], cwd=folder, text=True,
+            done = subprocess.run(["bash", "-ec", f'PATH="{programs}:$PATH"\n{command}'], cwd=folder, text=True,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
             if done.returncode:
                 sys.exit(f"{page}:{line}: exit code {done.returncode}\n{done.stdout}")
@@ -79,8 +88,8 @@ def main():
             wrong = difference(lines(answer[2]), lines(done.stdout))
             if wrong:
                 sys.exit(f"{page}:{line}: other output\n{wrong}\n--- all of it\n{done.stdout}")
-    if filled and sys.argv[3:] != ["--fill"]:
-        sys.exit(f"{page}: a block of output is empty; run_page.py PAGE PROGRAMS --fill")
+    if filled and not options.fill:
+        sys.exit(f"{page}: a block of output is empty; see --fill")
     for at, output in reversed(filled):
         text = text[:at] + output + text[at:]
     if filled:

@@ -19,10 +19,10 @@ This page is written by `docs/reference/write_programs.py` from what each progra
 | exit code | meaning |
 |---|---|
 | 0 | done; of `verify_calibration`: still valid |
-| 1 | not done, or done in part: a file or data that cannot be used, a target that is not met, a calibration that is no longer valid |
+| 1 | not done, or in part: unusable data, a target that is not met, an invalid calibration |
 | 2 | wrong usage: an unknown option, a missing one, a value out of range |
 
-Each failure is one line on standard error, which names the program, and the file, the line or the value.
+Each failure is one line on standard error. It names the program, and the file, the line or the value.
 """
 
 

@@ -17,6 +17,7 @@ import sys
 LONG, CELL = 30, 12
 PAGES, HEADERS = (17, 5), (20, 8)  # words on average, % of sentences above LONG
 NOT_PAGES = {"CHANGELOG.md", "RESULTS.md"}  # a list of changes, and what programs print
+DEVELOPERS = {"CONTRIBUTING.md", "architecture.md", "algorithms", "benchmarks"}  # pages whose habits are not looked at
 
 # What is wrong with the beginning of a sentence, or with a phrase, and the better way.
 HABITS = [
@@ -81,9 +82,13 @@ def measure(found):
     return sum(lengths) / len(lengths), 100 * sum(n > LONG for n in lengths) / len(lengths)
 
 
-def report(name, found, limits):
+def report(path, root, limits):
+    """Prints what is wrong with a page; whether something is."""
+    found = sentences(prose_of_page(path.read_text(encoding="utf-8")))
+    name = path.resolve().relative_to(root) if path.resolve().is_relative_to(root) else path
     mean, share = measure(found)
-    habits = [(s, why) for s in found for pattern, why in HABITS if re.search(pattern, s)]
+    read = not DEVELOPERS.intersection(path.parts)
+    habits = [(s, why) for s in found for pattern, why in HABITS if read and re.search(pattern, s)]
     bad = mean > limits[0] or share > limits[1]
     if bad:
         print(f"{name}: {len(found)} sentences, {mean:.1f} words each, {share:.0f} % above {LONG}; at most {limits[0]} and "
@@ -112,9 +117,8 @@ def main():
     if "--headers" not in arguments:
         total = []
         for page in chosen:
-            found = sentences(prose_of_page(page.read_text(encoding="utf-8")))
-            total += found
-            failed |= report(page, found, PAGES)
+            total += sentences(prose_of_page(page.read_text(encoding="utf-8")))
+            failed |= report(page, root, PAGES)
         mean, share = measure(total)
         print(f"{len(chosen)} pages: {len(total)} sentences, {mean:.1f} words each, {share:.1f} % above {LONG}")
     if not arguments or "--headers" in arguments:

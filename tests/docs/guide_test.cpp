@@ -51,9 +51,9 @@ static_assert(calibrate_blocks == 5 && calibrate_by_contacts_blocks == 1 && cali
                   find_branches_blocks == 1 && learn_errors_blocks == 3 && reregister_blocks == 2 &&
                   run_in_parallel_blocks == 2 && use_an_earlier_calibration_blocks == 1,
               "a block of docs/ without a test");
-// README and tutorials have programs of their own; robot_files and your_own have tests of their own.
-static_assert(all_blocks == 25 + README_blocks + first_program_blocks + simulate_and_learn_blocks + robot_files_blocks +
-                                your_own_blocks,
+// README and tutorials are programs, robot_files and your_own have tests of their own, and architecture.md sketches.
+static_assert(all_blocks == 25 + architecture_blocks + README_blocks + first_program_blocks +
+                                simulate_and_learn_blocks + robot_files_blocks + your_own_blocks,
               "a page with blocks of code, but without a test");
 
 using namespace vernier::literals;
@@ -316,8 +316,8 @@ TEST_F(Guide, Contacts) {
     if (text.find("plane") == std::string::npos) known.tail(15).setConstant(0.1);
     const Contact contact = touch(real, object, name, known, limits, 0, 3);
     for (Index i = 0; i < 30; ++i) {
-      text += message(name, ",plane,", known(i) * 1e3, ",");
-      for (int j = 0; j < 6; ++j) text += message(',', contact.joints(i, j));
+      text += message(name, ",plane,", known(i) * 1e3, ',');
+      for (int j = 0; j < 6; ++j) text += message(',', contact.joints()(i, j));
       text += '\n';
     }
   }
@@ -325,6 +325,7 @@ TEST_F(Guide, Contacts) {
   ::testing::internal::CaptureStdout();
 #include "calibrate_by_contacts_1.inc"
   EXPECT_GT(::testing::internal::GetCapturedStdout().size(), 100u);
+  EXPECT_LT((corrected.correct(q).command - q).norm(), 0.1);
   ASSERT_EQ(of_both.others.size(), 3u);
   EXPECT_LT(error(of_both.model(), Isometry3::Identity()), 0.15e-3);
 }

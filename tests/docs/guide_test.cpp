@@ -283,7 +283,7 @@ TEST_F(Guide, Learns) {
     const Dataset<6> data = measured(real_arm(), 100, 1);
 #include "learn_errors_1.inc"
 #include "learn_errors_2.inc"
-    EXPECT_LT(error(learned), 1.2 * error(identified.model));
+    EXPECT_LT(error(learned), 1.05 * error(identified.model));  // what cannot be learned is not
     EXPECT_LT(error(learned), 0.2e-3);
   }
   const Dataset<6> data = measured(Framed(real_arm().model()), 100, 1);

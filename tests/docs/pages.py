@@ -110,7 +110,7 @@ def unknown_options(programs):
 
 def main():
     wrong = unknown_options(pathlib.Path(sys.argv[1])) if len(sys.argv) > 1 else wrong_links() + lost_pages() + repeated_runs()
-    print("\n".join(wrong))
+    print("\n".join(wrong), end="\n" if wrong else "")
     sys.exit(bool(wrong))
 
 

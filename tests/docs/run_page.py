@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the commands of a page in a folder of their own, and compares with what the page shows.
 
-usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--fill]
+usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--model FILE] [--fill]
 
 A block ```sh is run by bash, where `examples/` is that of the project and the programs are found; in place of a block
 ```cpp its compiled PROGRAM is run. A block ```text that follows shows what it prints, to both streams: words are equal, numbers within 2 %, times are not compared, and a line
 `...` stands for any lines. A block without output shown need only succeed. --fill writes the output into empty blocks.
+
+A comment `<!-- files: NAME=PATH .. -->` of a page names the files that its commands take for granted. PATH is in the
+project; `model` is the --model, which the page writes itself where it has no such comment.
 """
 import argparse
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -57,6 +61,7 @@ def main():
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--cpp", type=pathlib.Path)
+    parser.add_argument("--model", type=pathlib.Path)
     parser.add_argument("--fill", action="store_true")
     options = parser.parse_args()
     page, programs = options.page.resolve(), options.programs.resolve()
@@ -70,6 +75,9 @@ def main():
     filled = []
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "examples").symlink_to(project / "examples")
+        files = re.search(r"<!-- files: (.*?) -->", text)
+        for name, _, path in (item.partition("=") for item in (files[1].split() if files else [])):
+            shutil.copy(options.model if path == "model" else project / path, pathlib.Path(folder) / name)
         for k, block in enumerate(blocks):
             if block[1] not in languages:
                 continue
@@ -88,6 +96,9 @@ def main():
             wrong = difference(lines(answer[2]), lines(done.stdout))
             if wrong:
                 sys.exit(f"{page}:{line}: other output\n{wrong}\n--- all of it\n{done.stdout}")
+        model = pathlib.Path(folder) / "model.json"
+        if options.model and not files and model.exists():
+            shutil.copy(model, options.model)
     if filled and not options.fill:
         sys.exit(f"{page}: a block of output is empty; see --fill")
     for at, output in reversed(filled):

@@ -56,7 +56,7 @@ def main():
             return f"![{words}]({there.name})"
         if there.suffix != ".md":
             return words
-        return f"[{words}]({file}#{labels(there).get(anchor, anchor)})" if anchor else match[0]
+        return f"[{words}](@ref {labels(there).get(anchor, anchor)})" if anchor else match[0]
 
     for line in page.read_text(encoding="utf-8").split("\n"):
         inside ^= line.startswith("```")

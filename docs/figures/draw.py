@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the pictures that explain: task, frames, camera_frames, nominal_and_real, gate, selection.
+"""Draws the pictures that explain: task, frames, camera_frames, nominal_and_real, gate, joint_error,
+selection.
 
 usage: draw.py           writes docs/figures/*.svg
        draw.py --check   exits with 1 if a picture is another one
@@ -216,6 +217,28 @@ def gate():
     return p
 
 
+def joint_error():
+    p = Picture("The error of a joint over its angle, and the orders that it consists of", 720, 330)
+    left, right, middle = 70, 690, 190
+    p.line([(left, middle), (right, middle)], INK, 2, arrow=True)
+    p.line([(left, 300), (left, 80)], INK, 2, arrow=True)
+
+    def slow(a):
+        return 52 * math.sin(a + 0.6) + 24 * math.cos(2 * a)
+    scale = (right - left - 40) / (2 * math.pi)
+    angles = [2 * math.pi * k / 600 for k in range(601)]
+    p.line([(left + scale * a, middle - slow(a) - 12 * math.sin(41 * a)) for a in angles], REAL, 2.5)
+    p.line([(left + scale * a, middle - slow(a)) for a in angles], SENSOR, 4, "12 8")
+    p.text(20, 60, "error of joint 5")
+    p.text(right, middle + 62, "joint angle,", "end")
+    p.text(right, middle + 87, "one turn", "end")
+    p.line([(330, 34), (380, 34)], SENSOR, 4, "12 8")
+    p.text(392, 41, "low orders: assembly")
+    p.line([(330, 70), (380, 70)], REAL, 2.5)
+    p.text(392, 77, "with a line of the gear")
+    return p
+
+
 def selection():
     p = Picture("How a stage is chosen: fit a block of unknowns, leave poses out, keep it or drop it", 720, 430)
     steps = [("frames", "base and tool"), ("geometry", "links and zeros"), ("one more block", "gears, play, drift")]
@@ -256,7 +279,7 @@ def selection():
 def main():
     folder = pathlib.Path(__file__).resolve().parent
     different = []
-    for draw in (task, frames, camera_frames, nominal_and_real, gate, selection):
+    for draw in (task, frames, camera_frames, nominal_and_real, gate, joint_error, selection):
         file, text = folder / f"{draw.__name__}.svg", draw().svg()
         if sys.argv[1:] == ["--check"]:
             if not file.exists() or file.read_text() != text:

@@ -53,7 +53,7 @@ def prose_of_header(text):
         comment = re.match(r"\s*///(?!<) ?(.*)", line)
         trailing = re.search(r"///< (.*)", line)
         if trailing:
-            kept += ["", trailing[1]]
+            kept += ["", trailing[1], ""]
             inside = False
         elif comment:
             body = re.sub(r"^@(?:param|tparam) +\S+ *", "\n", comment[1])

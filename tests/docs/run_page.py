@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the commands of a page in a folder of their own, and compares with what the page shows.
 
-usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--model FILE] [--fill]
+usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--model FILE] [--fill] [--refill]
 
 A block ```sh is run by bash, where `examples/` is that of the project and the programs are found; in place of a block
 ```cpp its compiled PROGRAM is run. A block ```text that follows shows what it prints, to both streams: words are equal, numbers within 2 %, times are not compared, and a line
-`...` stands for any lines. A block without output shown need only succeed. --fill writes the output into empty blocks.
+`...` stands for any lines. A block without output shown need only succeed. --fill writes the output into empty blocks,
+--refill into all blocks without `...`.
 
 A comment `<!-- files: NAME=PATH .. -->` of a page names the files that its commands take for granted. PATH is in the
 project; `model` is the --model, which the page writes itself where it has no such comment.
@@ -63,6 +64,7 @@ def main():
     parser.add_argument("--cpp", type=pathlib.Path)
     parser.add_argument("--model", type=pathlib.Path)
     parser.add_argument("--fill", action="store_true")
+    parser.add_argument("--refill", action="store_true")
     options = parser.parse_args()
     page, programs = options.page.resolve(), options.programs.resolve()
     project = pathlib.Path(__file__).resolve().parents[2]
@@ -90,8 +92,8 @@ def main():
             answer = blocks[k + 1] if k + 1 < len(blocks) and blocks[k + 1][1] == "text" else None
             if answer is None:
                 continue
-            if not answer[2].strip():
-                filled.append((answer.start(2), done.stdout))
+            if not answer[2].strip() or (options.refill and "..." not in lines(answer[2])):
+                filled.append((answer.span(2), done.stdout))
                 continue
             wrong = difference(lines(answer[2]), lines(done.stdout))
             if wrong:
@@ -99,10 +101,10 @@ def main():
         model = pathlib.Path(folder) / "model.json"
         if options.model and not files and model.exists():
             shutil.copy(model, options.model)
-    if filled and not options.fill:
+    if filled and not (options.fill or options.refill):
         sys.exit(f"{page}: a block of output is empty; see --fill")
-    for at, output in reversed(filled):
-        text = text[:at] + output + text[at:]
+    for (begin, end), output in reversed(filled):
+        text = text[:begin] + output + text[end:]
     if filled:
         page.write_text(text)
     print(f"{page.name}: {len(commands)} blocks of commands")

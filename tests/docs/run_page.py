@@ -5,9 +5,9 @@
 usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--model FILE] [--fill] [--refill]
 
 A block ```sh is run by bash, where `examples/` is that of the project and the programs are found; in place of a block
-```cpp its compiled PROGRAM is run. A block ```text that follows shows what it prints, to both streams: words are equal, numbers within 2 %, times are not compared, and a line
-`...` stands for any lines. A block without output shown need only succeed. --fill writes the output into empty blocks,
---refill into all blocks without `...`.
+```cpp its compiled PROGRAM is run. A block ```text that follows shows what it prints, to both streams: words are equal,
+numbers within 2 %, times are not compared, and a line `...` stands for any lines. A block without output shown need only
+succeed. --fill writes the output into empty blocks, --refill into all blocks without `...`.
 
 A comment `<!-- files: NAME=PATH .. -->` of a page names the files that its commands take for granted. PATH is in the
 project; `model` is the --model, which the page writes itself where it has no such comment.

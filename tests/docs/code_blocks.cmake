@@ -2,7 +2,7 @@
 # The ```cpp blocks of a page, as files that its test includes: what a page shows is compiled and run.
 
 # vernier_code_blocks(<page> <folder>) writes block k of <page>.md to <folder>/<page>_<k>.inc, compilers' complaints about
-# which name the page and its line, and their number to <folder>/<page>_blocks.hpp as `<page>_blocks`. Editing the page
+# which name the page and its line. <page>_blocks is their number, in `vernier_blocks` of the caller. Editing the page
 # configures again. Text is cut by position, because a list of CMake ends an element at a semicolon.
 function(vernier_code_blocks page folder)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${page}")
@@ -35,25 +35,73 @@ function(vernier_code_blocks page folder)
     string(LENGTH "${newlines}" newlines)
     math(EXPR line "${line} + ${newlines}")
   endwhile()
-  file(CONFIGURE OUTPUT "${folder}/${name}_blocks.hpp"
-       CONTENT "#pragma once\n\ninline constexpr int @name@_blocks = @count@;  // blocks of code in @name@.md\n" @ONLY)
+  if(count GREATER 0)
+    string(APPEND vernier_blocks "inline constexpr int ${name}_blocks = ${count};\n")
+    math(EXPR vernier_all_blocks "${vernier_all_blocks} + ${count}")
+  endif()
+  set(vernier_blocks "${vernier_blocks}" PARENT_SCOPE)
+  set(vernier_all_blocks "${vernier_all_blocks}" PARENT_SCOPE)
 endfunction()
 
-# vernier_add_pages(<test>): the blocks of all pages with a test, in front of it, and the README's program.
+# The blocks of code of all pages, in front of <test>.
 function(vernier_add_pages test)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/docs")
-  foreach(page README.md docs/guide.md docs/robot_files.md docs/your_own.md)
-    vernier_code_blocks("${PROJECT_SOURCE_DIR}/${page}" "${folder}")
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md")
+  set(vernier_blocks)
+  set(vernier_all_blocks 0)
+  foreach(page IN LISTS pages ITEMS "${PROJECT_SOURCE_DIR}/README.md")
+    vernier_code_blocks("${page}" "${folder}")
   endforeach()
+  file(CONFIGURE OUTPUT "${folder}/page_blocks.hpp"
+       CONTENT "#pragma once\n\n// Numbers of blocks of code in pages.\n@vernier_blocks@inline constexpr int all_blocks = @vernier_all_blocks@;\n"
+       @ONLY)
   target_include_directories(${test} PRIVATE "${folder}")
-
-  file(CONFIGURE OUTPUT "${folder}/readme_program.cpp" CONTENT "#include \"README_1.inc\"\n")
-  add_executable(readme_program "${folder}/readme_program.cpp")
-  target_link_libraries(readme_program PRIVATE vernier_internal vernier::compiled_io)
-  add_dependencies(${test} readme_program)
-  target_compile_definitions(${test} PRIVATE VERNIER_README_PROGRAM="$<TARGET_FILE:readme_program>")
   if(TARGET MPI::MPI_CXX)
     target_link_libraries(${test} PRIVATE vernier::compiled_mpi)
     target_compile_definitions(${test} PRIVATE VERNIER_DOCS_MPI)
   endif()
+  if("docs/guide" IN_LIST VERNIER_TESTS_LEFT_OUT)
+    return()
+  endif()
+
+  find_package(Python3 QUIET COMPONENTS Interpreter)
+  if(NOT Python3_FOUND)
+    message(STATUS "Vernier: no Python, pages are not run")
+    return()
+  endif()
+  set(programs "${PROJECT_BINARY_DIR}/examples")
+  set(run "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/docs/run_page.py")
+  foreach(page README.md docs/tutorials/first_program.md docs/tutorials/simulate_and_learn.md)  # whole programs
+    cmake_path(GET page STEM name)
+    file(CONFIGURE OUTPUT "${folder}/page_${name}.cpp" CONTENT "#include \"${name}_1.inc\"\n")
+    add_executable(page_${name} "${folder}/page_${name}.cpp")
+    target_link_libraries(page_${name} PRIVATE vernier_internal vernier::compiled_io)
+    add_test(NAME docs.${name} COMMAND ${run} "${PROJECT_SOURCE_DIR}/${page}" "${programs}" --cpp $<TARGET_FILE:page_${name}>)
+    list(APPEND tests docs.${name})
+  endforeach()
+  add_test(NAME docs.links COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/docs/pages.py")
+  add_test(NAME docs.pictures COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/docs/figures/draw.py" --check)
+  list(APPEND tests docs.links docs.pictures)
+  if(VERNIER_BUILD_EXAMPLES)
+    file(GLOB_RECURSE pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md")
+    foreach(page IN LISTS pages)
+      file(STRINGS "${page}" commands REGEX "^```sh$")
+      if(commands)
+        cmake_path(GET page STEM name)
+        add_test(NAME docs.${name} COMMAND ${run} "${page}" "${programs}" --model "${folder}/model.json")
+        list(APPEND tests docs.${name})
+        if(name STREQUAL "first_calibration")  # its model is that of the other pages
+          set_tests_properties(docs.${name} PROPERTIES FIXTURES_SETUP calibrated_model)
+        else()
+          set_tests_properties(docs.${name} PROPERTIES FIXTURES_REQUIRED calibrated_model)
+        endif()
+      endif()
+    endforeach()
+    add_test(NAME docs.options COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/docs/pages.py" "${programs}")
+    add_test(NAME docs.programs
+             COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/docs/reference/write_programs.py" "${programs}" --check)
+    add_test(NAME docs.data COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/docs/data.py" "${programs}")
+    list(APPEND tests docs.options docs.programs docs.data)
+  endif()
+  set_tests_properties(${tests} PROPERTIES TIMEOUT 600 LABELS docs)
 endfunction()

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "page_blocks.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
 #include "vernier/core/rng.hpp"
@@ -28,7 +29,6 @@
 #include "vernier/testing/metaheuristic_laws.hpp"
 #include "vernier/testing/regressor_laws.hpp"
 #include "vernier/testing/sensor_laws.hpp"
-#include "your_own_blocks.hpp"
 
 namespace vernier::your_own_test {
 namespace {

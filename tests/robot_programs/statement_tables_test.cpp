@@ -47,14 +47,14 @@ std::vector<Table> tables() {
           {"Fanuc", std::string(fanuc_harmless), std::string(fanuc_move_options), fanuc_statements}};
 }
 
-/// What stands between ` in the rows of one class of the guide's table of a language.
-Words guide_words(const std::string& title, const std::string& kind) {
-  std::ifstream file(VERNIER_GUIDE);
+/// What stands between ` in the rows of one class of the page's table of a language.
+Words page_words(const std::string& title, const std::string& kind) {
+  std::ifstream file(VERNIER_STATEMENTS_PAGE);
   std::string line;
   bool inside = false;
   Words out;
   while (std::getline(file, line)) {
-    if (line.starts_with("**")) inside = line == "**" + title + "**";
+    if (line.starts_with("## ")) inside = line == "## " + title;
     if (!inside || line.find(kind) == std::string::npos || line.find(kind) > 30) continue;
     for (std::size_t open = line.find('`'); open != std::string::npos;) {
       const std::size_t close = line.find('`', open + 1);
@@ -65,7 +65,7 @@ Words guide_words(const std::string& title, const std::string& kind) {
   return out;
 }
 
-/// A row as the guide names it.
+/// A row as the page names it.
 std::string shown(const std::string& title, const ProgramStatement& row) {
   if (row.option.empty() || row.option == "*") return std::string(row.name);
   if (title == "RAPID") return message(row.name, " \\", row.option);
@@ -74,7 +74,7 @@ std::string shown(const std::string& title, const ProgramStatement& row) {
   return message(row.name, " ", row.option);
 }
 
-TEST(StatementTables, AreThoseOfTheGuide) {
+TEST(StatementTables, AreThoseOfThePage) {
   for (const Table& table : tables()) {
     Words harmless = detail::words_of(table.harmless), voiding, moves;
     for (const ProgramStatement& row : table.others) {
@@ -83,10 +83,10 @@ TEST(StatementTables, AreThoseOfTheGuide) {
       else
         (row.kind == StatementClass::moves ? moves : voiding).insert(shown(table.title, row));
     }
-    EXPECT_EQ(guide_words(table.title, "harmless"), harmless) << table.title;
-    EXPECT_EQ(guide_words(table.title, "voiding"), voiding) << table.title;
-    EXPECT_EQ(guide_words(table.title, "moves without a target"), moves) << table.title;
-    const Words honoured = guide_words(table.title, "honoured");
+    EXPECT_EQ(page_words(table.title, "harmless"), harmless) << table.title;
+    EXPECT_EQ(page_words(table.title, "voiding"), voiding) << table.title;
+    EXPECT_EQ(page_words(table.title, "moves without a target"), moves) << table.title;
+    const Words honoured = page_words(table.title, "honoured");
     for (const std::string& name : detail::words_of(table.honoured)) EXPECT_EQ(honoured.count(name), 1u) << name;
   }
 }

@@ -29,8 +29,8 @@ class ControllerMap {
   /// @param zeros        b, N values [rad, m]
   /// @throws std::invalid_argument where A has no inverse of whole numbers
   VERNIER_API ControllerMap(const ConstMatrixRef& coefficients, const ConstVectorRef& zeros);
-  /// A map of formulas, one a joint of the chain: sums of controller joints `J1` .. and of constants with a unit: `-J2
-  /// - J3`, `-(J2 + J3)`, `J2 - 90 deg`, `J1 + 0.5 m`. Units are deg, rad, mm and m.
+  /// A map of formulas, one a joint of the chain: sums of controller joints `J1` .. and of constants with a unit, e.g.
+  /// `-J2 - J3`, `-(J2 + J3)`, `J2 - 90 deg`, `J1 + 0.5 m`. Units are deg, rad, mm and m.
   /// @param formulas one a joint of the chain
   /// @param types    of the joints of the chain; none: all are revolute
   /// @throws std::invalid_argument naming the formula

@@ -33,9 +33,9 @@ constexpr std::string_view name_of(Answer answer) {
 /// What the data say of an effect. Its size is the root mean square of the displacements of the tool point over the
 /// measured poses, less what frames and the other unknowns take over.
 struct Existence {
-  Answer answer = Answer::untested;
-  double p = 1;     ///< probability of such data without the effect
-  double size = 0;  ///< most likely [m]
+  Answer answer = Answer::untested;  ///< whether it exists
+  double p = 1;                      ///< probability of such data without the effect
+  double size = 0;                   ///< most likely [m]
   std::array<double, 2>
       interval{};        ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
   double relevance = 0;  ///< from which size on it matters [m]

@@ -60,6 +60,8 @@ CalibratedRobot<N, Convention> geometry_as_robot(const Calibrated<DhChain<N, Con
 }  // namespace detail
 
 /// The arm of a calibration, with what was learned on top, as seen from one of its stations.
+/// @param calibration as `calibrate` returns it
+/// @param info name, limits and provenance
 /// @param station from 0; with `ErrorModelOptions::tool_per_station` each has a tool of its own
 /// @throws std::invalid_argument for a station that is not there
 template <int N, class Convention>

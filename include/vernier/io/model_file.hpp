@@ -35,6 +35,9 @@ std::string save(const std::string& path, const CalibratedRobot<N, Convention>& 
 }
 
 /// Saves the arm of a calibration, with what was learned on top, as seen from one of its stations.
+/// @param path of the file
+/// @param calibration as `calibrate` returns it
+/// @param info name, limits and provenance
 /// @param station from 0
 /// @return and throws as for an arm
 template <int N, class Convention>

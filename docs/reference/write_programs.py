@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes docs/reference/programs.md: the options of each program, as `--help` prints them.
+
+usage: write_programs.py PROGRAMS           writes the page
+       write_programs.py PROGRAMS --check   exits with 1 if the page is another one
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+NAMES = ["describe_robot", "plan_poses", "simulate_measurements", "join_measurements", "calibrate", "verify_calibration",
+         "correct", "export_robot", "export_c", "iso9283", "compare"]
+HEAD = """# Reference: options and exit codes of the programs
+
+This page is written by `docs/reference/write_programs.py` from what each program prints for `--help`.
+
+| exit code | meaning |
+|---|---|
+| 0 | done; of `verify_calibration`: still valid |
+| 1 | not done, or in part: unusable data, a target that is not met, an invalid calibration |
+| 2 | wrong usage: an unknown option, a missing one, a value out of range |
+
+Each failure is one line on standard error. It names the program, and the file, the line or the value.
+"""
+
+
+def options(programs, name):
+    text = subprocess.run([programs / name, "--help"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    text = re.sub(r"DATE=\d{4}-\d\d-\d\d", "DATE=TODAY", text)  # defaults that differ from day to day, from place to place
+    return re.sub(r"(--threads \w+=)\d+", r"\1PROCESSORS", text)
+
+
+def main():
+    programs = pathlib.Path(sys.argv[1]).resolve()
+    page = pathlib.Path(__file__).resolve().parent / "programs.md"
+    text = HEAD
+    for name in NAMES:
+        text += f"\n## {name}\n\n```text\n{options(programs, name).strip()}\n```\n"
+    if sys.argv[2:] == ["--check"]:
+        if page.read_text() != text:
+            sys.exit(f"{page} is not what the programs print: docs/reference/write_programs.py PROGRAMS")
+    else:
+        page.write_text(text)
+
+
+if __name__ == "__main__":
+    main()

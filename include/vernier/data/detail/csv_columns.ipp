@@ -30,7 +30,8 @@ inline constexpr std::array<std::string_view, 7> read_names{"segment",   "move",
                                                             "direction", "contact_id", "kind"};
 
 /// Names that programs write for people.
-inline constexpr std::array<std::string_view, 13> noted_names{"visit",
+inline constexpr std::array<std::string_view, 14> noted_names{"visit",
+                                                              "image",
                                                               "joints_line",
                                                               "points_line",
                                                               "status",

@@ -18,8 +18,8 @@ namespace vernier::detail {
 
 /// A board that may be of another size and bent.
 struct BoardShape {
-  double scale = 0;            ///< by which share all lengths are larger
-  Vector3 bend{0, 0, 0};       ///< height at half a diagonal from the middle: along x, along both, along y [m]
+  double scale = 0;       ///< by which share all lengths are larger
+  Vector3 bend{0, 0, 0};  ///< height at half a diagonal from the middle: along x, along both, along y [m]
   /// Place of a corner [m], and its derivatives by scale and bend.
   VERNIER_API Vector3 corner(const Board& board, Index k, Eigen::Matrix<double, 3, 4>* by_shape = nullptr) const;
 };
@@ -27,9 +27,9 @@ struct BoardShape {
 /// The values of all unknowns. P = base * flange * tool is the pose that an image sees: of the board in the camera's
 /// frame where the camera stands still, of the camera in the board's frame where the flange carries it.
 struct CameraState {
-  std::optional<ArmGeometry> arm{};    ///< chain without frames; none where poses of the flange are given
-  std::vector<Isometry3> bases{};      ///< of each camera that stands still, or of each place of the board
-  std::vector<Isometry3> tools{};      ///< of each board, or of each camera
+  std::optional<ArmGeometry> arm{};  ///< chain without frames; none where poses of the flange are given
+  std::vector<Isometry3> bases{};    ///< of each camera that stands still, or of each place of the board
+  std::vector<Isometry3> tools{};    ///< of each board, or of each camera
   std::vector<Camera> cameras{};
   BoardShape shape{};
 };
@@ -52,12 +52,12 @@ struct PlacedView {
 
 /// Means and standard deviations of the priors.
 struct CameraPriors {
-  std::vector<Camera> cameras{};   ///< means
-  VectorX intrinsics{};            ///< standard deviations, in the order of `Camera::names`; infinite for none
-  double bend = 0.5e-3;            ///< standard deviation [m]
-  VectorX arm_means{};             ///< of the parameters of the chain, as `ArmGeometry` counts them
-  std::vector<Index> arm{};        ///< parameters of the chain that may be estimated
-  VectorX arm_scales{};            ///< standard deviations of all parameters
+  std::vector<Camera> cameras{};  ///< means
+  VectorX intrinsics{};           ///< standard deviations, in the order of `Camera::names`; infinite for none
+  double bend = 0.5e-3;           ///< standard deviation [m]
+  VectorX arm_means{};            ///< of the parameters of the chain, as `ArmGeometry` counts them
+  std::vector<Index> arm{};       ///< parameters of the chain that may be estimated
+  VectorX arm_scales{};           ///< standard deviations of all parameters
 };
 
 /// The problem. Views outside of it are predicted.
@@ -74,7 +74,7 @@ class CameraProblem {
   CameraState state;
   CameraFreedom free;
   CameraPriors priors;
-  double pixel_sigma = 0.2;                        ///< standard deviation of a pixel's coordinate
+  double pixel_sigma = 0.2;  ///< standard deviation of a pixel's coordinate
   Loss loss = Loss::huber;
 
   const std::vector<PlacedView>& views() const { return views_; }

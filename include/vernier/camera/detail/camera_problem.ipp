@@ -15,10 +15,10 @@
 
 namespace vernier::detail {
 
-inline constexpr double frame_step = 1e-3;    // [m, rad]
-inline constexpr double scale_step = 1e-3;    // share
-inline constexpr double bend_step = 0.5e-3;   // [m]
-inline constexpr double nearest_depth = 1e-3; // [m]
+inline constexpr double frame_step = 1e-3;     // [m, rad]
+inline constexpr double scale_step = 1e-3;     // share
+inline constexpr double bend_step = 0.5e-3;    // [m]
+inline constexpr double nearest_depth = 1e-3;  // [m]
 
 /// The steps in which intrinsics are counted: pixels, and coefficients of distortion.
 VERNIER_LOCAL double intrinsic_step(Index k) { return k < 4 ? 10 : k == 6 || k == 7 ? 1e-3 : 0.1; }
@@ -180,9 +180,9 @@ VERNIER_IMPL std::vector<Isometry3> CameraProblem::poses() const {
   std::vector<Isometry3> of_rows, out;
   flanges(of_rows, nullptr);
   for (const PlacedView& view : views_)
-    out.push_back(composed(composed(state.bases[static_cast<std::size_t>(view.base)],
-                                    of_rows[static_cast<std::size_t>(view.row)]),
-                           state.tools[static_cast<std::size_t>(view.tool)]));
+    out.push_back(composed(
+        composed(state.bases[static_cast<std::size_t>(view.base)], of_rows[static_cast<std::size_t>(view.row)]),
+        state.tools[static_cast<std::size_t>(view.tool)]));
   return out;
 }
 
@@ -224,8 +224,7 @@ VERNIER_IMPL std::vector<MatrixX> CameraProblem::motion_columns(std::vector<Isom
       twist.tail<3>() = turn * angle;
       columns.col(j) = by_flange * twist * priors.arm_scales(k);
     }
-    columns.middleCols<6>(of_arm + 6 * view.base) =
-        frame_step * effect_of_twist(translation(pose) - translation(base));
+    columns.middleCols<6>(of_arm + 6 * view.base) = frame_step * effect_of_twist(translation(pose) - translation(base));
     const Index tool = of_arm + 6 * (bases + view.tool);
     columns.block<3, 3>(0, tool) = frame_step * rotation(flange);
     columns.block<3, 3>(3, tool + 3) = frame_step * rotation(flange);
@@ -316,9 +315,7 @@ VERNIER_IMPL NormalEquations CameraProblem::normal_equations() const {
       block.unwhiten.setIdentity();
     }
   }
-  const auto rows = [&](Index first, Index count, RowBlock* out) {
-    std::copy_n(all.begin() + first, count, out);
-  };
+  const auto rows = [&](Index first, Index count, RowBlock* out) { std::copy_n(all.begin() + first, count, out); };
   const auto n = static_cast<Index>(all.size());
   return NormalEquations(BlockSystem{n, n, unknown, {}, rows});
 }

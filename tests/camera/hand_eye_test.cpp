@@ -68,7 +68,7 @@ TEST(ConsistentHandEye, ChoosesTheRightCandidates) {
     EXPECT_LT(apart(found.base, base), 1e-8) << seed;
     EXPECT_LT(apart(found.tool, tool), 1e-8) << seed;
     for (std::size_t i = 0; i < right.size(); ++i)
-      if (i != 7) EXPECT_EQ(found.chosen[i], right[i]) << seed << ", " << i;
+      EXPECT_TRUE(i == 7 || found.chosen[i] == right[i]) << seed << ", " << i;
   }
 }
 

@@ -9,6 +9,8 @@
 
 #include "vernier/camera/board.hpp"
 #include "vernier/camera/camera.hpp"
+#include "vernier/camera/camera_setup.hpp"
+#include "vernier/io/json.hpp"
 
 namespace vernier {
 
@@ -31,6 +33,15 @@ VERNIER_API Camera read_camera_json(const std::string& path);
 VERNIER_API nlohmann::ordered_json camera_to_json(const Camera& camera);
 /// A board as `read_board` reads it.
 VERNIER_API nlohmann::ordered_json board_to_json(const Board& board);
+
+namespace detail {
+
+/// Cameras and board of a model file.
+VERNIER_API nlohmann::ordered_json setup_to_json(const CameraSetup& setup);
+/// @throws DataError naming file and key
+VERNIER_API CameraSetup setup_from_json(const JsonNode& node);
+
+}  // namespace detail
 
 }  // namespace vernier
 

@@ -19,6 +19,7 @@
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/identification/identifiable_parameters.hpp"
 #include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier {
@@ -41,6 +42,26 @@ inline constexpr std::array<NamedBlock, 6> camera_blocks{{
 }};
 
 using ViewNumbers = std::vector<std::size_t>;
+
+/// Parameters of the chain that images determine beside frames and intrinsics: those that these absorb stay as
+/// designed.
+VERNIER_LOCAL std::vector<Index> determined_parameters(const CameraProblem& at) {
+  CameraProblem problem = at;
+  problem.free.arm = true;
+  problem.free.scale = false;  // a gauge, which its prior holds
+  const MatrixX rows = problem.dense_rows();
+  const auto of_arm = static_cast<Index>(problem.priors.arm.size());
+  const Index others = rows.cols() - 1 - of_arm;
+  MatrixX columns(rows.rows(), rows.cols() - 1);
+  columns.leftCols(others) = rows.middleCols(of_arm, others);
+  columns.rightCols(of_arm) = rows.leftCols(of_arm);
+  const IdentifiableParameters found(columns);
+  std::vector<Index> out;
+  for (Index j = 0; j < of_arm; ++j)
+    if (std::find(found.base.begin(), found.base.end(), others + j) != found.base.end())
+      out.push_back(problem.priors.arm[static_cast<std::size_t>(j)]);
+  return out;
+}
 
 /// One calibration by cameras.
 class CameraRun {
@@ -105,7 +126,7 @@ VERNIER_LOCAL ViewNumbers without(const ViewNumbers& all, const ViewNumbers& lef
   return out;
 }
 
-VERNIER_LOCAL double median_of(std::vector<double> values) {
+VERNIER_LOCAL double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -304,7 +325,9 @@ VERNIER_IMPL Index CameraRun::start_frames(const ViewNumbers& numbers, CameraSta
     if (view.corners.size() < 4) continue;
     auto poses = board_poses(state.cameras[static_cast<std::size_t>(view.camera)], board_, view.corners, view.pixels);
     if (!std::isfinite(poses[0].rms)) continue;
-    if (!(poses[1].rms < 30 * poses[0].rms + 3)) poses[1] = poses[0];
+    const Matrix3 turn = rotation(poses[1].camera_T_board) * rotation(poses[0].camera_T_board).transpose();
+    const bool same = !std::isfinite(poses[1].rms) || log_so3(turn).norm() < 0.01;
+    if (same || !(poses[1].rms < 30 * poses[0].rms + 3)) poses[1] = poses[0];
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const Group& g) { return g.base == placed.base && g.tool == placed.tool; });
     if (group == groups.end()) group = groups.insert(group, Group{placed.base, placed.tool});
@@ -375,7 +398,7 @@ VERNIER_IMPL void CameraRun::settle(CameraProblem& problem, const CameraFreedom&
     constexpr double median_of_two = 1.1774, least = 0.01;
     const auto values = static_cast<double>(problem.values()), spare = values - static_cast<double>(problem.unknowns());
     const double inflation = std::sqrt(values / (std::max)(spare, 0.2 * values));
-    problem.pixel_sigma = (std::max)(least, inflation * median_of(std::move(norms)) / median_of_two);
+    problem.pixel_sigma = (std::max)(least, inflation * middle_of(std::move(norms)) / median_of_two);
     problem.free = free;
     problem.solve(60);
   }
@@ -388,6 +411,7 @@ VERNIER_IMPL CameraRun::Fit CameraRun::fit(const ViewNumbers& numbers, const Cam
   const Index ambiguous = start_frames(numbers, state);
   CameraProblem problem = problem_of(numbers, std::move(state));
   problem.solve(30);  // frames alone
+  if (nominal_) problem.priors.arm = determined_parameters(problem);
   settle(problem, free);
   return {std::move(problem), ambiguous};
 }
@@ -409,13 +433,13 @@ VERNIER_IMPL VectorX CameraRun::left_out_medians(const ViewNumbers& numbers, con
   std::map<std::size_t, double> found;
   for (const ViewNumbers& fold : folds(numbers)) {
     CameraProblem problem = problem_of(without(numbers, fold), of_all.state);
-    problem.priors.cameras = of_all.priors.cameras;
+    problem.priors = of_all.priors;
     problem.pixel_sigma = of_all.pixel_sigma;
     problem.free = of_all.free;
     problem.solve(30);
     for (const std::size_t k : fold) {
       const VectorX errors = problem.board_errors(placed_[k], problem.pose_of(placed_[k]));
-      found[k] = median_of({errors.begin(), errors.end()});
+      found[k] = middle_of({errors.begin(), errors.end()});
     }
   }
   VectorX out(static_cast<Index>(numbers.size()));
@@ -574,29 +598,29 @@ VERNIER_IMPL CameraReport calibrate_cameras(const std::optional<ArmGeometry>& no
   return CameraRun(nominal, board, views, rows, options).run();
 }
 
-/// A number with some digits behind the point.
-VERNIER_LOCAL std::string digits(double value, int behind) {
+/// A number with some fixed_digits behind the point.
+VERNIER_LOCAL std::string fixed_digits(double value, int behind) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", behind, value);
   return text;
 }
 
 /// A pose in words.
-VERNIER_LOCAL std::string pose_text(const std::string& name, const Isometry3& pose, const Vector6& std) {
+VERNIER_LOCAL std::string frame_in_words(const std::string& name, const Isometry3& pose, const Vector6& std) {
   const Vector3 turn = log_so3(rotation(pose));
   std::string out = "  " + name + ": (";
-  for (Index k = 0; k < 3; ++k) out += (k > 0 ? ", " : "") + digits(pose(k, 3) * 1e3, 2);
+  for (Index k = 0; k < 3; ++k) out += (k > 0 ? ", " : "") + fixed_digits(pose(k, 3) * 1e3, 2);
   out += ") mm, rotation vector (";
-  for (Index k = 0; k < 3; ++k) out += (k > 0 ? ", " : "") + digits(turn(k), 5);
+  for (Index k = 0; k < 3; ++k) out += (k > 0 ? ", " : "") + fixed_digits(turn(k), 5);
   out += ") rad; standard deviations up to ";
-  out += digits(1e3 * (std::max)({std(0), std(1), std(2)}), 3) + " mm and ";
-  return out + digits(1e3 * (std::max)({std(3), std(4), std(5)}), 3) + " mrad\n";
+  out += fixed_digits(1e3 * (std::max)({std(0), std(1), std(2)}), 3) + " mm and ";
+  return out + fixed_digits(1e3 * (std::max)({std(3), std(4), std(5)}), 3) + " mrad\n";
 }
 
 }  // namespace detail
 
 VERNIER_IMPL std::string CameraReport::summary() const {
-  using detail::digits;
+  using detail::fixed_digits;
   Index corners = 0;
   for (const ImageError& image : images) corners += image.corners;
   std::string out = message(images.size(), " images, ", corners, " corners, camera ",
@@ -609,10 +633,10 @@ VERNIER_IMPL std::string CameraReport::summary() const {
   };
   names_of("Images without a row of the arm, not used", without_row);
   names_of("Rows without an image, not used", without_corners);
-  out += "\nMean distance on the board: " + digits(mean * 1e3, 3) + " mm in the fit";
+  out += "\nMean distance on the board: " + fixed_digits(mean * 1e3, 3) + " mm in the fit";
   if (left_out_mean > 0)
-    out += ", " + digits(left_out_mean * 1e3, 3) + " mm at left-out images (largest " + digits(left_out_max * 1e3, 2) +
-           " mm)" + (choices_repeated ? ", all decisions made without them" : "");
+    out += ", " + fixed_digits(left_out_mean * 1e3, 3) + " mm at left-out images (largest " +
+           fixed_digits(left_out_max * 1e3, 2) + " mm)" + (choices_repeated ? ", all decisions made without them" : "");
   out += "\n";
   if (ambiguous > 0)
     out += message(counted(ambiguous, "view", "views"),
@@ -622,28 +646,30 @@ VERNIER_IMPL std::string CameraReport::summary() const {
                                                          : "Camera in the arm's base frame\n");
   const auto& standing = mount == CameraMount::flange ? board_names : camera_names;
   const auto& carried = mount == CameraMount::flange ? camera_names : board_names;
-  for (std::size_t k = 0; k < in_base.size(); ++k) out += detail::pose_text(standing[k], in_base[k], in_base_std[k]);
+  for (std::size_t k = 0; k < in_base.size(); ++k)
+    out += detail::frame_in_words(standing[k], in_base[k], in_base_std[k]);
   out += mount == CameraMount::flange ? "Camera in the flange's frame\n" : "Board in the flange's frame\n";
   for (std::size_t k = 0; k < in_flange.size(); ++k)
-    out += detail::pose_text(carried[k], in_flange[k], in_flange_std[k]);
+    out += detail::frame_in_words(carried[k], in_flange[k], in_flange_std[k]);
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     out += "Intrinsics of " + camera_names[c] + "\n";
     const VectorX values = cameras[c].parameters();
     for (Index k = 0; k < values.size(); ++k) {
       const int behind = k < 4 ? 2 : 6;
-      out += message("  ", Camera::names[static_cast<std::size_t>(k)], "  ", digits(values(k), behind),
-                     camera_std[c](k) > 0 ? " +- " + digits(camera_std[c](k), behind) : std::string(" (held)"), "\n");
+      out += message("  ", Camera::names[static_cast<std::size_t>(k)], "  ", fixed_digits(values(k), behind),
+                     camera_std[c](k) > 0 ? " +- " + fixed_digits(camera_std[c](k), behind) : std::string(" (held)"),
+                     "\n");
     }
   }
   if (board_scale_std > 0)
-    out += "Scale of the board: " + digits(board_scale, 5) + " +- " + digits(board_scale_std, 5) + "\n";
+    out += "Scale of the board: " + fixed_digits(board_scale, 5) + " +- " + fixed_digits(board_scale_std, 5) + "\n";
   if (scale_effect > 0)
-    out += "  that deviation is " + digits(scale_effect * 1e3, 3) +
+    out += "  that deviation is " + fixed_digits(scale_effect * 1e3, 3) +
            " mm at the arm's reach: measure the board over a long distance, or add a measured length\n";
   if (!blocks.empty()) out += "Left-out images decided, in mm on the board (mean of medians)\n";
   for (const CameraBlock& block : blocks)
-    out += "  " + block.name + ": " + digits(block.without * 1e3, 3) + " without, " + digits(block.with * 1e3, 3) +
-           " with: " + (block.kept ? "kept" : "left out") + "\n";
+    out += "  " + block.name + ": " + fixed_digits(block.without * 1e3, 3) + " without, " +
+           fixed_digits(block.with * 1e3, 3) + " with: " + (block.kept ? "kept" : "left out") + "\n";
   return out;
 }
 

@@ -35,7 +35,7 @@ VERNIER_API HandEye hand_eye(std::span<const Isometry3> flanges, std::span<const
 /// choice is that which most poses agree on: the least median of squares over random triples of poses.
 /// @param flanges    base_T_flange, n >= 3
 /// @param candidates n pairs; the likelier one first. A pair may hold the same pose twice
-/// @cite Rousseeuw 1984
+/// @cite Rousseeuw and Leroy 1987
 VERNIER_API HandEye consistent_hand_eye(std::span<const Isometry3> flanges,
                                         std::span<const std::array<Isometry3, 2>> candidates);
 

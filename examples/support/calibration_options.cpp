@@ -82,6 +82,7 @@ void add_cameras(Program& program, CalibrationOptions& o) {
                          "z_mm, rx_rad, ry_rad, rz_rad",
                          "FILE");
   poses.needs(corners);
+  poses.excludes(seen);
   for (const char* other : {"--data", "--robot", "--save"}) poses.excludes(program.option(other));
   for (const char* other : {"--distances", "--contacts", "--test", "--test-every", "--split", "--train", "--report",
                             "--own-tools", "--prior", "--priors", "--model"})

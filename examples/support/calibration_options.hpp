@@ -27,6 +27,7 @@ struct CalibrationOptions {
   std::vector<std::string>
       intrinsics;  ///< files of cameras, in the order in which the corners name them; none: unknown
   std::vector<std::string> free_intrinsics;  ///< names of those that are estimated although they are given
+  std::string save_poses;                    ///< file for poses that images show; empty: none
   std::string flange_poses;                  ///< file of poses of the flange in place of joints; empty: none
   CsvOptions csv;                            ///< how these files are written
   std::string split;                         ///< how a fraction of the rows is held out; empty: every K-th row

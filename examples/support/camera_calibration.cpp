@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "dispatch.hpp"
+#include "file_name.hpp"
 #include "json_file.hpp"
 #include "robot_choice.hpp"
 #include "vernier/calibration/camera_calibration.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/data/csv.hpp"
 #include "vernier/io/camera_files.hpp"
 #include "vernier/io/identified_robot.hpp"
 #include "vernier/io/model_file.hpp"
@@ -153,6 +155,14 @@ vn::CameraReport calibrate_arm(const CalibrationOptions& o, const vn::RobotDescr
                                           .data_sha256 = rows.origin.hashes.front(),
                                           .controller = robot.controller},
                          std::move(from)));
+  }
+  if (!o.save_poses.empty()) {
+    const vn::Measurements<N> poses = vn::measured_poses<N>(found, rows);
+    for (std::size_t k = 0; k < poses.poses().size(); ++k) {
+      const std::string file = k == 0 ? o.save_poses : numbered(o.save_poses, k + 1);
+      vn::write_dataset(file, poses.poses()[k], description.joint_types(), robot.controller);
+      fmt::print("Poses of {}: {}\n", poses.sets()[k].name, shown(file));
+    }
   }
   return found;
 }

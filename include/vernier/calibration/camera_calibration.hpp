@@ -12,10 +12,12 @@
 #include "vernier/camera/board.hpp"
 #include "vernier/camera/camera.hpp"
 #include "vernier/camera/corner_views.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/identification/calibrated.hpp"
 #include "vernier/identification/options.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
 #include "vernier/least_squares/loss.hpp"
+#include "vernier/measurements/measurements.hpp"
 
 namespace vernier {
 
@@ -51,6 +53,14 @@ struct ImageError {
   double tilt = 0;              ///< between the view and the board's normal [rad]
 };
 
+/// What one view alone says of the arm, with the intrinsics that were found.
+struct ImagePose {
+  Index row = 0;             ///< of the joints, or of the poses of the flange
+  Index base = 0, tool = 0;  ///< whose frames: P = base * flange * tool
+  Isometry3 pose;            ///< P
+  Matrix6 covariance;        ///< of shifts and rotations of P, rotations from the left [m, rad]
+};
+
 /// Unknowns on which left-out images decided.
 struct CameraBlock {
   std::string name;    ///< "radial distortion"
@@ -76,6 +86,7 @@ struct CameraReport {
   std::vector<Isometry3> in_flange{};
   std::vector<Vector6> in_flange_std{};                       ///< likewise
   std::vector<ImageError> images{};                           ///< in the order of the file
+  std::vector<ImagePose> poses{};                             ///< of the views that determine one
   std::vector<CameraBlock> blocks{};                          ///< in the order in which they were tried
   std::vector<std::string> without_row{}, without_corners{};  ///< images that are in one file alone
   Index ambiguous = 0;               ///< number of views whose better fitting pose was the wrong one of two
@@ -125,7 +136,8 @@ struct CalibratedByCamera : CameraReport {
   Calibrated<Chain> model;  ///< in base and tool frame of the first camera and place: P = base * FK * tool
 
   /// Joins the two.
-  CalibratedByCamera(CameraReport report, const Calibrated<Chain>& arm) : CameraReport(std::move(report)), model(arm) {}
+  CalibratedByCamera(CameraReport report, const Calibrated<Chain>& calibrated)
+      : CameraReport(std::move(report)), model(calibrated) {}
 };
 
 /// The geometry of an arm, base, tool and intrinsics in one least-squares problem.
@@ -149,6 +161,39 @@ CalibratedByCamera<ChainOf<Arm>> calibrate_by_camera(const Arm& arm, const Board
   CameraReport report = detail::calibrate_cameras(ArmGeometry(nominal), board, views, rows, options);
   const Calibrated<ChainOf<Arm>> model(report.arm->framed(nominal.model()), nominal.model());
   return {std::move(report), model};
+}
+
+/// Poses that single images show, with their covariances: measurements for `calibrate`, which finds joint errors, too.
+/// One set for each place of the board, or for each camera that stands still.
+/// @param report of one camera on the flange, or of one board there
+/// @param rows   the joint values that it was made from
+/// @throws std::invalid_argument where the flange carries several
+template <int N>
+Measurements<N> measured_poses(const CameraReport& report, const ImageRows& rows) {
+  demand(report.in_flange.size() == 1, "measured_poses: the flange carries ", report.in_flange.size(),
+         " cameras or boards, each is a tool of its own");
+  Measurements<N> out;
+  const auto& names = report.mount == CameraMount::flange ? report.board_names : report.camera_names;
+  for (std::size_t base = 0; base < report.in_base.size(); ++base) {
+    std::vector<const ImagePose*> here;
+    for (const ImagePose& pose : report.poses)
+      if (pose.base == static_cast<Index>(base)) here.push_back(&pose);
+    const auto n = static_cast<Index>(here.size());
+    if (n == 0) continue;
+    JointRows<N> joints(n, N);
+    PointRows positions(n, 3), orientations(n, 3);
+    std::vector<Matrix6> covariances;
+    for (Index i = 0; i < n; ++i) {
+      const ImagePose& pose = *here[static_cast<std::size_t>(i)];
+      for (Index j = 0; j < N; ++j) joints(i, j) = rows.joints(pose.row, j);
+      set_point(positions, i, translation(pose.pose));
+      set_point(orientations, i, log_so3(rotation(pose.pose)));
+      covariances.push_back(pose.covariance);
+    }
+    out.add(Dataset<N>(joints, positions, orientations).without_approach().with_covariances(std::move(covariances)),
+            names[base]);
+  }
+  return out;
 }
 
 }  // namespace vernier

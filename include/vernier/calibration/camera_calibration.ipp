@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -16,6 +15,7 @@
 #include "vernier/camera/planar_pose.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/register_points.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
@@ -487,6 +487,9 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
     corners += one.corners;
     for (std::size_t i = 0; i < view.corners.size(); ++i) out.downweighted += problem.weight(v, i) < 0.5 ? 1 : 0;
     out.images.push_back(std::move(one));
+    if (const auto seen = problem.seen_pose(v))
+      if (positive_definite(seen->second, 6))
+        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, seen->second});
   }
   out.mean = sum / static_cast<double>(corners);
 }
@@ -596,13 +599,6 @@ VERNIER_IMPL CameraReport calibrate_cameras(const std::optional<ArmGeometry>& no
                                             const CornerViews& views, const ImageRows& rows,
                                             const CameraOptions& options) {
   return CameraRun(nominal, board, views, rows, options).run();
-}
-
-/// A number with some fixed_digits behind the point.
-VERNIER_LOCAL std::string fixed_digits(double value, int behind) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", behind, value);
-  return text;
 }
 
 /// A pose in words.

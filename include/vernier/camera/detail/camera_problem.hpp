@@ -115,6 +115,10 @@ class CameraProblem {
   VERNIER_API std::vector<Vector2> residuals(const PlacedView& view, const Isometry3& pose) const;
   /// Distances on the board from where a pixel says a corner is to where it is [m].
   VERNIER_API VectorX board_errors(const PlacedView& view, const Isometry3& pose) const;
+  /// The pose P that a view alone shows, by least squares from the modelled one, and its covariance: of shifts [m] and
+  /// rotations [rad] of P, in the frame in which P is.
+  /// @return nothing where its corners do not determine a pose
+  VERNIER_API std::optional<std::pair<Isometry3, Matrix6>> seen_pose(std::size_t view) const;
   /// Modelled pose of any view.
   VERNIER_API Isometry3 pose_of(const PlacedView& view) const;
 

@@ -357,6 +357,28 @@ VERNIER_IMPL std::vector<Vector2> CameraProblem::residuals(const PlacedView& pla
   return out;
 }
 
+VERNIER_IMPL std::optional<std::pair<Isometry3, Matrix6>> CameraProblem::seen_pose(std::size_t view) const {
+  Isometry3 pose = pose_of(views_[view]);
+  Matrix6 triangle;
+  double step = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < 30 && step > 1e-11; ++iteration) {
+    const MatrixX rows = view_rows(view, pose);
+    if (rows.rows() < 8) return std::nullopt;
+    const MatrixX reduced = reduced_rows(rows);
+    triangle = reduced.topLeftCorner<6, 6>();
+    const Vector6 right = reduced.col(reduced.cols() - 1).head<6>();
+    const Vector6 diagonal = triangle.diagonal().cwiseAbs();
+    if (!(diagonal.minCoeff() > 1e-9 * diagonal.maxCoeff())) return std::nullopt;
+    const Vector6 by = -triangle.triangularView<Eigen::Upper>().solve(right);
+    step = by.norm();
+    if (!(step < 1)) return std::nullopt;
+    pose = shifted(pose, by);
+  }
+  if (!(step < 1e-8)) return std::nullopt;
+  const Matrix6 inverse = triangle.triangularView<Eigen::Upper>().solve(Matrix6(Matrix6::Identity()));
+  return std::pair{pose, Matrix6(inverse * inverse.transpose())};
+}
+
 VERNIER_IMPL VectorX CameraProblem::board_errors(const PlacedView& placed, const Isometry3& pose) const {
   const View& view = *placed.view;
   const Camera& camera = state.cameras[static_cast<std::size_t>(view.camera)];

@@ -76,6 +76,13 @@ void add_cameras(Program& program, CalibrationOptions& o) {
                   "NAMES")
       .delimiter(',')
       .needs(intrinsics);
+  const Option seen =
+      program
+          .add_option("--save-poses", o.save_poses,
+                      "write the poses that the images show, with their covariances, to a file that --data takes (for "
+                      "joint errors, plans, reports); of several places of the board to poses.csv, poses.2.csv, ...",
+                      "FILE")
+          .needs(corners);
   Option poses =
       program.add_option("--flange-poses", o.flange_poses,
                          "poses of the flange in place of joints, for base and tool alone: image, x_mm, y_mm, "

@@ -5,6 +5,7 @@
 
 #include "calibration_figures.hpp"
 #include "calibration_options.hpp"
+#include "camera_calibration.hpp"
 #include "cli.hpp"
 #include "contact_calibration.hpp"
 #include "json_file.hpp"
@@ -82,6 +83,7 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
 int run(support::Program& program) {
   support::CalibrationOptions o = support::read_calibration_options(program);
   if (o.reregister) return support::reregister_model(program, o);
+  if (!o.corners.empty()) return support::calibrate_by_camera(program, o);
   if (o.data.empty()) {
     const vn::RobotDescription robot = support::choose_robot(o.robot);
     o.csv.controller = robot.controller;
@@ -96,7 +98,8 @@ int run(support::Program& program) {
 int main(int argc, char** argv) {
   return support::run_program(
       "calibrate",
-      "Measured poses in; base and tool frames, the arm's geometry, gravity compliance, "
+      "Measured poses, contacts or images of a printed board in; base and tool frames, the arm's geometry, gravity "
+      "compliance, "
       "functions of single joints, hysteresis by the direction of approach, drift of the "
       "session and what learners find in the remainder; errors at held-out poses after each, and a "
       "verdict.",

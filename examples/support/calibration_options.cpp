@@ -47,6 +47,55 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
       .within(1e-6, 1e3);
 }
 
+void add_cameras(Program& program, CalibrationOptions& o) {
+  Option corners = program.add_option(
+      "--corners", o.corners,
+      "corners of a printed board in images, with --data (columns image, q1_rad..) or --flange-poses: image, corner, "
+      "u_px, v_px, optionally camera and board (names, where there are several cameras or places of the board)",
+      "FILE");
+  Option board =
+      program.add_option("--board", o.board, "the printed board (JSON: rows, columns, square_mm, ...)", "FILE");
+  Option mount = program
+                     .add_option("--camera-mount", o.camera_mount,
+                                 "flange: the flange carries the camera; fixed: it carries the board", "WHERE")
+                     .one_of({"flange", "fixed"});
+  corners.needs(board).needs(mount);
+  board.needs(corners);
+  mount.needs(corners);
+  const Option intrinsics =
+      program
+          .add_option("--intrinsics", o.intrinsics,
+                      "the camera's intrinsics (JSON, or YAML of OpenCV or ROS); unknown where this is not given; "
+                      "several: one file a camera, in the order in which the corners name them",
+                      "FILE")
+          .needs(corners);
+  program
+      .add_option("--free-intrinsics", o.free_intrinsics,
+                  "intrinsics that are estimated although they are given, joined by commas: fx, fy, cx, cy, k1, k2, "
+                  "p1, p2, k3; left-out images decide on the others",
+                  "NAMES")
+      .delimiter(',')
+      .needs(intrinsics);
+  const Option seen =
+      program
+          .add_option("--save-poses", o.save_poses,
+                      "write the poses that the images show, with their covariances, to a file that --data takes (for "
+                      "joint errors, plans, reports); of several places of the board to poses.csv, poses.2.csv, ...",
+                      "FILE")
+          .needs(corners);
+  Option poses =
+      program.add_option("--flange-poses", o.flange_poses,
+                         "poses of the flange in place of joints, for base and tool alone: image, x_mm, y_mm, "
+                         "z_mm, rx_rad, ry_rad, rz_rad",
+                         "FILE");
+  poses.needs(corners);
+  poses.excludes(seen);
+  for (const char* other : {"--data", "--robot", "--save"}) poses.excludes(program.option(other));
+  for (const char* other : {"--distances", "--contacts", "--test", "--test-every", "--split", "--train", "--report",
+                            "--own-tools", "--prior", "--priors", "--model"})
+    corners.excludes(program.option(other));
+}
+
 void add_split(Program& program, CalibrationOptions& o) {
   Option test = program.add_option("--test", o.test, "held-out measured poses, as many files as --data", "FILE");
   Option every =
@@ -135,6 +184,13 @@ void add_reregistration(Program& program, CalibrationOptions& o) {
 
 /// Refuses what cannot be used together.
 void require_consistent(const Program& program, const CalibrationOptions& o) {
+  if (!o.corners.empty()) {
+    if (!o.flange_poses.empty()) return;
+    if (o.data.size() != 1)
+      throw UsageError("--corners takes one file of --data, the joints of the images, or --flange-poses");
+    if (!program.given("--robot")) throw UsageError("--robot is required (or --flange-poses in place of --data)");
+    return;
+  }
   if (o.data.empty() && (o.reregister || o.contacts.empty()))
     throw UsageError("--data is required (or --contacts, to calibrate without measured poses)");
   if (o.reregister) {
@@ -160,6 +216,7 @@ CalibrationOptions read_calibration_options(Program& program) {
   add_results(program, o);
   add_estimation(program, o, typed);
   add_reregistration(program, o);
+  add_cameras(program, o);
   program.parse("calibrate_out");
 
   if (o.date.size() > 40 || std::any_of(o.date.begin(), o.date.end(), [](char c) { return c < ' '; }))

@@ -16,28 +16,36 @@ namespace support {
 
 /// What the command line of `calibrate` says.
 struct CalibrationOptions {
-  RobotOptions robot;                     ///< the arm as designed
-  std::vector<std::string> data;          ///< files of measured poses, one a station
-  std::vector<std::string> test;          ///< held-out poses, as many files; empty: rows of `data` are held out
-  std::vector<std::string> distances;     ///< files of measured distances, one a fixed point
-  std::string contacts;                   ///< file of contacts; empty: none
-  CsvOptions csv;                         ///< how these files are written
-  std::string split;                      ///< how a fraction of the rows is held out; empty: every K-th row
-  vernier::Index test_every = 5;          ///< that K
-  double test_fraction = 0.2;             ///< that fraction
-  vernier::Index train_rows = 0;          ///< rows to learn from; 0: all that are not held out
-  bool no_approach = false;               ///< rows are not in the order of measuring
-  std::string priors = "default";         ///< how sizes of the joint errors are found: default, pso or ga
-  std::string prior;                      ///< an earlier calibrated model to start from; empty: none
-  std::string save;                       ///< file for the calibrated model; empty: none
-  std::string date;                       ///< written into the model
-  std::string report;                     ///< file for the HTML page; empty: none
-  double accept_mm = 0;                   ///< largest mean held-out error that is accepted [mm]; 0: not stated
-  bool verbose = false;                   ///< details are printed, too
-  bool reregister = false;                ///< a saved model is registered again, instead of a calibration
-  std::string model;                      ///< that model
-  std::string free;                       ///< what may move then
-  vernier::CalibrateOptions calibrate{};  ///< of the calibration itself
+  RobotOptions robot;                  ///< the arm as designed
+  std::vector<std::string> data;       ///< files of measured poses, one a station
+  std::vector<std::string> test;       ///< held-out poses, as many files; empty: rows of `data` are held out
+  std::vector<std::string> distances;  ///< files of measured distances, one a fixed point
+  std::string contacts;                ///< file of contacts; empty: none
+  std::string corners;                 ///< file of a board's corners in images; empty: none
+  std::string board;                   ///< file of that board
+  std::string camera_mount;            ///< flange or fixed
+  std::vector<std::string>
+      intrinsics;  ///< files of cameras, in the order in which the corners name them; none: unknown
+  std::vector<std::string> free_intrinsics;  ///< names of those that are estimated although they are given
+  std::string save_poses;                    ///< file for poses that images show; empty: none
+  std::string flange_poses;                  ///< file of poses of the flange in place of joints; empty: none
+  CsvOptions csv;                            ///< how these files are written
+  std::string split;                         ///< how a fraction of the rows is held out; empty: every K-th row
+  vernier::Index test_every = 5;             ///< that K
+  double test_fraction = 0.2;                ///< that fraction
+  vernier::Index train_rows = 0;             ///< rows to learn from; 0: all that are not held out
+  bool no_approach = false;                  ///< rows are not in the order of measuring
+  std::string priors = "default";            ///< how sizes of the joint errors are found: default, pso or ga
+  std::string prior;                         ///< an earlier calibrated model to start from; empty: none
+  std::string save;                          ///< file for the calibrated model; empty: none
+  std::string date;                          ///< written into the model
+  std::string report;                        ///< file for the HTML page; empty: none
+  double accept_mm = 0;                      ///< largest mean held-out error that is accepted [mm]; 0: not stated
+  bool verbose = false;                      ///< details are printed, too
+  bool reregister = false;                   ///< a saved model is registered again, instead of a calibration
+  std::string model;                         ///< that model
+  std::string free;                          ///< what may move then
+  vernier::CalibrateOptions calibrate{};     ///< of the calibration itself
 };
 
 /// Reads the command line of `calibrate` and refuses options that do not belong together.

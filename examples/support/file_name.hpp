@@ -18,4 +18,10 @@ inline std::string file_name(const std::string& path) {
   return file ? std::filesystem::path(path).filename().string() : path;
 }
 
+/// The name of a file with a number before its ending: "arm.json", 2 gives "arm.2.json".
+inline std::string numbered(const std::filesystem::path& path, std::size_t number) {
+  std::filesystem::path out = path;
+  return out.replace_extension("." + std::to_string(number) + path.extension().string()).string();
+}
+
 }  // namespace support

@@ -49,12 +49,6 @@ std::string file_hashes(const std::vector<vn::Dataset<N>>& sets) {
   return out;
 }
 
-/// The name of a file with a number before its ending: "arm.json", 2 gives "arm.2.json".
-std::string numbered(const std::filesystem::path& path, std::size_t number) {
-  std::filesystem::path out = path;
-  return out.replace_extension(fmt::format(".{}{}", number, path.extension().string())).string();
-}
-
 template <int N>
 vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, const MeasuredFiles<N>& measured,
                                    const CalibrationOptions& o) {

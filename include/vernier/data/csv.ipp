@@ -115,12 +115,54 @@ VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std
   return out;
 }
 
+/// Covariances of the rows of a file of poses: standard deviations, or entries of matrices; none where it has neither.
+VERNIER_LOCAL std::vector<Matrix6> covariances_of(const CsvTable& table, bool oriented) {
+  std::vector<CsvColumn> sigmas, entries;
+  const int measured = oriented ? 6 : 3;
+  constexpr const char* stems[] = {"sx", "sy", "sz", "srx", "sry", "srz"};
+  for (int k = 0; k < 6; ++k)
+    if (auto found = table.find(stems[k], k < 3 ? quantities::standard_length : quantities::standard_angle))
+      sigmas.push_back(std::move(*found));
+  for (int r = 1; r <= 6; ++r)
+    for (int c = r; c <= 6; ++c)
+      if (auto found = table.find(message("cov_", r, c), quantities::covariance_entry))
+        entries.push_back(std::move(*found));
+  if (sigmas.empty() && entries.empty()) return {};
+  if (!sigmas.empty() && !entries.empty())
+    table.fail_in_header("columns ", sigmas[0].name, " and ", entries[0].name,
+                         ": standard deviations and covariances exclude each other");
+  if (!sigmas.empty() && static_cast<int>(sigmas.size()) != measured)
+    table.fail_in_header(oriented ? "standard deviations need the columns sx, sy, sz, srx, sry and srz with their units"
+                                  : "standard deviations need the columns sx, sy and sz with their units");
+  if (!entries.empty() && entries.size() != 21)
+    table.fail_in_header("a covariance needs the 21 columns cov_11, cov_12 .. cov_66, there are ", entries.size());
+  const MatrixX values = table.numbers(sigmas.empty() ? entries : sigmas);
+  std::vector<Matrix6> out;
+  for (Index i = 0; i < values.rows(); ++i) {
+    Matrix6 one = Matrix6::Identity();
+    Index at = 0;
+    for (Index r = 0; r < 6 && sigmas.empty(); ++r)
+      for (Index c = r; c < 6; ++c) one(r, c) = one(c, r) = values(i, at++) * (r < 3 ? 1e-3 : 1) * (c < 3 ? 1e-3 : 1);
+    for (Index k = 0; k < static_cast<Index>(sigmas.size()); ++k) {
+      if (!(values(i, k) > 0))
+        table.fail_in_row(i, sigmas[static_cast<std::size_t>(k)], "a standard deviation must be positive");
+      one(k, k) = values(i, k) * values(i, k);
+    }
+    if (!positive_definite(one, measured))
+      table.fail_in_row(i, sigmas.empty() ? entries[0] : sigmas[0],
+                        "the covariance of this row is not positive definite");
+    out.push_back(one);
+  }
+  return out;
+}
+
 VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types,
                                            const CsvFormat& format) {
   const CsvTable table(path, format);
   std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
   for (CsvColumn& column : pose_columns(table)) columns.push_back(std::move(column));
-  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, table.origin()};
+  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, table.origin(), {}};
+  out.covariances = covariances_of(table, out.values.cols() > joints + 3);
   const Index n = out.values.rows();
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
@@ -171,7 +213,8 @@ VERNIER_IMPL DistanceColumns read_distance_columns(const std::string& path, int 
 VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const PointRows& positions,
                                    const PointRows& orientations, const ConstMatrixRef& chain_previous,
                                    const VectorX& times, const VectorX& temperatures,
-                                   std::span<const JointType> chain_types, const ControllerMap& controller) {
+                                   std::span<const JointType> chain_types, const ControllerMap& controller,
+                                   const std::vector<Matrix6>& covariances) {
   demand(chain_types.empty() || chain_types.size() == static_cast<std::size_t>(chain_joints.cols()),
          "write_dataset: ", chain_types.size(), " types of joints for ", chain_joints.cols(), " joints");
   const MatrixX joints = controller.to_controller(chain_joints), previous = controller.to_controller(chain_previous);
@@ -193,6 +236,8 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
   for (Index j = 0; j < joints.cols() && !in_order; ++j) out += "from_" + name(j);
   if (!counted) out += "time_s,";
   if (temperatures.size() > 0) out += "temperature_c,";
+  for (int r = 1; r <= 6 && !covariances.empty(); ++r)
+    for (int c = r; c <= 6; ++c) out += message("cov_", r, c, ',');
   for (Index j = 0; j < joints.cols(); ++j) out += name(j);
   out += oriented ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
   for (Index i = 0; i < joints.rows(); ++i) {
@@ -200,6 +245,9 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
       out += message(std::isfinite(previous(i, j)) ? previous(i, j) : joints(i, j), ',');
     if (!counted) out += message(times(i), ',');
     if (temperatures.size() > 0) out += message(temperatures(i), ',');
+    for (Index r = 0; r < 6 && !covariances.empty(); ++r)
+      for (Index c = r; c < 6; ++c)
+        out += message(covariances[static_cast<std::size_t>(i)](r, c) * (r < 3 ? 1e3 : 1) * (c < 3 ? 1e3 : 1), ',');
     for (Index j = 0; j < joints.cols(); ++j) out += message(joints(i, j), ',');
     for (Index j = 0; j < 3; ++j) out += message(positions(i, j) * 1e3, j < 2 || oriented ? ',' : '\n');
     if (oriented)

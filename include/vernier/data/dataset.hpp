@@ -24,6 +24,9 @@ VERNIER_API bool finite_row(const ConstMatrixRef& values, Index row);
 VERNIER_API void check_measured_samples(const ConstMatrixRef& joints, const PointRows& positions,
                                         const PointRows& orientations);
 VERNIER_API [[noreturn]] void refuse_coordinates(Index columns);
+VERNIER_API void check_covariances(const std::vector<Matrix6>& covariances, Index samples, bool oriented);
+/// Whether the first rows and columns of a symmetric matrix, as many as are measured, are positive definite.
+VERNIER_API bool positive_definite(const Matrix6& covariance, Index measured);
 
 /// Points, one a row, in a matrix of either kind.
 /// @throws std::invalid_argument on another number of coordinates than three
@@ -127,6 +130,18 @@ class Dataset {
     return out;
   }
 
+  /// Covariances of position and rotation vector of each sample, in the sensor's frame: shifts are added, rotations
+  /// multiplied from the left [m, rad]; none where all samples have the sensor's standard deviations.
+  const std::vector<Matrix6>& covariances() const { return covariances_; }
+  /// These samples with covariances; of positions alone the first three rows and columns count.
+  /// @throws std::invalid_argument for another number, or a matrix that is not positive definite, naming the row
+  Dataset with_covariances(std::vector<Matrix6> covariances) const {
+    detail::check_covariances(covariances, size(), has_orientations());
+    Dataset out = *this;
+    out.covariances_ = std::move(covariances);
+    return out;
+  }
+
   /// Where the samples stand in files; empty where they are from none.
   const RowOrigin& origin() const { return origin_; }
   /// These samples, said to be from some rows of files.
@@ -167,6 +182,8 @@ class Dataset {
     }
     detail::copy_rows(positions_, indices, out.positions_);
     if (has_orientations()) detail::copy_rows(orientations_, indices, out.orientations_);
+    for (const Index row : indices)
+      if (!covariances_.empty()) out.covariances_.push_back(covariances_[static_cast<std::size_t>(row)]);
     out.origin_ = origin_.rows(indices);
     return out;
   }
@@ -183,6 +200,7 @@ class Dataset {
   PointRows positions_, orientations_;
   JointRows<N> previous_;
   VectorX times_{}, temperatures_{};
+  std::vector<Matrix6> covariances_{};
   RowOrigin origin_{};
 };
 

@@ -29,6 +29,24 @@ VERNIER_IMPL [[noreturn]] void refuse_coordinates(Index columns) {
   throw std::invalid_argument(message(counted(columns, "coordinate", "coordinates"), " for a point in space"));
 }
 
+VERNIER_IMPL bool positive_definite(const Matrix6& covariance, Index measured) {
+  Matrix6 rest = covariance;  // by elimination
+  for (Index k = 0; k < measured; ++k) {
+    if (!(rest(k, k) > 1e-12 * covariance(k, k)) || !(covariance(k, k) > 0) || !std::isfinite(rest(k, k))) return false;
+    for (Index r = k + 1; r < measured; ++r)
+      for (Index c = k + 1; c < measured; ++c) rest(r, c) -= rest(r, k) * rest(k, c) / rest(k, k);
+  }
+  return true;
+}
+
+VERNIER_IMPL void check_covariances(const std::vector<Matrix6>& covariances, Index samples, bool oriented) {
+  demand(covariances.empty() || static_cast<Index>(covariances.size()) == samples, "Dataset: ", covariances.size(),
+         " covariances of ", samples, " rows");
+  for (std::size_t i = 0; i < covariances.size(); ++i)
+    demand(positive_definite(covariances[i], oriented ? 6 : 3), "Dataset: the covariance of row ", i,
+           " is not positive definite");
+}
+
 VERNIER_IMPL void copy_rows(const ConstMatrixRef& from, std::span<const Index> indices, MatrixRef to) {
   for (Index i = 0; i < to.rows(); ++i) {
     const Index row = indices[static_cast<std::size_t>(i)];

@@ -60,10 +60,17 @@ Dataset<N> readings_joined(const Dataset<N>& data, const SamePose& same = {}) {
   const Dataset<N> kept = data.rows(first);
   PointRows positions = kept.positions(), orientations = kept.orientations();
   VectorX times = kept.times(), temperatures = kept.temperatures();
+  std::vector<Matrix6> covariances = kept.covariances();
   for (std::size_t v = 0; v < visits.size(); ++v) {
     const auto at = static_cast<Index>(v);
     const double n = static_cast<double>(visits[v].size());
     if (visits[v].size() == 1) continue;
+    if (!covariances.empty()) {  // of the mean of independent readings
+      Matrix6& sum = covariances[v];
+      sum.setZero();
+      for (const Index i : visits[v]) sum += data.covariances()[static_cast<std::size_t>(i)];
+      sum /= n * n;
+    }
     Vector3 position = Vector3::Zero();
     double time = 0, temperature = 0;
     for (const Index i : visits[v]) {
@@ -80,6 +87,7 @@ Dataset<N> readings_joined(const Dataset<N>& data, const SamePose& same = {}) {
       .approached_from(kept.previous())
       .measured_at(times)
       .at_temperatures(temperatures)
+      .with_covariances(std::move(covariances))
       .from(kept.origin());
 }
 

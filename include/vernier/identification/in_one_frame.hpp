@@ -15,6 +15,8 @@ namespace vernier {
 namespace detail {
 
 /// Writes rows of measured poses, moved, from row `first` on.
+/// The covariance of a pose in another frame.
+VERNIER_API Matrix6 turned_covariance(const Isometry3& motion, const Matrix6& covariance);
 VERNIER_API void move_poses(const Isometry3& motion, const PointRows& positions, const PointRows& orientations,
                             Index first, PointRows& moved_positions, PointRows& moved_orientations);
 
@@ -32,17 +34,19 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
   demand(bases.size() == std::size(stations), "in_one_frame: ", bases.size(), " bases for ", std::size(stations),
          " stations");
   Index rows = 0;
-  bool oriented = use_orientations, thermal = true;
+  bool oriented = use_orientations, thermal = true, correlated = true;
   for (const Dataset<N>& data : stations) {
     rows += data.size();
     oriented = oriented && data.has_orientations();
     thermal = thermal && data.temperatures().size() > 0;
+    correlated = correlated && !data.covariances().empty();
   }
   JointRows<N> joints(rows, N);
   JointRows<N> previous(rows, N);
   VectorX times(rows), temperatures(thermal ? rows : 0);
   PointRows positions(rows, 3), orientations(oriented ? rows : 0, 3);
   Index at = 0;
+  std::vector<Matrix6> covariances;
   RowOrigin origin;
   for (std::size_t s = 0; s < bases.size(); ++s) {
     const Dataset<N>& data = std::data(stations)[s];
@@ -52,6 +56,9 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     if (thermal) temperatures.segment(at, data.size()) = data.temperatures();
     detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at,
                        positions, orientations);
+    for (std::size_t i = 0; correlated && i < data.covariances().size(); ++i)
+      covariances.push_back(
+          detail::turned_covariance(composed(bases.front(), inverse_of(bases[s])), data.covariances()[i]));
     origin.append(data.origin(), at);
     at += data.size();
   }
@@ -59,6 +66,7 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
       .approached_from(previous)
       .measured_at(times)
       .at_temperatures(temperatures)
+      .with_covariances(covariances)
       .from(origin);
 }
 

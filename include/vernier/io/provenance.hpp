@@ -4,8 +4,10 @@
 /// @file
 /// Where a saved calibration comes from.
 
+#include <optional>
 #include <string>
 
+#include "vernier/camera/camera_setup.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/core/types.hpp"
 
@@ -13,15 +15,16 @@ namespace vernier {
 
 /// Where a calibration comes from.
 struct Provenance {
-  std::string data_file{};           ///< name of the file of measured poses; of several, joined by commas
-  Index rows = 0;                    ///< number of poses it was fitted to, or of touches
-  std::string date{};                ///< as given by the caller
-  std::string joints = "commanded";  ///< which joint values the data contain: commanded, or encoder
-  std::string measured = "poses";    ///< what was measured: poses, or positions; or contacts
-  double position_sigma = 0;         ///< of a visit, per component, as estimated from the data [m]; 0: unknown
-  double left_out_error = 0;         ///< rms position error of poses that were left out in turn [m]; 0: unknown
-  double held_out_error = 0;         ///< mean position error of poses it was not fitted to [m]; 0: unknown
-  std::string data_sha256{};         ///< of the bytes of those files, likewise joined; empty: unknown
+  std::string data_file{};              ///< name of the file of measured poses; of several, joined by commas
+  Index rows = 0;                       ///< number of poses it was fitted to, or of touches
+  std::string date{};                   ///< as given by the caller
+  std::string joints = "commanded";     ///< which joint values the data contain: commanded, or encoder
+  std::string measured = "poses";       ///< what was measured: poses, or positions; or contacts, or images
+  double position_sigma = 0;            ///< of a visit, per component, as estimated from the data [m]; 0: unknown
+  double left_out_error = 0;            ///< rms position error of poses that were left out in turn [m]; 0: unknown
+  double held_out_error = 0;            ///< mean position error of poses it was not fitted to [m]; 0: unknown
+  std::string data_sha256{};            ///< of the bytes of those files, likewise joined; empty: unknown
+  std::optional<CameraSetup> camera{};  ///< cameras and board, where images were measured
 
   /// Whether it was fitted to a file with these bytes.
   /// @param sha256 of the bytes
@@ -31,7 +34,7 @@ struct Provenance {
   /// The error to expect at other poses [m]: held out, else left out in turn; 0: unknown.
   double expected_error() const { return held_out_error > 0 ? held_out_error : left_out_error; }
 
-  /// Equal in every entry.
+  /// Equal in every entry but the cameras.
   bool operator==(const Provenance& other) const {
     return data_file == other.data_file && rows == other.rows && date == other.date && joints == other.joints &&
            measured == other.measured && same_value(position_sigma, other.position_sigma) &&

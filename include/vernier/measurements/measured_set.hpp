@@ -40,6 +40,7 @@ class MeasuredSet {
     const auto kept = std::make_shared<const S>(std::move(by));
     if constexpr (requires { kept->positions(); }) positions_ = &kept->positions();
     if constexpr (requires { kept->orientations(); }) orientations_ = &kept->orientations();
+    if constexpr (requires { kept->covariances(); }) covariances_ = &kept->covariances();
     sensor_ = kept;
     functions_ = &functions_of<S>;
     if (name.empty()) name = kind_;
@@ -78,6 +79,10 @@ class MeasuredSet {
   Vector3 position(Index i) const { return point(*positions_, i); }
   /// Measured orientations, n; only where `oriented()`, of a sensor that measures them directly.
   const std::vector<Matrix3>& orientations() const { return *orientations_; }
+  /// Covariances of the rows of each measurement [m, rad], n; or none, where those of `sigma()` hold.
+  bool correlated() const { return covariances_ != nullptr && !covariances_->empty(); }
+  /// Covariance of a measurement in multiples of `sigma()`; only where `correlated()`.
+  VERNIER_API Matrix6 relative_covariance(Index i) const;
   /// Bounds beyond which these measurements are not of the arm.
   const Plausibility& plausibility() const { return plausibility_; }
 
@@ -142,6 +147,7 @@ class MeasuredSet {
   const Functions* functions_ = nullptr;
   const PointRows* positions_ = nullptr;
   const std::vector<Matrix3>* orientations_ = nullptr;
+  const std::vector<Matrix6>* covariances_ = nullptr;
   Matrix3 turned_ = Matrix3::Identity();  // half a turn, or none: takes the sensor's frame to the set's
 };
 

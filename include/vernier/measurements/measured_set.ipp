@@ -18,8 +18,21 @@ VERNIER_IMPL void MeasuredSet::validate() const {
   demand(values_ == 1 || values_ == 3 || values_ == 6, name, ": a sensor has 1, 3 or 6 values, not ", values_);
   demand(sigma_.length > 0 && std::isfinite(sigma_.length) && sigma_.angle > 0 && std::isfinite(sigma_.angle), name,
          ": standard deviations of ", sigma_.length, " m and ", sigma_.angle, " rad must be positive");
+  demand(!correlated() || static_cast<Index>(covariances_->size()) == size_, name, ": ",
+         covariances_ == nullptr ? 0 : covariances_->size(), " covariances of ", size_, " measurements");
   for (Index i = 0; i < joints.rows(); ++i)
     demand(detail::finite_row(joints, i), name, ", ", origin.where(i), ": a joint value is not finite");
+}
+
+VERNIER_IMPL Matrix6 MeasuredSet::relative_covariance(Index i) const {
+  Matrix6 out = (*covariances_)[static_cast<std::size_t>(i % size_)];
+  for (Index c = 0; c < 6; ++c)
+    for (Index r = 0; r < 6; ++r) {
+      const bool measured = (std::max)(r, c) < values_;
+      const double scale = (r < 3 ? sigma_.length : sigma_.angle) * (c < 3 ? sigma_.length : sigma_.angle);
+      out(r, c) = measured ? out(r, c) / scale : r == c ? 1 : 0;
+    }
+  return out;
 }
 
 VERNIER_IMPL bool MeasuredSet::locates() const {

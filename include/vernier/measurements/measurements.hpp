@@ -84,9 +84,11 @@ class Measurements {
   /// @param name  how messages call it; by default its file
   Measurements& add(Dataset<N> poses, std::string name = {}) {
     name = detail::set_name(std::move(name), poses.origin(), "station", poses_.size() + 1);
-    MeasuredSet set = poses.has_orientations()
-                          ? MeasuredSet(std::move(name), poses.joints(), oriented(poses))
-                          : MeasuredSet(std::move(name), poses.joints(), PositionSensor(poses.positions()));
+    MeasuredSet set =
+        poses.has_orientations()
+            ? MeasuredSet(std::move(name), poses.joints(), oriented(poses))
+            : MeasuredSet(std::move(name), poses.joints(),
+                          PositionSensor(poses.positions(), SensorModel{}.position_sigma, poses.covariances()));
     set.previous = poses.previous();
     set.times = poses.times();
     set.temperatures = poses.temperatures();
@@ -200,7 +202,8 @@ class Measurements {
   static PoseSensor oriented(const Dataset<N>& poses) {
     std::vector<Matrix3> orientations;
     for (Index i = 0; i < poses.size(); ++i) orientations.push_back(poses.orientation(i));
-    return PoseSensor(poses.positions(), std::move(orientations));
+    return PoseSensor(poses.positions(), std::move(orientations),
+                      {SensorModel{}.position_sigma, SensorModel{}.orientation_sigma}, poses.covariances());
   }
 
   std::vector<Dataset<N>> poses_;

@@ -18,9 +18,15 @@ class PoseSensor {
   /// @param positions    n x 3 [m]
   /// @param orientations n rotation matrices; none: positions alone are used
   /// @param sigma        standard deviations per component [m, rad]
+  /// @param covariances  of position and rotation vector in the sensor's frame (rotations from the left) [m, rad], one
+  ///                     a measurement; none: those of `sigma`
   PoseSensor(PointRows positions, std::vector<Matrix3> orientations,
-             SensorSigma sigma = {SensorModel{}.position_sigma, SensorModel{}.orientation_sigma})
-      : positions_(std::move(positions)), orientations_(std::move(orientations)), sigma_(sigma) {}
+             SensorSigma sigma = {SensorModel{}.position_sigma, SensorModel{}.orientation_sigma},
+             std::vector<Matrix6> covariances = {})
+      : positions_(std::move(positions)),
+        orientations_(std::move(orientations)),
+        sigma_(sigma),
+        covariances_(std::move(covariances)) {}
 
   /// Its name in messages and reports.
   const char* kind() const { return "poses"; }
@@ -34,6 +40,8 @@ class PoseSensor {
   const PointRows& positions() const { return positions_; }
   /// Measured orientations; none if positions alone are used.
   const std::vector<Matrix3>& orientations() const { return orientations_; }
+  /// Covariances of position and orientation [m, rad], one a measurement; none: `sigma()` holds for all.
+  const std::vector<Matrix6>& covariances() const { return covariances_; }
   /// What the measurements determine of the base frame.
   std::array<bool, 6> unknown_frame() const { return {true, true, true, true, true, true}; }
   /// When the measurements cannot be of this arm.
@@ -42,7 +50,8 @@ class PoseSensor {
   VERNIER_API PoseSensor with(const SensorModel& sensors) const {
     return {positions_,
             sensors.use_orientations ? orientations_ : std::vector<Matrix3>(),
-            {sensors.position_sigma, sensors.orientation_sigma}};
+            {sensors.position_sigma, sensors.orientation_sigma},
+            covariances_};
   }
 
   /// Measurement i at a pose of the tool point.
@@ -54,6 +63,7 @@ class PoseSensor {
   PointRows positions_;
   std::vector<Matrix3> orientations_;
   SensorSigma sigma_;
+  std::vector<Matrix6> covariances_{};
 };
 
 }  // namespace vernier

@@ -17,8 +17,10 @@ class PositionSensor {
  public:
   /// @param positions n x 3 [m]
   /// @param sigma     standard deviation per component [m]
-  explicit PositionSensor(PointRows positions, double sigma = SensorModel{}.position_sigma)
-      : positions_(std::move(positions)), sigma_(sigma) {}
+  /// @param covariances of the positions, in the first three rows and columns [m], one a measurement; none: `sigma`
+  explicit PositionSensor(PointRows positions, double sigma = SensorModel{}.position_sigma,
+                          std::vector<Matrix6> covariances = {})
+      : positions_(std::move(positions)), sigma_(sigma), covariances_(std::move(covariances)) {}
 
   /// Its name in messages and reports.
   const char* kind() const { return "positions"; }
@@ -30,12 +32,16 @@ class PositionSensor {
   SensorSigma sigma() const { return {sigma_, 1}; }
   /// Measured positions [m], n x 3.
   const PointRows& positions() const { return positions_; }
+  /// Covariances of position and orientation [m, rad], one a measurement; none: `sigma()` holds for all.
+  const std::vector<Matrix6>& covariances() const { return covariances_; }
   /// What the measurements determine of the base frame.
   std::array<bool, 6> unknown_frame() const { return {true, true, true, true, true, true}; }
   /// When the measurements cannot be of this arm.
   Plausibility plausibility() const { return {0.05, "the arm is off by", "wrong robot, units or columns?"}; }
   /// With the accuracy that a user states for its kind.
-  PositionSensor with(const SensorModel& sensors) const { return PositionSensor(positions_, sensors.position_sigma); }
+  PositionSensor with(const SensorModel& sensors) const {
+    return PositionSensor(positions_, sensors.position_sigma, covariances_);
+  }
 
   /// Measurement i at a pose of the tool point.
   VERNIER_API void sense(Index i, const Isometry3& pose, SensedRows& rows) const;
@@ -45,6 +51,7 @@ class PositionSensor {
  private:
   PointRows positions_;
   double sigma_;
+  std::vector<Matrix6> covariances_{};
 };
 
 }  // namespace vernier

@@ -13,7 +13,13 @@ struct ColumnStem {
   std::string_view stem;
   const Quantity& quantity;
 };
-inline constexpr std::array<ColumnStem, 11> column_stems{{{"x", quantities::coordinate},
+inline constexpr std::array<ColumnStem, 17> column_stems{{{"sx", quantities::standard_length},
+                                                          {"sy", quantities::standard_length},
+                                                          {"sz", quantities::standard_length},
+                                                          {"srx", quantities::standard_angle},
+                                                          {"sry", quantities::standard_angle},
+                                                          {"srz", quantities::standard_angle},
+                                                          {"x", quantities::coordinate},
                                                           {"y", quantities::coordinate},
                                                           {"z", quantities::coordinate},
                                                           {"rx", quantities::rotation_angle},
@@ -30,19 +36,13 @@ inline constexpr std::array<std::string_view, 7> read_names{"segment",   "move",
                                                             "direction", "contact_id", "kind"};
 
 /// Names that programs write for people.
-inline constexpr std::array<std::string_view, 13> noted_names{"visit",
-                                                              "joints_line",
-                                                              "points_line",
-                                                              "status",
-                                                              "predicted_error_mm",
-                                                              "gate",
-                                                              "target",
-                                                              "point",
-                                                              "predicted_rotation_mrad",
-                                                              "deviation_mm",
-                                                              "radius95_mm",
-                                                              "singularity",
-                                                              "singularity_deg"};
+inline constexpr std::array<std::string_view, 14> noted_names{"visit",        "image",
+                                                              "joints_line",  "points_line",
+                                                              "status",       "predicted_error_mm",
+                                                              "gate",         "target",
+                                                              "point",        "predicted_rotation_mrad",
+                                                              "deviation_mm", "radius95_mm",
+                                                              "singularity",  "singularity_deg"};
 
 /// The number behind q that begins a text, and how many characters both take; no characters where there is none.
 struct JointNumber {

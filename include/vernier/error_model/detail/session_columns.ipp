@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vernier/error_model/detail/session_columns.hpp"
+#include "vernier/least_squares/prior_choice.hpp"
 
 namespace vernier::detail {
 

@@ -33,6 +33,9 @@ VERNIER_IMPL CalibrationProblem::CalibrationProblem(ArmParameterisation start, s
   for (const Index pose : poses_) validation_poses_ = (std::max)(validation_poses_, pose + 1);
   if (validation_poses_ == validation_blocks_) poses_.clear();
   for (const MeasuredSet& set : sets_)
+    demand(!set.correlated() || set.seen_from.rows() == 0, set.name,
+           ": between two configurations a sensor has no covariances");
+  for (const MeasuredSet& set : sets_)
     demand(same_value(joint_sigma, 0) || set.seen_from.rows() == 0, set.name,
            ": errors of joint readings are not estimated between two configurations");
 }
@@ -309,6 +312,12 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
           sensed.motion(r, c) *= r < 3 ? position : orientation;
         }
       rows.unwhiten.setIdentity();
+      const bool correlated = set.correlated();
+      if (correlated) {  // its lower triangle
+        const Matrix6 covariance = set.relative_covariance(block.row);
+        for (Index c = 0; c < 6; ++c)
+          for (Index r = c; r < 6; ++r) rows.unwhiten(r, c) = covariance(r, c);
+      }
       if (paired) {
         Vector6 along;
         for (Index c = 0; c < 6; ++c) along(c) = sensed.motion(0, c);
@@ -320,11 +329,11 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
       whiten_rows(sensed.motion, set.values(), mixed, rows.factor);
       for (RowBlock::Local& local : rows.local)
         if (local.state >= 0) whiten_rows(sensed.motion, set.values(), mixed, local.columns);
-      if (joint_sigma_ <= 0) continue;
-      // the residual's covariance with the joint readings eliminated: I + noise noise'
+      if (joint_sigma_ <= 0 && !correlated) continue;
+      // the residual's own covariance, and the joint readings eliminated: C + noise noise'
       const double variance = joint_sigma_ * joint_sigma_;
       Matrix6& factor = rows.unwhiten;
-      for (Index j = 0; j < rows.factor.cols(); ++j)
+      for (Index j = 0; j < rows.factor.cols() && joint_sigma_ > 0; ++j)
         for (Index c = 0; c < 6; ++c)
           for (Index r = c; r < 6; ++r) factor(r, c) += variance * rows.factor(r, j) * rows.factor(c, j);
       cholesky(factor);

@@ -13,6 +13,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/core/version.hpp"
+#include "vernier/io/camera_files.hpp"
 #include "vernier/io/detail/estimate_json.hpp"
 #include "vernier/io/detail/learned_json.hpp"
 #include "vernier/io/detail/model_data.hpp"
@@ -24,7 +25,7 @@ namespace vernier::detail {
 inline constexpr int model_schema_version = 5, oldest_schema_version = 2;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
-inline constexpr std::array<std::string_view, 3> measured_names{"poses", "positions", "contacts"};
+inline constexpr std::array<std::string_view, 4> measured_names{"poses", "positions", "contacts", "images"};
 
 /// The key of a joint's limit, or of its zero.
 VERNIER_LOCAL const char* key_of(JointType type, const char* angle, const char* length) {
@@ -126,6 +127,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   add_known("left_out_error_m", from.left_out_error);
   add_known("held_out_error_m", from.held_out_error);
   if (!from.data_sha256.empty()) out["provenance"]["data_sha256"] = from.data_sha256;
+  if (from.camera) out["provenance"]["camera"] = setup_to_json(*from.camera);
   out["joints"] = std::move(joints);
   if (!model.controller.same()) out["controller"] = controller_to_json(model);
   out["arm"] = arm_to_json(model.identified);
@@ -204,6 +206,7 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
                         known("left_out_error_m"),
                         known("held_out_error_m"),
                         from.has("data_sha256") ? any_text(from.at("data_sha256")) : std::string()};
+  if (from.has("camera")) provenance.camera = setup_from_json(from.at("camera"));
   const ChainTable nominal(std::move(rows), modified);
   ModelData out{root.at("name").text(),
                 nominal,

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corners that are found in rendered images, and boards of ours against those that OpenCV draws.
+
+#include "board_detection.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "complaint.hpp"
+#include "projection.hpp"
+#include "vernier/camera/board_svg.hpp"
+
+namespace vn = vernier;
+
+namespace board_detection_test {
+namespace {
+
+/// Lengths are multiples of a 24th of a square, so a raster of 24 a square is exact.
+vn::Board charuco() { return {.rows = 7, .columns = 5, .square = 0.024, .marker = 0.018, .dictionary = "DICT_4X4_50"}; }
+
+vn::Camera small_camera() {
+  vn::Camera out{.fx = 700, .fy = 705, .cx = 325, .cy = 236, .k1 = -0.1, .k2 = 0.05, .p1 = 3e-4, .p2 = -4e-4};
+  out.width = 640;
+  out.height = 480;
+  return out;
+}
+
+/// An image by rays from pixels, which shares no code with the projection: 4 x 4 samples a pixel, noise of 2 %.
+std::vector<unsigned char> rendered(const vn::Board& board, const vn::Camera& camera,
+                                    const vn::Isometry3& camera_T_board, double half_pixel, vn::Rng& rng) {
+  constexpr int per_square = 24;
+  const auto columns = static_cast<int>(board.columns) * per_square, rows = static_cast<int>(board.rows) * per_square;
+  std::vector<unsigned char> raster(static_cast<std::size_t>(columns * rows));
+  const double cell = board.square / per_square;
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c)
+      raster[static_cast<std::size_t>(r * columns + c)] = vn::is_black(board, (c + 0.5) * cell, (r + 0.5) * cell);
+  const vn::Matrix3 back = camera_T_board.linear().transpose();
+  const vn::Vector3 eye = -back * camera_T_board.translation();
+  std::vector<unsigned char> out;
+  for (vn::Index v = 0; v < camera.height; ++v)
+    for (vn::Index u = 0; u < camera.width; ++u) {
+      int white = 0;
+      for (int sample = 0; sample < 16; ++sample) {
+        const double x = (static_cast<double>(u) + (sample % 4 - 1.5) / 4 + half_pixel - camera.cx) / camera.fx;
+        const double y = (static_cast<double>(v) + (sample / 4 - 1.5) / 4 - camera.cy) / camera.fy;
+        double a = x, b = y;
+        for (int iteration = 0; iteration < 8; ++iteration) {
+          const double s = a * a + b * b, radial = 1 + s * (camera.k1 + s * camera.k2);
+          const double dx = 2 * camera.p1 * a * b + camera.p2 * (s + 2 * a * a);
+          const double dy = camera.p1 * (s + 2 * b * b) + 2 * camera.p2 * a * b;
+          a = (x - dx) / radial;
+          b = (y - dy) / radial;
+        }
+        const vn::Vector3 ray = back * vn::Vector3(a, b, 1);
+        const double depth = -eye(2) / ray(2);
+        const double c = (eye(0) + depth * ray(0)) / cell, r = (eye(1) + depth * ray(1)) / cell;
+        const bool on_board = depth > 0 && c >= 0 && r >= 0 && c < columns && r < rows;
+        const bool black =
+            on_board && raster[static_cast<std::size_t>(static_cast<int>(r) * columns + static_cast<int>(c))] != 0;
+        white += black ? 0 : 1;
+      }
+      const double value = 30 + 200 * white / 16.0 + 0.02 * 255 * rng.normal_pair()[0];
+      out.push_back(static_cast<unsigned char>(std::lround((std::clamp)(value, 0.0, 255.0))));
+    }
+  return out;
+}
+
+struct Deviation {
+  double bias_u = 0, bias_v = 0, rms_u = 0, rms_v = 0;
+  int corners = 0, missed = 0;
+};
+
+/// Corners as they are found, against those that an independent account projects.
+Deviation deviation(const vn::Board& board, int images, double half_pixel) {
+  Deviation out;
+  vn::Rng rng(3);
+  for (int image = 0; image < images; ++image) {
+    const vn::Vector3 turn(rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5), rng.uniform(-0.4, 0.4));
+    const vn::Matrix3 rotation = vn::exp_so3(turn);
+    const vn::Isometry3 pose = vn::rigid_motion(
+        rotation, vn::Vector3(rng.uniform(-0.01, 0.01), rng.uniform(-0.01, 0.01), 0.32) - rotation * board.middle());
+    const vn::View found = support::detect_board(board, rendered(board, small_camera(), pose, half_pixel, rng),
+                                                 small_camera().width, small_camera().height);
+    out.missed += static_cast<int>(board.corners()) - static_cast<int>(found.corners.size());
+    for (std::size_t i = 0; i < found.corners.size(); ++i) {
+      const vn::Vector2 truth = vernier_test::seen_at(small_camera(), pose * board.corner(found.corners[i]));
+      const double u = found.pixels[i](0) - truth(0), v = found.pixels[i](1) - truth(1);
+      out.bias_u += u;
+      out.bias_v += v;
+      out.rms_u += u * u;
+      out.rms_v += v * v;
+      ++out.corners;
+    }
+  }
+  const double n = (std::max)(1, out.corners);
+  return {out.bias_u / n, out.bias_v / n, std::sqrt(out.rms_u / n), std::sqrt(out.rms_v / n), out.corners, out.missed};
+}
+
+TEST(DetectedCorners, OfARenderedChArUcoBoardAreWhereTheyAre) {
+  const Deviation found = deviation(charuco(), 12, 0);
+  EXPECT_GT(found.corners, 200);
+  EXPECT_NEAR(found.bias_u, 0, 0.01);
+  EXPECT_NEAR(found.bias_v, 0, 0.01);
+  EXPECT_LT(found.rms_u, 0.05);
+  EXPECT_LT(found.rms_v, 0.05);
+}
+
+TEST(DetectedCorners, OfARenderedChessboardAreWhereTheyAre) {
+  vn::Board board{.rows = 7, .columns = 6, .square = 0.024};
+  const Deviation found = deviation(board, 12, 0);
+  EXPECT_GT(found.corners, 200);
+  EXPECT_NEAR(found.bias_u, 0, 0.01);
+  EXPECT_NEAR(found.bias_v, 0, 0.01);
+  EXPECT_LT(found.rms_u, 0.05);
+  EXPECT_LT(found.rms_v, 0.05);
+}
+
+TEST(DetectedCorners, ShowHalfAPixelThatIsPlantedInTheRenderer) {
+  EXPECT_NEAR(deviation(charuco(), 3, 0.5).bias_u, -0.5, 0.03);
+}
+
+TEST(DetectedCorners, DoNotExistWithoutABoard) {
+  EXPECT_TRUE(support::detect_board(charuco(), std::vector<unsigned char>(640 * 480, 200), 640, 480).corners.empty());
+  const vn::Board symmetric{.rows = 6, .columns = 8, .square = 0.024};
+  EXPECT_NE(vernier_test::complaint([&] {
+              (void)support::detect_board(symmetric, std::vector<unsigned char>(640 * 480, 200), 640, 480);
+            }).find("looks the same after half a turn"),
+            std::string::npos);
+}
+
+TEST(PrintedBoard, IsTheOneThatOpenCvDraws) {
+  for (const char* dictionary : {"DICT_4X4_250", "DICT_5X5_250"}) {
+    const bool four = dictionary[5] == '4';
+    vn::Board board{.rows = 22, .columns = 21, .square = four ? 0.024 : 0.028, .dictionary = dictionary};
+    board.marker = four ? 0.018 : 0.021;  // cells of 3 raster units
+    const int per_square = four ? 24 : 28;
+    const std::vector<unsigned char> drawn = support::drawn_by_opencv(board, per_square);
+    const int width = static_cast<int>(board.columns) * per_square;
+    int wrong = 0;
+    for (int r = 0; r < static_cast<int>(board.rows) * per_square; ++r)
+      for (int c = 0; c < width; ++c) {
+        // OpenCV rounds the place of a marker to whole pixels: its outline is not compared
+        const int in_row = r % per_square, in_column = c % per_square, unit = 3;
+        const int margin = (per_square - (four ? 18 : 21)) / 2;
+        if ((in_row - margin + 30 * unit) % unit != 1 || (in_column - margin + 30 * unit) % unit != 1) continue;
+        const bool ours = vn::is_black(board, (c + 0.5) * 1e-3, (r + 0.5) * 1e-3);
+        wrong += ours != (drawn[static_cast<std::size_t>(r * width + c)] < 128) ? 1 : 0;
+      }
+    EXPECT_EQ(wrong, 0) << dictionary;
+  }
+}
+
+}  // namespace
+}  // namespace board_detection_test

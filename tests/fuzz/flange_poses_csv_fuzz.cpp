@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses of the flange, with the images that were taken there.
+#include "reader_fuzz.hpp"
+#include "vernier/camera/corner_views.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return vernier::fuzz::read_as_file(
+      data, size, [](const std::string& path) { static_cast<void>(vernier::read_flange_poses(path)); });
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// calibrate --corners: simulated images of an arm, poses of its flange, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "run_command.hpp"
+#include "simulated_views.hpp"
+#include "temporary_folder.hpp"
+#include "vernier/io/camera_files.hpp"
+#include "vernier/io/model_file.hpp"
+#include "vernier/kinematics/robots.hpp"
+
+namespace vernier::calibrate_camera_test {
+namespace {
+
+using vernier_test::CommandResult;
+using vernier_test::TemporaryFolder;
+
+class CalibrateCamera : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    setup_.board = {.rows = 7, .columns = 9, .square = 0.03, .scale_sigma = 1e-4};
+    setup_.images = 30;
+    const Robot<6> robot = robots::abb_irb120();
+    actual_ = with_geometric_errors(robot.chain, {}, 3);
+    const auto simulated = vernier_test::simulated_views(actual_, robot.limits, setup_, 4);
+    write_file(folder_ / "board.json", board_to_json(setup_.board).dump());
+    write_file(folder_ / "camera.json", camera_to_json(setup_.camera).dump());
+    std::string corners = "image,board,corner,u_px,v_px,width_px,height_px\n";
+    for (const View& view : simulated.views.views)
+      for (std::size_t i = 0; i < view.corners.size(); ++i)
+        corners += message(view.image, ',', simulated.views.boards[static_cast<std::size_t>(view.board)], ',',
+                           view.corners[i], ',', view.pixels[i](0), ',', view.pixels[i](1), ",1600,1200\n");
+    write_file(folder_ / "corners.csv", corners);
+    std::string joints = "image,q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad\nnowhere.png,0,0,0,0,0,0\n";
+    std::string poses = "image,x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n";
+    for (Index i = 0; i < simulated.rows.size(); ++i) {
+      const std::string& image = simulated.rows.images[static_cast<std::size_t>(i)];
+      const JointVector<6> q = simulated.rows.joints.row(i).transpose();
+      joints += image;
+      for (const double value : q) joints += message(',', value);
+      joints += '\n';
+      const Isometry3 pose = actual_.pose(q);
+      const Vector3 turn = log_so3(rotation(pose));
+      poses += image;
+      for (Index k = 0; k < 3; ++k) poses += message(',', pose(k, 3) * 1e3);
+      for (Index k = 0; k < 3; ++k) poses += message(',', turn(k));
+      poses += '\n';
+    }
+    write_file(folder_ / "joints.csv", joints);
+    write_file(folder_ / "poses.csv", poses);
+    tool_ = simulated.tool;
+  }
+  CommandResult calibrate(const std::string& arguments) {
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +
+                                         "/calibrate' --date 2024-05-01 --out figures " + arguments,
+                                     folder_.path());
+  }
+  nlohmann::json results() { return nlohmann::json::parse(read_file((folder_ / "r.json").string())); }
+
+  TemporaryFolder folder_{"calibrate_camera"};
+  vernier_test::ViewSetup setup_{};
+  DhChain<6> actual_ = robots::abb_irb120().chain;
+  Isometry3 tool_;
+};
+
+TEST_F(CalibrateCamera, IdentifiesAnArmAndKeepsCameraAndBoard) {
+  const CommandResult result = calibrate(
+      "--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount flange --save "
+      "m.json "
+      "--json r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("Rows without an image, not used: nowhere.png"), std::string::npos);
+  const CalibratedRobot<6> robot = load<6>((folder_ / "m.json").string());
+  const double error =
+      vernier_test::error_after_registration(robot.identified().chain(), actual_, robots::abb_irb120().limits, 7);
+  EXPECT_LT(error, 0.15e-3);
+  const auto& kept = robot.provenance().camera;
+  ASSERT_TRUE(kept.has_value());
+  EXPECT_NEAR(kept->cameras.at(0).fx, setup_.camera.fx, 2);
+  EXPECT_EQ(kept->board.rows, 7);
+  EXPECT_EQ(kept->in_base.size(), 2u);
+  const nlohmann::json found = results();
+  EXPECT_EQ(found.at("images").size(), 30u);
+  EXPECT_LT(found.at("left_out_mean_mm").get<double>(), 0.5);
+}
+
+TEST_F(CalibrateCamera, FindsBaseAndToolFromPosesOfTheFlange) {
+  const CommandResult result = calibrate(
+      "--flange-poses poses.csv --corners corners.csv --board board.json --camera-mount flange --intrinsics "
+      "camera.json "
+      "--json r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const nlohmann::json tool = results().at("flange_T_camera").at(0).at("position_mm");
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(tool.at(k).get<double>(), tool_(static_cast<Index>(k), 3) * 1e3, 0.3);
+}
+
+TEST_F(CalibrateCamera, RefusesWhatDoesNotBelongTogether) {
+  const auto refused = [&](const std::string& arguments, int code, const std::string& reason) {
+    const CommandResult result = calibrate(arguments);
+    EXPECT_EQ(result.exit_code, code) << arguments;
+    EXPECT_TRUE(result.one_line_of_errors()) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+  };
+  refused("--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json", 2, "--camera-mount");
+  refused("--corners corners.csv --board board.json --camera-mount flange", 2, "--data");
+  refused(
+      "--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount flange "
+      "--test-every 3",
+      2, "--test-every");
+  refused("--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount fixed", 1,
+          "do not agree with the poses of the arm");
+  write_file(folder_ / "small.json", R"({"fx": 500, "fy": 500, "cx": 320, "cy": 240, "width": 640, "height": 480})");
+  refused(
+      "--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount flange "
+      "--intrinsics small.json",
+      1, "the intrinsics are of 640 x 480");
+}
+
+}  // namespace
+}  // namespace vernier::calibrate_camera_test

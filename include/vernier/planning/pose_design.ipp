@@ -48,7 +48,7 @@ class GrowingDesign {
         covariance_(MatrixX::Identity(rows.unknowns(), rows.unknowns())),
         directions_(rows.unknowns(), kept * block_),
         of_region_(region_.cols(), kept * block_),
-        variance_(block_, rows.dense.cols()),
+        variance_(MatrixX::Zero(block_, rows.dense.cols())),
         level_(static_cast<std::size_t>(size()), 0) {
     MatrixX factor(0, 0);  // of the precision, where there are measured rows
     if (measured.rows() > 0) {

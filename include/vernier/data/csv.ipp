@@ -4,6 +4,7 @@
 #include "vernier/data/csv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -120,11 +121,21 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   const CsvTable table(path, format);
   std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
   for (CsvColumn& column : pose_columns(table)) columns.push_back(std::move(column));
-  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, table.origin()};
+  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, {}, table.origin()};
   const Index n = out.values.rows();
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
   out.temperatures = values_of(table, "temperature", quantities::temperature).value_or(VectorX());
+  if (const auto payload = values_of(table, "payload", quantities::payload)) {
+    out.payloads = MatrixX::Constant(n, 4, std::numeric_limits<double>::quiet_NaN());
+    for (Index i = 0; i < n; ++i) out.payloads(i, 0) = (*payload)(i);
+    Index axis = 0;
+    for (const char* stem : {"payload_x", "payload_y", "payload_z"}) {
+      ++axis;
+      if (const auto centre = values_of(table, stem, quantities::gauge_length))
+        for (Index i = 0; i < n; ++i) out.payloads(i, axis) = (*centre)(i);
+    }
+  }
   out.previous = has_joints(table, "from_")
                      ? with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller, "from_")),
                                          format.controller)
@@ -170,7 +181,7 @@ VERNIER_IMPL DistanceColumns read_distance_columns(const std::string& path, int 
 
 VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const PointRows& positions,
                                    const PointRows& orientations, const ConstMatrixRef& chain_previous,
-                                   const VectorX& times, const VectorX& temperatures,
+                                   const VectorX& times, const VectorX& temperatures, const MatrixX& payloads,
                                    std::span<const JointType> chain_types, const ControllerMap& controller) {
   demand(chain_types.empty() || chain_types.size() == static_cast<std::size_t>(chain_joints.cols()),
          "write_dataset: ", chain_types.size(), " types of joints for ", chain_joints.cols(), " joints");
@@ -193,6 +204,13 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
   for (Index j = 0; j < joints.cols() && !in_order; ++j) out += "from_" + name(j);
   if (!counted) out += "time_s,";
   if (temperatures.size() > 0) out += "temperature_c,";
+  if (payloads.rows() > 0) out += "payload_kg,";
+  std::array<bool, 4> centred{};
+  for (Index k = 1; k < 4 && payloads.rows() > 0; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    centred[axis] = finite_row(VERNIER_LATER(payloads).col(k).transpose(), 0);
+    if (centred[axis]) out += message("payload_", "xyz"[k - 1], "_mm,");
+  }
   for (Index j = 0; j < joints.cols(); ++j) out += name(j);
   out += oriented ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
   for (Index i = 0; i < joints.rows(); ++i) {
@@ -200,6 +218,9 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
       out += message(std::isfinite(previous(i, j)) ? previous(i, j) : joints(i, j), ',');
     if (!counted) out += message(times(i), ',');
     if (temperatures.size() > 0) out += message(temperatures(i), ',');
+    if (payloads.rows() > 0) out += message(payloads(i, 0), ',');
+    for (Index k = 1; k < 4; ++k)
+      if (centred[static_cast<std::size_t>(k)]) out += message(payloads(i, k) * 1e3, ',');
     for (Index j = 0; j < joints.cols(); ++j) out += message(joints(i, j), ',');
     for (Index j = 0; j < 3; ++j) out += message(positions(i, j) * 1e3, j < 2 || oriented ? ',' : '\n');
     if (oriented)

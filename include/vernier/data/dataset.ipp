@@ -25,6 +25,15 @@ VERNIER_IMPL void check_measured_samples(const ConstMatrixRef& joints, const Poi
         "Dataset: row ", i, " has a value that is not finite");
 }
 
+VERNIER_IMPL void check_payloads(const MatrixX& payloads, Index rows) {
+  if (payloads.rows() == 0) return;
+  demand(payloads.rows() == rows && payloads.cols() == 4, "Dataset: ", payloads.rows(), " x ", payloads.cols(),
+         " values of payloads for ", rows, " rows, four each");
+  for (Index i = 0; i < rows; ++i)
+    demand(payloads(i, 0) >= 0 && std::isfinite(payloads(i, 0)), "Dataset: row ", i, " has a payload of ",
+           payloads(i, 0), " kg, must be 0 or more");
+}
+
 VERNIER_IMPL [[noreturn]] void refuse_coordinates(Index columns) {
   throw std::invalid_argument(message(counted(columns, "coordinate", "coordinates"), " for a point in space"));
 }

@@ -5,6 +5,7 @@
 /// Errors of the joints of a real arm: one sum, linear in its coefficients.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,13 +17,14 @@
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"
 #include "vernier/error_terms/gravity_tilt.hpp"
+#include "vernier/error_terms/payload_compliance.hpp"
 
 namespace vernier {
 
 /// Coefficients of joint errors that belong together.
 struct JointTermBlock {
   /// What they are coefficients of.
-  enum class Kind { gear_ratio, coupling, gravity, hysteresis, tilt, transmission };
+  enum class Kind { gear_ratio, coupling, gravity, payload, hysteresis, tilt, transmission };
   Kind kind;    ///< see `JointTerms`
   int joint;    ///< of a transmission, from 0; else -1
   Index begin;  ///< first coefficient
@@ -34,6 +36,7 @@ struct JointTermBlock {
 /// - gear ratio: `dq_i = rho_i q_i`; outside `linear_ranges` as at their nearest end
 /// - coupling: `dq_i = kappa_i q_(i-1)`, i >= 2; likewise
 /// - gravity compliance: see `GravityCompliance`
+/// - compliance to payload: see `PayloadCompliance`
 /// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
 ///   that is unknown, which is the mean of both directions
 /// - tilt of the joints' frames: no error of joint values but a motion of the arm's end, see `GravityTilt`
@@ -44,6 +47,7 @@ struct JointTerms {
   bool gear_ratio = false;                     ///< present?
   bool coupling = false;                       ///< present?
   std::optional<GravityCompliance> gravity{};  ///< present?
+  std::optional<PayloadCompliance> payload{};  ///< present?
   /// Ranges of each joint in which gear ratios and couplings were estimated [rad, m]; empty: no bounds.
   std::vector<JointRange> linear_ranges{};
   std::vector<double> hysteresis{};     ///< widths w [rad, m], the same for every joint; none: absent
@@ -59,7 +63,7 @@ struct JointTerms {
   /// Number of coefficients before the transmission's, each with a column of its own in a linearised pose.
   Index num_dense_terms() const {
     return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0) +
-           joints * static_cast<Index>(hysteresis.size()) + (tilt ? tilt->size() : 0);
+           (payload ? joints : 0) + joints * static_cast<Index>(hysteresis.size()) + (tilt ? tilt->size() : 0);
   }
   /// First coefficient of the tilts, which are the last before the transmission's.
   Index tilt_begin() const { return num_dense_terms() - (tilt ? tilt->size() : 0); }
@@ -84,10 +88,13 @@ struct JointTerms {
   /// @param q        joint values [rad, m]
   /// @param previous those from which q was approached; null, or not finite, where unknown
   /// @param out      joints x num_dense_terms()
-  VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept;
+  /// @param load     what the arm carries beyond the reference payload
+  VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out,
+                               const PayloadLoad& load = {}) const noexcept;
 
-  /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `hysteresis3_1` (joint 3,
-  /// first width), `tilt3_xz` (joint 3, about x by gravity along z), `cos3_12`, `sin3_12` (joint 3, order 12).
+  /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `payload2`, `hysteresis3_1`
+  /// (joint 3, first width), `tilt3_xz` (joint 3, about x by gravity along z), `cos3_12`, `sin3_12` (joint 3, order
+  /// 12).
   VERNIER_API std::vector<std::string> names() const;
 };
 
@@ -116,6 +123,16 @@ class JointErrors {
   const JointTerms& terms() const { return terms_; }
   /// The coefficients: rad, or m at prismatic joints; gravity's rad/m.
   const VectorX& coefficients() const { return coefficients_; }
+  /// These errors under a payload, in place of the reference payload.
+  VERNIER_API JointErrors carrying(const Payload& payload) const;
+  /// What the arm carries beyond the reference payload.
+  const PayloadLoad& load() const { return load_; }
+  /// These errors under a load beyond the reference payload.
+  JointErrors under(const PayloadLoad& load) const {
+    JointErrors out = *this;
+    out.load_ = load;
+    return out;
+  }
   /// Whether there is none.
   bool empty() const { return coefficients_.size() == 0; }
 
@@ -126,8 +143,9 @@ class JointErrors {
   /// @param effective  n values
   /// @param derivative n x n, by columns
   /// @param previous   joint values from which q was approached; null, or not finite, where unknown
+  /// @param load       what the arm carries; null: `load()`
   VERNIER_API void evaluate(const double* q, int n, double* effective, double* derivative,
-                            const double* previous = nullptr) const noexcept;
+                            const double* previous = nullptr, const PayloadLoad* load = nullptr) const noexcept;
 
   /// Effective joint values of N joints, and their derivative.
   template <int N>
@@ -145,7 +163,9 @@ class JointErrors {
   /// Effective values of n configurations, n x joints.
   /// @param joints   commanded values, n x joints [rad, m]
   /// @param previous joint values from which they were approached, likewise; no rows where unknown
-  VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX()) const;
+  /// @param loads    what the arm carries at each; none: `load()`
+  VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX(),
+                                     std::span<const PayloadLoad> loads = {}) const;
   /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
   VERNIER_API double half_loop(int i) const noexcept;
 
@@ -165,6 +185,7 @@ class JointErrors {
   JointTerms terms_{};
   VectorX coefficients_{};
   detail::HarmonicTable harmonics_{};
+  PayloadLoad load_{};
 };
 
 /// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, moved by tilts of the joints' frames where there are

@@ -52,7 +52,8 @@ VERNIER_IMPL void detail::visit_common_terms(const JointTerms& first, const Join
     }
 }
 
-VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept {
+VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previous, MatrixRef out,
+                                          const PayloadLoad& load) const noexcept {
   out.setZero();
   Index at = 0;
   if (gear_ratio)
@@ -62,6 +63,11 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
   if (gravity) {
     gravity->basis(q, VERNIER_LATER(out).middleCols(at, gravity->size()));
     at += gravity->size();
+  }
+  if (payload) {
+    double torques[max_joints];
+    payload->torques(q, load, torques);
+    for (int i = 0; i < joints; ++i) out(i, at++) = torques[i];
   }
   for (const double width : hysteresis)
     for (int i = 0; i < joints; ++i) out(i, at++) = detail::step_of(q, previous, i, width);
@@ -77,6 +83,7 @@ VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   add(Kind::gear_ratio, -1, gear_ratio ? joints : 0);
   add(Kind::coupling, -1, coupling ? joints - 1 : 0);
   add(Kind::gravity, -1, gravity ? gravity->size() : 0);
+  add(Kind::payload, -1, payload ? joints : 0);
   add(Kind::hysteresis, -1, joints * static_cast<Index>(hysteresis.size()));
   add(Kind::tilt, -1, tilt ? tilt->size() : 0);
   for (int i = 0; i < joints; ++i) add(Kind::transmission, i, transmission[static_cast<std::size_t>(i)].size());
@@ -92,6 +99,7 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
   if (gravity)
     for (int i = 1; i <= joints; ++i)
       for (int j = i; j <= joints; ++j) out.push_back(message("sag", i, '_', j));
+  for (int i = 1; payload && i <= joints; ++i) out.push_back(message("payload", i));
   for (std::size_t w = 1; w <= hysteresis.size(); ++w)
     for (int i = 1; i <= joints; ++i) out.push_back(message("hysteresis", i, '_', w));
   for (int i = 1; tilt && i <= joints; ++i)
@@ -108,6 +116,8 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
          terms_.transmission.size(), " joints, expected ", terms_.joints);
   demand(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
          terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
+  demand(!terms_.payload || terms_.payload->joints() == terms_.joints, "JointErrors: compliance to payload of ",
+         terms_.payload ? terms_.payload->joints() : 0, " joints, expected ", terms_.joints);
   demand(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
          terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
@@ -125,8 +135,12 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
   harmonics_ = {terms_.transmission, {coefficients_.data() + dense, coefficients_.data() + coefficients_.size()}};
 }
 
+VERNIER_IMPL JointErrors JointErrors::carrying(const Payload& payload) const {
+  return terms_.payload ? under(terms_.payload->load(payload)) : *this;
+}
+
 VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effective, double* derivative,
-                                        const double* previous) const noexcept {
+                                        const double* previous, const PayloadLoad* load) const noexcept {
   std::copy_n(q, n, effective);
   std::fill_n(derivative, n * n, 0.0);
   for (int i = 0; i < n; ++i) derivative[i * n + i] = 1;
@@ -152,6 +166,10 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     terms_.gravity->add(q, beta, effective, derivative);
     beta += terms_.gravity->size();
   }
+  if (terms_.payload) {
+    terms_.payload->add(q, load != nullptr ? *load : load_, beta, effective, derivative);
+    beta += n;
+  }
   for (const double width : terms_.hysteresis) {
     for (int i = 0; i < n; ++i) {
       const double step = detail::step_of(q, previous, i, width);
@@ -163,7 +181,8 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
   harmonics_.add(q, n, effective, derivative);
 }
 
-VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous) const {
+VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous,
+                                                 std::span<const PayloadLoad> loads) const {
   const auto n = static_cast<int>(joints.cols());
   MatrixX out(joints.rows(), joints.cols());
   VectorX q(n), before(n), effective(n), derivative(n * n);
@@ -172,7 +191,8 @@ VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, c
       q(j) = joints(i, j);
       if (previous.rows() > 0) before(j) = previous(i, j);
     }
-    evaluate(q.data(), n, effective.data(), derivative.data(), previous.rows() > 0 ? before.data() : nullptr);
+    evaluate(q.data(), n, effective.data(), derivative.data(), previous.rows() > 0 ? before.data() : nullptr,
+             loads.empty() ? nullptr : &loads[static_cast<std::size_t>(i)]);
     for (Index j = 0; j < n; ++j) out(i, j) = effective(j);
   }
   return out;

@@ -173,16 +173,19 @@ VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, con
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
                                                                    const ConstMatrixRef& previous, RowBlock* out,
-                                                                   bool joint_columns,
-                                                                   const ConstVectorRef& warmer) const {
+                                                                   bool joint_columns, const ConstVectorRef& warmer,
+                                                                   const ConstMatrixRef& payloads) const {
   const ArmGeometry& arm = geometry(station);
   const int n = arm.joints();
   const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
+  std::vector<PayloadLoad> loads;
+  for (Index i = 0; i < payloads.rows() && terms().payload; ++i)
+    loads.push_back(terms().payload->load(Payload::of(payloads, i).at(translation(arm.tool().isometry()))));
   PosesAndJacobians at;
   if (errors_.empty())
     arm.poses_and_parameter_jacobians(joints, at);
   else
-    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints, previous), at);
+    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints, previous, loads), at);
   const Index count = joints.rows();
   const bool factored = joint_columns || !errors_.empty() || terms().size() > 0;
   VectorX q(n), before(n);
@@ -224,7 +227,8 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
       if (previous.rows() > 0) before(j) = previous(i, j);
     }
     if (few > 0) {
-      terms().dense_basis(q.data(), previous.rows() > 0 ? before.data() : nullptr, basis);
+      terms().dense_basis(q.data(), previous.rows() > 0 ? before.data() : nullptr, basis,
+                          loads.empty() ? PayloadLoad{} : loads[static_cast<std::size_t>(i)]);
       for (Index k = 0; k < few; ++k) {
         Vector6 sum = Vector6::Zero();
         for (Index j = 0; j < n; ++j)

@@ -41,6 +41,7 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
     for (const JointTermBlock& block : arm.errors.terms().blocks()) {
       add("LINEAR", block.kind == Kind::gear_ratio || block.kind == Kind::coupling);
       add("GRAVITY", block.kind == Kind::gravity);
+      add("PAYLOAD", block.kind == Kind::payload);
       add("HYSTERESIS", block.kind == Kind::hysteresis);
       add("TILT", block.kind == Kind::tilt);
       add("HARMONICS", block.kind == Kind::transmission);
@@ -57,7 +58,7 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("FALLBACK", model.fallback.has_value());
   add("LEARNED", model.learned.has_value());
   add("GATES", model.fallback || model.learned);
-  add("LINKS", out.contains("GRAVITY") || out.contains("TILT"));
+  add("LINKS", out.contains("GRAVITY") || out.contains("PAYLOAD") || out.contains("TILT"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
   add("EXP", out.contains("TILT") || out.contains("FALLBACK"));
   if (!model.learned) return out;
@@ -89,6 +90,10 @@ VERNIER_LOCAL std::string c_preamble(const ModelData& model, const CExport& opti
   if (model.thermal)
     out +=
         row("temperature:     ", message(model.thermal->reference, " deg C; how the arm changes with it is left out"));
+  if (const auto& payload = model.identified.errors.terms().payload) {
+    const double more = model.identified.errors.load().weight / standard_gravity;
+    out += row("payload:         ", message(payload->reference().mass + more, " kg"));
+  }
   const std::string capitals = c_capitals(options.name);
   out += message(" *\n * C99 and C++11. All functions are static inline; to compile a library of them, define ",
                  capitals, "_API as empty:\n *   cc -O2 -shared -fPIC -D", capitals, "_API= -x c THIS_FILE -o ",

@@ -13,7 +13,7 @@ struct ColumnStem {
   std::string_view stem;
   const Quantity& quantity;
 };
-inline constexpr std::array<ColumnStem, 11> column_stems{{{"x", quantities::coordinate},
+inline constexpr std::array<ColumnStem, 15> column_stems{{{"x", quantities::coordinate},
                                                           {"y", quantities::coordinate},
                                                           {"z", quantities::coordinate},
                                                           {"rx", quantities::rotation_angle},
@@ -23,7 +23,11 @@ inline constexpr std::array<ColumnStem, 11> column_stems{{{"x", quantities::coor
                                                           {"radius", quantities::gauge_length},
                                                           {"offset", quantities::gauge_length},
                                                           {"time", quantities::time_of_measuring},
-                                                          {"temperature", quantities::temperature}}};
+                                                          {"temperature", quantities::temperature},
+                                                          {"payload_x", quantities::gauge_length},
+                                                          {"payload_y", quantities::gauge_length},
+                                                          {"payload_z", quantities::gauge_length},
+                                                          {"payload", quantities::payload}}};
 
 /// Names without unit that a reader knows.
 inline constexpr std::array<std::string_view, 7> read_names{"segment",   "move",       "pose", "cycle",

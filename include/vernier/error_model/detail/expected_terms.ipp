@@ -60,6 +60,7 @@ VERNIER_IMPL VectorX expected_sizes(const JointTerms& terms, const ErrorModelOpt
         case JointTermBlock::Kind::gear_ratio: std = options.gear_ratio_prior_std; break;
         case JointTermBlock::Kind::coupling: std = options.coupling_prior_std; break;
         case JointTermBlock::Kind::gravity: std = options.compliance_prior_std; break;
+        case JointTermBlock::Kind::payload: std = options.payload_prior_std; break;
         case JointTermBlock::Kind::hysteresis: std = options.hysteresis_prior_std; break;
         case JointTermBlock::Kind::tilt: std = options.tilt_prior_std; break;
         case JointTermBlock::Kind::transmission:

@@ -134,9 +134,12 @@ VERNIER_IMPL UnknownGroup ModelSelection::harmonics(int first, int last) const {
 }
 
 VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
+  UnknownGroup out;
+  using Kind = JointTermBlock::Kind;
   for (const JointTermBlock& block : problem.arm.terms().blocks())
-    if (block.kind == JointTermBlock::Kind::gravity) return unknowns(block.begin, block.count);
-  return {};
+    if (block.kind == Kind::gravity || block.kind == Kind::payload)
+      for (const Index k : unknowns(block.begin, block.count)) out.push_back(k);
+  return out;
 }
 
 VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest score, const VectorX& with,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/io/detail/arm_json.hpp"
 
 namespace vernier::detail {
@@ -78,6 +79,19 @@ VERNIER_IMPL CoverageData coverage_from_json(const JsonNode& node, int joints) {
   return out;
 }
 
+VERNIER_LOCAL OrderedJson payload_to_json(const JointErrors& errors, OrderedJson compliances) {
+  const PayloadCompliance& payload = *errors.terms().payload;
+  OrderedJson out{{"down", list_of(payload.down())},
+                  {"reference_kg", payload.reference().mass},
+                  {"reference_centre_m", list_of(payload.reference().centre)},
+                  {"compliances_rad_per_nm", std::move(compliances)}};
+  if (const PayloadLoad& load = errors.load(); !same_value(load.weight, 0) || load.moment.norm() > 0) {
+    out["weight_n"] = load.weight;  // beyond the reference
+    out["moment_nm"] = list_of(load.moment);
+  }
+  return out;
+}
+
 VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
   using Kind = JointTermBlock::Kind;
   const JointTerms& terms = errors.terms();
@@ -94,6 +108,7 @@ VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
       case Kind::gravity:
         out["gravity"] = {{"down", list_of(terms.gravity->down())}, {"products_rad_per_m", std::move(values)}};
         break;
+      case Kind::payload: out["payload"] = payload_to_json(errors, std::move(values)); break;
       case Kind::hysteresis:
         out["hysteresis"] = {{"widths_rad", terms.hysteresis}, {"coefficients_rad", std::move(values)}};
         break;
@@ -120,8 +135,8 @@ VERNIER_LOCAL Vector3 direction_from_json(const JsonNode& node) {
 
 /// @param nominal the chain whose torques gravity compliance needs, and whose frames tilt
 VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
-  node.allow_only(
-      {"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "hysteresis", "tilt", "transmission"});
+  node.allow_only({"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "payload", "hysteresis",
+                   "tilt", "transmission"});
   const auto joints = static_cast<std::size_t>(nominal.joints());
   JointTerms terms(nominal.joints());
   std::vector<VectorX> blocks;
@@ -140,6 +155,16 @@ VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, cons
     const JsonNode gravity = node.at("gravity");
     terms.gravity.emplace(nominal, direction_from_json(gravity.at("down")));
     blocks.push_back(gravity.at("products_rad_per_m").numbers(static_cast<std::size_t>(terms.gravity->size())));
+  }
+  PayloadLoad load;
+  if (node.has("payload")) {
+    const JsonNode payload = node.at("payload");
+    const double mass = payload.at("reference_kg").number();
+    if (!(mass >= 0)) payload.at("reference_kg").fail("must be 0 or more");
+    terms.payload.emplace(nominal, direction_from_json(payload.at("down")),
+                          Payload{mass, Vector3(payload.at("reference_centre_m").numbers(3))});
+    blocks.push_back(payload.at("compliances_rad_per_nm").numbers(joints));
+    if (payload.has("weight_n")) load = {payload.at("weight_n").number(), Vector3(payload.at("moment_nm").numbers(3))};
   }
   if (node.has("hysteresis")) {
     const JsonNode hysteresis = node.at("hysteresis"), widths = hysteresis.at("widths_rad");
@@ -181,7 +206,7 @@ VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, cons
     coefficients.segment(at, block.size()) = block;
     at += block.size();
   }
-  return {std::move(terms), std::move(coefficients)};
+  return JointErrors(std::move(terms), std::move(coefficients)).under(load);
 }
 
 VERNIER_IMPL OrderedJson arm_to_json(const FittedArm& arm) {

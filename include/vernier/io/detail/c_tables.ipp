@@ -80,7 +80,8 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
 
   using Kind = JointTermBlock::Kind;
   const JointTerms& terms = arm.errors.terms();
-  std::vector<double> gear, coupling, ranges, gravity, gravity_down, hysteresis, tilt, tilt_down, harmonics;
+  std::vector<double> gear, coupling, ranges, gravity, gravity_down, payload, payload_load, hysteresis, tilt, tilt_down,
+      harmonics;
   std::vector<int> orders;
   for (const Fourier& of_joint : terms.transmission)
     orders.insert(orders.end(), of_joint.orders.begin(), of_joint.orders.end());
@@ -100,6 +101,13 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
         gravity = values;
         gravity_down.assign(terms.gravity->down().begin(), terms.gravity->down().end());
         break;
+      case Kind::payload: {
+        const PayloadLoad& load = arm.errors.load();
+        const Vector3& down = terms.payload->down();
+        payload = values;
+        payload_load = {load.weight, load.moment(0), load.moment(1), load.moment(2), down(0), down(1), down(2)};
+        break;
+      }
       case Kind::hysteresis:
         for (std::size_t w = 0; w < terms.hysteresis.size(); ++w) {
           hysteresis.push_back(terms.hysteresis[w]);
@@ -132,6 +140,8 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
   fields += ", " + table("linear_ranges_", ranges, 2);
   fields += ", " + table("gravity_", gravity, n);
   fields += ", " + table("gravity_down_", gravity_down, 3);
+  fields += ", " + table("payload_", payload, n);
+  fields += ", " + table("payload_load_", payload_load, 7);
   fields += ", " + table("hysteresis_", hysteresis, n + 1);
   fields += message(", ", terms.hysteresis.size());
   fields += ", " + table("tilt_", tilt, 6);

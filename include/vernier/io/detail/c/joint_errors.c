@@ -73,6 +73,51 @@ static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links
   }
 }
 #endif
+#if HAS_PAYLOAD
+
+/* Torques of what is carried at the end of the nominal chain. */
+static inline void arm_add_payload_(const arm_arm_ *arm, const arm_links_ *links, const double *end, double *joints,
+                                  double *rate) {
+  const double weight = arm->payload_load[0], *down = arm->payload_load + 4;
+  double moment[3];
+  int i, j, k;
+  arm_rotate_(end, arm->payload_load + 1, moment);
+  for (j = 0; j < 3; ++j) moment[j] += weight * end[9 + j];
+  for (i = 0; i < ARM_CHAIN_; ++i) {
+    const double c = arm->payload[i], *axis = links->axis + 3 * i;
+    double lever[3], about[3], turned[3];
+    for (j = 0; j < 3; ++j) lever[j] = moment[j] - weight * links->point[3 * i + j];
+#if HAS_PRISMATIC
+    if (arm_prismatic_[i]) {
+      joints[i] += c * weight * arm_dot_(axis, down);
+      for (k = 0; rate && k < i; ++k) {
+        if (arm_prismatic_[k]) continue;
+        arm_cross_(links->axis + 3 * k, axis, turned);
+        rate[k * ARM_CHAIN_ + i] += c * weight * arm_dot_(turned, down);
+      }
+      continue;
+    }
+#endif
+    joints[i] += c * arm_triple_(axis, lever, down);
+    for (k = 0; rate && k < ARM_CHAIN_; ++k) {
+      const double *turn = links->axis + 3 * k;
+      double *slope = rate + k * ARM_CHAIN_ + i;
+#if HAS_PRISMATIC
+      if (arm_prismatic_[k]) {
+        if (k > i) *slope += c * weight * arm_triple_(axis, turn, down);
+        continue;
+      }
+#endif
+      for (j = 0; j < 3; ++j) about[j] = moment[j] - weight * links->point[3 * (k < i ? i : k) + j];
+      arm_cross_(turn, about, turned);
+      *slope += c * arm_triple_(axis, turned, down);
+      if (k >= i) continue;
+      arm_cross_(turn, axis, turned);
+      *slope += c * arm_triple_(turned, lever, down);
+    }
+  }
+}
+#endif
 #if HAS_HYSTERESIS
 
 static inline void arm_add_hysteresis_(const arm_arm_ *arm, const double *q, const double *previous, double *joints,
@@ -234,7 +279,7 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
     for (i = 0; i < ARM_CHAIN_; ++i) rate[k * ARM_CHAIN_ + i] = i == k ? 1 : 0;
   }
 #if HAS_LINKS
-  if (arm->gravity || arm->tilt) {
+  if (arm->gravity || arm->payload || arm->tilt) {
     arm_identity_(end);
     arm_walk_(arm_nominal_rows_, q, end, &nominal);
   }
@@ -244,6 +289,9 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
 #endif
 #if HAS_GRAVITY
   if (arm->gravity) arm_add_gravity_(arm, &nominal, joints, J ? rate : 0);
+#endif
+#if HAS_PAYLOAD
+  if (arm->payload) arm_add_payload_(arm, &nominal, end, joints, J ? rate : 0);
 #endif
 #if HAS_HYSTERESIS
   arm_add_hysteresis_(arm, q, previous, joints, J ? rate : 0);

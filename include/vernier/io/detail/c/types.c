@@ -8,6 +8,8 @@ typedef struct {
   const double *linear_ranges; /* of each joint, the range of these two */
   const double *gravity;       /* of joint i under link j >= i [rad/m] */
   const double *gravity_down;  /* direction of gravity */
+  const double *payload;       /* compliance of each joint to what is carried [rad/(N m)] */
+  const double *payload_load;  /* its weight [N] and moment in the frame of the flange [N m], then down */
   const double *hysteresis;    /* of each width: the width, then a coefficient a joint */
   int widths;
   const double *tilt;      /* of each joint: about x by the three components of gravity, about y likewise */

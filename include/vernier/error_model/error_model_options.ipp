@@ -13,6 +13,7 @@ VERNIER_IMPL void ErrorModelOptions::validate() const {
   for (const auto& [name, value] : {std::pair{"compliance_prior_std", compliance_prior_std},
                                     std::pair{"thermal_prior_std", thermal_prior_std},
                                     {"payload_prior_std", payload_prior_std},
+                                    {"straightness_prior_std", straightness_prior_std},
                                     {"gear_ratio_prior_std", gear_ratio_prior_std},
                                     {"coupling_prior_std", coupling_prior_std},
                                     {"hysteresis_prior_std", hysteresis_prior_std},

@@ -85,6 +85,9 @@ class ErrorModelFit {
     if (deflects) model_.solve();
     out.stages.push_back({Stage::elastic, deflects, arms()});
 
+    const bool bent = add_straightness();
+    elastic.straightness = problem_.arm.terms().straightness;
+
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
       if (input_.nominal.revolute(j))
@@ -99,7 +102,7 @@ class ErrorModelFit {
       linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
     const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
     const bool harmonics = geared ? add_functions(all, linear) : periodic && model_.add(Block::jointwise, all);
-    const bool jointwise = harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
+    const bool jointwise = bent || harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
     if (harmonics) {
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
@@ -111,7 +114,7 @@ class ErrorModelFit {
         model_.learn_spectrum(4);
     }
     if (jointwise) {
-      if (elastic.size() > 0)  // deflection is clearer once all else is modelled
+      if (elastic.gravity)  // deflection is clearer once all else is modelled
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
       model_.size_by_evidence(link_unknowns(problem_.arm));
       model_.solve();
@@ -195,6 +198,26 @@ class ErrorModelFit {
   }
 
  private:
+  /// Adds how prismatic joints depart from a straight motion, over the range in which they were measured.
+  /// @return whether they do
+  VERNIER_LOCAL bool add_straightness() {
+    JointTerms terms = problem_.arm.terms();
+    const MatrixX joints = problem_.joints();
+    std::vector<JointRange> ranges;
+    bool any = false, moved = true;
+    for (int j = 0; j < input_.nominal.joints(); ++j) {
+      ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
+      if (input_.nominal.revolute(j)) continue;
+      any = true;
+      moved = moved && ranges.back().lower < ranges.back().upper;
+    }
+    if (!options_.straightness || !any || !moved) return false;
+    terms.straightness.emplace(input_.nominal, std::move(ranges));
+    if (!model_.add(Block::straightness, terms)) return false;
+    model_.solve();
+    return true;
+  }
+
   /// Adds compliances to payload of which one payload says nothing: they stay at their priors, and so does what they
   /// add to the covariance under other payloads. Products of compliance and weight tell how compliant a joint may be.
   VERNIER_LOCAL void leave_payload_open(const Payload& reference) {

@@ -18,13 +18,14 @@
 #include "vernier/error_terms/gravity_compliance.hpp"
 #include "vernier/error_terms/gravity_tilt.hpp"
 #include "vernier/error_terms/payload_compliance.hpp"
+#include "vernier/error_terms/straightness.hpp"
 
 namespace vernier {
 
 /// Coefficients of joint errors that belong together.
 struct JointTermBlock {
   /// What they are coefficients of.
-  enum class Kind { gear_ratio, coupling, gravity, payload, hysteresis, tilt, transmission };
+  enum class Kind { gear_ratio, coupling, gravity, payload, hysteresis, tilt, straightness, transmission };
   Kind kind;    ///< see `JointTerms`
   int joint;    ///< of a transmission, from 0; else -1
   Index begin;  ///< first coefficient
@@ -40,6 +41,7 @@ struct JointTermBlock {
 /// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
 ///   that is unknown, which is the mean of both directions
 /// - tilt of the joints' frames: no error of joint values but a motion of the arm's end, see `GravityTilt`
+/// - straightness of prismatic joints: likewise, see `Straightness`
 /// - transmission: `dq_i = sum_k beta_ik h_k(q_i)`, harmonics of each joint, joint by joint
 /// @cite Whitney, Lozinski and Rourke 1986; Ruderman, Hoffmann and Bertram 2009 (hysteresis)
 struct JointTerms {
@@ -50,9 +52,10 @@ struct JointTerms {
   std::optional<PayloadCompliance> payload{};  ///< present?
   /// Ranges of each joint in which gear ratios and couplings were estimated [rad, m]; empty: no bounds.
   std::vector<JointRange> linear_ranges{};
-  std::vector<double> hysteresis{};     ///< widths w [rad, m], the same for every joint; none: absent
-  std::optional<GravityTilt> tilt{};    ///< present?
-  std::vector<Fourier> transmission{};  ///< of each joint; may have no functions
+  std::vector<double> hysteresis{};            ///< widths w [rad, m], the same for every joint; none: absent
+  std::optional<GravityTilt> tilt{};           ///< present?
+  std::optional<Straightness> straightness{};  ///< present?
+  std::vector<Fourier> transmission{};         ///< of each joint; may have no functions
 
   /// No terms.
   JointTerms() = default;
@@ -63,10 +66,16 @@ struct JointTerms {
   /// Number of coefficients before the transmission's, each with a column of its own in a linearised pose.
   Index num_dense_terms() const {
     return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0) +
-           (payload ? joints : 0) + joints * static_cast<Index>(hysteresis.size()) + (tilt ? tilt->size() : 0);
+           (payload ? joints : 0) + joints * static_cast<Index>(hysteresis.size()) + num_end_terms();
   }
-  /// First coefficient of the tilts, which are the last before the transmission's.
-  Index tilt_begin() const { return num_dense_terms() - (tilt ? tilt->size() : 0); }
+  /// Number of coefficients that move the arm's end: of tilts, then of straightness.
+  Index num_end_terms() const { return (tilt ? tilt->size() : 0) + (straightness ? straightness->size() : 0); }
+  /// First of them, which are the last before the transmission's.
+  Index end_begin() const { return num_dense_terms() - num_end_terms(); }
+  /// Translation [m] and rotation vector [rad] of the arm's end by one unit of each, 6 x num_end_terms().
+  VERNIER_API void end_basis(const double* q, MatrixRef out) const noexcept;
+  /// The motion of the arm's end by the coefficients from `end_begin()` on, see `GravityTilt::motion`.
+  VERNIER_API Vector6 end_motion(const double* q, const double* coefficients, double* rates = nullptr) const noexcept;
   /// First coefficient of a joint's transmission; that of joint N is the number of all.
   Index transmission_begin(int joint) const {
     Index begin = num_dense_terms();
@@ -84,7 +93,7 @@ struct JointTerms {
   /// The blocks that are present, in the order of their coefficients.
   VERNIER_API std::vector<JointTermBlock> blocks() const;
 
-  /// The columns of Phi before the transmission's; those of tilts are zero.
+  /// The columns of Phi before the transmission's; those of the arm's end are zero.
   /// @param q        joint values [rad, m]
   /// @param previous those from which q was approached; null, or not finite, where unknown
   /// @param out      joints x num_dense_terms()
@@ -93,8 +102,8 @@ struct JointTerms {
                                const PayloadLoad& load = {}) const noexcept;
 
   /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `payload2`, `hysteresis3_1`
-  /// (joint 3, first width), `tilt3_xz` (joint 3, about x by gravity along z), `cos3_12`, `sin3_12` (joint 3, order
-  /// 12).
+  /// (joint 3, first width), `straight1_rx2` (joint 1, about x, order 2), `tilt3_xz` (joint 3, about x by gravity along
+  /// z), `cos3_12`, `sin3_12` (joint 3, order 12).
   VERNIER_API std::vector<std::string> names() const;
 };
 
@@ -169,9 +178,9 @@ class JointErrors {
   /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
   VERNIER_API double half_loop(int i) const noexcept;
 
-  /// Whether frames of joints tilt.
-  bool tilts() const { return terms_.tilt.has_value(); }
-  /// Moves a pose of the arm's end by the tilts of the joints' frames, and extends its derivative by theirs. Does not
+  /// Whether the arm's end moves beyond its joints: frames of joints tilt, or a guide is not straight.
+  bool tilts() const { return terms_.tilt || terms_.straightness; }
+  /// Moves a pose of the arm's end by these motions, and extends its derivative by theirs. Does not
   /// allocate.
   /// @param q        commanded joint values
   /// @param pose     in the base frame of the chain

@@ -73,6 +73,21 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
     for (int i = 0; i < joints; ++i) out(i, at++) = detail::step_of(q, previous, i, width);
 }
 
+VERNIER_IMPL void JointTerms::end_basis(const double* q, MatrixRef out) const noexcept {
+  if (tilt) tilt->basis(q, VERNIER_LATER(out).leftCols(tilt->size()));
+  if (straightness) straightness->basis(q, VERNIER_LATER(out).rightCols(straightness->size()));
+}
+
+VERNIER_IMPL Vector6 JointTerms::end_motion(const double* q, const double* coefficients, double* rates) const noexcept {
+  if (!straightness) return tilt->motion(q, coefficients, rates);
+  Vector6 out = straightness->motion(q, coefficients + (tilt ? tilt->size() : 0), rates);
+  if (!tilt) return out;
+  double of_tilts[6 * max_joints];
+  out += tilt->motion(q, coefficients, rates != nullptr ? of_tilts : nullptr);
+  for (int k = 0; rates != nullptr && k < 6 * joints; ++k) rates[k] += of_tilts[k];
+  return out;
+}
+
 VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   using Kind = JointTermBlock::Kind;
   std::vector<JointTermBlock> out;
@@ -86,6 +101,7 @@ VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   add(Kind::payload, -1, payload ? joints : 0);
   add(Kind::hysteresis, -1, joints * static_cast<Index>(hysteresis.size()));
   add(Kind::tilt, -1, tilt ? tilt->size() : 0);
+  add(Kind::straightness, -1, straightness ? straightness->size() : 0);
   for (int i = 0; i < joints; ++i) add(Kind::transmission, i, transmission[static_cast<std::size_t>(i)].size());
   return out;
 }
@@ -104,6 +120,10 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
     for (int i = 1; i <= joints; ++i) out.push_back(message("hysteresis", i, '_', w));
   for (int i = 1; tilt && i <= joints; ++i)
     for (const char* which : {"xx", "xy", "xz", "yx", "yy", "yz"}) out.push_back(message("tilt", i, '_', which));
+  if (straightness)
+    for (const int p : straightness->guides())
+      for (const char* component : {"x", "y", "z", "rx", "ry", "rz"})
+        for (int k = 1; k <= straightness->orders(); ++k) out.push_back(message("straight", p + 1, '_', component, k));
   for (int i = 1; i <= joints; ++i)
     for (const int order : transmission[static_cast<std::size_t>(i - 1)].orders)
       for (const char* function : {"cos", "sin"}) out.push_back(message(function, i, '_', order));
@@ -120,6 +140,8 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
          terms_.payload ? terms_.payload->joints() : 0, " joints, expected ", terms_.joints);
   demand(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
          terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
+  demand(!terms_.straightness || terms_.straightness->joints() == terms_.joints, "JointErrors: straightness of ",
+         terms_.straightness ? terms_.straightness->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
   demand(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
          "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
@@ -209,11 +231,11 @@ VERNIER_IMPL double JointErrors::half_loop(int i) const noexcept {
 }
 
 VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* jacobian) const noexcept {
-  if (!terms_.tilt) return;
+  if (!tilts()) return;
   const int n = terms_.joints;
   double rates[6 * max_joints];
   const Vector6 motion =
-      terms_.tilt->motion(q, coefficients_.data() + terms_.tilt_begin(), jacobian != nullptr ? rates : nullptr);
+      terms_.end_motion(q, coefficients_.data() + terms_.end_begin(), jacobian != nullptr ? rates : nullptr);
   const Vector3 shift = VERNIER_LATER(motion).template head<3>(), turn = VERNIER_LATER(motion).template tail<3>();
   const Matrix3 rotation = exp_so3(turn);
   const Vector3 turned = rotation * translation(pose);

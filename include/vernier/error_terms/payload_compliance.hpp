@@ -11,6 +11,10 @@
 
 namespace vernier {
 
+namespace detail {
+inline constexpr double standard_gravity = 9.80665;  // [m/s^2]
+}
+
 /// What an arm carries at its flange.
 struct Payload {
   double mass = 0;  ///< [kg]

@@ -10,8 +10,6 @@ namespace vernier {
 
 namespace detail {
 
-inline constexpr double standard_gravity = 9.80665;  // [m/s^2]
-
 /// Axes of the joints, points on them, and the weight of a load at the end of a chain with its moment about the base.
 struct LoadedLinks {
   double axes[3 * max_joints], points[3 * max_joints], origins[3 * max_joints];

@@ -44,6 +44,8 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
       add("PAYLOAD", block.kind == Kind::payload);
       add("HYSTERESIS", block.kind == Kind::hysteresis);
       add("TILT", block.kind == Kind::tilt);
+      add("STRAIGHT", block.kind == Kind::straightness);
+      add("MOTION", block.kind == Kind::tilt || block.kind == Kind::straightness);
       add("HARMONICS", block.kind == Kind::transmission);
     }
   };
@@ -58,9 +60,9 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("FALLBACK", model.fallback.has_value());
   add("LEARNED", model.learned.has_value());
   add("GATES", model.fallback || model.learned);
-  add("LINKS", out.contains("GRAVITY") || out.contains("PAYLOAD") || out.contains("TILT"));
+  add("LINKS", out.contains("GRAVITY") || out.contains("PAYLOAD") || out.contains("MOTION"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
-  add("EXP", out.contains("TILT") || out.contains("FALLBACK"));
+  add("EXP", out.contains("MOTION") || out.contains("FALLBACK"));
   if (!model.learned) return out;
   const HiddenLayer& layer = std::get_if<FittedNetwork>(&model.learned->function)->layer;
   constexpr const char* maps[] = {"MAP_RAW", "MAP_SINES_AND_COSINES", "MAP_PRODUCTS"};

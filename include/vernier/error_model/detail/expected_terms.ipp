@@ -63,6 +63,11 @@ VERNIER_IMPL VectorX expected_sizes(const JointTerms& terms, const ErrorModelOpt
         case JointTermBlock::Kind::payload: std = options.payload_prior_std; break;
         case JointTermBlock::Kind::hysteresis: std = options.hysteresis_prior_std; break;
         case JointTermBlock::Kind::tilt: std = options.tilt_prior_std; break;
+        case JointTermBlock::Kind::straightness: {
+          const auto order = static_cast<double>(k % terms.straightness->orders() + 1);
+          std = options.straightness_prior_std / (order * order);
+          break;
+        }
         case JointTermBlock::Kind::transmission:
           std = expected_std(spectra[static_cast<std::size_t>(block.joint)],
                              terms.transmission[static_cast<std::size_t>(block.joint)].order(k));

@@ -115,6 +115,17 @@ VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
       case Kind::tilt:
         out["tilt"] = {{"down", list_of(terms.tilt->down())}, {"coefficients_rad", std::move(values)}};
         break;
+      case Kind::straightness: {
+        OrderedJson ranges = OrderedJson::array();
+        for (const int p : terms.straightness->guides()) {
+          const JointRange& range = terms.straightness->ranges()[static_cast<std::size_t>(p)];
+          ranges.push_back({range.lower, range.upper});
+        }
+        out["straightness"] = {{"ranges_m", std::move(ranges)},
+                               {"orders", terms.straightness->orders()},
+                               {"coefficients", std::move(values)}};
+        break;
+      }
       case Kind::transmission: joints[static_cast<std::size_t>(block.joint)]["coefficients_rad"] = std::move(values);
     }
   }
@@ -136,7 +147,7 @@ VERNIER_LOCAL Vector3 direction_from_json(const JsonNode& node) {
 /// @param nominal the chain whose torques gravity compliance needs, and whose frames tilt
 VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, const JsonNode& node) {
   node.allow_only({"coefficients", "gear_ratio", "coupling", "linear_ranges", "gravity", "payload", "hysteresis",
-                   "tilt", "transmission"});
+                   "tilt", "straightness", "transmission"});
   const auto joints = static_cast<std::size_t>(nominal.joints());
   JointTerms terms(nominal.joints());
   std::vector<VectorX> blocks;
@@ -178,6 +189,20 @@ VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, cons
     const JsonNode tilt = node.at("tilt");
     terms.tilt.emplace(nominal, direction_from_json(tilt.at("down")));
     blocks.push_back(tilt.at("coefficients_rad").numbers(static_cast<std::size_t>(terms.tilt->size())));
+  }
+  if (node.has("straightness")) {
+    const JsonNode straight = node.at("straightness"), ranges = straight.at("ranges_m");
+    std::vector<JointRange> of_joints(joints);
+    std::size_t guides = 0;
+    for (std::size_t j = 0; j < joints; ++j) {
+      if (nominal.revolute(static_cast<int>(j))) continue;
+      const VectorX ends = ranges.at(guides++).numbers(2);
+      if (!(ends(0) < ends(1))) ranges.fail("a range is empty");
+      of_joints[j] = {ends(0), ends(1)};
+    }
+    ranges.require_size(guides);
+    terms.straightness.emplace(nominal, std::move(of_joints), static_cast<int>(straight.at("orders").integer(1, 100)));
+    blocks.push_back(straight.at("coefficients").numbers(static_cast<std::size_t>(terms.straightness->size())));
   }
   if (node.has("transmission")) {
     const JsonNode transmission = node.at("transmission");

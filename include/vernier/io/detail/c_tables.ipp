@@ -82,6 +82,8 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
   const JointTerms& terms = arm.errors.terms();
   std::vector<double> gear, coupling, ranges, gravity, gravity_down, payload, payload_load, hysteresis, tilt, tilt_down,
       harmonics;
+  std::vector<double> straight, guides;
+  int straight_orders = 0;
   std::vector<int> orders;
   for (const Fourier& of_joint : terms.transmission)
     orders.insert(orders.end(), of_joint.orders.begin(), of_joint.orders.end());
@@ -119,6 +121,14 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
         tilt = values;
         tilt_down.assign(terms.tilt->down().begin(), terms.tilt->down().end());
         break;
+      case Kind::straightness:
+        straight = values;
+        for (const int p : terms.straightness->guides()) {
+          const JointRange& range = terms.straightness->ranges()[static_cast<std::size_t>(p)];
+          guides.insert(guides.end(), {range.lower, range.upper});
+        }
+        straight_orders = terms.straightness->orders();
+        break;
       case Kind::transmission: {
         const std::vector<int>& of_joint = terms.transmission[static_cast<std::size_t>(block.joint)].orders;
         for (std::size_t k = 0; k < of_joint.size(); ++k) {
@@ -146,6 +156,9 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
   fields += message(", ", terms.hysteresis.size());
   fields += ", " + table("tilt_", tilt, 6);
   fields += ", " + table("tilt_down_", tilt_down, 3);
+  fields += ", " + table("straight_", straight, static_cast<std::size_t>((std::max)(1, straight_orders)));
+  fields += ", " + table("guides_", guides, 2);
+  fields += message(", ", straight_orders);
   fields += ", " + table("harmonics_", harmonics, static_cast<std::size_t>(lanes));
   if (orders.empty()) {
     fields += ", 0, 0}";

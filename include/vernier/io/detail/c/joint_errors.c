@@ -189,13 +189,90 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
   }
 }
 #endif
-#if HAS_TILT
+#if HAS_STRAIGHT
 
-/* Tilts of the joints' frames under gravity: a motion of the arm's end in the base frame of the chain. */
-static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, double *end, double *J) {
-  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
-  int i, j, k;
+/* Adds how prismatic joints depart from a straight motion. */
+static inline void arm_add_guides_(const arm_arm_ *arm, const arm_links_ *links, const double *q, double *shift,
+                                 double *turn, double *rates) {
+  const double *c = arm->straight, *range = arm->guides;
+  int i, j, k, m;
   for (i = 0; i < ARM_CHAIN_; ++i) {
+    const double *axes[3], *origin = links->origin + 3 * i;
+    double z[3], value[6], slope[6], moved[3] = {0, 0, 0}, turned[3] = {0, 0, 0}, moving[3] = {0, 0, 0};
+    double turning[3] = {0, 0, 0}, swung[3], v[3], w[3], rate, angle;
+    if (!arm_prismatic_[i]) continue;
+    arm_cross_(links->x + 3 * i, links->y + 3 * i, z);
+    axes[0] = links->x + 3 * i;
+    axes[1] = links->y + 3 * i;
+    axes[2] = z;
+    rate = 3.14159265358979323846 / (range[1] - range[0]);
+    angle = rate * (q[i] - range[0]);
+    if (q[i] <= range[0]) angle = rate = 0;
+    if (q[i] >= range[1]) {
+      angle = 3.14159265358979323846;
+      rate = 0;
+    }
+    range += 2;
+    for (m = 0; m < 6; ++m) {
+      value[m] = slope[m] = 0;
+      for (k = 1; k <= arm->straight_orders; ++k, ++c) {
+        value[m] += *c * cos(k * angle);
+        slope[m] -= *c * k * rate * sin(k * angle);
+      }
+    }
+    for (m = 0; m < 3; ++m)
+      for (j = 0; j < 3; ++j) {
+        moved[j] += value[m] * axes[m][j];
+        turned[j] += value[3 + m] * axes[m][j];
+        moving[j] += slope[m] * axes[m][j];
+        turning[j] += slope[3 + m] * axes[m][j];
+      }
+    arm_cross_(origin, turned, v);
+    for (j = 0; j < 3; ++j) {
+      shift[j] += moved[j] + v[j];
+      turn[j] += turned[j];
+    }
+    if (!rates) continue;
+    arm_cross_(links->axis + 3 * i, turned, v);
+    arm_cross_(origin, turning, w);
+    for (j = 0; j < 3; ++j) {
+      rates[6 * i + j] += v[j] + moving[j] + w[j];
+      rates[6 * i + 3 + j] += turning[j];
+    }
+    for (k = 0; k < i; ++k) {
+      const double *axis = links->axis + 3 * k;
+      double lever[3];
+      arm_cross_(axis, turned, v);
+      if (arm_prismatic_[k]) {
+        for (j = 0; j < 3; ++j) rates[6 * k + j] += v[j];
+        continue;
+      }
+      for (j = 0; j < 3; ++j) {
+        lever[j] = origin[j] - links->point[3 * k + j];
+        rates[6 * k + 3 + j] += v[j];
+      }
+      arm_cross_(origin, v, w);
+      arm_cross_(axis, moved, swung);
+      arm_cross_(axis, lever, v);
+      arm_cross_(v, turned, v);
+      for (j = 0; j < 3; ++j) rates[6 * k + j] += swung[j] + v[j] + w[j];
+    }
+  }
+}
+#endif
+#if HAS_MOTION
+
+/* Tilts of the joints' frames under gravity, and guides: a motion of the arm's end in the base frame of the chain. */
+static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links, const double *q, double *end, double *J) {
+  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
+  int j, k;
+#if HAS_TILT
+  int i;
+#endif
+  (void)q;
+  for (k = 0; k < 6 * ARM_CHAIN_; ++k) rates[k] = 0;
+#if HAS_TILT
+  for (i = 0; arm->tilt && i < ARM_CHAIN_; ++i) {
     const double *c = arm->tilt + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
     double z[3], tilted[3];
     arm_cross_(x, y, z);
@@ -224,24 +301,25 @@ static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, d
       arm_cross_(links->axis + 3 * k, tilted, w);
 #if HAS_PRISMATIC
       if (arm_prismatic_[k]) {
-        for (j = 0; j < 3; ++j) {
-          rates[6 * k + j] = (k == i ? 0 : rates[6 * k + j]) + w[j];
-          rates[6 * k + 3 + j] = k == i ? 0 : rates[6 * k + 3 + j];
-        }
+        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
         continue;
       }
 #endif
       for (j = 0; j < 3; ++j) {
         v[j] += w[j];
-        rates[6 * k + 3 + j] = (k == i ? 0 : rates[6 * k + 3 + j]) + v[j];
+        rates[6 * k + 3 + j] += v[j];
         lever[j] = origin[j] - links->point[3 * k + j];
       }
       arm_cross_(origin, v, w);
       arm_cross_(links->axis + 3 * k, lever, v);
       arm_cross_(v, tilted, v);
-      for (j = 0; j < 3; ++j) rates[6 * k + j] = (k == i ? 0 : rates[6 * k + j]) + w[j] + v[j];
+      for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j] + v[j];
     }
   }
+#endif
+#if HAS_STRAIGHT
+  if (arm->straight) arm_add_guides_(arm, links, q, shift, turn, J ? rates : 0);
+#endif
   arm_exp_(turn, R);
   arm_product_(R, end, rotated);
   for (k = 0; k < 9; ++k) end[k] = rotated[k];
@@ -279,7 +357,7 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
     for (i = 0; i < ARM_CHAIN_; ++i) rate[k * ARM_CHAIN_ + i] = i == k ? 1 : 0;
   }
 #if HAS_LINKS
-  if (arm->gravity || arm->payload || arm->tilt) {
+  if (arm->gravity || arm->payload || arm->tilt || arm->straight) {
     arm_identity_(end);
     arm_walk_(arm_nominal_rows_, q, end, &nominal);
   }
@@ -328,8 +406,8 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
         J[6 * k + j] = sum;
       }
   }
-#if HAS_TILT
-  if (arm->tilt) arm_add_tilt_(arm, &nominal, end, J);
+#if HAS_MOTION
+  if (arm->tilt || arm->straight) arm_add_motion_(arm, &nominal, q, end, J);
 #endif
   if (J) { /* from the flange to the tool point, from the chain's base to the base */
     double lever[3], moved[3];

@@ -14,6 +14,9 @@ typedef struct {
   int widths;
   const double *tilt;      /* of each joint: about x by the three components of gravity, about y likewise */
   const double *tilt_down; /* direction of gravity */
+  const double *straight;  /* of each prismatic joint: cosines of x, y, z and of the rotations about them */
+  const double *guides;    /* of each prismatic joint: its range */
+  int straight_orders;     /* number of cosines */
   const double *harmonics; /* of each order: cosine coefficients of all joints, then sine coefficients */
   const int *order;
   int orders;
